@@ -1,0 +1,3 @@
+//! The controller of an electro-hydraulic three-point hitch.
+#![no_std]
+#![forbid(unsafe_code)]

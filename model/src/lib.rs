@@ -1,0 +1,2 @@
+//! The plant of an electro-hydraulic three-point hitch, its effects, measurements and identification.
+#![forbid(unsafe_code)]

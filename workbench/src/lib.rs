@@ -1,0 +1,2 @@
+//! The workbench: everything behind the program `hitch`.
+#![forbid(unsafe_code)]

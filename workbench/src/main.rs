@@ -1,0 +1,2 @@
+//! `hitch`: measurement -> physics -> firmware -> motion.
+fn main() {}
