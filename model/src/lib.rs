@@ -2,7 +2,14 @@
 #![forbid(unsafe_code)]
 
 pub mod campaign;
+pub mod effects;
 pub mod input_error;
+pub mod model;
 pub mod naming;
+pub mod plant;
 pub mod source_file;
+mod starting_points;
 pub mod toml_reader;
+pub mod units;
+
+pub use model::Model;
