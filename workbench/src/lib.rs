@@ -1,2 +1,12 @@
 //! The workbench: everything behind the program `hitch`.
 #![forbid(unsafe_code)]
+
+pub mod cli;
+pub mod commands;
+pub mod error;
+pub mod model_arg;
+pub mod output;
+pub mod paper;
+pub mod progress;
+pub mod report;
+pub mod text;

@@ -1,0 +1,2 @@
+//! One file a command: its arguments, and what it does.
+pub mod paper;
