@@ -1,7 +1,7 @@
 //! The command line.
 use clap::{Parser, Subcommand};
 
-use crate::commands::paper;
+use crate::commands::{effects, paper, simulate};
 use crate::error::Error;
 use crate::output;
 
@@ -18,6 +18,10 @@ pub struct Cli {
 /// Every command of the program.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// The catalogue of physical effects: equation, parameters, units, source, where it shows
+    Effects(effects::Args),
+    /// The plant alone, driven by a log's currents
+    Simulate(simulate::Args),
     /// The paper's tables and figures from this model, side by side
     Paper(paper::Args),
 }
@@ -29,6 +33,8 @@ impl Command {
     /// Whatever the command reports.
     pub fn run(&self) -> Result<(), Error> {
         match self {
+            Self::Effects(args) => effects::run(args),
+            Self::Simulate(args) => simulate::run(args),
             Self::Paper(args) => paper::run(args),
         }
     }

@@ -53,9 +53,37 @@ impl std::fmt::Display for Table {
     }
 }
 
+/// Breaks a text into lines of at most `width` characters, where a word allows it; all but the first are indented.
+pub fn wrapped(text: &str, width: usize) -> String {
+    let mut lines: Vec<String> = vec![String::new()];
+    for word in text.split_whitespace() {
+        let line = lines
+            .last_mut()
+            .filter(|line| line.chars().count() + word.chars().count() < width);
+        match line {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            None => lines.push(format!("  {word}")),
+        }
+    }
+    lines.join("\n")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_texts_are_broken_between_words() {
+        assert_eq!(
+            wrapped("one two three four", 10),
+            "one two\n  three\n  four"
+        );
+        assert_eq!(wrapped("", 10), "");
+    }
 
     #[test]
     fn columns_are_aligned() {

@@ -1,2 +1,4 @@
 //! One file a command: its arguments, and what it does.
+pub mod effects;
 pub mod paper;
+pub mod simulate;
