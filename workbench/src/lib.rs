@@ -4,6 +4,7 @@
 pub mod cli;
 pub mod commands;
 pub mod error;
+pub mod explanation;
 pub mod model_arg;
 pub mod output;
 pub mod paper;

@@ -30,13 +30,13 @@ pub struct Args {
     #[arg(long, value_name = "OUT.csv")]
     out: PathBuf,
     /// Load at the hitch, kg
-    #[arg(long, value_name = "KG", default_value_t = 150.0, value_parser = within::<0, 2000>)]
+    #[arg(long, value_name = "KG", allow_negative_numbers = true, default_value_t = 150.0, value_parser = within::<0, 2000>)]
     load: f64,
     /// Flow bench instead of the hitch: pressure at the cylinder port, bar
-    #[arg(long, value_name = "BAR", conflicts_with_all = ["load", "start_angle"], value_parser = within::<0, 400>)]
+    #[arg(long, value_name = "BAR", allow_negative_numbers = true, conflicts_with_all = ["load", "start_angle"], value_parser = within::<0, 400>)]
     port_pressure: Option<f64>,
     /// Rocker angle at the start, degrees; without it, where the log's first samples show it, else fully down
-    #[arg(long, value_name = "DEG", value_parser = within::<0, 180>)]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = within::<0, 180>)]
     start_angle: Option<f64>,
     /// Oil temperature, degrees Celsius
     #[arg(long, value_name = "C", default_value_t = 40.0, allow_negative_numbers = true, value_parser = within::<-40, 150>)]

@@ -2,5 +2,6 @@
 pub mod chart;
 pub mod heat_table;
 pub mod page;
+pub mod runs;
 pub mod scale;
 pub mod staircase;
