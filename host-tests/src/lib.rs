@@ -1,1 +1,5 @@
-//! Tests across the crates; see `tests/`.
+//! Tests across the crates; see `tests/`. Here is what several of them need.
+
+pub mod emulator;
+pub mod replay;
+pub mod traces;

@@ -1,0 +1,84 @@
+//! The controller on an emulated Cortex-M4 (QEMU `mps2-an386`).
+//!
+//! Reads records of inputs from the host's file or pipe `inputs`, steps the controller once a record and writes to
+//! `outputs`, for each step, the outputs and the timer ticks that the step took (u32, little endian). At the end it
+//! says on the console how many steps it ran and how much stack it used, and ends the emulator with a status.
+//! `inputs` is opened first: a host that uses pipes must open them in the same order.
+
+#![no_std]
+#![no_main]
+
+mod host_file;
+mod stack;
+mod stopwatch;
+
+use core::fmt::Write;
+use core::panic::PanicInfo;
+
+use cortex_m_rt::{ExceptionFrame, entry, exception};
+use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
+
+use host_file::{HostFile, HostFileError};
+use stopwatch::Stopwatch;
+
+#[entry]
+fn main() -> ! {
+    match run() {
+        Ok(steps) => {
+            say(format_args!(
+                "steps={steps}\nstack_bytes={}\n",
+                stack::high_water_mark()
+            ));
+            debug::exit(EXIT_SUCCESS);
+        }
+        Err(error) => fail(format_args!("{error}\n")),
+    }
+    halt()
+}
+
+/// Steps the controller until `inputs` ends; the number of steps.
+fn run() -> Result<u32, HostFileError> {
+    let mut inputs = HostFile::open_for_reading(c"inputs")?;
+    let mut outputs = HostFile::open_for_writing(c"outputs")?;
+    let stopwatch = Stopwatch::start();
+    let mut record = [0_u8; 8];
+    let mut steps = 0;
+    while inputs.read_record(&mut record)? {
+        let (out, ticks) =
+            stopwatch.ticks_of(|| u64::from_le_bytes(record).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        outputs.write_all(&out.to_le_bytes())?;
+        outputs.write_all(&ticks.to_le_bytes())?;
+        steps += 1;
+    }
+    Ok(steps)
+}
+
+fn say(text: core::fmt::Arguments<'_>) {
+    if let Ok(mut console) = HostFile::console() {
+        // Nobody is left to tell if the console itself fails.
+        let _ = console.write_fmt(text);
+    }
+}
+
+fn fail(text: core::fmt::Arguments<'_>) {
+    say(text);
+    debug::exit(EXIT_FAILURE);
+}
+
+fn halt() -> ! {
+    loop {
+        core::hint::spin_loop();
+    }
+}
+
+#[panic_handler]
+fn on_panic(info: &PanicInfo<'_>) -> ! {
+    fail(format_args!("{info}\n"));
+    halt()
+}
+
+#[exception]
+unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    fail(format_args!("hard fault: {frame:?}\n"));
+    halt()
+}
