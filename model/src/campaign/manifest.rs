@@ -1,0 +1,214 @@
+//! `campaign.toml`: which runs there are, and what is known of them.
+use std::path::{Component, Path};
+
+use super::{Bench, Campaign, CampaignError, Channel, Noise, Run, run_log};
+use crate::input_error::{InputError, quote};
+use crate::source_file::SourceFile;
+use crate::toml_reader::TomlTable;
+
+/// The only format there is.
+const FORMAT: f64 = 1.0;
+/// Oil temperature of a run that does not say, degrees Celsius: where the valve's tables hold.
+const DEFAULT_OIL_TEMPERATURE_C: f64 = 40.0;
+/// Loads that the cylinder can hold below the relief pressure, with a margin, kg.
+const LOAD_KG: std::ops::RangeInclusive<f64> = 0.0..=2000.0;
+/// Pressures of hydraulics of this class, bar.
+const PORT_PRESSURE_BAR: std::ops::RangeInclusive<f64> = 0.0..=400.0;
+/// Temperatures at which the oil is a liquid and the seals live, degrees Celsius.
+const OIL_TEMPERATURE_C: std::ops::RangeInclusive<f64> = -40.0..=150.0;
+/// Slower than the hitch moves, to faster than any logger of this class, Hz.
+const SAMPLE_RATE_HZ: std::ops::RangeInclusive<f64> = 0.5..=100_000.0;
+/// One sigma, in any instrument's unit. Zero is not a noise: leave the key out to have it estimated.
+const SIGMA: std::ops::RangeInclusive<f64> = 1e-6..=100.0;
+
+/// Reads a campaign's folder.
+pub fn load(dir: &Path) -> Result<Campaign, CampaignError> {
+    let source = SourceFile::read(&manifest_path(dir)?)?;
+    let top = TomlTable::parse(&source)?;
+    check_format(&top)?;
+    top.only(&[
+        "format",
+        "name",
+        "description",
+        "sample_rate_hz",
+        "noise",
+        "run",
+    ])?;
+    let noise = noise(&top)?;
+    let declared_rate_hz = top.number("sample_rate_hz", SAMPLE_RATE_HZ)?;
+    let name = top
+        .text("name")?
+        .map_or_else(|| folder_name(dir), str::to_owned);
+    let description = top.text("description")?.unwrap_or_default().to_owned();
+    let runs = runs(dir, &top)?;
+    let sample_rate_hz = declared_rate_hz.unwrap_or_else(|| logged_rate_hz(&runs));
+    Ok(Campaign {
+        name,
+        description,
+        sample_rate_hz,
+        noise,
+        runs,
+    })
+}
+
+fn manifest_path(dir: &Path) -> Result<std::path::PathBuf, CampaignError> {
+    let mend = "a campaign is a folder with campaign.toml and a CSV file per run";
+    if !dir.exists() {
+        return Err(InputError::of_file(dir, "no such folder", mend));
+    }
+    if !dir.is_dir() {
+        return Err(InputError::of_file(dir, "is not a folder", mend));
+    }
+    let path = dir.join("campaign.toml");
+    if !path.exists() {
+        return Err(InputError::of_file(dir, "holds no campaign.toml", mend));
+    }
+    Ok(path)
+}
+
+fn folder_name(dir: &Path) -> String {
+    let full = dir.canonicalize().unwrap_or_else(|_| dir.to_path_buf());
+    full.file_name().map_or_else(
+        || "campaign".to_owned(),
+        |name| name.to_string_lossy().into_owned(),
+    )
+}
+
+fn check_format(top: &TomlTable<'_>) -> Result<(), CampaignError> {
+    let format = top.required_number("format", f64::MIN..=f64::MAX)?;
+    if format == FORMAT {
+        return Ok(());
+    }
+    let what = format!("format {format} is not known");
+    Err(top.error_at("format", what, "this program reads format = 1"))
+}
+
+fn noise(top: &TomlTable<'_>) -> Result<Noise, CampaignError> {
+    let Some(table) = top.table("noise")? else {
+        return Ok(Noise::default());
+    };
+    let channels = Channel::ALL.map(Channel::key);
+    let others = ["lift_current_a", "lower_current_a", "oil_temperature_c"];
+    table.only(&[&others[..], &channels[..]].concat())?;
+    let mut noise = Noise {
+        lift_current_a: table.number(others[0], SIGMA)?,
+        lower_current_a: table.number(others[1], SIGMA)?,
+        oil_temperature_c: table.number(others[2], SIGMA)?,
+        channels: [None; 4],
+    };
+    for channel in Channel::ALL {
+        noise.channels[channel.index()] = table.number(channel.key(), SIGMA)?;
+    }
+    Ok(noise)
+}
+
+fn runs(dir: &Path, top: &TomlTable<'_>) -> Result<Vec<Run>, CampaignError> {
+    let tables = top.tables("run")?;
+    if tables.is_empty() {
+        return Err(top.error_at(
+            "run",
+            "there is no run",
+            "add a [[run]] block for every CSV file",
+        ));
+    }
+    let mut runs: Vec<Run> = Vec::with_capacity(tables.len());
+    for table in &tables {
+        let file = file_name(table)?;
+        if runs.iter().any(|run| run.file == file) {
+            let what = format!("{} is listed twice", quote(file));
+            return Err(table.error_at("file", what, "delete one of the two [[run]] blocks"));
+        }
+        let (bench, oil_temperature_c) = conditions(table)?;
+        let path = dir.join(file);
+        if !path.exists() {
+            let what = format!("the folder holds no file {}", quote(file));
+            return Err(table.error_at(
+                "file",
+                what,
+                "correct the name, or delete this [[run]] block",
+            ));
+        }
+        runs.push(run_log::read(&path, file, bench, oil_temperature_c)?);
+    }
+    Ok(runs)
+}
+
+/// The log's name: a plain path below the campaign's folder.
+fn file_name<'t>(table: &'t TomlTable<'_>) -> Result<&'t str, CampaignError> {
+    let file = table.required_text("file")?;
+    let inside = Path::new(file)
+        .components()
+        .all(|part| matches!(part, Component::Normal(_)));
+    let plain = !file.is_empty() && !file.chars().any(char::is_control);
+    if inside && plain {
+        return Ok(file);
+    }
+    let what = format!(
+        "{} is not the name of a file in the campaign's folder",
+        quote(file)
+    );
+    Err(table.error_at(
+        "file",
+        what,
+        "put the log beside campaign.toml and give its name only",
+    ))
+}
+
+fn conditions(table: &TomlTable<'_>) -> Result<(Bench, f64), CampaignError> {
+    table.only(&[
+        "file",
+        "bench",
+        "load_kg",
+        "port_pressure_bar",
+        "oil_temperature_c",
+    ])?;
+    let bench = match table.required_text("bench")? {
+        "hitch" => {
+            belongs_elsewhere(table, "port_pressure_bar", "flow")?;
+            Bench::Hitch {
+                load_kg: table.required_number("load_kg", LOAD_KG)?,
+            }
+        }
+        "flow" => {
+            belongs_elsewhere(table, "load_kg", "hitch")?;
+            Bench::Flow {
+                port_pressure_bar: table.required_number("port_pressure_bar", PORT_PRESSURE_BAR)?,
+            }
+        }
+        other => {
+            let what = format!("bench {} is not known", quote(other));
+            return Err(table.error_at("bench", what, "it is \"hitch\" or \"flow\""));
+        }
+    };
+    let oil_temperature_c = table.number("oil_temperature_c", OIL_TEMPERATURE_C)?;
+    Ok((
+        bench,
+        oil_temperature_c.unwrap_or(DEFAULT_OIL_TEMPERATURE_C),
+    ))
+}
+
+fn belongs_elsewhere(table: &TomlTable<'_>, key: &str, bench: &str) -> Result<(), CampaignError> {
+    if !table.has(key) {
+        return Ok(());
+    }
+    let what = format!("{key} belongs to a run on the {bench} bench");
+    Err(table.error_at(
+        key,
+        what,
+        format!("delete the line, or write bench = \"{bench}\""),
+    ))
+}
+
+/// Rate of the first run's time stamps (median step), Hz.
+fn logged_rate_hz(runs: &[Run]) -> f64 {
+    let Some(run) = runs.first() else { return 0.0 };
+    let mut steps_s: Vec<f64> = run
+        .time_s
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .collect();
+    steps_s.sort_by(f64::total_cmp);
+    steps_s
+        .get(steps_s.len() / 2)
+        .map_or(0.0, |step_s| 1.0 / step_s)
+}

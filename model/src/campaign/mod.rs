@@ -1,0 +1,123 @@
+//! Measurements: a campaign is a folder with `campaign.toml` and one CSV log a run.
+//!
+//! ```text
+//! campaign.toml        format, name, noise of the instruments, and a [[run]] block a log
+//! lift_1.5A_050kg.csv  time_s, lift_current_a, lower_current_a and what was measured
+//! ```
+//!
+//! Reading checks everything that can be checked without a model, so that nothing behind it has to: every number is
+//! finite and plausible, time rises strictly, the currents have no gaps, and every run has something to compare with.
+mod channel;
+mod dropout;
+mod manifest;
+mod run_log;
+
+use std::path::Path;
+
+pub use channel::Channel;
+
+use crate::input_error::InputError;
+
+/// What is wrong with a campaign, by file, line and column.
+pub type CampaignError = InputError;
+
+/// A set of runs measured on one rig.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Campaign {
+    /// Short name; the folder's name if the campaign does not say.
+    pub name: String,
+    /// One sentence; empty if the campaign does not say.
+    pub description: String,
+    /// Sample rate, Hz; taken from the first run's time column if the campaign does not say.
+    pub sample_rate_hz: f64,
+    /// Noise of the instruments.
+    pub noise: Noise,
+    /// The runs, in the order of `campaign.toml`; at least one.
+    pub runs: Vec<Run>,
+}
+
+/// Noise of each instrument as its data sheet declares it: one sigma, in the instrument's unit; `None` where it is not
+/// declared and has to be estimated.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Noise {
+    /// Logged current of the lift solenoid, A.
+    pub lift_current_a: Option<f64>,
+    /// Logged current of the lowering solenoid, A.
+    pub lower_current_a: Option<f64>,
+    /// Measured channels, by [`Channel::index`].
+    pub channels: [Option<f64>; 4],
+    /// Oil temperature, degrees Celsius.
+    pub oil_temperature_c: Option<f64>,
+}
+
+/// What the valve block was bolted to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bench {
+    /// Cylinder, linkage and a load at the hitch.
+    Hitch {
+        /// Load at the hitch as it was weighed, without the links' own weight, kg.
+        load_kg: f64,
+    },
+    /// No cylinder: the cylinder port is held at a pressure and the flow through it is measured.
+    Flow {
+        /// Pressure at the port, bar.
+        port_pressure_bar: f64,
+    },
+}
+
+/// One log: what drove the valves, and what was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// File name within the campaign's folder.
+    pub file: String,
+    /// What the valve block was bolted to.
+    pub bench: Bench,
+    /// Oil temperature of the run, degrees Celsius; 40 if the campaign does not say.
+    pub oil_temperature_c: f64,
+    /// Time stamps as logged, s; strictly rising, at least [`Run::FEWEST_SAMPLES`].
+    pub time_s: Vec<f64>,
+    /// Current of the lift solenoid, A; short dropouts are bridged, so no value is missing.
+    pub lift_current_a: Vec<f64>,
+    /// Current of the lowering solenoid, A; short dropouts are bridged, so no value is missing.
+    pub lower_current_a: Vec<f64>,
+    /// Measured channels by [`Channel::index`], in the channel's unit; `None` if the channel was not measured (or lost
+    /// throughout), NaN at a dropout. A flow bench has no rocker: its angle is always `None`.
+    pub channels: [Option<Vec<f64>>; 4],
+    /// Logged oil temperature, degrees Celsius; NaN at a dropout.
+    pub oil_temperature_log_c: Option<Vec<f64>>,
+}
+
+impl Campaign {
+    /// Reads a campaign's folder.
+    ///
+    /// # Errors
+    /// Whatever is wrong first, by file, line and column: see the module's description.
+    pub fn load(dir: &Path) -> Result<Self, CampaignError> {
+        manifest::load(dir)
+    }
+}
+
+impl Noise {
+    /// Declared sigma of a channel, in the channel's unit.
+    pub fn of(&self, channel: Channel) -> Option<f64> {
+        self.channels[channel.index()]
+    }
+}
+
+impl Run {
+    /// Fewest samples that make a run.
+    pub const FEWEST_SAMPLES: usize = 10;
+
+    /// Samples of a channel, in its unit, NaN at a dropout; `None` if it was not measured.
+    pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
+        self.channels[channel.index()].as_deref()
+    }
+
+    /// Time from the first to the last sample, s.
+    pub fn duration_s(&self) -> f64 {
+        self.time_s
+            .last()
+            .zip(self.time_s.first())
+            .map_or(0.0, |(last, first)| last - first)
+    }
+}

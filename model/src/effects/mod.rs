@@ -1,0 +1,118 @@
+//! The catalogue of physical effects: one file an effect, one line in [`CATALOGUE`] each.
+//!
+//! # Adding an effect
+//! 1. A new file beside this one with a unit struct that implements [`Effect`]: its equation and source in the doc
+//!    comment, its parameters with unit, range, null value and typical size, and `attach`, which puts closures or
+//!    small stateful parts at the [`Sites`] of the plant where the physics acts.
+//! 2. One `mod` and one entry in [`CATALOGUE`]. Plant, model files, identification, reports, `hitch effects` and the
+//!    generic tests (null value, continuity, channels, model-file round trip) go through the catalogue.
+
+mod angle_sensor_lag;
+mod coulomb_friction;
+mod flow_scale;
+mod lowering_leakage;
+mod return_line_loss;
+mod solenoid_hysteresis;
+mod threshold_shift;
+
+use crate::campaign::Channel;
+use crate::plant::sites::{RunConditions, Sites};
+
+/// Every effect that the project knows.
+pub static CATALOGUE: &[&dyn Effect] = &[
+    &threshold_shift::LIFT,
+    &threshold_shift::LOWERING,
+    &flow_scale::LIFT,
+    &flow_scale::LOWERING,
+    &solenoid_hysteresis::SolenoidHysteresis,
+    &coulomb_friction::CoulombFriction,
+    &return_line_loss::ReturnLineLoss,
+    &lowering_leakage::LoweringLeakage,
+    &angle_sensor_lag::AngleSensorLag,
+];
+
+/// One parameter of an effect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameter {
+    /// Name, without the unit.
+    pub name: &'static str,
+    /// Unit as it is written in reports; empty for a pure number.
+    pub unit: &'static str,
+    /// Key in a model file: the name with the unit in it.
+    pub key: &'static str,
+    /// What it is, in a few words.
+    pub meaning: &'static str,
+    /// Value that turns the effect off exactly.
+    pub null: f64,
+    /// A size that is often met, for starting values, signatures and tests.
+    pub typical: f64,
+    /// Smallest value that makes sense.
+    pub low: f64,
+    /// Largest value that makes sense.
+    pub high: f64,
+}
+
+/// A physical effect that a plant can have beyond the paper's model.
+pub trait Effect: Sync {
+    /// Its name in files, commands and reports.
+    fn id(&self) -> &'static str;
+    /// Its name in words.
+    fn title(&self) -> &'static str;
+    /// Its equation, as text.
+    fn equation(&self) -> &'static str;
+    /// Where the equation and the typical size come from.
+    fn source(&self) -> &'static str;
+    /// Where it shows and what it is easily taken for.
+    fn shows(&self) -> &'static str;
+    /// Its parameters; the first one is its size, and at its null value the effect is off whatever the others are.
+    fn parameters(&self) -> &'static [Parameter];
+    /// The channels that it changes directly on a lab campaign.
+    fn channels(&self) -> &'static [Channel];
+    /// Puts it into a plant, with a value for each parameter.
+    fn attach(&self, values: &[f64], conditions: RunConditions, sites: &mut Sites);
+}
+
+impl std::fmt::Debug for dyn Effect {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.id())
+    }
+}
+
+/// Looks an effect up by its id.
+#[must_use]
+pub fn find(id: &str) -> Option<&'static dyn Effect> {
+    CATALOGUE.iter().copied().find(|effect| effect.id() == id)
+}
+
+/// An effect with values for its parameters, as a model holds it.
+#[derive(Debug, Clone)]
+pub struct AddedEffect {
+    /// Which effect.
+    pub effect: &'static dyn Effect,
+    /// One value a parameter, in the parameter's unit.
+    pub values: Vec<f64>,
+}
+
+impl AddedEffect {
+    /// The effect at its typical size.
+    #[must_use]
+    pub fn typical(effect: &'static dyn Effect) -> Self {
+        let values = effect.parameters().iter().map(|p| p.typical).collect();
+        Self { effect, values }
+    }
+
+    /// The effect turned off.
+    #[must_use]
+    pub fn null(effect: &'static dyn Effect) -> Self {
+        let mut added = Self::typical(effect);
+        added.values[0] = effect.parameters()[0].null;
+        added
+    }
+
+    /// Puts it into a plant; an effect at its null value is not there at all.
+    pub fn attach(&self, conditions: RunConditions, sites: &mut Sites) {
+        if self.values[0] != self.effect.parameters()[0].null {
+            self.effect.attach(&self.values, conditions, sites);
+        }
+    }
+}

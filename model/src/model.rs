@@ -1,0 +1,95 @@
+//! A model is data: the constants of every component and the list of added effects.
+
+use std::sync::Arc;
+
+use crate::effects::AddedEffect;
+use crate::plant::{
+    CheckValve, Compensator, Cylinder, Linkage, LinkageDimensions, LinkageError, Masses, Oil,
+    OrificeValve, Pump, ReliefValve,
+};
+
+/// Which of the two starting points a model is (RIG.md).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dynamics {
+    /// Quasi-static: no inertia, stiff oil, spools without lag.
+    Steady,
+    /// With compressibility, inertia, viscous friction and spool lag.
+    Dynamic,
+}
+
+/// Every constant of the plant, SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constants {
+    /// Steady or dynamic.
+    pub dynamics: Dynamics,
+    /// The pump.
+    pub pump: Pump,
+    /// The relief valve at the pump.
+    pub relief_valve: ReliefValve,
+    /// The pressure compensator.
+    pub compensator: Compensator,
+    /// The check valve.
+    pub check_valve: CheckValve,
+    /// The lift valve.
+    pub lift_valve: OrificeValve,
+    /// The lowering valve.
+    pub lower_valve: OrificeValve,
+    /// First-order lag of either spool behind its current, s; used by the dynamic plant.
+    pub spool_time_constant_s: f64,
+    /// The cylinder.
+    pub cylinder: Cylinder,
+    /// The oil.
+    pub oil: Oil,
+    /// The linkage.
+    pub linkage: LinkageDimensions,
+    /// The moving masses without the load.
+    pub masses: Masses,
+}
+
+/// A model of the hitch: constants, the linkage solved from them, and the added effects.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// Name, for reports.
+    pub name: String,
+    /// Effects added to the paper's plant, in the order in which they were added.
+    pub effects: Vec<AddedEffect>,
+    constants: Arc<Constants>,
+    linkage: Arc<Linkage>,
+}
+
+impl Model {
+    /// A model without effects.
+    ///
+    /// # Errors
+    /// [`LinkageError`] when the dimensions make no linkage.
+    pub fn new(name: impl Into<String>, constants: Constants) -> Result<Self, LinkageError> {
+        let linkage = Linkage::new(&constants.linkage, constants.cylinder.stroke_m)?;
+        Ok(Self {
+            name: name.into(),
+            effects: Vec::new(),
+            constants: Arc::new(constants),
+            linkage: Arc::new(linkage),
+        })
+    }
+
+    /// The constants.
+    #[must_use]
+    pub fn constants(&self) -> &Constants {
+        &self.constants
+    }
+
+    /// The linkage.
+    #[must_use]
+    pub fn linkage(&self) -> &Linkage {
+        &self.linkage
+    }
+
+    /// The same model with other effects.
+    #[must_use]
+    pub fn with_effects(&self, effects: Vec<AddedEffect>) -> Self {
+        Self {
+            effects,
+            ..self.clone()
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! The check valve between lift valve and cylinder.
+
+/// Check valve with a constant cracking pressure and no reverse flow (paper, Table 4 and equation 7: 2.5 bar).
+#[derive(Debug, Clone, PartialEq)]
+pub struct CheckValve {
+    /// Cracking pressure, Pa.
+    pub cracking_pressure_pa: f64,
+}
+
+impl CheckValve {
+    /// What the lift orifice keeps of the drop from pump to cylinder, Pa: nothing until the check valve opens.
+    #[must_use]
+    pub fn remaining_drop_pa(&self, pump_pressure_pa: f64, cylinder_pressure_pa: f64) -> f64 {
+        (pump_pressure_pa - cylinder_pressure_pa - self.cracking_pressure_pa).max(0.0)
+    }
+}

@@ -1,0 +1,146 @@
+//! The dynamic plant: oil compressibility, inertia, viscous friction, end stops.
+//!
+//! `p' = E/V(x) (Q_lift - Q_lower - Q_leak - A v)`, `M(x) v' = p A - F_weight(x) - M'(x) v^2 / 2 - b v - F_friction(v)
+//! + F_stop(x, v)`, `x' = v` (RIG.md). Classical Runge-Kutta of order four: the ringing at 10 to 40 Hz wants a high
+//! order, the noisy measured current makes step control pointless, and a fixed rhythm keeps the result smooth in
+//! the parameters. Where a nearly drained orifice makes the pressure stiff, the step is cut to stay stable.
+
+use super::circuit::{Circuit, Flows, Openings};
+use super::{HitchRig, MechanicalState};
+use crate::model::Model;
+
+/// Longest step, s: 0.5 rad of the fastest ringing.
+pub const LONGEST_STEP_S: f64 = 0.002;
+
+/// Largest rate times step that the integrator is given; its stability ends at 2.78.
+const STABLE: f64 = 1.5;
+
+/// A cylinder cannot hold more than a vacuum, Pa gauge.
+const VACUUM_PA: f64 = -1.0e5;
+
+type Derivative = [f64; 3];
+
+/// Derivatives of travel, speed and pressure.
+fn derivative(
+    model: &Model,
+    circuit: &Circuit,
+    rig: &HitchRig,
+    openings: Openings,
+    state: MechanicalState,
+) -> Derivative {
+    let constants = model.constants();
+    let cylinder = &constants.cylinder;
+    let area_m2 = cylinder.area_m2();
+    let flows = circuit.solve(openings, state.pressure_pa);
+    let posture = model.linkage().at(state.piston_m);
+    let masses = &constants.masses;
+    let inertia_kg = masses.inertia_kg(rig.load_kg, posture.dh_dx);
+    let slope = masses.half_inertia_slope_kg_m(rig.load_kg, posture.dh_dx, posture.d2h_dx2_1_m);
+    let speed_m_s = state.speed_m_s;
+    let force_n = state.pressure_pa * area_m2
+        - masses.weight_force_n(rig.load_kg, posture.dh_dx)
+        - slope * speed_m_s * speed_m_s
+        - cylinder.viscous_friction_n_s_m * speed_m_s
+        - circuit.sites.friction_n(speed_m_s)
+        + cylinder.stop_force_n(state.piston_m, speed_m_s);
+    let stiffness = constants.oil.bulk_modulus_pa / cylinder.volume_m3(state.piston_m.max(0.0));
+    [
+        speed_m_s,
+        force_n / inertia_kg,
+        stiffness * (flows.net_m3_s() - area_m2 * speed_m_s),
+    ]
+}
+
+fn moved(state: MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState {
+    MechanicalState {
+        piston_m: state.piston_m + dt_s * rate[0],
+        speed_m_s: state.speed_m_s + dt_s * rate[1],
+        pressure_pa: state.pressure_pa + dt_s * rate[2],
+    }
+}
+
+/// How fast the orifices alone would settle the pressure, 1/s: `E/V dQ/dp`.
+fn settling_rate(
+    model: &Model,
+    circuit: &Circuit,
+    openings: Openings,
+    state: MechanicalState,
+) -> f64 {
+    const PROBE_PA: f64 = 100.0;
+    let constants = model.constants();
+    let net = |pressure_pa: f64| -> f64 {
+        let flows: Flows = circuit.solve(openings, pressure_pa);
+        flows.net_m3_s()
+    };
+    let slope = (net(state.pressure_pa) - net(state.pressure_pa + PROBE_PA)) / PROBE_PA;
+    let volume_m3 = constants.cylinder.volume_m3(state.piston_m.max(0.0));
+    slope.abs() * constants.oil.bulk_modulus_pa / volume_m3
+}
+
+/// One step with the openings at its start, middle and end.
+#[must_use]
+pub fn step(
+    model: &Model,
+    circuit: &Circuit,
+    rig: &HitchRig,
+    state: MechanicalState,
+    openings: [Openings; 3],
+    dt_s: f64,
+) -> MechanicalState {
+    let open = openings
+        .iter()
+        .any(|o| o.lift_m3_s > 0.0 || o.lower_m3_s > 0.0);
+    let rate = if open {
+        settling_rate(model, circuit, openings[0], state).max(settling_rate(
+            model,
+            circuit,
+            openings[2],
+            state,
+        ))
+    } else {
+        0.0
+    };
+    let pieces = (rate * dt_s / STABLE).ceil().clamp(1.0, 64.0) as usize;
+    let piece_s = dt_s / pieces as f64;
+    let mut state = state;
+    for piece in 0..pieces {
+        let share = |part: f64| (piece as f64 + part) / pieces as f64;
+        let ends = [0.0, 0.5, 1.0].map(|part| between(openings, share(part)));
+        state = runge_kutta(model, circuit, rig, state, ends, piece_s);
+    }
+    state
+}
+
+/// Openings at a share of the step, linear between start, middle and end.
+fn between(openings: [Openings; 3], share: f64) -> Openings {
+    let (from, to, part) = if share <= 0.5 {
+        (openings[0], openings[1], 2.0 * share)
+    } else {
+        (openings[1], openings[2], 2.0 * share - 1.0)
+    };
+    Openings {
+        lift_m3_s: from.lift_m3_s + (to.lift_m3_s - from.lift_m3_s) * part,
+        lower_m3_s: from.lower_m3_s + (to.lower_m3_s - from.lower_m3_s) * part,
+    }
+}
+
+fn runge_kutta(
+    model: &Model,
+    circuit: &Circuit,
+    rig: &HitchRig,
+    state: MechanicalState,
+    openings: [Openings; 3],
+    dt_s: f64,
+) -> MechanicalState {
+    let rate = |state, openings| derivative(model, circuit, rig, openings, state);
+    let k1 = rate(state, openings[0]);
+    let k2 = rate(moved(state, k1, 0.5 * dt_s), openings[1]);
+    let k3 = rate(moved(state, k2, 0.5 * dt_s), openings[1]);
+    let k4 = rate(moved(state, k3, dt_s), openings[2]);
+    let mean = std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
+    let next = moved(state, mean, dt_s);
+    MechanicalState {
+        pressure_pa: next.pressure_pa.max(VACUUM_PA),
+        ..next
+    }
+}

@@ -1,0 +1,38 @@
+//! A first-order lag: a spool behind its current, a sensor behind its quantity.
+
+/// First-order lag `tau y' + y = u`, solved exactly for an input that changes linearly over a step.
+///
+/// With `tau = 0` the output is the input.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lag {
+    time_constant_s: f64,
+    input: f64,
+    output: f64,
+}
+
+impl Lag {
+    /// A lag at rest with `input`.
+    #[must_use]
+    pub fn at_rest(time_constant_s: f64, input: f64) -> Self {
+        Self {
+            time_constant_s,
+            input,
+            output: input,
+        }
+    }
+
+    /// Goes on by `dt_s` while the input runs linearly to `input`; returns the output.
+    pub fn advance(&mut self, input: f64, dt_s: f64) -> f64 {
+        let tau_s = self.time_constant_s;
+        if tau_s > 0.0 && dt_s > 0.0 {
+            // With u = u0 + s t a particular solution is u - s tau; the rest decays.
+            let trail = (input - self.input) / dt_s * tau_s;
+            let rest = self.output - self.input + trail;
+            self.output = input - trail + rest * (-dt_s / tau_s).exp();
+        } else {
+            self.output = input;
+        }
+        self.input = input;
+        self.output
+    }
+}

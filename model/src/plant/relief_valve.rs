@@ -1,0 +1,16 @@
+//! The relief valve at the pump.
+
+/// Ideal relief valve: passes whatever flow is left over at its set pressure (paper, Table 4: 154 bar).
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReliefValve {
+    /// Set pressure above tank, Pa.
+    pub set_pressure_pa: f64,
+}
+
+impl ReliefValve {
+    /// The pump pressure that can stand when `wanted_pa` is asked for, Pa.
+    #[must_use]
+    pub fn limit_pa(&self, wanted_pa: f64) -> f64 {
+        wanted_pa.min(self.set_pressure_pa)
+    }
+}

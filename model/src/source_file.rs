@@ -1,0 +1,137 @@
+//! A text file that is read whole, with its name kept for error messages.
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::input_error::{InputError, Place};
+
+/// Longest file that is read: an hour at 1 kHz with eight columns stays below it.
+const LONGEST_FILE_BYTES: u64 = 512 * 1024 * 1024;
+
+/// The text of a file and where it came from.
+#[derive(Debug, Clone)]
+pub struct SourceFile {
+    /// Path, as the user gave it.
+    pub path: PathBuf,
+    /// The text, without a byte order mark.
+    pub text: String,
+}
+
+impl SourceFile {
+    /// Reads a UTF-8 text file; a byte order mark in front is dropped.
+    ///
+    /// # Errors
+    /// If the file is missing, not a regular file, too long, not readable or not UTF-8.
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        let unreadable = |error: std::io::Error| unreadable(path, &error);
+        let about = fs::metadata(path).map_err(unreadable)?;
+        if !about.is_file() {
+            return Err(InputError::of_file(
+                path,
+                "is not a file",
+                "give the name of a text file",
+            ));
+        }
+        if about.len() > LONGEST_FILE_BYTES {
+            return Err(InputError::of_file(
+                path,
+                "is longer than 512 MiB",
+                "split the log into several runs",
+            ));
+        }
+        let bytes = fs::read(path).map_err(unreadable)?;
+        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
+        match std::str::from_utf8(bytes) {
+            Ok(text) => Ok(Self {
+                path: path.to_path_buf(),
+                text: text.to_owned(),
+            }),
+            Err(error) => Err(not_utf8(path, &bytes[..error.valid_up_to()])),
+        }
+    }
+
+    /// Line and column of a byte of the text.
+    pub fn place(&self, byte: usize) -> Place {
+        place(&self.text, byte)
+    }
+
+    /// A fault at a byte of the text.
+    pub fn error_at(
+        &self,
+        byte: usize,
+        what: impl Into<String>,
+        mend: impl Into<String>,
+    ) -> InputError {
+        InputError::at(&self.path, self.place(byte), what, mend)
+    }
+
+    /// A fault of the file as a whole.
+    pub fn error(&self, what: impl Into<String>, mend: impl Into<String>) -> InputError {
+        InputError::of_file(&self.path, what, mend)
+    }
+}
+
+/// Counts lines at LF, CR LF and lone CR, as the CSV reader does.
+fn place(text: &str, byte: usize) -> Place {
+    let mut end = byte.min(text.len());
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    let before = &text[..end];
+    let bytes = before.as_bytes();
+    let ends_line =
+        |i: usize| bytes[i] == b'\n' || (bytes[i] == b'\r' && bytes.get(i + 1) != Some(&b'\n'));
+    let line_ends = (0..bytes.len()).filter(|&i| ends_line(i));
+    let (count, last) = line_ends.fold((0, None), |(count, _), i| (count + 1, Some(i)));
+    let start = last.map_or(0, |i| i + 1);
+    Place {
+        line: count + 1,
+        column: before[start..].chars().count() + 1,
+    }
+}
+
+fn unreadable(path: &Path, error: &std::io::Error) -> InputError {
+    use std::io::ErrorKind::{NotFound, PermissionDenied};
+    match error.kind() {
+        NotFound => InputError::of_file(path, "no such file", "check the name"),
+        PermissionDenied => InputError::of_file(
+            path,
+            "may not be read",
+            "give yourself the permission to read it",
+        ),
+        _ => InputError::of_file(path, format!("cannot be read: {error}"), ""),
+    }
+}
+
+fn not_utf8(path: &Path, valid: &[u8]) -> InputError {
+    let text = String::from_utf8_lossy(valid);
+    InputError::at(
+        path,
+        place(&text, text.len()),
+        "is not UTF-8 text",
+        "save it as UTF-8",
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_lines_however_they_end() {
+        let text = "a\r\nbé\nc\rd";
+        assert_eq!(place(text, 0), Place { line: 1, column: 1 });
+        assert_eq!(
+            place(text, text.find('é').unwrap() + 2),
+            Place { line: 2, column: 3 }
+        );
+        assert_eq!(
+            place(text, text.find('c').unwrap()),
+            Place { line: 3, column: 1 }
+        );
+        assert_eq!(
+            place(text, text.find('d').unwrap()),
+            Place { line: 4, column: 1 }
+        );
+        assert_eq!(place(text, 1000).line, 4);
+    }
+}
