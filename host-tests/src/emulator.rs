@@ -33,7 +33,11 @@ pub fn image() -> Result<PathBuf> {
     let path = env::var_os(IMAGE_VARIABLE).map(PathBuf::from).with_context(|| {
         format!("{IMAGE_VARIABLE} names no image: run `cargo xtask test`, which builds one and sets it")
     })?;
-    ensure!(path.is_file(), "{IMAGE_VARIABLE}: there is no file {}; build it with `cargo xtask arm`", path.display());
+    ensure!(
+        path.is_file(),
+        "{IMAGE_VARIABLE}: there is no file {}; build it with `cargo xtask arm`",
+        path.display()
+    );
     Ok(path)
 }
 
@@ -42,24 +46,50 @@ pub fn run(image: &Path, inputs: &[[u8; INPUT_BYTES]]) -> Result<EmulatedRun> {
     let console = boot(image, inputs.as_flattened())?;
     let steps = said(&console.text, "steps")?;
     let (outputs, instructions) = parse_records(&console.outputs)?;
-    ensure!(steps == outputs.len() as u64, "the image counted {steps} steps and wrote {}", outputs.len());
-    Ok(EmulatedRun { outputs, instructions, stack_bytes: said(&console.text, "stack_bytes")? })
+    ensure!(
+        steps == outputs.len() as u64,
+        "the image counted {steps} steps and wrote {}",
+        outputs.len()
+    );
+    Ok(EmulatedRun {
+        outputs,
+        instructions,
+        stack_bytes: said(&console.text, "stack_bytes")?,
+    })
 }
 
-struct Console {
-    text: String,
-    outputs: Vec<u8>,
+/// What came back from the emulator.
+pub struct Console {
+    /// What the image said.
+    pub text: String,
+    /// What it wrote.
+    pub outputs: Vec<u8>,
 }
 
 /// Runs the emulator in a folder of its own, with `inputs` in the file that the image reads.
-fn boot(image: &Path, inputs: &[u8]) -> Result<Console> {
+pub fn boot(image: &Path, inputs: &[u8]) -> Result<Console> {
     let folder = tempfile::tempdir()?;
     fs::write(folder.path().join("inputs"), inputs)?;
     let console = folder.path().join("console");
     let mut emulator = Command::new("qemu-system-arm")
-        .args(["-machine", "mps2-an386", "-display", "none", "-monitor", "none", "-serial", "none"])
+        .args([
+            "-machine",
+            "mps2-an386",
+            "-display",
+            "none",
+            "-monitor",
+            "none",
+            "-serial",
+            "none",
+        ])
         // An instruction takes 64 ns of emulated time whatever the host does: counts repeat exactly.
-        .args(["-icount", "shift=6", "-semihosting-config", "enable=on,target=native", "-kernel"])
+        .args([
+            "-icount",
+            "shift=6",
+            "-semihosting-config",
+            "enable=on,target=native",
+            "-kernel",
+        ])
         .arg(image)
         .current_dir(folder.path())
         .stdin(Stdio::null())
@@ -69,8 +99,14 @@ fn boot(image: &Path, inputs: &[u8]) -> Result<Console> {
         .context("can't start qemu-system-arm: `cargo xtask setup` installs it")?;
     let status = wait(&mut emulator)?;
     let text = fs::read_to_string(&console)?;
-    ensure!(status.success(), "the image ended with {status} and said: {text}");
-    Ok(Console { text, outputs: fs::read(folder.path().join("outputs"))? })
+    ensure!(
+        status.success(),
+        "the image ended with {status} and said: {text}"
+    );
+    Ok(Console {
+        text,
+        outputs: fs::read(folder.path().join("outputs"))?,
+    })
 }
 
 fn wait(emulator: &mut Child) -> Result<ExitStatus> {
@@ -88,7 +124,9 @@ fn wait(emulator: &mut Child) -> Result<ExitStatus> {
 
 /// The number in the console's line `key=number`.
 fn said(console: &str, key: &str) -> Result<u64> {
-    let value = console.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
+    let value = console
+        .lines()
+        .find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
     let number = value.and_then(|value| value.trim().parse().ok());
     number.with_context(|| format!("the image said no `{key}=...`, but: {console}"))
 }
@@ -96,12 +134,22 @@ fn said(console: &str, key: &str) -> Result<u64> {
 /// Outputs and instructions of each step.
 fn parse_records(bytes: &[u8]) -> Result<(Vec<[u8; OUTPUT_BYTES]>, Vec<u64>)> {
     let (records, rest) = bytes.as_chunks::<{ OUTPUT_BYTES + TICK_BYTES }>();
-    ensure!(rest.is_empty(), "the image wrote {} bytes beyond the last whole record", rest.len());
+    ensure!(
+        rest.is_empty(),
+        "the image wrote {} bytes beyond the last whole record",
+        rest.len()
+    );
     let split = |record: &[u8; OUTPUT_BYTES + TICK_BYTES]| {
-        let (outputs, ticks) = record.split_first_chunk().context("a record holds outputs")?;
+        let (outputs, ticks) = record
+            .split_first_chunk()
+            .context("a record holds outputs")?;
         let ticks = u32::from_le_bytes(ticks.try_into()?);
         // The timer runs at 25 MHz: 40 ns a tick against 64 ns an instruction.
         Ok((*outputs, u64::from(ticks) * 5 / 8))
     };
-    records.iter().map(split).collect::<Result<Vec<_>>>().map(|pairs| pairs.into_iter().unzip())
+    records
+        .iter()
+        .map(split)
+        .collect::<Result<Vec<_>>>()
+        .map(|pairs| pairs.into_iter().unzip())
 }

@@ -3,10 +3,22 @@
 use hitch_firmware::control::signals::{INPUT_BYTES, OUTPUT_BYTES};
 use hitch_firmware::control::{Calibration, Controller, Inputs, Outputs};
 
+/// The controller at power-up, with the nominal calibration: as in the image.
+pub fn controller() -> Controller {
+    Controller::new(
+        Calibration::nominal()
+            .validate()
+            .expect("the nominal calibration is shipped"),
+    )
+}
+
 /// The outputs of each step, from power-up on, with the nominal calibration.
 pub fn replay(inputs: &[[u8; INPUT_BYTES]]) -> Vec<Outputs> {
-    let mut controller = Controller::new(&Calibration::nominal());
-    inputs.iter().map(|record| controller.step(&Inputs::from_bytes(record))).collect()
+    let mut controller = controller();
+    inputs
+        .iter()
+        .map(|record| controller.step(&Inputs::from_bytes(record)))
+        .collect()
 }
 
 /// Where two runs first differ, in words; `None` if they don't.
@@ -16,9 +28,16 @@ pub fn first_difference(
     target: &[[u8; OUTPUT_BYTES]],
 ) -> Option<String> {
     if host.len() != target.len() {
-        return Some(format!("the host ran {} steps, the target {}", host.len(), target.len()));
+        return Some(format!(
+            "the host ran {} steps, the target {}",
+            host.len(),
+            target.len()
+        ));
     }
-    let step = host.iter().zip(target).position(|(host, target)| host.to_bytes() != *target)?;
+    let step = host
+        .iter()
+        .zip(target)
+        .position(|(host, target)| host.to_bytes() != *target)?;
     Some(format!(
         "step {step} of {}\ninputs: {:?}\nhost:   {:?}\n        {:?}\ntarget: {:?}",
         host.len(),

@@ -12,14 +12,29 @@ mod host_file;
 mod stack;
 mod stopwatch;
 
-use core::fmt::Write;
+use core::fmt::{Arguments, Write};
+use core::hint::{black_box, spin_loop};
 use core::panic::PanicInfo;
 
 use cortex_m_rt::{ExceptionFrame, entry, exception};
 use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 
+use hitch_firmware::control::signals::INPUT_BYTES;
+use hitch_firmware::control::{Calibration, CalibrationError, Controller, Inputs, Outputs};
 use host_file::{HostFile, HostFileError};
 use stopwatch::Stopwatch;
+
+/// Why the image ends early.
+enum Failure {
+    HostFile(HostFileError),
+    Calibration(CalibrationError),
+}
+
+impl From<HostFileError> for Failure {
+    fn from(error: HostFileError) -> Self {
+        Self::HostFile(error)
+    }
+}
 
 #[entry]
 fn main() -> ! {
@@ -31,43 +46,57 @@ fn main() -> ! {
             ));
             debug::exit(EXIT_SUCCESS);
         }
-        Err(error) => fail(format_args!("{error}\n")),
+        Err(Failure::HostFile(error)) => fail(format_args!("{error}\n")),
+        Err(Failure::Calibration(error)) => fail(format_args!(
+            "the nominal calibration is refused: {error:?}\n"
+        )),
     }
     halt()
 }
 
 /// Steps the controller until `inputs` ends; the number of steps.
-fn run() -> Result<u32, HostFileError> {
+fn run() -> Result<u32, Failure> {
+    let calibration = Calibration::nominal()
+        .validate()
+        .map_err(Failure::Calibration)?;
+    let mut controller = Controller::new(calibration);
     let mut inputs = HostFile::open_for_reading(c"inputs")?;
     let mut outputs = HostFile::open_for_writing(c"outputs")?;
     let stopwatch = Stopwatch::start();
-    let mut record = [0_u8; 8];
+    let mut record = [0; INPUT_BYTES];
     let mut steps = 0;
     while inputs.read_record(&mut record)? {
-        let (out, ticks) =
-            stopwatch.ticks_of(|| u64::from_le_bytes(record).wrapping_mul(0x9E37_79B9_7F4A_7C15));
-        outputs.write_all(&out.to_le_bytes())?;
+        let given = Inputs::from_bytes(&record);
+        let (taken, ticks) =
+            stopwatch.ticks_of(|| step(black_box(&mut controller), black_box(&given)));
+        outputs.write_all(&taken.to_bytes())?;
         outputs.write_all(&ticks.to_le_bytes())?;
         steps += 1;
     }
     Ok(steps)
 }
 
-fn say(text: core::fmt::Arguments<'_>) {
+/// The step as the ECU's control task calls it: not merged into the loop around it.
+#[inline(never)]
+fn step(controller: &mut Controller, inputs: &Inputs) -> Outputs {
+    controller.step(inputs)
+}
+
+fn say(text: Arguments<'_>) {
     if let Ok(mut console) = HostFile::console() {
         // Nobody is left to tell if the console itself fails.
         let _ = console.write_fmt(text);
     }
 }
 
-fn fail(text: core::fmt::Arguments<'_>) {
+fn fail(text: Arguments<'_>) {
     say(text);
     debug::exit(EXIT_FAILURE);
 }
 
 fn halt() -> ! {
     loop {
-        core::hint::spin_loop();
+        spin_loop();
     }
 }
 
