@@ -1,0 +1,367 @@
+//! The calibration block: what a machine has been taught, as the ECU stores it.
+//!
+//! [`Calibration`] is raw: anything may stand in it. [`ValidCalibration`] is one whose checksum, version,
+//! ranges and curves have been checked; the controller takes no other.
+
+use super::design_parameters::{
+    HoldParameters, HydraulicParameters, LockParameters, MotionParameters, PositionParameters,
+    RateParameters, SafetyParameters, SaturationParameters, SensorParameters,
+};
+use super::linkage::{LINKAGE_POINTS, LinkageTable};
+use super::nominal;
+use super::parameter::{OutOfRange, ParameterGroup};
+use super::units::{MicroLitrePerSecond, MilliAmp};
+use super::valve_map::{VALVE_POINTS, ValveTable};
+
+/// Layout of the block that this firmware reads.
+pub const CALIBRATION_VERSION: u32 = 1;
+
+/// Largest flow in a table: ten times the pump's, and far from where products saturate.
+const FLOW_LIMIT: MicroLitrePerSecond = MicroLitrePerSecond(10_000_000);
+const CURRENT_LIMIT: MilliAmp = MilliAmp(5_000);
+
+/// The raw block. All of it is 32-bit words, so its memory image has no padding.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Calibration {
+    /// Layout; see [`CALIBRATION_VERSION`].
+    pub version: u32,
+    /// Lift valve at the compensated drop.
+    pub lift: ValveTable,
+    /// Lowering valve at [`HydraulicParameters::reference_drop`].
+    pub lower: ValveTable,
+    /// Rocker angle to piston travel.
+    pub linkage: LinkageTable,
+    /// Hydraulic circuit.
+    pub hydraulics: HydraulicParameters,
+    /// Plausibility of sensors.
+    pub sensors: SensorParameters,
+    /// Start-up lock.
+    pub lock: LockParameters,
+    /// Motion estimator.
+    pub motion: MotionParameters,
+    /// Position control.
+    pub position: PositionParameters,
+    /// Rate control.
+    pub rate: RateParameters,
+    /// Check-valve logic.
+    pub hold: HoldParameters,
+    /// Compensator logic.
+    pub saturation: SaturationParameters,
+    /// Safety envelope.
+    pub safety: SafetyParameters,
+    /// CRC-32 (ISO-HDLC) over everything before it, words in little-endian order.
+    pub checksum: u32,
+}
+
+/// Size of the block in bytes.
+pub const CALIBRATION_BYTES: usize = size_of::<Calibration>();
+
+/// Why a calibration is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CalibrationError {
+    /// The block has another layout.
+    Version {
+        /// Version found.
+        found: u32,
+    },
+    /// The checksum doesn't fit: the block is damaged or was never written.
+    Checksum {
+        /// Checksum stored.
+        stored: u32,
+        /// Checksum of what is there.
+        computed: u32,
+    },
+    /// A scalar is outside its range.
+    Parameter {
+        /// The group it belongs to.
+        group: &'static str,
+        /// The scalar and what was found.
+        what: OutOfRange,
+    },
+    /// A valve table has fewer than two or more than [`VALVE_POINTS`] points.
+    ValveSize {
+        /// `lift` or `lower`.
+        valve: &'static str,
+    },
+    /// A valve table doesn't start at zero flow, doesn't rise strictly in flow and current, or leaves the range of either.
+    ValvePoint {
+        /// `lift` or `lower`.
+        valve: &'static str,
+        /// The offending point.
+        index: usize,
+    },
+    /// The linkage table's step isn't positive, or its travel doesn't rise strictly.
+    Linkage {
+        /// The offending point.
+        index: usize,
+    },
+    /// Two limits are crossed.
+    Crossed {
+        /// The group they belong to.
+        group: &'static str,
+        /// The limit that should be lower.
+        low: &'static str,
+        /// The limit that should be higher.
+        high: &'static str,
+    },
+}
+
+/// A calibration that has been checked.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ValidCalibration(Calibration);
+
+impl core::ops::Deref for ValidCalibration {
+    type Target = Calibration;
+    fn deref(&self) -> &Calibration {
+        &self.0
+    }
+}
+
+impl Calibration {
+    /// The calibration of an untaught machine, sealed.
+    #[must_use]
+    pub fn nominal() -> Self {
+        Self {
+            version: CALIBRATION_VERSION,
+            lift: nominal::LIFT,
+            lower: nominal::LOWER,
+            linkage: nominal::LINKAGE,
+            hydraulics: HydraulicParameters::NOMINAL,
+            sensors: SensorParameters::NOMINAL,
+            lock: LockParameters::NOMINAL,
+            motion: MotionParameters::NOMINAL,
+            position: PositionParameters::NOMINAL,
+            rate: RateParameters::NOMINAL,
+            hold: HoldParameters::NOMINAL,
+            saturation: SaturationParameters::NOMINAL,
+            safety: SafetyParameters::NOMINAL,
+            checksum: 0,
+        }
+        .sealed()
+    }
+
+    /// The same block with the checksum that belongs to it.
+    #[must_use]
+    pub fn sealed(mut self) -> Self {
+        self.checksum = self.computed_checksum();
+        self
+    }
+
+    /// Checks everything.
+    ///
+    /// # Errors
+    /// The first thing that is wrong.
+    pub fn validate(self) -> Result<ValidCalibration, CalibrationError> {
+        if self.version != CALIBRATION_VERSION {
+            return Err(CalibrationError::Version {
+                found: self.version,
+            });
+        }
+        let computed = self.computed_checksum();
+        if self.checksum != computed {
+            return Err(CalibrationError::Checksum {
+                stored: self.checksum,
+                computed,
+            });
+        }
+        self.check_parameters()?;
+        check_valve("lift", &self.lift)?;
+        check_valve("lower", &self.lower)?;
+        check_linkage(&self.linkage)?;
+        self.check_order()?;
+        Ok(ValidCalibration(self))
+    }
+
+    fn check_parameters(&self) -> Result<(), CalibrationError> {
+        check_group(&self.hydraulics)?;
+        check_group(&self.sensors)?;
+        check_group(&self.lock)?;
+        check_group(&self.motion)?;
+        check_group(&self.position)?;
+        check_group(&self.rate)?;
+        check_group(&self.hold)?;
+        check_group(&self.saturation)?;
+        check_group(&self.safety)
+    }
+
+    /// Limits that only make sense in one order.
+    fn check_order(&self) -> Result<(), CalibrationError> {
+        let (position, sensors, hydraulics) = (&self.position, &self.sensors, &self.hydraulics);
+        let pairs = [
+            (
+                "position",
+                "lower_limit",
+                position.lower_limit.0,
+                "upper_limit",
+                position.upper_limit.0,
+            ),
+            (
+                "position",
+                "stop_band",
+                position.stop_band.0,
+                "restart_band",
+                position.restart_band.0,
+            ),
+            (
+                "sensors",
+                "angle_min",
+                sensors.angle_min.0,
+                "angle_max",
+                sensors.angle_max.0,
+            ),
+            (
+                "sensors",
+                "lever_min",
+                sensors.lever_min.0,
+                "lever_max",
+                sensors.lever_max.0,
+            ),
+            (
+                "hydraulics",
+                "smallest_drop",
+                hydraulics.smallest_drop.0,
+                "largest_drop",
+                hydraulics.largest_drop.0,
+            ),
+        ];
+        for (group, low, low_value, high, high_value) in pairs {
+            if low_value >= high_value {
+                return Err(CalibrationError::Crossed { group, low, high });
+            }
+        }
+        Ok(())
+    }
+
+    /// The memory image, words in little-endian order.
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; CALIBRATION_BYTES] {
+        let mut bytes = [0; CALIBRATION_BYTES];
+        let mut words = bytes.chunks_exact_mut(4);
+        self.clone().for_each_word(&mut |word| {
+            if let Some(target) = words.next() {
+                target.copy_from_slice(&word.to_le_bytes());
+            }
+        });
+        bytes
+    }
+
+    /// The block of a memory image; nothing of it is checked.
+    #[must_use]
+    pub fn from_bytes(bytes: &[u8; CALIBRATION_BYTES]) -> Self {
+        let mut calibration = Self::nominal();
+        let mut words = bytes.chunks_exact(4);
+        calibration.for_each_word(&mut |word| {
+            if let Some([a, b, c, d]) = words.next() {
+                *word = i32::from_le_bytes([*a, *b, *c, *d]);
+            }
+        });
+        calibration
+    }
+
+    fn computed_checksum(&self) -> u32 {
+        const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
+        let bytes = self.to_bytes();
+        CRC.checksum(
+            bytes
+                .split_last_chunk::<4>()
+                .map_or(&[], |(content, _)| content),
+        )
+    }
+
+    /// Visits every word in the order of the memory image.
+    fn for_each_word(&mut self, visit: &mut impl FnMut(&mut i32)) {
+        visit_unsigned(&mut self.version, visit);
+        visit_valve(&mut self.lift, visit);
+        visit_valve(&mut self.lower, visit);
+        visit(&mut self.linkage.first_angle.0);
+        visit(&mut self.linkage.angle_step.0);
+        self.linkage
+            .travel
+            .iter_mut()
+            .for_each(|point| visit(&mut point.0));
+        visit_group(&mut self.hydraulics, visit);
+        visit_group(&mut self.sensors, visit);
+        visit_group(&mut self.lock, visit);
+        visit_group(&mut self.motion, visit);
+        visit_group(&mut self.position, visit);
+        visit_group(&mut self.rate, visit);
+        visit_group(&mut self.hold, visit);
+        visit_group(&mut self.saturation, visit);
+        visit_group(&mut self.safety, visit);
+        visit_unsigned(&mut self.checksum, visit);
+    }
+}
+
+fn visit_unsigned(word: &mut u32, visit: &mut impl FnMut(&mut i32)) {
+    let mut signed = word.cast_signed();
+    visit(&mut signed);
+    *word = signed.cast_unsigned();
+}
+
+fn visit_valve(table: &mut ValveTable, visit: &mut impl FnMut(&mut i32)) {
+    visit_unsigned(&mut table.count, visit);
+    for point in &mut table.points {
+        visit(&mut point.flow.0);
+        visit(&mut point.current.0);
+    }
+}
+
+fn visit_group<G: ParameterGroup>(group: &mut G, visit: &mut impl FnMut(&mut i32)) {
+    for index in 0..G::INFO.len() {
+        if let Some(mut counts) = group.get(index) {
+            visit(&mut counts);
+            group.set(index, counts);
+        }
+    }
+}
+
+fn check_group<G: ParameterGroup>(group: &G) -> Result<(), CalibrationError> {
+    group.check().map_err(|what| CalibrationError::Parameter {
+        group: G::NAME,
+        what,
+    })
+}
+
+fn check_valve(valve: &'static str, table: &ValveTable) -> Result<(), CalibrationError> {
+    let points = table.used();
+    if points.len() < 2 || usize::try_from(table.count) != Ok(points.len()) {
+        return Err(CalibrationError::ValveSize { valve });
+    }
+    let mut last = None;
+    for (index, &point) in points.iter().enumerate() {
+        let rises = last.is_none_or(|last: super::valve_map::ValvePoint| {
+            point.flow > last.flow && point.current > last.current
+        });
+        let starts = index > 0 || point.flow == MicroLitrePerSecond::ZERO;
+        let in_range = point.flow <= FLOW_LIMIT
+            && point.current >= MilliAmp::ZERO
+            && point.current <= CURRENT_LIMIT;
+        if !(rises && starts && in_range) {
+            return Err(CalibrationError::ValvePoint { valve, index });
+        }
+        last = Some(point);
+    }
+    Ok(())
+}
+
+fn check_linkage(linkage: &LinkageTable) -> Result<(), CalibrationError> {
+    const FULL_TURN: i32 = 360_000;
+    let step = linkage.angle_step.0;
+    if !(1..=FULL_TURN).contains(&step) || linkage.first_angle.magnitude().0 > FULL_TURN {
+        return Err(CalibrationError::Linkage { index: 0 });
+    }
+    let pairs = linkage.travel.iter().zip(linkage.travel.iter().skip(1));
+    match pairs
+        .into_iter()
+        .position(|(lower, higher)| higher <= lower)
+    {
+        Some(index) => Err(CalibrationError::Linkage {
+            index: index.saturating_add(1),
+        }),
+        None => Ok(()),
+    }
+}
+
+const _: () = assert!(LINKAGE_POINTS >= 2 && VALVE_POINTS >= 2);
+const _: () = assert!(CALIBRATION_BYTES.is_multiple_of(4));

@@ -1,0 +1,339 @@
+//! One millisecond of control.
+
+use super::calibration::ValidCalibration;
+use super::load::LoadEstimate;
+use super::mode::{Fault, Mode};
+use super::motion::{Motion, flow, piston_speed};
+use super::position::{PositionControl, Reason};
+use super::rate::RateControl;
+use super::rest::RestPosition;
+use super::safety::{CoilCurrents, Envelope};
+use super::saturation::SaturationWatch;
+use super::sensors::{Sensed, Sensors};
+use super::signals::{Inputs, Outputs, State};
+use super::sink::SinkWatch;
+use super::units::{MicroLitrePerSecond, MicrometrePerSecond, MilliDegree, MilliDegreePerSecond};
+use super::valve_logic::{Demand, Direction, Phase};
+use super::valve_map::{DropScale, ValveMap};
+
+/// A hitch that stalls this close to a limit of its travel has arrived: an end stop, or a misplaced limit.
+const END_ZONE: MilliDegree = MilliDegree(2_000);
+
+/// The controller: a calibration and a state.
+#[derive(Clone, Debug)]
+pub struct Controller {
+    calibration: ValidCalibration,
+    sensors: Sensors,
+    mode: Mode,
+    position: PositionControl,
+    rate: RateControl,
+    motion: Motion,
+    load: LoadEstimate,
+    phase: Phase,
+    sink: SinkWatch,
+    saturation: SaturationWatch,
+    envelope: Envelope,
+    rest: RestPosition,
+    scale: DropScale,
+}
+
+impl Controller {
+    /// A controller as it is after power-up: locked.
+    #[must_use]
+    pub fn new(calibration: ValidCalibration) -> Self {
+        let load = LoadEstimate::new(&calibration.hydraulics);
+        let scale = DropScale::new(calibration.hydraulics.reference_drop, load.drop());
+        Self {
+            calibration,
+            sensors: Sensors::default(),
+            mode: Mode::default(),
+            position: PositionControl::default(),
+            rate: RateControl::default(),
+            motion: Motion::default(),
+            load,
+            phase: Phase::default(),
+            sink: SinkWatch::default(),
+            saturation: SaturationWatch::default(),
+            envelope: Envelope::default(),
+            rest: RestPosition::default(),
+            scale,
+        }
+    }
+
+    /// The calibration in use.
+    #[must_use]
+    pub fn calibration(&self) -> &ValidCalibration {
+        &self.calibration
+    }
+
+    /// One step of 1 ms.
+    pub fn step(&mut self, inputs: &Inputs) -> Outputs {
+        let sensed = self.sensors.judge(inputs, &self.calibration.sensors);
+        let command = match sensed.and_then(|sensed| self.run(&sensed, inputs.jog)) {
+            Ok(command) => command,
+            Err(fault) => self.fail(fault),
+        };
+        let angle = sensed.ok().map(|sensed| sensed.angle);
+        let currents = self
+            .envelope
+            .pass(Some(command), angle, &self.calibration.safety);
+        if self.envelope.is_tripped() {
+            self.fail(Fault::Envelope);
+        }
+        let map = valve_map(&self.calibration, self.scale);
+        self.motion.drive(
+            currents.lift,
+            currents.lower,
+            &map,
+            &self.calibration.hydraulics,
+        );
+        self.outputs(currents, angle.unwrap_or_default())
+    }
+
+    /// A fault: both coils off at once.
+    fn fail(&mut self, fault: Fault) -> CoilCurrents {
+        self.mode = Mode::failed(fault);
+        self.phase = self.phase.cut();
+        CoilCurrents::OFF
+    }
+
+    /// A step with believable sensors.
+    fn run(
+        &mut self,
+        sensed: &Sensed,
+        jog: Option<MilliDegreePerSecond>,
+    ) -> Result<CoilCurrents, Fault> {
+        self.estimate(sensed);
+        self.change_mode(jog.is_some());
+        let demand = match &mut self.mode {
+            Mode::Locked(lock) => {
+                if lock.picked_up(sensed.lever, sensed.angle, &self.calibration.lock) {
+                    self.mode = Mode::Position;
+                }
+                None
+            }
+            Mode::Position => self.follow_lever(sensed),
+            Mode::Jog => Some(self.rate.demand(
+                jog.unwrap_or_default(),
+                sensed.angle,
+                &self.motion,
+                &self.calibration,
+            )),
+            Mode::Fault { .. } => None,
+        };
+        self.advance(demand)?;
+        self.watch_saturation(sensed)?;
+        Ok(self.currents())
+    }
+
+    /// Motion, load and the place of rest, from the sensors and the last currents.
+    fn estimate(&mut self, sensed: &Sensed) {
+        let calibration = &self.calibration;
+        let measured = calibration.linkage.travel(sensed.angle);
+        self.motion
+            .update(measured, self.phase.is_moving(), &calibration.motion);
+        let lowering = matches!(
+            self.phase,
+            Phase::Moving {
+                direction: Direction::Lower,
+                ..
+            }
+        );
+        self.load.update(
+            sensed.cylinder_pressure,
+            lowering,
+            &self.motion,
+            &calibration.hydraulics,
+        );
+        self.scale = DropScale::new(calibration.hydraulics.reference_drop, self.load.drop());
+        self.rest
+            .update(self.motion.position(), self.phase, &calibration.hold);
+        self.sink.tick(&calibration.hold);
+    }
+
+    /// Mode transitions that don't depend on the lever.
+    fn change_mode(&mut self, jog_requested: bool) {
+        let was_fault = self.mode.fault().is_some();
+        self.mode = self.mode.healthy(&self.calibration.lock);
+        if was_fault && self.mode.fault().is_none() {
+            self.envelope.reset();
+            self.saturation.forget();
+            self.sink.new_set_point();
+        }
+        // A released button ramps down before the lock falls shut.
+        let jogged = jog_requested || self.phase.is_moving();
+        let in_jog = matches!(self.mode, Mode::Jog);
+        self.mode = self
+            .mode
+            .jogged(if in_jog { jogged } else { jog_requested });
+        if jog_requested && !in_jog {
+            self.rate = RateControl::default();
+            self.position = PositionControl::default();
+        }
+    }
+
+    /// Position mode: the demand that follows from the lever.
+    fn follow_lever(&mut self, sensed: &Sensed) -> Option<Demand> {
+        let moving = self.phase.is_moving();
+        if self
+            .position
+            .follow(sensed.lever, moving, &self.calibration.position)
+            && !moving
+        {
+            self.sink.new_set_point();
+            self.saturation.forget();
+        }
+        let target = self
+            .calibration
+            .linkage
+            .travel(self.position.set_point(sensed.angle));
+        if !moving {
+            self.position.reason_to_move(
+                target,
+                self.rest.position(),
+                &self.calibration.position,
+            )?;
+        }
+        Some(PositionControl::demand(
+            target,
+            self.phase,
+            &self.motion,
+            &self.calibration,
+        ))
+    }
+
+    /// The next phase; starting a move forgets the last one's bias, and counts it if nobody asked for it.
+    fn advance(&mut self, demand: Option<Demand>) -> Result<(), Fault> {
+        let calibration = &self.calibration;
+        if matches!(self.mode, Mode::Locked(_) | Mode::Fault { .. }) {
+            self.phase = self.phase.cut();
+        }
+        let resting = self.saturation.is_resting(&calibration.saturation);
+        let demand = demand.filter(|_| !resting);
+        let available = demand.map_or(MicrometrePerSecond::ZERO, |demand| {
+            self.available(demand.direction)
+        });
+        let still = self.motion.model_speed() == MicrometrePerSecond::ZERO;
+        let next = self.phase.step(
+            demand,
+            available,
+            still,
+            &calibration.position,
+            &calibration.hold,
+        );
+        if next.is_moving() && !self.phase.is_moving() {
+            self.motion.forget_bias();
+            if matches!(self.mode, Mode::Position) && self.position.start() == Reason::Drift {
+                self.sink.correct(&calibration.hold)?;
+            }
+        }
+        self.phase = next;
+        Ok(())
+    }
+
+    /// Cuts the coil when flow is demanded and nothing moves.
+    fn watch_saturation(&mut self, sensed: &Sensed) -> Result<(), Fault> {
+        let calibration = &self.calibration;
+        let (phase, pump) = (self.phase, sensed.pump_pressure);
+        if !self.saturation.stalled(
+            phase,
+            &self.motion,
+            pump,
+            &calibration.saturation,
+            &calibration.hydraulics,
+        ) {
+            return Ok(());
+        }
+        self.phase = phase.cut();
+        let at_end = match phase.speed() > MicrometrePerSecond::ZERO {
+            true => sensed.angle >= calibration.position.upper_limit - END_ZONE,
+            false => sensed.angle <= calibration.position.lower_limit + END_ZONE,
+        };
+        if at_end {
+            self.position.accept();
+            return Ok(());
+        }
+        self.saturation.rest(&calibration.saturation)
+    }
+
+    /// Fastest speed that the valve of a direction can give now.
+    fn available(&self, direction: Direction) -> MicrometrePerSecond {
+        let map = valve_map(&self.calibration, self.scale);
+        let flow = match direction {
+            Direction::Lift => map.lift_saturation(),
+            Direction::Lower => map.lower_saturation(),
+        };
+        piston_speed(flow, self.calibration.hydraulics.piston_area)
+    }
+
+    /// Speed along the way that the map is asked for: the ramped one less what the map gets wrong.
+    fn mapped_speed(&self) -> MicrometrePerSecond {
+        let Phase::Moving { direction, speed } = self.phase else {
+            return MicrometrePerSecond::ZERO;
+        };
+        let excess = MicrometrePerSecond(direction.sign(self.motion.bias().0));
+        let wanted = (speed - excess).limited(MicrometrePerSecond(1), self.available(direction));
+        MicrometrePerSecond(direction.sign(wanted.0))
+    }
+
+    fn demanded_flow(&self) -> MicroLitrePerSecond {
+        flow(self.mapped_speed(), self.calibration.hydraulics.piston_area)
+    }
+
+    /// Coil currents of the present phase.
+    fn currents(&self) -> CoilCurrents {
+        let map = valve_map(&self.calibration, self.scale);
+        let flow = self.demanded_flow();
+        CoilCurrents {
+            lift: map.lift_current(flow),
+            lower: map.lower_current(-flow),
+        }
+    }
+
+    fn state(&self) -> State {
+        match (&self.mode, self.phase) {
+            (Mode::Fault { .. }, _) => State::Fault,
+            (Mode::Locked(_), _) => State::Locked,
+            (
+                _,
+                Phase::Moving {
+                    direction: Direction::Lift,
+                    ..
+                },
+            ) => State::Lifting,
+            (
+                _,
+                Phase::Moving {
+                    direction: Direction::Lower,
+                    ..
+                },
+            ) => State::Lowering,
+            _ if self.saturation.rests() => State::Stalled,
+            (_, Phase::Settling { .. }) => State::Settling,
+            (_, Phase::Holding) => State::Holding,
+        }
+    }
+
+    fn outputs(&self, currents: CoilCurrents, angle: MilliDegree) -> Outputs {
+        Outputs {
+            lift_current: currents.lift,
+            lower_current: currents.lower,
+            state: self.state(),
+            fault: self.mode.fault(),
+            target: self.position.set_point(angle),
+            travel: self.motion.position(),
+            speed: self.motion.speed(),
+            demanded_speed: self.phase.speed(),
+            demanded_flow: self.demanded_flow(),
+            drop: self.load.drop(),
+        }
+    }
+}
+
+fn valve_map(calibration: &ValidCalibration, scale: DropScale) -> ValveMap<'_> {
+    ValveMap {
+        lift: &calibration.lift,
+        lower: &calibration.lower,
+        scale,
+    }
+}

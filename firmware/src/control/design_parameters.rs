@@ -1,0 +1,172 @@
+//! Every number of the controller that isn't a curve, with its unit, its range and its reason.
+//!
+//! The reasons refer to the rig this project starts from: 45.37 cm2 cylinder with 158 mm stroke, valves
+//! of the EHR5 class, 50 to 250 kg on the hitch. Times are in steps of the controller, 1 ms each.
+
+use super::parameter::parameter_group;
+use super::units::{
+    AmperePerSecond, Count, Micrometre, MicrometrePerSecond, MilliAmp, MilliBar, MilliDegree,
+    MilliDegreePerSecond, MillimetrePerSecondSquared, Millisecond, PerSecond, SquareMillimetre,
+};
+
+parameter_group! {
+    /// The hydraulic circuit, as far as the controller has to know it.
+    HydraulicParameters, "hydraulics" {
+        /// Piston area: turns piston speed into flow. 76 mm bore.
+        piston_area: SquareMillimetre = 4537, 500..=50_000;
+        /// Time constant of solenoid and spool: what flows on after the coil has been told to stop.
+        spool_lag: Millisecond = 45, 0..=500;
+        /// Pressure drop at which the lowering table was measured.
+        reference_drop: MilliBar = 15_000, 1_000..=250_000;
+        /// Drop taken for lowering until a sensor or a lowering move tells better: a 150 kg load holds near it.
+        assumed_drop: MilliBar = 15_000, 1_000..=250_000;
+        /// Smallest drop that the lowering map believes: below it friction decides, and the square root would ask for any current.
+        smallest_drop: MilliBar = 1_000, 200..=10_000;
+        /// Largest drop that the lowering map believes: above the relief valve only shocks remain.
+        largest_drop: MilliBar = 200_000, 20_000..=350_000;
+        /// Low-pass on the cylinder pressure: slower than the load swinging on its oil (12 Hz and up), whose damping a faster map would cancel.
+        pressure_filter: Millisecond = 80, 1..=1_000;
+        /// Time in which the load estimate follows the sinking speed when there is no pressure sensor.
+        drop_learning: Millisecond = 250, 20..=5_000;
+        /// Setting of the pump's relief valve.
+        relief_pressure: MilliBar = 154_000, 20_000..=350_000;
+        /// Pump pressure this close to the relief setting means that the compensator has no margin left: 1 % of the setting, ten times the sensor's noise.
+        relief_margin: MilliBar = 1_500, 100..=20_000;
+    }
+}
+
+parameter_group! {
+    /// What the sensors can plausibly say.
+    SensorParameters, "sensors" {
+        /// Smallest rocker angle that a healthy sensor shows: the lower end less mounting error.
+        angle_min: MilliDegree = 40_000, -360_000..=360_000;
+        /// Largest rocker angle that a healthy sensor shows.
+        angle_max: MilliDegree = 140_000, -360_000..=360_000;
+        /// Largest change in one step: the fastest drop is 0.2 degree, the rest is ten sigma of noise.
+        angle_jump: MilliDegree = 1_000, 100..=20_000;
+        /// Smallest lever position that a healthy lever shows.
+        lever_min: MilliDegree = 30_000, -360_000..=360_000;
+        /// Largest lever position that a healthy lever shows.
+        lever_max: MilliDegree = 150_000, -360_000..=360_000;
+        /// Smallest pressure that a healthy sensor shows: zero less offset.
+        pressure_min: MilliBar = -5_000, -50_000..=0;
+        /// Largest pressure that a healthy sensor shows: shock valve plus margin.
+        pressure_max: MilliBar = 260_000, 20_000..=600_000;
+        /// How long a bad angle or lever sample is bridged by the last good one before it is a fault: at full speed the hitch moves less than 1 degree.
+        bridged: Millisecond = 5, 0..=100;
+    }
+}
+
+parameter_group! {
+    /// The start-up lock.
+    LockParameters, "lock" {
+        /// The lever has to come this close to the hitch, or past it: 1 % of the range.
+        pick_up_window: MilliDegree = 1_000, 100..=5_000;
+        /// ... and to have moved this far: 0.8 % of the range, beyond lever noise.
+        lever_movement: MilliDegree = 700, 100..=10_000;
+        /// ... within this time: a lever that creeps isn't being moved by a hand.
+        lever_time: Millisecond = 1_000, 50..=10_000;
+        /// How long everything has to be healthy before a fault gives way to the lock.
+        healthy_time: Millisecond = 500, 10..=60_000;
+    }
+}
+
+parameter_group! {
+    /// The motion estimator.
+    MotionParameters, "motion" {
+        /// Time constant of the position estimate: averages the angle noise to a fifth, and stays below the load's own frequency.
+        position_time: Millisecond = 32, 1..=500;
+        /// Largest error of the valve map that the estimator may blame on it: 0.25 A of threshold at 15 bar is 34 mm/s.
+        bias_limit: MicrometrePerSecond = 80_000, 0..=500_000;
+    }
+}
+
+parameter_group! {
+    /// Position control.
+    PositionParameters, "position" {
+        /// Lowest set point that is obeyed: half a degree above the mechanical end, so the end stop isn't worked against.
+        lower_limit: MilliDegree = 44_600, -360_000..=360_000;
+        /// Highest set point that is obeyed: half a degree below the mechanical end.
+        upper_limit: MilliDegree = 135_400, -360_000..=360_000;
+        /// A resting hitch follows the lever only when it moves by more than this: 0.2 % of the range, beyond lever noise.
+        lever_deadband: MilliDegree = 200, 0..=5_000;
+        /// The coil is cut when the predicted resting point is this close: 0.06 degree, the noise of the sensor.
+        stop_band: Micrometre = 100, 10..=5_000;
+        /// A resting hitch that is further off than this is corrected: 0.35 degree, inside the 0.5 degree that is asked for.
+        restart_band: Micrometre = 600, 20..=10_000;
+        /// Speed per remaining distance at the end of the approach: a third of the slowest natural frequency's bandwidth.
+        approach_gain: PerSecond = 20, 1..=200;
+        /// Fastest lifting.
+        lift_speed: MicrometrePerSecond = 150_000, 1_000..=1_000_000;
+        /// Fastest lowering.
+        lower_speed: MicrometrePerSecond = 300_000, 1_000..=1_000_000;
+        /// Acceleration when lifting: full speed in 120 ms, the edge of a normal manoeuvre.
+        lift_acceleration: MillimetrePerSecondSquared = 1_200, 50..=20_000;
+        /// Deceleration when lifting.
+        lift_deceleration: MillimetrePerSecondSquared = 1_200, 50..=20_000;
+        /// Acceleration when lowering.
+        lower_acceleration: MillimetrePerSecondSquared = 1_200, 50..=20_000;
+        /// Deceleration when lowering.
+        lower_deceleration: MillimetrePerSecondSquared = 1_200, 50..=20_000;
+        /// Deceleration when a move is called off or reversed: twice the ramp, for the operator has changed their mind.
+        abort_deceleration: MillimetrePerSecondSquared = 2_400, 50..=20_000;
+    }
+}
+
+parameter_group! {
+    /// Rate control (hold-to-run buttons).
+    RateParameters, "rate" {
+        /// Fastest speed that may be asked for: a person stands beside the implement.
+        rate_limit: MilliDegreePerSecond = 15_000, 100..=200_000;
+        /// Ramp of the rocker speed: full speed in half a second, with room for second thoughts.
+        rate_slope: MilliDegreePerSecond = 30_000, 1_000..=1_000_000;
+    }
+}
+
+parameter_group! {
+    /// Check-valve logic: resting on the check valve.
+    HoldParameters, "hold" {
+        /// Both coils stay off this long between two moves: the check valve seats, the spool centres, the pressure calms down.
+        dwell: Millisecond = 150, 20..=2_000;
+        /// Time constant of the resting position: slow against noise and swinging, fast against a leak.
+        rest_time: Millisecond = 250, 1..=5_000;
+        /// How often a hitch that left its place by itself is brought back before that is a fault.
+        corrections: Count = 5, 0..=100;
+        /// A correction is forgotten after this time: a seated valve sinks less than a restart band in it.
+        correction_memory: Millisecond = 600_000, 1_000..=86_400_000;
+    }
+}
+
+parameter_group! {
+    /// Compensator logic: flow that doesn't arrive.
+    SaturationParameters, "saturation" {
+        /// Window over which demanded and measured travel are compared.
+        window: Millisecond = 400, 50..=5_000;
+        /// Demanded travel in a window from which a comparison says something: twenty times the noise of its measurement.
+        demanded_travel: Micrometre = 3_000, 200..=100_000;
+        /// Pump pressure has to stay near the relief valve this long: longer than the swing at the start of a lift.
+        relief_time: Millisecond = 60, 5..=2_000;
+        /// Rest after a stall before the next attempt.
+        retry_time: Millisecond = 1_500, 100..=60_000;
+        /// Attempts before a hitch that doesn't move is a fault.
+        attempts: Count = 3, 1..=100;
+    }
+}
+
+parameter_group! {
+    /// The safety envelope.
+    SafetyParameters, "safety" {
+        /// Largest current of the lift coil: what the coil bears.
+        lift_current_limit: MilliAmp = 3_500, 100..=5_000;
+        /// Largest current of the lowering coil.
+        lower_current_limit: MilliAmp = 3_500, 100..=5_000;
+        /// A current may start at once up to here: below and just above the threshold nothing moves yet.
+        free_current: MilliAmp = 1_500, 0..=5_000;
+        /// Above it currents rise no faster than this: full flow in 50 ms at the earliest. Falling is always free.
+        current_slope: AmperePerSecond = 40, 1..=10_000;
+        /// Age at which a command is stale and both coils go off.
+        command_age: Millisecond = 5, 1..=1_000;
+        /// Movement against the energised coil that trips: above noise and the swing at a start.
+        contradiction: MilliDegree = 4_000, 500..=45_000;
+    }
+}

@@ -1,0 +1,120 @@
+//! The few integer operations that the controller is built from. None of them can panic.
+
+use core::num::NonZeroU32;
+
+/// A positive divisor: that it isn't zero is settled once, where it is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Divisor(NonZeroU32);
+
+impl Divisor {
+    /// One.
+    pub const ONE: Self = Self(NonZeroU32::MIN);
+    /// A thousand: the step from a unit to its thousandth, and from seconds to milliseconds.
+    pub const THOUSAND: Self = match NonZeroU32::new(1000) {
+        Some(value) => Self(value),
+        None => Self::ONE,
+    };
+
+    /// `value`, or one if it is smaller.
+    #[must_use]
+    pub const fn at_least_one(value: i32) -> Self {
+        if value < 1 {
+            return Self::ONE;
+        }
+        match NonZeroU32::new(value.unsigned_abs()) {
+            Some(value) => Self(value),
+            None => Self::ONE,
+        }
+    }
+
+    /// `a / self`, rounded to nearest with halves away from zero.
+    #[must_use]
+    pub fn divide(self, a: i32) -> i32 {
+        let half = self.0.get() / 2;
+        let magnitude = a.unsigned_abs().saturating_add(half) / self.0;
+        with_sign(u64::from(magnitude), a < 0)
+    }
+}
+
+/// `a * b / c`, exact product, rounded to nearest with halves away from zero, saturating.
+#[must_use]
+pub fn mul_div(a: i32, b: i32, c: Divisor) -> i32 {
+    let product = u64::from(a.unsigned_abs()) * u64::from(b.unsigned_abs());
+    let half = u64::from(c.0.get() / 2);
+    // The product is below 2^62, so adding half a divisor can't overflow.
+    let magnitude = product.saturating_add(half) / core::num::NonZeroU64::from(c.0);
+    with_sign(magnitude, (a < 0) != (b < 0))
+}
+
+fn with_sign(magnitude: u64, negative: bool) -> i32 {
+    let value = i32::try_from(magnitude).unwrap_or(i32::MAX);
+    if negative {
+        value.saturating_neg()
+    } else {
+        value
+    }
+}
+
+/// `sqrt(value)`, rounded down.
+#[must_use]
+pub fn square_root(value: u64) -> i32 {
+    i32::try_from(value.isqrt()).unwrap_or(i32::MAX)
+}
+
+/// One breakpoint of a table, as `(x, y)`.
+pub type Breakpoint = (i32, i32);
+
+/// `y` at `x` on the straight line through two breakpoints; the left `y` if they share their `x`.
+#[must_use]
+pub fn interpolate(left: Breakpoint, right: Breakpoint, x: i32) -> i32 {
+    let run = right.0.saturating_sub(left.0);
+    if run <= 0 {
+        return left.1;
+    }
+    let rise = right.1.saturating_sub(left.1);
+    let along = x.saturating_sub(left.0);
+    left.1
+        .saturating_add(mul_div(rise, along, Divisor::at_least_one(run)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn division_rounds_to_nearest_away_from_zero() {
+        let three = Divisor::at_least_one(3);
+        assert_eq!(
+            [
+                three.divide(4),
+                three.divide(5),
+                three.divide(-4),
+                three.divide(-5)
+            ],
+            [1, 2, -1, -2]
+        );
+        let two = Divisor::at_least_one(2);
+        assert_eq!([two.divide(3), two.divide(-3)], [2, -2]);
+    }
+
+    #[test]
+    fn products_are_exact_and_saturate() {
+        assert_eq!(
+            mul_div(
+                2_000_000_000,
+                2_000_000_000,
+                Divisor::at_least_one(2_000_000_000)
+            ),
+            2_000_000_000
+        );
+        assert_eq!(mul_div(i32::MIN, i32::MAX, Divisor::ONE), -i32::MAX);
+        assert_eq!(mul_div(i32::MIN, i32::MIN, Divisor::ONE), i32::MAX);
+        assert_eq!(mul_div(-7, 3, Divisor::at_least_one(2)), -11);
+    }
+
+    #[test]
+    fn a_vertical_step_of_a_table_has_a_value() {
+        assert_eq!(interpolate((5, 1), (5, 9), 5), 1);
+        assert_eq!(interpolate((0, 0), (10, 5), 5), 3);
+    }
+}

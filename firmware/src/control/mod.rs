@@ -1,0 +1,38 @@
+//! The controller: from lever and sensors to two coil currents, one [`Controller::step`] a millisecond.
+//!
+//! ```text
+//! Inputs -> sensors -> start-up lock, modes -> position | rate control -> desired piston speed
+//!        -> check-valve and compensator logic -> inverse valve map -> safety envelope -> Outputs
+//! ```
+//!
+//! Quantities are integers with their unit in the type ([`units`]); their arithmetic saturates.
+//! What a machine can be taught is in a [`Calibration`]; the controller only takes one that has been
+//! validated, so that nothing here has to doubt it again.
+
+pub mod calibration;
+pub mod controller;
+pub mod design_parameters;
+pub mod fixed;
+pub mod linkage;
+pub mod load;
+pub mod lock;
+pub mod mode;
+pub mod motion;
+pub mod nominal;
+pub mod parameter;
+pub mod position;
+pub mod rate;
+pub mod rest;
+pub mod safety;
+pub mod saturation;
+pub mod sensors;
+pub mod signals;
+pub mod sink;
+pub mod units;
+pub mod valve_logic;
+pub mod valve_map;
+
+pub use calibration::{Calibration, CalibrationError, ValidCalibration};
+pub use controller::Controller;
+pub use mode::Fault;
+pub use signals::{Inputs, Outputs, State};

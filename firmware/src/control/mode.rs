@@ -1,0 +1,128 @@
+//! Operating modes and what leads from one to the other.
+//!
+//! ```text
+//!             power-up, reset
+//!                   |
+//!                   v    lever moved through the hitch
+//!   healthy for  +--------+ ------------------------> +----------+
+//!   healthy_time | Locked |                           | Position |
+//!   +----------> +--------+ <---+                     +----------+
+//!   |               |           | jog released         |     |
+//! +-------+         | jog    +-----+        jog        |     |
+//! | Fault |         +------> | Jog | <-----------------+     |
+//! +-------+                  +-----+                         |
+//!   ^                           | fault                      | fault
+//!   +---------------------------+----------------------------+
+//! ```
+//!
+//! A jog button outside the cab works while the lever is locked (it is held by a hand that sees the
+//! hitch) and leaves the lever locked. A fault wins over everything from any mode.
+
+use super::design_parameters::LockParameters;
+use super::lock::StartLock;
+use super::units::Millisecond;
+
+/// Why the controller refuses to move, with the code it has on links and in traces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Fault {
+    /// The lever signal is missing or out of range.
+    Lever = 1,
+    /// The angle signal is missing, out of range or jumps.
+    Angle = 2,
+    /// The hitch doesn't stay where it was put: the lowering spool or the check valve leaks.
+    Sinking = 3,
+    /// Flow is demanded and the hitch doesn't move: relief valve, obstacle, valve or angle sensor stuck.
+    NotMoving = 4,
+    /// The safety envelope tripped: the hitch moves against the energised coil.
+    Envelope = 5,
+}
+
+impl Fault {
+    /// Name as it appears in text outputs.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Lever => "lever",
+            Self::Angle => "angle",
+            Self::Sinking => "sinking",
+            Self::NotMoving => "not-moving",
+            Self::Envelope => "envelope",
+        }
+    }
+}
+
+/// The operating mode.
+#[derive(Clone, Copy, Debug)]
+pub enum Mode {
+    /// Waiting for the lever to pick the hitch up.
+    Locked(StartLock),
+    /// The hitch follows the lever.
+    Position,
+    /// The hitch moves while a button is held.
+    Jog,
+    /// Both coils off; `healthy_for` counts towards the lock.
+    Fault {
+        /// What is wrong, or was.
+        fault: Fault,
+        /// For how long nothing has been wrong.
+        healthy_for: Millisecond,
+    },
+}
+
+impl Default for Mode {
+    fn default() -> Self {
+        Self::locked()
+    }
+}
+
+impl Mode {
+    /// The lock, freshly shut.
+    #[must_use]
+    pub fn locked() -> Self {
+        Self::Locked(StartLock::default())
+    }
+
+    /// A fault was found: from any mode, and again while it lasts.
+    #[must_use]
+    pub fn failed(fault: Fault) -> Self {
+        Self::Fault {
+            fault,
+            healthy_for: Millisecond::ZERO,
+        }
+    }
+
+    /// A step without a fault.
+    #[must_use]
+    pub fn healthy(self, parameters: &LockParameters) -> Self {
+        match self {
+            Self::Fault { healthy_for, .. } if healthy_for >= parameters.healthy_time => {
+                Self::locked()
+            }
+            Self::Fault { fault, healthy_for } => Self::Fault {
+                fault,
+                healthy_for: healthy_for.next(),
+            },
+            other => other,
+        }
+    }
+
+    /// A step with or without a jog request.
+    #[must_use]
+    pub fn jogged(self, requested: bool) -> Self {
+        match (self, requested) {
+            (Self::Locked(_) | Self::Position, true) => Self::Jog,
+            (Self::Jog, false) => Self::locked(),
+            (other, _) => other,
+        }
+    }
+
+    /// The fault, if the mode is one.
+    #[must_use]
+    pub fn fault(&self) -> Option<Fault> {
+        match self {
+            Self::Fault { fault, .. } => Some(*fault),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Scalars of the calibration: each is declared once, with unit, default, range and reason.
+//!
+//! The declaration gives the `#[repr(C)]` field that the ECU uses, the range check that guards it, and
+//! the description from which tools (calibration files, XCP, documentation) read and write it.
+
+/// What a tool needs to know of one scalar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ParameterInfo {
+    /// Name without unit.
+    pub name: &'static str,
+    /// Suffix of the engineering unit.
+    pub suffix: &'static str,
+    /// Raw counts in one engineering unit.
+    pub counts_per_unit: i32,
+    /// Smallest allowed value, raw counts.
+    pub min: i32,
+    /// Largest allowed value, raw counts.
+    pub max: i32,
+    /// Default, raw counts.
+    pub nominal: i32,
+    /// What it is and why it has that default.
+    pub reason: &'static str,
+}
+
+/// A value outside its range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OutOfRange {
+    /// The scalar in question.
+    pub parameter: &'static ParameterInfo,
+    /// What was found, raw counts.
+    pub found: i32,
+}
+
+/// A group of scalars that belong to one part of the controller.
+pub trait ParameterGroup: Sized {
+    /// Name of the group, as the section of a calibration file.
+    const NAME: &'static str;
+    /// Descriptions, in the order of the fields.
+    const INFO: &'static [ParameterInfo];
+
+    /// Raw counts of field `index`, if there is such a field.
+    fn get(&self, index: usize) -> Option<i32>;
+    /// Sets field `index`, if there is such a field, without checking its range.
+    fn set(&mut self, index: usize, counts: i32);
+
+    /// Checks every field against its range.
+    ///
+    /// # Errors
+    /// The first field that is outside.
+    fn check(&self) -> Result<(), OutOfRange> {
+        for (index, parameter) in Self::INFO.iter().enumerate() {
+            let found = self.get(index).unwrap_or(parameter.min);
+            if found < parameter.min || found > parameter.max {
+                return Err(OutOfRange { parameter, found });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Declares a group: `name: Type = default, min..=max;` with the reason as doc comment.
+macro_rules! parameter_group {
+    (
+        $(#[$meta:meta])*
+        $Group:ident, $group_name:literal {
+            $( $(#[doc = $doc:literal])+ $field:ident : $Type:ident = $nominal:literal, $min:literal ..= $max:literal; )+
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(C)]
+        pub struct $Group {
+            $( $(#[doc = $doc])+ pub $field: $Type, )+
+        }
+
+        impl $Group {
+            /// The defaults.
+            pub const NOMINAL: Self = Self { $( $field: $Type($nominal), )+ };
+        }
+
+        impl $crate::control::parameter::ParameterGroup for $Group {
+            const NAME: &'static str = $group_name;
+            const INFO: &'static [$crate::control::parameter::ParameterInfo] = &[
+                $( $crate::control::parameter::ParameterInfo {
+                    name: stringify!($field),
+                    suffix: <$Type as $crate::control::units::Quantity>::SUFFIX,
+                    counts_per_unit: <$Type as $crate::control::units::Quantity>::COUNTS_PER_UNIT,
+                    min: $min,
+                    max: $max,
+                    nominal: $nominal,
+                    reason: concat!($($doc),+),
+                }, )+
+            ];
+
+            fn get(&self, index: usize) -> Option<i32> {
+                [$( self.$field.0, )+].get(index).copied()
+            }
+
+            fn set(&mut self, index: usize, counts: i32) {
+                if let Some(field) = [$( &mut self.$field.0, )+].into_iter().nth(index) {
+                    *field = counts;
+                }
+            }
+        }
+    };
+}
+
+pub(crate) use parameter_group;

@@ -1,0 +1,211 @@
+//! Position control: from the distance that remains to the piston speed that is right now.
+//!
+//! The controlled point is where the hitch would come to rest ([`Motion::resting_point`]); it moves with
+//! exactly the demanded speed, so any speed profile that falls to zero with the distance `r` arrives
+//! without overshoot. This one decelerates at a constant `a`, and for the last bit in proportion:
+//!
+//! ```text
+//! u(r) = k r                        r <= a / k^2
+//! u(r) = sqrt(2 a (r - a / 2k^2))   beyond; value and slope meet
+//! ```
+
+use super::calibration::Calibration;
+use super::design_parameters::PositionParameters;
+use super::fixed::{Divisor, mul_div, square_root};
+use super::motion::Motion;
+use super::units::{
+    Micrometre, MicrometrePerSecond, MilliDegree, MillimetrePerSecondSquared, PerSecond,
+};
+use super::valve_logic::{Demand, Direction, Phase};
+
+/// Follows the lever.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PositionControl {
+    set_point: Option<MilliDegree>,
+    /// The hitch has rested at this set point: leaving it now is its own doing.
+    arrived: bool,
+    /// A move to this set point has begun: another one is a correction.
+    started: bool,
+    /// The present place is taken for the set point until the lever moves (end stop).
+    accepted: bool,
+}
+
+/// Why a resting hitch moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// The lever was moved.
+    SetPoint,
+    /// The hitch left its place by itself.
+    Drift,
+}
+
+impl PositionControl {
+    /// Takes in the lever; true if that is a new set point.
+    ///
+    /// On the way to a new set point every movement of the lever counts. Once the hitch has arrived, small
+    /// ones are noise, also while it is being brought back.
+    pub fn follow(
+        &mut self,
+        lever: MilliDegree,
+        moving: bool,
+        parameters: &PositionParameters,
+    ) -> bool {
+        let lever = lever.limited(parameters.lower_limit, parameters.upper_limit);
+        let on_the_way = moving && !self.arrived;
+        let band = if on_the_way {
+            MilliDegree::ZERO
+        } else {
+            parameters.lever_deadband
+        };
+        let changed = self
+            .set_point
+            .is_none_or(|present| (lever - present).magnitude() > band);
+        if changed {
+            *self = Self {
+                set_point: Some(lever),
+                ..Self::default()
+            };
+        }
+        changed
+    }
+
+    /// The set point inside the limits; `otherwise` before there was one.
+    #[must_use]
+    pub fn set_point(&self, otherwise: MilliDegree) -> MilliDegree {
+        self.set_point.unwrap_or(otherwise)
+    }
+
+    /// Takes the present place for the set point until the lever moves.
+    pub fn accept(&mut self) {
+        self.accepted = true;
+    }
+
+    /// The reason for which a resting hitch should move to `target`, if there is one.
+    pub fn reason_to_move(
+        &mut self,
+        target: Micrometre,
+        rest: Micrometre,
+        parameters: &PositionParameters,
+    ) -> Option<Reason> {
+        if self.accepted || (target - rest).magnitude() <= parameters.restart_band {
+            self.arrived = true;
+            return None;
+        }
+        Some(self.reason())
+    }
+
+    /// A move starts now: for this reason.
+    pub fn start(&mut self) -> Reason {
+        let reason = self.reason();
+        self.started = true;
+        reason
+    }
+
+    const fn reason(&self) -> Reason {
+        if self.arrived || self.started {
+            Reason::Drift
+        } else {
+            Reason::SetPoint
+        }
+    }
+
+    /// The demand of a hitch that moves, or has a reason to, towards `target`.
+    #[must_use]
+    pub fn demand(
+        target: Micrometre,
+        phase: Phase,
+        motion: &Motion,
+        calibration: &Calibration,
+    ) -> Demand {
+        let parameters = &calibration.position;
+        let remaining = target - motion.resting_point(&calibration.hydraulics);
+        let direction = match phase {
+            Phase::Moving { direction, .. } => direction,
+            _ => Direction::of(remaining.0),
+        };
+        let (limit, acceleration, deceleration) = match direction {
+            Direction::Lift => (
+                parameters.lift_speed,
+                parameters.lift_acceleration,
+                parameters.lift_deceleration,
+            ),
+            Direction::Lower => (
+                parameters.lower_speed,
+                parameters.lower_acceleration,
+                parameters.lower_deceleration,
+            ),
+        };
+        let ahead = Micrometre(direction.sign(remaining.0));
+        let speed = if ahead <= parameters.stop_band {
+            MicrometrePerSecond::ZERO
+        } else {
+            approach_speed(ahead, deceleration, parameters.approach_gain).min(limit)
+        };
+        Demand {
+            direction,
+            speed,
+            acceleration,
+        }
+    }
+}
+
+/// The profile `u(r)` of the module's head.
+#[must_use]
+pub fn approach_speed(
+    remaining: Micrometre,
+    deceleration: MillimetrePerSecondSquared,
+    gain: PerSecond,
+) -> MicrometrePerSecond {
+    let remaining = remaining.max(Micrometre::ZERO);
+    let gain_squared = Divisor::at_least_one(gain.0.saturating_mul(gain.0));
+    let linear = Micrometre(mul_div(deceleration.0, 1000, gain_squared));
+    if remaining <= linear {
+        return MicrometrePerSecond(remaining.0.saturating_mul(gain.0));
+    }
+    let beyond = remaining - Micrometre(Divisor::at_least_one(2).divide(linear.0));
+    // 2 a r in um2/s2, with a in 1000 um/s2: below 2^32 * 2^15 * 2000 = 2^58.
+    let twice = u64::from(deceleration.0.unsigned_abs()).saturating_mul(2000);
+    MicrometrePerSecond(square_root(
+        twice.saturating_mul(u64::from(beyond.0.unsigned_abs())),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_profile_is_the_constant_deceleration_it_says() {
+        let (deceleration, gain) = (MillimetrePerSecondSquared(1_200), PerSecond(20));
+        let mut last = MicrometrePerSecond::ZERO;
+        for remaining in 0..200_000 {
+            let speed = approach_speed(Micrometre(remaining), deceleration, gain);
+            assert!(speed >= last, "falls at {remaining} um");
+            let (r, a, k) = (f64::from(remaining) * 1e-6, 1.2, 20.0);
+            let exact = if r <= a / (k * k) {
+                k * r
+            } else {
+                (2.0 * a * (r - a / (2.0 * k * k))).sqrt()
+            };
+            assert!(
+                (f64::from(speed.0) * 1e-6 - exact).abs() < 1e-4 * exact + 2e-6,
+                "{remaining} um"
+            );
+            last = speed;
+        }
+    }
+
+    #[test]
+    fn extreme_arguments_stay_finite() {
+        for remaining in [i32::MIN, -1, 0, 1, i32::MAX] {
+            for gain in [1, 200] {
+                let speed = approach_speed(
+                    Micrometre(remaining),
+                    MillimetrePerSecondSquared(20_000),
+                    PerSecond(gain),
+                );
+                assert!(speed >= MicrometrePerSecond::ZERO);
+            }
+        }
+    }
+}

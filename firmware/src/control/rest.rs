@@ -1,0 +1,34 @@
+//! Where the hitch rests: the position estimate, averaged long enough to tell a leak from noise and from
+//! a load that still swings on its oil.
+
+use super::design_parameters::HoldParameters;
+use super::fixed::Divisor;
+use super::units::Micrometre;
+use super::valve_logic::Phase;
+
+/// Averaged position; follows at once while the hitch isn't resting.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RestPosition {
+    nanometre: i32,
+}
+
+impl RestPosition {
+    /// One step.
+    pub fn update(&mut self, position: Micrometre, phase: Phase, parameters: &HoldParameters) {
+        let time = match phase {
+            Phase::Holding => parameters.rest_time.divisor(),
+            Phase::Moving { .. } | Phase::Settling { .. } => Divisor::ONE,
+        };
+        let error = position
+            .0
+            .saturating_mul(1000)
+            .saturating_sub(self.nanometre);
+        self.nanometre = self.nanometre.saturating_add(time.divide(error));
+    }
+
+    /// The average.
+    #[must_use]
+    pub fn position(&self) -> Micrometre {
+        Micrometre(Divisor::THOUSAND.divide(self.nanometre))
+    }
+}

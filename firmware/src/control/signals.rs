@@ -1,0 +1,229 @@
+//! What goes into a step and what comes out, with fixed little-endian images for traces and links.
+
+use super::mode::Fault;
+use super::units::{
+    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliAmp, MilliBar, MilliCelsius,
+    MilliDegree, MilliDegreePerSecond, MilliVolt,
+};
+
+/// One sample of everything the controller is told. `None`: not fitted, or no valid sample this time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Inputs {
+    /// Lever set point on the rocker-angle scale.
+    pub lever: Option<MilliDegree>,
+    /// Hold-to-run request: rocker speed, positive is up. While it is given, the lever has no say.
+    pub jog: Option<MilliDegreePerSecond>,
+    /// Rocker-arm angle.
+    pub rocker_angle: Option<MilliDegree>,
+    /// Cylinder pressure.
+    pub cylinder_pressure: Option<MilliBar>,
+    /// Pump pressure.
+    pub pump_pressure: Option<MilliBar>,
+    /// Oil temperature.
+    pub oil_temperature: Option<MilliCelsius>,
+    /// Supply voltage.
+    pub supply: Option<MilliVolt>,
+}
+
+/// State of the controller, with the code it has on links and in traces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum State {
+    /// Nothing moves until the lever has been moved through the present position.
+    #[default]
+    Locked = 0,
+    /// Resting on the check valve.
+    Holding = 1,
+    /// Lift coil on.
+    Lifting = 2,
+    /// Lowering coil on.
+    Lowering = 3,
+    /// Both coils off, waiting for the check valve to seat.
+    Settling = 4,
+    /// Flow was demanded and nothing moved: resting before the next attempt.
+    Stalled = 5,
+    /// A fault keeps both coils off; see the fault code.
+    Fault = 6,
+}
+
+impl State {
+    /// Name as it appears in text outputs.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Locked => "locked",
+            Self::Holding => "holding",
+            Self::Lifting => "lifting",
+            Self::Lowering => "lowering",
+            Self::Settling => "settling",
+            Self::Stalled => "stalled",
+            Self::Fault => "fault",
+        }
+    }
+}
+
+/// What a step asks for and what it thinks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Outputs {
+    /// Current of the lift coil, after the safety envelope.
+    pub lift_current: MilliAmp,
+    /// Current of the lowering coil, after the safety envelope.
+    pub lower_current: MilliAmp,
+    /// State.
+    pub state: State,
+    /// Fault, if there is one.
+    pub fault: Option<Fault>,
+    /// Set point that is being worked on, inside the limits.
+    pub target: MilliDegree,
+    /// Estimated piston travel.
+    pub travel: Micrometre,
+    /// Estimated piston speed.
+    pub speed: MicrometrePerSecond,
+    /// Piston speed asked of the valves, positive is up.
+    pub demanded_speed: MicrometrePerSecond,
+    /// Flow asked of the valves, positive into the cylinder.
+    pub demanded_flow: MicroLitrePerSecond,
+    /// Pressure drop that the lowering map uses.
+    pub drop: MilliBar,
+}
+
+/// Size of the image of [`Inputs`].
+pub const INPUT_BYTES: usize = 32;
+/// Size of the image of [`Outputs`].
+pub const OUTPUT_BYTES: usize = 36;
+
+impl Inputs {
+    /// A word of validity bits (bit 0: lever, and on in the order of the fields), then the values.
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; INPUT_BYTES] {
+        let fields = [
+            self.lever.map(|value| value.0),
+            self.jog.map(|value| value.0),
+            self.rocker_angle.map(|value| value.0),
+            self.cylinder_pressure.map(|value| value.0),
+            self.pump_pressure.map(|value| value.0),
+            self.oil_temperature.map(|value| value.0),
+            self.supply.map(|value| value.0),
+        ];
+        let mut writer = Writer::new([0; INPUT_BYTES]);
+        let valid = fields
+            .iter()
+            .rev()
+            .fold(0, |bits, field| (bits << 1) | u32::from(field.is_some()));
+        writer.put(valid.to_le_bytes());
+        fields
+            .into_iter()
+            .for_each(|field| writer.put(field.unwrap_or(0).to_le_bytes()));
+        writer.bytes
+    }
+
+    /// The inputs of an image. Unknown validity bits are ignored.
+    #[must_use]
+    pub fn from_bytes(bytes: &[u8; INPUT_BYTES]) -> Self {
+        let mut words = bytes
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .map(|word| i32::from_le_bytes(*word));
+        let mut valid = words.next().unwrap_or(0).cast_unsigned();
+        let mut field = || {
+            let present = valid & 1 == 1;
+            valid >>= 1;
+            words.next().filter(|_| present)
+        };
+        Self {
+            lever: field().map(MilliDegree),
+            jog: field().map(MilliDegreePerSecond),
+            rocker_angle: field().map(MilliDegree),
+            cylinder_pressure: field().map(MilliBar),
+            pump_pressure: field().map(MilliBar),
+            oil_temperature: field().map(MilliCelsius),
+            supply: field().map(MilliVolt),
+        }
+    }
+}
+
+impl Outputs {
+    /// State, fault (0: none) and two bytes of zero, then the values in the order of the fields.
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; OUTPUT_BYTES] {
+        let mut writer = Writer::new([0; OUTPUT_BYTES]);
+        writer.put([
+            self.state as u8,
+            self.fault.map_or(0, |fault| fault as u8),
+            0,
+            0,
+        ]);
+        let values = [
+            self.lift_current.0,
+            self.lower_current.0,
+            self.target.0,
+            self.travel.0,
+            self.speed.0,
+            self.demanded_speed.0,
+            self.demanded_flow.0,
+            self.drop.0,
+        ];
+        values
+            .into_iter()
+            .for_each(|value| writer.put(value.to_le_bytes()));
+        writer.bytes
+    }
+}
+
+/// Writes words one after the other; what doesn't fit is dropped.
+struct Writer<const N: usize> {
+    bytes: [u8; N],
+    at: usize,
+}
+
+impl<const N: usize> Writer<N> {
+    const fn new(bytes: [u8; N]) -> Self {
+        Self { bytes, at: 0 }
+    }
+
+    fn put(&mut self, word: [u8; 4]) {
+        if let Some(target) = self
+            .bytes
+            .get_mut(self.at..)
+            .and_then(|rest| rest.first_chunk_mut::<4>())
+        {
+            *target = word;
+        }
+        self.at = self.at.saturating_add(4);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inputs_survive_their_image() {
+        let inputs = Inputs {
+            lever: Some(MilliDegree(90_000)),
+            rocker_angle: Some(MilliDegree(-1)),
+            pump_pressure: Some(MilliBar(4_000)),
+            ..Inputs::default()
+        };
+        let bytes = inputs.to_bytes();
+        assert_eq!(
+            bytes[0], 0b1_0101,
+            "lever, angle and pump pressure are valid"
+        );
+        assert_eq!(Inputs::from_bytes(&bytes), inputs);
+    }
+
+    #[test]
+    fn outputs_have_a_fixed_image() {
+        let outputs = Outputs {
+            lift_current: MilliAmp(0x0102),
+            state: State::Lifting,
+            drop: MilliBar(-1),
+            ..Outputs::default()
+        };
+        let bytes = outputs.to_bytes();
+        assert_eq!(bytes[..8], [2, 0, 0, 0, 2, 1, 0, 0]);
+        assert_eq!(bytes[32..], [255; 4]);
+    }
+}

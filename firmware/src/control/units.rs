@@ -1,0 +1,159 @@
+//! Units as types: each quantity is a signed 32-bit integer that knows what it counts.
+//!
+//! Ranges of a hitch fit with room to spare (travel 158 000 um, flow 2 000 000 ul/s, pressure
+//! 250 000 mbar), and the arithmetic saturates, so an absurd input gives an absurd but bounded number
+//! instead of a wrapped sign. A millampere is 19 ul/s .. 37 ul/s of flow per step of the coil current:
+//! finer than the 2 mA to which the inverse valve map is held.
+
+use super::fixed::{Divisor, mul_div};
+
+/// What every quantity has in common: its raw integer, and how tools show it.
+pub trait Quantity: Copy {
+    /// Suffix of the engineering unit, as in the keys of a calibration file (`deg`, `bar`, ...).
+    const SUFFIX: &'static str;
+    /// Raw counts in one engineering unit.
+    const COUNTS_PER_UNIT: i32;
+    /// The quantity of `counts`.
+    fn from_counts(counts: i32) -> Self;
+    /// The raw integer.
+    fn counts(self) -> i32;
+}
+
+macro_rules! quantity {
+    ($(#[$doc:meta])* $name:ident, $suffix:literal, $counts:literal) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[repr(transparent)]
+        pub struct $name(pub i32);
+
+        impl $name {
+            /// Nothing of it.
+            pub const ZERO: Self = Self(0);
+
+            /// Magnitude; the most negative count gives the largest positive one.
+            #[must_use]
+            pub const fn magnitude(self) -> Self {
+                Self(self.0.saturating_abs())
+            }
+
+            /// The value, brought between `low` and `high` (`high` wins if they are crossed).
+            #[must_use]
+            pub fn limited(self, low: Self, high: Self) -> Self {
+                self.max(low).min(high)
+            }
+
+            /// `self * numerator / denominator`, rounded to nearest, saturating.
+            #[must_use]
+            pub fn scaled(self, numerator: i32, denominator: Divisor) -> Self {
+                Self(mul_div(self.0, numerator, denominator))
+            }
+        }
+
+        impl core::ops::Add for $name {
+            type Output = Self;
+            fn add(self, other: Self) -> Self {
+                Self(self.0.saturating_add(other.0))
+            }
+        }
+
+        impl core::ops::Sub for $name {
+            type Output = Self;
+            fn sub(self, other: Self) -> Self {
+                Self(self.0.saturating_sub(other.0))
+            }
+        }
+
+        impl core::ops::Neg for $name {
+            type Output = Self;
+            fn neg(self) -> Self {
+                Self(self.0.saturating_neg())
+            }
+        }
+
+        impl Quantity for $name {
+            const SUFFIX: &'static str = $suffix;
+            const COUNTS_PER_UNIT: i32 = $counts;
+            fn from_counts(counts: i32) -> Self {
+                Self(counts)
+            }
+            fn counts(self) -> i32 {
+                self.0
+            }
+        }
+    };
+}
+
+quantity!(
+    /// Angle of the rocker arm (grows as the hitch rises), in millidegrees.
+    MilliDegree, "deg", 1000
+);
+quantity!(
+    /// Angular speed of the rocker arm (positive: rising), in millidegrees a second.
+    MilliDegreePerSecond, "deg_per_s", 1000
+);
+quantity!(
+    /// Piston travel (grows as the hitch rises), in micrometres.
+    Micrometre, "mm", 1000
+);
+quantity!(
+    /// Piston speed (positive: rising), in micrometres a second.
+    MicrometrePerSecond, "mm_per_s", 1000
+);
+quantity!(
+    /// Piston acceleration, in millimetres per second squared.
+    MillimetrePerSecondSquared, "mm_per_s2", 1
+);
+quantity!(
+    /// Piston area, in square millimetres.
+    SquareMillimetre, "mm2", 1
+);
+quantity!(
+    /// Oil flow, in microlitres (cubic millimetres) a second; 1 l/min is 16 667 of them.
+    MicroLitrePerSecond, "ul_per_s", 1
+);
+quantity!(
+    /// Coil current, in milliamperes.
+    MilliAmp, "a", 1000
+);
+quantity!(
+    /// Slope of a coil current, in amperes a second, which is milliamperes a millisecond.
+    AmperePerSecond, "a_per_s", 1
+);
+quantity!(
+    /// Pressure above ambient, in millibars.
+    MilliBar, "bar", 1000
+);
+quantity!(
+    /// Temperature, in thousandths of a degree Celsius.
+    MilliCelsius, "c", 1000
+);
+quantity!(
+    /// Supply voltage, in millivolts.
+    MilliVolt, "v", 1000
+);
+quantity!(
+    /// Time, in milliseconds: the controller's own steps.
+    Millisecond, "ms", 1
+);
+quantity!(
+    /// A number of occurrences.
+    Count, "count", 1
+);
+quantity!(
+    /// A gain from distance to speed, in 1/s.
+    PerSecond, "per_s", 1
+);
+
+impl Millisecond {
+    /// One controller step later.
+    #[must_use]
+    pub fn next(self) -> Self {
+        self + Self(1)
+    }
+
+    /// This time as a divisor (at least one step).
+    #[must_use]
+    pub fn divisor(self) -> Divisor {
+        Divisor::at_least_one(self.0)
+    }
+}

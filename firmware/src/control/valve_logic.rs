@@ -1,0 +1,167 @@
+//! Check-valve logic: which coil may be on, and how the speed ramps.
+//!
+//! At rest both coils are off and the check valve carries the load. Between any two moves there is a
+//! dwell with both coils off, so that the check valve seats before the other spool opens.
+//!
+//! ```text
+//!             demand                    speed ramped to zero, or cut
+//! +---------+ -----> +-----------------------+ -----> +----------+
+//! | Holding |        | Moving {Lift | Lower} |        | Settling |
+//! +---------+        +-----------------------+        +----------+
+//!      ^                                                   |
+//!      +---------------------------------------------------+
+//!                 dwell over and spools closed
+//! ```
+
+use super::design_parameters::{HoldParameters, PositionParameters};
+use super::units::{MicrometrePerSecond, MillimetrePerSecondSquared, Millisecond};
+
+/// Way of the hitch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Up, by the lift valve.
+    Lift,
+    /// Down, by the lowering valve.
+    Lower,
+}
+
+impl Direction {
+    /// The way of a signed quantity; zero counts as up.
+    #[must_use]
+    pub const fn of(signed: i32) -> Self {
+        if signed < 0 { Self::Lower } else { Self::Lift }
+    }
+
+    /// `value` as seen along this way: positive ahead.
+    #[must_use]
+    pub const fn sign(self, value: i32) -> i32 {
+        match self {
+            Self::Lift => value,
+            Self::Lower => value.saturating_neg(),
+        }
+    }
+}
+
+/// What position or rate control asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Demand {
+    /// Way to go.
+    pub direction: Direction,
+    /// Speed along it, not negative; zero asks to stop.
+    pub speed: MicrometrePerSecond,
+    /// How fast the speed may rise.
+    pub acceleration: MillimetrePerSecondSquared,
+}
+
+/// What the valves do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Phase {
+    /// Both coils off, the load rests on the check valve.
+    #[default]
+    Holding,
+    /// One coil on.
+    Moving {
+        /// Which.
+        direction: Direction,
+        /// Ramped speed along the way.
+        speed: MicrometrePerSecond,
+    },
+    /// Both coils off, waiting for the valves to close.
+    Settling {
+        /// Since when.
+        waited: Millisecond,
+    },
+}
+
+impl Phase {
+    /// One step with a demand (`None`: none). `available`: what the valve can give along the way;
+    /// `still`: the spools are closed.
+    #[must_use]
+    pub fn step(
+        self,
+        demand: Option<Demand>,
+        available: MicrometrePerSecond,
+        still: bool,
+        position: &PositionParameters,
+        hold: &HoldParameters,
+    ) -> Self {
+        match self {
+            Self::Holding => Self::from_rest(demand),
+            Self::Moving { direction, speed } => Self::on_the_way(
+                direction,
+                speed,
+                demand,
+                available,
+                position.abort_deceleration,
+            ),
+            Self::Settling { waited } if still && waited >= hold.dwell => Self::Holding,
+            Self::Settling { waited } => Self::Settling {
+                waited: waited.next(),
+            },
+        }
+    }
+
+    /// Cuts the coils at once.
+    #[must_use]
+    pub fn cut(self) -> Self {
+        match self {
+            Self::Moving { .. } => Self::Settling {
+                waited: Millisecond::ZERO,
+            },
+            other => other,
+        }
+    }
+
+    /// True while a coil is on.
+    #[must_use]
+    pub const fn is_moving(self) -> bool {
+        matches!(self, Self::Moving { .. })
+    }
+
+    /// Signed speed that is asked of the valves.
+    #[must_use]
+    pub fn speed(self) -> MicrometrePerSecond {
+        match self {
+            Self::Moving { direction, speed } => MicrometrePerSecond(direction.sign(speed.0)),
+            _ => MicrometrePerSecond::ZERO,
+        }
+    }
+
+    fn from_rest(demand: Option<Demand>) -> Self {
+        match demand {
+            Some(demand) if demand.speed > MicrometrePerSecond::ZERO => Self::Moving {
+                direction: demand.direction,
+                speed: demand.speed.min(step_of(demand.acceleration)),
+            },
+            _ => Self::Holding,
+        }
+    }
+
+    fn on_the_way(
+        direction: Direction,
+        speed: MicrometrePerSecond,
+        demand: Option<Demand>,
+        available: MicrometrePerSecond,
+        abort: MillimetrePerSecondSquared,
+    ) -> Self {
+        let demand = demand.filter(|demand| demand.direction == direction);
+        let goal = demand.map_or(MicrometrePerSecond::ZERO, |demand| {
+            demand.speed.min(available)
+        });
+        let rise = demand.map_or(MicrometrePerSecond::ZERO, |demand| {
+            step_of(demand.acceleration)
+        });
+        let speed = goal.min(speed + rise).max(speed - step_of(abort));
+        if speed <= MicrometrePerSecond::ZERO {
+            return Self::Settling {
+                waited: Millisecond::ZERO,
+            };
+        }
+        Self::Moving { direction, speed }
+    }
+}
+
+/// Change of speed in one millisecond: 1 mm/s2 is 1 um/s a millisecond.
+fn step_of(slope: MillimetrePerSecondSquared) -> MicrometrePerSecond {
+    MicrometrePerSecond(slope.0.max(1))
+}

@@ -1,0 +1,183 @@
+//! The valve map and its inverse: which current lets which flow through.
+//!
+//! A table holds flow over current from the threshold (the last current without flow) to saturation
+//! (the first current with all of it), with the breakpoints where the valve has its kinks: straight
+//! lines between them are the valve's curve, not an approximation on a grid.
+//!
+//! * No flow is no current, and no current is no flow.
+//! * The smallest flow asks for just more than the threshold, any flow beyond saturation for the
+//!   saturation current.
+//! * Lifting is compensated: flow depends on the current alone. Lowering goes with the root of the
+//!   pressure drop (turbulent orifice, `Q = Cd A sqrt(2 dp / rho)`), so a flow is brought to the
+//!   drop at which the table was measured: `Q_ref = Q sqrt(dp_ref / dp)`.
+
+use super::fixed::{Divisor, interpolate, mul_div, square_root};
+use super::units::{MicroLitrePerSecond, MilliAmp, MilliBar};
+
+/// Room for breakpoints in a valve table.
+pub const VALVE_POINTS: usize = 32;
+
+/// A breakpoint of a valve table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
+pub struct ValvePoint {
+    /// Flow through the valve.
+    pub flow: MicroLitrePerSecond,
+    /// Coil current that gives it.
+    pub current: MilliAmp,
+}
+
+/// Flow over current of one valve, both strictly rising, from threshold to saturation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct ValveTable {
+    /// Number of points in use.
+    pub count: u32,
+    /// The points; those not in use are zero.
+    pub points: [ValvePoint; VALVE_POINTS],
+}
+
+impl ValveTable {
+    /// The points in use.
+    #[must_use]
+    pub fn used(&self) -> &[ValvePoint] {
+        let count = usize::try_from(self.count)
+            .unwrap_or(VALVE_POINTS)
+            .min(VALVE_POINTS);
+        self.points.get(..count).unwrap_or(&[])
+    }
+
+    /// Largest current without flow.
+    #[must_use]
+    pub fn threshold(&self) -> MilliAmp {
+        self.used()
+            .first()
+            .map_or(MilliAmp::ZERO, |point| point.current)
+    }
+
+    /// Largest flow.
+    #[must_use]
+    pub fn saturation(&self) -> MicroLitrePerSecond {
+        self.used()
+            .last()
+            .map_or(MicroLitrePerSecond::ZERO, |point| point.flow)
+    }
+
+    /// Current that lets `flow` through (at the table's own pressure drop).
+    #[must_use]
+    pub fn current(&self, flow: MicroLitrePerSecond) -> MilliAmp {
+        if flow <= MicroLitrePerSecond::ZERO {
+            return MilliAmp::ZERO;
+        }
+        let current = self.look_up(flow.0, |point| (point.flow.0, point.current.0));
+        MilliAmp(current).max(self.threshold() + MilliAmp(1))
+    }
+
+    /// Flow that `current` lets through (at the table's own pressure drop).
+    #[must_use]
+    pub fn flow(&self, current: MilliAmp) -> MicroLitrePerSecond {
+        if current <= self.threshold() {
+            return MicroLitrePerSecond::ZERO;
+        }
+        MicroLitrePerSecond(self.look_up(current.0, |point| (point.current.0, point.flow.0)))
+    }
+
+    /// Interpolates along the axis that `axes` puts first; beyond the ends the end values hold.
+    fn look_up(&self, x: i32, axes: impl Fn(&ValvePoint) -> (i32, i32)) -> i32 {
+        let points = self.used();
+        let above = points.partition_point(|point| axes(point).0 < x);
+        let left = above
+            .checked_sub(1)
+            .and_then(|at| points.get(at))
+            .map(&axes);
+        match (left, points.get(above).map(&axes)) {
+            (Some(left), Some(right)) => interpolate(left, right, x),
+            (Some(end), None) | (None, Some(end)) => end.1,
+            (None, None) => 0,
+        }
+    }
+}
+
+/// `sqrt(dp_ref / dp)` of the lowering valve at its present pressure drop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DropScale {
+    /// The ratio in units of 2^-16.
+    ratio: i32,
+}
+
+impl DropScale {
+    const ONE: i32 = 1 << 16;
+
+    /// The scale at pressure drop `drop` of a table that was measured at `reference`. Drops are at least 1 mbar.
+    #[must_use]
+    pub fn new(reference: MilliBar, drop: MilliBar) -> Self {
+        let reference = u64::from(reference.0.max(1).unsigned_abs());
+        let drop = core::num::NonZeroU64::new(u64::from(drop.0.max(1).unsigned_abs()));
+        // Radicand in units of 2^-32, so the root comes in 2^-16; the reference is below 2^31.
+        let radicand = drop.map_or(u64::MAX, |drop| (reference << 32) / drop);
+        Self {
+            ratio: square_root(radicand).max(1),
+        }
+    }
+
+    /// The flow at the reference drop that needs the same opening as `flow` does at the present one.
+    #[must_use]
+    pub fn to_reference(self, flow: MicroLitrePerSecond) -> MicroLitrePerSecond {
+        MicroLitrePerSecond(mul_div(
+            flow.0,
+            self.ratio,
+            Divisor::at_least_one(Self::ONE),
+        ))
+    }
+
+    /// The flow at the present drop through an opening that lets `flow` through at the reference one.
+    #[must_use]
+    pub fn to_present(self, flow: MicroLitrePerSecond) -> MicroLitrePerSecond {
+        MicroLitrePerSecond(mul_div(
+            flow.0,
+            Self::ONE,
+            Divisor::at_least_one(self.ratio),
+        ))
+    }
+}
+
+/// The inverse maps of both valves.
+#[derive(Clone, Copy, Debug)]
+pub struct ValveMap<'a> {
+    /// Lift valve: compensated.
+    pub lift: &'a ValveTable,
+    /// Lowering valve at the reference drop.
+    pub lower: &'a ValveTable,
+    /// The lowering valve's present scale.
+    pub scale: DropScale,
+}
+
+impl ValveMap<'_> {
+    /// Lift current for a flow into the cylinder.
+    #[must_use]
+    pub fn lift_current(&self, flow: MicroLitrePerSecond) -> MilliAmp {
+        self.lift.current(flow)
+    }
+
+    /// Lowering current for a flow out of the cylinder.
+    #[must_use]
+    pub fn lower_current(&self, flow: MicroLitrePerSecond) -> MilliAmp {
+        if flow <= MicroLitrePerSecond::ZERO {
+            return MilliAmp::ZERO;
+        }
+        self.lower
+            .current(self.scale.to_reference(flow).max(MicroLitrePerSecond(1)))
+    }
+
+    /// Largest flow into the cylinder.
+    #[must_use]
+    pub fn lift_saturation(&self) -> MicroLitrePerSecond {
+        self.lift.saturation()
+    }
+
+    /// Largest flow out of the cylinder at the present drop.
+    #[must_use]
+    pub fn lower_saturation(&self) -> MicroLitrePerSecond {
+        self.scale.to_present(self.lower.saturation())
+    }
+}
