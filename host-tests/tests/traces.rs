@@ -105,3 +105,16 @@ fn a_damaged_trace_is_refused() {
     assert!(trace::unpack(&packed[..packed.len() / 2]).is_err());
     assert!(trace::unpack(b"not a trace").is_err());
 }
+
+#[test]
+fn a_single_wrong_bit_is_found() {
+    let inputs = trace::random(3, 1_000);
+    let host = replay::replay(&inputs);
+    let mut target: Vec<_> = host.iter().map(Outputs::to_bytes).collect();
+    assert_eq!(replay::first_difference(&inputs, &host, &target), None);
+    target[700][17] ^= 1;
+    let difference = replay::first_difference(&inputs, &host, &target).unwrap();
+    assert!(difference.starts_with("step 700 of 1000"), "{difference}");
+    target.pop();
+    assert!(replay::first_difference(&inputs, &host, &target).is_some());
+}

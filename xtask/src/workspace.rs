@@ -5,10 +5,14 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 /// The workspace's root.
-pub fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+pub fn root() -> PathBuf {
+    // As cargo says now; a target folder that several clones share may hold an xtask that another one built.
+    let xtask =
+        env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
+    PathBuf::from(xtask)
         .parent()
-        .expect("xtask lives in a folder of the workspace")
+        .map(Path::to_path_buf)
+        .unwrap_or_default()
 }
 
 /// The folder that cargo builds into.
