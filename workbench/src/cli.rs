@@ -1,7 +1,7 @@
 //! The command line.
 use clap::{Parser, Subcommand};
 
-use crate::commands::{effects, paper, simulate};
+use crate::commands::{compare, effects, paper, simulate};
 use crate::error::Error;
 use crate::output;
 
@@ -18,6 +18,8 @@ pub struct Cli {
 /// Every command of the program.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Model against measurements: where, when and in which channel it fails
+    Compare(compare::Args),
     /// The catalogue of physical effects: equation, parameters, units, source, where it shows
     Effects(effects::Args),
     /// The plant alone, driven by a log's currents
@@ -33,6 +35,7 @@ impl Command {
     /// Whatever the command reports.
     pub fn run(&self) -> Result<(), Error> {
         match self {
+            Self::Compare(args) => compare::run(args),
             Self::Effects(args) => effects::run(args),
             Self::Simulate(args) => simulate::run(args),
             Self::Paper(args) => paper::run(args),

@@ -3,6 +3,7 @@
 
 pub mod cli;
 pub mod commands;
+pub mod comparison;
 pub mod error;
 pub mod explanation;
 pub mod model_arg;

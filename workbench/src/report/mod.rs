@@ -1,5 +1,6 @@
 //! Reports: one HTML file each, with everything in it, that opens without a network and prints well.
 pub mod chart;
+pub mod comparison_page;
 pub mod heat_table;
 pub mod page;
 pub mod runs;
