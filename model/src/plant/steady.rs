@@ -2,6 +2,9 @@
 //!
 //! Stiff oil and no inertia: the piston's speed comes from the flow balance `A v = Q_lift - Q_lower - Q_leak`, the
 //! cylinder pressure from the static balance `p A = F_weight(x) + F_friction(v)`.
+//!
+//! The balance knows no contact force, so at a stop the piston stands while pressure and flow stay what they were
+//! (RIG.md defines it so); dead-heading the pump over the relief valve is the dynamic plant's business.
 
 use super::circuit::{Circuit, Flows, Openings};
 use super::{HitchRig, MechanicalState};
@@ -44,18 +47,11 @@ pub fn balance(
             flows,
         }
     };
-    let moving = if circuit.sites.friction.is_empty() || free.speed_m_s == 0.0 {
+    if circuit.sites.friction.is_empty() || free.speed_m_s == 0.0 {
         free
     } else {
         with_friction(circuit, openings, weight_n, area_m2, free.speed_m_s)
-    };
-    at_the_stops(
-        circuit,
-        openings,
-        constants.cylinder.stroke_m,
-        piston_m,
-        moving,
-    )
+    }
 }
 
 /// Friction slows the motion, so the speed lies between rest and the frictionless speed.
@@ -78,30 +74,6 @@ fn with_friction(
     let excess = |speed_m_s: f64| speed_m_s - at(speed_m_s).flows.net_m3_s() / area_m2;
     let (low, high) = (free_m_s.min(0.0), free_m_s.max(0.0));
     at(super::root::rising(excess, low, high, 1e-9))
-}
-
-/// Against a stop the piston stands: the pump dead-heads over the relief valve, or the cylinder drains.
-fn at_the_stops(
-    circuit: &Circuit,
-    openings: Openings,
-    stroke_m: f64,
-    piston_m: f64,
-    moving: Balance,
-) -> Balance {
-    let pressure_pa = if piston_m >= stroke_m && moving.speed_m_s > 0.0 {
-        circuit.constants.relief_valve.set_pressure_pa
-            - circuit.constants.check_valve.cracking_pressure_pa
-    } else if piston_m <= 0.0 && moving.speed_m_s < 0.0 {
-        0.0
-    } else {
-        return moving;
-    };
-    let flows = circuit.solve(openings, pressure_pa);
-    Balance {
-        speed_m_s: 0.0,
-        pressure_pa,
-        flows,
-    }
 }
 
 /// One step of Heun's method with the openings at its two ends; returns the piston's travel afterwards, m.
