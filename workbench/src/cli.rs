@@ -1,7 +1,7 @@
 //! The command line.
 use clap::{Parser, Subcommand};
 
-use crate::commands::{compare, effects, paper, simulate};
+use crate::commands::{add, compare, diagnose, effects, explain, paper, simulate};
 use crate::error::Error;
 use crate::output;
 
@@ -20,6 +20,12 @@ pub struct Cli {
 pub enum Command {
     /// Model against measurements: where, when and in which channel it fails
     Compare(compare::Args),
+    /// Which physical effect is missing, ranked, and what cannot be told apart on these data
+    Diagnose(diagnose::Args),
+    /// Adds effects to a model and estimates their parameters
+    Add(add::Args),
+    /// Finds what the model lacks and adds it, until nothing more is worth adding
+    Explain(explain::Args),
     /// The catalogue of physical effects: equation, parameters, units, source, where it shows
     Effects(effects::Args),
     /// The plant alone, driven by a log's currents
@@ -36,6 +42,9 @@ impl Command {
     pub fn run(&self) -> Result<(), Error> {
         match self {
             Self::Compare(args) => compare::run(args),
+            Self::Diagnose(args) => diagnose::run(args),
+            Self::Add(args) => add::run(args),
+            Self::Explain(args) => explain::run(args),
             Self::Effects(args) => effects::run(args),
             Self::Simulate(args) => simulate::run(args),
             Self::Paper(args) => paper::run(args),

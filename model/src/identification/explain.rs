@@ -20,10 +20,10 @@ use crate::effects::{CATALOGUE, Effect};
 use crate::model::Model;
 
 /// Likelihood ratio that an effect needs: chi-squared with one degree of freedom at 5 % over some fifty tries.
-const BELIEVED: f64 = 11.0;
+pub const BELIEVED: f64 = 11.0;
 
 /// Likelihood ratio by which an alternative has to be worse to be told apart.
-const TOLD_APART: f64 = 10.0;
+pub const TOLD_APART: f64 = 10.0;
 
 /// Cosine above which two projected signatures are worth a fit of the one in place of the other.
 const ALIKE: f64 = 0.8;

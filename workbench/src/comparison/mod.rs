@@ -137,6 +137,15 @@ impl Evaluated {
             .collect()
     }
 
+    /// Root mean square of the residuals of a channel of a run, in sigma.
+    pub fn error(&self, run: usize, channel: Channel) -> f64 {
+        let mut tally = Tally::default();
+        self.residuals(run, channel)
+            .into_iter()
+            .for_each(|residual| tally.add(residual));
+        tally.rms()
+    }
+
     /// Simulated samples of every channel of a run, in the channels' units.
     pub fn simulated(&self, model: &Model, run: usize) -> Trace {
         let nuisance = self.fit.estimate.nuisances[run];
@@ -149,20 +158,24 @@ impl Comparison {
     /// Compares a model with a campaign.
     pub fn new(campaign: &Campaign, model: &Model) -> (Self, Evaluated) {
         let evaluated = Evaluated::new(campaign, model);
+        (Self::of(&evaluated, model), evaluated)
+    }
+
+    /// The comparison of a model that is evaluated already.
+    pub fn of(evaluated: &Evaluated, model: &Model) -> Self {
         let sums = ErrorSums::of(&evaluated.fit);
-        let comparison = Self {
-            campaign: campaign.name.clone(),
+        Self {
+            campaign: evaluated.experiment.name.clone(),
             model: model.name.clone(),
             error: sums.error(),
             noise_floor: 1.0,
-            channels: channels(&evaluated, model, &sums),
-            cells: cells(&evaluated),
+            channels: channels(evaluated, model, &sums),
+            cells: cells(evaluated),
             worst: Channel::ALL
                 .into_iter()
-                .filter_map(|channel| worst_stretch(&evaluated, channel))
+                .filter_map(|channel| worst_stretch(evaluated, channel))
                 .collect(),
-        };
-        (comparison, evaluated)
+        }
     }
 }
 

@@ -1,5 +1,9 @@
 //! What `hitch explain` and `hitch diagnose` found, as scripts read it (JSON) and as people do (text).
+mod of_diagnosis;
+mod of_explanation;
 mod show;
+
+pub use of_explanation::parameters;
 
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -7,15 +11,9 @@ use serde_json::{Map, Value};
 /// Result of `hitch explain`.
 #[derive(Debug, Clone, Serialize)]
 pub struct Explanation {
-    /// Head, alike for every result on a campaign.
+    /// Head, alike for every result.
     #[serde(flatten)]
     pub head: Head,
-    /// Error of the model with all effects of `steps`, in sigma.
-    pub error_after: f64,
-    /// Root mean square of the differences by channel key, in the channel's unit: before, after, and the noise.
-    pub channels: Map<String, Value>,
-    /// The answer in a word.
-    pub verdict: String,
     /// The effects added, in order.
     pub steps: Vec<Step>,
     /// What stays unexplained.
@@ -27,11 +25,9 @@ pub struct Explanation {
 /// Result of `hitch diagnose`.
 #[derive(Debug, Clone, Serialize)]
 pub struct Diagnosis {
-    /// Head, alike for every result on a campaign.
+    /// Head, alike for every result; the error after is that of the best candidate, if it is believed.
     #[serde(flatten)]
     pub head: Head,
-    /// The answer in a word.
-    pub verdict: String,
     /// Effects that could be missing, best first.
     pub candidates: Vec<Candidate>,
 }
@@ -45,15 +41,21 @@ pub struct Head {
     pub model: String,
     /// Error of that model, in sigma.
     pub error_before: f64,
+    /// Error of the model that it came to, in sigma.
+    pub error_after: f64,
     /// Error of a perfect model: the instruments' noise, in sigma.
     pub noise_floor: f64,
+    /// By channel key, in the channel's unit: the error before and after, and the noise of the instrument.
+    pub channels: Map<String, Value>,
+    /// The answer in a word.
+    pub verdict: &'static str,
 }
 
 /// One effect that was added.
 #[derive(Debug, Clone, Serialize)]
 pub struct Step {
     /// Id of the effect.
-    pub effect: String,
+    pub effect: &'static str,
     /// Error before it was added, in sigma.
     pub error_before: f64,
     /// Error after it was added, in sigma.
@@ -65,7 +67,26 @@ pub struct Step {
     /// How sure the data make one that it is this effect, 0 to 1.
     pub confidence: f64,
     /// Effects that it cannot be told from on these data.
-    pub indistinguishable: Vec<String>,
+    pub indistinguishable: Vec<&'static str>,
+    /// Root mean square of its signature that nothing else can take on, in sigma.
+    pub detectability: f64,
+    /// Its parameters.
+    pub parameters: Vec<Parameter>,
+}
+
+/// An effect that could be missing.
+#[derive(Debug, Clone, Serialize)]
+pub struct Candidate {
+    /// Id of the effect.
+    pub effect: &'static str,
+    /// Share of the squared error above the noise that it would explain, 0 to 1.
+    pub explains: f64,
+    /// Error with it, in sigma.
+    pub error_after: f64,
+    /// How sure the data make one that it is this effect, 0 to 1.
+    pub confidence: f64,
+    /// Effects that it cannot be told from on these data.
+    pub indistinguishable: Vec<&'static str>,
     /// Root mean square of its signature that nothing else can take on, in sigma.
     pub detectability: f64,
     /// Its parameters.
@@ -76,14 +97,14 @@ pub struct Step {
 #[derive(Debug, Clone, Serialize)]
 pub struct Parameter {
     /// Name.
-    pub name: String,
-    /// Unit.
-    pub unit: String,
+    pub name: &'static str,
+    /// Unit; empty for a pure number.
+    pub unit: &'static str,
     /// Estimate.
     pub value: f64,
-    /// Lower end of the interval.
+    /// Lower end of the 95 % interval.
     pub low: f64,
-    /// Upper end of the interval.
+    /// Upper end of the 95 % interval.
     pub high: f64,
 }
 
@@ -96,23 +117,4 @@ pub struct Unexplained {
     pub depends_on: Vec<String>,
     /// A formula for it, if one was found.
     pub suggested_term: Option<String>,
-}
-
-/// An effect that could be missing.
-#[derive(Debug, Clone, Serialize)]
-pub struct Candidate {
-    /// Id of the effect.
-    pub effect: String,
-    /// Share of the squared error above the noise that it would explain, 0 to 1.
-    pub explains: f64,
-    /// Error with it, in sigma.
-    pub error_after: f64,
-    /// How sure the data make one that it is this effect, 0 to 1.
-    pub confidence: f64,
-    /// Effects that it cannot be told from on these data.
-    pub indistinguishable: Vec<String>,
-    /// Root mean square of its signature that nothing else can take on, in sigma.
-    pub detectability: f64,
-    /// Its parameters.
-    pub parameters: Vec<Parameter>,
 }

@@ -13,11 +13,14 @@ impl fmt::Display for Explanation {
         for (i, step) in self.steps.iter().enumerate() {
             write!(f, "  {}. {step}", i + 1)?;
         }
+        if !self.steps.is_empty() {
+            writeln!(f)?;
+        }
         writeln!(
             f,
-            "\n{}",
+            "{}",
             wrapped(
-                &format!("Verdict: {}. {}", self.verdict, self.meaning()),
+                &format!("Verdict: {}. {}", self.head.verdict, self.meaning()),
                 WIDTH
             )
         )?;
@@ -29,13 +32,6 @@ impl fmt::Display for Explanation {
                 wrapped(&format!("Next experiment: {experiment}"), WIDTH)
             )?;
         }
-        if !self.channels.is_empty() {
-            writeln!(
-                f,
-                "\nRoot mean square of measured less simulated\n{}",
-                self.channel_table()
-            )?;
-        }
         Ok(())
     }
 }
@@ -43,45 +39,30 @@ impl fmt::Display for Explanation {
 impl Explanation {
     /// What the verdict means, in a sentence.
     pub fn meaning(&self) -> &'static str {
-        match self.verdict.as_str() {
-            "nothing-missing" => {
+        match (self.head.verdict, self.steps.is_empty()) {
+            ("nothing-missing", _) => {
                 "The model explains the measurements to within the noise of the instruments."
             }
-            "explained" => {
-                "With these effects the model explains the measurements to within the noise."
+            ("explained", _) => {
+                "With what was added the model explains the measurements to within the noise."
             }
-            "ambiguous" => "The model is adequate now, but some effect could as well be another.",
-            "unexplained" => "What is left is not in the catalogue.",
-            "not-enough-data" => "The campaign cannot decide.",
-            _ => "",
+            ("ambiguous", _) => {
+                "The model is adequate now, but an effect could as well be another."
+            }
+            ("unexplained", true) => {
+                "The model is not adequate, and nothing in the catalogue makes it better."
+            }
+            ("unexplained", false) => {
+                "What was added helps, but what is left is not in the catalogue."
+            }
+            _ => "The campaign cannot decide.",
         }
-    }
-
-    fn channel_table(&self) -> Table {
-        let mut table = Table::new(["", "before", "after", "noise"]);
-        for (channel, values) in &self.channels {
-            let number = |key: &str| {
-                values[key]
-                    .as_f64()
-                    .map_or("-".to_owned(), |value| format!("{value:.3}"))
-            };
-            table.row([
-                channel.clone(),
-                number("before"),
-                number("after"),
-                number("noise"),
-            ]);
-        }
-        table
     }
 }
 
 impl fmt::Display for Diagnosis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.head)?;
-        if self.candidates.is_empty() {
-            return writeln!(f, "Verdict: {}", self.verdict);
-        }
         let mut table = Table::new([
             "candidate",
             "explains",
@@ -92,7 +73,7 @@ impl fmt::Display for Diagnosis {
         ]);
         for candidate in &self.candidates {
             table.row([
-                candidate.effect.clone(),
+                candidate.effect.to_owned(),
                 format!("{:.1} %", 100.0 * candidate.explains),
                 format!("{:.2}", candidate.error_after),
                 format!("{:.2}", candidate.confidence),
@@ -112,22 +93,42 @@ impl fmt::Display for Diagnosis {
             let others = candidate.indistinguishable.join(", ");
             writeln!(
                 f,
-                "On these data {} cannot be told from {others}",
+                "On these data {} cannot be told from {others}.",
                 candidate.effect
             )?;
         }
-        writeln!(f, "Verdict: {}", self.verdict)
+        writeln!(
+            f,
+            "Verdict with the best candidate alone: {}.",
+            self.head.verdict
+        )
     }
 }
 
 impl fmt::Display for Head {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "Campaign {}, model {}", self.campaign, self.model)?;
+        let (before, after) = (self.error_before, self.error_after);
         writeln!(
             f,
-            "  error {:.2} sigma (noise of the instruments: {:.2})",
-            self.error_before, self.noise_floor
-        )
+            "  error {before:.2} -> {after:.2} sigma (noise of the instruments: {:.2})\n",
+            self.noise_floor
+        )?;
+        let mut table = Table::new(["channel", "before", "after", "noise"]);
+        for (channel, values) in &self.channels {
+            let number = |key: &str| {
+                values[key]
+                    .as_f64()
+                    .map_or("-".to_owned(), |value| format!("{value:.3}"))
+            };
+            table.row([
+                channel.clone(),
+                number("before"),
+                number("after"),
+                number("noise"),
+            ]);
+        }
+        write!(f, "{table}")
     }
 }
 
