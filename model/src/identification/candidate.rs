@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::estimate::{Estimate, Shared};
 use super::evidence::{detectability, variance_inflation};
 use super::experiment::Experiment;
-use super::fit::{Fit, fit};
+use super::fit::{Fit, evaluate, refine, sketch};
 use super::frame::Frame;
 use super::jacobian::{Jacobian, residuals, square_sum};
 use crate::effects::{AddedEffect, Effect};
@@ -14,8 +14,15 @@ use crate::model::Model;
 /// Sizes of the secants, in typical sizes: derivatives at zero miss a play or a gap, one size misses what saturates.
 const SIZES: [f64; 5] = [0.03, 0.2, 1.0, 2.5, 6.0];
 
-/// How many starts are fitted.
+/// How many starts are sketched.
 const STARTS: usize = 2;
+
+/// An effect is fitted in full if its sketch is among the first so many,
+const ALWAYS_FITTED: usize = 2;
+/// or leaves at most this share of what the best sketch explains unexplained,
+const HOPELESS: f64 = 0.3;
+/// or is within this cost of the best.
+const HOPELESS_COST: f64 = 60.0;
 
 /// An effect fitted beside everything that was free already.
 #[derive(Debug, Clone)]
@@ -35,22 +42,45 @@ pub struct Candidate {
     pub intervals: Vec<(f64, f64)>,
 }
 
-/// Tries an effect on a fitted model.
+/// Tries effects on a fitted model: all roughly, then those that may be the best in full. Best first.
 #[must_use]
-pub fn try_effect(
+pub fn try_effects(
     experiment: &Experiment,
     model: &Model,
     base: &Fit,
-    jacobian: &Jacobian,
-    effect: &'static dyn Effect,
-) -> Candidate {
-    let starts = starts(experiment, model, base, jacobian, effect);
-    let best = starts
+    effects: &[&'static dyn Effect],
+    progress: &(dyn Fn(&str) + Sync),
+) -> Vec<Candidate> {
+    let jacobian = Jacobian::new(experiment, model, &base.weights, &base.estimate);
+    let mut sketches: Vec<(f64, Estimate, &'static dyn Effect)> = effects
+        .par_iter()
+        .map(|&effect| {
+            let (cost, estimate) = starts(experiment, model, base, &jacobian, effect)
+                .into_iter()
+                .map(|start| sketch(experiment, model, &base.weights, start))
+                .min_by(|a, b| a.0.total_cmp(&b.0))
+                .unwrap_or_else(|| (base.cost, base.estimate.clone()));
+            (cost, estimate, effect)
+        })
+        .collect();
+    sketches.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let best = sketches.first().map_or(base.cost, |sketch| sketch.0);
+    let hopeless = best + (HOPELESS * (base.cost - best)).max(HOPELESS_COST);
+    let mut candidates: Vec<Candidate> = sketches
         .into_par_iter()
-        .map(|start| fit(experiment, model, start))
-        .min_by(|a, b| a.cost.total_cmp(&b.cost))
-        .unwrap_or_else(|| base.clone());
-    weigh(experiment, model, base, effect, best)
+        .enumerate()
+        .map(|(rank, (cost, estimate, effect))| {
+            let fit = if rank < ALWAYS_FITTED || cost < hopeless {
+                refine(experiment, model, estimate)
+            } else {
+                evaluate(experiment, model, estimate)
+            };
+            progress(effect.id());
+            weigh(experiment, model, base, effect, fit)
+        })
+        .collect();
+    candidates.sort_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
+    candidates
 }
 
 /// The most promising sizes: those at which the least cost is left once all else has adapted.

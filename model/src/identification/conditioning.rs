@@ -130,6 +130,7 @@ fn clean(time_s: &[f64], logged_a: &[f64], sigma_a: f64) -> (Vec<f64>, Vec<f64>)
             (sigma_a * sigma_a * variance[sample])
                 .sqrt()
                 .hypot(steepest * TIMING_S)
+                .hypot(jump_before(&cleaned, sample) * JUMP_SHARE)
         })
         .collect();
     for current_a in &mut cleaned {

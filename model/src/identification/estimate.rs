@@ -1,6 +1,7 @@
 //! What a fit may change, and its scaling.
 
 use super::experiment::{Experiment, LOAD_PRIOR, Nuisance, SKEW_PRIOR_S};
+use super::jacobian::Step;
 use crate::effects::{AddedEffect, Parameter};
 
 /// Values of everything that is free: the effects' parameters, and the nuisances with a prior.
@@ -84,6 +85,19 @@ impl Estimate {
         }
     }
 
+    /// The estimate after a step, within all ranges.
+    #[must_use]
+    pub fn moved(&self, parameters: &[Shared], step: &Step) -> Self {
+        let mut moved = self.clone();
+        for (&shared, &scales) in parameters.iter().zip(step.shared.iter()) {
+            moved.set(shared, self.get(shared) + scales * self.scale(shared));
+        }
+        for (run, &sigmas) in step.loads.iter().enumerate() {
+            moved.set_load(run, self.load(run) + sigmas);
+        }
+        moved
+    }
+
     /// Load error of a run, in prior sigmas.
     #[must_use]
     pub fn load(&self, run: usize) -> f64 {
@@ -92,7 +106,7 @@ impl Estimate {
 
     /// Sets the load error of a run, in prior sigmas.
     pub fn set_load(&mut self, run: usize, sigmas: f64) {
-        self.nuisances[run].load = sigmas.max(-FARTHEST).min(FARTHEST) * LOAD_PRIOR;
+        self.nuisances[run].load = sigmas.clamp(-FARTHEST, FARTHEST) * LOAD_PRIOR;
     }
 
     /// Cost of the priors: squared distance in prior sigmas.

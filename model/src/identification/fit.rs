@@ -6,7 +6,7 @@
 
 use super::estimate::Estimate;
 use super::experiment::Experiment;
-use super::jacobian::{Jacobian, load_steps, residuals, square_sum};
+use super::jacobian::{Jacobian, SlowColumns, load_steps, residuals, square_sum};
 use super::residual::Weights;
 use crate::model::Model;
 
@@ -15,8 +15,11 @@ use crate::model::Model;
 const COARSE: [f64; 4] = [0.04, 0.04, 0.15, 0.25];
 
 /// Iterations of the coarse and of each fine round.
-const COARSE_ITERATIONS: usize = 5;
+const COARSE_ITERATIONS: usize = 4;
 const FINE_ITERATIONS: usize = 12;
+
+/// Iterations after which the columns of skew and loads, which hardly change, are computed anew.
+const SLOW_EVERY: usize = 4;
 
 /// Relative fall of the cost that is still worth an iteration.
 const WORTHWHILE: f64 = 1e-5;
@@ -125,6 +128,21 @@ pub fn fit(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
     refine(experiment, model, estimate)
 }
 
+/// Fits roughly, under given weights, to see whether an effect deserves a full fit; returns the cost as well.
+#[must_use]
+pub fn sketch(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    start: Estimate,
+) -> (f64, Estimate) {
+    let coarse = weights.clone().scaled(COARSE);
+    let estimate = descend(experiment, model, &coarse, start, COARSE_ITERATIONS);
+    let estimate = descend(experiment, model, weights, estimate, COARSE_ITERATIONS);
+    let cost = Point::new(experiment, model, weights, estimate.clone()).cost;
+    (cost, estimate)
+}
+
 /// Fits from a start that is already near.
 #[must_use]
 pub fn refine(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
@@ -164,38 +182,66 @@ fn descend(
     start: Estimate,
     iterations: usize,
 ) -> Estimate {
-    let cost_of = |estimate: &Estimate| {
-        square_sum(&residuals(experiment, model, weights, estimate)) + estimate.prior_cost()
-    };
-    let mut estimate = start;
-    let mut cost = cost_of(&estimate);
+    let mut point = Point::new(experiment, model, weights, start);
     let mut damping = 1e-3;
-    for _ in 0..iterations {
-        let jacobian = Jacobian::new(experiment, model, weights, &estimate);
-        let before = cost;
+    let mut slow = None;
+    for iteration in 0..iterations {
+        if iteration % SLOW_EVERY == 0 {
+            slow = None;
+        }
+        let columns = slow.take().unwrap_or_else(|| {
+            SlowColumns::new(
+                experiment,
+                model,
+                weights,
+                &point.estimate,
+                &point.residuals,
+            )
+        });
+        let jacobian = Jacobian::with_slow_columns(
+            experiment,
+            model,
+            weights,
+            &point.estimate,
+            &point.residuals,
+            &columns,
+        );
+        slow = Some(columns);
+        let before = point.cost;
         for _ in 0..6 {
-            let Some(step) = jacobian.step(&estimate, damping) else {
-                damping *= 10.0;
-                continue;
-            };
-            let mut trial = estimate.clone();
-            for (&shared, &step) in jacobian.shared.iter().zip(step.shared.iter()) {
-                trial.set(shared, estimate.get(shared) + step * estimate.scale(shared));
-            }
-            for (run, &load) in step.loads.iter().enumerate() {
-                trial.set_load(run, estimate.load(run) + load);
-            }
-            let trial_cost = cost_of(&trial);
-            if trial_cost < cost {
-                (estimate, cost) = (trial, trial_cost);
+            let trial = jacobian
+                .step(&point.estimate, damping)
+                .map(|step| point.estimate.moved(&jacobian.shared, &step))
+                .map(|trial| Point::new(experiment, model, weights, trial));
+            if let Some(better) = trial.filter(|trial| trial.cost < point.cost) {
+                point = better;
                 damping = (damping * 0.1).max(1e-9);
                 break;
             }
             damping *= 10.0;
         }
-        if before - cost <= WORTHWHILE * before {
+        if before - point.cost <= WORTHWHILE * before {
             break;
         }
     }
-    estimate
+    point.estimate
+}
+
+/// An estimate with what it leaves.
+struct Point {
+    estimate: Estimate,
+    residuals: Vec<Vec<f64>>,
+    cost: f64,
+}
+
+impl Point {
+    fn new(experiment: &Experiment, model: &Model, weights: &Weights, estimate: Estimate) -> Self {
+        let residuals = residuals(experiment, model, weights, &estimate);
+        let cost = square_sum(&residuals) + estimate.prior_cost();
+        Self {
+            estimate,
+            residuals,
+            cost,
+        }
+    }
 }

@@ -134,6 +134,31 @@ fn load_columns(
     quotient(base, residuals(experiment, model, weights, &moved), 1.0)
 }
 
+/// Columns that hardly change from one iteration to the next: of the skew and of the loads.
+#[derive(Debug, Clone)]
+pub struct SlowColumns {
+    skew: Vec<Vec<f64>>,
+    loads: Vec<Vec<f64>>,
+}
+
+impl SlowColumns {
+    /// Difference quotients at `estimate`, which leaves the residuals `base`.
+    #[must_use]
+    pub fn new(
+        experiment: &Experiment,
+        model: &Model,
+        weights: &Weights,
+        estimate: &Estimate,
+        base: &[Vec<f64>],
+    ) -> Self {
+        let (skew, loads) = rayon::join(
+            || shared_column(experiment, model, weights, estimate, base, Shared::Skew),
+            || load_columns(experiment, model, weights, estimate, base),
+        );
+        Self { skew, loads }
+    }
+}
+
 /// Steps of the load errors alone, in prior sigmas, that fit best with all else held.
 #[must_use]
 pub fn load_steps(
@@ -166,25 +191,38 @@ impl Jacobian {
         weights: &Weights,
         estimate: &Estimate,
     ) -> Self {
-        let shared = estimate.shared();
         let base = residuals(experiment, model, weights, estimate);
-        let mut columns: Vec<Vec<Vec<f64>>> = shared
+        let slow = SlowColumns::new(experiment, model, weights, estimate, &base);
+        Self::with_slow_columns(experiment, model, weights, estimate, &base, &slow)
+    }
+
+    /// The same with the residuals known, and the columns of skew and loads taken from a point nearby.
+    #[must_use]
+    pub fn with_slow_columns(
+        experiment: &Experiment,
+        model: &Model,
+        weights: &Weights,
+        estimate: &Estimate,
+        base: &[Vec<f64>],
+        slow: &SlowColumns,
+    ) -> Self {
+        let shared = estimate.shared();
+        let columns: Vec<Vec<Vec<f64>>> = shared
             .par_iter()
-            .map(|&parameter| shared_column(experiment, model, weights, estimate, &base, parameter))
+            .filter(|&&parameter| parameter != Shared::Skew)
+            .map(|&parameter| shared_column(experiment, model, weights, estimate, base, parameter))
             .collect();
-        let mut loads = load_columns(experiment, model, weights, estimate, &base);
-        let runs = base
-            .into_iter()
-            .enumerate()
-            .map(|(run, residual)| RunJacobian {
-                residual,
+        let runs = (0..base.len())
+            .map(|run| RunJacobian {
+                residual: base[run].clone(),
                 shared: columns
-                    .iter_mut()
-                    .map(|column| std::mem::take(&mut column[run]))
+                    .iter()
+                    .map(|column| column[run].clone())
+                    .chain([slow.skew[run].clone()])
                     .collect(),
                 load: experiment.runs[run]
                     .on_hitch()
-                    .then(|| std::mem::take(&mut loads[run])),
+                    .then(|| slow.loads[run].clone()),
                 load_value: estimate.load(run),
             })
             .collect();

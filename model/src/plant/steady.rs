@@ -76,19 +76,19 @@ fn with_friction(
     at(super::root::rising(excess, low, high, 1e-9))
 }
 
-/// One step of Heun's method with the openings at its two ends; returns the piston's travel afterwards, m.
+/// One step of Heun's method from a known balance to the openings at its end; returns the piston's travel there, m.
 #[must_use]
 pub fn step(
     model: &Model,
     circuit: &Circuit,
     rig: &HitchRig,
     state: MechanicalState,
-    ends: [Openings; 2],
+    end: Openings,
     dt_s: f64,
 ) -> f64 {
     let stroke_m = model.constants().cylinder.stroke_m;
-    let start = balance(model, circuit, rig, ends[0], state.piston_m);
-    let guess_m = (state.piston_m + dt_s * start.speed_m_s).clamp(0.0, stroke_m);
-    let end = balance(model, circuit, rig, ends[1], guess_m);
-    (state.piston_m + 0.5 * dt_s * (start.speed_m_s + end.speed_m_s)).clamp(0.0, stroke_m)
+    let within = |piston_m: f64| piston_m.clamp(0.0, stroke_m);
+    let guess_m = within(state.piston_m + dt_s * state.speed_m_s);
+    let there = balance(model, circuit, rig, end, guess_m);
+    within(state.piston_m + 0.5 * dt_s * (state.speed_m_s + there.speed_m_s))
 }
