@@ -1,18 +1,27 @@
 //! The command line.
 use clap::{Parser, Subcommand};
 
-use crate::commands::{add, compare, diagnose, effects, explain, paper, simulate};
+use crate::commands::{add, compare, diagnose, effects, explain, main_job, paper, simulate};
 use crate::error::Error;
 use crate::output;
 
 /// The electro-hydraulic hitch: measurement -> physics -> firmware -> motion.
 #[derive(Debug, Parser)]
-#[command(name = "hitch", version, about, disable_help_subcommand = true)]
-#[command(after_help = "Example: hitch explain lab-a --report lab-a.html")]
+#[command(
+    name = "hitch",
+    version,
+    about,
+    disable_help_subcommand = true,
+    args_conflicts_with_subcommands = true
+)]
+#[command(after_help = "Examples:\n  hitch\n  hitch explain lab-a --report lab-a.html")]
 pub struct Cli {
-    /// What to do
+    /// What to do; without it, the main job on the campaign that comes with the program
     #[command(subcommand)]
-    pub command: Command,
+    pub command: Option<Command>,
+    /// Options of the main job.
+    #[command(flatten)]
+    pub main_job: main_job::Args,
 }
 
 /// Every command of the program.
@@ -58,7 +67,11 @@ impl Command {
 /// If they are wrong, or what they ask for fails.
 pub fn run<I: IntoIterator<Item = std::ffi::OsString>>(arguments: I) -> Result<(), Error> {
     match Cli::try_parse_from(arguments) {
-        Ok(cli) => cli.command.run(),
+        Ok(Cli {
+            command: Some(command),
+            ..
+        }) => command.run(),
+        Ok(Cli { main_job, .. }) => main_job::run(&main_job),
         Err(error) if !error.use_stderr() => output::print(&error.render().to_string()),
         Err(error) => Err(Error::Usage(one_line(&error.render().to_string()))),
     }

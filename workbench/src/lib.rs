@@ -4,6 +4,7 @@
 pub mod cli;
 pub mod commands;
 pub mod comparison;
+pub mod demonstration;
 pub mod error;
 pub mod explanation;
 pub mod model_arg;

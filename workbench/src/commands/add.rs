@@ -5,10 +5,9 @@ use std::path::PathBuf;
 use hitch_model::Model;
 use hitch_model::campaign::Campaign;
 use hitch_model::effects::Effect;
-use hitch_model::identification::candidate::{Candidate, try_effect};
+use hitch_model::identification::candidate::{Candidate, try_effects};
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::fit_base;
-use hitch_model::identification::jacobian::Jacobian;
 
 use super::effects::find;
 use crate::error::Error;
@@ -54,12 +53,12 @@ pub fn run(args: &Args) -> Result<(), Error> {
         model.name,
         fit.error()
     );
+    let say = |what: &str| progress.say(format!("fitting {what}"));
     for effect in effects {
-        progress.say(format!("fitting {}", effect.id()));
-        let jacobian = Jacobian::new(&experiment, &model, &fit.weights, &fit.estimate);
-        let candidate = try_effect(&experiment, &model, &fit, &jacobian, effect);
-        let _ = writeln!(text, "{}", shown(&candidate));
-        fit = candidate.fit;
+        for candidate in try_effects(&experiment, &model, &fit, &[effect], &say) {
+            let _ = writeln!(text, "{}", shown(&candidate));
+            fit = candidate.fit;
+        }
     }
     drop(progress);
     let mut rebuilt = model.with_effects(fit.estimate.effects);

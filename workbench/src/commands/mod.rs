@@ -4,5 +4,6 @@ pub mod compare;
 pub mod diagnose;
 pub mod effects;
 pub mod explain;
+pub mod main_job;
 pub mod paper;
 pub mod simulate;

@@ -222,8 +222,8 @@ mod tests {
     #[test]
     fn a_parameter_without_a_unit_has_no_stray_space() {
         let parameter = Parameter {
-            name: "scale".into(),
-            unit: String::new(),
+            name: "scale",
+            unit: "",
             value: -0.05,
             low: -0.06,
             high: -0.04,

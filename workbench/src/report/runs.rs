@@ -4,6 +4,9 @@ use maud::{Markup, html};
 
 use super::chart::{Chart, Line, Stroke, legend};
 
+/// So many runs are unfolded.
+const OPEN_RUNS: usize = 2;
+
 /// One run as the report draws it.
 #[derive(Debug, Clone)]
 pub struct RunView {
@@ -34,7 +37,7 @@ pub struct ChannelView {
     pub error_after: Option<f64>,
 }
 
-/// All runs, the one with the greatest error first and open, the others folded.
+/// All runs, those with the greatest errors first and unfolded, the others folded.
 pub fn runs(views: &[RunView]) -> Markup {
     let changed = views
         .iter()
@@ -49,7 +52,7 @@ pub fn runs(views: &[RunView]) -> Markup {
     }
     html! {
         (legend(&entries))
-        @for (place, view) in by_error(views).into_iter().enumerate() { (run(view, place == 0)) }
+        @for (place, view) in by_error(views).into_iter().enumerate() { (run(view, place < OPEN_RUNS)) }
     }
 }
 
