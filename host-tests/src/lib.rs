@@ -1,1 +1,6 @@
-//! Tests across the crates; see `tests/`.
+//! Tests across the crates; see `tests/`. Here is what several of them need.
+
+pub mod emulator;
+pub mod recording;
+pub mod replay;
+pub mod trace;

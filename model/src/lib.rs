@@ -3,10 +3,14 @@
 
 pub mod campaign;
 pub mod effects;
+pub mod identification;
 pub mod input_error;
 pub mod model;
+pub mod model_file;
 pub mod naming;
+pub mod paper;
 pub mod plant;
+pub mod simulation;
 pub mod source_file;
 mod starting_points;
 pub mod toml_reader;

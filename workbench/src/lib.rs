@@ -2,5 +2,17 @@
 #![forbid(unsafe_code)]
 
 pub mod calibrate;
+pub mod cli;
 pub mod closed_loop;
+pub mod commands;
+pub mod comparison;
+pub mod demonstration;
+pub mod error;
+pub mod explanation;
+pub mod model_arg;
+pub mod output;
+pub mod paper;
+pub mod progress;
+pub mod report;
+pub mod text;
 pub mod valve_survey;

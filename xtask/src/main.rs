@@ -1,2 +1,60 @@
 //! Project tasks that need more than cargo.
-fn main() {}
+
+mod check;
+mod image;
+mod process;
+mod setup;
+mod size;
+mod test;
+mod toolchain;
+mod workspace;
+
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail};
+
+use toolchain::Way;
+
+const USAGE: &str = "\
+usage: cargo xtask <task> [--arm rustup|debian]
+
+  test    set up what is missing, build the ARM images, run every test, say how many passed
+  check   formatting, clippy and rustdoc, with warnings denied
+  ci      check, then test
+  arm     build the ARM images and say how large they are
+  setup   find or install the ARM toolchain and the emulator
+
+  --arm   take this ARM toolchain instead of the first that works:
+          rustup   the target thumbv7em-none-eabihf of the toolchain in use
+          debian   the packages rustc-web, cargo-web and rust-web-src";
+
+fn main() -> ExitCode {
+    match run(&std::env::args().skip(1).collect::<Vec<_>>()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("xtask: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &[String]) -> Result<()> {
+    let (task, options) = arguments.split_first().context(USAGE)?;
+    let way = match options {
+        [] => None,
+        [flag, name] if flag == "--arm" => Some(name.parse::<Way>()?),
+        _ => bail!("unknown options {options:?}\n{USAGE}"),
+    };
+    match task.as_str() {
+        "test" => test::run(way),
+        "check" => check::run(way),
+        "ci" => check::run(way).and_then(|()| test::run(way)),
+        "arm" => image::build_all(setup::toolchain(way)?).map(drop),
+        "setup" => setup::run(way),
+        "help" | "--help" | "-h" => {
+            println!("{USAGE}");
+            Ok(())
+        }
+        unknown => bail!("unknown task `{unknown}`\n{USAGE}"),
+    }
+}

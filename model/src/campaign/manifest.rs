@@ -128,7 +128,9 @@ fn runs(dir: &Path, top: &TomlTable<'_>) -> Result<Vec<Run>, CampaignError> {
                 "correct the name, or delete this [[run]] block",
             ));
         }
-        runs.push(run_log::read(&path, file, bench, oil_temperature_c)?);
+        let run = run_log::read(&path, file, bench, oil_temperature_c)?;
+        run_log::check_usable(&path, &run)?;
+        runs.push(run);
     }
     Ok(runs)
 }

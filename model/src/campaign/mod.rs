@@ -108,6 +108,15 @@ impl Run {
     /// Fewest samples that make a run.
     pub const FEWEST_SAMPLES: usize = 10;
 
+    /// Reads a log by itself, without a campaign around it; it may hold currents only.
+    ///
+    /// # Errors
+    /// Whatever is wrong first, by file, line and column.
+    pub fn read(path: &Path, bench: Bench, oil_temperature_c: f64) -> Result<Self, CampaignError> {
+        let file = path.file_name().unwrap_or_default().to_string_lossy();
+        run_log::read(path, &file, bench, oil_temperature_c)
+    }
+
     /// Samples of a channel, in its unit, NaN at a dropout; `None` if it was not measured.
     pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
         self.channels[channel.index()].as_deref()

@@ -31,7 +31,7 @@ const COLUMNS: [(&str, RangeInclusive<f64>); 8] = [
     (OIL_TEMPERATURE, -60.0..=250.0),
 ];
 
-/// Reads one log.
+/// Reads one log; it may hold currents only.
 pub fn read(
     path: &Path,
     file: &str,
@@ -48,13 +48,6 @@ pub fn read(
         let measurable = channel != Channel::RockerAngle || matches!(bench, Bench::Hitch { .. });
         table.measured(channel.key()).filter(|_| measurable)
     });
-    if channels.iter().all(Option::is_none) {
-        let known = Channel::ALL.map(Channel::key).join(", ");
-        return Err(source.error(
-            "has no usable channel",
-            format!("log at least one of {known}"),
-        ));
-    }
     Ok(Run {
         file: file.to_owned(),
         bench,
@@ -65,6 +58,19 @@ pub fn read(
         channels,
         oil_temperature_log_c: table.measured(OIL_TEMPERATURE),
     })
+}
+
+/// Refuses a run that has nothing to compare a model with.
+pub fn check_usable(path: &Path, run: &Run) -> Result<(), CampaignError> {
+    if run.channels.iter().any(Option::is_some) {
+        return Ok(());
+    }
+    let known = Channel::ALL.map(Channel::key).join(", ");
+    Err(InputError::of_file(
+        path,
+        "has no usable channel",
+        format!("log at least one of {known}"),
+    ))
 }
 
 /// The numbers of a log by column; NaN where a cell is empty.

@@ -167,6 +167,13 @@ impl Linkage {
         self.step_m * ((upper - 1) as f64 + share)
     }
 
+    /// Change of the rocker angle over piston travel, rad/m, at a rocker angle.
+    #[must_use]
+    pub fn angle_slope_rad_m(&self, rocker_angle_rad: f64) -> f64 {
+        let (node, _) = self.cell(self.piston_m(rocker_angle_rad));
+        (self.nodes[node + 1].rocker_angle_rad - self.nodes[node].rocker_angle_rad) / self.step_m
+    }
+
     /// Rocker angles at the two ends of the stroke, rad.
     #[must_use]
     pub fn swing_rad(&self) -> (f64, f64) {

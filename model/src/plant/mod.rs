@@ -166,7 +166,12 @@ impl<'m> Plant<'m> {
             };
             self.integrate(currents, dt_s / pieces as f64);
         }
-        self.refresh();
+        if !matches!(
+            (self.rig, self.model.constants().dynamics),
+            (Rig::Hitch(_), Dynamics::Steady)
+        ) {
+            self.refresh();
+        }
         let mut reading = self.truth();
         for sensor in &mut self.sites.sensors {
             sensor.advance(&mut reading, dt_s);
@@ -216,31 +221,32 @@ impl<'m> Plant<'m> {
     /// One integration step.
     fn integrate(&mut self, currents: Currents, dt_s: f64) {
         let from = self.input;
-        let middle = Currents {
-            lift_a: 0.5 * (from.lift_a + currents.lift_a),
-            lower_a: 0.5 * (from.lower_a + currents.lower_a),
-        };
-        let start = self.openings;
-        let half = self.open(middle, 0.5 * dt_s);
-        let end = self.open(currents, 0.5 * dt_s);
         self.input = currents;
-        let circuit = Circuit {
-            constants: self.model.constants(),
-            sites: &self.sites,
-        };
         match (self.rig, self.model.constants().dynamics) {
-            (Rig::Flow { .. }, _) => {}
+            (Rig::Flow { .. }, _) => {
+                self.open(currents, dt_s);
+            }
             (Rig::Hitch(rig), Dynamics::Steady) => {
+                let end = self.open(currents, dt_s);
                 self.state.piston_m =
-                    steady::step(self.model, &circuit, &rig, self.state, [start, end], dt_s);
+                    steady::step(self.model, &self.circuit(), &rig, self.state, end, dt_s);
+                self.balance(&rig);
             }
             (Rig::Hitch(rig), Dynamics::Dynamic) => {
+                let middle = Currents {
+                    lift_a: 0.5 * (from.lift_a + currents.lift_a),
+                    lower_a: 0.5 * (from.lower_a + currents.lower_a),
+                };
+                let start = self.openings;
+                let half = self.open(middle, 0.5 * dt_s);
+                let end = self.open(currents, 0.5 * dt_s);
+                let openings = [start, half, end];
                 self.state = dynamic::step(
                     self.model,
-                    &circuit,
+                    &self.circuit(),
                     &rig,
                     self.state,
-                    [start, half, end],
+                    openings,
                     dt_s,
                 );
             }
@@ -281,21 +287,25 @@ impl<'m> Plant<'m> {
         }
     }
 
-    /// Brings flows (and, in the steady plant, speed and pressure) up to the present state.
+    /// Brings the quasi-static speed, pressure and flows up to the present openings and travel.
+    fn balance(&mut self, rig: &HitchRig) {
+        let balance = steady::balance(
+            self.model,
+            &self.circuit(),
+            rig,
+            self.openings,
+            self.state.piston_m,
+        );
+        self.state.speed_m_s = balance.speed_m_s;
+        self.state.pressure_pa = balance.pressure_pa;
+        self.flows = balance.flows;
+    }
+
+    /// Brings the flows up to the present state.
     fn refresh(&mut self) {
-        if let (Rig::Hitch(rig), Dynamics::Steady) = (self.rig, self.model.constants().dynamics) {
-            let balance = steady::balance(
-                self.model,
-                &self.circuit(),
-                &rig,
-                self.openings,
-                self.state.piston_m,
-            );
-            self.state.speed_m_s = balance.speed_m_s;
-            self.state.pressure_pa = balance.pressure_pa;
-            self.flows = balance.flows;
-        } else {
-            self.flows = self.circuit().solve(self.openings, self.state.pressure_pa);
+        match (self.rig, self.model.constants().dynamics) {
+            (Rig::Hitch(rig), Dynamics::Steady) => self.balance(&rig),
+            _ => self.flows = self.circuit().solve(self.openings, self.state.pressure_pa),
         }
     }
 

@@ -2,6 +2,9 @@
 //!
 //! Stiff oil and no inertia: the piston's speed comes from the flow balance `A v = Q_lift - Q_lower - Q_leak`, the
 //! cylinder pressure from the static balance `p A = F_weight(x) + F_friction(v)`.
+//!
+//! The balance knows no contact force, so at a stop the piston stands while pressure and flow stay what they were
+//! (RIG.md defines it so); dead-heading the pump over the relief valve is the dynamic plant's business.
 
 use super::circuit::{Circuit, Flows, Openings};
 use super::{HitchRig, MechanicalState};
@@ -44,18 +47,11 @@ pub fn balance(
             flows,
         }
     };
-    let moving = if circuit.sites.friction.is_empty() || free.speed_m_s == 0.0 {
+    if circuit.sites.friction.is_empty() || free.speed_m_s == 0.0 {
         free
     } else {
         with_friction(circuit, openings, weight_n, area_m2, free.speed_m_s)
-    };
-    at_the_stops(
-        circuit,
-        openings,
-        constants.cylinder.stroke_m,
-        piston_m,
-        moving,
-    )
+    }
 }
 
 /// Friction slows the motion, so the speed lies between rest and the frictionless speed.
@@ -80,43 +76,19 @@ fn with_friction(
     at(super::root::rising(excess, low, high, 1e-9))
 }
 
-/// Against a stop the piston stands: the pump dead-heads over the relief valve, or the cylinder drains.
-fn at_the_stops(
-    circuit: &Circuit,
-    openings: Openings,
-    stroke_m: f64,
-    piston_m: f64,
-    moving: Balance,
-) -> Balance {
-    let pressure_pa = if piston_m >= stroke_m && moving.speed_m_s > 0.0 {
-        circuit.constants.relief_valve.set_pressure_pa
-            - circuit.constants.check_valve.cracking_pressure_pa
-    } else if piston_m <= 0.0 && moving.speed_m_s < 0.0 {
-        0.0
-    } else {
-        return moving;
-    };
-    let flows = circuit.solve(openings, pressure_pa);
-    Balance {
-        speed_m_s: 0.0,
-        pressure_pa,
-        flows,
-    }
-}
-
-/// One step of Heun's method with the openings at its two ends; returns the piston's travel afterwards, m.
+/// One step of Heun's method from a known balance to the openings at its end; returns the piston's travel there, m.
 #[must_use]
 pub fn step(
     model: &Model,
     circuit: &Circuit,
     rig: &HitchRig,
     state: MechanicalState,
-    ends: [Openings; 2],
+    end: Openings,
     dt_s: f64,
 ) -> f64 {
     let stroke_m = model.constants().cylinder.stroke_m;
-    let start = balance(model, circuit, rig, ends[0], state.piston_m);
-    let guess_m = (state.piston_m + dt_s * start.speed_m_s).clamp(0.0, stroke_m);
-    let end = balance(model, circuit, rig, ends[1], guess_m);
-    (state.piston_m + 0.5 * dt_s * (start.speed_m_s + end.speed_m_s)).clamp(0.0, stroke_m)
+    let within = |piston_m: f64| piston_m.clamp(0.0, stroke_m);
+    let guess_m = within(state.piston_m + dt_s * state.speed_m_s);
+    let there = balance(model, circuit, rig, end, guess_m);
+    within(state.piston_m + 0.5 * dt_s * (state.speed_m_s + there.speed_m_s))
 }

@@ -59,6 +59,15 @@ impl ValveCurve {
         })
     }
 
+    /// A valve that passes nothing at any current.
+    #[must_use]
+    pub fn shut() -> Self {
+        Self {
+            current_a: vec![0.0, 1.0],
+            flow_m3_s: vec![0.0, 0.0],
+        }
+    }
+
     /// Flow at the reference drop, m3/s, for a current in A.
     #[must_use]
     pub fn flow_m3_s(&self, current_a: f64) -> f64 {

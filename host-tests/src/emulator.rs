@@ -1,0 +1,155 @@
+//! Runs the controller's image on an emulated Cortex-M4.
+
+use std::env;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, bail, ensure};
+use hitch_firmware::control::signals::{INPUT_BYTES, OUTPUT_BYTES};
+
+/// Environment variable that names the image.
+pub const IMAGE_VARIABLE: &str = "HITCH_EMULATED_IMAGE";
+
+/// Far longer than any trace takes; an image that hangs must not hang the tests.
+const PATIENCE: Duration = Duration::from_secs(300);
+
+const TICK_BYTES: usize = size_of::<u32>();
+
+/// What the image did.
+pub struct EmulatedRun {
+    /// Image of the outputs of each step.
+    pub outputs: Vec<[u8; OUTPUT_BYTES]>,
+    /// Processor instructions that each step took.
+    pub instructions: Vec<u64>,
+    /// Stack used from reset to the end, the image's own frame and file handling included.
+    pub stack_bytes: u64,
+}
+
+/// The image that [`IMAGE_VARIABLE`] names.
+pub fn image() -> Result<PathBuf> {
+    let path = env::var_os(IMAGE_VARIABLE).map(PathBuf::from).with_context(|| {
+        format!("{IMAGE_VARIABLE} names no image: run `cargo xtask test`, which builds one and sets it")
+    })?;
+    ensure!(
+        path.is_file(),
+        "{IMAGE_VARIABLE}: there is no file {}; build it with `cargo xtask arm`",
+        path.display()
+    );
+    Ok(path)
+}
+
+/// Boots the image, lets it step through `inputs`, and collects what it wrote.
+pub fn run(image: &Path, inputs: &[[u8; INPUT_BYTES]]) -> Result<EmulatedRun> {
+    let console = boot(image, inputs.as_flattened())?;
+    let steps = said(&console.text, "steps")?;
+    let (outputs, instructions) = parse_records(&console.outputs)?;
+    ensure!(
+        steps == outputs.len() as u64,
+        "the image counted {steps} steps and wrote {}",
+        outputs.len()
+    );
+    Ok(EmulatedRun {
+        outputs,
+        instructions,
+        stack_bytes: said(&console.text, "stack_bytes")?,
+    })
+}
+
+/// What came back from the emulator.
+pub struct Console {
+    /// What the image said.
+    pub text: String,
+    /// What it wrote.
+    pub outputs: Vec<u8>,
+}
+
+/// Runs the emulator in a folder of its own, with `inputs` in the file that the image reads.
+pub fn boot(image: &Path, inputs: &[u8]) -> Result<Console> {
+    let folder = tempfile::tempdir()?;
+    fs::write(folder.path().join("inputs"), inputs)?;
+    let console = folder.path().join("console");
+    let mut emulator = Command::new("qemu-system-arm")
+        .args([
+            "-machine",
+            "mps2-an386",
+            "-display",
+            "none",
+            "-monitor",
+            "none",
+            "-serial",
+            "none",
+        ])
+        // An instruction takes 64 ns of emulated time whatever the host does: counts repeat exactly.
+        .args([
+            "-icount",
+            "shift=6",
+            "-semihosting-config",
+            "enable=on,target=native",
+            "-kernel",
+        ])
+        .arg(image)
+        .current_dir(folder.path())
+        .stdin(Stdio::null())
+        .stdout(File::create(&console)?)
+        .stderr(File::options().append(true).open(&console)?)
+        .spawn()
+        .context("can't start qemu-system-arm: `cargo xtask setup` installs it")?;
+    let status = wait(&mut emulator)?;
+    let text = fs::read_to_string(&console)?;
+    ensure!(
+        status.success(),
+        "the image ended with {status} and said: {text}"
+    );
+    Ok(Console {
+        text,
+        outputs: fs::read(folder.path().join("outputs"))?,
+    })
+}
+
+fn wait(emulator: &mut Child) -> Result<ExitStatus> {
+    let deadline = Instant::now() + PATIENCE;
+    while Instant::now() < deadline {
+        if let Some(status) = emulator.try_wait()? {
+            return Ok(status);
+        }
+        sleep(Duration::from_millis(5));
+    }
+    emulator.kill()?;
+    emulator.wait()?;
+    bail!("the image did not end within {PATIENCE:?}")
+}
+
+/// The number in the console's line `key=number`.
+fn said(console: &str, key: &str) -> Result<u64> {
+    let value = console
+        .lines()
+        .find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
+    let number = value.and_then(|value| value.trim().parse().ok());
+    number.with_context(|| format!("the image said no `{key}=...`, but: {console}"))
+}
+
+/// Outputs and instructions of each step.
+fn parse_records(bytes: &[u8]) -> Result<(Vec<[u8; OUTPUT_BYTES]>, Vec<u64>)> {
+    let (records, rest) = bytes.as_chunks::<{ OUTPUT_BYTES + TICK_BYTES }>();
+    ensure!(
+        rest.is_empty(),
+        "the image wrote {} bytes beyond the last whole record",
+        rest.len()
+    );
+    let split = |record: &[u8; OUTPUT_BYTES + TICK_BYTES]| {
+        let (outputs, ticks) = record
+            .split_first_chunk()
+            .context("a record holds outputs")?;
+        let ticks = u32::from_le_bytes(ticks.try_into()?);
+        // The timer runs at 25 MHz: 40 ns a tick against 64 ns an instruction.
+        Ok((*outputs, u64::from(ticks) * 5 / 8))
+    };
+    records
+        .iter()
+        .map(split)
+        .collect::<Result<Vec<_>>>()
+        .map(|pairs| pairs.into_iter().unzip())
+}

@@ -1,0 +1,271 @@
+//! Records what the controller sees while it moves a hitch through a busy, faulty minute.
+//!
+//! The plant is the dynamic one; its sensors have noise. The script holds moves both ways, reversals, both ends of the
+//! stroke, the button, and every way in which a signal can be missing or absurd.
+
+use hitch_firmware::control::signals::INPUT_BYTES;
+use hitch_firmware::control::units::{
+    MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt,
+};
+use hitch_firmware::control::{Inputs, Outputs};
+use hitch_model::Model;
+use hitch_model::plant::{Currents, HitchRig, Plant, Rig};
+
+use crate::replay;
+use crate::trace::Trace;
+
+/// A step of the controller, s.
+const STEP_S: f64 = 1e-3;
+/// How far a hand moves the lever in a step: 0.12 degree, so the whole range takes most of a second.
+const LEVER_STEP_MILLIDEGREE: i32 = 120;
+const OIL_TEMPERATURE_C: f64 = 40.0;
+/// Noise of the instruments: half the width of an even distribution.
+const ANGLE_NOISE_MILLIDEGREE: i32 = 80;
+const PRESSURE_NOISE_MILLIBAR: i32 = 150;
+
+/// What happens to the signals on their way from the hitch to the controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Fault {
+    None,
+    AngleLost,
+    AngleFrozen,
+    AngleJumps,
+    AngleExtreme,
+    LeverLost,
+    LeverExtreme,
+    PressuresLost,
+    PressuresExtreme,
+    AllLost,
+    AllExtreme,
+}
+
+/// A piece of the script.
+struct Scene {
+    steps: u32,
+    lever_degree: i32,
+    jog_degree_per_second: Option<i32>,
+    fault: Fault,
+}
+
+const fn scene(steps: u32, lever_degree: i32) -> Scene {
+    Scene {
+        steps,
+        lever_degree,
+        jog_degree_per_second: None,
+        fault: Fault::None,
+    }
+}
+
+impl Scene {
+    const fn jog(self, degree_per_second: i32) -> Self {
+        Self {
+            jog_degree_per_second: Some(degree_per_second),
+            ..self
+        }
+    }
+
+    const fn with(self, fault: Fault) -> Self {
+        Self { fault, ..self }
+    }
+}
+
+/// The hitch starts at 60 degrees, the lever elsewhere.
+const START_DEGREE: f64 = 60.0;
+const SCRIPT: &[Scene] = &[
+    // Locked until the lever comes through the hitch's position; then long and short moves.
+    scene(400, 120),
+    scene(1_800, 50),
+    scene(2_500, 120),
+    scene(1_000, 115),
+    scene(600, 60),
+    scene(1_500, 100),
+    scene(1_200, 101),
+    // Both ends of the stroke.
+    scene(2_500, 149),
+    scene(3_000, 31),
+    scene(1_800, 90),
+    // The button, and the lock behind it.
+    scene(1_200, 90).jog(12),
+    scene(1_000, 90).jog(-12),
+    scene(700, 90).jog(40),
+    scene(500, 90),
+    scene(800, 130),
+    scene(1_500, 70),
+    // Dropouts: bridged, then too long, during motion.
+    scene(300, 125),
+    scene(4, 125).with(Fault::AngleLost),
+    scene(300, 125),
+    scene(30, 125).with(Fault::AngleLost),
+    scene(900, 125),
+    scene(900, 60),
+    scene(900, 130),
+    // A frozen angle while lifting, and one that jumps while lowering.
+    scene(200, 60).with(Fault::AngleFrozen),
+    scene(900, 60),
+    scene(900, 130),
+    scene(900, 50),
+    scene(900, 130),
+    scene(100, 70),
+    scene(20, 70).with(Fault::AngleJumps),
+    scene(900, 130),
+    scene(900, 50),
+    scene(900, 120),
+    // Pressure sensors come and go: the controller has to do without them.
+    scene(900, 80).with(Fault::PressuresLost),
+    scene(700, 110).with(Fault::PressuresExtreme),
+    scene(700, 80),
+    // The lever is lost, then absurd.
+    scene(300, 110).with(Fault::LeverLost),
+    scene(900, 50),
+    scene(900, 130),
+    scene(50, 70).with(Fault::LeverExtreme),
+    scene(900, 50),
+    scene(900, 130),
+    // Everything at once.
+    scene(20, 90).with(Fault::AngleExtreme),
+    scene(800, 50),
+    scene(200, 90).with(Fault::AllExtreme),
+    scene(200, 90).with(Fault::AllLost),
+    scene(900, 50),
+    scene(900, 130),
+    scene(1_500, 90),
+];
+
+/// The inputs of every step of the script, with the controller's own outputs moving the plant.
+pub fn record() -> Trace {
+    let model = Model::dynamic();
+    let rig = HitchRig {
+        load_kg: 150.0,
+        start_angle_rad: START_DEGREE.to_radians(),
+    };
+    let mut plant = Plant::new(
+        &model,
+        Rig::Hitch(rig),
+        OIL_TEMPERATURE_C,
+        Currents::default(),
+    );
+    let mut controller = replay::controller();
+    let mut sensors = Sensors::default();
+    let mut trace = Trace::new();
+    for scene in SCRIPT {
+        for _ in 0..scene.steps {
+            let inputs = sensors.read(scene, &plant);
+            plant.step(currents(&controller.step(&inputs)), STEP_S);
+            trace.push(inputs.to_bytes());
+        }
+    }
+    trace
+}
+
+fn currents(outputs: &Outputs) -> Currents {
+    let ampere = |milliamp: i32| f64::from(milliamp) * 1e-3;
+    Currents {
+        lift_a: ampere(outputs.lift_current.0),
+        lower_a: ampere(outputs.lower_current.0),
+    }
+}
+
+/// Lever and instruments.
+struct Sensors {
+    lever: i32,
+    last: Inputs,
+    random: fastrand::Rng,
+}
+
+impl Default for Sensors {
+    fn default() -> Self {
+        Self {
+            lever: 90_000,
+            last: Inputs::default(),
+            random: fastrand::Rng::with_seed(1),
+        }
+    }
+}
+
+impl Sensors {
+    fn read(&mut self, scene: &Scene, plant: &Plant<'_>) -> Inputs {
+        let way = scene.lever_degree * 1_000 - self.lever;
+        self.lever += way.clamp(-LEVER_STEP_MILLIDEGREE, LEVER_STEP_MILLIDEGREE);
+        let reading = plant.reading();
+        let mut noisy =
+            |value: f64, noise: i32| (value * 1e3).round() as i32 + self.random.i32(-noise..=noise);
+        let healthy = Inputs {
+            lever: Some(MilliDegree(self.lever)),
+            jog: scene
+                .jog_degree_per_second
+                .map(|speed| MilliDegreePerSecond(speed * 1_000)),
+            rocker_angle: Some(MilliDegree(noisy(
+                reading.rocker_angle_deg,
+                ANGLE_NOISE_MILLIDEGREE,
+            ))),
+            cylinder_pressure: Some(MilliBar(noisy(
+                reading.cylinder_pressure_bar,
+                PRESSURE_NOISE_MILLIBAR,
+            ))),
+            pump_pressure: Some(MilliBar(noisy(
+                reading.pump_pressure_bar,
+                PRESSURE_NOISE_MILLIBAR,
+            ))),
+            oil_temperature: Some(MilliCelsius(noisy(OIL_TEMPERATURE_C, 0))),
+            supply: Some(MilliVolt(13_800)),
+        };
+        let inputs = self.spoil(scene.fault, healthy);
+        self.last = inputs;
+        inputs
+    }
+
+    fn spoil(&mut self, fault: Fault, healthy: Inputs) -> Inputs {
+        let extreme = if self.random.bool() {
+            i32::MAX
+        } else {
+            i32::MIN
+        };
+        match fault {
+            Fault::None => healthy,
+            Fault::AngleLost => Inputs {
+                rocker_angle: None,
+                ..healthy
+            },
+            Fault::AngleFrozen => Inputs {
+                rocker_angle: self.last.rocker_angle,
+                ..healthy
+            },
+            Fault::AngleJumps => Inputs {
+                rocker_angle: Some(MilliDegree(self.random.i32(45_000..135_000))),
+                ..healthy
+            },
+            Fault::AngleExtreme => Inputs {
+                rocker_angle: Some(MilliDegree(extreme)),
+                ..healthy
+            },
+            Fault::LeverLost => Inputs {
+                lever: None,
+                ..healthy
+            },
+            Fault::LeverExtreme => Inputs {
+                lever: Some(MilliDegree(extreme)),
+                ..healthy
+            },
+            Fault::PressuresLost => Inputs {
+                cylinder_pressure: None,
+                pump_pressure: None,
+                ..healthy
+            },
+            Fault::PressuresExtreme => Inputs {
+                cylinder_pressure: Some(MilliBar(extreme)),
+                pump_pressure: Some(MilliBar(extreme)),
+                ..healthy
+            },
+            Fault::AllLost => Inputs::default(),
+            Fault::AllExtreme => all_extreme(extreme),
+        }
+    }
+}
+
+/// Every signal valid, and as far out as it can be coded.
+fn all_extreme(extreme: i32) -> Inputs {
+    let mut record = [0; INPUT_BYTES];
+    record.as_chunks_mut::<4>().0.fill(extreme.to_le_bytes());
+    record[..4].copy_from_slice(&u32::MAX.to_le_bytes());
+    Inputs::from_bytes(&record)
+}

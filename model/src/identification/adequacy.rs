@@ -1,0 +1,109 @@
+//! Whether what a model leaves is noise, judged by its worst cell.
+//!
+//! A cell is a channel in a regime at a load. An error that is small on the whole can be large in one corner; a
+//! correct fit leaves every cell's mean square near one, a wrong or incomplete one does not.
+
+use std::collections::BTreeMap;
+
+use super::experiment::Experiment;
+use super::fit::Fit;
+use super::regime::Regime;
+use crate::campaign::{Bench, Channel};
+
+/// Fewest samples that make a cell.
+const FEWEST: usize = 30;
+
+/// A mean square above this is not noise, however small the cell's scatter.
+const TOLERATED: f64 = 1.35;
+
+/// Standard deviations that the largest of some hundred cells may lie above one.
+const DEVIATIONS: f64 = 4.5;
+
+/// By how much slow noise spreads a mean square: a fifth of the variance with a correlation time of 0.4 s gives 1.8.
+const SLOW_NOISE: f64 = 2.0;
+
+/// One cell of the residuals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cell {
+    /// Channel.
+    pub channel: Channel,
+    /// What the plant was doing.
+    pub regime: Regime,
+    /// Hitch or flow bench, with its load or port pressure.
+    pub bench: Bench,
+    /// Compared samples.
+    pub samples: usize,
+    /// Mean of the whitened residuals.
+    pub mean: f64,
+    /// Mean square of the whitened residuals.
+    pub mean_square: f64,
+}
+
+impl Cell {
+    /// Mean square that noise alone would hardly exceed.
+    #[must_use]
+    pub fn limit(&self) -> f64 {
+        let scatter = (2.0 * SLOW_NOISE / self.samples as f64).sqrt();
+        (1.0 + DEVIATIONS * scatter).max(TOLERATED)
+    }
+
+    /// How far the cell is beyond what noise explains; above one it is not noise.
+    #[must_use]
+    pub fn excess(&self) -> f64 {
+        (self.mean_square - 1.0) / (self.limit() - 1.0)
+    }
+}
+
+/// All cells of a fit that have enough samples, worst first.
+#[must_use]
+pub fn cells(experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
+    let mut sums: BTreeMap<(usize, Regime, u8, i64), (Bench, usize, f64, f64)> = BTreeMap::new();
+    for (run, residual) in experiment
+        .runs
+        .iter()
+        .zip(&fit.residuals)
+        .enumerate()
+        .map(|(i, (r, e))| ((i, r), e))
+    {
+        let (index, run) = run;
+        let weights = &fit.weights.runs[index];
+        let (kind, level) = match run.bench {
+            Bench::Hitch { load_kg } => (0, load_kg.round() as i64),
+            Bench::Flow { port_pressure_bar } => (1, port_pressure_bar.round() as i64),
+        };
+        for channel in 0..4 {
+            for sample in 0..run.len() {
+                let at = channel * run.len() + sample;
+                if weights.scale[at] > 0.0 {
+                    let key = (channel, run.regimes[sample], kind, level);
+                    let sum = sums.entry(key).or_insert((run.bench, 0, 0.0, 0.0));
+                    sum.1 += 1;
+                    sum.2 += residual[at];
+                    sum.3 += residual[at] * residual[at];
+                }
+            }
+        }
+    }
+    let mut cells: Vec<Cell> = sums
+        .into_iter()
+        .filter(|(_, (_, samples, _, _))| *samples >= FEWEST)
+        .map(
+            |((channel, regime, _, _), (bench, samples, sum, square))| Cell {
+                channel: Channel::ALL[channel],
+                regime,
+                bench,
+                samples,
+                mean: sum / samples as f64,
+                mean_square: square / samples as f64,
+            },
+        )
+        .collect();
+    cells.sort_by(|a, b| b.excess().total_cmp(&a.excess()));
+    cells
+}
+
+/// Whether every cell is noise.
+#[must_use]
+pub fn adequate(cells: &[Cell]) -> bool {
+    cells.first().is_none_or(|worst| worst.excess() <= 1.0)
+}

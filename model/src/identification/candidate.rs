@@ -1,0 +1,231 @@
+//! One effect of the catalogue tried on a model: started from finite secants, fitted, weighed.
+
+use rayon::prelude::*;
+
+use super::estimate::{Estimate, Shared};
+use super::evidence::{detectability, variance_inflation};
+use super::experiment::Experiment;
+use super::fit::{Fit, evaluate, refine, sketch};
+use super::frame::Frame;
+use super::jacobian::{Jacobian, residuals, square_sum};
+use crate::effects::{AddedEffect, Effect};
+use crate::model::Model;
+
+/// Sizes of the secants, in typical sizes: derivatives at zero miss a play or a gap, one size misses what saturates.
+const SIZES: [f64; 5] = [0.03, 0.2, 1.0, 2.5, 6.0];
+
+/// How many starts are sketched.
+const STARTS: usize = 2;
+
+/// An effect is fitted in full if its sketch is among the first so many,
+const ALWAYS_FITTED: usize = 2;
+/// or leaves at most this share of what the best sketch explains unexplained,
+const HOPELESS: f64 = 0.3;
+/// or is within this cost of the best.
+const HOPELESS_COST: f64 = 60.0;
+
+/// An effect fitted beside everything that was free already.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    /// Which effect.
+    pub effect: &'static dyn Effect,
+    /// The fitted model with it.
+    pub fit: Fit,
+    /// Fall of the cost in units of the residuals' variance and the effect's variance inflation: about chi-squared
+    /// with one degree of freedom where the effect is absent.
+    pub likelihood_ratio: f64,
+    /// Variance inflation of the effect.
+    pub inflation: f64,
+    /// Root mean square of its projected signature at the fitted size, in sigmas.
+    pub detectability: f64,
+    /// 95 % intervals of its parameters, in their units.
+    pub intervals: Vec<(f64, f64)>,
+}
+
+/// Tries effects on a fitted model: all roughly, then those that may be the best in full. Best first.
+#[must_use]
+pub fn try_effects(
+    experiment: &Experiment,
+    model: &Model,
+    base: &Fit,
+    effects: &[&'static dyn Effect],
+    progress: &(dyn Fn(&str) + Sync),
+) -> Vec<Candidate> {
+    let jacobian = Jacobian::new(experiment, model, &base.weights, &base.estimate);
+    let mut sketches: Vec<(f64, Estimate, &'static dyn Effect)> = effects
+        .par_iter()
+        .map(|&effect| {
+            let (cost, estimate) = starts(experiment, model, base, &jacobian, effect)
+                .into_iter()
+                .map(|start| sketch(experiment, model, &base.weights, start))
+                .min_by(|a, b| a.0.total_cmp(&b.0))
+                .unwrap_or_else(|| (base.cost, base.estimate.clone()));
+            (cost, estimate, effect)
+        })
+        .collect();
+    sketches.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let best = sketches.first().map_or(base.cost, |sketch| sketch.0);
+    let hopeless = best + (HOPELESS * (base.cost - best)).max(HOPELESS_COST);
+    let mut candidates: Vec<Candidate> = sketches
+        .into_par_iter()
+        .enumerate()
+        .map(|(rank, (cost, estimate, effect))| {
+            let fit = if rank < ALWAYS_FITTED || cost < hopeless {
+                refine(experiment, model, estimate)
+            } else {
+                evaluate(experiment, model, estimate)
+            };
+            progress(effect.id());
+            weigh(experiment, model, base, effect, fit)
+        })
+        .collect();
+    candidates.sort_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
+    candidates
+}
+
+/// The most promising sizes: those at which the least cost is left once all else has adapted.
+fn starts(
+    experiment: &Experiment,
+    model: &Model,
+    base: &Fit,
+    jacobian: &Jacobian,
+    effect: &'static dyn Effect,
+) -> Vec<Estimate> {
+    let frame = Frame::new(jacobian, &base.estimate, None);
+    let size = &effect.parameters()[0];
+    let signs: &[f64] = if size.low < size.null {
+        &[1.0, -1.0]
+    } else {
+        &[1.0]
+    };
+    let values = SIZES
+        .iter()
+        .flat_map(|s| {
+            signs
+                .iter()
+                .map(move |sign| size.null + sign * s * (size.typical - size.null))
+        })
+        .filter(|value| (size.low..=size.high).contains(value));
+    let mut ranked: Vec<(f64, Estimate)> = values
+        .map(|value| {
+            let mut estimate = base.estimate.clone();
+            let mut added = AddedEffect::typical(effect);
+            added.values[0] = value;
+            estimate.effects.push(added);
+            let residuals = residuals(experiment, model, &base.weights, &estimate);
+            (frame.cost_after(&residuals), estimate)
+        })
+        .collect();
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+    ranked
+        .into_iter()
+        .take(STARTS)
+        .map(|(_, estimate)| estimate)
+        .collect()
+}
+
+/// Weighs the last effect of a fitted model against the model without it.
+#[must_use]
+pub fn weigh(
+    experiment: &Experiment,
+    model: &Model,
+    base: &Fit,
+    effect: &'static dyn Effect,
+    fit: Fit,
+) -> Candidate {
+    let index = fit.estimate.effects.len() - 1;
+    let jacobian = Jacobian::new(experiment, model, &fit.weights, &fit.estimate);
+    let compared = fit.weights.count() as f64;
+    let variance = (square_sum(&fit.residuals) / compared).max(1.0);
+    let signatures: Vec<Signature> = (0..effect.parameters().len())
+        .map(|parameter| {
+            let shared = Shared::Effect(index, parameter);
+            Signature::new(experiment, &fit, &jacobian, shared)
+        })
+        .collect();
+    let inflation = signatures[0].inflation;
+    let intervals = signatures
+        .iter()
+        .map(|signature| {
+            let deviation = 1.96 * (variance * signature.inflation / signature.square).sqrt();
+            let half = deviation * fit.estimate.scale(signature.shared);
+            let value = fit.estimate.get(signature.shared);
+            (value - half, value + half)
+        })
+        .collect();
+    let size = fit.estimate.effects[index].values[0] - effect.parameters()[0].null;
+    Candidate {
+        effect,
+        likelihood_ratio: (base.cost - fit.cost) / (variance * inflation),
+        inflation,
+        detectability: signatures[0].detectability
+            * (size / fit.estimate.scale(signatures[0].shared)).abs(),
+        intervals,
+        fit,
+    }
+}
+
+/// A parameter's signature with all that is free besides it projected out.
+struct Signature {
+    shared: Shared,
+    square: f64,
+    inflation: f64,
+    detectability: f64,
+}
+
+impl Signature {
+    fn new(experiment: &Experiment, fit: &Fit, jacobian: &Jacobian, shared: Shared) -> Self {
+        let projected = projected(fit, jacobian, shared);
+        Self {
+            shared,
+            square: square_sum(&projected).max(1e-12),
+            inflation: variance_inflation(experiment, &fit.residuals, &projected),
+            detectability: detectability(&projected, fit.weights.count()),
+        }
+    }
+}
+
+/// A parameter's signature, a step of one scale, with all that is free besides it projected out.
+#[must_use]
+pub fn projected(fit: &Fit, jacobian: &Jacobian, shared: Shared) -> Vec<Vec<f64>> {
+    let column = jacobian.shared.iter().position(|&s| s == shared);
+    let Some(column) = column else {
+        return fit
+            .residuals
+            .iter()
+            .map(|run| vec![0.0; run.len()])
+            .collect();
+    };
+    let signature = jacobian
+        .runs
+        .iter()
+        .map(|run| run.shared[column].clone())
+        .collect();
+    Frame::new(jacobian, &fit.estimate, Some(column)).project(signature)
+}
+
+/// Projected signature of an effect at its typical size on a fitted model whose effect `left_out` is not free.
+#[must_use]
+pub fn secant(
+    experiment: &Experiment,
+    model: &Model,
+    fit: &Fit,
+    jacobian: &Jacobian,
+    effect: &'static dyn Effect,
+    left_out: usize,
+) -> Vec<Vec<f64>> {
+    let mut estimate = fit.estimate.clone();
+    estimate.effects.push(AddedEffect::typical(effect));
+    let moved = residuals(experiment, model, &fit.weights, &estimate);
+    let signature = fit
+        .residuals
+        .iter()
+        .zip(moved)
+        .map(|(base, moved)| base.iter().zip(moved).map(|(b, m)| b - m).collect())
+        .collect();
+    let column = jacobian
+        .shared
+        .iter()
+        .position(|&s| s == Shared::Effect(left_out, 0));
+    Frame::new(jacobian, &fit.estimate, column).project(signature)
+}

@@ -1,0 +1,311 @@
+//! A campaign made ready for comparing and fitting: cleaned currents, instrument noise, regimes, masks.
+
+use super::conditioning::Drive;
+use super::noise::from_second_differences;
+use super::regime::{Regime, regimes};
+use crate::campaign::{Bench, Campaign, Channel, Run};
+use crate::model::Model;
+use crate::plant::{Currents, HitchRig, Rig};
+use crate::simulation::{Trace, simulate};
+use crate::units;
+
+/// Smallest noise that is believed of each channel, in its unit, by [`Channel::index`]: a logger's last digit.
+const NOISE_FLOOR: [f64; 4] = [0.01, 0.01, 0.01, 0.005];
+
+/// Noise of a current if it is neither declared nor seen, A.
+const CURRENT_NOISE_FLOOR_A: f64 = 1e-4;
+
+/// First samples whose mean is the start angle's first guess.
+const START_SAMPLES: usize = 5;
+
+/// How far, relative to the declared port pressure, a flow bench may be off and still count as set up.
+const PORT_TOLERANCE: f64 = 0.05;
+
+/// What a run may be off by without any physics missing: fitted with a prior for every run.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Nuisance {
+    /// Error of the weighed load, relative.
+    pub load: f64,
+}
+
+/// Prior sigma of [`Nuisance::load`]: a load is weighed to about half a percent (DATA.md).
+pub const LOAD_PRIOR: f64 = 0.005;
+
+/// Prior sigma of the skew between logged currents and the other channels, s: a quarter of a sample.
+pub const SKEW_PRIOR_S: f64 = 0.005;
+
+/// One run, ready.
+#[derive(Debug, Clone)]
+pub struct ReadyRun {
+    /// File name, for reports.
+    pub file: String,
+    /// What the valve block was bolted to.
+    pub bench: Bench,
+    /// Oil temperature, degree Celsius.
+    pub oil_temperature_c: f64,
+    /// Cleaned currents.
+    pub drive: Drive,
+    /// Measured channels by [`Channel::index`], in their units; NaN where there is nothing to compare with.
+    pub measured: [Option<Vec<f64>>; 4],
+    /// What the plant was doing, a sample.
+    pub regimes: Vec<Regime>,
+    /// Rocker angle at the start, degree; NaN on a flow bench.
+    pub start_angle_deg: f64,
+    /// Samples left out because a flow bench had not reached its pressure yet.
+    pub settling_samples: usize,
+}
+
+/// A campaign, ready.
+#[derive(Debug, Clone)]
+pub struct Experiment {
+    /// Name of the campaign.
+    pub name: String,
+    /// The runs.
+    pub runs: Vec<ReadyRun>,
+    /// One sigma of each channel by [`Channel::index`], in its unit; NaN for a channel that no run has.
+    pub noise: [f64; 4],
+    /// One sigma of the logged currents, A.
+    pub current_noise: Currents,
+    /// Variance of the mean of the currents' noise over half a second, in that of white noise: one and up.
+    pub current_persistence: f64,
+}
+
+impl Experiment {
+    /// Makes a campaign ready; `model` says where the valves' thresholds and the ends of the stroke are.
+    #[must_use]
+    pub fn new(campaign: &Campaign, model: &Model) -> Self {
+        let noise = Channel::ALL.map(|channel| channel_noise(campaign, channel));
+        let sigma = current_noise(campaign);
+        let runs = campaign
+            .runs
+            .iter()
+            .map(|run| ReadyRun::new(run, model, sigma))
+            .collect();
+        Self {
+            name: campaign.name.clone(),
+            runs,
+            noise,
+            current_noise: sigma,
+            current_persistence: current_persistence(campaign, sigma),
+        }
+    }
+
+    /// Name and noise alone, to be filled with some of the runs.
+    #[must_use]
+    pub fn without_runs(&self) -> Self {
+        Self {
+            name: self.name.clone(),
+            runs: Vec::new(),
+            ..*self
+        }
+    }
+}
+
+impl ReadyRun {
+    fn new(run: &Run, model: &Model, sigma: Currents) -> Self {
+        let drive = Drive::new(
+            &run.time_s,
+            &run.lift_current_a,
+            &run.lower_current_a,
+            sigma,
+        );
+        let mut measured = run.channels.clone();
+        let settling_samples = settling_samples(run);
+        for values in measured.iter_mut().flatten() {
+            for value in values.iter_mut().take(settling_samples) {
+                *value = f64::NAN;
+            }
+        }
+        let regimes = regimes(model, &drive, run.channel(Channel::RockerAngle));
+        Self {
+            file: run.file.clone(),
+            bench: run.bench,
+            oil_temperature_c: run.oil_temperature_c,
+            drive,
+            start_angle_deg: start_angle_deg(run, model),
+            measured,
+            regimes,
+            settling_samples,
+        }
+    }
+
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.drive.time_s.len()
+    }
+
+    /// Whether the run has no samples; a read campaign has no such run.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.drive.time_s.is_empty()
+    }
+
+    /// Whether the run has a load and a start angle to be unsure of.
+    #[must_use]
+    pub fn on_hitch(&self) -> bool {
+        matches!(self.bench, Bench::Hitch { .. })
+    }
+
+    /// The rig as the nuisance has it.
+    #[must_use]
+    pub fn rig(&self, nuisance: Nuisance) -> Rig {
+        match self.bench {
+            Bench::Hitch { load_kg } => Rig::Hitch(HitchRig {
+                load_kg: load_kg * (1.0 + nuisance.load),
+                start_angle_rad: self.start_angle_deg.to_radians(),
+            }),
+            Bench::Flow { port_pressure_bar } => Rig::Flow {
+                port_pressure_pa: units::pa_from_bar(port_pressure_bar),
+            },
+        }
+    }
+
+    /// Simulates the run, with its currents `skew_s` later and moved by `spreads` of their sigmas.
+    #[must_use]
+    pub fn simulate(&self, model: &Model, nuisance: Nuisance, skew_s: f64, spreads: f64) -> Trace {
+        simulate(
+            model,
+            self.rig(nuisance),
+            self.oil_temperature_c,
+            &self.drive.time_s,
+            &self.drive.shifted(skew_s, spreads),
+        )
+    }
+}
+
+/// Samples at the start of a flow-bench run before the port has its declared pressure.
+fn settling_samples(run: &Run) -> usize {
+    let Bench::Flow { port_pressure_bar } = run.bench else {
+        return 0;
+    };
+    let Some(pressure) = run.channel(Channel::CylinderPressure) else {
+        return 0;
+    };
+    let tolerance_bar = (PORT_TOLERANCE * port_pressure_bar).max(1.0);
+    let settled = pressure
+        .iter()
+        .position(|bar| (bar - port_pressure_bar).abs() <= tolerance_bar);
+    // A bench that never gets there is a fault to be shown, not to be hidden.
+    settled
+        .filter(|&samples| samples <= run.time_s.len() / 4)
+        .unwrap_or(0)
+}
+
+fn start_angle_deg(run: &Run, model: &Model) -> f64 {
+    if matches!(run.bench, Bench::Flow { .. }) {
+        return f64::NAN;
+    }
+    let (low, high) = model.linkage().swing_rad();
+    let seen: Vec<f64> = run
+        .channel(Channel::RockerAngle)
+        .into_iter()
+        .flatten()
+        .copied()
+        .filter(|angle| angle.is_finite())
+        .take(START_SAMPLES)
+        .collect();
+    if seen.is_empty() {
+        return (0.5 * (low + high)).to_degrees();
+    }
+    seen.iter().sum::<f64>() / seen.len() as f64
+}
+
+/// Declared noise of a channel, else the median of what its runs show, else NaN.
+fn channel_noise(campaign: &Campaign, channel: Channel) -> f64 {
+    let records = || campaign.runs.iter().filter_map(|run| run.channel(channel));
+    if records().next().is_none() {
+        return f64::NAN;
+    }
+    let sigma = campaign
+        .noise
+        .of(channel)
+        .or_else(|| median(records().filter_map(from_second_differences).collect()))
+        .unwrap_or(0.0);
+    sigma.max(NOISE_FLOOR[channel.index()])
+}
+
+fn current_noise(campaign: &Campaign) -> Currents {
+    let estimate = |records: Vec<&[f64]>| {
+        median(
+            records
+                .into_iter()
+                .filter_map(from_second_differences)
+                .collect(),
+        )
+        .unwrap_or(0.0)
+    };
+    let lift_a = campaign.noise.lift_current_a.unwrap_or_else(|| {
+        estimate(
+            campaign
+                .runs
+                .iter()
+                .map(|run| run.lift_current_a.as_slice())
+                .collect(),
+        )
+    });
+    let lower_a = campaign.noise.lower_current_a.unwrap_or_else(|| {
+        estimate(
+            campaign
+                .runs
+                .iter()
+                .map(|run| run.lower_current_a.as_slice())
+                .collect(),
+        )
+    });
+    Currents {
+        lift_a: lift_a.max(CURRENT_NOISE_FLOOR_A),
+        lower_a: lower_a.max(CURRENT_NOISE_FLOOR_A),
+    }
+}
+
+/// How much more the mean of the currents' noise over half a second varies than that of white noise would.
+///
+/// Part of a logger's noise is slow; on plateaus of the current the variance of block means shows how much.
+fn current_persistence(campaign: &Campaign, sigma: Currents) -> f64 {
+    let block = ((0.5 * campaign.sample_rate_hz).round() as usize).max(2);
+    let (mut ratio_sum, mut blocks) = (0.0, 0.0);
+    for run in &campaign.runs {
+        for (record, sigma_a) in [
+            (&run.lift_current_a, sigma.lift_a),
+            (&run.lower_current_a, sigma.lower_a),
+        ] {
+            for plateau in plateaus(record, sigma_a, 4 * block) {
+                let mean = plateau.iter().sum::<f64>() / plateau.len() as f64;
+                for part in plateau.chunks_exact(block) {
+                    let part_mean = part.iter().sum::<f64>() / block as f64;
+                    ratio_sum += (part_mean - mean).powi(2) * block as f64 / (sigma_a * sigma_a);
+                    blocks += 1.0;
+                }
+                blocks -= 1.0;
+            }
+        }
+    }
+    if blocks < 20.0 {
+        return 1.0;
+    }
+    (ratio_sum / blocks).max(1.0)
+}
+
+/// Stretches of at least `shortest` samples over which a current stays put, well above its zero.
+fn plateaus(record: &[f64], sigma_a: f64, shortest: usize) -> Vec<&[f64]> {
+    let mut found = Vec::new();
+    let mut start = 0;
+    for end in 1..=record.len() {
+        let level = record[start..end.min(start + 10)].iter().sum::<f64>()
+            / (end.min(start + 10) - start) as f64;
+        let leaves = end == record.len() || (record[end] - level).abs() > 5.0 * sigma_a;
+        if leaves {
+            if end - start >= shortest && level > 20.0 * sigma_a {
+                found.push(&record[start..end]);
+            }
+            start = end;
+        }
+    }
+    found
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}

@@ -1,0 +1,352 @@
+//! Which physics is missing: effects are tried, the best is believed or not, and so on until nothing more is worth it.
+//!
+//! Belief rests on two things together: a likelihood ratio that counts autocorrelated residuals at their effective
+//! number, Bonferroni-corrected for all that was tried, and a smaller error in runs that were not used to fit. After
+//! every addition each earlier effect has to be needed still. At the end each named effect is tried against those
+//! whose signature is nearly its own: what fits as well is said to be indistinguishable.
+
+use rayon::prelude::*;
+
+use super::adequacy::{Cell, adequate, cells};
+use super::attribution::{Attribution, attribute};
+use super::candidate::{Candidate, projected, secant, try_effects, weigh};
+use super::estimate::{Estimate, Shared};
+use super::evidence::{log_odds, shares};
+use super::experiment::Experiment;
+use super::fit::{Fit, fit, refine};
+use super::holdout::held_out_error;
+use super::jacobian::{Jacobian, dot};
+use crate::effects::{CATALOGUE, Effect};
+use crate::model::Model;
+
+/// Likelihood ratio that an effect needs: chi-squared with one degree of freedom at 5 % over some fifty tries.
+pub const BELIEVED: f64 = 11.0;
+
+/// Smallest detectability that is believed, sigmas. Channels a few milliseconds out of step, a logger's rounding and
+/// the plant's discretisation make signatures of up to 0.045 on campaigns with nothing hidden.
+const VISIBLE: f64 = 0.06;
+
+/// Likelihood ratio by which an alternative has to be worse to be told apart.
+pub const TOLD_APART: f64 = 10.0;
+
+/// Cosine above which two projected signatures are worth a fit of the one in place of the other.
+const ALIKE: f64 = 0.8;
+
+/// Most effects that are added.
+const MOST_STEPS: usize = 5;
+
+/// What an explanation comes to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The model was adequate as it was.
+    NothingMissing,
+    /// With the named effects the model is adequate.
+    Explained,
+    /// Adequate, but some named effect could be another.
+    Ambiguous,
+    /// Something is left that is not in the catalogue.
+    Unexplained,
+    /// The campaign cannot decide.
+    NotEnoughData,
+}
+
+impl Verdict {
+    /// Name in reports and JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NothingMissing => "nothing-missing",
+            Self::Explained => "explained",
+            Self::Ambiguous => "ambiguous",
+            Self::Unexplained => "unexplained",
+            Self::NotEnoughData => "not-enough-data",
+        }
+    }
+}
+
+/// An effect that was added.
+#[derive(Debug, Clone)]
+pub struct Step {
+    /// Which effect.
+    pub effect: &'static dyn Effect,
+    /// Error of the model before the step.
+    pub error_before: f64,
+    /// Error with the effect.
+    pub error_after: f64,
+    /// Held-out error of the model before the step.
+    pub held_out_before: f64,
+    /// Held-out error with the effect.
+    pub held_out_after: f64,
+    /// Probability of this effect among all that were tried, nothing among them.
+    pub confidence: f64,
+    /// Root mean square of its projected signature, in sigmas.
+    pub detectability: f64,
+    /// Effects that would explain the campaign as well in its place.
+    pub indistinguishable: Vec<&'static dyn Effect>,
+    /// Values of its parameters in the final model.
+    pub values: Vec<f64>,
+    /// Their 95 % intervals.
+    pub intervals: Vec<(f64, f64)>,
+    /// The model after the step, as it was fitted then.
+    pub fit: Fit,
+}
+
+/// The way from a model to one that explains a campaign.
+#[derive(Debug, Clone)]
+pub struct Explanation {
+    /// The model before, with its nuisances fitted.
+    pub before: Fit,
+    /// The model after the last step.
+    pub after: Fit,
+    /// The steps in order.
+    pub steps: Vec<Step>,
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// Cells of the residuals after the last step, worst first.
+    pub cells: Vec<Cell>,
+    /// What the rest goes with; empty if the rest is noise.
+    pub rest: Attribution,
+}
+
+/// A campaign and a model with every effect of the catalogue tried once.
+#[derive(Debug, Clone)]
+pub struct Diagnosis {
+    /// The model as it is, with its nuisances fitted.
+    pub base: Fit,
+    /// Effects tried, the most likely first.
+    pub candidates: Vec<Candidate>,
+    /// Probability of each candidate among all and none.
+    pub confidences: Vec<f64>,
+}
+
+/// Told of what is being done, for progress displays.
+pub type Progress<'a> = &'a (dyn Fn(&str) + Sync);
+
+/// Fits what is free in a model as it is.
+#[must_use]
+pub fn fit_base(experiment: &Experiment, model: &Model) -> Fit {
+    fit(
+        experiment,
+        model,
+        Estimate::new(experiment, model.effects.clone()),
+    )
+}
+
+/// Tries every effect that the model does not have.
+#[must_use]
+pub fn diagnose(
+    experiment: &Experiment,
+    model: &Model,
+    base: Fit,
+    progress: Progress,
+) -> Diagnosis {
+    let absent: Vec<&'static dyn Effect> = CATALOGUE
+        .iter()
+        .copied()
+        .filter(|effect| !has(&base.estimate, *effect))
+        .collect();
+    let candidates = try_effects(experiment, model, &base, &absent, progress);
+    let mut odds: Vec<f64> = candidates.iter().map(candidate_log_odds).collect();
+    odds.push(0.0);
+    let mut confidences = shares(&odds);
+    confidences.pop();
+    Diagnosis {
+        base,
+        candidates,
+        confidences,
+    }
+}
+
+fn has(estimate: &Estimate, effect: &dyn Effect) -> bool {
+    estimate
+        .effects
+        .iter()
+        .any(|added| added.effect.id() == effect.id())
+}
+
+fn candidate_log_odds(candidate: &Candidate) -> f64 {
+    let effective = candidate.fit.weights.count() as f64 / candidate.inflation;
+    log_odds(
+        candidate.likelihood_ratio,
+        candidate.effect.parameters().len(),
+        effective,
+    )
+}
+
+/// Names, adds and repeats until nothing more is worth adding.
+#[must_use]
+pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Explanation {
+    let given = model.effects.len();
+    let before = fit_base(experiment, model);
+    let mut present = before.clone();
+    let mut present_held_out = f64::NAN;
+    let mut steps: Vec<Step> = Vec::new();
+    while steps.len() < MOST_STEPS {
+        let diagnosis = diagnose(experiment, model, present.clone(), progress);
+        let Some(best) = diagnosis.candidates.first() else {
+            break;
+        };
+        if best.likelihood_ratio < BELIEVED || best.detectability < VISIBLE {
+            break;
+        }
+        if present_held_out.is_nan() {
+            present_held_out = held_out_error(experiment, model, &present.estimate);
+        }
+        let held_out_after = held_out_error(experiment, model, &best.fit.estimate);
+        if held_out_after >= present_held_out {
+            break;
+        }
+        steps.push(Step {
+            effect: best.effect,
+            error_before: present.error(),
+            error_after: best.fit.error(),
+            held_out_before: present_held_out,
+            held_out_after,
+            confidence: diagnosis.confidences[0],
+            detectability: best.detectability,
+            indistinguishable: Vec::new(),
+            values: Vec::new(),
+            intervals: Vec::new(),
+            fit: best.fit.clone(),
+        });
+        present = best.fit.clone();
+        present_held_out = held_out_after;
+        if let Some(lighter) = drop_needless(experiment, model, &present, given, &mut steps) {
+            present_held_out = held_out_error(experiment, model, &lighter.estimate);
+            present = lighter;
+        }
+    }
+    finish(experiment, model, before, present, steps)
+}
+
+/// Drops the first step whose effect the later ones have made needless; returns the fit without it.
+fn drop_needless(
+    experiment: &Experiment,
+    model: &Model,
+    present: &Fit,
+    given: usize,
+    steps: &mut Vec<Step>,
+) -> Option<Fit> {
+    for index in 0..steps.len().saturating_sub(1) {
+        let without = refine(experiment, model, without(&present.estimate, given + index));
+        let whole = with_last(experiment, model, present, given + index);
+        let weighed = weigh(experiment, model, &without, steps[index].effect, whole);
+        if weighed.likelihood_ratio < BELIEVED {
+            steps.remove(index);
+            return Some(without);
+        }
+    }
+    None
+}
+
+fn without(estimate: &Estimate, effect: usize) -> Estimate {
+    let mut lighter = estimate.clone();
+    lighter.effects.remove(effect);
+    lighter
+}
+
+/// The same fit with one effect moved to the end of the list.
+fn with_last(experiment: &Experiment, model: &Model, fit: &Fit, effect: usize) -> Fit {
+    let mut estimate = fit.estimate.clone();
+    let moved = estimate.effects.remove(effect);
+    estimate.effects.push(moved);
+    super::fit::evaluate(experiment, model, estimate)
+}
+
+fn finish(
+    experiment: &Experiment,
+    model: &Model,
+    before: Fit,
+    after: Fit,
+    mut steps: Vec<Step>,
+) -> Explanation {
+    let given = model.effects.len();
+    for (index, step) in steps.iter_mut().enumerate() {
+        let effect = given + index;
+        let whole = with_last(experiment, model, &after, effect);
+        let base = super::fit::evaluate(experiment, model, without(&after.estimate, effect));
+        let weighed = weigh(experiment, model, &base, step.effect, whole.clone());
+        step.values = whole
+            .estimate
+            .effects
+            .last()
+            .map(|e| e.values.clone())
+            .unwrap_or_default();
+        step.intervals = weighed.intervals;
+        step.detectability = weighed.detectability;
+        step.indistinguishable = alternatives(experiment, model, &whole, weighed.inflation);
+    }
+    let cells = cells(experiment, &after);
+    let verdict = verdict(&cells, &steps, &after);
+    let rest = if verdict == Verdict::Unexplained {
+        attribute(experiment, &before, &after)
+    } else {
+        Attribution::default()
+    };
+    Explanation {
+        before,
+        after,
+        steps,
+        verdict,
+        cells,
+        rest,
+    }
+}
+
+/// Effects that fit as well in place of the last one.
+fn alternatives(
+    experiment: &Experiment,
+    model: &Model,
+    whole: &Fit,
+    inflation: f64,
+) -> Vec<&'static dyn Effect> {
+    let last = whole.estimate.effects.len() - 1;
+    let jacobian = Jacobian::new(experiment, model, &whole.weights, &whole.estimate);
+    let own = projected(whole, &jacobian, Shared::Effect(last, 0));
+    let base_estimate = without(&whole.estimate, last);
+    let variance =
+        (super::jacobian::square_sum(&whole.residuals) / whole.weights.count() as f64).max(1.0);
+    let alike: Vec<&'static dyn Effect> = CATALOGUE
+        .par_iter()
+        .copied()
+        .filter(|effect| !has(&whole.estimate, *effect))
+        .filter(|effect| {
+            let other = secant(experiment, model, whole, &jacobian, *effect, last);
+            cosine(&own, &other) > ALIKE
+        })
+        .collect();
+    if alike.is_empty() {
+        return alike;
+    }
+    let base = refine(experiment, model, base_estimate);
+    try_effects(experiment, model, &base, &alike, &|_| {})
+        .into_iter()
+        .filter(|swapped| (swapped.fit.cost - whole.cost) / (variance * inflation) < TOLD_APART)
+        .map(|swapped| swapped.effect)
+        .collect()
+}
+
+fn cosine(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    let product =
+        |x: &[Vec<f64>], y: &[Vec<f64>]| -> f64 { x.iter().zip(y).map(|(x, y)| dot(x, y)).sum() };
+    let lengths = (product(a, a) * product(b, b)).sqrt();
+    if lengths > 0.0 {
+        (product(a, b) / lengths).abs()
+    } else {
+        0.0
+    }
+}
+
+fn verdict(cells: &[Cell], steps: &[Step], after: &Fit) -> Verdict {
+    if after.weights.count() == 0 {
+        Verdict::NotEnoughData
+    } else if !adequate(cells) {
+        Verdict::Unexplained
+    } else if steps.is_empty() {
+        Verdict::NothingMissing
+    } else if steps.iter().any(|step| !step.indistinguishable.is_empty()) {
+        Verdict::Ambiguous
+    } else {
+        Verdict::Explained
+    }
+}

@@ -1,0 +1,247 @@
+//! Bounded Levenberg-Marquardt over effects, skew and each run's nuisances, output error throughout.
+//!
+//! The general crates have no bounds and know nothing of the arrow shape of the normal equations (see
+//! [`super::jacobian`]), which makes a fit of 45 parameters cost as much as one of five. Simulated trajectories are
+//! compared, never one-step predictions: those feed the measured pressure back and hide leakage and friction.
+
+use super::estimate::Estimate;
+use super::experiment::Experiment;
+use super::jacobian::{Jacobian, SlowColumns, load_steps, residuals, square_sum};
+use super::residual::Weights;
+use crate::model::Model;
+
+/// Coarse weights of the channels (pump pressure, cylinder pressure, flow, angle): ringing pressures make valleys
+/// that a fit falls into, so the first round looks at flow and angle.
+const COARSE: [f64; 4] = [0.04, 0.04, 0.15, 0.25];
+
+/// Iterations of the coarse and of each fine round.
+const COARSE_ITERATIONS: usize = 4;
+const FINE_ITERATIONS: usize = 12;
+
+/// Iterations after which the columns of skew and loads, which hardly change, are computed anew.
+const SLOW_EVERY: usize = 4;
+
+/// Relative fall of the cost that is still worth an iteration.
+const WORTHWHILE: f64 = 1e-5;
+
+/// A fitted model.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// The values found.
+    pub estimate: Estimate,
+    /// Weights under these values.
+    pub weights: Weights,
+    /// Whitened residuals of each run, channel after channel.
+    pub residuals: Vec<Vec<f64>>,
+    /// Sum of squares plus the cost of the priors.
+    pub cost: f64,
+}
+
+/// Sums of squares of whitened residuals and numbers of samples, by channel.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ErrorSums {
+    squares: [f64; 4],
+    counts: [usize; 4],
+}
+
+impl ErrorSums {
+    /// Sums over all runs of a fit.
+    #[must_use]
+    pub fn of(fit: &Fit) -> Self {
+        let mut sums = Self {
+            squares: [0.0; 4],
+            counts: fit.weights.counts,
+        };
+        for run in &fit.residuals {
+            let samples = run.len() / 4;
+            for (channel, square) in sums.squares.iter_mut().enumerate() {
+                let part = &run[channel * samples..(channel + 1) * samples];
+                *square += part.iter().map(|e| e * e).sum::<f64>();
+            }
+        }
+        sums
+    }
+
+    /// Sums of sums.
+    #[must_use]
+    pub fn total(parts: &[Self]) -> Self {
+        let mut total = Self::default();
+        for part in parts {
+            for channel in 0..4 {
+                total.squares[channel] += part.squares[channel];
+                total.counts[channel] += part.counts[channel];
+            }
+        }
+        total
+    }
+
+    /// Root mean square of one channel; NaN without samples.
+    #[must_use]
+    pub fn channel(&self, channel: usize) -> f64 {
+        (self.squares[channel] / self.counts[channel] as f64).sqrt()
+    }
+
+    /// Error over all channels that have samples, each weighted alike; NaN without any.
+    #[must_use]
+    pub fn error(&self) -> f64 {
+        let compared: Vec<f64> = (0..4)
+            .filter(|&channel| self.counts[channel] > 0)
+            .map(|channel| self.channel(channel).powi(2))
+            .collect();
+        (compared.iter().sum::<f64>() / compared.len() as f64).sqrt()
+    }
+}
+
+impl Fit {
+    /// Error of one channel by its index: root mean square of its whitened residuals; NaN without samples.
+    #[must_use]
+    pub fn channel_error(&self, channel: usize) -> f64 {
+        ErrorSums::of(self).channel(channel)
+    }
+
+    /// Error over all channels, each weighted alike.
+    #[must_use]
+    pub fn error(&self) -> f64 {
+        ErrorSums::of(self).error()
+    }
+}
+
+/// Evaluates an estimate without changing it.
+#[must_use]
+pub fn evaluate(experiment: &Experiment, model: &Model, estimate: Estimate) -> Fit {
+    let weights = Weights::new(experiment, model, &estimate);
+    let residuals = residuals(experiment, model, &weights, &estimate);
+    let cost = square_sum(&residuals) + estimate.prior_cost();
+    Fit {
+        estimate,
+        weights,
+        residuals,
+        cost,
+    }
+}
+
+/// Fits everything that is free, from `start`, coarse to fine.
+#[must_use]
+pub fn fit(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
+    let coarse = Weights::new(experiment, model, &start).scaled(COARSE);
+    let estimate = descend(experiment, model, &coarse, start, COARSE_ITERATIONS);
+    refine(experiment, model, estimate)
+}
+
+/// Fits roughly, under given weights, to see whether an effect deserves a full fit; returns the cost as well.
+#[must_use]
+pub fn sketch(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    start: Estimate,
+) -> (f64, Estimate) {
+    let coarse = weights.clone().scaled(COARSE);
+    let estimate = descend(experiment, model, &coarse, start, COARSE_ITERATIONS);
+    let estimate = descend(experiment, model, weights, estimate, COARSE_ITERATIONS);
+    let cost = Point::new(experiment, model, weights, estimate.clone()).cost;
+    (cost, estimate)
+}
+
+/// Fits from a start that is already near.
+#[must_use]
+pub fn refine(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
+    let weights = Weights::new(experiment, model, &start);
+    let estimate = descend(experiment, model, &weights, start, FINE_ITERATIONS);
+    // The weights belong to the values: once more with those of the values found.
+    let weights = Weights::new(experiment, model, &estimate);
+    let estimate = descend(experiment, model, &weights, estimate, FINE_ITERATIONS);
+    evaluate(experiment, model, estimate)
+}
+
+/// One round from a start that is all but there already.
+#[must_use]
+pub fn refine_once(experiment: &Experiment, model: &Model, start: Estimate) -> Estimate {
+    let weights = Weights::new(experiment, model, &start);
+    descend(experiment, model, &weights, start, COARSE_ITERATIONS)
+}
+
+/// Fits only each run's load error: two Gauss-Newton steps, it is all but linear.
+#[must_use]
+pub fn fit_loads(experiment: &Experiment, model: &Model, start: Estimate) -> Estimate {
+    let mut estimate = start;
+    for _ in 0..2 {
+        let weights = Weights::new(experiment, model, &estimate);
+        let steps = load_steps(experiment, model, &weights, &estimate);
+        for (run, step) in steps.into_iter().enumerate() {
+            estimate.set_load(run, estimate.load(run) + step);
+        }
+    }
+    estimate
+}
+
+fn descend(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    start: Estimate,
+    iterations: usize,
+) -> Estimate {
+    let mut point = Point::new(experiment, model, weights, start);
+    let mut damping = 1e-3;
+    let mut slow = None;
+    for iteration in 0..iterations {
+        if iteration % SLOW_EVERY == 0 {
+            slow = None;
+        }
+        let columns = slow.take().unwrap_or_else(|| {
+            SlowColumns::new(
+                experiment,
+                model,
+                weights,
+                &point.estimate,
+                &point.residuals,
+            )
+        });
+        let jacobian = Jacobian::with_slow_columns(
+            experiment,
+            model,
+            weights,
+            &point.estimate,
+            &point.residuals,
+            &columns,
+        );
+        slow = Some(columns);
+        let before = point.cost;
+        for _ in 0..6 {
+            let trial = jacobian
+                .step(&point.estimate, damping)
+                .map(|step| point.estimate.moved(&jacobian.shared, &step))
+                .map(|trial| Point::new(experiment, model, weights, trial));
+            if let Some(better) = trial.filter(|trial| trial.cost < point.cost) {
+                point = better;
+                damping = (damping * 0.1).max(1e-9);
+                break;
+            }
+            damping *= 10.0;
+        }
+        if before - point.cost <= WORTHWHILE * before {
+            break;
+        }
+    }
+    point.estimate
+}
+
+/// An estimate with what it leaves.
+struct Point {
+    estimate: Estimate,
+    residuals: Vec<Vec<f64>>,
+    cost: f64,
+}
+
+impl Point {
+    fn new(experiment: &Experiment, model: &Model, weights: &Weights, estimate: Estimate) -> Self {
+        let residuals = residuals(experiment, model, weights, &estimate);
+        let cost = square_sum(&residuals) + estimate.prior_cost();
+        Self {
+            estimate,
+            residuals,
+            cost,
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! What the parameters that are already free could absorb, taken out of residuals and signatures.
+
+use nalgebra::{Cholesky, DVector, Dyn};
+
+use super::estimate::Estimate;
+use super::jacobian::{Jacobian, dot, subtract};
+
+/// Columns of a Jacobian that are free, ready to be projected out, with every run's load.
+pub struct Frame<'a> {
+    jacobian: &'a Jacobian,
+    kept: Vec<usize>,
+    normal: Option<Cholesky<f64, Dyn>>,
+    /// Pull of the priors of the shared parameters.
+    priors: DVector<f64>,
+}
+
+impl<'a> Frame<'a> {
+    /// All shared parameters of the Jacobian but `left_out`.
+    #[must_use]
+    pub fn new(jacobian: &'a Jacobian, estimate: &Estimate, left_out: Option<usize>) -> Self {
+        let (mut matrix, right) = jacobian.reduced(estimate);
+        for k in 0..matrix.nrows() {
+            matrix[(k, k)] += 1e-9;
+        }
+        let kept: Vec<usize> = (0..jacobian.shared.len())
+            .filter(|&column| Some(column) != left_out)
+            .collect();
+        let normal = matrix.select_rows(&kept).select_columns(&kept).cholesky();
+        let mut frame = Self {
+            jacobian,
+            normal,
+            priors: DVector::zeros(kept.len()),
+            kept,
+        };
+        let own: Vec<Vec<f64>> = jacobian
+            .runs
+            .iter()
+            .map(|run| run.residual.clone())
+            .collect();
+        frame.priors = right.select_rows(&frame.kept) - frame.pull(&own);
+        frame
+    }
+
+    /// Removes from a signature what the free parameters and the loads can imitate.
+    #[must_use]
+    pub fn project(&self, mut signature: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        let shares = self.shares(&self.coupling(&signature));
+        for (run, column) in self.jacobian.runs.iter().zip(&mut signature) {
+            for (&kept, &share) in self.kept.iter().zip(shares.iter()) {
+                subtract(column, share, &run.shared[kept]);
+            }
+            if let Some(load) = &run.load {
+                let share = dot(load, column) / (dot(load, load) + 1.0);
+                subtract(column, share, load);
+            }
+        }
+        signature
+    }
+
+    /// Cost that would be left if the free parameters took from `residuals` what they can, to first order; `residuals`
+    /// belong to the frame's estimate with something else changed.
+    #[must_use]
+    pub fn cost_after(&self, residuals: &[Vec<f64>]) -> f64 {
+        let mut cost = 0.0;
+        for (run, residual) in self.jacobian.runs.iter().zip(residuals) {
+            cost += dot(residual, residual);
+            if let Some((_, square, load_pull)) = run.load_pull(residual) {
+                cost += run.load_value * run.load_value - load_pull * load_pull / square;
+            }
+        }
+        let pull = self.pull(residuals) + &self.priors;
+        cost - pull.dot(&self.shares(&pull))
+    }
+
+    /// Pull of residuals on the free parameters, the loads eliminated.
+    fn pull(&self, residuals: &[Vec<f64>]) -> DVector<f64> {
+        let mut pull = DVector::zeros(self.kept.len());
+        for (run, residual) in self.jacobian.runs.iter().zip(residuals) {
+            let through_load = run
+                .load_pull(residual)
+                .map(|(load, square, load_pull)| (load, load_pull / square));
+            for (row, &kept) in self.kept.iter().enumerate() {
+                pull[row] += dot(&run.shared[kept], residual);
+                if let Some((load, share)) = through_load {
+                    pull[row] -= share * dot(&run.shared[kept], load);
+                }
+            }
+        }
+        pull
+    }
+
+    /// Products of a signature with the free columns, the loads eliminated.
+    fn coupling(&self, signature: &[Vec<f64>]) -> DVector<f64> {
+        let mut coupling = DVector::zeros(self.kept.len());
+        for (run, column) in self.jacobian.runs.iter().zip(signature) {
+            let through_load = run.load.as_ref().map(|load| {
+                let share = dot(load, column) / (dot(load, load) + 1.0);
+                (load, share)
+            });
+            for (row, &kept) in self.kept.iter().enumerate() {
+                coupling[row] += dot(&run.shared[kept], column);
+                if let Some((load, share)) = through_load {
+                    coupling[row] -= share * dot(&run.shared[kept], load);
+                }
+            }
+        }
+        coupling
+    }
+
+    fn shares(&self, pull: &DVector<f64>) -> DVector<f64> {
+        self.normal
+            .as_ref()
+            .map_or_else(|| DVector::zeros(pull.len()), |normal| normal.solve(pull))
+    }
+}

@@ -1,0 +1,308 @@
+//! Sensitivities of the whitened residuals, and the normal equations with each run's own nuisance eliminated.
+//!
+//! Every run has a load error of its own, so the normal equations have an arrow's shape: shared parameters couple all
+//! runs, a run's nuisance only itself. Eliminating the latter run by run (Schur complement) leaves a system as small
+//! as the number of shared parameters, and columns from which a nuisance can no longer take anything: the projected
+//! signatures.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::estimate::{Estimate, Shared};
+use super::experiment::Experiment;
+use super::residual::Weights;
+use crate::model::Model;
+
+/// Step of a difference quotient, in scales of the parameter.
+const STEP: f64 = 0.02;
+
+/// One run's residuals and their sensitivities to steps of one scale.
+#[derive(Debug, Clone)]
+pub struct RunJacobian {
+    /// Whitened residuals.
+    pub residual: Vec<f64>,
+    /// A column for each shared parameter: change of the simulation, whitened.
+    pub shared: Vec<Vec<f64>>,
+    /// Column of the load error; `None` on a flow bench.
+    pub load: Option<Vec<f64>>,
+    /// Present load error, in prior sigmas.
+    pub load_value: f64,
+}
+
+/// Sensitivities of all runs.
+#[derive(Debug, Clone)]
+pub struct Jacobian {
+    /// A block for each run.
+    pub runs: Vec<RunJacobian>,
+    /// The shared parameters, in the order of the columns.
+    pub shared: Vec<Shared>,
+}
+
+/// A Gauss-Newton step with Levenberg-Marquardt damping.
+#[derive(Debug, Clone)]
+pub struct Step {
+    /// Steps of the shared parameters, in their scales.
+    pub shared: DVector<f64>,
+    /// Steps of each run's load error, in prior sigmas.
+    pub loads: Vec<f64>,
+}
+
+/// Whitened residuals of every run under an estimate.
+#[must_use]
+pub fn residuals(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    estimate: &Estimate,
+) -> Vec<Vec<f64>> {
+    let model = model.with_effects(estimate.effects.clone());
+    (0..experiment.runs.len())
+        .into_par_iter()
+        .map(|index| {
+            let run = &experiment.runs[index];
+            let trace = run.simulate(&model, estimate.nuisances[index], estimate.skew_s, 0.0);
+            weights.runs[index].whiten(run, &trace)
+        })
+        .collect()
+}
+
+/// Sum of squares of residuals.
+#[must_use]
+pub fn square_sum(residuals: &[Vec<f64>]) -> f64 {
+    residuals.iter().flatten().map(|e| e * e).sum()
+}
+
+/// Dot product.
+#[must_use]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Takes `share` times `part` from `column`.
+pub fn subtract(column: &mut [f64], share: f64, part: &[f64]) {
+    for (value, part) in column.iter_mut().zip(part) {
+        *value -= share * part;
+    }
+}
+
+/// Change of the simulation a step of one scale: the residual falls where the simulation rises.
+fn quotient(base: &[Vec<f64>], moved: Vec<Vec<f64>>, step: f64) -> Vec<Vec<f64>> {
+    moved
+        .into_iter()
+        .zip(base)
+        .map(|(mut moved, base)| {
+            for (m, b) in moved.iter_mut().zip(base) {
+                *m = (b - *m) / step;
+            }
+            moved
+        })
+        .collect()
+}
+
+/// Sensitivity of all runs to one shared parameter.
+fn shared_column(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    estimate: &Estimate,
+    base: &[Vec<f64>],
+    parameter: Shared,
+) -> Vec<Vec<f64>> {
+    let (value, scale) = (estimate.get(parameter), estimate.scale(parameter));
+    let step = STEP * value.abs().max(scale);
+    let mut moved = estimate.clone();
+    moved.set(parameter, value + step);
+    if moved.get(parameter) == value {
+        moved.set(parameter, value - step);
+    }
+    let taken = (moved.get(parameter) - value) / scale;
+    quotient(base, residuals(experiment, model, weights, &moved), taken)
+}
+
+/// Sensitivity of all runs to their load errors, a step of one prior sigma.
+fn load_columns(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    estimate: &Estimate,
+    base: &[Vec<f64>],
+) -> Vec<Vec<f64>> {
+    let mut moved = estimate.clone();
+    for run in 0..experiment.runs.len() {
+        moved.set_load(run, estimate.load(run) + 1.0);
+    }
+    quotient(base, residuals(experiment, model, weights, &moved), 1.0)
+}
+
+/// Columns that hardly change from one iteration to the next: of the skew and of the loads.
+#[derive(Debug, Clone)]
+pub struct SlowColumns {
+    skew: Vec<Vec<f64>>,
+    loads: Vec<Vec<f64>>,
+}
+
+impl SlowColumns {
+    /// Difference quotients at `estimate`, which leaves the residuals `base`.
+    #[must_use]
+    pub fn new(
+        experiment: &Experiment,
+        model: &Model,
+        weights: &Weights,
+        estimate: &Estimate,
+        base: &[Vec<f64>],
+    ) -> Self {
+        let (skew, loads) = rayon::join(
+            || shared_column(experiment, model, weights, estimate, base, Shared::Skew),
+            || load_columns(experiment, model, weights, estimate, base),
+        );
+        Self { skew, loads }
+    }
+}
+
+/// Steps of the load errors alone, in prior sigmas, that fit best with all else held.
+#[must_use]
+pub fn load_steps(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    estimate: &Estimate,
+) -> Vec<f64> {
+    let base = residuals(experiment, model, weights, estimate);
+    let loads = load_columns(experiment, model, weights, estimate, &base);
+    base.iter()
+        .zip(&loads)
+        .enumerate()
+        .map(|(run, (residual, load))| {
+            if experiment.runs[run].on_hitch() {
+                (dot(load, residual) - estimate.load(run)) / (dot(load, load) + 1.0)
+            } else {
+                0.0
+            }
+        })
+        .collect()
+}
+
+impl Jacobian {
+    /// Difference quotients at `estimate`, for all shared parameters and each run's load.
+    #[must_use]
+    pub fn new(
+        experiment: &Experiment,
+        model: &Model,
+        weights: &Weights,
+        estimate: &Estimate,
+    ) -> Self {
+        let base = residuals(experiment, model, weights, estimate);
+        let slow = SlowColumns::new(experiment, model, weights, estimate, &base);
+        Self::with_slow_columns(experiment, model, weights, estimate, &base, &slow)
+    }
+
+    /// The same with the residuals known, and the columns of skew and loads taken from a point nearby.
+    #[must_use]
+    pub fn with_slow_columns(
+        experiment: &Experiment,
+        model: &Model,
+        weights: &Weights,
+        estimate: &Estimate,
+        base: &[Vec<f64>],
+        slow: &SlowColumns,
+    ) -> Self {
+        let shared = estimate.shared();
+        let columns: Vec<Vec<Vec<f64>>> = shared
+            .par_iter()
+            .filter(|&&parameter| parameter != Shared::Skew)
+            .map(|&parameter| shared_column(experiment, model, weights, estimate, base, parameter))
+            .collect();
+        let runs = (0..base.len())
+            .map(|run| RunJacobian {
+                residual: base[run].clone(),
+                shared: columns
+                    .iter()
+                    .map(|column| column[run].clone())
+                    .chain([slow.skew[run].clone()])
+                    .collect(),
+                load: experiment.runs[run]
+                    .on_hitch()
+                    .then(|| slow.loads[run].clone()),
+                load_value: estimate.load(run),
+            })
+            .collect();
+        Self { runs, shared }
+    }
+
+    /// Normal matrix and right-hand side of the shared parameters with the runs' loads eliminated.
+    #[must_use]
+    pub fn reduced(&self, estimate: &Estimate) -> (DMatrix<f64>, DVector<f64>) {
+        let size = self.shared.len();
+        let mut matrix = DMatrix::zeros(size, size);
+        let mut right = DVector::zeros(size);
+        for run in &self.runs {
+            let (m, r) = run.reduced(size);
+            matrix += m;
+            right += r;
+        }
+        for (column, &shared) in self.shared.iter().enumerate() {
+            if shared == Shared::Skew {
+                matrix[(column, column)] += 1.0;
+                right[column] -= estimate.get(shared) / estimate.scale(shared);
+            }
+        }
+        (matrix, right)
+    }
+
+    /// The step that the damped normal equations give; `None` if they are singular.
+    #[must_use]
+    pub fn step(&self, estimate: &Estimate, damping: f64) -> Option<Step> {
+        let (mut matrix, right) = self.reduced(estimate);
+        for k in 0..matrix.nrows() {
+            matrix[(k, k)] = matrix[(k, k)] * (1.0 + damping) + 1e-9;
+        }
+        let shared = matrix.cholesky()?.solve(&right);
+        let loads = self
+            .runs
+            .iter()
+            .map(|run| {
+                let mut left = run.residual.clone();
+                for (column, &step) in run.shared.iter().zip(shared.iter()) {
+                    subtract(&mut left, step, column);
+                }
+                run.load_step(&left)
+            })
+            .collect();
+        Some(Step { shared, loads })
+    }
+}
+
+impl RunJacobian {
+    /// The load's column, its squared length with the unit prior, and its pull on `residual`, prior included.
+    #[must_use]
+    pub fn load_pull(&self, residual: &[f64]) -> Option<(&[f64], f64, f64)> {
+        let load = self.load.as_deref()?;
+        let pull = dot(load, residual) - self.load_value;
+        Some((load, dot(load, load) + 1.0, pull))
+    }
+
+    /// Step of the load error, in prior sigmas, that fits `residual` best.
+    fn load_step(&self, residual: &[f64]) -> f64 {
+        self.load_pull(residual)
+            .map_or(0.0, |(_, square, pull)| pull / square)
+    }
+
+    fn reduced(&self, size: usize) -> (DMatrix<f64>, DVector<f64>) {
+        let mut matrix = DMatrix::zeros(size, size);
+        for i in 0..size {
+            for j in 0..=i {
+                let value = dot(&self.shared[i], &self.shared[j]);
+                matrix[(i, j)] = value;
+                matrix[(j, i)] = value;
+            }
+        }
+        let pulls = self.shared.iter().map(|c| dot(c, &self.residual));
+        let mut right = DVector::from_iterator(size, pulls);
+        if let Some((load, square, pull)) = self.load_pull(&self.residual) {
+            let coupling = DVector::from_iterator(size, self.shared.iter().map(|c| dot(c, load)));
+            matrix -= &coupling * coupling.transpose() / square;
+            right -= &coupling * (pull / square);
+        }
+        (matrix, right)
+    }
+}

@@ -1,0 +1,17 @@
+//! From a campaign to what the model lacks.
+
+pub mod adequacy;
+pub mod attribution;
+pub mod candidate;
+pub mod conditioning;
+pub mod estimate;
+pub mod evidence;
+pub mod experiment;
+pub mod explain;
+pub mod fit;
+pub mod frame;
+pub mod holdout;
+pub mod jacobian;
+pub mod noise;
+pub mod regime;
+pub mod residual;

@@ -1,0 +1,243 @@
+//! Measured minus simulated, in units of what the instruments and the logged current leave unknown.
+//!
+//! * Pressures and flow: the yardstick of a sample is the instrument's noise and, in quadrature, what the uncertainty
+//!   of the logged current makes of the simulated value. Samples that a log cannot say at all (a pressure edge that
+//!   may lie on either side of the sample) are left out.
+//! * The angle integrates the flow, so errors of the logged current add up in it as a random walk whose steps are
+//!   known. A scalar Kalman filter takes that walk out: what is compared is each sample with its prediction from the
+//!   model and the samples before (Kristensen, Madsen & Jorgensen 2004, with the diffusion known instead of fitted).
+//!   Drift without flow through a valve is not excused. The start angle's uncertainty is the walk's first step.
+//!
+//! Both are linear in the difference, so sensitivities go through the same filter.
+
+use rayon::prelude::*;
+
+use super::estimate::Estimate;
+use super::experiment::{Experiment, ReadyRun};
+use crate::campaign::Channel;
+use crate::model::Model;
+use crate::plant::Currents;
+use crate::simulation::Trace;
+use crate::units;
+
+/// A sample whose yardstick grows beyond this many times the instrument's noise is left out.
+const UNKNOWABLE: f64 = 8.0;
+
+/// How one run's differences are whitened.
+#[derive(Debug, Clone)]
+pub struct RunWeights {
+    /// One over the yardstick of every sample, channel after channel; zero where nothing can be compared.
+    pub scale: Vec<f64>,
+    /// Gain of the angle's filter at every sample.
+    gain: Vec<f64>,
+}
+
+/// How all differences are whitened.
+#[derive(Debug, Clone)]
+pub struct Weights {
+    /// One entry a run.
+    pub runs: Vec<RunWeights>,
+    /// Compared samples of each channel by [`Channel::index`].
+    pub counts: [usize; 4],
+}
+
+impl Weights {
+    /// Weights as they are under `estimate`.
+    #[must_use]
+    pub fn new(experiment: &Experiment, model: &Model, estimate: &Estimate) -> Self {
+        let model = model.with_effects(estimate.effects.clone());
+        let runs: Vec<RunWeights> = (0..experiment.runs.len())
+            .into_par_iter()
+            .map(|index| RunWeights::new(experiment, index, &model, estimate))
+            .collect();
+        let mut counts = [0; 4];
+        for run in &runs {
+            for (channel, count) in counts.iter_mut().enumerate() {
+                *count += run.compared(channel);
+            }
+        }
+        Self { runs, counts }
+    }
+
+    /// Number of compared samples.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.counts.iter().sum()
+    }
+
+    /// The same weights with each channel's multiplied by a factor.
+    #[must_use]
+    pub fn scaled(mut self, factors: [f64; 4]) -> Self {
+        for run in &mut self.runs {
+            let samples = run.gain.len();
+            for (channel, factor) in factors.into_iter().enumerate() {
+                for scale in &mut run.scale[channel * samples..(channel + 1) * samples] {
+                    *scale *= factor;
+                }
+            }
+        }
+        self
+    }
+}
+
+impl RunWeights {
+    fn new(experiment: &Experiment, index: usize, model: &Model, estimate: &Estimate) -> Self {
+        let run = &experiment.runs[index];
+        let nuisance = estimate.nuisances[index];
+        let [below, above] =
+            [-1.0, 1.0].map(|spreads| run.simulate(model, nuisance, estimate.skew_s, spreads));
+        let mut weights = Self {
+            scale: vec![0.0; 4 * run.len()],
+            gain: vec![0.0; run.len()],
+        };
+        let edges = pump_edges(run, model, [&below, &above]);
+        for channel in [
+            Channel::PumpPressure,
+            Channel::CylinderPressure,
+            Channel::Flow,
+        ] {
+            let Some(measured) = &run.measured[channel.index()] else {
+                continue;
+            };
+            let sigma = experiment.noise[channel.index()];
+            let offset = channel.index() * run.len();
+            for (sample, value) in measured.iter().enumerate() {
+                let spread =
+                    0.5 * (above.channel(channel)[sample] - below.channel(channel)[sample]);
+                let yardstick = sigma.hypot(spread);
+                let known = yardstick <= UNKNOWABLE * sigma
+                    && !(channel == Channel::PumpPressure && edges[sample]);
+                if value.is_finite() && known {
+                    weights.scale[offset + sample] = 1.0 / yardstick;
+                }
+            }
+        }
+        weights.filter_angle(experiment, run, model, [&below, &above]);
+        weights
+    }
+
+    /// Gains of the scalar filter for the random walk that the noise of the currents makes of the angle.
+    fn filter_angle(
+        &mut self,
+        experiment: &Experiment,
+        run: &ReadyRun,
+        model: &Model,
+        traces: [&Trace; 2],
+    ) {
+        let Some(measured) = &run.measured[Channel::RockerAngle.index()] else {
+            return;
+        };
+        let noise = experiment.noise[Channel::RockerAngle.index()].powi(2);
+        let offset = Channel::RockerAngle.index() * run.len();
+        let steps = walk_steps_deg(experiment, run, model, traces);
+        // The first guess of the start angle is good to one sigma of the sensor.
+        let mut variance = noise;
+        for (sample, value) in measured.iter().enumerate() {
+            variance += steps[sample] * steps[sample];
+            if value.is_finite() {
+                let total = variance + noise;
+                self.scale[offset + sample] = 1.0 / total.sqrt();
+                self.gain[sample] = variance / total;
+                variance *= noise / total;
+            }
+        }
+    }
+
+    /// Number of compared samples of a channel.
+    #[must_use]
+    pub fn compared(&self, channel: usize) -> usize {
+        let samples = self.gain.len();
+        let part = &self.scale[channel * samples..(channel + 1) * samples];
+        part.iter().filter(|&&scale| scale > 0.0).count()
+    }
+
+    /// Whitened residuals of the run, channel after channel; zero where nothing is compared.
+    #[must_use]
+    pub fn whiten(&self, run: &ReadyRun, trace: &Trace) -> Vec<f64> {
+        let mut residual = vec![0.0; 4 * run.len()];
+        for channel in Channel::ALL {
+            let Some(measured) = &run.measured[channel.index()] else {
+                continue;
+            };
+            let offset = channel.index() * run.len();
+            let simulated = trace.channel(channel);
+            let mut walk = 0.0;
+            for sample in 0..run.len() {
+                let scale = self.scale[offset + sample];
+                if scale > 0.0 {
+                    let surprise = measured[sample] - simulated[sample] - walk;
+                    residual[offset + sample] = surprise * scale;
+                    if channel == Channel::RockerAngle {
+                        walk += self.gain[sample] * surprise;
+                    }
+                }
+            }
+        }
+        residual
+    }
+}
+
+/// Samples within one sample of a jump of the pump pressure between idle and load pressure: a log whose channels may
+/// be a sample out of step cannot say on which side of the jump they lie.
+fn pump_edges(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
+    let idle_bar = units::bar_from_pa(model.constants().compensator.idle_pressure_pa());
+    let last = run.len() - 1;
+    let lifts = |sample: usize| {
+        traces.map(|trace| (trace.channel(Channel::PumpPressure)[sample] - idle_bar).abs() > 1e-6)
+    };
+    (0..=last)
+        .map(|sample| {
+            let around = lifts(sample.saturating_sub(1))
+                .into_iter()
+                .chain(lifts(sample))
+                .chain(lifts((sample + 1).min(last)));
+            let on = around.filter(|&lifting| lifting).count();
+            on != 0 && on != 6
+        })
+        .collect()
+}
+
+/// Standard deviation of the angle's walk from one sample to the next, degree.
+fn walk_steps_deg(
+    experiment: &Experiment,
+    run: &ReadyRun,
+    model: &Model,
+    [below, above]: [&Trace; 2],
+) -> Vec<f64> {
+    let area_m2 = model.constants().cylinder.area_m2();
+    let linkage = model.linkage();
+    let time_s = &run.drive.time_s;
+    let noise = experiment.current_noise;
+    (0..run.len())
+        .map(|sample| {
+            if sample == 0 {
+                return 0.0;
+            }
+            let flow_lpm = 0.5
+                * (above.channel(Channel::Flow)[sample] - below.channel(Channel::Flow)[sample])
+                    .abs();
+            if flow_lpm == 0.0 {
+                return 0.0;
+            }
+            let share = active(noise, run.drive.currents[sample])
+                / active(run.drive.spread[sample], run.drive.currents[sample]);
+            let angle_deg = above.channel(Channel::RockerAngle)[sample];
+            let travel_m = units::m3_s_from_lpm(flow_lpm * share) / area_m2
+                * (time_s[sample] - time_s[sample - 1]);
+            travel_m
+                * linkage
+                    .angle_slope_rad_m(angle_deg.to_radians())
+                    .to_degrees()
+        })
+        .map(|step| step * experiment.current_persistence.sqrt())
+        .collect()
+}
+
+/// The value that belongs to the valve that is on.
+fn active(values: Currents, currents: Currents) -> f64 {
+    if currents.lift_a > currents.lower_a {
+        values.lift_a
+    } else {
+        values.lower_a
+    }
+}

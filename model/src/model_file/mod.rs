@@ -1,0 +1,80 @@
+//! Model files: every constant of a plant and its added effects, as TOML.
+//!
+//! ```toml
+//! format = 1
+//! name = "rebuilt"
+//! base = "nominal"            # optional: what is not written below is as in this one
+//! dynamics = "steady"         # or "dynamic"
+//!
+//! [relief_valve]
+//! set_pressure_bar = 154
+//!
+//! [[effect]]
+//! id = "lower-threshold-shift"
+//! shift_a = 0.199
+//! ```
+//!
+//! Keys end in their unit. Without `base`, every constant has to be there; a file that the program writes is complete.
+mod constants;
+mod read;
+mod round_trip;
+mod write;
+
+use std::path::Path;
+
+use crate::input_error::InputError;
+use crate::model::Model;
+use crate::source_file::SourceFile;
+
+/// The only format there is.
+const FORMAT: f64 = 1.0;
+
+impl Model {
+    /// Reads a model file.
+    ///
+    /// # Errors
+    /// What is wrong with it, by line and column.
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        Self::from_source(&SourceFile::read(path)?)
+    }
+
+    /// Reads a model file whose text is at hand.
+    ///
+    /// # Errors
+    /// What is wrong with it, by line and column.
+    pub fn from_source(source: &SourceFile) -> Result<Self, InputError> {
+        read::model(source)
+    }
+
+    /// A starting point by its name (`nominal`, `dynamic`), or else the model of the file of that name.
+    ///
+    /// # Errors
+    /// What is wrong with the file, by line and column.
+    pub fn named(name: &str) -> Result<Self, InputError> {
+        if let Some(model) = starting_point(name) {
+            return Ok(model);
+        }
+        let path = Path::new(name);
+        if path.exists() {
+            return Self::read(path);
+        }
+        Err(InputError::of_file(
+            path,
+            "no such model",
+            "give nominal, dynamic or the name of a model file",
+        ))
+    }
+
+    /// The model as the text of a model file. To read it gives the same model, bit for bit.
+    pub fn to_toml(&self) -> String {
+        write::model(self)
+    }
+}
+
+fn starting_point(name: &str) -> Option<Model> {
+    match name {
+        "nominal" => Some(Model::nominal()),
+        "dynamic" => Some(Model::dynamic()),
+        _ => None,
+    }
+}

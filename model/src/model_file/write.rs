@@ -1,0 +1,69 @@
+//! Writes a model file.
+use std::fmt::Write as _;
+
+use super::constants::{CONSTANTS, CURRENT, CURVES, Curve, FLOW, TABLES};
+use super::round_trip::decimal;
+use crate::effects::AddedEffect;
+use crate::model::{Constants, Dynamics, Model};
+use crate::units::M3_S_PER_LPM;
+
+/// The text of a complete model file. (Writing to a string cannot fail, so the results are dropped.)
+pub fn model(model: &Model) -> String {
+    let mut constants = model.constants().clone();
+    let dynamics = match constants.dynamics {
+        Dynamics::Steady => "steady",
+        Dynamics::Dynamic => "dynamic",
+    };
+    let mut text = format!(
+        "format = 1\nname = {}\ndynamics = \"{dynamics}\"\n",
+        quoted(&model.name)
+    );
+    for table in TABLES {
+        let _ = write!(text, "\n[{table}]\n");
+        for constant in CONSTANTS.iter().filter(|constant| constant.table == table) {
+            let value = decimal(*(constant.place)(&mut constants), constant.unit);
+            let _ = writeln!(text, "{} = {value}", constant.key);
+        }
+        for curve in CURVES.iter().filter(|curve| curve.table == table) {
+            write_curve(&mut text, curve, &mut constants);
+        }
+    }
+    for effect in &model.effects {
+        write_effect(&mut text, effect);
+    }
+    text
+}
+
+fn write_curve(text: &mut String, curve: &Curve, constants: &mut Constants) {
+    let curve = &(curve.place)(constants).curve;
+    let _ = writeln!(text, "{CURRENT} = {}", list(curve.currents_a(), 1.0));
+    let _ = writeln!(text, "{FLOW} = {}", list(curve.flows_m3_s(), M3_S_PER_LPM));
+}
+
+fn list(values: &[f64], unit: f64) -> String {
+    let items: Vec<String> = values.iter().map(|value| decimal(*value, unit)).collect();
+    format!("[{}]", items.join(", "))
+}
+
+fn write_effect(text: &mut String, added: &AddedEffect) {
+    let _ = write!(text, "\n[[effect]]\nid = \"{}\"\n", added.effect.id());
+    for (parameter, value) in added.effect.parameters().iter().zip(&added.values) {
+        let _ = writeln!(text, "{} = {}", parameter.key, decimal(*value, 1.0));
+    }
+}
+
+/// A TOML basic string.
+fn quoted(text: &str) -> String {
+    let mut quoted = String::from('"');
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => {
+                let _ = write!(quoted, "\\u{:04X}", u32::from(c));
+            }
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
+}

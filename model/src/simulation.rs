@@ -1,0 +1,50 @@
+//! A whole run at once: the plant driven by logged currents.
+
+use crate::campaign::Channel;
+use crate::model::Model;
+use crate::plant::{Currents, Plant, Rig};
+
+/// What the instruments would have shown over a run, by [`Channel::index`], in the channels' units.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Trace {
+    /// One value a sample for each channel.
+    pub channels: [Vec<f64>; 4],
+}
+
+impl Trace {
+    /// Simulated samples of one channel.
+    #[must_use]
+    pub fn channel(&self, channel: Channel) -> &[f64] {
+        &self.channels[channel.index()]
+    }
+}
+
+/// Simulates a run that starts at rest under its first currents.
+///
+/// `time_s` must rise; the currents run linearly from one sample to the next.
+#[must_use]
+pub fn simulate(
+    model: &Model,
+    rig: Rig,
+    oil_temperature_c: f64,
+    time_s: &[f64],
+    currents: &[Currents],
+) -> Trace {
+    let mut trace = Trace {
+        channels: std::array::from_fn(|_| Vec::with_capacity(time_s.len())),
+    };
+    let Some(first) = currents.first() else {
+        return trace;
+    };
+    let mut plant = Plant::new(model, rig, oil_temperature_c, *first);
+    for (sample, currents) in currents.iter().enumerate() {
+        if sample > 0 {
+            plant.step(*currents, time_s[sample] - time_s[sample - 1]);
+        }
+        let reading = plant.reading();
+        for channel in Channel::ALL {
+            trace.channels[channel.index()].push(reading.channel(channel));
+        }
+    }
+    trace
+}

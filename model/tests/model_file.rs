@@ -1,0 +1,188 @@
+//! Model files: what is written reads back bit for bit, and what is wrong is told by line and column.
+use std::fs;
+
+use hitch_model::Model;
+use hitch_model::effects::{AddedEffect, CATALOGUE};
+use proptest::prelude::*;
+use tempfile::TempDir;
+
+fn read(text: &[u8]) -> Result<Model, String> {
+    let dir = TempDir::new().unwrap();
+    let path = dir.path().join("m.toml");
+    fs::write(&path, text).unwrap();
+    Model::read(&path).map_err(|error| {
+        error
+            .to_string()
+            .replace(&format!("{}/", dir.path().display()), "")
+    })
+}
+
+fn fault(text: &str) -> String {
+    read(text.as_bytes())
+        .err()
+        .unwrap_or_else(|| "no fault".to_owned())
+}
+
+#[test]
+fn every_model_comes_back_bit_for_bit() {
+    let effects: Vec<AddedEffect> = CATALOGUE
+        .iter()
+        .map(|effect| AddedEffect::typical(*effect))
+        .collect();
+    for model in [
+        Model::nominal(),
+        Model::dynamic(),
+        Model::dynamic().with_effects(effects),
+    ] {
+        let back = read(model.to_toml().as_bytes()).unwrap();
+        assert_eq!(back.constants(), model.constants());
+        assert_eq!(back.name, model.name);
+        let values = |model: &Model| -> Vec<(&str, Vec<f64>)> {
+            model
+                .effects
+                .iter()
+                .map(|added| (added.effect.id(), added.values.clone()))
+                .collect()
+        };
+        assert_eq!(values(&back), values(&model));
+    }
+}
+
+#[test]
+fn a_base_fills_in_what_is_not_written() {
+    let model =
+        read(b"format = 1\nbase = \"dynamic\"\n[relief_valve]\nset_pressure_bar = 180\n").unwrap();
+    assert_eq!(model.name, "m");
+    assert_eq!(model.constants().relief_valve.set_pressure_pa, 180e5);
+    assert_eq!(
+        model.constants().cylinder,
+        Model::dynamic().constants().cylinder
+    );
+}
+
+#[test]
+fn faults_have_a_line_and_a_column() {
+    let whole = Model::nominal().to_toml();
+    let with = |good: &str, bad: &str| {
+        assert!(whole.contains(good), "{good}");
+        fault(&whole.replacen(good, bad, 1))
+    };
+    let effect = |block: &str| {
+        fault(&format!(
+            "format = 1\nbase = \"nominal\"\n[[effect]]\n{block}\n"
+        ))
+    };
+    let cases = [
+        (
+            with("set_pressure_bar", "set_pressure_psi"),
+            "m.toml:10:1: unit psi is not known, this key is set_pressure_bar",
+        ),
+        (
+            with("set_pressure_bar = 154", "set_pressure_bar = \"154\""),
+            "m.toml:10:20: set_pressure_bar has to be a number, not the text",
+        ),
+        (
+            with("set_pressure_bar = 154", "set_pressure_bar = -3"),
+            "m.toml:10:20: set_pressure_bar = -3 is out of range",
+        ),
+        (
+            with("set_pressure_bar = 154", ""),
+            "m.toml:9:1: [relief_valve] has no set_pressure_bar",
+        ),
+        (
+            with("[relief_valve]", "[relieve_valve]"),
+            "m.toml:9:2: key \"relieve_valve\" is not known in the top level; did you mean relief_valve?",
+        ),
+        (
+            with("[relief_valve]", "[[relief_valve]]"),
+            "m.toml:9:1: relief_valve has to be a table",
+        ),
+        (
+            with("\"steady\"", "\"static\""),
+            "m.toml:3:12: dynamics \"static\" is not known",
+        ),
+        (
+            with("format = 1", "format = 3"),
+            "m.toml:1:10: format 3 is not known",
+        ),
+        (
+            with("1.114, 1.126", "1.126, 1.114"),
+            "m.toml:21:13: point 2 of a valve curve",
+        ),
+        (
+            with(
+                "lower_link_m = 0.7",
+                "lower_link_m = 0.01\nlift_rod_m = 0.02\n#",
+            ),
+            "m.toml:",
+        ),
+        (
+            with("rocker_arm_m = 0.11", "rocker_arm_m = 0.01"),
+            "m.toml:",
+        ),
+        (
+            fault("format = 1\n"),
+            "m.toml:1:1: [the top level] has no dynamics",
+        ),
+        (
+            fault("format = 1\nbase = \"ideal\""),
+            "m.toml:2:8: base \"ideal\" is not known",
+        ),
+        (
+            fault("format = 1\ndynamics = \"steady\""),
+            "m.toml:1:1: there is no table [pump]; add it, or a line base",
+        ),
+        (
+            effect("id = \"lower-treshold-shift\"\nshift_a = 0.2"),
+            "m.toml:4:6: effect \"lower-treshold-shift\" is not known; did you mean lower-threshold-shift?",
+        ),
+        (
+            effect("id = \"lower-threshold-shift\"\nshift_ma = 200"),
+            "m.toml:5:1: unit ma is not known, this key is shift_a",
+        ),
+        (
+            effect("id = \"lower-threshold-shift\""),
+            "m.toml:3:1: [[effect]] has no shift_a",
+        ),
+        (
+            effect("id = \"lower-threshold-shift\"\nshift_a = 200"),
+            "m.toml:5:11: shift_a = 200 is out of range",
+        ),
+        (
+            effect(
+                "id = \"lower-threshold-shift\"\nshift_a = 0.2\n[[effect]]\nid = \"lower-threshold-shift\"\nshift_a = 0.2",
+            ),
+            "m.toml:7:6: lower-threshold-shift is there twice",
+        ),
+        (effect("shift_a = 0.2"), "m.toml:3:1: [[effect]] has no id"),
+    ];
+    for (fault, expected) in cases {
+        let expected = expected.replace("[the top level]", "the top level");
+        assert!(
+            fault.starts_with(&expected),
+            "expected {expected}\n     got {fault}"
+        );
+        assert_eq!(fault.lines().count(), 1, "{fault}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Whatever happens to the bytes of a model file, it is either read or refused in one line.
+    #[test]
+    fn mutations_never_panic(edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..3_u8), 1..6)) {
+        let mut bytes = Model::dynamic().with_effects(vec![AddedEffect::typical(CATALOGUE[0])]).to_toml().into_bytes();
+        for (place, byte, edit) in edits {
+            let at = place.index(bytes.len());
+            match edit {
+                0 => bytes[at] = byte,
+                1 => bytes.insert(at, b'0' + byte % 10),
+                _ => drop(bytes.remove(at)),
+            }
+        }
+        if let Err(error) = read(&bytes) {
+            prop_assert_eq!(error.lines().count(), 1);
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! The command line.
+use clap::{Parser, Subcommand};
+
+use crate::commands::{add, compare, diagnose, effects, explain, main_job, paper, simulate};
+use crate::error::Error;
+use crate::output;
+
+/// The electro-hydraulic hitch: measurement -> physics -> firmware -> motion.
+#[derive(Debug, Parser)]
+#[command(
+    name = "hitch",
+    version,
+    about,
+    disable_help_subcommand = true,
+    args_conflicts_with_subcommands = true
+)]
+#[command(after_help = "Examples:\n  hitch\n  hitch explain lab-a --report lab-a.html")]
+pub struct Cli {
+    /// What to do; without it, the main job on the campaign that comes with the program
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// Options of the main job.
+    #[command(flatten)]
+    pub main_job: main_job::Args,
+}
+
+/// Every command of the program.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Model against measurements: where, when and in which channel it fails
+    Compare(compare::Args),
+    /// Which physical effect is missing, ranked, and what cannot be told apart on these data
+    Diagnose(diagnose::Args),
+    /// Adds effects to a model and estimates their parameters
+    Add(add::Args),
+    /// Finds what the model lacks and adds it, until nothing more is worth adding
+    Explain(explain::Args),
+    /// The catalogue of physical effects: equation, parameters, units, source, where it shows
+    Effects(effects::Args),
+    /// The plant alone, driven by a log's currents
+    Simulate(simulate::Args),
+    /// The paper's tables and figures from this model, side by side
+    Paper(paper::Args),
+}
+
+impl Command {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Whatever the command reports.
+    pub fn run(&self) -> Result<(), Error> {
+        match self {
+            Self::Compare(args) => compare::run(args),
+            Self::Diagnose(args) => diagnose::run(args),
+            Self::Add(args) => add::run(args),
+            Self::Explain(args) => explain::run(args),
+            Self::Effects(args) => effects::run(args),
+            Self::Simulate(args) => simulate::run(args),
+            Self::Paper(args) => paper::run(args),
+        }
+    }
+}
+
+/// Parses the program's arguments and does what they ask for.
+///
+/// # Errors
+/// If they are wrong, or what they ask for fails.
+pub fn run<I: IntoIterator<Item = std::ffi::OsString>>(arguments: I) -> Result<(), Error> {
+    match Cli::try_parse_from(arguments) {
+        Ok(Cli {
+            command: Some(command),
+            ..
+        }) => command.run(),
+        Ok(Cli { main_job, .. }) => main_job::run(&main_job),
+        Err(error) if !error.use_stderr() => output::print(&error.render().to_string()),
+        Err(error) => Err(Error::Usage(one_line(&error.render().to_string()))),
+    }
+}
+
+/// Joins what clap says into one line: the fault and its tips, without the usage.
+fn one_line(message: &str) -> String {
+    let told = message
+        .lines()
+        .map(str::trim)
+        .take_while(|line| !line.starts_with("Usage:"));
+    let lines: Vec<&str> = told.filter(|line| !line.is_empty()).collect();
+    let line = lines.join(" ").replace(" tip:", ";").replace("  ", " ");
+    format!("{}; see --help", line.trim_start_matches("error: "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fault(arguments: &[&str]) -> String {
+        let arguments = ["hitch"]
+            .iter()
+            .chain(arguments)
+            .map(std::ffi::OsString::from);
+        run(arguments).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn definition_is_sound() {
+        use clap::CommandFactory;
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn wrong_usage_is_one_line() {
+        let option = fault(&["paper", "--jsn", "-"]);
+        assert_eq!(
+            option,
+            "unexpected argument '--jsn' found; a similar argument exists: '--json'; see --help"
+        );
+        assert!(fault(&["papr"]).starts_with("unrecognized subcommand 'papr'; "));
+    }
+
+    #[test]
+    fn every_command_has_an_example() {
+        use clap::CommandFactory;
+        for command in Cli::command().get_subcommands() {
+            let help = command
+                .get_after_help()
+                .map(ToString::to_string)
+                .unwrap_or_default();
+            assert!(
+                help.starts_with("Example"),
+                "{} has no example",
+                command.get_name()
+            );
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! `hitch add`: adds effects to a model and estimates their parameters.
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use hitch_model::Model;
+use hitch_model::campaign::Campaign;
+use hitch_model::effects::Effect;
+use hitch_model::identification::candidate::{Candidate, try_effects};
+use hitch_model::identification::experiment::Experiment;
+use hitch_model::identification::explain::fit_base;
+
+use super::effects::find;
+use crate::error::Error;
+use crate::explanation::parameters;
+use crate::model_arg::ModelArg;
+use crate::output;
+use crate::progress::Progress;
+
+/// Arguments of `hitch add`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example: hitch add lower-threshold-shift --campaign lab-a --out lab-a.toml"
+)]
+pub struct Args {
+    /// Effects to add, in this order; hitch effects lists them
+    #[arg(required = true, value_name = "EFFECT")]
+    effects: Vec<String>,
+    /// Folder of the campaign that their parameters are estimated from
+    #[arg(long, value_name = "CAMPAIGN")]
+    campaign: PathBuf,
+    #[command(flatten)]
+    model: ModelArg,
+    /// Write the model to this file
+    #[arg(long, value_name = "MODEL.toml")]
+    out: PathBuf,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If an effect is not known or there already, the campaign or the model file is wrong, or the model cannot be written.
+pub fn run(args: &Args) -> Result<(), Error> {
+    output::check_writable(Some(&args.out))?;
+    let model = args.model.load()?;
+    let effects = effects(&args.effects, &model)?;
+    let campaign = Campaign::load(&args.campaign)?;
+    let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
+    let experiment = Experiment::new(&campaign, &model);
+    let mut fit = fit_base(&experiment, &model);
+    let mut text = format!(
+        "Campaign {}, model {}: error {:.2} sigma\n",
+        campaign.name,
+        model.name,
+        fit.error()
+    );
+    let say = |what: &str| progress.say(format!("fitting {what}"));
+    for effect in effects {
+        for candidate in try_effects(&experiment, &model, &fit, &[effect], &say) {
+            let _ = writeln!(text, "{}", shown(&candidate));
+            fit = candidate.fit;
+        }
+    }
+    drop(progress);
+    let mut rebuilt = model.with_effects(fit.estimate.effects);
+    rebuilt.name = output::stem(&args.out);
+    output::write_file(&args.out, rebuilt.to_toml().as_bytes())?;
+    output::print(&text)
+}
+
+/// The effects of these names, none of which the model may have already.
+fn effects(ids: &[String], model: &Model) -> Result<Vec<&'static dyn Effect>, Error> {
+    let mut effects: Vec<&'static dyn Effect> = Vec::new();
+    for id in ids {
+        let effect = find(id)?;
+        let present = model
+            .effects
+            .iter()
+            .map(|added| added.effect)
+            .chain(effects.iter().copied());
+        if present
+            .into_iter()
+            .any(|present| present.id() == effect.id())
+        {
+            return Err(Error::Usage(format!(
+                "effect {id} is in the model already; leave it out"
+            )));
+        }
+        effects.push(effect);
+    }
+    Ok(effects)
+}
+
+fn shown(candidate: &Candidate) -> String {
+    let values = candidate
+        .fit
+        .estimate
+        .effects
+        .last()
+        .map(|added| added.values.clone())
+        .unwrap_or_default();
+    let parameters = parameters(candidate.effect, &values, &candidate.intervals);
+    let parameters: Vec<String> = parameters.iter().map(ToString::to_string).collect();
+    let (id, error) = (candidate.effect.id(), candidate.fit.error());
+    let line = format!(
+        "  + {id}: {}; error {error:.2} sigma",
+        parameters.join(", ")
+    );
+    if candidate.likelihood_ratio < hitch_model::identification::explain::BELIEVED {
+        return line + " (the campaign does not ask for it)";
+    }
+    line
+}

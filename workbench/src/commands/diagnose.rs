@@ -1,0 +1,43 @@
+//! `hitch diagnose`: which physical effect is missing, ranked.
+use std::path::PathBuf;
+
+use hitch_model::campaign::Campaign;
+use hitch_model::identification::experiment::Experiment;
+use hitch_model::identification::explain::{diagnose, fit_base};
+
+use crate::error::Error;
+use crate::explanation::Diagnosis;
+use crate::model_arg::ModelArg;
+use crate::output::JsonArg;
+use crate::progress::Progress;
+
+/// Arguments of `hitch diagnose`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: hitch diagnose lab-a --model dynamic")]
+pub struct Args {
+    /// Folder of the campaign
+    campaign: PathBuf,
+    #[command(flatten)]
+    model: ModelArg,
+    #[command(flatten)]
+    json: JsonArg,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the campaign or the model file is wrong, or the result cannot be written.
+pub fn run(args: &Args) -> Result<(), Error> {
+    args.json.check()?;
+    let model = args.model.load()?;
+    let campaign = Campaign::load(&args.campaign)?;
+    let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
+    let experiment = Experiment::new(&campaign, &model);
+    let base = fit_base(&experiment, &model);
+    let found = diagnose(&experiment, &model, base, &|what| {
+        progress.say(format!("trying {what}"))
+    });
+    let shown = Diagnosis::new(&experiment, &model, &found);
+    drop(progress);
+    args.json.print(&shown, || shown.to_string())
+}

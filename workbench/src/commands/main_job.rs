@@ -1,0 +1,74 @@
+//! `hitch` without a command: the whole way on the campaign that comes with the program.
+use std::path::PathBuf;
+
+use hitch_model::Model;
+use hitch_model::campaign::Campaign;
+
+use super::explain::Found;
+use crate::comparison::Comparison;
+use crate::demonstration;
+use crate::error::Error;
+use crate::output;
+use crate::report::explanation_page;
+
+/// So many of the worst cells are named.
+const NAMED_CELLS: usize = 3;
+
+/// Arguments of `hitch` without a command.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Without a command: write the report to this file
+    #[arg(long, value_name = "FILE.html", default_value = "hitch-report.html")]
+    report: PathBuf,
+}
+
+/// Runs the main job.
+///
+/// # Errors
+/// If the report cannot be written.
+pub fn run(args: &Args) -> Result<(), Error> {
+    output::check_writable(Some(&args.report))?;
+    let campaign = demonstration::campaign()?;
+    let model = Model::nominal();
+    output::print(&compared(&campaign, &model))?;
+    let found = Found::new(&campaign, model);
+    output::print(&explained(&found))?;
+    output::write_file(&args.report, explanation_page::page(&found).as_bytes())?;
+    output::print(&format!("\nReport: {}\n", args.report.display()))
+}
+
+fn compared(campaign: &Campaign, model: &Model) -> String {
+    let (comparison, _) = Comparison::new(campaign, model);
+    let mut text = format!(
+        "Measured: {}, {} runs. The model {} fails most at\n",
+        campaign.name,
+        campaign.runs.len(),
+        model.name
+    );
+    for cell in comparison.worst_cells().into_iter().take(NAMED_CELLS) {
+        text += &format!(
+            "  {}, {}: {:.1} sigma\n",
+            cell.channel, cell.part, cell.error
+        );
+    }
+    text
+}
+
+fn explained(found: &Found) -> String {
+    let shown = &found.shown;
+    let mut text = String::from("\nMissing:\n");
+    for step in &shown.steps {
+        let parameters: Vec<String> = step.parameters.iter().map(ToString::to_string).collect();
+        text += &format!("  {}: {}\n", step.effect, parameters.join(", "));
+    }
+    let head = &shown.head;
+    let held_out = shown
+        .steps
+        .last()
+        .map_or(f64::NAN, |step| step.held_out_after);
+    text += &format!(
+        "  the error falls from {:.2} to {:.2} sigma ({held_out:.2} on runs that were not used to fit): {}\n",
+        head.error_before, head.error_after, head.verdict
+    );
+    text
+}

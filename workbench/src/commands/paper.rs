@@ -1,0 +1,29 @@
+//! `hitch paper`: the paper's tables and figures from this model, side by side.
+use crate::error::Error;
+use crate::model_arg::ModelArg;
+use crate::output::JsonArg;
+use crate::paper::Paper;
+use crate::progress::Progress;
+
+/// Arguments of `hitch paper`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: hitch paper --json - | jq .figure_12.lifting")]
+pub struct Args {
+    #[command(flatten)]
+    model: ModelArg,
+    #[command(flatten)]
+    json: JsonArg,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the model file is wrong or the output cannot be written.
+pub fn run(args: &Args) -> Result<(), Error> {
+    args.json.check()?;
+    let model = args.model.load()?;
+    let progress = Progress::start("the paper's tables and figures");
+    let paper = Paper::of(&model);
+    drop(progress);
+    args.json.print(&paper, || paper.to_string())
+}

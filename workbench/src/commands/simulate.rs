@@ -1,0 +1,144 @@
+//! `hitch simulate`: the plant alone, driven by a log's currents.
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use hitch_model::Model;
+use hitch_model::campaign::{Bench, Channel, Run};
+use hitch_model::plant::{Currents, HitchRig, Plant, Reading, Rig};
+use hitch_model::units::pa_from_bar;
+
+use crate::error::Error;
+use crate::model_arg::ModelArg;
+use crate::output;
+use crate::progress::Progress;
+
+/// Samples whose mean is the angle at the start.
+const START_SAMPLES: usize = 5;
+
+/// Arguments of `hitch simulate`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example: hitch simulate --model dynamic --inputs lift_1.5A_050kg.csv --load 50 --out lift.csv"
+)]
+pub struct Args {
+    #[command(flatten)]
+    model: ModelArg,
+    /// Log with the columns time_s, lift_current_a and lower_current_a; others are not needed
+    #[arg(long, value_name = "RUN.csv")]
+    inputs: PathBuf,
+    /// Where the result goes, in the format of a log; `-` is standard output
+    #[arg(long, value_name = "OUT.csv")]
+    out: PathBuf,
+    /// Load at the hitch, kg
+    #[arg(long, value_name = "KG", allow_negative_numbers = true, default_value_t = 150.0, value_parser = within::<0, 2000>)]
+    load: f64,
+    /// Flow bench instead of the hitch: pressure at the cylinder port, bar
+    #[arg(long, value_name = "BAR", allow_negative_numbers = true, conflicts_with_all = ["load", "start_angle"], value_parser = within::<0, 400>)]
+    port_pressure: Option<f64>,
+    /// Rocker angle at the start, degrees; without it, where the log's first samples show it, else fully down
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = within::<0, 180>)]
+    start_angle: Option<f64>,
+    /// Oil temperature, degrees Celsius
+    #[arg(long, value_name = "C", default_value_t = 40.0, allow_negative_numbers = true, value_parser = within::<-40, 150>)]
+    oil_temperature: f64,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the model or the log is wrong, or the result cannot be written.
+pub fn run(args: &Args) -> Result<(), Error> {
+    let to_stdout = args.out == Path::new("-");
+    output::check_writable(Some(&args.out).filter(|_| !to_stdout).map(PathBuf::as_path))?;
+    let model = args.model.load()?;
+    let log = Run::read(&args.inputs, args.bench(), args.oil_temperature)?;
+    let progress = Progress::start(format!("simulating {}", log.file));
+    let rig = args.rig(&model, &log);
+    let text = simulated(&model, rig, &log);
+    drop(progress);
+    if to_stdout {
+        output::print(&text)
+    } else {
+        output::write_file(&args.out, text.as_bytes())
+    }
+}
+
+impl Args {
+    fn bench(&self) -> Bench {
+        match self.port_pressure {
+            Some(port_pressure_bar) => Bench::Flow { port_pressure_bar },
+            None => Bench::Hitch { load_kg: self.load },
+        }
+    }
+
+    fn rig(&self, model: &Model, log: &Run) -> Rig {
+        match self.bench() {
+            Bench::Flow { port_pressure_bar } => Rig::Flow {
+                port_pressure_pa: pa_from_bar(port_pressure_bar),
+            },
+            Bench::Hitch { load_kg } => {
+                let (low_rad, high_rad) = model.linkage().swing_rad();
+                let angle_deg = self.start_angle.or_else(|| logged_start_deg(log));
+                let start_angle_rad =
+                    angle_deg.map_or(low_rad, |deg| deg.to_radians().clamp(low_rad, high_rad));
+                Rig::Hitch(HitchRig {
+                    load_kg,
+                    start_angle_rad,
+                })
+            }
+        }
+    }
+}
+
+fn logged_start_deg(log: &Run) -> Option<f64> {
+    let known = log
+        .channel(Channel::RockerAngle)?
+        .iter()
+        .filter(|deg| deg.is_finite());
+    let first: Vec<f64> = known.take(START_SAMPLES).copied().collect();
+    (!first.is_empty()).then(|| first.iter().sum::<f64>() / first.len() as f64)
+}
+
+/// The log with simulated channels in place of measured ones. (Writing to a string cannot fail.)
+fn simulated(model: &Model, rig: Rig, log: &Run) -> String {
+    let channels: Vec<Channel> = Channel::ALL
+        .into_iter()
+        .filter(|channel| can_show(rig, *channel))
+        .collect();
+    let keys: Vec<&str> = channels.iter().map(|channel| channel.key()).collect();
+    let mut text = format!("time_s,lift_current_a,lower_current_a,{}\n", keys.join(","));
+    let currents = |i: usize| Currents {
+        lift_a: log.lift_current_a[i],
+        lower_a: log.lower_current_a[i],
+    };
+    let mut plant = Plant::new(model, rig, log.oil_temperature_c, currents(0));
+    for i in 0..log.time_s.len() {
+        if i > 0 {
+            plant.step(currents(i), log.time_s[i] - log.time_s[i - 1]);
+        }
+        let Currents { lift_a, lower_a } = currents(i);
+        let _ = write!(text, "{},{lift_a},{lower_a}", log.time_s[i]);
+        write_reading(&mut text, &plant.reading(), &channels);
+    }
+    text
+}
+
+fn write_reading(text: &mut String, reading: &Reading, channels: &[Channel]) {
+    for channel in channels {
+        let _ = write!(text, ",{:.5}", reading.channel(*channel) + 0.0);
+    }
+    text.push('\n');
+}
+
+fn can_show(rig: Rig, channel: Channel) -> bool {
+    channel != Channel::RockerAngle || matches!(rig, Rig::Hitch(_))
+}
+
+/// Parses an option's number and checks its range.
+fn within<const LOW: i32, const HIGH: i32>(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "it is not a number".to_owned())?;
+    if (f64::from(LOW)..=f64::from(HIGH)).contains(&number) {
+        return Ok(number);
+    }
+    Err(format!("it may be {LOW} to {HIGH}"))
+}

@@ -1,0 +1,127 @@
+//! Ways to part the samples of a campaign, so that one sees where a model fails.
+use hitch_model::campaign::Bench;
+use hitch_model::identification::experiment::ReadyRun;
+use hitch_model::identification::regime::Regime;
+use serde::Serialize;
+
+/// Currents below are off, A.
+const OFF_BELOW_A: f64 = 0.2;
+/// Edges between the parts of the current, A: below the thresholds, the foot of the curves, the middle, wide open.
+const EDGES_A: [f64; 4] = [1.0, 1.6, 2.2, 2.8];
+/// Width of the parts of the oil temperature, degrees Celsius.
+const TEMPERATURE_STEP_C: f64 = 10.0;
+
+/// How the samples are parted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Grouping {
+    /// By what the plant does.
+    Regime,
+    /// By the current of the valve that is on.
+    Current,
+    /// By load, or by the port pressure of a flow bench.
+    Load,
+    /// By oil temperature.
+    Temperature,
+    /// By run.
+    Run,
+}
+
+/// One part; parts are ordered by their place.
+#[derive(Debug, Clone, PartialEq, PartialOrd)]
+pub struct Part {
+    place: f64,
+    /// Name for people.
+    pub name: String,
+}
+
+impl Grouping {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Regime,
+        Self::Current,
+        Self::Load,
+        Self::Temperature,
+        Self::Run,
+    ];
+
+    /// Heading for people.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Regime => "by regime",
+            Self::Current => "by current",
+            Self::Load => "by load",
+            Self::Temperature => "by oil temperature",
+            Self::Run => "by run",
+        }
+    }
+
+    /// The part that a sample belongs to.
+    pub fn part(self, run: &ReadyRun, sample: usize) -> Option<Part> {
+        match self {
+            Self::Regime => regime(run, sample),
+            Self::Current => Some(current(run, sample)),
+            Self::Load => Some(load(run.bench)),
+            Self::Temperature => Some(temperature(run.oil_temperature_c)),
+            Self::Run => Some(Part {
+                place: 0.0,
+                name: run.file.clone(),
+            }),
+        }
+    }
+}
+
+fn regime(run: &ReadyRun, sample: usize) -> Option<Part> {
+    let regime = *run.regimes.get(sample)?;
+    let place = Regime::ALL.iter().position(|known| *known == regime)?;
+    Some(Part {
+        place: place as f64,
+        name: regime.name().to_owned(),
+    })
+}
+
+fn current(run: &ReadyRun, sample: usize) -> Part {
+    let currents = run.drive.currents[sample];
+    let (valve, amperes, place) = if currents.lift_a >= currents.lower_a {
+        ("lift", currents.lift_a, 0.0)
+    } else {
+        ("lower", currents.lower_a, 10.0)
+    };
+    if amperes < OFF_BELOW_A {
+        return Part {
+            place: -1.0,
+            name: "both off".to_owned(),
+        };
+    }
+    let step = EDGES_A.iter().filter(|edge| amperes >= **edge).count();
+    let name = match step {
+        0 => format!("{valve} under {} A", EDGES_A[0]),
+        step if step == EDGES_A.len() => format!("{valve} over {} A", EDGES_A[step - 1]),
+        step => format!("{valve} {} to {} A", EDGES_A[step - 1], EDGES_A[step]),
+    };
+    Part {
+        place: place + step as f64,
+        name,
+    }
+}
+
+fn load(bench: Bench) -> Part {
+    match bench {
+        Bench::Hitch { load_kg } => Part {
+            place: load_kg,
+            name: format!("{load_kg:.0} kg"),
+        },
+        Bench::Flow { port_pressure_bar } => Part {
+            place: 1e4 + port_pressure_bar,
+            name: format!("flow bench, {port_pressure_bar:.0} bar"),
+        },
+    }
+}
+
+fn temperature(oil_temperature_c: f64) -> Part {
+    let low = (oil_temperature_c / TEMPERATURE_STEP_C).floor() * TEMPERATURE_STEP_C;
+    Part {
+        place: low,
+        name: format!("{low:.0} to {:.0} C", low + TEMPERATURE_STEP_C),
+    }
+}

@@ -1,0 +1,290 @@
+//! Model against measurements: where, when and in which channel it fails, with the instruments' noise as yardstick.
+mod groups;
+mod show;
+mod tally;
+
+use hitch_model::Model;
+use hitch_model::campaign::{Campaign, Channel};
+use hitch_model::identification::estimate::Estimate;
+use hitch_model::identification::experiment::{Experiment, ReadyRun};
+use hitch_model::identification::fit::{ErrorSums, Fit, evaluate, fit_loads};
+use hitch_model::simulation::Trace;
+use serde::Serialize;
+
+pub use groups::Grouping;
+use tally::Tally;
+
+/// Length of the stretch of a run that is shown as its worst, s.
+const WORST_STRETCH_S: f64 = 1.0;
+
+/// Result of `hitch compare`.
+#[derive(Debug, Clone, Serialize)]
+pub struct Comparison {
+    /// Name of the campaign.
+    pub campaign: String,
+    /// Name of the model.
+    pub model: String,
+    /// Root mean square of (measured - simulated) / noise, each channel weighted alike.
+    pub error: f64,
+    /// Error of a perfect model.
+    pub noise_floor: f64,
+    /// One entry a measured channel.
+    pub channels: Vec<ChannelError>,
+    /// Every cell of every grouping that has samples.
+    pub cells: Vec<Cell>,
+    /// The worst stretch of each channel.
+    pub worst: Vec<WorstStretch>,
+}
+
+/// Error of one channel.
+#[derive(Debug, Clone, Serialize)]
+pub struct ChannelError {
+    /// Key of the channel.
+    pub channel: &'static str,
+    /// Unit of the values.
+    pub unit: &'static str,
+    /// Root mean square in sigma.
+    pub error: f64,
+    /// Root mean square of measured - simulated, in the unit.
+    pub rms: f64,
+    /// One sigma of the instrument, in the unit.
+    pub noise: f64,
+    /// Compared samples.
+    pub samples: usize,
+}
+
+/// Error of one channel in one part of the data.
+#[derive(Debug, Clone, Serialize)]
+pub struct Cell {
+    /// How the data are parted.
+    pub by: Grouping,
+    /// Name of the part.
+    pub part: String,
+    /// Key of the channel.
+    pub channel: &'static str,
+    /// Root mean square in sigma.
+    pub error: f64,
+    /// Mean in sigma: positive where the rig shows more than the model.
+    pub bias: f64,
+    /// Compared samples.
+    pub samples: usize,
+}
+
+/// Where in time a channel fails most.
+#[derive(Debug, Clone, Serialize)]
+pub struct WorstStretch {
+    /// Key of the channel.
+    pub channel: &'static str,
+    /// File of the run.
+    pub run: String,
+    /// From here, s.
+    pub from_s: f64,
+    /// To here, s.
+    pub to_s: f64,
+    /// Root mean square in sigma.
+    pub error: f64,
+}
+
+/// A model evaluated on a campaign.
+#[derive(Debug, Clone)]
+pub struct Evaluated {
+    /// The campaign, ready.
+    pub experiment: Experiment,
+    /// The model's simulation and residuals, each run's weighed load corrected within its tolerance.
+    pub fit: Fit,
+}
+
+impl Evaluated {
+    /// Evaluates a model. Nothing of it is changed; only each run's load is taken to be what the run shows, within what
+    /// weighing leaves open.
+    pub fn new(campaign: &Campaign, model: &Model) -> Self {
+        let experiment = Experiment::new(campaign, model);
+        let start = Estimate::new(&experiment, model.effects.clone());
+        let loaded = fit_loads(&experiment, model, start);
+        let fit = evaluate(&experiment, model, loaded);
+        Self { experiment, fit }
+    }
+
+    /// Whitened residuals of a channel of a run, NaN where nothing is compared.
+    pub fn residuals(&self, run: usize, channel: Channel) -> Vec<f64> {
+        let samples = self.experiment.runs[run].len();
+        let part = channel.index() * samples..(channel.index() + 1) * samples;
+        let scale = &self.fit.weights.runs[run].scale[part.clone()];
+        let value =
+            |(residual, scale): (&f64, &f64)| if *scale > 0.0 { *residual } else { f64::NAN };
+        self.fit.residuals[run][part]
+            .iter()
+            .zip(scale)
+            .map(value)
+            .collect()
+    }
+
+    /// Measured less simulated samples of a channel of a run, in the channel's unit, NaN where nothing is compared.
+    pub fn differences(&self, run: usize, channel: Channel, trace: &Trace) -> Vec<f64> {
+        let Some(measured) = &self.experiment.runs[run].measured[channel.index()] else {
+            return Vec::new();
+        };
+        let scale = &self.fit.weights.runs[run].scale[channel.index() * measured.len()..];
+        let pairs = measured.iter().zip(trace.channel(channel)).zip(scale);
+        pairs
+            .map(|((measured, simulated), scale)| {
+                if *scale > 0.0 {
+                    measured - simulated
+                } else {
+                    f64::NAN
+                }
+            })
+            .collect()
+    }
+
+    /// Root mean square of the residuals of a channel of a run, in sigma.
+    pub fn error(&self, run: usize, channel: Channel) -> f64 {
+        let mut tally = Tally::default();
+        self.residuals(run, channel)
+            .into_iter()
+            .for_each(|residual| tally.add(residual));
+        tally.rms()
+    }
+
+    /// Simulated samples of every channel of a run, in the channels' units.
+    pub fn simulated(&self, model: &Model, run: usize) -> Trace {
+        let nuisance = self.fit.estimate.nuisances[run];
+        let model = model.with_effects(self.fit.estimate.effects.clone());
+        self.experiment.runs[run].simulate(&model, nuisance, self.fit.estimate.skew_s, 0.0)
+    }
+}
+
+impl Comparison {
+    /// Compares a model with a campaign.
+    pub fn new(campaign: &Campaign, model: &Model) -> (Self, Evaluated) {
+        let evaluated = Evaluated::new(campaign, model);
+        (Self::of(&evaluated, model), evaluated)
+    }
+
+    /// The comparison of a model that is evaluated already.
+    pub fn of(evaluated: &Evaluated, model: &Model) -> Self {
+        let sums = ErrorSums::of(&evaluated.fit);
+        Self {
+            campaign: evaluated.experiment.name.clone(),
+            model: model.name.clone(),
+            error: sums.error(),
+            noise_floor: 1.0,
+            channels: channels(evaluated, model, &sums),
+            cells: cells(evaluated),
+            worst: Channel::ALL
+                .into_iter()
+                .filter_map(|channel| worst_stretch(evaluated, channel))
+                .collect(),
+        }
+    }
+}
+
+fn channels(evaluated: &Evaluated, model: &Model, sums: &ErrorSums) -> Vec<ChannelError> {
+    let runs = 0..evaluated.experiment.runs.len();
+    let traces: Vec<Trace> = runs.map(|run| evaluated.simulated(model, run)).collect();
+    let of = |channel: Channel| {
+        let mut raw = Tally::default();
+        for (run, trace) in traces.iter().enumerate() {
+            evaluated
+                .differences(run, channel, trace)
+                .into_iter()
+                .for_each(|difference| raw.add(difference));
+        }
+        (raw.samples > 0).then(|| ChannelError {
+            channel: channel.key(),
+            unit: channel.unit(),
+            error: sums.channel(channel.index()),
+            rms: raw.rms(),
+            noise: evaluated.experiment.noise[channel.index()],
+            samples: raw.samples,
+        })
+    };
+    Channel::ALL.into_iter().filter_map(of).collect()
+}
+
+fn cells(evaluated: &Evaluated) -> Vec<Cell> {
+    let mut cells = Vec::new();
+    for by in Grouping::ALL {
+        for channel in Channel::ALL {
+            let mut parts: Vec<(groups::Part, Tally)> = Vec::new();
+            for (index, run) in evaluated.experiment.runs.iter().enumerate() {
+                for (sample, residual) in
+                    evaluated.residuals(index, channel).into_iter().enumerate()
+                {
+                    tally(&mut parts, by, run, sample, residual);
+                }
+            }
+            parts.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
+            cells.extend(parts.into_iter().map(|(part, tally)| Cell {
+                by,
+                part: part.name,
+                channel: channel.key(),
+                error: tally.rms(),
+                bias: tally.mean(),
+                samples: tally.samples,
+            }));
+        }
+    }
+    cells
+}
+
+fn tally(
+    parts: &mut Vec<(groups::Part, Tally)>,
+    by: Grouping,
+    run: &ReadyRun,
+    sample: usize,
+    residual: f64,
+) {
+    let Some(part) = residual.is_finite().then(|| by.part(run, sample)).flatten() else {
+        return;
+    };
+    match parts.iter_mut().find(|(known, _)| *known == part) {
+        Some((_, tally)) => tally.add(residual),
+        None => {
+            let mut tally = Tally::default();
+            tally.add(residual);
+            parts.push((part, tally));
+        }
+    }
+}
+
+fn worst_stretch(evaluated: &Evaluated, channel: Channel) -> Option<WorstStretch> {
+    let stretches = evaluated
+        .experiment
+        .runs
+        .iter()
+        .enumerate()
+        .flat_map(|(index, run)| {
+            let residuals = evaluated.residuals(index, channel);
+            stretches(&run.drive.time_s, &residuals).into_iter().map(
+                move |(from_s, to_s, error)| WorstStretch {
+                    channel: channel.key(),
+                    run: run.file.clone(),
+                    from_s,
+                    to_s,
+                    error,
+                },
+            )
+        });
+    stretches.max_by(|a, b| a.error.total_cmp(&b.error))
+}
+
+/// Consecutive stretches of a run with the root mean square in each.
+fn stretches(time_s: &[f64], residuals: &[f64]) -> Vec<(f64, f64, f64)> {
+    let mut found = Vec::new();
+    let mut start = 0;
+    for end in 1..=time_s.len() {
+        if end < time_s.len() && time_s[end] - time_s[start] < WORST_STRETCH_S {
+            continue;
+        }
+        let mut tally = Tally::default();
+        residuals[start..end]
+            .iter()
+            .for_each(|residual| tally.add(*residual));
+        if tally.samples > 0 {
+            found.push((time_s[start], time_s[end - 1], tally.rms()));
+        }
+        start = end;
+    }
+    found
+}

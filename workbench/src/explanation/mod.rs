@@ -1,0 +1,120 @@
+//! What `hitch explain` and `hitch diagnose` found, as scripts read it (JSON) and as people do (text).
+mod of_diagnosis;
+mod of_explanation;
+mod show;
+
+pub use of_explanation::parameters;
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+/// Result of `hitch explain`.
+#[derive(Debug, Clone, Serialize)]
+pub struct Explanation {
+    /// Head, alike for every result.
+    #[serde(flatten)]
+    pub head: Head,
+    /// The effects added, in order.
+    pub steps: Vec<Step>,
+    /// What stays unexplained.
+    pub unexplained: Unexplained,
+    /// The experiment that would tell most, if one is needed.
+    pub next_experiment: Option<String>,
+}
+
+/// Result of `hitch diagnose`.
+#[derive(Debug, Clone, Serialize)]
+pub struct Diagnosis {
+    /// Head, alike for every result; the error after is that of the best candidate, if it is believed.
+    #[serde(flatten)]
+    pub head: Head,
+    /// Effects that could be missing, best first.
+    pub candidates: Vec<Candidate>,
+}
+
+/// What every result on a campaign begins with.
+#[derive(Debug, Clone, Serialize)]
+pub struct Head {
+    /// Name of the campaign.
+    pub campaign: String,
+    /// Name of the model it began with.
+    pub model: String,
+    /// Error of that model, in sigma.
+    pub error_before: f64,
+    /// Error of the model that it came to, in sigma.
+    pub error_after: f64,
+    /// Error of a perfect model: the instruments' noise, in sigma.
+    pub noise_floor: f64,
+    /// By channel key, in the channel's unit: the error before and after, and the noise of the instrument.
+    pub channels: Map<String, Value>,
+    /// The answer in a word.
+    pub verdict: &'static str,
+}
+
+/// One effect that was added.
+#[derive(Debug, Clone, Serialize)]
+pub struct Step {
+    /// Id of the effect.
+    pub effect: &'static str,
+    /// Error before it was added, in sigma.
+    pub error_before: f64,
+    /// Error after it was added, in sigma.
+    pub error_after: f64,
+    /// Error before, on runs that were not used to fit.
+    pub held_out_before: f64,
+    /// Error after, on runs that were not used to fit.
+    pub held_out_after: f64,
+    /// How sure the data make one that it is this effect, 0 to 1.
+    pub confidence: f64,
+    /// Effects that it cannot be told from on these data.
+    pub indistinguishable: Vec<&'static str>,
+    /// Root mean square of its signature that nothing else can take on, in sigma.
+    pub detectability: f64,
+    /// Its parameters.
+    pub parameters: Vec<Parameter>,
+}
+
+/// An effect that could be missing.
+#[derive(Debug, Clone, Serialize)]
+pub struct Candidate {
+    /// Id of the effect.
+    pub effect: &'static str,
+    /// Share of the squared error above the noise that it would explain, 0 to 1.
+    pub explains: f64,
+    /// Error with it, in sigma.
+    pub error_after: f64,
+    /// How sure the data make one that it is this effect, 0 to 1.
+    pub confidence: f64,
+    /// Effects that it cannot be told from on these data.
+    pub indistinguishable: Vec<&'static str>,
+    /// Root mean square of its signature that nothing else can take on, in sigma.
+    pub detectability: f64,
+    /// Its parameters.
+    pub parameters: Vec<Parameter>,
+}
+
+/// A parameter with its interval.
+#[derive(Debug, Clone, Serialize)]
+pub struct Parameter {
+    /// Name.
+    pub name: &'static str,
+    /// Unit; empty for a pure number.
+    pub unit: &'static str,
+    /// Estimate.
+    pub value: f64,
+    /// Lower end of the 95 % interval.
+    pub low: f64,
+    /// Upper end of the 95 % interval.
+    pub high: f64,
+}
+
+/// What the catalogue does not explain.
+#[derive(Debug, Clone, Serialize)]
+pub struct Unexplained {
+    /// Share of the squared error above the noise that stays, 0 to 1.
+    pub share: f64,
+    /// Signals that it goes with, best first.
+    pub depends_on: Vec<String>,
+    /// A formula for it, if one was found.
+    pub suggested_term: Option<String>,
+}

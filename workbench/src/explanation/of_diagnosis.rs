@@ -1,0 +1,106 @@
+//! From the identification's diagnosis to what is shown of it.
+use hitch_model::Model;
+use hitch_model::identification::adequacy::{adequate, cells};
+use hitch_model::identification::candidate;
+use hitch_model::identification::experiment::Experiment;
+use hitch_model::identification::explain::{self, BELIEVED, TOLD_APART, Verdict};
+use hitch_model::identification::fit::Fit;
+
+use super::of_explanation::{channels, parameters};
+use super::{Candidate, Diagnosis, Head};
+
+impl Diagnosis {
+    /// What is shown of a diagnosis of a campaign with a model.
+    pub fn new(experiment: &Experiment, model: &Model, found: &explain::Diagnosis) -> Self {
+        let believed = found
+            .candidates
+            .first()
+            .filter(|best| best.likelihood_ratio >= BELIEVED);
+        let after = believed.map_or(&found.base, |best| &best.fit);
+        let candidates = found.candidates.iter().zip(&found.confidences);
+        Self {
+            head: Head {
+                campaign: experiment.name.clone(),
+                model: model.name.clone(),
+                error_before: found.base.error(),
+                error_after: after.error(),
+                noise_floor: 1.0,
+                channels: channels(experiment, &found.base, after),
+                verdict: verdict(experiment, found, believed).name(),
+            },
+            candidates: candidates
+                .map(|(candidate, share)| shown(found, candidate, *share))
+                .collect(),
+        }
+    }
+}
+
+/// What one more effect comes to.
+fn verdict(
+    experiment: &Experiment,
+    found: &explain::Diagnosis,
+    believed: Option<&candidate::Candidate>,
+) -> Verdict {
+    let fit = believed.map_or(&found.base, |best| &best.fit);
+    if fit.weights.count() == 0 {
+        return Verdict::NotEnoughData;
+    }
+    match (adequate(&cells(experiment, fit)), believed) {
+        (false, _) => Verdict::Unexplained,
+        (true, None) => Verdict::NothingMissing,
+        (true, Some(best)) if twins(found, best).is_empty() => Verdict::Explained,
+        (true, Some(_)) => Verdict::Ambiguous,
+    }
+}
+
+fn shown(
+    found: &explain::Diagnosis,
+    candidate: &candidate::Candidate,
+    confidence: f64,
+) -> Candidate {
+    let values = candidate
+        .fit
+        .estimate
+        .effects
+        .last()
+        .map(|added| added.values.clone())
+        .unwrap_or_default();
+    Candidate {
+        effect: candidate.effect.id(),
+        explains: explained(&found.base, &candidate.fit),
+        error_after: candidate.fit.error(),
+        confidence,
+        indistinguishable: twins(found, candidate),
+        detectability: candidate.detectability,
+        parameters: parameters(candidate.effect, &values, &candidate.intervals),
+    }
+}
+
+/// Share of the squared error above the noise that a fit takes away.
+fn explained(base: &Fit, with: &Fit) -> f64 {
+    let excess = |fit: &Fit| (fit.error().powi(2) - 1.0).max(0.0);
+    if excess(base) > 0.0 {
+        (1.0 - excess(with) / excess(base)).clamp(0.0, 1.0)
+    } else {
+        0.0
+    }
+}
+
+/// Other effects that fit these data as well as a candidate that is believed.
+fn twins(found: &explain::Diagnosis, candidate: &candidate::Candidate) -> Vec<&'static str> {
+    if candidate.likelihood_ratio < BELIEVED {
+        return Vec::new();
+    }
+    let unit = (found.base.cost - candidate.fit.cost) / candidate.likelihood_ratio;
+    let as_good = |other: &&candidate::Candidate| {
+        other.effect.id() != candidate.effect.id()
+            && other.likelihood_ratio >= BELIEVED
+            && (other.fit.cost - candidate.fit.cost).abs() < TOLD_APART * unit
+    };
+    found
+        .candidates
+        .iter()
+        .filter(as_good)
+        .map(|other| other.effect.id())
+        .collect()
+}

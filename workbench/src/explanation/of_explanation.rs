@@ -1,0 +1,96 @@
+//! From the identification's explanation to what is shown of it.
+use hitch_model::Model;
+use hitch_model::campaign::Channel;
+use hitch_model::effects::Effect;
+use hitch_model::identification::experiment::Experiment;
+use hitch_model::identification::explain;
+use hitch_model::identification::fit::Fit;
+use serde_json::{Map, Value, json};
+
+use super::{Explanation, Head, Parameter, Step, Unexplained};
+
+impl Explanation {
+    /// What is shown of an explanation of a campaign that began with a model.
+    pub fn new(experiment: &Experiment, model: &Model, found: &explain::Explanation) -> Self {
+        Self {
+            head: Head {
+                campaign: experiment.name.clone(),
+                model: model.name.clone(),
+                error_before: found.before.error(),
+                error_after: found.after.error(),
+                noise_floor: 1.0,
+                channels: channels(experiment, &found.before, &found.after),
+                verdict: found.verdict.name(),
+            },
+            steps: found.steps.iter().map(step).collect(),
+            unexplained: Unexplained {
+                share: found.rest.share,
+                depends_on: found.rest.depends_on.clone(),
+                suggested_term: None,
+            },
+            next_experiment: None,
+        }
+    }
+}
+
+fn step(step: &explain::Step) -> Step {
+    Step {
+        effect: step.effect.id(),
+        error_before: step.error_before,
+        error_after: step.error_after,
+        held_out_before: step.held_out_before,
+        held_out_after: step.held_out_after,
+        confidence: step.confidence,
+        indistinguishable: step
+            .indistinguishable
+            .iter()
+            .map(|effect| effect.id())
+            .collect(),
+        detectability: step.detectability,
+        parameters: parameters(step.effect, &step.values, &step.intervals),
+    }
+}
+
+/// Parameters of an effect with their values and intervals.
+pub fn parameters(effect: &dyn Effect, values: &[f64], intervals: &[(f64, f64)]) -> Vec<Parameter> {
+    let fitted = values.iter().zip(intervals);
+    let parameter = |(parameter, (value, (low, high))): (
+        &hitch_model::effects::Parameter,
+        (&f64, &(f64, f64)),
+    )| {
+        Parameter {
+            name: parameter.name,
+            unit: parameter.unit,
+            value: *value,
+            low: *low,
+            high: *high,
+        }
+    };
+    effect
+        .parameters()
+        .iter()
+        .zip(fitted)
+        .map(parameter)
+        .collect()
+}
+
+/// Errors by channel before and after, in the channel's unit, beside the instrument's noise.
+///
+/// They are the errors in sigma times sigma, so that they add up to the error of the whole; what the noise of the logged
+/// currents does to the simulation is no error of the model and not in them.
+pub fn channels(experiment: &Experiment, before: &Fit, after: &Fit) -> Map<String, Value> {
+    let measured = |channel: &Channel| experiment.noise[channel.index()].is_finite();
+    let entry = |channel: Channel| {
+        let noise = experiment.noise[channel.index()];
+        let error = |fit: &Fit| fit.channel_error(channel.index()) * noise;
+        (
+            channel.key().to_owned(),
+            json!({ "before": error(before), "after": error(after), "noise": noise }),
+        )
+    };
+    Channel::ALL
+        .into_iter()
+        .filter(measured)
+        .map(entry)
+        .collect()
+}

@@ -1,0 +1,236 @@
+//! The same results as text.
+use std::fmt;
+
+use super::{Diagnosis, Explanation, Head, Parameter, Step, Unexplained};
+use crate::text::{Table, wrapped};
+
+/// Width of running text, characters.
+const WIDTH: usize = 100;
+
+impl fmt::Display for Explanation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.head)?;
+        for (i, step) in self.steps.iter().enumerate() {
+            write!(f, "  {}. {step}", i + 1)?;
+        }
+        if !self.steps.is_empty() {
+            writeln!(f)?;
+        }
+        writeln!(
+            f,
+            "{}",
+            wrapped(
+                &format!("Verdict: {}. {}", self.head.verdict, self.meaning()),
+                WIDTH
+            )
+        )?;
+        write!(f, "{}", self.unexplained)?;
+        if let Some(experiment) = &self.next_experiment {
+            writeln!(
+                f,
+                "{}",
+                wrapped(&format!("Next experiment: {experiment}"), WIDTH)
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl Explanation {
+    /// What the verdict means, in a sentence.
+    pub fn meaning(&self) -> &'static str {
+        match (self.head.verdict, self.steps.is_empty()) {
+            ("nothing-missing", _) => {
+                "The model explains the measurements to within the noise of the instruments."
+            }
+            ("explained", _) => {
+                "With what was added the model explains the measurements to within the noise."
+            }
+            ("ambiguous", _) => {
+                "The model is adequate now, but an effect could as well be another."
+            }
+            ("unexplained", true) => {
+                "The model is not adequate, and nothing in the catalogue makes it better."
+            }
+            ("unexplained", false) => {
+                "What was added helps, but what is left is not in the catalogue."
+            }
+            _ => "The campaign cannot decide.",
+        }
+    }
+}
+
+impl fmt::Display for Diagnosis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.head)?;
+        let mut table = Table::new([
+            "candidate",
+            "explains",
+            "error after",
+            "confidence",
+            "detectability",
+            "value",
+        ]);
+        for candidate in &self.candidates {
+            table.row([
+                candidate.effect.to_owned(),
+                format!("{:.1} %", 100.0 * candidate.explains),
+                format!("{:.2}", candidate.error_after),
+                format!("{:.2}", candidate.confidence),
+                format!("{:.2}", candidate.detectability),
+                candidate
+                    .parameters
+                    .first()
+                    .map_or(String::new(), ToString::to_string),
+            ]);
+        }
+        writeln!(f, "{table}")?;
+        for candidate in self
+            .candidates
+            .iter()
+            .filter(|candidate| !candidate.indistinguishable.is_empty())
+        {
+            let others = candidate.indistinguishable.join(", ");
+            writeln!(
+                f,
+                "On these data {} cannot be told from {others}.",
+                candidate.effect
+            )?;
+        }
+        writeln!(
+            f,
+            "Verdict with the best candidate alone: {}.",
+            self.head.verdict
+        )
+    }
+}
+
+impl fmt::Display for Head {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "Campaign {}, model {}", self.campaign, self.model)?;
+        let (before, after) = (self.error_before, self.error_after);
+        writeln!(
+            f,
+            "  error {before:.2} -> {after:.2} sigma (noise of the instruments: {:.2})\n",
+            self.noise_floor
+        )?;
+        let mut table = Table::new(["channel", "before", "after", "noise"]);
+        for (channel, values) in &self.channels {
+            let number = |key: &str| {
+                values[key]
+                    .as_f64()
+                    .map_or("-".to_owned(), |value| format!("{value:.3}"))
+            };
+            table.row([
+                channel.clone(),
+                number("before"),
+                number("after"),
+                number("noise"),
+            ]);
+        }
+        write!(f, "{table}")
+    }
+}
+
+impl fmt::Display for Step {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let values: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
+        writeln!(f, "{}: {}", self.effect, values.join(", "))?;
+        writeln!(
+            f,
+            "     error {:.2} -> {:.2}, on held-out runs {:.2} -> {:.2}; confidence {:.2}, detectability {:.2}",
+            self.error_before,
+            self.error_after,
+            self.held_out_before,
+            self.held_out_after,
+            self.confidence,
+            self.detectability
+        )?;
+        if !self.indistinguishable.is_empty() {
+            writeln!(
+                f,
+                "     cannot be told from: {}",
+                self.indistinguishable.join(", ")
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Parameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            name,
+            unit,
+            value,
+            low,
+            high,
+        } = self;
+        let space = if unit.is_empty() { "" } else { " " };
+        let number = |value: f64| significant(value, 4);
+        write!(
+            f,
+            "{name} {}{space}{unit} ({} to {})",
+            number(*value),
+            number(*low),
+            number(*high)
+        )
+    }
+}
+
+impl fmt::Display for Unexplained {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.share < 0.005 && self.depends_on.is_empty() {
+            return Ok(());
+        }
+        write!(
+            f,
+            "  {:.1} % of the squared error above the noise stays",
+            100.0 * self.share
+        )?;
+        if !self.depends_on.is_empty() {
+            write!(f, "; it goes with {}", self.depends_on.join(", "))?;
+        }
+        if let Some(term) = &self.suggested_term {
+            write!(f, "; a term to try: {term}")?;
+        }
+        writeln!(f)
+    }
+}
+
+/// A number with so many significant digits.
+pub fn significant(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 12);
+    format!("{value:.*}", decimals as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_their_significant_digits() {
+        assert_eq!(significant(0.199_04, 4), "0.1990");
+        assert_eq!(significant(0.004_2, 3), "0.00420");
+        assert_eq!(significant(725.4, 3), "725");
+        assert_eq!(significant(0.0, 3), "0");
+    }
+
+    #[test]
+    fn a_parameter_without_a_unit_has_no_stray_space() {
+        let parameter = Parameter {
+            name: "scale",
+            unit: "",
+            value: -0.05,
+            low: -0.06,
+            high: -0.04,
+        };
+        assert_eq!(
+            parameter.to_string(),
+            "scale -0.05000 (-0.06000 to -0.04000)"
+        );
+    }
+}

@@ -1,0 +1,244 @@
+//! Line charts as inline SVG.
+use std::fmt::Write as _;
+
+use maud::{Markup, html};
+
+use super::scale::{Scale, extent};
+
+const WIDTH_PX: f64 = 520.0;
+const HEIGHT_PX: f64 = 220.0;
+const LEFT_PX: f64 = 54.0;
+const RIGHT_PX: f64 = 10.0;
+const TOP_PX: f64 = 10.0;
+const BOTTOM_PX: f64 = 38.0;
+const X_TICKS: usize = 6;
+const Y_TICKS: usize = 4;
+/// Columns that a long log is thinned to; each keeps its least and greatest value, so no peak is lost.
+const BUCKETS: usize = 250;
+
+/// How a line looks. Colours differ in lightness too, so that they can be told apart in grey print.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stroke {
+    /// What was measured.
+    Measured,
+    /// The model as it was.
+    Before,
+    /// The model as it became.
+    After,
+    /// A further line.
+    Other,
+}
+
+impl Stroke {
+    const fn colour(self) -> &'static str {
+        match self {
+            Self::Measured => "#8c959f",
+            Self::Before => "#d55e00",
+            Self::After => "#0058a3",
+            Self::Other => "#00795b",
+        }
+    }
+
+    const fn width(self) -> &'static str {
+        if matches!(self, Self::Measured) {
+            "2.6"
+        } else {
+            "1.4"
+        }
+    }
+
+    const fn dashes(self) -> &'static str {
+        if matches!(self, Self::Before) {
+            "5 3"
+        } else {
+            "none"
+        }
+    }
+}
+
+/// One line of a chart.
+#[derive(Debug, Clone)]
+pub struct Line<'a> {
+    /// Name, for readers who cannot see the chart.
+    pub name: &'a str,
+    /// Look.
+    pub stroke: Stroke,
+    /// Values along the axis.
+    pub x: &'a [f64],
+    /// Values; NaN where there are none.
+    pub y: &'a [f64],
+}
+
+/// A chart of lines over a common axis.
+#[derive(Debug, Clone)]
+pub struct Chart<'a> {
+    /// What it shows; stands below it.
+    pub caption: String,
+    /// Axis titles with unit.
+    pub x_title: &'a str,
+    /// Axis titles with unit.
+    pub y_title: &'a str,
+    /// The lines, drawn in this order.
+    pub lines: Vec<Line<'a>>,
+}
+
+impl Chart<'_> {
+    /// The chart as a figure; an empty one if no line has a value.
+    pub fn figure(&self) -> Markup {
+        let xs = extent(self.lines.iter().flat_map(|line| line.x.iter().copied()));
+        let ys = extent(self.lines.iter().flat_map(|line| line.y.iter().copied()));
+        let (Some(xs), Some(ys)) = (xs, ys) else {
+            return html! { figure { figcaption { (self.caption) ": no values" } } };
+        };
+        let x = Scale::new(xs, (LEFT_PX, WIDTH_PX - RIGHT_PX));
+        let y = Scale::new(ys, (HEIGHT_PX - BOTTOM_PX, TOP_PX));
+        let names: Vec<&str> = self.lines.iter().map(|line| line.name).collect();
+        html! { figure {
+            svg viewBox=(format!("0 0 {WIDTH_PX} {HEIGHT_PX}")) role="img"
+                aria-label=(format!("{}: {}", self.caption, names.join(", "))) {
+                (self.axes(&x, &y))
+                @for line in &self.lines { (draw(line, &x, &y)) }
+            }
+            figcaption { (self.caption) }
+        } }
+    }
+
+    fn axes(&self, x: &Scale, y: &Scale) -> Markup {
+        let (right, base) = (WIDTH_PX - RIGHT_PX, HEIGHT_PX - BOTTOM_PX);
+        let middle = (TOP_PX + base) / 2.0;
+        html! {
+            @for tick in y.ticks(Y_TICKS) { @let at = px(y.px(tick));
+                line x1=(LEFT_PX) x2=(right) y1=(at) y2=(at) stroke="#e6e9ed" {}
+                text.soft x=(LEFT_PX - 6.0) y=(at) text-anchor="end" dominant-baseline="middle" {
+                    (y.label(tick, Y_TICKS))
+                }
+            }
+            @for tick in x.ticks(X_TICKS) { @let at = px(x.px(tick));
+                line x1=(at) x2=(at) y1=(base) y2=(base + 4.0) stroke="#8c959f" {}
+                text.soft x=(at) y=(base + 17.0) text-anchor="middle" { (x.label(tick, X_TICKS)) }
+            }
+            line x1=(LEFT_PX) x2=(right) y1=(base) y2=(base) stroke="#8c959f" {}
+            text x=((LEFT_PX + right) / 2.0) y=(HEIGHT_PX - 4.0) text-anchor="middle" { (self.x_title) }
+            text x="12" y=(middle) text-anchor="middle" transform=(format!("rotate(-90 12 {middle})")) {
+                (self.y_title)
+            }
+        }
+    }
+}
+
+/// What the lines of the charts below mean.
+pub fn legend(entries: &[(Stroke, &str)]) -> Markup {
+    html! { div.legend { @for (stroke, name) in entries { span {
+        svg viewBox="0 0 28 10" aria-hidden="true" {
+            line x1="0" x2="28" y1="5" y2="5" stroke=(stroke.colour()) stroke-width=(stroke.width())
+                stroke-dasharray=(stroke.dashes()) {}
+        }
+        (name)
+    } } } }
+}
+
+fn draw(line: &Line<'_>, x: &Scale, y: &Scale) -> Markup {
+    html! {
+        path d=(path(line, x, y)) fill="none" stroke=(line.stroke.colour()) stroke-width=(line.stroke.width())
+            stroke-dasharray=(line.stroke.dashes()) stroke-linejoin="round" {}
+    }
+}
+
+/// The line as SVG path data; it breaks at dropouts.
+fn path(line: &Line<'_>, x: &Scale, y: &Scale) -> String {
+    let mut data = String::new();
+    let mut pen_down = false;
+    for i in thinned(line.y) {
+        let (Some(at), value) = (line.x.get(i), line.y[i]) else {
+            break;
+        };
+        if !value.is_finite() {
+            pen_down = false;
+            continue;
+        }
+        // Writing to a string cannot fail.
+        let _ = write!(
+            data,
+            "{}{} {}",
+            if pen_down { "L" } else { "M" },
+            px(x.px(*at)),
+            px(y.px(value))
+        );
+        pen_down = true;
+    }
+    data
+}
+
+/// The samples that are drawn: all of a short log; of a long one, the least and the greatest of each bucket, and the
+/// dropouts' first.
+fn thinned(values: &[f64]) -> Vec<usize> {
+    if values.len() <= 2 * BUCKETS {
+        return (0..values.len()).collect();
+    }
+    let size = values.len().div_ceil(BUCKETS);
+    let mut kept = Vec::with_capacity(3 * BUCKETS);
+    for start in (0..values.len()).step_by(size) {
+        let bucket = start..(start + size).min(values.len());
+        let known = |i: &usize| values[*i].is_finite();
+        let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
+        let least = bucket.clone().filter(known).min_by(by_value);
+        let greatest = bucket.clone().filter(known).max_by(by_value);
+        let gap = bucket.clone().find(|i| !known(i));
+        let mut chosen: Vec<usize> = [least, greatest, gap].into_iter().flatten().collect();
+        chosen.sort_unstable();
+        chosen.dedup();
+        kept.extend(chosen);
+    }
+    kept
+}
+
+/// A pixel position, to a tenth.
+fn px(value: f64) -> f64 {
+    (value * 10.0).round() / 10.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_logs_are_thinned_but_keep_their_peaks() {
+        let mut values = vec![0.0; 10_000];
+        values[7_321] = 5.0;
+        let kept = thinned(&values);
+        assert!(kept.contains(&7_321) && kept.len() <= 3 * BUCKETS);
+    }
+
+    #[test]
+    fn a_line_breaks_at_a_dropout() {
+        let (x, y) = ([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, f64::NAN, 1.0]);
+        let line = Line {
+            name: "flow",
+            stroke: Stroke::After,
+            x: &x,
+            y: &y,
+        };
+        let (sx, sy) = (
+            Scale::new((0.0, 3.0), (0.0, 30.0)),
+            Scale::new((0.0, 1.0), (10.0, 0.0)),
+        );
+        assert_eq!(path(&line, &sx, &sy), "M0 10L10 0M30 0");
+    }
+
+    #[test]
+    fn a_chart_of_nothing_says_so() {
+        let line = Line {
+            name: "flow",
+            stroke: Stroke::After,
+            x: &[0.0],
+            y: &[f64::NAN],
+        };
+        let chart = Chart {
+            caption: "c".into(),
+            x_title: "t",
+            y_title: "q",
+            lines: vec![line],
+        };
+        assert!(chart.figure().into_string().contains("no values"));
+    }
+}

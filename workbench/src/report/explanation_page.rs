@@ -1,0 +1,148 @@
+//! The report of `hitch explain`.
+use hitch_model::identification::explain::Explanation as Identified;
+use maud::{Markup, html};
+
+use super::page;
+use super::run_views::run_views;
+use super::runs::runs;
+use super::staircase::{self, staircase};
+use crate::commands::explain::Found;
+use crate::comparison::{Comparison, Evaluated, Grouping};
+use crate::explanation::{Explanation, Step};
+
+/// Groupings that are shown before and after.
+const GROUPINGS: [Grouping; 4] = [
+    Grouping::Regime,
+    Grouping::Current,
+    Grouping::Load,
+    Grouping::Temperature,
+];
+
+/// The report as one HTML document.
+pub fn page(found: &Found) -> String {
+    let head = &found.shown.head;
+    let title = format!("What {} lacks on {}", head.model, head.campaign);
+    page::page(&title, &html! { h1 { (title) } (sections(found)) })
+}
+
+/// The sections of the report, for pages that hold more than that.
+pub fn sections(found: &Found) -> Markup {
+    let Identified { before, after, .. } = &found.explanation;
+    let evaluated = |fit: &hitch_model::identification::fit::Fit| Evaluated {
+        experiment: found.experiment.clone(),
+        fit: fit.clone(),
+    };
+    let (before, after) = (evaluated(before), evaluated(after));
+    let changed = (!found.shown.steps.is_empty()).then_some(&after);
+    html! {
+        (verdict(&found.shown))
+        h2 { "The error, step by step" }
+        (staircase(&stairs(&found.shown)))
+        @if changed.is_some() { (steps(&found.shown.steps)) }
+        h2 { "By channel" }
+        (channels(&found.shown))
+        (grids(found, &before, changed))
+        h2 { "Measured against simulated" }
+        (runs(&run_views(&found.model, &before, changed)))
+    }
+}
+
+fn verdict(shown: &Explanation) -> Markup {
+    let head = &shown.head;
+    html! {
+        p.lead {
+            strong { (head.verdict) } ". " (shown.meaning()) " Error "
+            strong { (format!("{:.2}", head.error_before)) } " → " strong { (format!("{:.2}", head.error_after)) }
+            " sigma; a perfect model has 1.00, the noise of the instruments."
+        }
+        @if !shown.unexplained.depends_on.is_empty() {
+            p { (format!("{:.1} % of the squared error above the noise stays; it goes with ", 100.0 * shown.unexplained.share))
+                (shown.unexplained.depends_on.join(", ")) "." }
+        }
+    }
+}
+
+fn stairs(shown: &Explanation) -> Vec<staircase::Step> {
+    let first = staircase::Step {
+        name: shown.head.model.clone(),
+        error: shown.head.error_before,
+    };
+    let added = shown.steps.iter().map(|step| staircase::Step {
+        name: format!("+ {}", step.effect),
+        error: step.error_after,
+    });
+    [first].into_iter().chain(added).collect()
+}
+
+fn steps(steps: &[Step]) -> Markup {
+    let row = |step: &Step| {
+        let parameters: Vec<String> = step.parameters.iter().map(ToString::to_string).collect();
+        let twins = if step.indistinguishable.is_empty() {
+            "–".to_owned()
+        } else {
+            step.indistinguishable.join(", ")
+        };
+        vec![
+            step.effect.to_owned(),
+            parameters.join("; "),
+            format!("{:.2} → {:.2}", step.error_before, step.error_after),
+            format!("{:.2} → {:.2}", step.held_out_before, step.held_out_after),
+            format!("{:.2}", step.confidence),
+            format!("{:.2}", step.detectability),
+            twins,
+        ]
+    };
+    let header = [
+        "effect",
+        "parameters, 95 %",
+        "error",
+        "held-out error",
+        "confidence",
+        "detectability",
+        "could be",
+    ];
+    let rows: Vec<Vec<String>> = steps.iter().map(row).collect();
+    html! {
+        (page::table(&header, &rows))
+        p.note { "Held-out: on runs that were not used to fit. Detectability: root mean square, in sigma, of what only this effect can do." }
+    }
+}
+
+fn channels(shown: &Explanation) -> Markup {
+    let row = |(channel, values): (&String, &serde_json::Value)| {
+        let number = |key: &str| {
+            values[key]
+                .as_f64()
+                .map_or("–".to_owned(), |value| format!("{value:.3}"))
+        };
+        vec![
+            channel.clone(),
+            number("before"),
+            number("after"),
+            number("noise"),
+        ]
+    };
+    let rows: Vec<Vec<String>> = shown.head.channels.iter().map(row).collect();
+    page::table(
+        &[
+            "channel",
+            "error before",
+            "error after",
+            "noise of the instrument",
+        ],
+        &rows,
+    )
+}
+
+fn grids(found: &Found, before: &Evaluated, after: Option<&Evaluated>) -> Markup {
+    let compared = |evaluated: &Evaluated| Comparison::of(evaluated, &found.model);
+    let before = compared(before);
+    let after = after.map(compared);
+    html! { @for by in GROUPINGS {
+        h2 { "Error in sigma " (by.title()) }
+        div.grid {
+            div { @if after.is_some() { h3 { "Before" } } (before.grid(by).table()) }
+            @if let Some(after) = &after { div { h3 { "After" } (after.grid(by).table()) } }
+        }
+    } }
+}

@@ -1,0 +1,91 @@
+//! A table of errors in sigma, coloured by size: one looks for the dark cells.
+use maud::{Markup, html};
+
+/// Errors by row (regime) and column (channel).
+#[derive(Debug, Clone, Default)]
+pub struct HeatTable {
+    /// Name of the rows' column.
+    pub corner: String,
+    /// Names of the columns.
+    pub columns: Vec<String>,
+    /// Name of each row and its cells; `None` where nothing was measured.
+    pub rows: Vec<(String, Vec<Option<f64>>)>,
+}
+
+impl HeatTable {
+    /// The table as HTML. The value stands in every cell: the colour only guides the eye.
+    pub fn table(&self) -> Markup {
+        html! { div.scroll { table {
+            thead { tr {
+                th scope="col" { (self.corner) }
+                @for name in &self.columns { th scope="col" { (name) } }
+            } }
+            tbody { @for (name, cells) in &self.rows { tr {
+                th scope="row" { (name) }
+                @for cell in cells { (heat_cell(*cell)) }
+            } } }
+        } } }
+    }
+}
+
+fn heat_cell(value: Option<f64>) -> Markup {
+    match value.filter(|value| value.is_finite()) {
+        None => html! { td.none { "–" } },
+        Some(value) => {
+            html! { td style=(format!("background:{}", colour(value))) { (number(value)) } }
+        }
+    }
+}
+
+/// White at one sigma (noise), orange at ten and beyond; light enough for dark text throughout.
+fn colour(sigmas: f64) -> String {
+    const WHITE: [f64; 3] = [255.0, 255.0, 255.0];
+    const YELLOW: [f64; 3] = [255.0, 236.0, 170.0];
+    const ORANGE: [f64; 3] = [247.0, 160.0, 90.0];
+    let heat = ((sigmas.max(1e-9).log10() - 0.04) / 0.96).clamp(0.0, 1.0);
+    let (from, to, share) = if heat < 0.5 {
+        (WHITE, YELLOW, heat * 2.0)
+    } else {
+        (YELLOW, ORANGE, heat * 2.0 - 1.0)
+    };
+    let mix = |i: usize| from[i] + (to[i] - from[i]) * share;
+    format!(
+        "#{:02x}{:02x}{:02x}",
+        mix(0) as u8,
+        mix(1) as u8,
+        mix(2) as u8
+    )
+}
+
+fn number(value: f64) -> String {
+    if value < 99.95 {
+        format!("{value:.2}")
+    } else {
+        format!("{value:.0}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_is_white_and_errors_are_not() {
+        assert_eq!(colour(0.9), "#ffffff");
+        assert_eq!(colour(1.0), "#ffffff");
+        assert_eq!(colour(10.0), colour(1e6));
+        assert_ne!(colour(3.0), "#ffffff");
+    }
+
+    #[test]
+    fn missing_cells_are_dashes() {
+        let row = ("lifting".to_owned(), vec![None, Some(f64::NAN), Some(2.0)]);
+        let table = HeatTable {
+            rows: vec![row],
+            ..HeatTable::default()
+        };
+        let text = table.table().into_string();
+        assert_eq!(text.matches('–').count(), 2);
+        assert!(text.contains("2.00"));
+    }
+}

@@ -1,0 +1,10 @@
+//! Reports: one HTML file each, with everything in it, that opens without a network and prints well.
+pub mod chart;
+pub mod comparison_page;
+pub mod explanation_page;
+pub mod heat_table;
+pub mod page;
+pub mod run_views;
+pub mod runs;
+pub mod scale;
+pub mod staircase;

@@ -1,0 +1,51 @@
+//! From evaluated models to the runs that a report draws.
+use hitch_model::Model;
+use hitch_model::campaign::{Bench, Channel};
+
+use super::runs::{ChannelView, RunView};
+use crate::comparison::Evaluated;
+
+/// The runs of a campaign: measured, simulated by the model, and simulated by what it became.
+pub fn run_views(model: &Model, before: &Evaluated, after: Option<&Evaluated>) -> Vec<RunView> {
+    let view = |index: usize| {
+        let run = &before.experiment.runs[index];
+        RunView {
+            file: run.file.clone(),
+            conditions: conditions(run.bench, run.oil_temperature_c),
+            time_s: run.drive.time_s.clone(),
+            channels: channel_views(model, index, before, after),
+        }
+    };
+    (0..before.experiment.runs.len()).map(view).collect()
+}
+
+fn channel_views(
+    model: &Model,
+    run: usize,
+    before: &Evaluated,
+    after: Option<&Evaluated>,
+) -> Vec<ChannelView> {
+    let simulated = before.simulated(model, run);
+    let simulated_after = after.map(|after| after.simulated(model, run));
+    let view = |channel: Channel| {
+        Some(ChannelView {
+            channel,
+            measured: before.experiment.runs[run].measured[channel.index()].clone()?,
+            before: simulated.channel(channel).to_vec(),
+            after: simulated_after
+                .as_ref()
+                .map(|trace| trace.channel(channel).to_vec()),
+            error_before: before.error(run, channel),
+            error_after: after.map(|after| after.error(run, channel)),
+        })
+    };
+    Channel::ALL.into_iter().filter_map(view).collect()
+}
+
+fn conditions(bench: Bench, oil_temperature_c: f64) -> String {
+    let bench = match bench {
+        Bench::Hitch { load_kg } => format!("{load_kg:.0} kg"),
+        Bench::Flow { port_pressure_bar } => format!("flow bench at {port_pressure_bar:.0} bar"),
+    };
+    format!("{bench}, oil at {oil_temperature_c:.0} °C")
+}

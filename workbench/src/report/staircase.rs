@@ -1,0 +1,72 @@
+//! The fall of the error, step by step, as a bar chart with the noise as floor.
+use maud::{Markup, html};
+
+use super::scale::Scale;
+
+const WIDTH_PX: f64 = 640.0;
+const ROW_PX: f64 = 30.0;
+const NAME_PX: f64 = 210.0;
+const VALUE_PX: f64 = 60.0;
+const FLOOR_COLOUR: &str = "#00795b";
+
+/// One bar: what was done, and the error after it, in sigma.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// What was done.
+    pub name: String,
+    /// Root mean square of the error in sigma.
+    pub error: f64,
+}
+
+/// The bars, with a line at one sigma. The scale is logarithmic: a fall from 10 to 1 counts as much as 100 to 10.
+pub fn staircase(steps: &[Step]) -> Markup {
+    let greatest = steps.iter().map(|step| step.error).fold(2.0, f64::max);
+    let scale = Scale::new(
+        (0.5_f64.log10(), greatest.log10()),
+        (NAME_PX, WIDTH_PX - VALUE_PX),
+    );
+    let height = ROW_PX * steps.len() as f64 + 26.0;
+    let floor = scale.px(0.0);
+    html! { figure {
+        svg viewBox=(format!("0 0 {WIDTH_PX} {height}")) role="img" aria-label=(spoken(steps)) style="max-width:42rem" {
+            @for (i, step) in steps.iter().enumerate() { (bar(step, i as f64 * ROW_PX, &scale)) }
+            line x1=(floor) x2=(floor) y1="0" y2=(height - 20.0) stroke=(FLOOR_COLOUR) stroke-width="1.5" {}
+            text x=(floor) y=(height - 5.0) text-anchor="middle" { "1 = noise of the instruments" }
+        }
+    } }
+}
+
+fn bar(step: &Step, top: f64, scale: &Scale) -> Markup {
+    let length = (scale.px(step.error.max(0.5).log10()) - NAME_PX).max(1.0);
+    let middle = top + ROW_PX / 2.0;
+    html! {
+        text x=(NAME_PX - 8.0) y=(middle) text-anchor="end" dominant-baseline="middle" { (step.name) }
+        rect x=(NAME_PX) y=(top + 4.0) width=(length) height=(ROW_PX - 8.0) fill="#9ec3e6" {}
+        text x=(NAME_PX + length + 6.0) y=(middle) dominant-baseline="middle" { (format!("{:.2}", step.error)) }
+    }
+}
+
+fn spoken(steps: &[Step]) -> String {
+    let told: Vec<String> = steps
+        .iter()
+        .map(|step| format!("{} {:.2}", step.name, step.error))
+        .collect();
+    format!("Error in sigma: {}", told.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn draws_a_bar_a_step() {
+        let steps = [("nominal", 9.8), ("+ lower-threshold-shift", 1.02)];
+        let steps = steps.map(|(name, error)| Step {
+            name: name.to_owned(),
+            error,
+        });
+        let text = staircase(&steps).into_string();
+        assert_eq!(text.matches("<rect").count(), 2);
+        assert!(text.contains("9.80") && text.contains("1.02"));
+    }
+}

@@ -1,0 +1,46 @@
+//! Formatting, lints and documentation, with warnings denied.
+
+use anyhow::Result;
+
+use crate::toolchain::Way;
+use crate::{process, setup, workspace};
+
+/// Runs all checks; the first that fails ends it.
+pub fn run(way: Option<Way>) -> Result<()> {
+    let cargo =
+        |arguments: &[&str]| process::run(&mut process::command(workspace::cargo(), arguments));
+    cargo(&["fmt", "--all", "--check"])?;
+    cargo(&[
+        "clippy",
+        "--locked",
+        "--workspace",
+        "--all-targets",
+        "--",
+        "--deny",
+        "warnings",
+    ])?;
+    let mut documentation = process::command(
+        workspace::cargo(),
+        &["doc", "--locked", "--workspace", "--no-deps"],
+    );
+    process::run(documentation.env("RUSTDOCFLAGS", "--deny warnings"))?;
+    lint_images(setup::toolchain(way)?)
+}
+
+/// The images exist for ARM only. Debian's packages have no clippy, so there the compiler's own lints must do.
+fn lint_images(way: Way) -> Result<()> {
+    let subcommand = match way {
+        Way::Rustup => "clippy",
+        Way::Debian => "check",
+    };
+    let mut command = way.cargo(subcommand)?;
+    command.args([
+        "--package",
+        "hitch-firmware",
+        "--lib",
+        "--bins",
+        "--features",
+        "emulated",
+    ]);
+    process::run(command.env("RUSTFLAGS", "--deny warnings"))
+}

@@ -1,0 +1,84 @@
+//! Finding the ARM parts, and installing what is missing where that can be done without asking.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+
+use crate::process;
+use crate::toolchain::{TARGET, Way};
+
+/// The emulator of the ECU's processor.
+pub const EMULATOR: &str = "qemu-system-arm";
+
+const DEBIAN_TOOLCHAIN: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
+
+/// Finds or installs everything.
+pub fn run(way: Option<Way>) -> Result<()> {
+    toolchain(way)?;
+    emulator()
+}
+
+/// Finds or installs a compiler for ARM: `wanted`, or else the first way that works.
+pub fn toolchain(wanted: Option<Way>) -> Result<Way> {
+    let ways = wanted.map_or_else(|| vec![Way::Rustup, Way::Debian], |way| vec![way]);
+    let found = ways.iter().copied().find(|way| way.is_there());
+    let way = found.or_else(|| ways.iter().copied().find(|way| install(*way))).with_context(|| {
+        format!(
+            "no compiler for {TARGET}; install one of\n  rustup target add {TARGET}\n  apt-get install {}\n\
+             or run this task as root on Debian, which does the latter",
+            DEBIAN_TOOLCHAIN.join(" ")
+        )
+    })?;
+    println!("ARM toolchain: {}", way.description());
+    Ok(way)
+}
+
+/// Finds or installs the emulator.
+pub fn emulator() -> Result<()> {
+    if version_of_emulator().is_none() {
+        install_packages(&[EMULATOR]).with_context(|| {
+            format!("no {EMULATOR}: install QEMU for ARM (Debian's package has the same name)")
+        })?;
+    }
+    let version = version_of_emulator()
+        .with_context(|| format!("{EMULATOR} is installed, but does not run"))?;
+    println!("ARM emulator: {version}");
+    Ok(())
+}
+
+fn version_of_emulator() -> Option<String> {
+    let version = process::output(&mut process::command(EMULATOR, &["--version"]))?;
+    version.lines().next().map(str::to_owned)
+}
+
+/// Tries to install what `way` needs; says why not if it can't.
+fn install(way: Way) -> bool {
+    let result = match way {
+        Way::Rustup => process::run(&mut process::command("rustup", &["target", "add", TARGET])),
+        Way::Debian => install_packages(&DEBIAN_TOOLCHAIN),
+    };
+    if let Err(error) = result {
+        println!("not by {}: {error:#}", way.name());
+        return false;
+    }
+    way.is_there()
+}
+
+fn install_packages(packages: &[&str]) -> Result<()> {
+    if !Path::new("/usr/bin/apt-get").exists() {
+        bail!("this is not Debian (no apt-get)");
+    }
+    if process::output(&mut process::command("id", &["-u"])).as_deref() != Some("0") {
+        bail!("only root can run `apt-get install {}`", packages.join(" "));
+    }
+    // Another package manager may be at work; wait for it.
+    let apt = |arguments: &[&str]| {
+        let mut command = process::command("apt-get", &["-qq", "-o", "DPkg::Lock::Timeout=300"]);
+        command
+            .args(arguments)
+            .env("DEBIAN_FRONTEND", "noninteractive");
+        process::run(&mut command)
+    };
+    apt(&["update"])?;
+    apt(&[&["install", "--yes", "--no-install-recommends"], packages].concat())
+}

@@ -1,0 +1,131 @@
+//! The compiler for the ECU's processor, and the two ways to get one.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::str::FromStr;
+
+use anyhow::{Context, Error, Result, bail};
+
+use crate::{process, workspace};
+
+/// The ECU's processor: Cortex-M4 with a single-precision floating-point unit.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
+
+/// Where Debian's packages put the sources of `core`.
+const DEBIAN_SOURCES: &str = "/usr/lib/rustlib/src/rust/library/core/src/lib.rs";
+
+/// A way to a compiler for the target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// The toolchain in use, with the target's `core` from rustup.
+    Rustup,
+    /// Debian's newer compiler, which builds `core` from the matching sources.
+    Debian,
+}
+
+impl FromStr for Way {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "rustup" => Ok(Self::Rustup),
+            "debian" => Ok(Self::Debian),
+            _ => bail!("`--arm {name}`: there is no such way; take `rustup` or `debian`"),
+        }
+    }
+}
+
+impl Way {
+    /// Short name, as on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rustup => "rustup",
+            Self::Debian => "debian",
+        }
+    }
+
+    /// Whether all of it is on this machine.
+    pub fn is_there(self) -> bool {
+        match self {
+            Self::Rustup => {
+                sysroot().is_some_and(|root| root.join("lib/rustlib").join(TARGET).is_dir())
+            }
+            Self::Debian => {
+                let programs = ["/usr/bin/cargo", "/usr/bin/rustc", DEBIAN_SOURCES];
+                programs.iter().all(|path| Path::new(path).exists()) && debian_rustc_is_new()
+            }
+        }
+    }
+
+    /// What a reader should know of this way.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Rustup => "the toolchain in use, with its target thumbv7em-none-eabihf",
+            Self::Debian => "Debian's /usr/bin/cargo and rustc, building `core` from rust-web-src",
+        }
+    }
+
+    /// Starts a cargo command for the target.
+    pub fn cargo(self, subcommand: &str) -> Result<Command> {
+        let mut command = match self {
+            Self::Rustup => process::command(workspace::cargo(), &[subcommand]),
+            Self::Debian => debian_cargo(subcommand)?,
+        };
+        command
+            .args(["--locked", "--target", TARGET, "--target-dir"])
+            .arg(self.target_dir());
+        Ok(command)
+    }
+
+    /// Each way builds into its own folder: two compilers in one would rebuild each other's work.
+    pub fn target_dir(self) -> PathBuf {
+        workspace::target().join("arm").join(self.name())
+    }
+}
+
+fn debian_cargo(subcommand: &str) -> Result<Command> {
+    let mut command = process::command("/usr/bin/cargo", &[subcommand, "-Zbuild-std=core"]);
+    command
+        .env("RUSTC", "/usr/bin/rustc")
+        // Building `core` is unstable, but its sources are exactly this compiler's.
+        .env("RUSTC_BOOTSTRAP", "1")
+        .env("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER", rust_lld()?)
+        .env_remove("RUSTUP_TOOLCHAIN")
+        // Cargo points these at the toolchain that runs xtask.
+        .env_remove("RUSTDOC")
+        .env_remove("LD_LIBRARY_PATH");
+    Ok(command)
+}
+
+/// The linker that comes with the ordinary toolchain; Debian's packages have none.
+fn rust_lld() -> Result<PathBuf> {
+    let root = sysroot().context("`rustc --print sysroot` says nothing: is rustc on the path?")?;
+    let version = process::output(&mut process::command("rustc", &["-vV"])).unwrap_or_default();
+    let host = version
+        .lines()
+        .find_map(|line| line.strip_prefix("host: "))
+        .context("`rustc -vV` names no host")?;
+    let linker = root.join("lib/rustlib").join(host).join("bin/rust-lld");
+    if !linker.exists() {
+        bail!(
+            "no linker for ARM at {}: install Rust by rustup, which ships rust-lld there",
+            linker.display()
+        );
+    }
+    Ok(linker)
+}
+
+fn sysroot() -> Option<PathBuf> {
+    process::output(&mut process::command("rustc", &["--print", "sysroot"])).map(PathBuf::from)
+}
+
+/// Debian also has an old compiler under the same name, which the workspace is too new for.
+fn debian_rustc_is_new() -> bool {
+    let version =
+        process::output(Command::new("/usr/bin/rustc").arg("--version")).unwrap_or_default();
+    let mut numbers = version
+        .split([' ', '.'])
+        .skip(1)
+        .map_while(|number| number.parse::<u32>().ok());
+    (numbers.next(), numbers.next()) >= (Some(1), Some(90))
+}
