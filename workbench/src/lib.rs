@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod calibrate;
+pub mod calibration_file;
 pub mod cli;
 pub mod closed_loop;
 pub mod commands;
