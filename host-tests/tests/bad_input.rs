@@ -29,8 +29,8 @@ fn folder() -> TempDir {
     fs::create_dir(dir.path().join("c")).unwrap();
     fs::create_dir(dir.path().join("empty")).unwrap();
     write(&dir, "c/campaign.toml", MANIFEST);
-    write(&dir, "c/lift.csv", &log());
-    write(&dir, "log.csv", &log());
+    write(&dir, "c/lift.csv", log());
+    write(&dir, "log.csv", log());
     dir
 }
 

@@ -38,6 +38,41 @@ fn the_largest_orifice_area_is_the_paper_s() {
 }
 
 #[test]
+fn table_5_is_found_by_the_identification() {
+    let table = &paper("nominal")["table_5"];
+    assert_eq!(table["verdict"], "explained");
+    let effects = table["effects"].as_array().unwrap();
+    let mut found: Vec<&str> = effects
+        .iter()
+        .map(|check| check["effect"].as_str().unwrap())
+        .collect();
+    found.sort_unstable();
+    assert_eq!(
+        found,
+        [
+            "lift-flow-scale",
+            "lower-flow-scale",
+            "lower-threshold-shift"
+        ]
+    );
+    for check in effects {
+        let (expected, found) = (number(&check["expected"]), number(&check["found"]["value"]));
+        assert!((found / expected - 1.0).abs() < 0.02, "{check}");
+    }
+    let [lift, lower] = &table["valves"].as_array().unwrap()[..] else {
+        panic!("two valves")
+    };
+    for (valve, quantity, tolerance) in [
+        (lift, "saturation_lpm", 0.05),
+        (lower, "saturation_lpm", 0.05),
+        (lower, "threshold_a", 0.002),
+    ] {
+        let difference = number(&valve[quantity]["model"]) - number(&valve[quantity]["table_5"]);
+        assert!(difference.abs() < tolerance, "{quantity} of {valve}");
+    }
+}
+
+#[test]
 fn the_check_valve_cracks_at_2_5_bar() {
     let check_valve = &paper("nominal")["check_valve"];
     assert_eq!(number(&check_valve["model_bar"]), 2.5);
