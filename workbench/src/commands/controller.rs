@@ -94,17 +94,19 @@ fn answer(output: &mut impl Write, line: &str) -> Result<(), Error> {
 fn next_line(input: &mut impl BufRead, line: &mut String, number: usize) -> Result<bool, Error> {
     const LONGEST_BYTES: u64 = 4096;
     line.clear();
-    let read = io::Read::take(&mut *input, LONGEST_BYTES).read_line(line).map_err(|error| {
-        let what = format!("cannot be read: {error}");
-        fault(
-            number,
-            LineError {
-                column: 1,
-                what,
-                mend: "send UTF-8 text".to_owned(),
-            },
-        )
-    })?;
+    let read = io::Read::take(&mut *input, LONGEST_BYTES)
+        .read_line(line)
+        .map_err(|error| {
+            let what = format!("cannot be read: {error}");
+            fault(
+                number,
+                LineError {
+                    column: 1,
+                    what,
+                    mend: "send UTF-8 text".to_owned(),
+                },
+            )
+        })?;
     if read as u64 == LONGEST_BYTES && !line.ends_with('\n') {
         let what = "the line is longer than 4096 bytes".to_owned();
         return Err(fault(
