@@ -11,7 +11,7 @@
 //!   pressure drop (turbulent orifice, `Q = Cd A sqrt(2 dp / rho)`), so a flow is brought to the
 //!   drop at which the table was measured: `Q_ref = Q sqrt(dp_ref / dp)`.
 
-use super::fixed::{Divisor, interpolate, mul_div, square_root};
+use super::fixed::{interpolate, mul_shift_16, square_root_of_ratio_16};
 use super::units::{MicroLitrePerSecond, MilliAmp, MilliBar};
 
 /// Room for breakpoints in a valve table.
@@ -103,41 +103,36 @@ impl ValveTable {
 pub struct DropScale {
     /// The ratio in units of 2^-16.
     ratio: i32,
+    /// Its inverse in units of 2^-16.
+    inverse: i32,
 }
 
 impl DropScale {
-    const ONE: i32 = 1 << 16;
-
-    /// The scale at pressure drop `drop` of a table that was measured at `reference`. Drops are at least 1 mbar.
+    /// The scale at pressure drop `drop` of a table that was measured at `reference`. Drops are limited to
+    /// 1 mbar .. 524 bar.
     #[must_use]
     pub fn new(reference: MilliBar, drop: MilliBar) -> Self {
-        let reference = u64::from(reference.0.max(1).unsigned_abs());
-        let drop = core::num::NonZeroU64::new(u64::from(drop.0.max(1).unsigned_abs()));
-        // Radicand in units of 2^-32, so the root comes in 2^-16; the reference is below 2^31.
-        let radicand = drop.map_or(u64::MAX, |drop| (reference << 32) / drop);
+        let ratio = square_root_of_ratio_16(reference.0, drop.0).max(1);
+        // 2^32 / ratio; the numerator is one short of it, far below what rounding changes.
+        let inverse = u32::MAX
+            .checked_div(ratio.unsigned_abs())
+            .unwrap_or(u32::MAX);
         Self {
-            ratio: square_root(radicand).max(1),
+            ratio,
+            inverse: i32::try_from(inverse).unwrap_or(i32::MAX),
         }
     }
 
     /// The flow at the reference drop that needs the same opening as `flow` does at the present one.
     #[must_use]
     pub fn to_reference(self, flow: MicroLitrePerSecond) -> MicroLitrePerSecond {
-        MicroLitrePerSecond(mul_div(
-            flow.0,
-            self.ratio,
-            Divisor::at_least_one(Self::ONE),
-        ))
+        MicroLitrePerSecond(mul_shift_16(flow.0, self.ratio))
     }
 
     /// The flow at the present drop through an opening that lets `flow` through at the reference one.
     #[must_use]
     pub fn to_present(self, flow: MicroLitrePerSecond) -> MicroLitrePerSecond {
-        MicroLitrePerSecond(mul_div(
-            flow.0,
-            Self::ONE,
-            Divisor::at_least_one(self.ratio),
-        ))
+        MicroLitrePerSecond(mul_shift_16(flow.0, self.inverse))
     }
 }
 
