@@ -23,7 +23,7 @@ use std::path::Path;
 use hitch_firmware::control::calibration::{Calibration, CalibrationError, ValidCalibration};
 use hitch_firmware::control::linkage::LINKAGE_POINTS;
 use hitch_firmware::control::parameter::{ParameterGroup, ParameterInfo};
-use hitch_firmware::control::units::{MicroLitrePerSecond, MilliAmp, MilliDegree, Micrometre};
+use hitch_firmware::control::units::{MicroLitrePerSecond, Micrometre, MilliAmp, MilliDegree};
 use hitch_firmware::control::valve_map::{VALVE_POINTS, ValvePoint, ValveTable};
 use hitch_model::input_error::InputError;
 use hitch_model::source_file::SourceFile;
@@ -85,17 +85,36 @@ pub fn parse(source: &SourceFile) -> Result<ValidCalibration, InputError> {
     read_valve(&file, "lower", &mut calibration.lower)?;
     read_linkage(&file, &mut calibration)?;
     with_groups!(calibration, read_group, &file);
-    calibration.sealed().validate().map_err(|error| refused(&file, error))
+    calibration
+        .sealed()
+        .validate()
+        .map_err(|error| refused(&file, error))
 }
 
 /// The text of a calibration file with everything in it, each scalar with its reason.
 #[must_use]
 pub fn write(calibration: &Calibration) -> String {
-    let mut text = format!("# Calibration of a hitch controller; see `hitch calibrate --help`.\nformat = {FORMAT}\n");
-    write_valve(&mut text, "lift", "flow over current at the compensated drop", &calibration.lift);
-    write_valve(&mut text, "lower", "flow over current at hydraulics.reference_drop_bar", &calibration.lower);
+    let mut text = format!(
+        "# Calibration of a hitch controller; see `hitch calibrate --help`.\nformat = {FORMAT}\n"
+    );
+    write_valve(
+        &mut text,
+        "lift",
+        "flow over current at the compensated drop",
+        &calibration.lift,
+    );
+    write_valve(
+        &mut text,
+        "lower",
+        "flow over current at hydraulics.reference_drop_bar",
+        &calibration.lower,
+    );
     let linkage = &calibration.linkage;
-    let travel: Vec<f64> = linkage.travel.iter().map(|travel| f64::from(travel.0) / 1e3).collect();
+    let travel: Vec<f64> = linkage
+        .travel
+        .iter()
+        .map(|travel| f64::from(travel.0) / 1e3)
+        .collect();
     let _ = write!(
         text,
         "\n# Piston travel at equally spaced rocker angles\n[linkage]\nfirst_angle_deg = {:?}\nangle_step_deg = {:?}\ntravel_mm = {travel:?}\n",
@@ -119,7 +138,10 @@ pub fn key(info: &ParameterInfo) -> String {
     format!("{}_{}", info.name, info.suffix)
 }
 
-#[allow(clippy::unnecessary_wraps, reason = "shares its signature with the visitors that can fail")]
+#[allow(
+    clippy::unnecessary_wraps,
+    reason = "shares its signature with the visitors that can fail"
+)]
 fn list_group<G: ParameterGroup>(_group: &mut G, names: &mut Vec<&str>) -> Result<(), InputError> {
     names.push(G::NAME);
     Ok(())
@@ -141,7 +163,10 @@ fn read_group<G: ParameterGroup>(group: &mut G, file: &TomlTable<'_>) -> Result<
     Ok(())
 }
 
-#[allow(clippy::unnecessary_wraps, reason = "shares its signature with the visitors that can fail")]
+#[allow(
+    clippy::unnecessary_wraps,
+    reason = "shares its signature with the visitors that can fail"
+)]
 fn write_group<G: ParameterGroup>(group: &mut G, text: &mut String) -> Result<(), InputError> {
     let _ = write!(text, "\n[{}]\n", G::NAME);
     for (index, info) in G::INFO.iter().enumerate() {
@@ -157,16 +182,31 @@ fn read_valve(file: &TomlTable<'_>, valve: &str, table: &mut ValveTable) -> Resu
         return Ok(());
     };
     section.only(&["current_a", "flow_lpm"])?;
-    let list = |key, range| section.numbers(key, range)?.ok_or_else(|| section.missing(key));
+    let list = |key, range| {
+        section
+            .numbers(key, range)?
+            .ok_or_else(|| section.missing(key))
+    };
     let currents_a = list("current_a", CURRENTS_A)?;
     let flows_lpm = list("flow_lpm", FLOWS_LPM)?;
     if currents_a.len() != flows_lpm.len() || !(2..=VALVE_POINTS).contains(&currents_a.len()) {
-        let what = format!("{} currents and {} flows in [{valve}]", currents_a.len(), flows_lpm.len());
+        let what = format!(
+            "{} currents and {} flows in [{valve}]",
+            currents_a.len(),
+            flows_lpm.len()
+        );
         let mend = format!("give as many flows as currents, 2 to {VALVE_POINTS} of them");
         return Err(section.error_at("flow_lpm", what, mend));
     }
-    *table = ValveTable { count: currents_a.len() as u32, points: [ValvePoint::default(); VALVE_POINTS] };
-    for (point, (current_a, flow_lpm)) in table.points.iter_mut().zip(currents_a.iter().zip(flows_lpm)) {
+    *table = ValveTable {
+        count: currents_a.len() as u32,
+        points: [ValvePoint::default(); VALVE_POINTS],
+    };
+    for (point, (current_a, flow_lpm)) in table
+        .points
+        .iter_mut()
+        .zip(currents_a.iter().zip(flows_lpm))
+    {
         *point = ValvePoint {
             flow: MicroLitrePerSecond((flow_lpm * UL_S_PER_LPM).round() as i32),
             current: MilliAmp((current_a * 1e3).round() as i32),
@@ -176,11 +216,15 @@ fn read_valve(file: &TomlTable<'_>, valve: &str, table: &mut ValveTable) -> Resu
 }
 
 fn write_valve(text: &mut String, valve: &str, what: &str, table: &ValveTable) {
-    let column = |value: fn(&ValvePoint) -> f64| table.used().iter().map(value).collect::<Vec<f64>>();
+    let column =
+        |value: fn(&ValvePoint) -> f64| table.used().iter().map(value).collect::<Vec<f64>>();
     let currents_a = column(|point| f64::from(point.current.0) / 1e3);
     // Four decimals of l/min are finer than a microlitre a second.
     let flows_lpm = column(|point| (f64::from(point.flow.0) / UL_S_PER_LPM * 1e4).round() / 1e4);
-    let _ = write!(text, "\n# Valve: {what}\n[{valve}]\ncurrent_a = {currents_a:?}\nflow_lpm = {flows_lpm:?}\n");
+    let _ = write!(
+        text,
+        "\n# Valve: {what}\n[{valve}]\ncurrent_a = {currents_a:?}\nflow_lpm = {flows_lpm:?}\n"
+    );
 }
 
 fn read_linkage(file: &TomlTable<'_>, calibration: &mut Calibration) -> Result<(), InputError> {
@@ -190,9 +234,15 @@ fn read_linkage(file: &TomlTable<'_>, calibration: &mut Calibration) -> Result<(
     section.only(&["first_angle_deg", "angle_step_deg", "travel_mm"])?;
     let milli = |value: f64| (value * 1e3).round() as i32;
     let table = &mut calibration.linkage;
-    table.first_angle = MilliDegree(milli(section.required_number("first_angle_deg", -360.0..=360.0)?));
-    table.angle_step = MilliDegree(milli(section.required_number("angle_step_deg", 0.001..=90.0)?));
-    let travels_mm = section.numbers("travel_mm", TRAVELS_MM)?.ok_or_else(|| section.missing("travel_mm"))?;
+    table.first_angle = MilliDegree(milli(
+        section.required_number("first_angle_deg", -360.0..=360.0)?,
+    ));
+    table.angle_step = MilliDegree(milli(
+        section.required_number("angle_step_deg", 0.001..=90.0)?,
+    ));
+    let travels_mm = section
+        .numbers("travel_mm", TRAVELS_MM)?
+        .ok_or_else(|| section.missing("travel_mm"))?;
     if travels_mm.len() != LINKAGE_POINTS {
         let what = format!("{} travels in [linkage]", travels_mm.len());
         return Err(section.error_at("travel_mm", what, format!("give {LINKAGE_POINTS} of them")));
@@ -212,19 +262,29 @@ fn refused(file: &TomlTable<'_>, error: CalibrationError) -> InputError {
             format!("point {} of [{valve}] is out of order", index + 1),
             "start at no flow, and let currents and flows rise strictly",
         ),
-        E::ValveSize { valve } => (valve, format!("[{valve}] has no points"), "give at least two"),
+        E::ValveSize { valve } => (
+            valve,
+            format!("[{valve}] has no points"),
+            "give at least two",
+        ),
         E::Linkage { index } => (
             "linkage",
             format!("travel {} of [linkage] does not rise", index + 1),
             "let the travel rise strictly with the angle",
         ),
-        E::Crossed { group, low, high } => (group, format!("{low} of [{group}] is not below {high}"), "exchange them"),
+        E::Crossed { group, low, high } => (
+            group,
+            format!("{low} of [{group}] is not below {high}"),
+            "exchange them",
+        ),
         E::Parameter { group, what } => (
             group,
             format!("{} of [{group}] is out of range", key(what.parameter)),
             "see the reasons in a file that `hitch calibrate` writes",
         ),
-        E::Version { .. } | E::Checksum { .. } => ("format", "the block is damaged".to_owned(), "write it anew"),
+        E::Version { .. } | E::Checksum { .. } => {
+            ("format", "the block is damaged".to_owned(), "write it anew")
+        }
     };
     file.error_at(section, what, mend)
 }
@@ -234,7 +294,10 @@ mod tests {
     use super::*;
 
     fn source(text: &str) -> SourceFile {
-        SourceFile { path: "c.toml".into(), text: text.to_owned() }
+        SourceFile {
+            path: "c.toml".into(),
+            text: text.to_owned(),
+        }
     }
 
     fn fault(text: &str) -> String {
@@ -259,15 +322,30 @@ mod tests {
     fn faults_say_what_and_where() {
         assert!(fault("[lift]\n").starts_with("c.toml:1:1: the top level has no format"));
         let unit = fault("format = 1\n[position]\nrestart_band_in = 1\n");
-        assert!(unit.starts_with("c.toml:3:1: unit in is not known, this key is restart_band_mm"), "{unit}");
+        assert!(
+            unit.starts_with("c.toml:3:1: unit in is not known, this key is restart_band_mm"),
+            "{unit}"
+        );
         let range = fault("format = 1\n[safety]\nlift_current_limit_a = 50\n");
-        assert!(range.starts_with("c.toml:3:24: lift_current_limit_a = 50 is out of range"), "{range}");
+        assert!(
+            range.starts_with("c.toml:3:24: lift_current_limit_a = 50 is out of range"),
+            "{range}"
+        );
         let order = fault("format = 1\n[lift]\ncurrent_a = [1.0, 0.9]\nflow_lpm = [0, 10]\n");
-        assert!(order.starts_with("c.toml:2:1: point 2 of [lift] is out of order"), "{order}");
+        assert!(
+            order.starts_with("c.toml:2:1: point 2 of [lift] is out of order"),
+            "{order}"
+        );
         let crossed = fault("format = 1\n[position]\nlower_limit_deg = 140\n");
-        assert!(crossed.contains("lower_limit of [position] is not below upper_limit"), "{crossed}");
+        assert!(
+            crossed.contains("lower_limit of [position] is not below upper_limit"),
+            "{crossed}"
+        );
         let count = fault("format = 1\n[lower]\ncurrent_a = [1, 2, 3]\nflow_lpm = [0, 1]\n");
-        assert!(count.starts_with("c.toml:4:12: 3 currents and 2 flows"), "{count}");
+        assert!(
+            count.starts_with("c.toml:4:12: 3 currents and 2 flows"),
+            "{count}"
+        );
     }
 
     #[test]
@@ -276,7 +354,12 @@ mod tests {
         for end in 0..good.len().min(3_000) {
             let _ = fault(&good[..end]);
         }
-        for bad in ["format = nan", "format = 1\nlift = 3", "format = 1\n[lift]\ncurrent_a = []\nflow_lpm = []", "\0"] {
+        for bad in [
+            "format = nan",
+            "format = 1\nlift = 3",
+            "format = 1\n[lift]\ncurrent_a = []\nflow_lpm = []",
+            "\0",
+        ] {
             assert_ne!(fault(bad), "no fault", "{bad:?}");
         }
     }

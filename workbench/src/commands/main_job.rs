@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use hitch_model::Model;
 use hitch_model::campaign::Campaign;
 
-use super::explain::Found;
 use crate::comparison::Comparison;
 use crate::demonstration;
 use crate::error::Error;
+use crate::explanation::Found;
 use crate::output;
 use crate::report::explanation_page;
 

@@ -6,9 +6,8 @@ use super::page;
 use super::run_views::run_views;
 use super::runs::runs;
 use super::staircase::{self, staircase};
-use crate::commands::explain::Found;
 use crate::comparison::{Comparison, Evaluated, Grouping};
-use crate::explanation::{Explanation, Step};
+use crate::explanation::{Explanation, Found, Step};
 
 /// Groupings that are shown before and after.
 const GROUPINGS: [Grouping; 4] = [
