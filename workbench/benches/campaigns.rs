@@ -13,6 +13,9 @@ use hitch_model::effects::{self, AddedEffect};
 use hitch_model::identification::experiment::{Experiment, Nuisance, ReadyRun};
 use hitch_model::identification::explain::explain;
 use hitch_workbench::demonstration;
+use rand::SeedableRng;
+use rand_distr::{Distribution, Normal};
+use rand_pcg::Pcg64;
 
 fn measured() -> Campaign {
     demonstration::campaign().expect("the demonstration is built in")
@@ -25,18 +28,17 @@ fn measured_on_a_dynamic_rig() -> Campaign {
     let rig = Model::dynamic().with_effects(vec![AddedEffect::typical(friction)]);
     let mut campaign = measured();
     let experiment = Experiment::new(&campaign, &rig);
-    let mut random = fastrand::Rng::with_seed(1);
+    let mut random = Pcg64::seed_from_u64(1);
     for (run, ready) in campaign.runs.iter_mut().zip(&experiment.runs) {
         let trace = ready.simulate(&rig, Nuisance::default(), 0.0, 0.0);
         for channel in Channel::ALL {
             let sigma = experiment.noise[channel.index()];
             if let Some(values) = &mut run.channels[channel.index()] {
-                // Twelve even distributions make a normal one of variance one.
-                let mut noise = || (0..12).map(|_| random.f64()).sum::<f64>() - 6.0;
+                let noise = Normal::new(0.0, sigma).expect("an instrument has noise");
                 *values = trace
                     .channel(channel)
                     .iter()
-                    .map(|value| value + sigma * noise())
+                    .map(|value| value + noise.sample(&mut random))
                     .collect();
             }
         }

@@ -1,7 +1,10 @@
 //! The workbench: everything behind the program `hitch`.
 #![forbid(unsafe_code)]
 
+pub mod calibrate;
+pub mod calibration_file;
 pub mod cli;
+pub mod closed_loop;
 pub mod commands;
 pub mod comparison;
 pub mod demonstration;
@@ -13,3 +16,4 @@ pub mod paper;
 pub mod progress;
 pub mod report;
 pub mod text;
+pub mod valve_survey;

@@ -80,7 +80,10 @@ impl Controller {
         if self.envelope.is_tripped() {
             self.fail(Fault::Envelope);
         }
-        let map = valve_map(&self.calibration, self.scale);
+        let hydraulics = &self.calibration.hydraulics;
+        let present = self.load.present_drop(hydraulics);
+        let scale = DropScale::new(hydraulics.reference_drop, present);
+        let map = valve_map(&self.calibration, scale);
         self.motion.drive(
             currents.lift,
             currents.lower,

@@ -74,8 +74,8 @@ parameter_group! {
 parameter_group! {
     /// The motion estimator.
     MotionParameters, "motion" {
-        /// Time constant of the position estimate: averages the angle noise to a fifth, and stays below the load's own frequency.
-        position_time: Millisecond = 32, 1..=500;
+        /// Time constant of the position estimate: averages the angle noise to a sixth, and stays below the load's own frequency.
+        position_time: Millisecond = 20, 1..=500;
         /// Largest error of the valve map that the estimator may blame on it: 0.25 A of threshold at 15 bar is 34 mm/s.
         bias_limit: MicrometrePerSecond = 80_000, 0..=500_000;
     }
@@ -90,26 +90,28 @@ parameter_group! {
         upper_limit: MilliDegree = 135_400, -360_000..=360_000;
         /// A resting hitch follows the lever only when it moves by more than this: 0.2 % of the range, beyond lever noise.
         lever_deadband: MilliDegree = 200, 0..=5_000;
-        /// The coil is cut when the predicted resting point is this close: 0.06 degree, the noise of the sensor.
-        stop_band: Micrometre = 100, 10..=5_000;
+        /// The coil is cut when that would bring the hitch this close: two steps at creep speed.
+        stop_band: Micrometre = 20, 0..=5_000;
         /// A resting hitch that is further off than this is corrected: 0.35 degree, inside the 0.5 degree that is asked for.
         restart_band: Micrometre = 600, 20..=10_000;
-        /// Speed per remaining distance at the end of the approach: a third of the slowest natural frequency's bandwidth.
-        approach_gain: PerSecond = 20, 1..=200;
+        /// Speed per remaining distance at the end of the approach: 4 Hz, a third of the slowest frequency at which a load swings on its oil.
+        approach_gain: PerSecond = 25, 1..=200;
+        /// Slowest approach: cutting the coil at this speed swings the pressure of 250 kg by 10 bar, no more than a normal edge.
+        creep_speed: MicrometrePerSecond = 12_000, 0..=100_000;
         /// Fastest lifting.
         lift_speed: MicrometrePerSecond = 150_000, 1_000..=1_000_000;
         /// Fastest lowering.
         lower_speed: MicrometrePerSecond = 300_000, 1_000..=1_000_000;
-        /// Acceleration when lifting: full speed in 120 ms, the edge of a normal manoeuvre.
-        lift_acceleration: MillimetrePerSecondSquared = 1_200, 50..=20_000;
-        /// Deceleration when lifting.
-        lift_deceleration: MillimetrePerSecondSquared = 1_200, 50..=20_000;
-        /// Acceleration when lowering.
-        lower_acceleration: MillimetrePerSecondSquared = 1_200, 50..=20_000;
-        /// Deceleration when lowering.
-        lower_deceleration: MillimetrePerSecondSquared = 1_200, 50..=20_000;
+        /// Acceleration when lifting: full speed in 75 ms, which the lag of the spool rounds to the edge of a normal manoeuvre.
+        lift_acceleration: MillimetrePerSecondSquared = 2_000, 50..=20_000;
+        /// Deceleration when lifting: full speed in 100 ms; a gravity-loaded piston would bounce from 3 m/s2 on at light load.
+        lift_deceleration: MillimetrePerSecondSquared = 1_500, 50..=20_000;
+        /// Acceleration when lowering: 250 kg keep half of their pressure.
+        lower_acceleration: MillimetrePerSecondSquared = 2_500, 50..=20_000;
+        /// Deceleration when lowering: what stops 250 kg adds half of their pressure, and the map still closes fast enough.
+        lower_deceleration: MillimetrePerSecondSquared = 1_250, 50..=20_000;
         /// Deceleration when a move is called off or reversed: twice the ramp, for the operator has changed their mind.
-        abort_deceleration: MillimetrePerSecondSquared = 2_400, 50..=20_000;
+        abort_deceleration: MillimetrePerSecondSquared = 3_000, 50..=20_000;
     }
 }
 

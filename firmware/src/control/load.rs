@@ -18,7 +18,8 @@ const TELLING_SPEED: MicrometrePerSecond = MicrometrePerSecond(25_000);
 pub struct LoadEstimate {
     /// In microbars, so that slow learning isn't rounded away.
     microbar: i32,
-    measured: bool,
+    /// The sensor's last sample.
+    sensor: Option<MilliBar>,
 }
 
 impl LoadEstimate {
@@ -27,7 +28,7 @@ impl LoadEstimate {
     pub fn new(hydraulics: &HydraulicParameters) -> Self {
         Self {
             microbar: hydraulics.assumed_drop.0.saturating_mul(1000),
-            measured: false,
+            sensor: None,
         }
     }
 
@@ -39,14 +40,24 @@ impl LoadEstimate {
         motion: &Motion,
         hydraulics: &HydraulicParameters,
     ) {
-        match sensor {
-            Some(pressure) => self.follow(pressure, hydraulics),
-            None if lowering => self.learn(motion, hydraulics),
-            None => self.measured = false,
+        match (sensor, self.sensor) {
+            (Some(pressure), None) => self.microbar = pressure.0.saturating_mul(1000),
+            (Some(pressure), Some(_)) => self.follow(pressure, hydraulics),
+            (None, _) if lowering => self.learn(motion, hydraulics),
+            (None, _) => {}
         }
+        self.sensor = sensor;
         let low = hydraulics.smallest_drop.0.saturating_mul(1000);
         let high = hydraulics.largest_drop.0.saturating_mul(1000);
         self.microbar = self.microbar.max(low).min(high);
+    }
+
+    /// The drop at this moment, for telling what flows: the load's inertia can treble the pressure within the
+    /// time in which [`Self::drop`] follows.
+    #[must_use]
+    pub fn present_drop(&self, hydraulics: &HydraulicParameters) -> MilliBar {
+        let drop = self.sensor.unwrap_or_else(|| self.drop());
+        drop.limited(hydraulics.smallest_drop, hydraulics.largest_drop)
     }
 
     /// The drop that the lowering map should use.
@@ -55,21 +66,17 @@ impl LoadEstimate {
         MilliBar(Divisor::THOUSAND.divide(self.microbar))
     }
 
-    /// Low-passes the sensor; the first sample is taken as it is.
+    /// Low-passes the sensor.
     fn follow(&mut self, pressure: MilliBar, hydraulics: &HydraulicParameters) {
-        let sample = pressure.0.saturating_mul(1000);
-        if self.measured {
-            let error = sample.saturating_sub(self.microbar);
-            let step = hydraulics.pressure_filter.divisor().divide(error);
-            self.microbar = self.microbar.saturating_add(step);
-        } else {
-            self.measured = true;
-            self.microbar = sample;
-        }
+        let error = pressure
+            .0
+            .saturating_mul(1000)
+            .saturating_sub(self.microbar);
+        let step = hydraulics.pressure_filter.divisor().divide(error);
+        self.microbar = self.microbar.saturating_add(step);
     }
 
     fn learn(&mut self, motion: &Motion, hydraulics: &HydraulicParameters) {
-        self.measured = false;
         let model = -motion.model_speed();
         if model < TELLING_SPEED {
             return;

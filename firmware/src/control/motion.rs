@@ -29,6 +29,7 @@ pub struct Motion {
     model_speed: MicrometrePerSecond,
     lift_spool: Spool,
     lower_spool: Spool,
+    closing_permille: i32,
 }
 
 impl Motion {
@@ -68,11 +69,13 @@ impl Motion {
         hydraulics: &HydraulicParameters,
     ) {
         let lag = hydraulics.spool_lag.divisor();
-        let up = map.lift.flow(self.lift_spool.follow(lift, lag));
-        let down = map
-            .scale
-            .to_present(map.lower.flow(self.lower_spool.follow(lower, lag)));
+        let lift = self.lift_spool.follow(lift, lag);
+        let lower = self.lower_spool.follow(lower, lag);
+        let up = map.lift.flow(lift);
+        let down = map.scale.to_present(map.lower.flow(lower));
         self.model_speed = piston_speed(up - down, hydraulics.piston_area);
+        let closing = half_closing_share(lift, map.lift.threshold());
+        self.closing_permille = closing.max(half_closing_share(lower, map.lower.threshold()));
     }
 
     /// Forgets what the map got wrong: the next move may go the other way.
@@ -114,6 +117,23 @@ impl Motion {
         let over_run = Micrometre(self.speed().0).scaled(hydraulics.spool_lag.0, Divisor::THOUSAND);
         self.position() + over_run
     }
+
+    /// Where the piston comes to rest if the coil is cut now.
+    ///
+    /// The spool then makes for zero current, not for its threshold: from current `I` it is shut after
+    /// `T ln(I / I0)`, about `T (I - I0) / I0`, and flow falls evenly meanwhile: half of that at full speed.
+    #[must_use]
+    pub fn cut_point(&self, hydraulics: &HydraulicParameters) -> Micrometre {
+        let full = self.resting_point(hydraulics) - self.position();
+        self.position() + full.scaled(self.closing_permille, Divisor::THOUSAND)
+    }
+}
+
+/// `(I - I0) / (2 I0)` in thousandths, at most one.
+fn half_closing_share(current: MilliAmp, threshold: MilliAmp) -> i32 {
+    let above = (current - threshold).max(MilliAmp::ZERO);
+    let twice = Divisor::at_least_one(threshold.0.saturating_mul(2));
+    above.scaled(1000, twice).0.min(1000)
 }
 
 /// `4 T^2` as divisor and as number: from the sum of position errors to the bias.

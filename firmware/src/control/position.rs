@@ -8,6 +8,9 @@
 //! u(r) = k r                        r <= a / k^2
 //! u(r) = sqrt(2 a (r - a / 2k^2))   beyond; value and slope meet
 //! ```
+//!
+//! It never asks for less than a creep speed: the end of the approach is then a cut of the coil, at the
+//! moment from which the closing spool carries the hitch onto the set point ([`Motion::cut_point`]).
 
 use super::calibration::Calibration;
 use super::design_parameters::PositionParameters;
@@ -118,10 +121,9 @@ impl PositionControl {
         calibration: &Calibration,
     ) -> Demand {
         let parameters = &calibration.position;
-        let remaining = target - motion.resting_point(&calibration.hydraulics);
         let direction = match phase {
             Phase::Moving { direction, .. } => direction,
-            _ => Direction::of(remaining.0),
+            _ => Direction::of((target - motion.position()).0),
         };
         let (limit, acceleration, deceleration) = match direction {
             Direction::Lift => (
@@ -135,11 +137,13 @@ impl PositionControl {
                 parameters.lower_deceleration,
             ),
         };
-        let ahead = Micrometre(direction.sign(remaining.0));
-        let speed = if ahead <= parameters.stop_band {
-            MicrometrePerSecond::ZERO
-        } else {
-            approach_speed(ahead, deceleration, parameters.approach_gain).min(limit)
+        let ahead_of = |point: Micrometre| Micrometre(direction.sign((target - point).0));
+        let cut = ahead_of(motion.cut_point(&calibration.hydraulics)) <= parameters.stop_band;
+        let remaining = ahead_of(motion.resting_point(&calibration.hydraulics));
+        let approach = approach_speed(remaining, deceleration, parameters.approach_gain);
+        let speed = match cut {
+            true => MicrometrePerSecond::ZERO,
+            false => approach.max(parameters.creep_speed).min(limit),
         };
         Demand {
             direction,

@@ -17,7 +17,7 @@ const FEWEST: usize = 30;
 const TOLERATED: f64 = 1.35;
 
 /// Standard deviations that the largest of some hundred cells may lie above one.
-const DEVIATIONS: f64 = 4.5;
+const DEVIATIONS: f64 = 6.0;
 
 /// By how much slow noise spreads a mean square: a fifth of the variance with a correlation time of 0.4 s gives 1.8.
 const SLOW_NOISE: f64 = 2.0;

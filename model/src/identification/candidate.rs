@@ -14,8 +14,14 @@ use crate::model::Model;
 /// Sizes of the secants, in typical sizes: derivatives at zero miss a play or a gap, one size misses what saturates.
 const SIZES: [f64; 5] = [0.03, 0.2, 1.0, 2.5, 6.0];
 
-/// How many starts are sketched.
+/// How many starts of an effect are sketched while the model is far from the data: there are valleys to fall into.
 const STARTS: usize = 2;
+
+/// Error from which a model counts as far from the data.
+const FAR: f64 = 1.3;
+
+/// How many effects are sketched, the most promising of the screen first.
+const SKETCHED: usize = 8;
 
 /// An effect is fitted in full if its sketch is among the first so many,
 const ALWAYS_FITTED: usize = 2;
@@ -52,14 +58,30 @@ pub fn try_effects(
     progress: &(dyn Fn(&str) + Sync),
 ) -> Vec<Candidate> {
     let jacobian = Jacobian::new(experiment, model, &base.weights, &base.estimate);
-    let mut sketches: Vec<(f64, Estimate, &'static dyn Effect)> = effects
+    let mut started: Vec<(f64, Vec<Estimate>, &'static dyn Effect)> = effects
         .par_iter()
         .map(|&effect| {
-            let (cost, estimate) = starts(experiment, model, base, &jacobian, effect)
-                .into_iter()
-                .map(|start| sketch(experiment, model, &base.weights, start))
+            let (cost, starts) = starts(experiment, model, base, &jacobian, effect);
+            (cost, starts, effect)
+        })
+        .collect();
+    started.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let far = base.error() > FAR;
+    let mut sketches: Vec<(f64, Estimate, &'static dyn Effect)> = started
+        .into_par_iter()
+        .enumerate()
+        .map(|(rank, (predicted, starts, effect))| {
+            let tried = match (rank < SKETCHED, far) {
+                (true, true) => STARTS,
+                (true, false) => 1,
+                _ => 0,
+            };
+            let (cost, estimate) = starts
+                .iter()
+                .take(tried)
+                .map(|start| sketch(experiment, model, &base.weights, start.clone(), far))
                 .min_by(|a, b| a.0.total_cmp(&b.0))
-                .unwrap_or_else(|| (base.cost, base.estimate.clone()));
+                .unwrap_or_else(|| (predicted, starts[0].clone()));
             (cost, estimate, effect)
         })
         .collect();
@@ -83,14 +105,15 @@ pub fn try_effects(
     candidates
 }
 
-/// The most promising sizes: those at which the least cost is left once all else has adapted.
+/// The most promising sizes, those at which the least cost is left once all else has adapted, with the least such cost;
+/// at least one.
 fn starts(
     experiment: &Experiment,
     model: &Model,
     base: &Fit,
     jacobian: &Jacobian,
     effect: &'static dyn Effect,
-) -> Vec<Estimate> {
+) -> (f64, Vec<Estimate>) {
     let frame = Frame::new(jacobian, &base.estimate, None);
     let size = &effect.parameters()[0];
     let signs: &[f64] = if size.low < size.null {
@@ -117,11 +140,13 @@ fn starts(
         })
         .collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-    ranked
+    let predicted = ranked.first().map_or(base.cost, |first| first.0);
+    let starts = ranked
         .into_iter()
         .take(STARTS)
-        .map(|(_, estimate)| estimate)
-        .collect()
+        .map(|(_, start)| start)
+        .collect();
+    (predicted, starts)
 }
 
 /// Weighs the last effect of a fitted model against the model without it.

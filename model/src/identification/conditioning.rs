@@ -10,9 +10,6 @@ use crate::plant::Currents;
 /// Reach of a window to either side of the sample, samples.
 const REACHES: [usize; 7] = [0, 1, 2, 4, 8, 16, 32];
 
-/// What remains unknown of when a current was sampled, one sigma, s: a twentieth of a 50 Hz sample.
-const TIMING_S: f64 = 0.001;
-
 /// A current that jumps between two samples may have done so anywhere between them: one sigma of an even spread, as a
 /// share of the jump.
 const JUMP_SHARE: f64 = 0.29;
@@ -24,7 +21,7 @@ pub struct Drive {
     pub time_s: Vec<f64>,
     /// Cleaned currents, A.
     pub currents: Vec<Currents>,
-    /// One sigma of the cleaned currents, A: what is left of the noise, and of the timing on ramps.
+    /// One sigma of the cleaned currents, A: what is left of the noise, and of when a jump happened.
     pub spread: Vec<Currents>,
 }
 
@@ -32,8 +29,8 @@ impl Drive {
     /// Cleans the two logged currents, A, whose noise has the given sigmas, A.
     #[must_use]
     pub fn new(time_s: &[f64], lift_a: &[f64], lower_a: &[f64], sigma: Currents) -> Self {
-        let (lift, lift_spread) = clean(time_s, lift_a, sigma.lift_a);
-        let (lower, lower_spread) = clean(time_s, lower_a, sigma.lower_a);
+        let (lift, lift_spread) = clean(lift_a, sigma.lift_a);
+        let (lower, lower_spread) = clean(lower_a, sigma.lower_a);
         let join = |lift: Vec<f64>, lower: Vec<f64>| {
             lift.into_iter()
                 .zip(lower)
@@ -99,7 +96,7 @@ fn jump_before(current_a: &[f64], sample: usize) -> f64 {
 }
 
 /// Cleans one current; returns it and its spread, A.
-fn clean(time_s: &[f64], logged_a: &[f64], sigma_a: f64) -> (Vec<f64>, Vec<f64>) {
+fn clean(logged_a: &[f64], sigma_a: f64) -> (Vec<f64>, Vec<f64>) {
     let samples = logged_a.len();
     let mut cleaned = logged_a.to_vec();
     let mut variance = vec![1.0; samples];
@@ -121,15 +118,8 @@ fn clean(time_s: &[f64], logged_a: &[f64], sigma_a: f64) -> (Vec<f64>, Vec<f64>)
     }
     let spread = (0..samples)
         .map(|sample| {
-            let (from, to) = (sample.saturating_sub(1), (sample + 1).min(samples - 1));
-            let steepest = [(from, sample), (sample, to)]
-                .into_iter()
-                .filter(|(a, b)| b > a)
-                .map(|(a, b)| ((cleaned[b] - cleaned[a]) / (time_s[b] - time_s[a])).abs())
-                .fold(0.0, f64::max);
             (sigma_a * sigma_a * variance[sample])
                 .sqrt()
-                .hypot(steepest * TIMING_S)
                 .hypot(jump_before(&cleaned, sample) * JUMP_SHARE)
         })
         .collect();

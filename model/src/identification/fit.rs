@@ -128,16 +128,22 @@ pub fn fit(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
     refine(experiment, model, estimate)
 }
 
-/// Fits roughly, under given weights, to see whether an effect deserves a full fit; returns the cost as well.
+/// Fits roughly, under given weights, to see whether an effect deserves a full fit; returns the cost as well. From
+/// `far` away it starts coarse.
 #[must_use]
 pub fn sketch(
     experiment: &Experiment,
     model: &Model,
     weights: &Weights,
     start: Estimate,
+    far: bool,
 ) -> (f64, Estimate) {
-    let coarse = weights.clone().scaled(COARSE);
-    let estimate = descend(experiment, model, &coarse, start, COARSE_ITERATIONS);
+    let estimate = if far {
+        let coarse = weights.clone().scaled(COARSE);
+        descend(experiment, model, &coarse, start, COARSE_ITERATIONS)
+    } else {
+        start
+    };
     let estimate = descend(experiment, model, weights, estimate, COARSE_ITERATIONS);
     let cost = Point::new(experiment, model, weights, estimate.clone()).cost;
     (cost, estimate)

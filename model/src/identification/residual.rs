@@ -1,7 +1,7 @@
 //! Measured minus simulated, in units of what the instruments and the logged current leave unknown.
 //!
 //! * Pressures and flow: the yardstick of a sample is the instrument's noise and, in quadrature, what the uncertainty
-//!   of the logged current makes of the simulated value. Samples that a log cannot say at all (a pressure edge that
+//!   of the logged current and of the time of sampling make of the simulated value. Samples that a log cannot say at all (a pressure edge that
 //!   may lie on either side of the sample) are left out.
 //! * The angle integrates the flow, so errors of the logged current add up in it as a random walk whose steps are
 //!   known. A scalar Kalman filter takes that walk out: what is compared is each sample with its prediction from the
@@ -15,13 +15,22 @@ use rayon::prelude::*;
 use super::estimate::Estimate;
 use super::experiment::{Experiment, ReadyRun};
 use crate::campaign::Channel;
-use crate::model::Model;
+use crate::model::{Dynamics, Model};
 use crate::plant::Currents;
 use crate::simulation::Trace;
 use crate::units;
 
 /// A sample whose yardstick grows beyond this many times the instrument's noise is left out.
 const UNKNOWABLE: f64 = 8.0;
+
+/// What remains unknown of when a sample was taken, one sigma, s: a twentieth of a 50 Hz sample. On ramps it moves the
+/// flow, after a switch it turns the phase of a ringing pressure.
+const TIMING_S: f64 = 0.001;
+
+/// Part of a pressure's swing within [`RINGING_S`] of a sample that a dynamic model may be off by: after ten periods a
+/// frequency that is 1 % off has lost a tenth of a period, and no constant behind it is known better.
+const RINGING_SHARE: f64 = 0.1;
+const RINGING_S: f64 = 0.1;
 
 /// How one run's differences are whitened.
 #[derive(Debug, Clone)]
@@ -86,11 +95,14 @@ impl RunWeights {
         let nuisance = estimate.nuisances[index];
         let [below, above] =
             [-1.0, 1.0].map(|spreads| run.simulate(model, nuisance, estimate.skew_s, spreads));
+        let [early, late] = [-TIMING_S, TIMING_S]
+            .map(|shift_s| run.simulate(model, nuisance, estimate.skew_s + shift_s, 0.0));
         let mut weights = Self {
             scale: vec![0.0; 4 * run.len()],
             gain: vec![0.0; run.len()],
         };
         let edges = pump_edges(run, model, [&below, &above]);
+        let ringing = model.constants().dynamics == Dynamics::Dynamic;
         for channel in [
             Channel::PumpPressure,
             Channel::CylinderPressure,
@@ -101,10 +113,16 @@ impl RunWeights {
             };
             let sigma = experiment.noise[channel.index()];
             let offset = channel.index() * run.len();
+            let tolerance = if ringing && channel != Channel::Flow {
+                ringing_tolerance(&run.drive.time_s, below.channel(channel))
+            } else {
+                vec![0.0; run.len()]
+            };
             for (sample, value) in measured.iter().enumerate() {
                 let spread =
                     0.5 * (above.channel(channel)[sample] - below.channel(channel)[sample]);
-                let yardstick = sigma.hypot(spread);
+                let shift = 0.5 * (late.channel(channel)[sample] - early.channel(channel)[sample]);
+                let yardstick = sigma.hypot(spread).hypot(shift).hypot(tolerance[sample]);
                 let known = yardstick <= UNKNOWABLE * sigma
                     && !(channel == Channel::PumpPressure && edges[sample]);
                 if value.is_finite() && known {
@@ -175,6 +193,22 @@ impl RunWeights {
         }
         residual
     }
+}
+
+/// What a ringing pressure may be off by at each sample, in its unit: a share of its standard deviation nearby.
+fn ringing_tolerance(time_s: &[f64], pressure: &[f64]) -> Vec<f64> {
+    let step_s = (time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64;
+    let reach = (RINGING_S / step_s).round().max(1.0) as usize;
+    (0..pressure.len())
+        .map(|sample| {
+            let last = (sample + reach).min(pressure.len() - 1);
+            let near = &pressure[sample.saturating_sub(reach)..=last];
+            let count = near.len() as f64;
+            let mean = near.iter().sum::<f64>() / count;
+            let variance = near.iter().map(|p| (p - mean).powi(2)).sum::<f64>() / count;
+            RINGING_SHARE * variance.sqrt()
+        })
+        .collect()
 }
 
 /// Samples within one sample of a jump of the pump pressure between idle and load pressure: a log whose channels may

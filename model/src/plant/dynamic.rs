@@ -5,7 +5,7 @@
 //! order, the noisy measured current makes step control pointless, and a fixed rhythm keeps the result smooth in
 //! the parameters. Where a nearly drained orifice makes the pressure stiff, the step is cut to stay stable.
 
-use super::circuit::{Circuit, Flows, Openings};
+use super::circuit::{Circuit, Openings};
 use super::{HitchRig, MechanicalState};
 use crate::model::Model;
 
@@ -32,13 +32,13 @@ fn derivative(
     let cylinder = &constants.cylinder;
     let area_m2 = cylinder.area_m2();
     let flows = circuit.solve(openings, state.pressure_pa);
-    let posture = model.linkage().at(state.piston_m);
+    let (dh_dx, d2h_dx2_1_m) = model.linkage().transmission(state.piston_m);
     let masses = &constants.masses;
-    let inertia_kg = masses.inertia_kg(rig.load_kg, posture.dh_dx);
-    let slope = masses.half_inertia_slope_kg_m(rig.load_kg, posture.dh_dx, posture.d2h_dx2_1_m);
+    let inertia_kg = masses.inertia_kg(rig.load_kg, dh_dx);
+    let slope = masses.half_inertia_slope_kg_m(rig.load_kg, dh_dx, d2h_dx2_1_m);
     let speed_m_s = state.speed_m_s;
     let force_n = state.pressure_pa * area_m2
-        - masses.weight_force_n(rig.load_kg, posture.dh_dx)
+        - masses.weight_force_n(rig.load_kg, dh_dx)
         - slope * speed_m_s * speed_m_s
         - cylinder.viscous_friction_n_s_m * speed_m_s
         - circuit.sites.friction_n(speed_m_s)
@@ -59,22 +59,41 @@ fn moved(state: MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState
     }
 }
 
-/// How fast the orifices alone would settle the pressure, 1/s: `E/V dQ/dp`.
+/// How fast the orifices alone would settle the pressure, 1/s: `E/V dQ/dp`, with `dQ/dp = Q / 2 dp` of each orifice
+/// whose drop hangs on the cylinder pressure.
 fn settling_rate(
     model: &Model,
     circuit: &Circuit,
     openings: Openings,
     state: MechanicalState,
 ) -> f64 {
-    const PROBE_PA: f64 = 100.0;
     let constants = model.constants();
-    let net = |pressure_pa: f64| -> f64 {
-        let flows: Flows = circuit.solve(openings, pressure_pa);
-        flows.net_m3_s()
+    let flows = circuit.solve(openings, state.pressure_pa);
+    let slope = |flow_m3_s: f64, drop_pa: f64, transition_pa: f64| {
+        0.5 * flow_m3_s / drop_pa.max(0.5 * transition_pa).max(1.0)
     };
-    let slope = (net(state.pressure_pa) - net(state.pressure_pa + PROBE_PA)) / PROBE_PA;
+    let lower = slope(
+        flows.lower_m3_s,
+        state.pressure_pa,
+        constants.lower_valve.transition_drop_pa,
+    );
+    // A working compensator keeps the lift valve's drop whatever the cylinder pressure is.
+    let compensated =
+        flows.pump_pressure_pa >= constants.compensator.lifting_pressure_pa(state.pressure_pa);
+    let lift = if compensated {
+        0.0
+    } else {
+        let drop_pa = constants
+            .check_valve
+            .remaining_drop_pa(flows.pump_pressure_pa, state.pressure_pa);
+        slope(
+            flows.lift_m3_s,
+            drop_pa,
+            constants.lift_valve.transition_drop_pa,
+        )
+    };
     let volume_m3 = constants.cylinder.volume_m3(state.piston_m.max(0.0));
-    slope.abs() * constants.oil.bulk_modulus_pa / volume_m3
+    (lower + lift) * constants.oil.bulk_modulus_pa / volume_m3
 }
 
 /// One step with the openings at its start, middle and end.
@@ -87,20 +106,15 @@ pub fn step(
     openings: [Openings; 3],
     dt_s: f64,
 ) -> MechanicalState {
-    let open = openings
-        .iter()
-        .any(|o| o.lift_m3_s > 0.0 || o.lower_m3_s > 0.0);
-    let rate = if open {
-        settling_rate(model, circuit, openings[0], state).max(settling_rate(
-            model,
-            circuit,
-            openings[2],
-            state,
-        ))
-    } else {
-        0.0
-    };
+    let rate = [openings[0], openings[2]]
+        .into_iter()
+        .filter(|o| o.lift_m3_s > 0.0 || o.lower_m3_s > 0.0)
+        .map(|o| settling_rate(model, circuit, o, state))
+        .fold(0.0, f64::max);
     let pieces = (rate * dt_s / STABLE).ceil().clamp(1.0, 64.0) as usize;
+    if pieces == 1 {
+        return runge_kutta(model, circuit, rig, state, openings, dt_s);
+    }
     let piece_s = dt_s / pieces as f64;
     let mut state = state;
     for piece in 0..pieces {

@@ -152,6 +152,17 @@ impl Linkage {
         a + (b - a) * share
     }
 
+    /// The transmission dh/dx and its derivative, 1/m, at piston travel `piston_m`.
+    #[must_use]
+    pub fn transmission(&self, piston_m: f64) -> (f64, f64) {
+        let (node, share) = self.cell(piston_m);
+        let (a, b) = (&self.nodes[node], &self.nodes[node + 1]);
+        (
+            a.dh_dx + (b.dh_dx - a.dh_dx) * share,
+            a.d2h_dx2_1_m + (b.d2h_dx2_1_m - a.d2h_dx2_1_m) * share,
+        )
+    }
+
     /// Piston travel, m, at a rocker angle; angles beyond the swing are held at its end.
     #[must_use]
     pub fn piston_m(&self, rocker_angle_rad: f64) -> f64 {

@@ -23,7 +23,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     args.json.check()?;
     let model = args.model.load()?;
     let progress = Progress::start("the paper's tables and figures");
-    let paper = Paper::of(&model);
+    let paper = Paper::of(&model, &progress);
     drop(progress);
     args.json.print(&paper, || paper.to_string())
 }

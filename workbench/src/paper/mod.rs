@@ -1,5 +1,6 @@
 //! The paper beside this model: everything that `hitch paper` shows.
 mod show;
+mod table_5;
 
 use hitch_model::Model;
 use hitch_model::paper::check_valve::Spring;
@@ -7,6 +8,9 @@ use hitch_model::paper::travel_time::{self, Panel};
 use hitch_model::paper::{flow_table, orifice_area, tables};
 use hitch_model::plant::Valve;
 use serde::Serialize;
+
+use crate::progress::Progress;
+pub use table_5::Table5;
 
 /// Ports for which the spring of equation 7 is shown, m; chosen, the paper gives none.
 const PORT_DIAMETERS_M: [f64; 3] = [0.008, 0.010, 0.012];
@@ -22,6 +26,8 @@ pub struct Paper {
     pub table_2: [FlowTable; 2],
     /// The estimated orifice areas' maximum (section 4.1).
     pub orifice_area: LargestArea,
+    /// Table 5, found from the paper's flow test by the identification.
+    pub table_5: Table5,
     /// Equation 7.
     pub check_valve: CheckValve,
     /// Figure 12.
@@ -124,13 +130,14 @@ pub struct Statement {
 
 impl Paper {
     /// Computes everything from a model.
-    pub fn of(model: &Model) -> Self {
+    pub fn of(model: &Model, progress: &Progress) -> Self {
         let lift = flow_table(model, Valve::Lift);
         let lower = flow_table(model, Valve::Lowering);
         Self {
             model: model.name.clone(),
             orifice_area: largest_area(&[&lift, &lower]),
             table_2: [lift, lower],
+            table_5: Table5::of(model, progress),
             check_valve: check_valve(model),
             figure_12: figure_12(model),
         }

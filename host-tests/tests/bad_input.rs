@@ -1,0 +1,338 @@
+//! Bad input, through the program itself: one clear line, exit code 2, no output file, nothing on standard output.
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+use host_tests::program::run;
+use tempfile::TempDir;
+
+const MANIFEST: &str = r#"format = 1
+name = "small"
+sample_rate_hz = 50
+
+[[run]]
+file = "lift.csv"
+bench = "hitch"
+load_kg = 150
+"#;
+
+/// A log of a hitch at rest.
+fn log() -> String {
+    let row = |i: usize| format!("{:.2},0.0,0.0,4.0,16.0,0.0,90.0\n", i as f64 * 0.02);
+    let header = "time_s,lift_current_a,lower_current_a,pump_pressure_bar,cylinder_pressure_bar,flow_lpm,rocker_angle_deg";
+    format!("{header}\n{}", (0..100).map(row).collect::<String>())
+}
+
+/// A folder with the campaign `c`, the log `log.csv`, and whatever a case adds.
+fn folder() -> TempDir {
+    let dir = TempDir::new().unwrap();
+    fs::create_dir(dir.path().join("c")).unwrap();
+    fs::create_dir(dir.path().join("empty")).unwrap();
+    write(&dir, "c/campaign.toml", MANIFEST);
+    write(&dir, "c/lift.csv", log());
+    write(&dir, "log.csv", log());
+    dir
+}
+
+fn write(dir: &TempDir, name: &str, text: impl AsRef<[u8]>) {
+    fs::write(dir.path().join(name), text).unwrap();
+}
+
+/// Asserts that the program refused, said so in one line that holds `expected`, and left nothing behind.
+fn refused(dir: &Path, arguments: &[&str], expected: &str) {
+    let before = names(dir);
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = run(dir, arguments);
+    let said = String::from_utf8(stderr).unwrap();
+    let case = format!("hitch {}: {said}", arguments.join(" "));
+    assert_eq!(status.code(), Some(2), "{case}");
+    assert_eq!(said.lines().count(), 1, "{case}");
+    assert!(said.contains(expected), "expected {expected} of {case}");
+    assert!(stdout.is_empty(), "{case}");
+    assert_eq!(names(dir), before, "{case}");
+}
+
+fn names(dir: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(dir)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+/// Every command that reads a campaign, with every output file that it can write.
+const READERS: [&[&str]; 4] = [
+    &["compare", "c", "--report", "out.html", "--json", "out.json"],
+    &["diagnose", "c", "--json", "out.json"],
+    &[
+        "explain", "c", "--report", "out.html", "--out", "out.toml", "--json", "out.json",
+    ],
+    &[
+        "add",
+        "coulomb-friction",
+        "--campaign",
+        "c",
+        "--out",
+        "out.toml",
+    ],
+];
+
+#[test]
+fn every_reader_of_campaigns_refuses_a_bad_one() {
+    let dir = folder();
+    write(&dir, "c/lift.csv", log().replacen(",4.0,", ",NaN,", 1));
+    for arguments in READERS {
+        refused(
+            dir.path(),
+            arguments,
+            "c/lift.csv:2:14: \"NaN\" in column pump_pressure_bar is not finite",
+        );
+    }
+}
+
+#[test]
+fn bad_logs_are_refused_by_line_and_column() {
+    let log = log();
+    let cases = [
+        (
+            log.replacen("0.04,", "0.01,", 1),
+            "c/lift.csv:4:1: time goes back",
+        ),
+        (
+            log.replacen("0.04,", "0.02,", 1),
+            "c/lift.csv:4:1: time stands still",
+        ),
+        (
+            log.replacen(",16.0,", ",sixteen,", 1),
+            "c/lift.csv:2:18: \"sixteen\" in column cylinder_pressure_bar",
+        ),
+        (
+            log.replacen(",16.0,", ",inf,", 1),
+            "c/lift.csv:2:18: \"inf\" in column cylinder_pressure_bar is not finite",
+        ),
+        (
+            log.replacen("rocker_angle_deg", "rocker_angle_rad", 1),
+            "unit rad is not known, this column is rocker_angle_deg",
+        ),
+        (
+            log.replacen("lower_current_a", "flow_lpm", 1),
+            "c/lift.csv:1:72: column flow_lpm is there twice",
+        ),
+        (
+            log.replacen(",lower_current_a", "", 1)
+                .replace(",0.0,4.0", ",4.0"),
+            "column lower_current_a is missing",
+        ),
+        (
+            log.replacen(",90.0", "", 1),
+            "c/lift.csv:2:1: the row has 6 cells, the header has 7",
+        ),
+        (
+            log.lines().next().unwrap().to_owned(),
+            "holds a header but no samples",
+        ),
+        (String::new(), "c/lift.csv: is empty"),
+        (
+            "time_s,lift_current_a,lower_current_a\n".to_owned() + &currents_only(),
+            "has no usable channel",
+        ),
+    ];
+    for (text, expected) in cases {
+        let dir = folder();
+        write(&dir, "c/lift.csv", text);
+        refused(dir.path(), &["compare", "c", "--json", "-"], expected);
+    }
+}
+
+fn currents_only() -> String {
+    (0..100)
+        .map(|i| format!("{:.2},0,0\n", f64::from(i) * 0.02))
+        .collect()
+}
+
+#[test]
+fn bad_manifests_are_refused_by_line_and_column() {
+    let cases = [
+        (
+            MANIFEST.replace("lift.csv", "left.csv"),
+            "c/campaign.toml:6:8: the folder holds no file \"left.csv\"",
+        ),
+        (
+            MANIFEST.replace("load_kg", "load_lb"),
+            "c/campaign.toml:8:1: unit lb is not known, this key is load_kg",
+        ),
+        (
+            MANIFEST.replace("load_kg = 150", "load_kg = -150"),
+            "c/campaign.toml:8:11: load_kg = -150 is out of range",
+        ),
+        (
+            MANIFEST.replace("name =", "title ="),
+            "c/campaign.toml:2:1: key \"title\" is not known",
+        ),
+        (
+            MANIFEST.replace("format = 1", "format = 9"),
+            "c/campaign.toml:1:10: format 9 is not known",
+        ),
+        (MANIFEST.replace("[[run]]", "[[run]"), "c/campaign.toml:5:"),
+        (
+            MANIFEST.split("[[run]]").next().unwrap().to_owned(),
+            "there is no run",
+        ),
+    ];
+    for (text, expected) in cases {
+        let dir = folder();
+        write(&dir, "c/campaign.toml", text);
+        refused(
+            dir.path(),
+            &["compare", "c", "--report", "out.html"],
+            expected,
+        );
+    }
+}
+
+#[test]
+fn missing_campaigns_are_refused() {
+    let dir = folder();
+    refused(
+        dir.path(),
+        &["compare", "empty"],
+        "empty: holds no campaign.toml",
+    );
+    refused(
+        dir.path(),
+        &["compare", "nowhere"],
+        "nowhere: no such folder",
+    );
+    refused(
+        dir.path(),
+        &["compare", "log.csv"],
+        "log.csv: is not a folder",
+    );
+    fs::remove_file(dir.path().join("c/lift.csv")).unwrap();
+    refused(
+        dir.path(),
+        &["explain", "c", "--out", "out.toml"],
+        "the folder holds no file \"lift.csv\"",
+    );
+}
+
+#[test]
+fn bad_models_are_refused_by_line_and_column() {
+    let base = "format = 1\nbase = \"nominal\"\n";
+    let cases = [
+        (
+            format!("{base}[relief_valve]\nset_pressure_psi = 2200\n"),
+            "m.toml:4:1: unit psi is not known, this key is set_pressure_bar",
+        ),
+        (
+            format!("{base}[relief_valve]\nset_presure_bar = 154\n"),
+            "did you mean set_pressure_bar?",
+        ),
+        (
+            format!("{base}[relief_valve]\nset_pressure_bar = \"high\"\n"),
+            "m.toml:4:20: set_pressure_bar has to be a number",
+        ),
+        (
+            format!("{base}[relief_valve]\nset_pressure_bar = -1\n"),
+            "m.toml:4:20: set_pressure_bar = -1 is out of range",
+        ),
+        (
+            format!("{base}[[effect]]\nid = \"coulomb-fricton\"\n"),
+            "did you mean coulomb-friction?",
+        ),
+        (
+            format!("{base}[[effect]]\nid = \"lower-threshold-shift\"\nshift_ma = 200\n"),
+            "m.toml:5:1: unit ma is not known, this key is shift_a",
+        ),
+        ("format = 1\n".to_owned(), "has no dynamics"),
+        ("[[[".to_owned(), "m.toml:1:"),
+    ];
+    for (text, expected) in cases {
+        let dir = folder();
+        write(&dir, "m.toml", text);
+        refused(
+            dir.path(),
+            &["compare", "c", "--model", "m.toml", "--report", "out.html"],
+            expected,
+        );
+        refused(
+            dir.path(),
+            &["paper", "--model", "m.toml", "--json", "-"],
+            expected,
+        );
+        refused(
+            dir.path(),
+            &[
+                "simulate", "--model", "m.toml", "--inputs", "log.csv", "--out", "out.csv",
+            ],
+            expected,
+        );
+    }
+    refused(
+        folder().path(),
+        &["compare", "c", "--model", "nominall"],
+        "nominall: no such model",
+    );
+}
+
+#[test]
+fn bad_command_lines_are_refused() {
+    let dir = folder();
+    let cases: [(&[&str], &str); 10] = [
+        (&["explane", "c"], "a similar subcommand exists: 'explain'"),
+        (&["explain"], "<CAMPAIGN>"),
+        (
+            &["explain", "c", "--reprot", "x"],
+            "a similar argument exists: '--report'",
+        ),
+        (&["effects", "coulomb"], "did you mean coulomb-friction?"),
+        (
+            &[
+                "add",
+                "no-such-effect",
+                "--campaign",
+                "c",
+                "--out",
+                "out.toml",
+            ],
+            "effect \"no-such-effect\" is not known; known: ",
+        ),
+        (
+            &[
+                "add",
+                "coulomb-friction",
+                "coulomb-friction",
+                "--campaign",
+                "c",
+                "--out",
+                "out.toml",
+            ],
+            "is in the model already",
+        ),
+        (
+            &["add", "coulomb-friction", "--campaign", "c"],
+            "--out <MODEL.toml>",
+        ),
+        (
+            &["explain", "c", "--out", "nowhere/out.toml"],
+            "nowhere/out.toml: cannot be written: its folder does not exist",
+        ),
+        (
+            &[
+                "simulate", "--inputs", "log.csv", "--load", "-5", "--out", "out.csv",
+            ],
+            "it may be 0 to 2000",
+        ),
+        (
+            &["simulate", "--inputs", "gone.csv", "--out", "out.csv"],
+            "gone.csv: no such file",
+        ),
+    ];
+    for (arguments, expected) in cases {
+        refused(dir.path(), arguments, expected);
+    }
+}

@@ -1,0 +1,291 @@
+//! The command line as scripts rely on it: names, JSON keys, where results go.
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use host_tests::program::{hitch, run};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// The campaign that comes with the program, reduced to four short runs.
+fn campaign() -> TempDir {
+    let shipped = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../workbench/data/demonstration");
+    let dir = TempDir::new().unwrap();
+    let manifest = fs::read_to_string(shipped.join("campaign.toml")).unwrap();
+    let (head, runs) = manifest.split_once("[[run]]").unwrap();
+    let kept = [
+        "flow_lower_005bar",
+        "flow_lower_040bar",
+        "lower_2.2A_150kg",
+        "lower_2.2A_250kg",
+    ];
+    let runs = runs
+        .split("[[run]]")
+        .filter(|run| kept.iter().any(|name| run.contains(name)));
+    let runs: String = runs.map(|run| format!("[[run]]{run}")).collect();
+    fs::write(dir.path().join("campaign.toml"), format!("{head}{runs}")).unwrap();
+    for name in kept {
+        let file = format!("{name}.csv");
+        fs::copy(shipped.join(&file), dir.path().join(&file)).unwrap();
+    }
+    dir
+}
+
+/// The one JSON document on standard output, of a command that has to succeed.
+fn json(dir: &TempDir, arguments: &[&str]) -> Value {
+    let output = run(dir.path(), arguments);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{arguments:?}: {said}");
+    assert!(
+        said.is_empty(),
+        "{arguments:?}: no progress where there is no terminal: {said}"
+    );
+    serde_json::from_slice(&output.stdout).expect("one JSON document")
+}
+
+fn assert_keys(value: &Value, keys: &[&str]) {
+    for key in keys {
+        assert!(value.get(key).is_some(), "{key} is missing in {value}");
+    }
+}
+
+const HEAD: [&str; 7] = [
+    "campaign",
+    "model",
+    "error_before",
+    "error_after",
+    "noise_floor",
+    "channels",
+    "verdict",
+];
+
+#[test]
+fn explain_tells_what_scripts_read() {
+    let dir = campaign();
+    let out = json(
+        &dir,
+        &[
+            "explain", ".", "--json", "-", "--out", "m.toml", "--report", "r.html",
+        ],
+    );
+    assert_keys(&out, &HEAD);
+    assert_keys(&out, &["steps", "unexplained", "next_experiment"]);
+    assert_keys(
+        &out["channels"]["rocker_angle_deg"],
+        &["before", "after", "noise"],
+    );
+    assert_keys(
+        &out["unexplained"],
+        &["share", "depends_on", "suggested_term"],
+    );
+    let step = &out["steps"][0];
+    assert_eq!(step["effect"], "lower-threshold-shift");
+    assert_keys(
+        step,
+        &[
+            "error_before",
+            "error_after",
+            "held_out_before",
+            "held_out_after",
+        ],
+    );
+    assert_keys(step, &["confidence", "indistinguishable", "detectability"]);
+    assert_keys(
+        &step["parameters"][0],
+        &["name", "unit", "value", "low", "high"],
+    );
+    let shift_a = step["parameters"][0]["value"].as_f64().unwrap();
+    assert!((shift_a / 0.199 - 1.0).abs() < 0.1, "{shift_a}");
+
+    let model = fs::read_to_string(dir.path().join("m.toml")).unwrap();
+    assert!(model.contains("id = \"lower-threshold-shift\""), "{model}");
+    let after = json(&dir, &["compare", ".", "--model", "m.toml", "--json", "-"]);
+    let error = after["error"].as_f64().unwrap();
+    assert!(
+        error < 1.1,
+        "the written model explains the campaign: {error}"
+    );
+    assert_self_contained(&fs::read_to_string(dir.path().join("r.html")).unwrap());
+}
+
+/// A report may point nowhere: it has to open offline.
+fn assert_self_contained(html: &str) {
+    assert!(html.starts_with("<!DOCTYPE html>") && html.ends_with("</html>"));
+    assert!(html.contains("<svg") && html.contains("lower-threshold-shift"));
+    for reference in ["http:", "https:", " src=", " href=", "@import", "url("] {
+        assert!(!html.contains(reference), "{reference}");
+    }
+}
+
+#[test]
+fn diagnose_ranks_candidates() {
+    let out = json(&campaign(), &["diagnose", ".", "--json", "-"]);
+    assert_keys(&out, &HEAD);
+    let candidates = out["candidates"].as_array().unwrap();
+    assert_eq!(candidates[0]["effect"], "lower-threshold-shift");
+    for candidate in candidates {
+        assert_keys(
+            candidate,
+            &[
+                "effect",
+                "explains",
+                "error_after",
+                "confidence",
+                "indistinguishable",
+                "detectability",
+            ],
+        );
+    }
+    let errors: Vec<f64> = candidates
+        .iter()
+        .map(|candidate| candidate["confidence"].as_f64().unwrap())
+        .collect();
+    assert!(errors[0] > 0.95, "{errors:?}");
+}
+
+#[test]
+fn compare_shows_where_it_fails() {
+    let out = json(&campaign(), &["compare", ".", "--json", "-"]);
+    assert_keys(
+        &out,
+        &[
+            "campaign",
+            "model",
+            "error",
+            "noise_floor",
+            "channels",
+            "cells",
+            "worst",
+        ],
+    );
+    let cells = out["cells"].as_array().unwrap();
+    for by in ["regime", "current", "load", "temperature", "run"] {
+        assert!(cells.iter().any(|cell| cell["by"] == by), "{by}");
+    }
+    let flow_while = |part: &str| {
+        let cell = cells
+            .iter()
+            .find(|cell| cell["part"] == part && cell["channel"] == "flow_lpm");
+        cell.unwrap()["error"].as_f64().unwrap()
+    };
+    assert!(
+        flow_while("lowering") > 10.0 && flow_while("holding") < 1.2,
+        "a lowering threshold shows while lowering"
+    );
+}
+
+#[test]
+fn add_estimates_and_writes_a_model() {
+    let dir = campaign();
+    let output = run(
+        dir.path(),
+        &[
+            "add",
+            "lower-threshold-shift",
+            "--campaign",
+            ".",
+            "--out",
+            "m.toml",
+        ],
+    );
+    assert!(output.status.success());
+    let model = fs::read_to_string(dir.path().join("m.toml")).unwrap();
+    let value = model
+        .lines()
+        .find_map(|line| line.strip_prefix("shift_a = "))
+        .unwrap();
+    let shift_a: f64 = value.parse().unwrap();
+    assert!((shift_a / 0.199 - 1.0).abs() < 0.1, "{shift_a}");
+    let again = run(
+        dir.path(),
+        &[
+            "add",
+            "lower-threshold-shift",
+            "--campaign",
+            ".",
+            "--model",
+            "m.toml",
+            "--out",
+            "n.toml",
+        ],
+    );
+    assert_eq!(again.status.code(), Some(2));
+}
+
+#[test]
+fn simulate_writes_a_log_that_can_be_read_again() {
+    let dir = campaign();
+    let simulate = [
+        "simulate",
+        "--inputs",
+        "lower_2.2A_150kg.csv",
+        "--load",
+        "150",
+        "--out",
+    ];
+    assert!(
+        run(dir.path(), &[&simulate[..], &["a.csv"]].concat())
+            .status
+            .success()
+    );
+    let again = [
+        "simulate", "--inputs", "a.csv", "--load", "150", "--out", "b.csv",
+    ];
+    assert!(run(dir.path(), &again).status.success());
+    let read = |name: &str| fs::read_to_string(dir.path().join(name)).unwrap();
+    assert_eq!(
+        read("a.csv"),
+        read("b.csv"),
+        "simulating a simulated log changes nothing"
+    );
+    let to_stdout = run(dir.path(), &[&simulate[..], &["-"]].concat());
+    assert_eq!(String::from_utf8(to_stdout.stdout).unwrap(), read("a.csv"));
+}
+
+#[test]
+fn every_command_has_help_with_an_example() {
+    let dir = TempDir::new().unwrap();
+    let help = |arguments: &[&str]| {
+        let output = run(dir.path(), arguments);
+        assert!(
+            output.status.success() && output.stderr.is_empty(),
+            "{arguments:?}"
+        );
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let all = help(&["--help"]);
+    for command in [
+        "compare", "diagnose", "add", "explain", "effects", "simulate", "paper",
+    ] {
+        assert!(
+            all.contains(&format!("\n  {command} ")),
+            "{command} in {all}"
+        );
+        let own = help(&[command, "--help"]);
+        assert!(
+            own.contains(&format!("hitch {command}")) && own.contains("Example"),
+            "{own}"
+        );
+    }
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_fault() {
+    let mut child: std::process::Child = {
+        let mut command: Command = hitch();
+        command
+            .args(["paper"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap()
+    };
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert!(
+        output.stderr.is_empty(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(output.status.success());
+}

@@ -1,0 +1,95 @@
+//! One hitch with its controller, a millisecond at a time.
+
+use hitch_firmware::control::{Controller, Inputs, Outputs, ValidCalibration};
+use hitch_model::Model;
+use hitch_model::plant::{Currents, HitchRig, Plant, Rig};
+
+use super::instruments::Instruments;
+
+/// The controller's step, s.
+pub const STEP_S: f64 = 1e-3;
+
+/// One millisecond, as it truly was.
+#[derive(Debug, Clone, Copy)]
+pub struct Sample {
+    /// Time since the loop was closed, s.
+    pub time_s: f64,
+    /// Set point on the lever, degree.
+    pub lever_deg: f64,
+    /// Rocker angle without noise, degree.
+    pub angle_deg: f64,
+    /// Cylinder pressure without noise, bar.
+    pub cylinder_pressure_bar: f64,
+    /// Pump pressure without noise, bar.
+    pub pump_pressure_bar: f64,
+    /// What the controller was told.
+    pub inputs: Inputs,
+    /// What the controller asked for.
+    pub outputs: Outputs,
+}
+
+/// Plant, instruments and controller.
+pub struct ClosedLoop<'m> {
+    plant: Plant<'m>,
+    instruments: Instruments,
+    controller: Controller,
+    steps: u64,
+}
+
+impl<'m> ClosedLoop<'m> {
+    /// A hitch at rest at `start_angle_deg`, its controller just powered up.
+    #[must_use]
+    pub fn new(
+        model: &'m Model,
+        calibration: &ValidCalibration,
+        load_kg: f64,
+        oil_temperature_c: f64,
+        start_angle_deg: f64,
+        seed: u64,
+    ) -> Self {
+        let rig = Rig::Hitch(HitchRig {
+            load_kg,
+            start_angle_rad: start_angle_deg.to_radians(),
+        });
+        Self {
+            plant: Plant::new(model, rig, oil_temperature_c, Currents::default()),
+            instruments: Instruments::new(seed, oil_temperature_c),
+            controller: Controller::new(calibration.clone()),
+            steps: 0,
+        }
+    }
+
+    /// One millisecond with the lever at `lever_deg`.
+    pub fn step(&mut self, lever_deg: f64) -> Sample {
+        let truth = self.plant.reading();
+        let inputs = self.instruments.read(&truth, lever_deg);
+        let outputs = self.controller.step(&inputs);
+        let sample = Sample {
+            time_s: self.steps as f64 * STEP_S,
+            lever_deg,
+            angle_deg: self.plant.rocker_angle_rad().to_degrees(),
+            cylinder_pressure_bar: truth.cylinder_pressure_bar,
+            pump_pressure_bar: truth.pump_pressure_bar,
+            inputs,
+            outputs,
+        };
+        self.plant.step(
+            Instruments::drive(outputs.lift_current, outputs.lower_current),
+            STEP_S,
+        );
+        self.steps += 1;
+        sample
+    }
+
+    /// Picks the hitch up with the lever, as an operator does after power-up, and leaves both at rest.
+    pub fn pick_up(&mut self) {
+        const AWAY_DEG: f64 = 2.0;
+        let here_deg = self.plant.rocker_angle_rad().to_degrees();
+        for _ in 0..100 {
+            self.step(here_deg - AWAY_DEG);
+        }
+        for _ in 0..400 {
+            self.step(here_deg);
+        }
+    }
+}

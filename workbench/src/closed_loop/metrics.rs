@@ -1,0 +1,128 @@
+//! How good a move was. Everything is judged on the true angle, not on what the sensor said.
+
+use serde::Serialize;
+
+use super::ideal_ramp::IdealRamp;
+use super::loop_::{STEP_S, Sample};
+use super::scenario::Move;
+
+/// A move has arrived when the angle stays within this of the set point, degree.
+pub const ARRIVED_DEG: f64 = 0.5;
+
+/// Figures of one move.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MoveResult {
+    /// Where the hitch rested first, degree.
+    pub from_deg: f64,
+    /// Set point, degree.
+    pub to_deg: f64,
+    /// Load, kg.
+    pub load_kg: f64,
+    /// Oil temperature, C.
+    pub oil_temperature_c: f64,
+    /// From the step of the set point until the angle stays within 0.5 degree, s; the length of the run if it never does.
+    pub time_s: f64,
+    /// Shortest time that the plant allows: valve fully open between edges of a normal manoeuvre, s.
+    pub shortest_s: f64,
+    /// `time_s / shortest_s`.
+    pub ratio: f64,
+    /// Furthest beyond the set point, degree.
+    pub overshoot_deg: f64,
+    /// Distance from the set point at the end of the run, degree.
+    pub final_error_deg: f64,
+    /// How long a coil was on in the minute after `time_s`, s: the tail of the approach is in it.
+    pub active_after_s: f64,
+    /// How often a coil was switched on in the minute after `time_s`.
+    pub switched_on_after: u32,
+    /// Peak-to-peak cylinder pressure during the move over that of the ideal ramp.
+    pub pressure_swing_ratio: f64,
+}
+
+/// Figures of a set of moves.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Summary {
+    /// Median time ratio.
+    pub ratio_median: f64,
+    /// Time ratio that 95 % of the moves stay below.
+    pub ratio_p95: f64,
+    /// Largest overshoot, degree.
+    pub overshoot_max_deg: f64,
+    /// Largest final error, degree.
+    pub final_error_max_deg: f64,
+    /// Longest activity after arrival, s.
+    pub active_after_max_s: f64,
+    /// Coils switched on after arrival, all moves together.
+    pub switched_on_after: u32,
+    /// Largest pressure swing ratio.
+    pub pressure_swing_ratio_max: f64,
+}
+
+/// Judges a move: `samples` begin with the step of the set point.
+#[must_use]
+pub fn judge(order: &Move, samples: &[Sample], ideal: &IdealRamp) -> MoveResult {
+    let way = (order.to_deg - order.from_deg).signum();
+    let beyond = |sample: &Sample| (sample.angle_deg - order.to_deg) * way;
+    let last_away = samples
+        .iter()
+        .rposition(|sample| beyond(sample).abs() > ARRIVED_DEG);
+    let arrived = last_away.map_or(0, |at| at + 1);
+    let time_s = arrived as f64 * STEP_S;
+    let minute = &samples[arrived.min(samples.len())..(arrived + 60_000).min(samples.len())];
+    let on = |sample: &&Sample| is_on(sample);
+    MoveResult {
+        from_deg: order.from_deg,
+        to_deg: order.to_deg,
+        load_kg: order.load_kg,
+        oil_temperature_c: order.oil_temperature_c,
+        time_s,
+        shortest_s: ideal.time_s,
+        ratio: time_s / ideal.time_s,
+        overshoot_deg: samples.iter().map(beyond).fold(0.0, f64::max),
+        final_error_deg: samples.last().map_or(f64::NAN, |last| beyond(last).abs()),
+        active_after_s: minute.iter().filter(on).count() as f64 * STEP_S,
+        switched_on_after: minute
+            .windows(2)
+            .filter(|pair| !is_on(&pair[0]) && is_on(&pair[1]))
+            .count() as u32,
+        pressure_swing_ratio: swing_bar(samples.iter().map(|sample| sample.cylinder_pressure_bar))
+            / ideal.pressure_swing_bar,
+    }
+}
+
+/// Peak to peak, bar.
+pub fn swing_bar(pressures_bar: impl Iterator<Item = f64>) -> f64 {
+    let (low, high) = pressures_bar.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), bar| {
+        (low.min(bar), high.max(bar))
+    });
+    high - low
+}
+
+fn is_on(sample: &Sample) -> bool {
+    sample.outputs.lift_current.0 > 0 || sample.outputs.lower_current.0 > 0
+}
+
+impl Summary {
+    /// Sums up; `None` without moves.
+    #[must_use]
+    pub fn of(moves: &[MoveResult]) -> Option<Self> {
+        let mut ratios: Vec<f64> = moves.iter().map(|result| result.ratio).collect();
+        ratios.sort_by(f64::total_cmp);
+        let largest = |figure: fn(&MoveResult) -> f64| moves.iter().map(figure).fold(0.0, f64::max);
+        Some(Self {
+            ratio_median: quantile(&ratios, 0.5)?,
+            ratio_p95: quantile(&ratios, 0.95)?,
+            overshoot_max_deg: largest(|result| result.overshoot_deg),
+            final_error_max_deg: largest(|result| result.final_error_deg),
+            active_after_max_s: largest(|result| result.active_after_s),
+            switched_on_after: moves.iter().map(|result| result.switched_on_after).sum(),
+            pressure_swing_ratio_max: largest(|result| result.pressure_swing_ratio),
+        })
+    }
+}
+
+/// Quantile of a sorted list, linear between its values.
+fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
+    let at = share * (sorted.len().checked_sub(1)?) as f64;
+    let (below, above) = (at.floor() as usize, at.ceil() as usize);
+    Some(sorted[below] + (sorted[above] - sorted[below]) * (at - at.floor()))
+}

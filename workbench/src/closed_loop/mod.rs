@@ -1,0 +1,15 @@
+//! The firmware's controller in closed loop with a plant: what a hitch with this calibration would do.
+
+mod ideal_ramp;
+mod instruments;
+mod loop_;
+mod metrics;
+mod moves;
+mod scenario;
+
+pub use ideal_ramp::IdealRamp;
+pub use instruments::Instruments;
+pub use loop_::{ClosedLoop, Sample};
+pub use metrics::{MoveResult, Summary};
+pub use moves::{LoopRun, MoveTrace, run};
+pub use scenario::{Move, Scenario};

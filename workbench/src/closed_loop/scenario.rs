@@ -1,0 +1,62 @@
+//! What is driven: sets of moves.
+
+/// A move of the lever from one rest to another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Move {
+    /// Where the hitch rests first, degree.
+    pub from_deg: f64,
+    /// Set point, degree.
+    pub to_deg: f64,
+    /// Load at the hitch point, kg.
+    pub load_kg: f64,
+    /// Oil temperature, C.
+    pub oil_temperature_c: f64,
+}
+
+/// A named set of moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Scenario {
+    /// Moves of 5 to 60 degrees about the middle, both ways, at 50, 150 and 250 kg
+    Moves,
+    /// A few of them, for a quick look
+    Quick,
+    /// Moves that start or end within a degree of the limits of travel
+    Ends,
+}
+
+/// Loads of the rig, kg.
+const LOADS_KG: [f64; 3] = [50.0, 150.0, 250.0];
+/// Oil temperature of the rig's data, C.
+const OIL_TEMPERATURE_C: f64 = 40.0;
+/// Rocker straight down, degree: the middle of the travel.
+const MIDDLE_DEG: f64 = 90.0;
+
+impl Scenario {
+    /// Its moves, at `load_kg` alone if one is given.
+    #[must_use]
+    pub fn moves(self, load_kg: Option<f64>) -> Vec<Move> {
+        let about_middle =
+            |span_deg: f64| (MIDDLE_DEG - span_deg / 2.0, MIDDLE_DEG + span_deg / 2.0);
+        let pairs: Vec<(f64, f64)> = match self {
+            Self::Moves => [5.0, 10.0, 20.0, 40.0, 60.0].map(about_middle).to_vec(),
+            Self::Quick => [5.0, 30.0].map(about_middle).to_vec(),
+            Self::Ends => vec![(45.0, 65.0), (115.0, 135.0)],
+        };
+        let loads = load_kg.map_or(LOADS_KG.to_vec(), |load| vec![load]);
+        let mut moves = Vec::new();
+        for load_kg in loads {
+            for &(low, high) in &pairs {
+                for (from_deg, to_deg) in [(low, high), (high, low)] {
+                    let oil_temperature_c = OIL_TEMPERATURE_C;
+                    moves.push(Move {
+                        from_deg,
+                        to_deg,
+                        load_kg,
+                        oil_temperature_c,
+                    });
+                }
+            }
+        }
+        moves
+    }
+}

@@ -1,0 +1,126 @@
+//! What the valves of a model really do: flow over current with everything that acts on it.
+//!
+//! The plant is put on a flow bench with the current at rest, so thresholds, scales, hysteresis (from below) and
+//! return line are all in the curve, and the curve is what a calibration has to invert.
+
+use hitch_model::Model;
+use hitch_model::plant::{Currents, Plant, Rig, Valve};
+use hitch_model::units::{lpm_from_m3_s, pa_from_bar};
+
+/// Largest current of the survey, A.
+pub const LARGEST_CURRENT_A: f64 = 3.5;
+/// Steps of the survey: 1 mA each.
+const STEPS: u32 = 3500;
+/// Port pressure at which the lift valve is surveyed, bar: any between the cracking pressure and the relief valve will do.
+const LIFT_PORT_BAR: f64 = 20.0;
+/// Port pressure at which the lowering valve is surveyed, bar: the reference drop of its table.
+pub const LOWERING_PORT_BAR: f64 = 15.0;
+/// Oil temperature of the survey, C.
+const OIL_TEMPERATURE_C: f64 = 40.0;
+/// Flow that counts as none, l/min: far below what moves the hitch (2 um/s).
+const NO_FLOW_LPM: f64 = 5e-4;
+/// A valve is saturated when it lacks less than this share of its largest flow.
+const SATURATED_SHARE: f64 = 1e-4;
+
+/// A point of a valve's static curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurvePoint {
+    /// Coil current, A.
+    pub current_a: f64,
+    /// Flow, l/min.
+    pub flow_lpm: f64,
+}
+
+/// Static flow, l/min, of one valve at a current, A.
+#[must_use]
+pub fn static_flow_lpm(model: &Model, valve: Valve, current_a: f64) -> f64 {
+    let (port_bar, currents) = match valve {
+        Valve::Lift => (
+            LIFT_PORT_BAR,
+            Currents {
+                lift_a: current_a,
+                lower_a: 0.0,
+            },
+        ),
+        Valve::Lowering => (
+            LOWERING_PORT_BAR,
+            Currents {
+                lift_a: 0.0,
+                lower_a: current_a,
+            },
+        ),
+    };
+    let rig = Rig::Flow {
+        port_pressure_pa: pa_from_bar(port_bar),
+    };
+    let flows = Plant::new(model, rig, OIL_TEMPERATURE_C, currents).flows();
+    lpm_from_m3_s(match valve {
+        Valve::Lift => flows.lift_m3_s,
+        Valve::Lowering => flows.lower_m3_s,
+    })
+}
+
+/// The part of a valve's curve between its threshold and its saturation, 1 mA apart.
+///
+/// The first point is the last without flow (its flow is zero), the last the first with all of it. Fewer than two points:
+/// the valve never opens.
+#[must_use]
+pub fn survey(model: &Model, valve: Valve) -> Vec<CurvePoint> {
+    let point = |step: u32| {
+        let current_a = f64::from(step) * LARGEST_CURRENT_A / f64::from(STEPS);
+        CurvePoint {
+            current_a,
+            flow_lpm: static_flow_lpm(model, valve, current_a),
+        }
+    };
+    let mut points: Vec<CurvePoint> = (0..=STEPS).map(point).collect();
+    let largest_lpm = points
+        .iter()
+        .map(|point| point.flow_lpm)
+        .fold(0.0, f64::max);
+    let open = points.iter().position(|point| point.flow_lpm > NO_FLOW_LPM);
+    let full = points
+        .iter()
+        .position(|point| point.flow_lpm >= largest_lpm * (1.0 - SATURATED_SHARE));
+    let (Some(open), Some(full)) = (open, full) else {
+        return Vec::new();
+    };
+    points.truncate(full + 1);
+    points.drain(..open.saturating_sub(1));
+    if let Some(first) = points.first_mut().filter(|_| open > 0) {
+        first.flow_lpm = 0.0;
+    }
+    points
+}
+
+/// Threshold and saturation current of a valve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ValveEnds {
+    /// Largest current without flow, A.
+    pub threshold_a: f64,
+    /// Smallest current with the largest flow, A.
+    pub saturation_a: f64,
+}
+
+impl ValveEnds {
+    /// Those of the lift valve.
+    #[must_use]
+    pub fn of_lift(model: &Model) -> Self {
+        Self::of(model, Valve::Lift)
+    }
+
+    /// Those of the lowering valve.
+    #[must_use]
+    pub fn of_lowering(model: &Model) -> Self {
+        Self::of(model, Valve::Lowering)
+    }
+
+    fn of(model: &Model, valve: Valve) -> Self {
+        let points = survey(model, valve);
+        let current_a = |point: Option<&CurvePoint>| point.map_or(0.0, |point| point.current_a);
+        Self {
+            threshold_a: current_a(points.first()),
+            saturation_a: current_a(points.last()),
+        }
+    }
+}
