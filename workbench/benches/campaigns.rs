@@ -74,6 +74,7 @@ fn simulate_runs(criterion: &mut Criterion) {
 fn explain_campaigns(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("explain");
     group
+        .sampling_mode(SamplingMode::Flat)
         .sample_size(10)
         .measurement_time(Duration::from_secs(30));
     for (campaign, model) in [
