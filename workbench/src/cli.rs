@@ -1,7 +1,10 @@
 //! The command line.
 use clap::{Parser, Subcommand};
 
-use crate::commands::{add, compare, diagnose, effects, explain, main_job, paper, simulate};
+use crate::commands::{
+    add, calibrate, compare, controller, diagnose, effects, explain, loop_, main_job, paper,
+    simulate,
+};
 use crate::error::Error;
 use crate::output;
 
@@ -41,6 +44,12 @@ pub enum Command {
     Simulate(simulate::Args),
     /// The paper's tables and figures from this model, side by side
     Paper(paper::Args),
+    /// The firmware's controller in closed loop with the plant
+    Loop(loop_::Args),
+    /// The firmware's controller on stdin/stdout, for anyone's own plant
+    Controller(controller::Args),
+    /// Turns an identified model into the firmware's calibration: valve map, thresholds, limits
+    Calibrate(calibrate::Args),
 }
 
 impl Command {
@@ -57,6 +66,9 @@ impl Command {
             Self::Effects(args) => effects::run(args),
             Self::Simulate(args) => simulate::run(args),
             Self::Paper(args) => paper::run(args),
+            Self::Loop(args) => loop_::run(args),
+            Self::Controller(args) => controller::run(args),
+            Self::Calibrate(args) => calibrate::run(args),
         }
     }
 }

@@ -10,6 +10,7 @@ pub mod comparison;
 pub mod demonstration;
 pub mod error;
 pub mod explanation;
+pub mod input_stream;
 pub mod model_arg;
 pub mod output;
 pub mod paper;

@@ -116,12 +116,11 @@ impl Controller {
                 None
             }
             Mode::Position => self.follow_lever(sensed),
-            Mode::Jog => Some(self.rate.demand(
-                jog.unwrap_or_default(),
-                sensed.angle,
-                &self.motion,
-                &self.calibration,
-            )),
+            // A released button has no demand: the abort ramp stops the hitch, faster than the button's own.
+            Mode::Jog => jog.map(|rate| {
+                self.rate
+                    .demand(rate, sensed.angle, &self.motion, &self.calibration)
+            }),
             Mode::Fault { .. } => None,
         };
         self.advance(demand)?;

@@ -40,13 +40,13 @@ parameter_group! {
     SensorParameters, "sensors" {
         /// Smallest rocker angle that a healthy sensor shows: the lower end less mounting error.
         angle_min: MilliDegree = 40_000, -360_000..=360_000;
-        /// Largest rocker angle that a healthy sensor shows.
+        /// Largest rocker angle that a healthy sensor shows: the upper end plus mounting error.
         angle_max: MilliDegree = 140_000, -360_000..=360_000;
         /// Largest change in one step: the fastest drop is 0.2 degree, the rest is ten sigma of noise.
         angle_jump: MilliDegree = 1_000, 100..=20_000;
-        /// Smallest lever position that a healthy lever shows.
+        /// Smallest lever position that a healthy lever shows: below it the wire is broken.
         lever_min: MilliDegree = 30_000, -360_000..=360_000;
-        /// Largest lever position that a healthy lever shows.
+        /// Largest lever position that a healthy lever shows: above it the wire is shorted.
         lever_max: MilliDegree = 150_000, -360_000..=360_000;
         /// Smallest pressure that a healthy sensor shows: zero less offset.
         pressure_min: MilliBar = -5_000, -50_000..=0;
@@ -98,9 +98,9 @@ parameter_group! {
         approach_gain: PerSecond = 25, 1..=200;
         /// Slowest approach: cutting the coil at this speed swings the pressure of 250 kg by 10 bar, no more than a normal edge.
         creep_speed: MicrometrePerSecond = 12_000, 0..=100_000;
-        /// Fastest lifting.
+        /// Fastest lifting: beyond the valve's saturation, so it doesn't limit.
         lift_speed: MicrometrePerSecond = 150_000, 1_000..=1_000_000;
-        /// Fastest lowering.
+        /// Fastest lowering: 250 kg through the fully open valve; lower it for slow implements.
         lower_speed: MicrometrePerSecond = 300_000, 1_000..=1_000_000;
         /// Acceleration when lifting: full speed in 75 ms, which the lag of the spool rounds to the edge of a normal manoeuvre.
         lift_acceleration: MillimetrePerSecondSquared = 2_000, 50..=20_000;
@@ -160,7 +160,7 @@ parameter_group! {
     SafetyParameters, "safety" {
         /// Largest current of the lift coil: what the coil bears.
         lift_current_limit: MilliAmp = 3_500, 100..=5_000;
-        /// Largest current of the lowering coil.
+        /// Largest current of the lowering coil: what the coil bears.
         lower_current_limit: MilliAmp = 3_500, 100..=5_000;
         /// A current may start at once up to here: below and just above the threshold nothing moves yet.
         free_current: MilliAmp = 1_500, 0..=5_000;

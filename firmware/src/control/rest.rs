@@ -6,9 +6,10 @@ use super::fixed::Divisor;
 use super::units::Micrometre;
 use super::valve_logic::Phase;
 
-/// Averaged position; follows at once while the hitch isn't resting.
+/// Averaged position; follows at once at the start and while the hitch isn't resting.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RestPosition {
+    started: bool,
     nanometre: i32,
 }
 
@@ -16,9 +17,10 @@ impl RestPosition {
     /// One step.
     pub fn update(&mut self, position: Micrometre, phase: Phase, parameters: &HoldParameters) {
         let time = match phase {
-            Phase::Holding => parameters.rest_time.divisor(),
-            Phase::Moving { .. } | Phase::Settling { .. } => Divisor::ONE,
+            Phase::Holding if self.started => parameters.rest_time.divisor(),
+            _ => Divisor::ONE,
         };
+        self.started = true;
         let error = position
             .0
             .saturating_mul(1000)

@@ -5,14 +5,14 @@ use rayon::prelude::*;
 use super::estimate::{Estimate, Shared};
 use super::evidence::{detectability, variance_inflation};
 use super::experiment::Experiment;
-use super::fit::{Fit, evaluate, refine, sketch};
+use super::fit::{Fit, evaluate_weighted, refine, sketch};
 use super::frame::Frame;
 use super::jacobian::{Jacobian, residuals, square_sum};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
 /// Sizes of the secants, in typical sizes: derivatives at zero miss a play or a gap, one size misses what saturates.
-const SIZES: [f64; 5] = [0.03, 0.2, 1.0, 2.5, 6.0];
+const SIZES: [f64; 4] = [0.03, 0.3, 1.0, 4.0];
 
 /// How many starts of an effect are sketched while the model is far from the data: there are valleys to fall into.
 const STARTS: usize = 2;
@@ -20,15 +20,22 @@ const STARTS: usize = 2;
 /// Error from which a model counts as far from the data.
 const FAR: f64 = 1.3;
 
-/// How many effects are sketched, the most promising of the screen first.
-const SKETCHED: usize = 8;
+/// A sketch that leaves less than this share of the cost needs no second start.
+const ARRIVED: f64 = 0.3;
+
+/// An effect is sketched if its screened cost is among the first so many,
+const ALWAYS_SKETCHED: usize = 4;
+/// or leaves at most this share of what the best screened one explains unexplained.
+const DOUBTFUL: f64 = 0.6;
 
 /// An effect is fitted in full if its sketch is among the first so many,
 const ALWAYS_FITTED: usize = 2;
 /// or leaves at most this share of what the best sketch explains unexplained,
 const HOPELESS: f64 = 0.3;
-/// or is within this cost of the best.
+/// or is within this cost of the best,
 const HOPELESS_COST: f64 = 60.0;
+/// provided that the sketch explains more than this cost: half of what belief asks for.
+const WORTH_A_FIT: f64 = 5.0;
 
 /// An effect fitted beside everything that was free already.
 #[derive(Debug, Clone)]
@@ -66,43 +73,76 @@ pub fn try_effects(
         })
         .collect();
     started.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let far = base.error() > FAR;
+    let hopeless = limit(
+        base.cost,
+        started.first().map_or(base.cost, |first| first.0),
+        DOUBTFUL,
+    );
     let mut sketches: Vec<(f64, Estimate, &'static dyn Effect)> = started
         .into_par_iter()
         .enumerate()
         .map(|(rank, (predicted, starts, effect))| {
-            let tried = match (rank < SKETCHED, far) {
-                (true, true) => STARTS,
-                (true, false) => 1,
-                _ => 0,
-            };
-            let (cost, estimate) = starts
-                .iter()
-                .take(tried)
-                .map(|start| sketch(experiment, model, &base.weights, start.clone(), far))
-                .min_by(|a, b| a.0.total_cmp(&b.0))
-                .unwrap_or_else(|| (predicted, starts[0].clone()));
-            (cost, estimate, effect)
+            let promising = rank < ALWAYS_SKETCHED || predicted < hopeless;
+            if base.cost - predicted <= WORTH_A_FIT {
+                let mut absent = base.estimate.clone();
+                absent.effects.push(AddedEffect::null(effect));
+                (base.cost, absent, effect)
+            } else if promising {
+                let (cost, estimate) = sketch_starts(experiment, model, base, starts);
+                (cost, estimate, effect)
+            } else {
+                (predicted, starts[0].clone(), effect)
+            }
         })
         .collect();
     sketches.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let best = sketches.first().map_or(base.cost, |sketch| sketch.0);
-    let hopeless = best + (HOPELESS * (base.cost - best)).max(HOPELESS_COST);
+    let hopeless = limit(
+        base.cost,
+        sketches.first().map_or(base.cost, |first| first.0),
+        HOPELESS,
+    );
     let mut candidates: Vec<Candidate> = sketches
         .into_par_iter()
         .enumerate()
         .map(|(rank, (cost, estimate, effect))| {
-            let fit = if rank < ALWAYS_FITTED || cost < hopeless {
+            let promising = rank < ALWAYS_FITTED || cost < hopeless;
+            let fit = if promising && base.cost - cost > WORTH_A_FIT {
                 refine(experiment, model, estimate)
             } else {
-                evaluate(experiment, model, estimate)
+                evaluate_weighted(experiment, model, estimate, base.weights.clone())
             };
             progress(effect.id());
             weigh(experiment, model, base, effect, fit)
         })
         .collect();
-    candidates.sort_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
+    candidates.sort_by(|a, b| b.likelihood_ratio.total_cmp(&a.likelihood_ratio));
     candidates
+}
+
+/// Cost above which an effect is given up, when the best of its kind leaves `best` of `base`.
+fn limit(base: f64, best: f64, share: f64) -> f64 {
+    best + (share * (base - best)).max(HOPELESS_COST)
+}
+
+/// Sketches from one start, and from the next where the first leads nowhere; returns the best cost and estimate.
+fn sketch_starts(
+    experiment: &Experiment,
+    model: &Model,
+    base: &Fit,
+    starts: Vec<Estimate>,
+) -> (f64, Estimate) {
+    let far = base.error() > FAR;
+    let mut best = (base.cost, base.estimate.clone());
+    for start in starts.into_iter().take(if far { STARTS } else { 1 }) {
+        let found = sketch(experiment, model, &base.weights, start, far);
+        if best.1.effects.len() < found.1.effects.len() || found.0 < best.0 {
+            best = found;
+        }
+        if best.0 < ARRIVED * base.cost {
+            break;
+        }
+    }
+    best
 }
 
 /// The most promising sizes, those at which the least cost is left once all else has adapted, with the least such cost;

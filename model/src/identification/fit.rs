@@ -21,6 +21,9 @@ const FINE_ITERATIONS: usize = 12;
 /// Iterations after which the columns of skew and loads, which hardly change, are computed anew.
 const SLOW_EVERY: usize = 4;
 
+/// Dampings tried for one step.
+const TRIES: usize = 4;
+
 /// Relative fall of the cost that is still worth an iteration.
 const WORTHWHILE: f64 = 1e-5;
 
@@ -110,13 +113,23 @@ impl Fit {
 #[must_use]
 pub fn evaluate(experiment: &Experiment, model: &Model, estimate: Estimate) -> Fit {
     let weights = Weights::new(experiment, model, &estimate);
-    let residuals = residuals(experiment, model, &weights, &estimate);
-    let cost = square_sum(&residuals) + estimate.prior_cost();
+    evaluate_weighted(experiment, model, estimate, weights)
+}
+
+/// Evaluates an estimate under given weights.
+#[must_use]
+pub fn evaluate_weighted(
+    experiment: &Experiment,
+    model: &Model,
+    estimate: Estimate,
+    weights: Weights,
+) -> Fit {
+    let point = Point::new(experiment, model, &weights, estimate);
     Fit {
-        estimate,
+        estimate: point.estimate,
         weights,
-        residuals,
-        cost,
+        residuals: point.residuals,
+        cost: point.cost,
     }
 }
 
@@ -214,7 +227,7 @@ fn descend(
         );
         slow = Some(columns);
         let before = point.cost;
-        for _ in 0..6 {
+        for _ in 0..TRIES {
             let trial = jacobian
                 .step(&point.estimate, damping)
                 .map(|step| point.estimate.moved(&jacobian.shared, &step))
@@ -224,7 +237,7 @@ fn descend(
                 damping = (damping * 0.1).max(1e-9);
                 break;
             }
-            damping *= 10.0;
+            damping *= 30.0;
         }
         if before - point.cost <= WORTHWHILE * before {
             break;

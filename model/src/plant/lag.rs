@@ -8,6 +8,8 @@ pub struct Lag {
     time_constant_s: f64,
     input: f64,
     output: f64,
+    /// Last step, s, and what of a deviation is left after it: steps are mostly alike, and `exp` is dear.
+    decay: (f64, f64),
 }
 
 impl Lag {
@@ -18,6 +20,7 @@ impl Lag {
             time_constant_s,
             input,
             output: input,
+            decay: (0.0, 1.0),
         }
     }
 
@@ -26,9 +29,12 @@ impl Lag {
         let tau_s = self.time_constant_s;
         if tau_s > 0.0 && dt_s > 0.0 {
             // With u = u0 + s t a particular solution is u - s tau; the rest decays.
+            if self.decay.0 != dt_s {
+                self.decay = (dt_s, (-dt_s / tau_s).exp());
+            }
             let trail = (input - self.input) / dt_s * tau_s;
             let rest = self.output - self.input + trail;
-            self.output = input - trail + rest * (-dt_s / tau_s).exp();
+            self.output = input - trail + rest * self.decay.1;
         } else {
             self.output = input;
         }

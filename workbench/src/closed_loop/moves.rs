@@ -37,23 +37,16 @@ pub struct LoopRun {
     pub traces: Vec<MoveTrace>,
 }
 
-/// Drives `moves`; `None` if there are none. `done` is called after each.
+/// Drives `moves`; `None` if there are none.
 #[must_use]
-pub fn run(
-    model: &Model,
-    calibration: &ValidCalibration,
-    moves: &[Move],
-    done: &(dyn Fn() + Sync),
-) -> Option<LoopRun> {
+pub fn run(model: &Model, calibration: &ValidCalibration, moves: &[Move]) -> Option<LoopRun> {
     let ends = [ValveEnds::of_lift(model), ValveEnds::of_lowering(model)];
     let driven: Vec<(MoveResult, MoveTrace)> = moves
         .par_iter()
         .enumerate()
         .map(|(index, order)| {
             let ends = ends[usize::from(order.to_deg < order.from_deg)];
-            let driven = drive(model, calibration, order, ends, SEED + index as u64);
-            done();
-            driven
+            drive(model, calibration, order, ends, SEED + index as u64)
         })
         .collect();
     let (results, traces): (Vec<_>, Vec<_>) = driven.into_iter().unzip();

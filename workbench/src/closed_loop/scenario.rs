@@ -20,6 +20,8 @@ pub enum Scenario {
     Moves,
     /// A few of them, for a quick look
     Quick,
+    /// Small corrections of 1 to 3 degrees, where thresholds matter most
+    Fine,
     /// Moves that start or end within a degree of the limits of travel
     Ends,
 }
@@ -40,6 +42,7 @@ impl Scenario {
         let pairs: Vec<(f64, f64)> = match self {
             Self::Moves => [5.0, 10.0, 20.0, 40.0, 60.0].map(about_middle).to_vec(),
             Self::Quick => [5.0, 30.0].map(about_middle).to_vec(),
+            Self::Fine => [1.0, 2.0, 3.0].map(about_middle).to_vec(),
             Self::Ends => vec![(45.0, 65.0), (115.0, 135.0)],
         };
         let loads = load_kg.map_or(LOADS_KG.to_vec(), |load| vec![load]);

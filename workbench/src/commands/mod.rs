@@ -1,9 +1,12 @@
 //! One file a command: its arguments, and what it does.
 pub mod add;
+pub mod calibrate;
 pub mod compare;
+pub mod controller;
 pub mod diagnose;
 pub mod effects;
 pub mod explain;
+pub mod loop_;
 pub mod main_job;
 pub mod paper;
 pub mod simulate;

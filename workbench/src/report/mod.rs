@@ -3,6 +3,7 @@ pub mod chart;
 pub mod comparison_page;
 pub mod explanation_page;
 pub mod heat_table;
+pub mod loop_page;
 pub mod page;
 pub mod run_views;
 pub mod runs;

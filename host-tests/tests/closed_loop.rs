@@ -1,0 +1,124 @@
+//! The controller in closed loop with the dynamic plant, and what a wrong and a right calibration do to it.
+
+use hitch_firmware::control::{Calibration, ValidCalibration};
+use hitch_model::Model;
+use hitch_model::effects::{AddedEffect, find};
+use hitch_workbench::calibrate::calibrate;
+use hitch_workbench::closed_loop::{ClosedLoop, LoopRun, Scenario, run};
+
+fn nominal() -> ValidCalibration {
+    Calibration::nominal().validate().unwrap()
+}
+
+fn calibrated(model: &Model) -> ValidCalibration {
+    calibrate(model, &Calibration::nominal()).unwrap()
+}
+
+fn with_effect(id: &str, values: &[f64]) -> Model {
+    let effect = AddedEffect {
+        effect: find(id).unwrap(),
+        values: values.to_vec(),
+    };
+    Model::dynamic().with_effects(vec![effect])
+}
+
+fn driven(model: &Model, calibration: &ValidCalibration, scenario: Scenario) -> LoopRun {
+    let run = run(model, calibration, &scenario.moves(None)).unwrap();
+    println!(
+        "{} with effects {:?}: {:?}",
+        model.name, model.effects, run.summary
+    );
+    run
+}
+
+/// The bars of every calibrated hitch: it arrives, hardly overshoots, and then leaves the valves alone.
+fn assert_good(run: &LoopRun) {
+    for result in &run.results {
+        assert!(result.final_error_deg <= 0.5, "{result:?}");
+        assert!(result.overshoot_deg < 1.0, "{result:?}");
+        assert_eq!(result.switched_on_after, 0, "{result:?}");
+        assert!(
+            result.active_after_s < 0.15,
+            "more than the end of the approach: {result:?}"
+        );
+    }
+}
+
+#[test]
+fn nominal_valves_with_the_nominal_calibration_meet_every_bar() {
+    let run = driven(&Model::dynamic(), &nominal(), Scenario::Moves);
+    assert_eq!(
+        run.results.len(),
+        30,
+        "5 to 60 degrees, both ways, three loads"
+    );
+    assert_good(&run);
+    assert!(
+        run.summary.ratio_median <= 1.2 && run.summary.ratio_p95 <= 1.4,
+        "{:?}",
+        run.summary
+    );
+    assert!(
+        run.summary.pressure_swing_ratio_max <= 1.5,
+        "{:?}",
+        run.summary
+    );
+}
+
+#[test]
+fn near_the_ends_of_travel_it_is_no_worse() {
+    assert_good(&driven(&Model::dynamic(), &nominal(), Scenario::Ends));
+}
+
+#[test]
+fn the_calibration_of_the_nominal_model_is_the_nominal_one() {
+    let calibration = calibrated(&Model::dynamic());
+    for milliampere in 0..3_500 {
+        let current = hitch_firmware::control::units::MilliAmp(milliampere);
+        for (taught, printed) in [
+            (&calibration.lift, &nominal().lift),
+            (&calibration.lower, &nominal().lower),
+        ] {
+            let error = (taught.flow(current) - printed.flow(current)).magnitude().0;
+            assert!(
+                error <= 700,
+                "{error} ul/s at {current:?}: more than a milliampere"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_shifted_threshold_makes_the_nominal_calibration_worse_and_calibrating_brings_it_back() {
+    let shifted = with_effect("lower-threshold-shift", &[0.2]);
+    let lowering = |run: &LoopRun| {
+        let ratios: Vec<f64> = run
+            .results
+            .iter()
+            .filter(|r| r.to_deg < r.from_deg)
+            .map(|r| r.ratio)
+            .collect();
+        ratios.iter().sum::<f64>() / ratios.len() as f64
+    };
+    let right = driven(&Model::dynamic(), &nominal(), Scenario::Fine);
+    let wrong = driven(&shifted, &nominal(), Scenario::Fine);
+    let again = driven(&shifted, &calibrated(&shifted), Scenario::Fine);
+    println!("mean time ratio of lowering: {right:.3}, shifted {wrong:.3}, calibrated {back:.3}");
+    assert!(
+        wrong >= right + 0.1,
+        "visibly worse: {right:.3} -> {wrong:.3}"
+    );
+    assert!(back <= right + 0.03, "back: {right:.3} -> {back:.3}");
+    assert_good(&again);
+    assert_good(&driven(&shifted, &calibrated(&shifted), Scenario::Moves));
+}
+
+#[test]
+fn a_leaking_lowering_valve_is_corrected_and_then_reported() {
+    // 0.002 l/min/bar, a worn valve: sinks by a restart band in about 5 s at 150 kg.
+    let leaking = with_effect("lowering-leakage", &[0.002]);
+    let mut closed_loop = ClosedLoop::new(&leaking, &nominal(), 150.0, 40.0, 90.0, 7);
+    closed_loop.pick_up();
+    let fault = (0..200_000).find_map(|_| closed_loop.step(90.0).outputs.fault);
+    assert_eq!(fault, Some(hitch_firmware::control::Fault::Sinking));
+}

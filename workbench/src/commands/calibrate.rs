@@ -1,0 +1,63 @@
+//! `hitch calibrate`: an identified model turned into the firmware's calibration.
+use std::path::PathBuf;
+
+use hitch_firmware::control::calibration::Calibration;
+use hitch_firmware::control::valve_map::ValveTable;
+use hitch_model::Model;
+
+use crate::calibrate::calibrate;
+use crate::calibration_file;
+use crate::error::Error;
+use crate::output;
+
+/// Arguments of `hitch calibrate`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: hitch calibrate explained.toml --out calibration.toml")]
+pub struct Args {
+    /// The identified model: a model file, nominal or dynamic
+    #[arg(value_name = "MODEL")]
+    model: String,
+    /// Where the calibration goes
+    #[arg(long, value_name = "C.toml")]
+    out: PathBuf,
+    /// Calibration whose other values are kept (gains, ramps, limits); without it, the nominal one
+    #[arg(long, value_name = "C.toml")]
+    calibration: Option<PathBuf>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the model or the calibration is wrong, or the result cannot be written.
+pub fn run(args: &Args) -> Result<(), Error> {
+    output::check_writable(Some(&args.out))?;
+    let model = Model::named(&args.model)?;
+    let base = match &args.calibration {
+        Some(path) => (*calibration_file::read(path)?).clone(),
+        None => Calibration::nominal(),
+    };
+    let calibration = calibrate(&model, &base)
+        .map_err(|error| Error::Usage(format!("{}: {error}", args.model)))?;
+    output::write_file(&args.out, calibration_file::write(&calibration).as_bytes())?;
+    let mut text = format!("{} -> {}\n", model.name, args.out.display());
+    for (name, table, before) in [
+        ("lift", &calibration.lift, &base.lift),
+        ("lower", &calibration.lower, &base.lower),
+    ] {
+        text += &format!(
+            "  {name}: {} (was {})\n",
+            described(table),
+            described(before)
+        );
+    }
+    output::print(&text)
+}
+
+fn described(table: &ValveTable) -> String {
+    format!(
+        "threshold {:.3} A, {:.2} l/min at most, {} points",
+        f64::from(table.threshold().0) * 1e-3,
+        f64::from(table.saturation().0) * 60e-6,
+        table.used().len(),
+    )
+}

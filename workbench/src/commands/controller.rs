@@ -1,0 +1,130 @@
+//! `hitch controller`: the firmware's controller on standard input and output, for anyone's own plant.
+use std::io::{self, BufRead, Write};
+use std::path::{Path, PathBuf};
+
+use hitch_firmware::control::{Controller, Outputs};
+use hitch_model::input_error::{InputError, Place};
+
+use super::loop_::calibration;
+use crate::error::Error;
+use crate::input_stream::{Columns, LineError};
+
+/// Header of what the command prints.
+const HEADER: &str = "lift_current_a,lower_current_a,state";
+
+/// Arguments of `hitch controller`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example: my-plant | hitch controller --calibration calibration.toml\n\n\
+    Standard input is CSV: a header, then a line a millisecond. Columns: time_s, lever_deg, rocker_angle_deg and, where the\n\
+    plant has them, cylinder_pressure_bar, pump_pressure_bar, oil_temperature_c, supply_v. An empty cell is a sample that is\n\
+    missing. Each line is answered at once by one line of currents and state. Nothing moves until the lever has been moved\n\
+    through the present angle."
+)]
+pub struct Args {
+    /// The controller's calibration; without it, the nominal one
+    #[arg(long, value_name = "C.toml")]
+    calibration: Option<PathBuf>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the calibration or a line is wrong, or standard output is closed.
+pub fn run(args: &Args) -> Result<(), Error> {
+    let controller = Controller::new(calibration(args.calibration.as_ref())?);
+    serve(controller, io::stdin().lock(), io::stdout().lock())
+}
+
+/// Answers every line of `input` on `output`, flushed line by line.
+///
+/// # Errors
+/// If a line is wrong (with its line and column), or `output` is closed.
+pub fn serve(
+    mut controller: Controller,
+    mut input: impl BufRead,
+    mut output: impl Write,
+) -> Result<(), Error> {
+    let mut line = String::new();
+    if !next_line(&mut input, &mut line, 1)? {
+        return Err(fault(
+            1,
+            LineError {
+                column: 1,
+                what: "there is no header".to_owned(),
+                mend: Columns::MEND.to_owned(),
+            },
+        ));
+    }
+    let mut columns = Columns::parse(&line).map_err(|error| fault(1, error))?;
+    answer(&mut output, HEADER)?;
+    let mut number = 2;
+    while next_line(&mut input, &mut line, number)? {
+        if !line.trim().is_empty() {
+            let inputs = columns
+                .inputs(&line)
+                .map_err(|error| fault(number, error))?;
+            answer(&mut output, &reply(&controller.step(&inputs)))?;
+        }
+        number += 1;
+    }
+    Ok(())
+}
+
+fn reply(outputs: &Outputs) -> String {
+    let ampere = |milli: i32| f64::from(milli) * 1e-3;
+    let state = match outputs.fault {
+        Some(fault) => format!("{}:{}", outputs.state.name(), fault.name()),
+        None => outputs.state.name().to_owned(),
+    };
+    format!(
+        "{:.3},{:.3},{state}",
+        ampere(outputs.lift_current.0),
+        ampere(outputs.lower_current.0)
+    )
+}
+
+fn answer(output: &mut impl Write, line: &str) -> Result<(), Error> {
+    writeln!(output, "{line}")
+        .and_then(|()| output.flush())
+        .map_err(Error::Stdout)
+}
+
+/// Reads a line; false at the end of the input.
+fn next_line(input: &mut impl BufRead, line: &mut String, number: usize) -> Result<bool, Error> {
+    const LONGEST_BYTES: u64 = 4096;
+    line.clear();
+    let read = io::Read::take(&mut *input, LONGEST_BYTES)
+        .read_line(line)
+        .map_err(|error| {
+            let what = format!("cannot be read: {error}");
+            fault(
+                number,
+                LineError {
+                    column: 1,
+                    what,
+                    mend: "send UTF-8 text".to_owned(),
+                },
+            )
+        })?;
+    if read as u64 == LONGEST_BYTES && !line.ends_with('\n') {
+        let what = "the line is longer than 4096 bytes".to_owned();
+        return Err(fault(
+            number,
+            LineError {
+                column: 1,
+                what,
+                mend: "end each line with a line feed".to_owned(),
+            },
+        ));
+    }
+    Ok(read > 0)
+}
+
+fn fault(line: usize, error: LineError) -> Error {
+    let place = Place {
+        line,
+        column: error.column,
+    };
+    InputError::at(Path::new("standard input"), place, error.what, error.mend).into()
+}

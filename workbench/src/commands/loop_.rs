@@ -1,0 +1,138 @@
+//! `hitch loop`: the firmware's controller in closed loop with the plant.
+use std::path::PathBuf;
+
+use hitch_firmware::control::ValidCalibration;
+use hitch_model::Model;
+use serde::Serialize;
+
+use crate::calibration_file;
+use crate::closed_loop::{self, MoveResult, Scenario, Summary};
+use crate::error::Error;
+use crate::output::{self, JsonArg};
+use crate::progress::Progress;
+use crate::report::loop_page;
+use crate::text::Table;
+
+/// Arguments of `hitch loop`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example: hitch loop --model explained.toml --calibration calibration.toml --report loop.html"
+)]
+pub struct Args {
+    /// The plant: nominal, dynamic, or the name of a model file
+    #[arg(long, value_name = "MODEL", default_value = "dynamic")]
+    model: String,
+    /// The controller's calibration; without it, the nominal one
+    #[arg(long, value_name = "C.toml")]
+    calibration: Option<PathBuf>,
+    /// Which moves are driven
+    #[arg(long, value_enum, default_value_t = Scenario::Moves)]
+    scenario: Scenario,
+    /// Only this load at the hitch, kg
+    #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = load_kg)]
+    load: Option<f64>,
+    #[command(flatten)]
+    json: JsonArg,
+    /// Write a report with the course of every move to this file
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+}
+
+/// The result as a JSON document.
+#[derive(Debug, Serialize)]
+struct Document<'a> {
+    moves: &'a [MoveResult],
+    summary: Summary,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the model or the calibration is wrong, or a result cannot be written.
+pub fn run(args: &Args) -> Result<(), Error> {
+    args.json.check()?;
+    output::check_writable(args.report.as_deref())?;
+    let model = Model::named(&args.model)?;
+    let calibration = calibration(args.calibration.as_ref())?;
+    let moves = args.scenario.moves(args.load);
+    let progress = Progress::start(format!("driving {} moves", moves.len()));
+    let driven = closed_loop::run(&model, &calibration, &moves)
+        .ok_or_else(|| Error::Usage("the scenario has no moves".to_owned()))?;
+    drop(progress);
+    if let Some(path) = &args.report {
+        output::write_file(path, loop_page::page(&model, &driven).as_bytes())?;
+    }
+    let document = Document {
+        moves: &driven.results,
+        summary: driven.summary,
+    };
+    args.json
+        .print(&document, || text(&driven.results, &driven.summary))
+}
+
+/// The calibration of a file, or the nominal one.
+///
+/// # Errors
+/// If the file is wrong.
+pub fn calibration(path: Option<&PathBuf>) -> Result<ValidCalibration, Error> {
+    match path {
+        Some(path) => Ok(calibration_file::read(path)?),
+        None => hitch_firmware::control::Calibration::nominal()
+            .validate()
+            .map_err(|error| {
+                Error::Failed(format!("the nominal calibration is refused: {error:?}"))
+            }),
+    }
+}
+
+fn load_kg(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(load_kg) if (0.0..=2000.0).contains(&load_kg) => Ok(load_kg),
+        _ => Err("it has to be a number from 0 to 2000".to_owned()),
+    }
+}
+
+/// The figures as a table for a terminal.
+#[must_use]
+pub fn text(moves: &[MoveResult], summary: &Summary) -> String {
+    let mut table = Table::new([
+        "move, deg",
+        "load, kg",
+        "time, s",
+        "shortest, s",
+        "ratio",
+        "overshoot, deg",
+        "final error, deg",
+        "active after, s",
+        "pressure swing",
+    ]);
+    for result in moves {
+        table.row([
+            format!("{:.1} to {:.1}", result.from_deg, result.to_deg),
+            format!("{:.0}", result.load_kg),
+            format!("{:.3}", result.time_s),
+            format!("{:.3}", result.shortest_s),
+            format!("{:.2}", result.ratio),
+            format!("{:.2}", result.overshoot_deg),
+            format!("{:.2}", result.final_error_deg),
+            format!("{:.3}", result.active_after_s),
+            format!("{:.2}", result.pressure_swing_ratio),
+        ]);
+    }
+    format!("{table}\n{}", summed_up(summary))
+}
+
+/// The summary in two lines.
+#[must_use]
+pub fn summed_up(summary: &Summary) -> String {
+    format!(
+        "Time over shortest possible: median {:.2}, 95 % below {:.2}; overshoot at most {:.2} deg, final error at most {:.2} deg.\n\
+         Coils switched on in the minute after arrival: {}; the approach's last {:.3} s at most are in it.\n",
+        summary.ratio_median,
+        summary.ratio_p95,
+        summary.overshoot_max_deg,
+        summary.final_error_max_deg,
+        summary.switched_on_after,
+        summary.active_after_max_s,
+    )
+}

@@ -1,0 +1,256 @@
+//! Lines of CSV from a running plant, turned into the controller's inputs.
+
+use hitch_firmware::control::Inputs;
+use hitch_firmware::control::units::{MilliBar, MilliCelsius, MilliDegree, MilliVolt};
+use hitch_model::input_error::quote;
+use hitch_model::naming::{offer_names, unknown_name};
+
+/// Columns that have to be there.
+const NEEDED: [&str; 3] = ["time_s", "lever_deg", "rocker_angle_deg"];
+/// All columns.
+const KNOWN: [&str; 7] = [
+    "time_s",
+    "lever_deg",
+    "rocker_angle_deg",
+    "cylinder_pressure_bar",
+    "pump_pressure_bar",
+    "oil_temperature_c",
+    "supply_v",
+];
+/// Time from line to line, s: the controller's step, with room for rounded clocks.
+const STEP_S: std::ops::RangeInclusive<f64> = 0.000_45..=0.001_55;
+
+/// What is wrong with a line, and where in it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LineError {
+    /// Character, the first is 1.
+    pub column: usize,
+    /// What is wrong.
+    pub what: String,
+    /// How to mend it.
+    pub mend: String,
+}
+
+/// The header, and the time of the last line.
+#[derive(Debug, Clone)]
+pub struct Columns {
+    /// Index into [`KNOWN`] of each column.
+    order: Vec<usize>,
+    time_s: Option<f64>,
+}
+
+impl Columns {
+    /// How to mend a missing column.
+    pub const MEND: &str = "begin with a line time_s,lever_deg,rocker_angle_deg";
+
+    /// Reads a header.
+    ///
+    /// # Errors
+    /// If a column is unknown, there twice or missing.
+    pub fn parse(header: &str) -> Result<Self, LineError> {
+        let mut order: Vec<usize> = Vec::new();
+        for (column, cell) in cells(header.strip_prefix('\u{feff}').unwrap_or(header)) {
+            let Some(index) = KNOWN.iter().position(|name| *name == cell) else {
+                let what = unknown_name("column", cell, &KNOWN);
+                return Err(LineError {
+                    column,
+                    what,
+                    mend: offer_names(cell, &KNOWN),
+                });
+            };
+            if order.contains(&index) {
+                let what = format!("column {cell} is there twice");
+                return Err(LineError {
+                    column,
+                    what,
+                    mend: "leave one of them out".to_owned(),
+                });
+            }
+            order.push(index);
+        }
+        let missing = NEEDED
+            .iter()
+            .find(|name| !order.iter().any(|&index| KNOWN[index] == **name));
+        match missing {
+            Some(name) => {
+                let what = format!("column {name} is missing");
+                Err(LineError {
+                    column: 1,
+                    what,
+                    mend: Self::MEND.to_owned(),
+                })
+            }
+            None => Ok(Self {
+                order,
+                time_s: None,
+            }),
+        }
+    }
+
+    /// The inputs of one line; an empty cell is a sample that is missing.
+    ///
+    /// # Errors
+    /// If a cell isn't a finite number, there are too few or too many, or the time doesn't go on by a millisecond.
+    pub fn inputs(&mut self, line: &str) -> Result<Inputs, LineError> {
+        let mut values = [None; KNOWN.len()];
+        let mut time_column = 1;
+        let mut order = self.order.iter();
+        for (column, cell) in cells(line) {
+            let Some(&index) = order.next() else {
+                let what = format!("the line has more than {} cells", self.order.len());
+                return Err(LineError {
+                    column,
+                    what,
+                    mend: "give one cell a column of the header".to_owned(),
+                });
+            };
+            if index == 0 {
+                time_column = column;
+            }
+            values[index] = number(column, cell)?;
+        }
+        if let Some(&index) = order.next() {
+            let what = format!("the line has no cell for {}", KNOWN[index]);
+            let mend = "give one cell a column of the header; it may be empty".to_owned();
+            return Err(LineError {
+                column: line.trim_end().chars().count() + 1,
+                what,
+                mend,
+            });
+        }
+        self.check_time(time_column, values[0])?;
+        let milli = |index: usize| values[index].map(|value: f64| (value * 1e3).round() as i32);
+        Ok(Inputs {
+            lever: milli(1).map(MilliDegree),
+            jog: None,
+            rocker_angle: milli(2).map(MilliDegree),
+            cylinder_pressure: milli(3).map(MilliBar),
+            pump_pressure: milli(4).map(MilliBar),
+            oil_temperature: milli(5).map(MilliCelsius),
+            supply: milli(6).map(MilliVolt),
+        })
+    }
+
+    fn check_time(&mut self, column: usize, time_s: Option<f64>) -> Result<(), LineError> {
+        let mend = "give one line a millisecond".to_owned();
+        let Some(time_s) = time_s else {
+            return Err(LineError {
+                column,
+                what: "time_s is empty".to_owned(),
+                mend,
+            });
+        };
+        if let Some(last_s) = self.time_s.replace(time_s) {
+            let step_s = time_s - last_s;
+            if !STEP_S.contains(&step_s) {
+                let what = format!("time_s goes on by {:.6} s instead of 0.001 s", step_s);
+                return Err(LineError { column, what, mend });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The cells of a line with the character at which each begins.
+fn cells(line: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut column = 1;
+    line.trim_end_matches(['\r', '\n'])
+        .split(',')
+        .map(move |cell| {
+            let start = column + cell.chars().take_while(|c| c.is_whitespace()).count();
+            column += cell.chars().count() + 1;
+            (start, cell.trim())
+        })
+}
+
+fn number(column: usize, cell: &str) -> Result<Option<f64>, LineError> {
+    if cell.is_empty() {
+        return Ok(None);
+    }
+    match cell.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(Some(value)),
+        _ => {
+            let what = format!("{} is not a finite number", quote(cell));
+            Err(LineError {
+                column,
+                what,
+                mend: "write numbers like 90.25; leave the cell empty if there is none".to_owned(),
+            })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEADER: &str = "time_s,lever_deg,rocker_angle_deg,supply_v\n";
+
+    fn fault(lines: &[&str]) -> String {
+        let mut columns = match Columns::parse(lines[0]) {
+            Ok(columns) => columns,
+            Err(error) => return format!("1:{}: {}", error.column, error.what),
+        };
+        for (number, line) in lines.iter().enumerate().skip(1) {
+            if let Err(error) = columns.inputs(line) {
+                return format!("{}:{}: {}", number + 1, error.column, error.what);
+            }
+        }
+        "no fault".to_owned()
+    }
+
+    #[test]
+    fn lines_become_inputs_in_any_order_of_columns() {
+        let mut columns =
+            Columns::parse("rocker_angle_deg, lever_deg,time_s,pump_pressure_bar\r\n").unwrap();
+        let inputs = columns.inputs("90.5, ,0,4.25\r\n").unwrap();
+        assert_eq!(inputs.rocker_angle, Some(MilliDegree(90_500)));
+        assert_eq!((inputs.lever, inputs.supply), (None, None));
+        assert_eq!(inputs.pump_pressure, Some(MilliBar(4_250)));
+    }
+
+    #[test]
+    fn faults_have_a_place() {
+        assert_eq!(
+            fault(&["time_s,lever_deg,angle\n"]),
+            "1:18: column \"angle\" is not known"
+        );
+        assert_eq!(
+            fault(&["time_s,lever_rad,rocker_angle_deg"]),
+            "1:8: unit rad is not known, this column is lever_deg"
+        );
+        assert_eq!(
+            fault(&["time_s,lever_deg\n"]),
+            "1:1: column rocker_angle_deg is missing"
+        );
+        assert_eq!(
+            fault(&["time_s,lever_deg,lever_deg"]),
+            "1:18: column lever_deg is there twice"
+        );
+        assert_eq!(
+            fault(&[HEADER, "0,90,x1,12\n"]),
+            "2:6: \"x1\" is not a finite number"
+        );
+        assert_eq!(
+            fault(&[HEADER, "0,90,NaN,12\n"]),
+            "2:6: \"NaN\" is not a finite number"
+        );
+        assert_eq!(
+            fault(&[HEADER, "0,90,90\n"]),
+            "2:8: the line has no cell for supply_v"
+        );
+        assert_eq!(
+            fault(&[HEADER, "0,90,90,12,1\n"]),
+            "2:12: the line has more than 4 cells"
+        );
+        assert_eq!(
+            fault(&[HEADER, "0,90,90,\n", "0.01,90,90,\n"]),
+            "3:1: time_s goes on by 0.010000 s instead of 0.001 s"
+        );
+        assert_eq!(fault(&[HEADER, ",90,90,\n"]), "2:1: time_s is empty");
+        assert_eq!(
+            fault(&[HEADER, "0,1e30,-1e30,\n", "0.001,90,90,\n"]),
+            "no fault"
+        );
+    }
+}
