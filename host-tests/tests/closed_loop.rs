@@ -103,6 +103,7 @@ fn a_shifted_threshold_makes_the_nominal_calibration_worse_and_calibrating_bring
     let right = driven(&Model::dynamic(), &nominal(), Scenario::Fine);
     let wrong = driven(&shifted, &nominal(), Scenario::Fine);
     let again = driven(&shifted, &calibrated(&shifted), Scenario::Fine);
+    let (right, wrong, back) = (lowering(&right), lowering(&wrong), lowering(&again));
     println!("mean time ratio of lowering: {right:.3}, shifted {wrong:.3}, calibrated {back:.3}");
     assert!(
         wrong >= right + 0.1,

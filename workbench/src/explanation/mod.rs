@@ -1,8 +1,10 @@
 //! What `hitch explain` and `hitch diagnose` found, as scripts read it (JSON) and as people do (text).
+mod found;
 mod of_diagnosis;
 mod of_explanation;
 mod show;
 
+pub use found::Found;
 pub use of_explanation::parameters;
 
 use serde::Serialize;
