@@ -54,10 +54,16 @@ impl Cell {
     }
 }
 
+/// Channel, regime, and kind and level of the bench.
+type Key = (usize, Regime, u8, i64);
+
+/// Bench, number of samples, and the sums of their residuals and of the squares.
+type Sums = (Bench, usize, f64, f64);
+
 /// All cells of a fit that have enough samples, worst first.
 #[must_use]
 pub fn cells(experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
-    let mut sums: BTreeMap<(usize, Regime, u8, i64), (Bench, usize, f64, f64)> = BTreeMap::new();
+    let mut sums: BTreeMap<Key, Sums> = BTreeMap::new();
     for (run, residual) in experiment
         .runs
         .iter()
