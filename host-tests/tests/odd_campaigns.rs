@@ -36,7 +36,9 @@ fn scattered(i: usize, column: usize) -> f64 {
     ((i * 7919 + column * 104_729 + 12_345) % 2_003) as f64 / 1001.5 - 1.0
 }
 
-fn explained(name: &str, dir: &TempDir) {
+/// Runs every reader on a campaign; returns the verdict on the nominal model.
+fn explained(name: &str, dir: &TempDir) -> String {
+    let mut verdict = String::new();
     for model in ["nominal", "dynamic"] {
         for command in ["compare", "explain"] {
             let output = run(
@@ -53,8 +55,12 @@ fn explained(name: &str, dir: &TempDir) {
             let document: Value =
                 serde_json::from_slice(&output.stdout).expect("one JSON document");
             assert_eq!(document["model"], model, "{name}");
+            if let (Some(word), "nominal") = (document["verdict"].as_str(), model) {
+                word.clone_into(&mut verdict);
+            }
         }
     }
+    verdict
 }
 
 #[test]

@@ -338,7 +338,7 @@ fn cosine(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
 }
 
 fn verdict(cells: &[Cell], steps: &[Step], after: &Fit) -> Verdict {
-    if after.weights.count() == 0 {
+    if after.weights.count() == 0 || cells.is_empty() {
         Verdict::NotEnoughData
     } else if !adequate(cells) {
         Verdict::Unexplained

@@ -4,7 +4,7 @@ use hitch_model::campaign::Campaign;
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain;
 
-use super::Explanation;
+use super::{Explanation, rebuilt};
 use crate::progress::Progress;
 
 /// An explanation with everything that belongs to it.
@@ -39,10 +39,6 @@ impl Found {
 
     /// The model with the effects that were found.
     pub fn rebuilt(&self, name: String) -> Model {
-        let mut model = self
-            .model
-            .with_effects(self.explanation.after.estimate.effects.clone());
-        model.name = name;
-        model
+        rebuilt(&self.model, &self.explanation.after.estimate.effects, name)
     }
 }

@@ -2,10 +2,12 @@
 mod found;
 mod of_diagnosis;
 mod of_explanation;
+mod rebuilt;
 mod show;
 
 pub use found::Found;
 pub use of_explanation::parameters;
+pub use rebuilt::rebuilt;
 
 use serde::Serialize;
 use serde_json::{Map, Value};
