@@ -7,7 +7,7 @@ use super::evidence::{detectability, variance_inflation};
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate_weighted, refine, sketch};
 use super::frame::Frame;
-use super::jacobian::{Jacobian, residuals, square_sum};
+use super::jacobian::{Jacobian, huber_residuals, residuals, square_sum};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
@@ -175,7 +175,7 @@ fn starts(
             let mut added = AddedEffect::typical(effect);
             added.values[0] = value;
             estimate.effects.push(added);
-            let residuals = residuals(experiment, model, &base.weights, &estimate);
+            let residuals = huber_residuals(experiment, model, &base.weights, &estimate);
             (frame.cost_after(&residuals), estimate)
         })
         .collect();

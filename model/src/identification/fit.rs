@@ -6,7 +6,9 @@
 
 use super::estimate::Estimate;
 use super::experiment::Experiment;
-use super::jacobian::{Jacobian, SlowColumns, load_steps, residuals, square_sum};
+use super::jacobian::{
+    Jacobian, SlowColumns, huber, huber_residuals, load_steps, residuals, square_sum,
+};
 use super::residual::Weights;
 use crate::model::Model;
 
@@ -36,7 +38,7 @@ pub struct Fit {
     pub weights: Weights,
     /// Whitened residuals of each run, channel after channel.
     pub residuals: Vec<Vec<f64>>,
-    /// Sum of squares plus the cost of the priors.
+    /// Sum of Huber's losses plus the cost of the priors.
     pub cost: f64,
 }
 
@@ -124,12 +126,13 @@ pub fn evaluate_weighted(
     estimate: Estimate,
     weights: Weights,
 ) -> Fit {
-    let point = Point::new(experiment, model, &weights, estimate);
+    let residuals = residuals(experiment, model, &weights, &estimate);
+    let cost = square_sum(&huber(residuals.clone())) + estimate.prior_cost();
     Fit {
-        estimate: point.estimate,
+        estimate,
         weights,
-        residuals: point.residuals,
-        cost: point.cost,
+        residuals,
+        cost,
     }
 }
 
@@ -255,7 +258,7 @@ struct Point {
 
 impl Point {
     fn new(experiment: &Experiment, model: &Model, weights: &Weights, estimate: Estimate) -> Self {
-        let residuals = residuals(experiment, model, weights, &estimate);
+        let residuals = huber_residuals(experiment, model, weights, &estimate);
         let cost = square_sum(&residuals) + estimate.prior_cost();
         Self {
             estimate,

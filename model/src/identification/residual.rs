@@ -23,6 +23,10 @@ use crate::units;
 /// A sample whose yardstick grows beyond this many times the instrument's noise is left out.
 const UNKNOWABLE: f64 = 8.0;
 
+/// At a stop what the walk has added up is lost, degree: the hitch arrives a little earlier or later than simulated, and
+/// then stands where it must.
+const AT_A_STOP_DEG: f64 = 0.2;
+
 /// What remains unknown of when a sample was taken, one sigma, s: a twentieth of a 50 Hz sample. On ramps it moves the
 /// flow, after a switch it turns the phase of a ringing pressure.
 const TIMING_S: f64 = 0.001;
@@ -242,6 +246,16 @@ fn walk_steps_deg(
     let linkage = model.linkage();
     let time_s = &run.drive.time_s;
     let noise = experiment.current_noise;
+    let (low_rad, high_rad) = linkage.swing_rad();
+    let stops_deg = [low_rad.to_degrees(), high_rad.to_degrees()];
+    let traces_touch_a_stop = |sample: usize| {
+        [below, above].into_iter().any(|trace| {
+            let angle_deg = trace.channel(Channel::RockerAngle)[sample];
+            stops_deg
+                .iter()
+                .any(|stop| (angle_deg - stop).abs() < AT_A_STOP_DEG)
+        })
+    };
     (0..run.len())
         .map(|sample| {
             if sample == 0 {
@@ -252,6 +266,9 @@ fn walk_steps_deg(
                     .abs();
             if flow_lpm == 0.0 {
                 return 0.0;
+            }
+            if traces_touch_a_stop(sample) {
+                return AT_A_STOP_DEG;
             }
             let share = active(noise, run.drive.currents[sample])
                 / active(run.drive.spread[sample], run.drive.currents[sample]);
