@@ -72,7 +72,7 @@ pub fn residuals(
 /// Residuals as a fit sees them: their squares are Huber's losses.
 ///
 /// While an effect is missing a simulation may run against a stop that the hitch never reached, and a thousand sigmas
-/// of dead-head pressure would drown all else. Below [`FAR`] nothing changes.
+/// of dead-head pressure would drown all else. Below `FAR` nothing changes.
 #[must_use]
 pub fn huber(mut residuals: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     for residual in residuals.iter_mut().flatten() {
