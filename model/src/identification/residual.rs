@@ -23,9 +23,12 @@ use crate::units;
 /// A sample whose yardstick grows beyond this many times the instrument's noise is left out.
 const UNKNOWABLE: f64 = 8.0;
 
-/// At a stop what the walk has added up is lost, degree: the hitch arrives a little earlier or later than simulated, and
-/// then stands where it must.
+/// This near to an end of the swing, degree, the hitch stands against the stop. What the angle's walk has added up is
+/// lost there: the hitch arrives a little earlier or later than simulated, and then stands where it must.
 const AT_A_STOP_DEG: f64 = 0.2;
+
+/// How long after a stop what was trapped there is still felt, s.
+const AFTER_A_STOP_S: f64 = 0.3;
 
 /// What remains unknown of when a sample was taken, one sigma, s: a twentieth of a 50 Hz sample. On ramps it moves the
 /// flow, after a switch it turns the phase of a ringing pressure.
@@ -106,6 +109,7 @@ impl RunWeights {
             gain: vec![0.0; run.len()],
         };
         let edges = pump_edges(run, model, [&below, &above]);
+        let stops = at_a_stop(run, model, [&below, &above]);
         let ringing = model.constants().dynamics == Dynamics::Dynamic;
         for channel in [
             Channel::PumpPressure,
@@ -128,6 +132,7 @@ impl RunWeights {
                 let shift = 0.5 * (late.channel(channel)[sample] - early.channel(channel)[sample]);
                 let yardstick = sigma.hypot(spread).hypot(shift).hypot(tolerance[sample]);
                 let known = yardstick <= UNKNOWABLE * sigma
+                    && !stops[sample]
                     && !(channel == Channel::PumpPressure && edges[sample]);
                 if value.is_finite() && known {
                     weights.scale[offset + sample] = 1.0 / yardstick;
@@ -235,6 +240,31 @@ fn pump_edges(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
         .collect()
 }
 
+/// Samples at which the hitch stands against a stop, measured or simulated: pressure and flow there hang on the stop's
+/// stiffness and on how hard it was met.
+fn at_a_stop(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
+    let (low_rad, high_rad) = model.linkage().swing_rad();
+    let stops_deg = [low_rad.to_degrees(), high_rad.to_degrees()];
+    let touches = |angle_deg: f64| {
+        stops_deg
+            .iter()
+            .any(|stop_deg| (angle_deg - stop_deg).abs() < AT_A_STOP_DEG)
+    };
+    let measured = run.measured[Channel::RockerAngle.index()].as_ref();
+    let mut left_s = f64::NEG_INFINITY;
+    (0..run.len())
+        .map(|sample| {
+            let simulated = |trace: &&Trace| touches(trace.channel(Channel::RockerAngle)[sample]);
+            if measured.is_some_and(|angle_deg| touches(angle_deg[sample]))
+                || traces.iter().any(simulated)
+            {
+                left_s = run.drive.time_s[sample];
+            }
+            run.drive.time_s[sample] - left_s <= AFTER_A_STOP_S
+        })
+        .collect()
+}
+
 /// Standard deviation of the angle's walk from one sample to the next, degree.
 fn walk_steps_deg(
     experiment: &Experiment,
@@ -246,16 +276,7 @@ fn walk_steps_deg(
     let linkage = model.linkage();
     let time_s = &run.drive.time_s;
     let noise = experiment.current_noise;
-    let (low_rad, high_rad) = linkage.swing_rad();
-    let stops_deg = [low_rad.to_degrees(), high_rad.to_degrees()];
-    let traces_touch_a_stop = |sample: usize| {
-        [below, above].into_iter().any(|trace| {
-            let angle_deg = trace.channel(Channel::RockerAngle)[sample];
-            stops_deg
-                .iter()
-                .any(|stop| (angle_deg - stop).abs() < AT_A_STOP_DEG)
-        })
-    };
+    let stops = at_a_stop(run, model, [below, above]);
     (0..run.len())
         .map(|sample| {
             if sample == 0 {
@@ -267,7 +288,7 @@ fn walk_steps_deg(
             if flow_lpm == 0.0 {
                 return 0.0;
             }
-            if traces_touch_a_stop(sample) {
+            if stops[sample] {
                 return AT_A_STOP_DEG;
             }
             let share = active(noise, run.drive.currents[sample])
