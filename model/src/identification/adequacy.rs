@@ -43,8 +43,7 @@ impl Cell {
     /// Mean square that noise alone would hardly exceed.
     #[must_use]
     pub fn limit(&self) -> f64 {
-        let scatter = (2.0 * SLOW_NOISE / self.samples as f64).sqrt();
-        (1.0 + DEVIATIONS * scatter).max(TOLERATED)
+        limit(self.samples)
     }
 
     /// How far the cell is beyond what noise explains; above one it is not noise.
@@ -60,19 +59,18 @@ type Key = (usize, Regime, u8, i64);
 /// Bench, number of samples, and the sums of their residuals and of the squares.
 type Sums = (Bench, usize, f64, f64);
 
+/// Mean square of a number of samples that noise alone would hardly exceed.
+fn limit(samples: usize) -> f64 {
+    let scatter = (2.0 * SLOW_NOISE / samples as f64).sqrt();
+    (1.0 + DEVIATIONS * scatter).max(TOLERATED)
+}
+
 /// All cells of a fit that have enough samples, worst first.
 #[must_use]
 pub fn cells(experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
     let mut sums: BTreeMap<Key, Sums> = BTreeMap::new();
-    for (run, residual) in experiment
-        .runs
-        .iter()
-        .zip(&fit.residuals)
-        .enumerate()
-        .map(|(i, (r, e))| ((i, r), e))
-    {
-        let (index, run) = run;
-        let weights = &fit.weights.runs[index];
+    let whitened = fit.residuals.iter().zip(&fit.weights.runs);
+    for (run, (residual, weights)) in experiment.runs.iter().zip(whitened) {
         let (kind, level) = match run.bench {
             Bench::Hitch { load_kg } => (0, load_kg.round() as i64),
             Bench::Flow { port_pressure_bar } => (1, port_pressure_bar.round() as i64),
@@ -108,8 +106,13 @@ pub fn cells(experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
     cells
 }
 
-/// Whether every cell is noise.
+/// Whether every cell is noise, and every channel as a whole: many cells too small to judge can still add up.
 #[must_use]
-pub fn adequate(cells: &[Cell]) -> bool {
-    cells.first().is_none_or(|worst| worst.excess() <= 1.0)
+pub fn adequate(cells: &[Cell], fit: &Fit) -> bool {
+    let cells_are_noise = cells.first().is_none_or(|worst| worst.excess() <= 1.0);
+    let channels_are_noise = (0..4).all(|channel| {
+        let samples = fit.weights.counts[channel];
+        samples == 0 || fit.channel_error(channel).powi(2) <= limit(samples)
+    });
+    cells_are_noise && channels_are_noise
 }

@@ -51,7 +51,7 @@ pub struct Candidate {
     pub inflation: f64,
     /// Root mean square of its projected signature at the fitted size, in sigmas.
     pub detectability: f64,
-    /// 95 % intervals of its parameters, in their units.
+    /// 95 % intervals of its parameters, in their units; not numbers if the screen found nothing of the effect.
     pub intervals: Vec<(f64, f64)>,
 }
 
@@ -112,7 +112,12 @@ pub fn try_effects(
                 evaluate_weighted(experiment, model, estimate, base.weights.clone())
             };
             progress(effect.id());
-            weigh(experiment, model, base, effect, fit)
+            let added = fit.estimate.effects.last();
+            if added.is_none_or(AddedEffect::is_null) {
+                absent(base, effect, fit)
+            } else {
+                weigh(experiment, model, base, effect, fit)
+            }
         })
         .collect();
     candidates.sort_by(|a, b| b.likelihood_ratio.total_cmp(&a.likelihood_ratio));
@@ -189,6 +194,21 @@ fn starts(
     (predicted, starts)
 }
 
+/// An effect that the screen found nothing of.
+fn absent(base: &Fit, effect: &'static dyn Effect, fit: Fit) -> Candidate {
+    Candidate {
+        effect,
+        fit: Fit {
+            estimate: fit.estimate,
+            ..base.clone()
+        },
+        likelihood_ratio: 0.0,
+        inflation: 1.0,
+        detectability: 0.0,
+        intervals: vec![(f64::NAN, f64::NAN); effect.parameters().len()],
+    }
+}
+
 /// Weighs the last effect of a fitted model against the model without it.
 #[must_use]
 pub fn weigh(
@@ -203,10 +223,7 @@ pub fn weigh(
     let compared = fit.weights.count() as f64;
     let variance = (square_sum(&fit.residuals) / compared).max(1.0);
     let signatures: Vec<Signature> = (0..effect.parameters().len())
-        .map(|parameter| {
-            let shared = Shared::Effect(index, parameter);
-            Signature::new(experiment, &fit, &jacobian, shared)
-        })
+        .map(|parameter| Signature::new(experiment, &fit, &jacobian, index, parameter))
         .collect();
     let inflation = signatures[0].inflation;
     let intervals = signatures
@@ -215,7 +232,11 @@ pub fn weigh(
             let deviation = 1.96 * (variance * signature.inflation / signature.square).sqrt();
             let half = deviation * fit.estimate.scale(signature.shared);
             let value = fit.estimate.get(signature.shared);
-            (value - half, value + half)
+            let range = &effect.parameters()[signature.parameter];
+            (
+                (value - half).max(range.low),
+                (value + half).min(range.high),
+            )
         })
         .collect();
     let size = fit.estimate.effects[index].values[0] - effect.parameters()[0].null;
@@ -232,6 +253,7 @@ pub fn weigh(
 
 /// A parameter's signature with all that is free besides it projected out.
 struct Signature {
+    parameter: usize,
     shared: Shared,
     square: f64,
     inflation: f64,
@@ -239,9 +261,17 @@ struct Signature {
 }
 
 impl Signature {
-    fn new(experiment: &Experiment, fit: &Fit, jacobian: &Jacobian, shared: Shared) -> Self {
+    fn new(
+        experiment: &Experiment,
+        fit: &Fit,
+        jacobian: &Jacobian,
+        effect: usize,
+        parameter: usize,
+    ) -> Self {
+        let shared = Shared::Effect(effect, parameter);
         let projected = projected(fit, jacobian, shared);
         Self {
+            parameter,
             shared,
             square: square_sum(&projected).max(1e-12),
             inflation: variance_inflation(experiment, &fit.residuals, &projected),

@@ -16,6 +16,7 @@ use super::experiment::Experiment;
 use super::fit::{Fit, fit, refine};
 use super::holdout::held_out_error;
 use super::jacobian::{Jacobian, dot};
+use super::regime::Regime;
 use crate::effects::{CATALOGUE, Effect};
 use crate::model::Model;
 
@@ -28,6 +29,9 @@ const VISIBLE: f64 = 0.1;
 
 /// Likelihood ratio by which an alternative has to be worse to be told apart.
 pub const TOLD_APART: f64 = 10.0;
+
+/// Fewest compared samples that anything is concluded from.
+const FEWEST_SAMPLES: usize = 50;
 
 /// Cosine above which two projected signatures are worth a fit of the one in place of the other.
 const ALIKE: f64 = 0.8;
@@ -106,6 +110,8 @@ pub struct Explanation {
     pub cells: Vec<Cell>,
     /// What the rest goes with; empty if the rest is noise.
     pub rest: Attribution,
+    /// What to measure next if the campaign cannot decide.
+    pub next_experiment: Option<&'static str>,
 }
 
 /// A campaign and a model with every effect of the catalogue tried once.
@@ -125,11 +131,12 @@ pub type Progress<'a> = &'a (dyn Fn(&str) + Sync);
 /// Fits what is free in a model as it is.
 #[must_use]
 pub fn fit_base(experiment: &Experiment, model: &Model) -> Fit {
-    fit(
-        experiment,
-        model,
-        Estimate::new(experiment, model.effects.clone()),
-    )
+    let start = Estimate::new(experiment, model.effects.clone());
+    if model.effects.is_empty() {
+        refine(experiment, model, start)
+    } else {
+        fit(experiment, model, start)
+    }
 }
 
 /// Tries every effect that the model does not have.
@@ -181,7 +188,7 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
     let mut present = before.clone();
     let mut present_held_out = f64::NAN;
     let mut steps: Vec<Step> = Vec::new();
-    while steps.len() < MOST_STEPS {
+    while enough(&before) && steps.len() < MOST_STEPS {
         let diagnosis = diagnose(experiment, model, present.clone(), progress);
         let Some(best) = diagnosis.candidates.first() else {
             break;
@@ -277,7 +284,8 @@ fn finish(
         step.indistinguishable = alternatives(experiment, model, &whole, weighed.inflation);
     }
     let cells = cells(experiment, &after);
-    let verdict = verdict(&cells, &steps, &after);
+    let missing = missing_manoeuvre(experiment, &after);
+    let verdict = verdict(&cells, &steps, &after, missing);
     let rest = if verdict == Verdict::Unexplained {
         attribute(experiment, &before, &after)
     } else {
@@ -290,6 +298,7 @@ fn finish(
         verdict,
         cells,
         rest,
+        next_experiment: missing.filter(|_| verdict == Verdict::NotEnoughData),
     }
 }
 
@@ -337,16 +346,42 @@ fn cosine(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     }
 }
 
-fn verdict(cells: &[Cell], steps: &[Step], after: &Fit) -> Verdict {
-    if after.weights.count() == 0 || cells.is_empty() {
+fn verdict(cells: &[Cell], steps: &[Step], after: &Fit, missing: Option<&str>) -> Verdict {
+    if !enough(after) {
         Verdict::NotEnoughData
-    } else if !adequate(cells) {
+    } else if !adequate(cells, after) {
         Verdict::Unexplained
+    } else if steps.is_empty() && missing.is_some() {
+        Verdict::NotEnoughData
     } else if steps.is_empty() {
         Verdict::NothingMissing
     } else if steps.iter().any(|step| !step.indistinguishable.is_empty()) {
         Verdict::Ambiguous
     } else {
         Verdict::Explained
+    }
+}
+
+/// Whether there is anything to tell an effect from noise by.
+fn enough(fit: &Fit) -> bool {
+    fit.weights.count() >= FEWEST_SAMPLES
+}
+
+/// The manoeuvre without which a campaign cannot clear a model, if it lacks one.
+fn missing_manoeuvre(experiment: &Experiment, fit: &Fit) -> Option<&'static str> {
+    let seen = |wanted: Regime| {
+        let regimes = experiment.runs.iter().flat_map(|run| &run.regimes);
+        regimes.filter(|&&regime| regime == wanted).count() >= FEWEST_SAMPLES
+    };
+    if !enough(fit) {
+        Some(
+            "log at least a few seconds of pressure, flow or angle while lifting, holding and lowering",
+        )
+    } else if !seen(Regime::Lifting) {
+        Some("lift at two currents or more: no run keeps the lift valve open")
+    } else if !seen(Regime::Lowering) {
+        Some("lower at two currents or more: no run keeps the lowering valve open")
+    } else {
+        None
     }
 }

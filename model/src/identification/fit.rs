@@ -20,6 +20,9 @@ const COARSE: [f64; 4] = [0.04, 0.04, 0.15, 0.25];
 const COARSE_ITERATIONS: usize = 4;
 const FINE_ITERATIONS: usize = 12;
 
+/// Iterations from a start that is all but there.
+const LAST_ITERATIONS: usize = 2;
+
 /// Iterations after which the columns of skew and loads, which hardly change, are computed anew.
 const SLOW_EVERY: usize = 4;
 
@@ -180,7 +183,7 @@ pub fn refine(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
 #[must_use]
 pub fn refine_once(experiment: &Experiment, model: &Model, start: Estimate) -> Estimate {
     let weights = Weights::new(experiment, model, &start);
-    descend(experiment, model, &weights, start, COARSE_ITERATIONS)
+    descend(experiment, model, &weights, start, LAST_ITERATIONS)
 }
 
 /// Fits only each run's load error: two Gauss-Newton steps, it is all but linear.
