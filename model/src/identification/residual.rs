@@ -27,8 +27,8 @@ const UNKNOWABLE: f64 = 8.0;
 /// lost there: the hitch arrives a little earlier or later than simulated, and then stands where it must.
 const AT_A_STOP_DEG: f64 = 0.2;
 
-/// How long after a stop what was trapped there is still felt, s.
-const AFTER_A_STOP_S: f64 = 0.3;
+/// How long after a stop what was trapped there still rings, s: a heavy load loses three quarters of it in this time.
+const AFTER_A_STOP_S: f64 = 1.5;
 
 /// What remains unknown of when a sample was taken, one sigma, s: a twentieth of a 50 Hz sample. On ramps it moves the
 /// flow, after a switch it turns the phase of a ringing pressure.
