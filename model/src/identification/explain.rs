@@ -39,6 +39,9 @@ const ALIKE: f64 = 0.8;
 /// Most effects that are added.
 const MOST_STEPS: usize = 5;
 
+/// Most rounds of adding: an effect that was dropped may come back, but not for ever.
+const MOST_ROUNDS: usize = 2 * MOST_STEPS;
+
 /// What an explanation comes to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
@@ -188,14 +191,16 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
     let mut present = before.clone();
     let mut present_held_out = f64::NAN;
     let mut steps: Vec<Step> = Vec::new();
-    while enough(&before) && steps.len() < MOST_STEPS {
-        let diagnosis = diagnose(experiment, model, present.clone(), progress);
-        let Some(best) = diagnosis.candidates.first() else {
-            break;
-        };
-        if best.likelihood_ratio < BELIEVED || best.detectability < VISIBLE {
+    for _ in 0..MOST_ROUNDS {
+        if !enough(&before) || steps.len() == MOST_STEPS {
             break;
         }
+        let diagnosis = diagnose(experiment, model, present.clone(), progress);
+        let tried = diagnosis.candidates.iter().zip(&diagnosis.confidences);
+        let Some((best, &confidence)) = tried.into_iter().find(|(tried, _)| believable(tried))
+        else {
+            break;
+        };
         if present_held_out.is_nan() {
             present_held_out = held_out_error(experiment, model, &present.estimate);
         }
@@ -209,7 +214,7 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
             error_after: best.fit.error(),
             held_out_before: present_held_out,
             held_out_after,
-            confidence: diagnosis.confidences[0],
+            confidence,
             detectability: best.detectability,
             indistinguishable: Vec::new(),
             values: Vec::new(),
@@ -224,6 +229,11 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
         }
     }
     finish(experiment, model, before, present, steps)
+}
+
+/// Whether a candidate's evidence is strong enough and its signature large enough.
+fn believable(candidate: &Candidate) -> bool {
+    candidate.likelihood_ratio >= BELIEVED && candidate.detectability >= VISIBLE
 }
 
 /// Drops the first step whose effect the later ones have made needless; returns the fit without it.
