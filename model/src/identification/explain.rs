@@ -295,7 +295,7 @@ fn finish(
     }
     let cells = cells(experiment, &after);
     let missing = missing_manoeuvre(experiment, &after);
-    let verdict = verdict(&cells, &steps, &after, missing);
+    let verdict = verdict(experiment, &cells, &steps, &after, missing);
     let rest = if verdict == Verdict::Unexplained {
         attribute(experiment, &before, &after)
     } else {
@@ -356,10 +356,16 @@ fn cosine(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     }
 }
 
-fn verdict(cells: &[Cell], steps: &[Step], after: &Fit, missing: Option<&str>) -> Verdict {
+fn verdict(
+    experiment: &Experiment,
+    cells: &[Cell],
+    steps: &[Step],
+    after: &Fit,
+    missing: Option<&str>,
+) -> Verdict {
     if !enough(after) {
         Verdict::NotEnoughData
-    } else if !adequate(cells, after) {
+    } else if !adequate(experiment, cells, after) {
         Verdict::Unexplained
     } else if steps.is_empty() && missing.is_some() {
         Verdict::NotEnoughData

@@ -46,7 +46,7 @@ fn verdict(
     if fit.weights.count() == 0 || cells.is_empty() {
         return Verdict::NotEnoughData;
     }
-    match (adequate(&cells, fit), believed) {
+    match (adequate(experiment, &cells, fit), believed) {
         (false, _) => Verdict::Unexplained,
         (true, None) => Verdict::NothingMissing,
         (true, Some(best)) if twins(found, best).is_empty() => Verdict::Explained,
