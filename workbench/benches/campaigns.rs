@@ -1,9 +1,10 @@
 //! What campaigns cost: simulating each kind of run with each plant, and explaining a campaign from end to end.
 //!
-//! The runs are those of the demonstration, simulated in samples of its logger (50 Hz). `explain` has a bar: 10 s for a
-//! lab campaign on two cores.
+//! Simulated are the runs of the demonstration, in samples of its logger (50 Hz). Explained are lab campaigns of twenty
+//! runs; the bar is 10 s on two cores.
 
 use std::hint::black_box;
+use std::path::Path;
 use std::time::Duration;
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
@@ -21,12 +22,18 @@ fn measured() -> Campaign {
     demonstration::campaign().expect("the demonstration is built in")
 }
 
-/// The demonstration's runs, measured on a rig that is the dynamic plant with Coulomb friction: same currents, same
-/// instruments, always the same noise.
+/// A lab campaign of the host tests.
+fn lab(name: &str) -> Campaign {
+    let campaigns = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-tests/campaigns");
+    Campaign::load(&campaigns.join(name)).expect("a shipped campaign")
+}
+
+/// A lab campaign measured on a rig that is the dynamic plant with Coulomb friction: the currents and instruments of a
+/// measured one, always the same noise.
 fn measured_on_a_dynamic_rig() -> Campaign {
     let friction = effects::find("coulomb-friction").expect("the effect is in the catalogue");
     let rig = Model::dynamic().with_effects(vec![AddedEffect::typical(friction)]);
-    let mut campaign = measured();
+    let mut campaign = lab("clean-dynamic");
     let experiment = Experiment::new(&campaign, &rig);
     let mut random = Pcg64::seed_from_u64(1);
     for (run, ready) in campaign.runs.iter_mut().zip(&experiment.runs) {
@@ -78,7 +85,7 @@ fn explain_campaigns(criterion: &mut Criterion) {
         .sample_size(10)
         .measurement_time(Duration::from_secs(30));
     for (campaign, model) in [
-        (measured(), Model::nominal()),
+        (lab("known-friction"), Model::nominal()),
         (measured_on_a_dynamic_rig(), Model::dynamic()),
     ] {
         group.bench_function(&model.name, |bencher| {
