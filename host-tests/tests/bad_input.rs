@@ -280,6 +280,55 @@ fn bad_models_are_refused_by_line_and_column() {
 }
 
 #[test]
+fn bad_calibrations_are_refused_by_line_and_column() {
+    let cases = [
+        (
+            "format = 1\n[lift]\ncurrent_ma = [1100]\n",
+            "c.toml:3:1: unit ma is not known, this key is current_a",
+        ),
+        (
+            "format = 1\n[lifting]\n",
+            "c.toml:2:2: key \"lifting\" is not known",
+        ),
+        ("format = 2\n", "c.toml:1:10: "),
+        (
+            "format = 1\n[lift]\ncurrent_a = [2.0, 1.0]\nflow_lpm = [0.0, 10.0]\n",
+            "c.toml",
+        ),
+    ];
+    for (text, expected) in cases {
+        let dir = folder();
+        write(&dir, "c.toml", text);
+        refused(
+            dir.path(),
+            &["loop", "--calibration", "c.toml", "--report", "out.html"],
+            expected,
+        );
+        refused(
+            dir.path(),
+            &["controller", "--calibration", "c.toml"],
+            expected,
+        );
+    }
+    let dir = folder();
+    write(
+        &dir,
+        "m.toml",
+        "format = 1\nbase = \"nominal\"\n[relief_valve]\nset_pressure_psi = 2200\n",
+    );
+    refused(
+        dir.path(),
+        &["calibrate", "m.toml", "--out", "c.toml"],
+        "m.toml:4:1: unit psi is not known",
+    );
+    refused(
+        dir.path(),
+        &["loop", "--model", "m.toml", "--json", "-"],
+        "m.toml:4:1: unit psi is not known",
+    );
+}
+
+#[test]
 fn bad_command_lines_are_refused() {
     let dir = folder();
     let cases: [(&[&str], &str); 10] = [

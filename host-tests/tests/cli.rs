@@ -243,6 +243,43 @@ fn simulate_writes_a_log_that_can_be_read_again() {
 }
 
 #[test]
+fn the_main_job_goes_from_measurements_to_motion() {
+    let dir = TempDir::new().unwrap();
+    let output = run(dir.path(), &["--report", "r.html"]);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("lower-threshold-shift"), "{text}");
+    let pair = |name: &str| -> Vec<f64> {
+        let line = text
+            .lines()
+            .find(|line| line.contains(name))
+            .unwrap_or_else(|| panic!("{name} in {text}"));
+        line.split_whitespace()
+            .rev()
+            .take(2)
+            .map(|number| number.parse().unwrap())
+            .collect()
+    };
+    let [rebuilt, nominal] = pair("lowering: time over shortest, 95 % below")[..] else {
+        panic!("two numbers")
+    };
+    assert!(
+        rebuilt < nominal - 0.05,
+        "the rebuilt map has to show: {nominal} to {rebuilt}"
+    );
+    let html = fs::read_to_string(dir.path().join("r.html")).unwrap();
+    assert_self_contained(&html);
+    assert!(
+        html.contains("closed loop"),
+        "the report tells of the closed loop too"
+    );
+}
+
+#[test]
 fn every_command_has_help_with_an_example() {
     let dir = TempDir::new().unwrap();
     let help = |arguments: &[&str]| {

@@ -1,4 +1,6 @@
 //! `hitch paper` as a script reads it: the paper's values and the model's side by side.
+use std::sync::OnceLock;
+
 use host_tests::program::run;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -14,6 +16,12 @@ fn paper(model: &str) -> Value {
     serde_json::from_slice(&output.stdout).expect("one JSON document")
 }
 
+/// The nominal model's, computed once for all tests.
+fn nominal() -> &'static Value {
+    static NOMINAL: OnceLock<Value> = OnceLock::new();
+    NOMINAL.get_or_init(|| paper("nominal"))
+}
+
 fn number(value: &Value) -> f64 {
     value
         .as_f64()
@@ -22,14 +30,14 @@ fn number(value: &Value) -> f64 {
 
 #[test]
 fn table_2_comes_out_of_the_flow_bench() {
-    for table in paper("nominal")["table_2"].as_array().unwrap() {
+    for table in nominal()["table_2"].as_array().unwrap() {
         assert!(number(&table["largest_difference_lpm"]) < 1e-6, "{table}");
     }
 }
 
 #[test]
 fn the_largest_orifice_area_is_the_paper_s() {
-    let area = &paper("nominal")["orifice_area"];
+    let area = &nominal()["orifice_area"];
     assert_eq!(number(&area["paper_mm2"]), 51.411);
     assert!(
         (number(&area["model_mm2"]) / 51.411 - 1.0).abs() < 1e-3,
@@ -39,7 +47,7 @@ fn the_largest_orifice_area_is_the_paper_s() {
 
 #[test]
 fn table_5_is_found_by_the_identification() {
-    let table = &paper("nominal")["table_5"];
+    let table = &nominal()["table_5"];
     assert_eq!(table["verdict"], "explained");
     let effects = table["effects"].as_array().unwrap();
     let mut found: Vec<&str> = effects
@@ -74,7 +82,7 @@ fn table_5_is_found_by_the_identification() {
 
 #[test]
 fn the_check_valve_cracks_at_2_5_bar() {
-    let check_valve = &paper("nominal")["check_valve"];
+    let check_valve = &nominal()["check_valve"];
     assert_eq!(number(&check_valve["model_bar"]), 2.5);
     for spring in check_valve["springs"].as_array().unwrap() {
         let area_mm2 = std::f64::consts::FRAC_PI_4 * number(&spring["port_diameter_mm"]).powi(2);
@@ -88,8 +96,8 @@ fn the_check_valve_cracks_at_2_5_bar() {
 
 #[test]
 fn figure_12_is_what_the_paper_says_of_it() {
-    for model in ["nominal", "dynamic"] {
-        let figure = &paper(model)["figure_12"];
+    for (model, paper) in [("nominal", nominal()), ("dynamic", &paper("dynamic"))] {
+        let figure = &paper["figure_12"];
         for statement in figure["statements"].as_array().unwrap() {
             assert_eq!(statement["holds"], true, "{model}: {statement}");
         }

@@ -91,10 +91,9 @@ pub fn run<I: IntoIterator<Item = std::ffi::OsString>>(arguments: I) -> Result<(
 
 /// Joins what clap says into one line: the fault and its tips, without the usage.
 fn one_line(message: &str) -> String {
-    let told = message
-        .lines()
-        .map(str::trim)
-        .take_while(|line| !line.starts_with("Usage:"));
+    let is_told =
+        |line: &&str| !line.starts_with("Usage:") && !line.starts_with("For more information");
+    let told = message.lines().map(str::trim).take_while(is_told);
     let lines: Vec<&str> = told.filter(|line| !line.is_empty()).collect();
     let line = lines.join(" ").replace(" tip:", ";").replace("  ", " ");
     format!("{}; see --help", line.trim_start_matches("error: "))
@@ -124,6 +123,13 @@ mod tests {
         assert_eq!(
             option,
             "unexpected argument '--jsn' found; a similar argument exists: '--json'; see --help"
+        );
+        let value = fault(&[
+            "simulate", "--load", "-5", "--inputs", "i.csv", "--out", "o.csv",
+        ]);
+        assert_eq!(
+            value,
+            "invalid value '-5' for '--load <KG>': it may be 0 to 2000; see --help"
         );
         assert!(fault(&["papr"]).starts_with("unrecognized subcommand 'papr'; "));
     }

@@ -15,6 +15,7 @@ pub mod model_arg;
 pub mod output;
 pub mod paper;
 pub mod progress;
+pub mod rebuild;
 pub mod report;
 pub mod text;
 pub mod valve_survey;

@@ -1,6 +1,6 @@
 //! The few integer operations that the controller is built from. None of them can panic.
 
-use core::num::NonZeroU32;
+use core::num::{NonZeroU16, NonZeroU32, NonZeroU64};
 
 /// A positive divisor: that it isn't zero is settled once, where it is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,19 +37,39 @@ impl Divisor {
 }
 
 /// `a * b / c`, exact product, rounded to nearest with halves away from zero, saturating.
-///
-/// A product that fits in 32 bits, as nearly all do, is divided by the hardware in one instruction.
 #[must_use]
 pub fn mul_div(a: i32, b: i32, c: Divisor) -> i32 {
     let product = u64::from(a.unsigned_abs()) * u64::from(b.unsigned_abs());
-    let half = c.0.get() / 2;
-    // The product is at most 2^62, so adding half a divisor can't overflow.
-    let rounded = product.saturating_add(u64::from(half));
-    let magnitude = match u32::try_from(rounded) {
-        Ok(short) => u64::from(short / c.0),
-        Err(_) => rounded / core::num::NonZeroU64::from(c.0),
-    };
-    with_sign(magnitude, (a < 0) != (b < 0))
+    let half = u64::from(c.0.get() / 2);
+    // The product is below 2^62, so adding half a divisor can't overflow.
+    with_sign(
+        quotient(product.saturating_add(half), c.0),
+        (a < 0) != (b < 0),
+    )
+}
+
+/// `dividend / divisor`.
+///
+/// The ECU divides 32 bits in one instruction and 64 in a hundred. Short numbers are the rule, and for
+/// them the former will do.
+fn quotient(dividend: u64, divisor: NonZeroU32) -> u64 {
+    if let Ok(short) = u32::try_from(dividend) {
+        return u64::from(short / divisor);
+    }
+    match NonZeroU16::try_from(divisor) {
+        Ok(short) => quotient_by_digits(dividend, NonZeroU32::from(short)),
+        Err(_) => dividend / NonZeroU64::from(divisor),
+    }
+}
+
+/// Division as on paper, with digits of 16 bits: the divisor has one, so each step fits 32 bits.
+fn quotient_by_digits(dividend: u64, one_digit: NonZeroU32) -> u64 {
+    let high = (dividend >> 32) as u32;
+    let middle = (high % one_digit) << 16 | (dividend >> 16 & 0xFFFF) as u32;
+    let low = (middle % one_digit) << 16 | (dividend & 0xFFFF) as u32;
+    u64::from(high / one_digit) << 32
+        | u64::from(middle / one_digit) << 16
+        | u64::from(low / one_digit)
 }
 
 /// `a * b / 2^16`, exact product, rounded to nearest with halves away from zero, saturating.
@@ -66,7 +86,7 @@ pub fn mul_shift_16(a: i32, b: i32) -> i32 {
 #[must_use]
 pub fn square_root_of_ratio_16(a: i32, b: i32) -> i32 {
     const LARGEST: i32 = (1 << 19) - 1;
-    let limited = |value: i32| value.max(1).min(LARGEST).unsigned_abs();
+    let limited = |value: i32| value.clamp(1, LARGEST).unsigned_abs();
     let (mut rest, divisor) = (limited(a), Divisor::at_least_one(b.min(LARGEST)).0);
     let mut digit = |bits: u32| {
         let shifted = rest << bits;
@@ -145,17 +165,20 @@ mod tests {
     }
 
     #[test]
-    fn short_and_long_division_agree_where_they_meet() {
-        // 65 537 * 65 535 is the largest 32-bit product; rounding carries it over the edge.
-        for (a, b) in [(65_537, 65_535), (65_536, 65_536), (65_537, 65_536)] {
-            for c in 1..1_000 {
-                let exact = (i64::from(a) * i64::from(b) + i64::from(c / 2)) / i64::from(c);
-                let expected = i32::try_from(exact).unwrap_or(i32::MAX);
-                assert_eq!(
-                    mul_div(a, b, Divisor::at_least_one(c)),
-                    expected,
-                    "{a} * {b} / {c}"
-                );
+    fn every_way_to_divide_gives_the_quotient() {
+        let divisors = (1..2_000)
+            .chain(65_000..66_000)
+            .chain([i32::MAX - 1, i32::MAX]);
+        for divisor in divisors.filter_map(|value| NonZeroU32::new(value as u32)) {
+            for bits in [1, 16, 31, 32, 33, 47, 48, 49, 62] {
+                for dividend in [1_u64 << bits, (1 << bits) - 1, (1 << bits) / 7 * 5 + 12_345] {
+                    let expected = dividend / u64::from(divisor.get());
+                    assert_eq!(
+                        quotient(dividend, divisor),
+                        expected,
+                        "{dividend} / {divisor}"
+                    );
+                }
             }
         }
     }

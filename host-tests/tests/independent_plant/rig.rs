@@ -20,6 +20,7 @@ const SPOOL_LAG_S: f64 = 0.045;
 const GRAVITY_M_S2: f64 = 9.806_65;
 const LIFT_DROP_BAR: f64 = 4.0 - 2.5;
 const LOWER_REFERENCE_BAR: f64 = 15.0;
+const VACUUM_BAR: f64 = -1.0;
 const RELIEF_BAR: f64 = 154.0;
 const CRACKING_BAR: f64 = 2.5;
 const PUMP_LPM: f64 = 54.5 * 0.88;
@@ -188,7 +189,9 @@ fn area() -> f64 {
 
 impl ODE<f64, State> for Rig {
     fn diff(&self, time: f64, state: &State, rate: &mut State) {
-        let [travel, speed, pressure, lift, lower] = *state;
+        let [travel, speed, kept, lift, lower] = *state;
+        // Below the vacuum the pressure only keeps account of the void that has to close again.
+        let pressure = kept.max(VACUUM_BAR);
         let (slope, bend) = linkage::transmission(self.pin_at_zero + travel);
         let mass_kg = self.load_kg + DEAD_WEIGHT_KG;
         let inertia_kg = mass_kg * slope * slope + PISTON_KG;

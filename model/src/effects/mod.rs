@@ -109,9 +109,15 @@ impl AddedEffect {
         added
     }
 
+    /// Whether its size is the null value.
+    #[must_use]
+    pub fn is_null(&self) -> bool {
+        self.values[0] == self.effect.parameters()[0].null
+    }
+
     /// Puts it into a plant; an effect at its null value is not there at all.
     pub fn attach(&self, conditions: RunConditions, sites: &mut Sites) {
-        if self.values[0] != self.effect.parameters()[0].null {
+        if !self.is_null() {
             self.effect.attach(&self.values, conditions, sites);
         }
     }

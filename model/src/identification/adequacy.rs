@@ -16,6 +16,10 @@ const FEWEST: usize = 30;
 /// A mean square above this is not noise, however small the cell's scatter.
 const TOLERATED: f64 = 1.35;
 
+/// A ringing pressure may be off by this much more: single swings after a switch are as good as the stop, the seal and
+/// the hose that they ring against are known.
+const TOLERATED_RINGING: f64 = 4.0;
+
 /// Standard deviations that the largest of some hundred cells may lie above one.
 const DEVIATIONS: f64 = 6.0;
 
@@ -37,14 +41,15 @@ pub struct Cell {
     pub mean: f64,
     /// Mean square of the whitened residuals.
     pub mean_square: f64,
+    /// Mean square that is borne with however small the cell's scatter is.
+    pub tolerated: f64,
 }
 
 impl Cell {
     /// Mean square that noise alone would hardly exceed.
     #[must_use]
     pub fn limit(&self) -> f64 {
-        let scatter = (2.0 * SLOW_NOISE / self.samples as f64).sqrt();
-        (1.0 + DEVIATIONS * scatter).max(TOLERATED)
+        limit(self.samples, self.tolerated)
     }
 
     /// How far the cell is beyond what noise explains; above one it is not noise.
@@ -54,19 +59,37 @@ impl Cell {
     }
 }
 
+/// Channel, regime, and kind and level of the bench.
+type Key = (usize, Regime, u8, i64);
+
+/// Bench, number of samples, and the sums of their residuals and of the squares.
+type Sums = (Bench, usize, f64, f64);
+
+/// Mean square of a channel, by its index, that is borne with.
+fn tolerated(experiment: &Experiment, channel: usize) -> f64 {
+    let pressure = matches!(
+        Channel::ALL[channel],
+        Channel::PumpPressure | Channel::CylinderPressure
+    );
+    if experiment.ringing && pressure {
+        TOLERATED_RINGING
+    } else {
+        TOLERATED
+    }
+}
+
+/// Mean square of a number of samples that noise alone would hardly exceed.
+fn limit(samples: usize, tolerated: f64) -> f64 {
+    let scatter = (2.0 * SLOW_NOISE / samples as f64).sqrt();
+    (1.0 + DEVIATIONS * scatter).max(tolerated)
+}
+
 /// All cells of a fit that have enough samples, worst first.
 #[must_use]
 pub fn cells(experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
-    let mut sums: BTreeMap<(usize, Regime, u8, i64), (Bench, usize, f64, f64)> = BTreeMap::new();
-    for (run, residual) in experiment
-        .runs
-        .iter()
-        .zip(&fit.residuals)
-        .enumerate()
-        .map(|(i, (r, e))| ((i, r), e))
-    {
-        let (index, run) = run;
-        let weights = &fit.weights.runs[index];
+    let mut sums: BTreeMap<Key, Sums> = BTreeMap::new();
+    let whitened = fit.residuals.iter().zip(&fit.weights.runs);
+    for (run, (residual, weights)) in experiment.runs.iter().zip(whitened) {
         let (kind, level) = match run.bench {
             Bench::Hitch { load_kg } => (0, load_kg.round() as i64),
             Bench::Flow { port_pressure_bar } => (1, port_pressure_bar.round() as i64),
@@ -95,6 +118,7 @@ pub fn cells(experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
                 samples,
                 mean: sum / samples as f64,
                 mean_square: square / samples as f64,
+                tolerated: tolerated(experiment, channel),
             },
         )
         .collect();
@@ -102,8 +126,14 @@ pub fn cells(experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
     cells
 }
 
-/// Whether every cell is noise.
+/// Whether every cell is noise, and every channel as a whole: many cells too small to judge can still add up.
 #[must_use]
-pub fn adequate(cells: &[Cell]) -> bool {
-    cells.first().is_none_or(|worst| worst.excess() <= 1.0)
+pub fn adequate(experiment: &Experiment, cells: &[Cell], fit: &Fit) -> bool {
+    let cells_are_noise = cells.first().is_none_or(|worst| worst.excess() <= 1.0);
+    let channels_are_noise = (0..4).all(|channel| {
+        let samples = fit.weights.counts[channel];
+        samples == 0
+            || fit.channel_error(channel).powi(2) <= limit(samples, tolerated(experiment, channel))
+    });
+    cells_are_noise && channels_are_noise
 }

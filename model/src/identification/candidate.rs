@@ -7,7 +7,7 @@ use super::evidence::{detectability, variance_inflation};
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate_weighted, refine, sketch};
 use super::frame::Frame;
-use super::jacobian::{Jacobian, residuals, square_sum};
+use super::jacobian::{Jacobian, huber_residuals, residuals, square_sum};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
@@ -51,11 +51,12 @@ pub struct Candidate {
     pub inflation: f64,
     /// Root mean square of its projected signature at the fitted size, in sigmas.
     pub detectability: f64,
-    /// 95 % intervals of its parameters, in their units.
+    /// 95 % intervals of its parameters, in their units; not numbers if the screen found nothing of the effect.
     pub intervals: Vec<(f64, f64)>,
 }
 
-/// Tries effects on a fitted model: all roughly, then those that may be the best in full. Best first.
+/// Tries effects on a fitted model: all are screened, the promising ones sketched, and those that may be the best fitted
+/// in full. Best first.
 #[must_use]
 pub fn try_effects(
     experiment: &Experiment,
@@ -64,59 +65,116 @@ pub fn try_effects(
     effects: &[&'static dyn Effect],
     progress: &(dyn Fn(&str) + Sync),
 ) -> Vec<Candidate> {
-    let jacobian = Jacobian::new(experiment, model, &base.weights, &base.estimate);
-    let mut started: Vec<(f64, Vec<Estimate>, &'static dyn Effect)> = effects
-        .par_iter()
-        .map(|&effect| {
-            let (cost, starts) = starts(experiment, model, base, &jacobian, effect);
-            (cost, starts, effect)
-        })
-        .collect();
-    started.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let hopeless = limit(
-        base.cost,
-        started.first().map_or(base.cost, |first| first.0),
-        DOUBTFUL,
+    let sketches = sketches(
+        experiment,
+        model,
+        base,
+        screened(experiment, model, base, effects),
     );
-    let mut sketches: Vec<(f64, Estimate, &'static dyn Effect)> = started
-        .into_par_iter()
-        .enumerate()
-        .map(|(rank, (predicted, starts, effect))| {
-            let promising = rank < ALWAYS_SKETCHED || predicted < hopeless;
-            if base.cost - predicted <= WORTH_A_FIT {
-                let mut absent = base.estimate.clone();
-                absent.effects.push(AddedEffect::null(effect));
-                (base.cost, absent, effect)
-            } else if promising {
-                let (cost, estimate) = sketch_starts(experiment, model, base, starts);
-                (cost, estimate, effect)
-            } else {
-                (predicted, starts[0].clone(), effect)
-            }
-        })
-        .collect();
-    sketches.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let hopeless = limit(
-        base.cost,
-        sketches.first().map_or(base.cost, |first| first.0),
-        HOPELESS,
-    );
+    let best = sketches.first().map_or(base.cost, |first| first.cost);
+    let hopeless = limit(base.cost, best, HOPELESS);
     let mut candidates: Vec<Candidate> = sketches
         .into_par_iter()
         .enumerate()
-        .map(|(rank, (cost, estimate, effect))| {
-            let promising = rank < ALWAYS_FITTED || cost < hopeless;
-            let fit = if promising && base.cost - cost > WORTH_A_FIT {
-                refine(experiment, model, estimate)
+        .map(|(rank, sketch)| {
+            let promising = rank < ALWAYS_FITTED || sketch.cost < hopeless;
+            let candidate = if sketch.is_absent() {
+                absent(base, sketch)
+            } else if promising && base.cost - sketch.cost > WORTH_A_FIT {
+                let fit = refine(experiment, model, sketch.estimate);
+                weigh(experiment, model, base, sketch.effect, fit)
             } else {
-                evaluate_weighted(experiment, model, estimate, base.weights.clone())
+                let weights = base.weights.clone();
+                let fit = evaluate_weighted(experiment, model, sketch.estimate, weights);
+                weigh(experiment, model, base, sketch.effect, fit)
             };
-            progress(effect.id());
-            weigh(experiment, model, base, effect, fit)
+            progress(candidate.effect.id());
+            candidate
         })
         .collect();
     candidates.sort_by(|a, b| b.likelihood_ratio.total_cmp(&a.likelihood_ratio));
     candidates
+}
+
+/// An effect after the screen: what it might leave, and where to start from; at least one start.
+struct Screened {
+    effect: &'static dyn Effect,
+    predicted: f64,
+    starts: Vec<Estimate>,
+}
+
+/// An effect roughly fitted.
+struct Sketch {
+    effect: &'static dyn Effect,
+    cost: f64,
+    estimate: Estimate,
+}
+
+impl Sketch {
+    /// Whether the screen found nothing of the effect.
+    fn is_absent(&self) -> bool {
+        self.estimate
+            .effects
+            .last()
+            .is_none_or(AddedEffect::is_null)
+    }
+}
+
+/// Screens effects by finite secants, the most promising first.
+fn screened(
+    experiment: &Experiment,
+    model: &Model,
+    base: &Fit,
+    effects: &[&'static dyn Effect],
+) -> Vec<Screened> {
+    let jacobian = Jacobian::new(experiment, model, &base.weights, &base.estimate);
+    let mut screened: Vec<Screened> = effects
+        .par_iter()
+        .map(|&effect| {
+            let (predicted, starts) = starts(experiment, model, base, &jacobian, effect);
+            Screened {
+                effect,
+                predicted,
+                starts,
+            }
+        })
+        .collect();
+    screened.sort_by(|a, b| a.predicted.total_cmp(&b.predicted));
+    screened
+}
+
+/// Sketches the screened effects that have a chance, the best first.
+fn sketches(
+    experiment: &Experiment,
+    model: &Model,
+    base: &Fit,
+    screened: Vec<Screened>,
+) -> Vec<Sketch> {
+    let best = screened.first().map_or(base.cost, |first| first.predicted);
+    let hopeless = limit(base.cost, best, DOUBTFUL);
+    let mut sketches: Vec<Sketch> = screened
+        .into_par_iter()
+        .enumerate()
+        .map(|(rank, mut screened)| {
+            let promising = rank < ALWAYS_SKETCHED || screened.predicted < hopeless;
+            let (cost, estimate) = if base.cost - screened.predicted <= WORTH_A_FIT {
+                let mut without = base.estimate.clone();
+                without.effects.push(AddedEffect::null(screened.effect));
+                (base.cost, without)
+            } else if promising {
+                sketch_starts(experiment, model, base, screened.starts)
+            } else {
+                (screened.predicted, screened.starts.swap_remove(0))
+            };
+            Sketch {
+                effect: screened.effect,
+                cost,
+                estimate,
+            }
+        })
+        .collect();
+    sketches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    sketches
 }
 
 /// Cost above which an effect is given up, when the best of its kind leaves `best` of `base`.
@@ -175,7 +233,7 @@ fn starts(
             let mut added = AddedEffect::typical(effect);
             added.values[0] = value;
             estimate.effects.push(added);
-            let residuals = residuals(experiment, model, &base.weights, &estimate);
+            let residuals = huber_residuals(experiment, model, &base.weights, &estimate);
             (frame.cost_after(&residuals), estimate)
         })
         .collect();
@@ -187,6 +245,21 @@ fn starts(
         .map(|(_, start)| start)
         .collect();
     (predicted, starts)
+}
+
+/// The candidate of an effect that the screen found nothing of.
+fn absent(base: &Fit, sketch: Sketch) -> Candidate {
+    Candidate {
+        effect: sketch.effect,
+        fit: Fit {
+            estimate: sketch.estimate,
+            ..base.clone()
+        },
+        likelihood_ratio: 0.0,
+        inflation: 1.0,
+        detectability: 0.0,
+        intervals: vec![(f64::NAN, f64::NAN); sketch.effect.parameters().len()],
+    }
 }
 
 /// Weighs the last effect of a fitted model against the model without it.
@@ -203,10 +276,7 @@ pub fn weigh(
     let compared = fit.weights.count() as f64;
     let variance = (square_sum(&fit.residuals) / compared).max(1.0);
     let signatures: Vec<Signature> = (0..effect.parameters().len())
-        .map(|parameter| {
-            let shared = Shared::Effect(index, parameter);
-            Signature::new(experiment, &fit, &jacobian, shared)
-        })
+        .map(|parameter| Signature::new(experiment, &fit, &jacobian, index, parameter))
         .collect();
     let inflation = signatures[0].inflation;
     let intervals = signatures
@@ -215,7 +285,11 @@ pub fn weigh(
             let deviation = 1.96 * (variance * signature.inflation / signature.square).sqrt();
             let half = deviation * fit.estimate.scale(signature.shared);
             let value = fit.estimate.get(signature.shared);
-            (value - half, value + half)
+            let range = &effect.parameters()[signature.parameter];
+            (
+                (value - half).max(range.low),
+                (value + half).min(range.high),
+            )
         })
         .collect();
     let size = fit.estimate.effects[index].values[0] - effect.parameters()[0].null;
@@ -232,6 +306,7 @@ pub fn weigh(
 
 /// A parameter's signature with all that is free besides it projected out.
 struct Signature {
+    parameter: usize,
     shared: Shared,
     square: f64,
     inflation: f64,
@@ -239,9 +314,17 @@ struct Signature {
 }
 
 impl Signature {
-    fn new(experiment: &Experiment, fit: &Fit, jacobian: &Jacobian, shared: Shared) -> Self {
+    fn new(
+        experiment: &Experiment,
+        fit: &Fit,
+        jacobian: &Jacobian,
+        effect: usize,
+        parameter: usize,
+    ) -> Self {
+        let shared = Shared::Effect(effect, parameter);
         let projected = projected(fit, jacobian, shared);
         Self {
+            parameter,
             shared,
             square: square_sum(&projected).max(1e-12),
             inflation: variance_inflation(experiment, &fit.residuals, &projected),

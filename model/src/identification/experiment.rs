@@ -4,7 +4,7 @@ use super::conditioning::Drive;
 use super::noise::from_second_differences;
 use super::regime::{Regime, regimes};
 use crate::campaign::{Bench, Campaign, Channel, Run};
-use crate::model::Model;
+use crate::model::{Dynamics, Model};
 use crate::plant::{Currents, HitchRig, Rig};
 use crate::simulation::{Trace, simulate};
 use crate::units;
@@ -68,6 +68,8 @@ pub struct Experiment {
     pub current_noise: Currents,
     /// Variance of the mean of the currents' noise over half a second, in that of white noise: one and up.
     pub current_persistence: f64,
+    /// Whether the model's pressures ring, so that phase and size of the ringing are to be borne with.
+    pub ringing: bool,
 }
 
 impl Experiment {
@@ -87,6 +89,7 @@ impl Experiment {
             noise,
             current_noise: sigma,
             current_persistence: current_persistence(campaign, sigma),
+            ringing: model.constants().dynamics == Dynamics::Dynamic,
         }
     }
 

@@ -6,7 +6,9 @@
 
 use super::estimate::Estimate;
 use super::experiment::Experiment;
-use super::jacobian::{Jacobian, SlowColumns, load_steps, residuals, square_sum};
+use super::jacobian::{
+    Jacobian, SlowColumns, huber, huber_residuals, load_steps, residuals, square_sum,
+};
 use super::residual::Weights;
 use crate::model::Model;
 
@@ -17,6 +19,9 @@ const COARSE: [f64; 4] = [0.04, 0.04, 0.15, 0.25];
 /// Iterations of the coarse and of each fine round.
 const COARSE_ITERATIONS: usize = 4;
 const FINE_ITERATIONS: usize = 12;
+
+/// Iterations from a start that is all but there.
+const LAST_ITERATIONS: usize = 2;
 
 /// Iterations after which the columns of skew and loads, which hardly change, are computed anew.
 const SLOW_EVERY: usize = 4;
@@ -36,7 +41,7 @@ pub struct Fit {
     pub weights: Weights,
     /// Whitened residuals of each run, channel after channel.
     pub residuals: Vec<Vec<f64>>,
-    /// Sum of squares plus the cost of the priors.
+    /// Sum of Huber's losses plus the cost of the priors.
     pub cost: f64,
 }
 
@@ -124,12 +129,13 @@ pub fn evaluate_weighted(
     estimate: Estimate,
     weights: Weights,
 ) -> Fit {
-    let point = Point::new(experiment, model, &weights, estimate);
+    let residuals = residuals(experiment, model, &weights, &estimate);
+    let cost = square_sum(&huber(residuals.clone())) + estimate.prior_cost();
     Fit {
-        estimate: point.estimate,
+        estimate,
         weights,
-        residuals: point.residuals,
-        cost: point.cost,
+        residuals,
+        cost,
     }
 }
 
@@ -177,7 +183,7 @@ pub fn refine(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
 #[must_use]
 pub fn refine_once(experiment: &Experiment, model: &Model, start: Estimate) -> Estimate {
     let weights = Weights::new(experiment, model, &start);
-    descend(experiment, model, &weights, start, COARSE_ITERATIONS)
+    descend(experiment, model, &weights, start, LAST_ITERATIONS)
 }
 
 /// Fits only each run's load error: two Gauss-Newton steps, it is all but linear.
@@ -255,7 +261,7 @@ struct Point {
 
 impl Point {
     fn new(experiment: &Experiment, model: &Model, weights: &Weights, estimate: Estimate) -> Self {
-        let residuals = residuals(experiment, model, weights, &estimate);
+        let residuals = huber_residuals(experiment, model, weights, &estimate);
         let cost = square_sum(&residuals) + estimate.prior_cost();
         Self {
             estimate,

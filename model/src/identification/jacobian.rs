@@ -47,6 +47,9 @@ pub struct Step {
     pub loads: Vec<f64>,
 }
 
+/// Size from which a whitened residual counts no longer by its square but by its distance.
+const FAR: f64 = 10.0;
+
 /// Whitened residuals of every run under an estimate.
 #[must_use]
 pub fn residuals(
@@ -64,6 +67,32 @@ pub fn residuals(
             weights.runs[index].whiten(run, &trace)
         })
         .collect()
+}
+
+/// Residuals as a fit sees them: their squares are Huber's losses.
+///
+/// While an effect is missing a simulation may run against a stop that the hitch never reached, and a thousand sigmas
+/// of dead-head pressure would drown all else. Below `FAR` nothing changes.
+#[must_use]
+pub fn huber(mut residuals: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    for residual in residuals.iter_mut().flatten() {
+        let size = residual.abs();
+        if size > FAR {
+            *residual = (2.0 * FAR * size - FAR * FAR).sqrt().copysign(*residual);
+        }
+    }
+    residuals
+}
+
+/// [`residuals`] as a fit sees them.
+#[must_use]
+pub fn huber_residuals(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    estimate: &Estimate,
+) -> Vec<Vec<f64>> {
+    huber(residuals(experiment, model, weights, estimate))
 }
 
 /// Sum of squares of residuals.
@@ -116,7 +145,11 @@ fn shared_column(
         moved.set(parameter, value - step);
     }
     let taken = (moved.get(parameter) - value) / scale;
-    quotient(base, residuals(experiment, model, weights, &moved), taken)
+    quotient(
+        base,
+        huber_residuals(experiment, model, weights, &moved),
+        taken,
+    )
 }
 
 /// Sensitivity of all runs to their load errors, a step of one prior sigma.
@@ -131,7 +164,11 @@ fn load_columns(
     for run in 0..experiment.runs.len() {
         moved.set_load(run, estimate.load(run) + 1.0);
     }
-    quotient(base, residuals(experiment, model, weights, &moved), 1.0)
+    quotient(
+        base,
+        huber_residuals(experiment, model, weights, &moved),
+        1.0,
+    )
 }
 
 /// Columns that hardly change from one iteration to the next: of the skew and of the loads.
@@ -167,7 +204,7 @@ pub fn load_steps(
     weights: &Weights,
     estimate: &Estimate,
 ) -> Vec<f64> {
-    let base = residuals(experiment, model, weights, estimate);
+    let base = huber_residuals(experiment, model, weights, estimate);
     let loads = load_columns(experiment, model, weights, estimate, &base);
     base.iter()
         .zip(&loads)
@@ -191,7 +228,7 @@ impl Jacobian {
         weights: &Weights,
         estimate: &Estimate,
     ) -> Self {
-        let base = residuals(experiment, model, weights, estimate);
+        let base = huber_residuals(experiment, model, weights, estimate);
         let slow = SlowColumns::new(experiment, model, weights, estimate, &base);
         Self::with_slow_columns(experiment, model, weights, estimate, &base, &slow)
     }

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use super::estimate::Estimate;
 use super::experiment::{Experiment, ReadyRun};
 use crate::campaign::Channel;
-use crate::model::{Dynamics, Model};
+use crate::model::Model;
 use crate::plant::Currents;
 use crate::simulation::Trace;
 use crate::units;
@@ -23,13 +23,20 @@ use crate::units;
 /// A sample whose yardstick grows beyond this many times the instrument's noise is left out.
 const UNKNOWABLE: f64 = 8.0;
 
+/// This near to an end of the swing, degree, the hitch stands against the stop. What the angle's walk has added up is
+/// lost there: the hitch arrives a little earlier or later than simulated, and then stands where it must.
+const AT_A_STOP_DEG: f64 = 0.2;
+
+/// How long after a stop what was trapped there still rings, s: a heavy load loses three quarters of it in this time.
+const AFTER_A_STOP_S: f64 = 1.5;
+
 /// What remains unknown of when a sample was taken, one sigma, s: a twentieth of a 50 Hz sample. On ramps it moves the
 /// flow, after a switch it turns the phase of a ringing pressure.
 const TIMING_S: f64 = 0.001;
 
-/// Part of a pressure's swing within [`RINGING_S`] of a sample that a dynamic model may be off by: after ten periods a
-/// frequency that is 1 % off has lost a tenth of a period, and no constant behind it is known better.
-const RINGING_SHARE: f64 = 0.1;
+/// Part of a pressure's swing within [`RINGING_S`] of a sample that a dynamic model may be off by: frequency and damping
+/// of the ringing hang on oil, hose, seals and stops, whose constants nobody knows to better than some percent.
+const RINGING_SHARE: f64 = 0.07;
 const RINGING_S: f64 = 0.1;
 
 /// How one run's differences are whitened.
@@ -102,7 +109,8 @@ impl RunWeights {
             gain: vec![0.0; run.len()],
         };
         let edges = pump_edges(run, model, [&below, &above]);
-        let ringing = model.constants().dynamics == Dynamics::Dynamic;
+        let stops = at_a_stop(run, model, [&below, &above]);
+        let ringing = experiment.ringing;
         for channel in [
             Channel::PumpPressure,
             Channel::CylinderPressure,
@@ -124,6 +132,7 @@ impl RunWeights {
                 let shift = 0.5 * (late.channel(channel)[sample] - early.channel(channel)[sample]);
                 let yardstick = sigma.hypot(spread).hypot(shift).hypot(tolerance[sample]);
                 let known = yardstick <= UNKNOWABLE * sigma
+                    && !stops[sample]
                     && !(channel == Channel::PumpPressure && edges[sample]);
                 if value.is_finite() && known {
                     weights.scale[offset + sample] = 1.0 / yardstick;
@@ -231,6 +240,31 @@ fn pump_edges(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
         .collect()
 }
 
+/// Samples at which the hitch stands against a stop, measured or simulated: pressure and flow there hang on the stop's
+/// stiffness and on how hard it was met.
+fn at_a_stop(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
+    let (low_rad, high_rad) = model.linkage().swing_rad();
+    let stops_deg = [low_rad.to_degrees(), high_rad.to_degrees()];
+    let touches = |angle_deg: f64| {
+        stops_deg
+            .iter()
+            .any(|stop_deg| (angle_deg - stop_deg).abs() < AT_A_STOP_DEG)
+    };
+    let measured = run.measured[Channel::RockerAngle.index()].as_ref();
+    let mut left_s = f64::NEG_INFINITY;
+    (0..run.len())
+        .map(|sample| {
+            let simulated = |trace: &&Trace| touches(trace.channel(Channel::RockerAngle)[sample]);
+            if measured.is_some_and(|angle_deg| touches(angle_deg[sample]))
+                || traces.iter().any(simulated)
+            {
+                left_s = run.drive.time_s[sample];
+            }
+            run.drive.time_s[sample] - left_s <= AFTER_A_STOP_S
+        })
+        .collect()
+}
+
 /// Standard deviation of the angle's walk from one sample to the next, degree.
 fn walk_steps_deg(
     experiment: &Experiment,
@@ -242,6 +276,7 @@ fn walk_steps_deg(
     let linkage = model.linkage();
     let time_s = &run.drive.time_s;
     let noise = experiment.current_noise;
+    let stops = at_a_stop(run, model, [below, above]);
     (0..run.len())
         .map(|sample| {
             if sample == 0 {
@@ -252,6 +287,9 @@ fn walk_steps_deg(
                     .abs();
             if flow_lpm == 0.0 {
                 return 0.0;
+            }
+            if stops[sample] {
+                return AT_A_STOP_DEG;
             }
             let share = active(noise, run.drive.currents[sample])
                 / active(run.drive.spread[sample], run.drive.currents[sample]);

@@ -110,6 +110,6 @@ impl Circuit<'_> {
             let drop_pa = cylinder_pressure_pa - self.sites.return_pressure_pa(flow_m3_s);
             flow_m3_s - valve.flow_m3_s(opening_m3_s, drop_pa)
         };
-        crate::plant::root::rising(excess, 0.0, free_m3_s, free_m3_s * 1e-9)
+        crate::plant::root::rising(excess, 0.0, free_m3_s, free_m3_s * 1e-7)
     }
 }

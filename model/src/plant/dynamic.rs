@@ -4,6 +4,9 @@
 //! F_stop(x, v)`, `x' = v` (RIG.md). Classical Runge-Kutta of order four: the ringing at 10 to 40 Hz wants a high
 //! order, the noisy measured current makes step control pointless, and a fixed rhythm keeps the result smooth in
 //! the parameters. Where a nearly drained orifice makes the pressure stiff, the step is cut to stay stable.
+//!
+//! Oil does not pull: a piston that flies on when its valve shuts leaves a void behind, which has to close before the
+//! pressure rises again. Within a step the pressure runs on below the vacuum as the account of that void.
 
 use super::circuit::{Circuit, Openings};
 use super::{HitchRig, MechanicalState};
@@ -31,24 +34,50 @@ fn derivative(
     let constants = model.constants();
     let cylinder = &constants.cylinder;
     let area_m2 = cylinder.area_m2();
-    let flows = circuit.solve(openings, state.pressure_pa);
+    let pressure_pa = state.pressure_pa.max(VACUUM_PA);
+    let flows = circuit.solve(openings, pressure_pa);
     let (dh_dx, d2h_dx2_1_m) = model.linkage().transmission(state.piston_m);
     let masses = &constants.masses;
     let inertia_kg = masses.inertia_kg(rig.load_kg, dh_dx);
     let slope = masses.half_inertia_slope_kg_m(rig.load_kg, dh_dx, d2h_dx2_1_m);
     let speed_m_s = state.speed_m_s;
-    let force_n = state.pressure_pa * area_m2
+    let force_n = pressure_pa * area_m2
         - masses.weight_force_n(rig.load_kg, dh_dx)
         - slope * speed_m_s * speed_m_s
         - cylinder.viscous_friction_n_s_m * speed_m_s
         - circuit.sites.friction_n(speed_m_s)
         + cylinder.stop_force_n(state.piston_m, speed_m_s);
-    let stiffness = constants.oil.bulk_modulus_pa / cylinder.volume_m3(state.piston_m.max(0.0));
     [
         speed_m_s,
         force_n / inertia_kg,
-        stiffness * (flows.net_m3_s() - area_m2 * speed_m_s),
+        stiffness_pa_m3(model, state.piston_m) * (flows.net_m3_s() - area_m2 * speed_m_s),
     ]
+}
+
+/// How much the pressure rises for a volume of oil, Pa/m3: `E/V`.
+fn stiffness_pa_m3(model: &Model, piston_m: f64) -> f64 {
+    let constants = model.constants();
+    constants.oil.bulk_modulus_pa / constants.cylinder.volume_m3(piston_m.max(0.0))
+}
+
+/// The state with its void as pressure below the vacuum.
+fn stretched(model: &Model, state: MechanicalState) -> MechanicalState {
+    let missing_pa = stiffness_pa_m3(model, state.piston_m) * state.void_m3;
+    MechanicalState {
+        pressure_pa: state.pressure_pa - missing_pa,
+        void_m3: 0.0,
+        ..state
+    }
+}
+
+/// The state with pressure below the vacuum as a void.
+fn torn(model: &Model, state: MechanicalState) -> MechanicalState {
+    let missing_pa = (VACUUM_PA - state.pressure_pa).max(0.0);
+    MechanicalState {
+        pressure_pa: state.pressure_pa.max(VACUUM_PA),
+        void_m3: missing_pa / stiffness_pa_m3(model, state.piston_m),
+        ..state
+    }
 }
 
 fn moved(state: MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState {
@@ -56,6 +85,7 @@ fn moved(state: MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState
         piston_m: state.piston_m + dt_s * rate[0],
         speed_m_s: state.speed_m_s + dt_s * rate[1],
         pressure_pa: state.pressure_pa + dt_s * rate[2],
+        ..state
     }
 }
 
@@ -147,14 +177,11 @@ fn runge_kutta(
     dt_s: f64,
 ) -> MechanicalState {
     let rate = |state, openings| derivative(model, circuit, rig, openings, state);
+    let state = stretched(model, state);
     let k1 = rate(state, openings[0]);
     let k2 = rate(moved(state, k1, 0.5 * dt_s), openings[1]);
     let k3 = rate(moved(state, k2, 0.5 * dt_s), openings[1]);
     let k4 = rate(moved(state, k3, dt_s), openings[2]);
     let mean = std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
-    let next = moved(state, mean, dt_s);
-    MechanicalState {
-        pressure_pa: next.pressure_pa.max(VACUUM_PA),
-        ..next
-    }
+    torn(model, moved(state, mean, dt_s))
 }

@@ -79,6 +79,8 @@ pub struct MechanicalState {
     pub speed_m_s: f64,
     /// Cylinder pressure, Pa.
     pub pressure_pa: f64,
+    /// Void under the piston where the oil column has torn, m3; the dynamic plant only.
+    pub void_m3: f64,
 }
 
 /// What the instruments show, in their units.
@@ -282,6 +284,7 @@ impl<'m> Plant<'m> {
                     piston_m,
                     speed_m_s: 0.0,
                     pressure_pa: weight_n / constants.cylinder.area_m2(),
+                    void_m3: 0.0,
                 }
             }
         }

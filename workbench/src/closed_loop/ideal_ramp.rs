@@ -23,7 +23,8 @@ const LONGEST_S: f64 = 20.0;
 /// Figures of the ideal manoeuvre for one move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IdealRamp {
-    /// Until the angle stays within half a degree of the set point, s.
+    /// Until the angle first comes within half a degree of the set point, s. How the hitch swings afterwards is not
+    /// counted, so that this is a bound: a gentler manoeuvre may rest sooner, but none arrives sooner.
     pub time_s: f64,
     /// Peak-to-peak cylinder pressure, bar.
     pub pressure_swing_bar: f64,
@@ -127,10 +128,10 @@ impl Track {
     }
 
     fn figures(&self, order: &Move) -> IdealRamp {
-        let away = |&(angle_deg, _): &(f64, f64)| (angle_deg - order.to_deg).abs() > ARRIVED_DEG;
-        let arrived = self.0.iter().rposition(away).map_or(1, |at| at + 2);
+        let near = |&(angle_deg, _): &(f64, f64)| (angle_deg - order.to_deg).abs() <= ARRIVED_DEG;
+        let arrived = self.0.iter().position(near).unwrap_or(self.0.len());
         IdealRamp {
-            time_s: arrived as f64 * STEP_S,
+            time_s: (arrived + 1) as f64 * STEP_S,
             pressure_swing_bar: swing_bar(self.0.iter().map(|&(_, bar)| bar)),
         }
     }

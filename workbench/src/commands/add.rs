@@ -11,7 +11,7 @@ use hitch_model::identification::explain::fit_base;
 
 use super::effects::find;
 use crate::error::Error;
-use crate::explanation::parameters;
+use crate::explanation::{parameters, rebuilt};
 use crate::model_arg::ModelArg;
 use crate::output;
 use crate::progress::Progress;
@@ -61,8 +61,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         }
     }
     drop(progress);
-    let mut rebuilt = model.with_effects(fit.estimate.effects);
-    rebuilt.name = output::stem(&args.out);
+    let rebuilt = rebuilt(&model, &fit.estimate.effects, output::stem(&args.out));
     output::write_file(&args.out, rebuilt.to_toml().as_bytes())?;
     output::print(&text)
 }

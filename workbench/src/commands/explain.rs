@@ -1,16 +1,12 @@
 //! `hitch explain`: what the model lacks, found and added until nothing more is worth adding.
 use std::path::PathBuf;
 
-use hitch_model::Model;
 use hitch_model::campaign::Campaign;
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain;
 
 use crate::error::Error;
-use crate::explanation::Explanation;
+use crate::explanation::Found;
 use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
-use crate::progress::Progress;
 use crate::report::explanation_page;
 
 /// Arguments of `hitch explain`.
@@ -49,44 +45,4 @@ pub fn run(args: &Args) -> Result<(), Error> {
         output::write_file(path, explanation_page::page(&found).as_bytes())?;
     }
     args.json.print(&found.shown, || found.shown.to_string())
-}
-
-/// An explanation with everything that belongs to it.
-#[derive(Debug, Clone)]
-pub struct Found {
-    /// The model it began with.
-    pub model: Model,
-    /// The campaign, ready.
-    pub experiment: Experiment,
-    /// The explanation as the identification gives it.
-    pub explanation: explain::Explanation,
-    /// The explanation as it is shown.
-    pub shown: Explanation,
-}
-
-impl Found {
-    /// Explains a campaign, saying on a terminal what is being tried.
-    pub fn new(campaign: &Campaign, model: Model) -> Self {
-        let progress = Progress::start(format!("reading {}", campaign.name));
-        let experiment = Experiment::new(campaign, &model);
-        let explanation = explain::explain(&experiment, &model, &|what| {
-            progress.say(format!("trying {what}"))
-        });
-        let shown = Explanation::new(&experiment, &model, &explanation);
-        Self {
-            model,
-            experiment,
-            explanation,
-            shown,
-        }
-    }
-
-    /// The model with the effects that were found.
-    pub fn rebuilt(&self, name: String) -> Model {
-        let mut model = self
-            .model
-            .with_effects(self.explanation.after.estimate.effects.clone());
-        model.name = name;
-        model
-    }
 }

@@ -4,12 +4,15 @@ use std::path::PathBuf;
 use hitch_model::Model;
 use hitch_model::campaign::Campaign;
 
-use super::explain::Found;
+use crate::closed_loop::Scenario;
 use crate::comparison::Comparison;
 use crate::demonstration;
 use crate::error::Error;
+use crate::explanation::Found;
 use crate::output;
-use crate::report::explanation_page;
+use crate::progress::Progress;
+use crate::rebuild::Rebuild;
+use crate::report::main_page;
 
 /// So many of the worst cells are named.
 const NAMED_CELLS: usize = 3;
@@ -33,7 +36,11 @@ pub fn run(args: &Args) -> Result<(), Error> {
     output::print(&compared(&campaign, &model))?;
     let found = Found::new(&campaign, model);
     output::print(&explained(&found))?;
-    output::write_file(&args.report, explanation_page::page(&found).as_bytes())?;
+    let progress = Progress::start("closing the loop with either valve map");
+    let rebuild = Rebuild::new(&found, Scenario::Moves)?;
+    drop(progress);
+    output::print(&format!("\n{}", rebuild.text()))?;
+    output::write_file(&args.report, main_page::page(&found, &rebuild).as_bytes())?;
     output::print(&format!("\nReport: {}\n", args.report.display()))
 }
 

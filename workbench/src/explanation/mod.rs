@@ -1,9 +1,13 @@
 //! What `hitch explain` and `hitch diagnose` found, as scripts read it (JSON) and as people do (text).
+mod found;
 mod of_diagnosis;
 mod of_explanation;
+mod rebuilt;
 mod show;
 
+pub use found::Found;
 pub use of_explanation::parameters;
+pub use rebuilt::rebuilt;
 
 use serde::Serialize;
 use serde_json::{Map, Value};

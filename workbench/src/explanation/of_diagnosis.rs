@@ -42,10 +42,11 @@ fn verdict(
     believed: Option<&candidate::Candidate>,
 ) -> Verdict {
     let fit = believed.map_or(&found.base, |best| &best.fit);
-    if fit.weights.count() == 0 {
+    let cells = cells(experiment, fit);
+    if fit.weights.count() == 0 || cells.is_empty() {
         return Verdict::NotEnoughData;
     }
-    match (adequate(&cells(experiment, fit)), believed) {
+    match (adequate(experiment, &cells, fit), believed) {
         (false, _) => Verdict::Unexplained,
         (true, None) => Verdict::NothingMissing,
         (true, Some(best)) if twins(found, best).is_empty() => Verdict::Explained,

@@ -28,7 +28,7 @@ impl Explanation {
                 depends_on: found.rest.depends_on.clone(),
                 suggested_term: None,
             },
-            next_experiment: None,
+            next_experiment: found.next_experiment.map(str::to_owned),
         }
     }
 }

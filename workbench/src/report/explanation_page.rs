@@ -1,14 +1,13 @@
 //! The report of `hitch explain`.
-use hitch_model::identification::explain::Explanation as Identified;
+use hitch_model::identification::fit::Fit;
 use maud::{Markup, html};
 
 use super::page;
 use super::run_views::run_views;
 use super::runs::runs;
 use super::staircase::{self, staircase};
-use crate::commands::explain::Found;
 use crate::comparison::{Comparison, Evaluated, Grouping};
-use crate::explanation::{Explanation, Step};
+use crate::explanation::{Explanation, Found, Step};
 
 /// Groupings that are shown before and after.
 const GROUPINGS: [Grouping; 4] = [
@@ -22,23 +21,34 @@ const GROUPINGS: [Grouping; 4] = [
 pub fn page(found: &Found) -> String {
     let head = &found.shown.head;
     let title = format!("What {} lacks on {}", head.model, head.campaign);
-    page::page(&title, &html! { h1 { (title) } (sections(found)) })
+    page::page(
+        &title,
+        &html! { h1 { (title) } (findings(found)) (details(found)) },
+    )
 }
 
-/// The sections of the report, for pages that hold more than that.
-pub fn sections(found: &Found) -> Markup {
-    let Identified { before, after, .. } = &found.explanation;
-    let evaluated = |fit: &hitch_model::identification::fit::Fit| Evaluated {
-        experiment: found.experiment.clone(),
-        fit: fit.clone(),
-    };
-    let (before, after) = (evaluated(before), evaluated(after));
-    let changed = (!found.shown.steps.is_empty()).then_some(&after);
+/// What was found: verdict, fall of the error, effects.
+pub fn findings(found: &Found) -> Markup {
     html! {
         (verdict(&found.shown))
         h2 { "The error, step by step" }
         (staircase(&stairs(&found.shown)))
-        @if changed.is_some() { (steps(&found.shown.steps)) }
+        @if !found.shown.steps.is_empty() { (steps(&found.shown.steps)) }
+    }
+}
+
+/// What it rests on: errors by channel and regime, and every run.
+pub fn details(found: &Found) -> Markup {
+    let evaluated = |fit: &Fit| Evaluated {
+        experiment: found.experiment.clone(),
+        fit: fit.clone(),
+    };
+    let (before, after) = (
+        evaluated(&found.explanation.before),
+        evaluated(&found.explanation.after),
+    );
+    let changed = (!found.shown.steps.is_empty()).then_some(&after);
+    html! {
         h2 { "By channel" }
         (channels(&found.shown))
         (grids(found, &before, changed))

@@ -1,0 +1,124 @@
+//! Campaigns of an independent rig whose hidden physics is known: the effects named are the hidden ones and no other.
+//!
+//! `campaigns/NAME.truth.json` says what is hidden in `campaigns/NAME`.
+
+use std::path::{Path, PathBuf};
+
+use hitch_model::Model;
+use hitch_model::campaign::Campaign;
+use hitch_model::identification::experiment::Experiment;
+use hitch_model::identification::explain::{Explanation, Verdict, explain};
+
+fn campaigns() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns")
+}
+
+fn explained(name: &str, model: &Model) -> Explanation {
+    let campaign = Campaign::load(&campaigns().join(name)).expect("a shipped campaign");
+    explain(&Experiment::new(&campaign, model), model, &|_| {})
+}
+
+/// What is hidden, by effect id.
+fn hidden(name: &str) -> Vec<(String, f64)> {
+    let text = std::fs::read_to_string(campaigns().join(format!("{name}.truth.json")));
+    let truth: serde_json::Value =
+        serde_json::from_str(&text.expect("a truth beside the campaign")).expect("JSON");
+    let hidden = truth["hidden"].as_object().expect("the hidden effects");
+    hidden
+        .iter()
+        .map(|(id, value)| (id.clone(), value.as_f64().expect("a number")))
+        .collect()
+}
+
+fn is_named(name: &str) {
+    let explanation = explained(name, &Model::nominal());
+    let hidden = hidden(name);
+    let named: Vec<&str> = explanation
+        .steps
+        .iter()
+        .map(|step| step.effect.id())
+        .collect();
+    assert_eq!(named.len(), hidden.len(), "{name}: {named:?} named");
+    for (id, value) in &hidden {
+        let step = explanation.steps.iter().find(|step| step.effect.id() == id);
+        let found = step
+            .unwrap_or_else(|| panic!("{name}: {id} not among {named:?}"))
+            .values[0];
+        assert!(
+            (found / value - 1.0).abs() < 0.10,
+            "{name}: {id} {found}, not {value}"
+        );
+    }
+    assert_eq!(explanation.verdict, Verdict::Explained, "{name}");
+    let last = explanation.steps.last().expect("a step");
+    assert!(
+        last.held_out_after <= 1.10,
+        "{name}: held out {}",
+        last.held_out_after
+    );
+    assert!(last.held_out_before > 2.0 * last.held_out_after, "{name}");
+}
+
+fn nothing_is_named(name: &str, model: &Model) {
+    let explanation = explained(name, model);
+    assert!(
+        explanation.steps.is_empty(),
+        "{name}: {:?}",
+        explanation.steps[0].effect.id()
+    );
+    assert_eq!(explanation.verdict, Verdict::NothingMissing, "{name}");
+    let error = explanation.before.error();
+    assert!((0.95..=1.10).contains(&error), "{name}: error {error}");
+}
+
+#[test]
+fn a_shifted_threshold_is_named() {
+    is_named("known-threshold");
+}
+
+#[test]
+fn friction_is_named() {
+    is_named("known-friction");
+}
+
+#[test]
+fn hysteresis_is_named() {
+    is_named("known-hysteresis");
+}
+
+#[test]
+fn back_pressure_is_named() {
+    is_named("known-return-line");
+}
+
+#[test]
+fn a_leak_and_a_sensor_lag_are_both_named() {
+    is_named("known-leak-and-lag");
+}
+
+#[test]
+fn nothing_is_named_where_nothing_is_hidden() {
+    nothing_is_named("clean-steady", &Model::nominal());
+    nothing_is_named("clean-rough", &Model::nominal());
+}
+
+#[test]
+fn nothing_is_named_where_nothing_is_hidden_and_pressures_ring() {
+    nothing_is_named("clean-dynamic", &Model::dynamic());
+}
+
+/// The wrong starting point is not adequate, and no effect of the catalogue is made to stand for inertia.
+#[test]
+fn the_wrong_starting_point_is_not_called_adequate() {
+    let explanation = explained("clean-dynamic", &Model::nominal());
+    assert_eq!(explanation.verdict, Verdict::Unexplained);
+}
+
+/// An end cushion is not in the catalogue: what is left has to be owned up to, and to point at the angle.
+#[test]
+fn what_is_not_in_the_catalogue_is_unexplained() {
+    let explanation = explained("known-outside", &Model::nominal());
+    assert_eq!(explanation.verdict, Verdict::Unexplained);
+    assert!(explanation.rest.share > 0.2);
+    assert_eq!(explanation.rest.depends_on[0], "rocker_angle_deg");
+}

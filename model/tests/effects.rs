@@ -1,0 +1,166 @@
+//! Every effect of the catalogue, by the same tests.
+
+use hitch_model::Model;
+use hitch_model::campaign::Channel;
+use hitch_model::effects::{AddedEffect, CATALOGUE, Effect};
+use hitch_model::plant::{Currents, HitchRig, Rig};
+use hitch_model::simulation::{Trace, simulate};
+use hitch_model::units::pa_from_bar;
+
+/// One run on the hitch and one on the flow bench, both valves, up and down.
+fn runs(model: &Model) -> Vec<Trace> {
+    let time_s: Vec<f64> = (0..600).map(|k| f64::from(k) * 0.02).collect();
+    let currents: Vec<Currents> = time_s
+        .iter()
+        .map(|t| Currents {
+            lift_a: 2.0 * ((t - 0.5) / 0.2).min((2.5 - t) / 0.2).clamp(0.0, 1.0),
+            lower_a: 1.9 * ((t - 4.0) / 0.2).min((6.0 - t) / 0.2).clamp(0.0, 1.0),
+        })
+        .collect();
+    let hitch = Rig::Hitch(HitchRig {
+        load_kg: 150.0,
+        start_angle_rad: 70_f64.to_radians(),
+    });
+    let bench = Rig::Flow {
+        port_pressure_pa: pa_from_bar(20.0),
+    };
+    [hitch, bench]
+        .into_iter()
+        .map(|rig| simulate(model, rig, 40.0, &time_s, &currents))
+        .collect()
+}
+
+fn with(model: &Model, effect: &'static dyn Effect, size: f64) -> Model {
+    let mut added = AddedEffect::typical(effect);
+    added.values[0] = size;
+    model.with_effects(vec![added])
+}
+
+/// Largest difference of a channel between two sets of runs, in its unit.
+fn difference(a: &[Trace], b: &[Trace], channel: Channel) -> f64 {
+    let pairs = a
+        .iter()
+        .zip(b)
+        .flat_map(|(a, b)| a.channel(channel).iter().zip(b.channel(channel)));
+    pairs
+        .filter(|(a, _)| a.is_finite())
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+}
+
+fn starting_points() -> [Model; 2] {
+    [Model::nominal(), Model::dynamic()]
+}
+
+#[test]
+fn a_null_value_gives_the_model_without_the_effect_bit_for_bit() {
+    let bits = |traces: &[Trace]| -> Vec<u64> {
+        let channels = traces.iter().flat_map(|trace| &trace.channels);
+        channels.flatten().map(|value| value.to_bits()).collect()
+    };
+    for model in starting_points() {
+        let without = bits(&runs(&model));
+        for effect in CATALOGUE {
+            let null = model.with_effects(vec![AddedEffect::null(*effect)]);
+            assert!(
+                bits(&runs(&null)) == without,
+                "{} at null changes {}",
+                effect.id(),
+                model.name
+            );
+        }
+    }
+}
+
+/// The null value is a limit, not a switch: a millionth of a typical size changes next to nothing.
+#[test]
+fn next_to_its_null_value_an_effect_is_next_to_nothing() {
+    for model in starting_points() {
+        let without = runs(&model);
+        for effect in CATALOGUE {
+            let size = &effect.parameters()[0];
+            let small = with(
+                &model,
+                *effect,
+                size.null + 1e-6 * (size.typical - size.null),
+            );
+            for channel in [
+                Channel::CylinderPressure,
+                Channel::Flow,
+                Channel::RockerAngle,
+            ] {
+                let change = difference(&runs(&small), &without, channel);
+                assert!(change < 2e-3, "{}: {change} in {channel:?}", effect.id());
+            }
+        }
+    }
+}
+
+#[test]
+fn a_typical_value_shows_in_the_channels_that_the_catalogue_names() {
+    /// A fifth of the usual noise of each channel.
+    const VISIBLE: [f64; 4] = [0.03, 0.02, 0.03, 0.01];
+    let model = Model::nominal();
+    let without = runs(&model);
+    for effect in CATALOGUE {
+        let typical = runs(&with(&model, *effect, effect.parameters()[0].typical));
+        for &channel in effect.channels() {
+            let change = difference(&typical, &without, channel);
+            assert!(
+                change > VISIBLE[channel.index()],
+                "{}: {change} in {channel:?}",
+                effect.id()
+            );
+        }
+    }
+}
+
+#[test]
+fn a_sensor_effect_changes_only_what_its_sensor_shows() {
+    let model = Model::nominal();
+    let without = runs(&model);
+    let lag = CATALOGUE
+        .iter()
+        .find(|e| e.id() == "angle-sensor-lag")
+        .expect("in the catalogue");
+    let lagged = runs(&with(&model, *lag, 0.1));
+    for channel in [
+        Channel::PumpPressure,
+        Channel::CylinderPressure,
+        Channel::Flow,
+    ] {
+        assert!(difference(&lagged, &without, channel) == 0.0);
+    }
+}
+
+#[test]
+fn the_catalogue_is_in_order() {
+    for (index, effect) in CATALOGUE.iter().enumerate() {
+        let id = effect.id();
+        assert!(
+            CATALOGUE[..index].iter().all(|other| other.id() != id),
+            "{id} twice"
+        );
+        assert!(
+            id.chars().all(|c| c.is_ascii_lowercase() || c == '-'),
+            "{id}"
+        );
+        assert!(!effect.parameters().is_empty(), "{id} has no parameter");
+        for text in [
+            effect.title(),
+            effect.equation(),
+            effect.source(),
+            effect.shows(),
+        ] {
+            assert!(!text.trim().is_empty(), "{id} lacks a text");
+        }
+        for parameter in effect.parameters() {
+            let range = parameter.low..=parameter.high;
+            assert!(
+                range.contains(&parameter.null) && range.contains(&parameter.typical),
+                "{id}"
+            );
+            assert!(parameter.typical != parameter.null, "{id}");
+        }
+    }
+}

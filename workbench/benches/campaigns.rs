@@ -1,0 +1,104 @@
+//! What campaigns cost: simulating each kind of run with each plant, and explaining a campaign from end to end.
+//!
+//! Simulated are the runs of the demonstration, in samples of its logger (50 Hz). Explained are lab campaigns of twenty
+//! runs; the bar is 10 s on two cores.
+
+use std::hint::black_box;
+use std::path::Path;
+use std::time::Duration;
+
+use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
+use hitch_model::Model;
+use hitch_model::campaign::{Campaign, Channel};
+use hitch_model::effects::{self, AddedEffect};
+use hitch_model::identification::experiment::{Experiment, Nuisance, ReadyRun};
+use hitch_model::identification::explain::explain;
+use hitch_workbench::demonstration;
+use rand::SeedableRng;
+use rand_distr::{Distribution, Normal};
+use rand_pcg::Pcg64;
+
+fn measured() -> Campaign {
+    demonstration::campaign().expect("the demonstration is built in")
+}
+
+/// A lab campaign of the host tests.
+fn lab(name: &str) -> Campaign {
+    let campaigns = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-tests/campaigns");
+    Campaign::load(&campaigns.join(name)).expect("a shipped campaign")
+}
+
+/// A lab campaign measured on a rig that is the dynamic plant with Coulomb friction: the currents and instruments of a
+/// measured one, always the same noise.
+fn measured_on_a_dynamic_rig() -> Campaign {
+    let friction = effects::find("coulomb-friction").expect("the effect is in the catalogue");
+    let rig = Model::dynamic().with_effects(vec![AddedEffect::typical(friction)]);
+    let mut campaign = lab("clean-dynamic");
+    let experiment = Experiment::new(&campaign, &rig);
+    let mut random = Pcg64::seed_from_u64(1);
+    for (run, ready) in campaign.runs.iter_mut().zip(&experiment.runs) {
+        let trace = ready.simulate(&rig, Nuisance::default(), 0.0, 0.0);
+        for channel in Channel::ALL {
+            let sigma = experiment.noise[channel.index()];
+            if let Some(values) = &mut run.channels[channel.index()] {
+                let noise = Normal::new(0.0, sigma).expect("an instrument has noise");
+                *values = trace
+                    .channel(channel)
+                    .iter()
+                    .map(|value| value + noise.sample(&mut random))
+                    .collect();
+            }
+        }
+    }
+    campaign
+}
+
+fn simulate_runs(criterion: &mut Criterion) {
+    let campaign = measured();
+    for model in [Model::nominal(), Model::dynamic()] {
+        let experiment = Experiment::new(&campaign, &model);
+        for (kind, on_hitch) in [("hitch", true), ("flow-bench", false)] {
+            let runs: Vec<&ReadyRun> = experiment
+                .runs
+                .iter()
+                .filter(|run| run.on_hitch() == on_hitch)
+                .collect();
+            let mut group = criterion.benchmark_group(format!("simulate {kind} runs"));
+            group.throughput(Throughput::Elements(
+                runs.iter().map(|run| run.len() as u64).sum(),
+            ));
+            group.bench_function(&model.name, |bencher| {
+                bencher.iter(|| {
+                    for run in &runs {
+                        black_box(run.simulate(&model, Nuisance::default(), 0.0, 0.0));
+                    }
+                });
+            });
+        }
+    }
+}
+
+fn explain_campaigns(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("explain");
+    group
+        .sampling_mode(SamplingMode::Flat)
+        .sample_size(10)
+        .measurement_time(Duration::from_secs(30));
+    for (campaign, model) in [
+        (lab("known-friction"), Model::nominal()),
+        (measured_on_a_dynamic_rig(), Model::dynamic()),
+    ] {
+        group.bench_function(&model.name, |bencher| {
+            bencher.iter(|| {
+                explain(
+                    &Experiment::new(&campaign, &model),
+                    black_box(&model),
+                    &|_| {},
+                )
+            });
+        });
+    }
+}
+
+criterion_group!(benches, simulate_runs, explain_campaigns);
+criterion_main!(benches);

@@ -1,0 +1,37 @@
+//! A model with the effects that were estimated, as it is written to a file.
+use hitch_model::Model;
+use hitch_model::effects::AddedEffect;
+
+/// Significant digits of an estimate in a model file; an estimate never has more.
+const DIGITS: usize = 6;
+
+/// The model with other effects and another name, its estimates rounded to what a reader can take in.
+pub fn rebuilt(model: &Model, effects: &[AddedEffect], name: String) -> Model {
+    let effects = effects.iter().cloned().map(|mut added| {
+        added
+            .values
+            .iter_mut()
+            .for_each(|value| *value = rounded(*value));
+        added
+    });
+    let mut rebuilt = model.with_effects(effects.collect());
+    rebuilt.name = name;
+    rebuilt
+}
+
+fn rounded(value: f64) -> f64 {
+    let last = DIGITS - 1;
+    format!("{value:.last$e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded;
+
+    #[test]
+    fn estimates_keep_six_digits() {
+        assert_eq!(rounded(0.198_670_368_832), 0.198_670);
+        assert_eq!(rounded(-723.482_402), -723.482);
+        assert_eq!(rounded(0.0), 0.0);
+    }
+}

@@ -1,0 +1,137 @@
+//! The valve map rebuilt from an identified model, and what the closed loop gains by it.
+use hitch_firmware::control::ValidCalibration;
+use hitch_firmware::control::calibration::Calibration;
+use hitch_model::Model;
+
+use crate::calibrate::calibrate;
+use crate::closed_loop::{self, LoopRun, MoveResult, Scenario, Summary};
+use crate::error::Error;
+use crate::explanation::Found;
+use crate::text::Table;
+
+/// The same moves of the same rig under the nominal and under the rebuilt valve map.
+#[derive(Debug, Clone)]
+pub struct Rebuild {
+    /// The rig: the dynamic model with what was found in the measurements.
+    pub rig: Model,
+    /// The nominal calibration.
+    pub nominal: ValidCalibration,
+    /// The calibration with the valves of the identified model.
+    pub rebuilt: ValidCalibration,
+    /// The moves under the nominal calibration.
+    pub before: LoopRun,
+    /// The moves under the rebuilt calibration.
+    pub after: LoopRun,
+}
+
+/// One way of moving, summed up.
+#[derive(Debug, Clone, Copy)]
+struct Way {
+    name: &'static str,
+    before: Summary,
+    after: Summary,
+}
+
+impl Rebuild {
+    /// Rebuilds the map from what was found, and drives the moves of `scenario` with either map.
+    ///
+    /// # Errors
+    /// If the firmware refuses the map of this model.
+    pub fn new(found: &Found, scenario: Scenario) -> Result<Self, Error> {
+        let rig = Model::dynamic().with_effects(found.explanation.after.estimate.effects.clone());
+        let identified = found.rebuilt("identified".to_owned());
+        let base = Calibration::nominal();
+        let failed = |error: &dyn std::fmt::Display| {
+            Error::Failed(format!("the valve map cannot be rebuilt: {error}"))
+        };
+        let rebuilt = calibrate(&identified, &base).map_err(|error| failed(&error))?;
+        let nominal = base
+            .validate()
+            .map_err(|error| failed(&format!("{error:?}")))?;
+        let moves = scenario.moves(None);
+        let drive = |calibration: &ValidCalibration| {
+            closed_loop::run(&rig, calibration, &moves)
+                .ok_or_else(|| failed(&"the scenario has no moves"))
+        };
+        let (before, after) = (drive(&nominal)?, drive(&rebuilt)?);
+        Ok(Self {
+            rig,
+            nominal,
+            rebuilt,
+            before,
+            after,
+        })
+    }
+
+    /// What the rebuilt map changes, as text.
+    pub fn text(&self) -> String {
+        let thresholds = [&self.nominal, &self.rebuilt]
+            .map(|calibration| f64::from(calibration.lower.threshold().0) * 1e-3);
+        let mut table = Table::new(["", "nominal map", "rebuilt map"]);
+        for way in self.ways() {
+            let mut row = |name: &str, figure: fn(&Summary) -> f64, digits: usize| {
+                let numbers = [figure(&way.before), figure(&way.after)]
+                    .map(|number| format!("{number:.digits$}"));
+                table.row([format!("{}: {name}", way.name)].into_iter().chain(numbers));
+            };
+            row(
+                "time over shortest, median",
+                |summary| summary.ratio_median,
+                2,
+            );
+            row(
+                "time over shortest, 95 % below",
+                |summary| summary.ratio_p95,
+                2,
+            );
+            row(
+                "overshoot at most, deg",
+                |summary| summary.overshoot_max_deg,
+                2,
+            );
+            row(
+                "final error at most, deg",
+                |summary| summary.final_error_max_deg,
+                2,
+            );
+        }
+        format!(
+            "Lowering threshold in the valve map: {:.3} A -> {:.3} A\n\nClosed loop, {} moves of this rig\n{table}",
+            thresholds[0],
+            thresholds[1],
+            self.before.results.len()
+        )
+    }
+
+    fn ways(&self) -> Vec<Way> {
+        let lifting = |result: &MoveResult| result.to_deg > result.from_deg;
+        let summary = |run: &LoopRun, lifts: bool| {
+            let moves: Vec<MoveResult> = run
+                .results
+                .iter()
+                .filter(|result| lifting(result) == lifts)
+                .copied()
+                .collect();
+            Summary::of(&moves)
+        };
+        let way = |(name, lifts)| {
+            Some(Way {
+                name,
+                before: summary(&self.before, lifts)?,
+                after: summary(&self.after, lifts)?,
+            })
+        };
+        [("lifting", true), ("lowering", false)]
+            .into_iter()
+            .filter_map(way)
+            .collect()
+    }
+
+    /// Index of the move that the rebuilt map shortens most.
+    pub fn most_shortened(&self) -> Option<usize> {
+        let gain_s =
+            |index: &usize| self.before.results[*index].time_s - self.after.results[*index].time_s;
+        (0..self.before.results.len().min(self.after.results.len()))
+            .max_by(|a, b| gain_s(a).total_cmp(&gain_s(b)))
+    }
+}
