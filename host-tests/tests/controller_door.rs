@@ -1,0 +1,162 @@
+//! `hitch controller` as anyone's plant meets it: a process, a line in, a line out.
+
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
+
+use host_tests::program::hitch;
+
+const HEADER: &str = "time_s,lever_deg,rocker_angle_deg";
+
+/// The program with both ends of its pipes.
+struct Door {
+    child: Child,
+    input: Option<ChildStdin>,
+    output: BufReader<ChildStdout>,
+}
+
+impl Door {
+    fn open(header: &str) -> Self {
+        let mut command = hitch();
+        let command = command
+            .arg("controller")
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        let input = child.stdin.take();
+        let output = BufReader::new(child.stdout.take().unwrap());
+        let mut door = Self {
+            child,
+            input,
+            output,
+        };
+        door.send(header);
+        assert_eq!(door.answer(), "lift_current_a,lower_current_a,state");
+        door
+    }
+
+    fn send(&mut self, line: &str) {
+        let input = self.input.as_mut().unwrap();
+        writeln!(input, "{line}")
+            .and_then(|()| input.flush())
+            .unwrap();
+    }
+
+    fn answer(&mut self) -> String {
+        let mut line = String::new();
+        self.output.read_line(&mut line).unwrap();
+        line.trim_end().to_owned()
+    }
+
+    /// Closes the input; exit code and what was said on standard error.
+    fn close(mut self) -> (Option<i32>, String) {
+        drop(self.input.take());
+        let output = self.child.wait_with_output().unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    }
+}
+
+/// Somebody else's hitch: valves linear from other thresholds, a lag of 60 ms, angle straight from flow.
+struct Toy {
+    door: Door,
+    step: u32,
+    lift_a: f64,
+    lower_a: f64,
+    angle_deg: f64,
+}
+
+impl Toy {
+    fn new(angle_deg: f64) -> Self {
+        Self {
+            door: Door::open(HEADER),
+            step: 0,
+            lift_a: 0.0,
+            lower_a: 0.0,
+            angle_deg,
+        }
+    }
+
+    /// One millisecond; the state, and whether a coil was on.
+    fn step(&mut self, lever_deg: f64) -> (String, bool) {
+        let line = format!(
+            "{:.3},{lever_deg},{:.4}",
+            f64::from(self.step) * 1e-3,
+            self.angle_deg
+        );
+        self.door.send(&line);
+        let answer = self.door.answer();
+        let cells: Vec<&str> = answer.split(',').collect();
+        let [lift, lower, state] = cells[..] else {
+            panic!("{answer:?}")
+        };
+        let (lift_a, lower_a): (f64, f64) = (lift.parse().unwrap(), lower.parse().unwrap());
+        self.lift_a += (lift_a - self.lift_a) / 60.0;
+        self.lower_a += (lower_a - self.lower_a) / 60.0;
+        let rate = 45.0 * (self.lift_a - 1.2).max(0.0) - 70.0 * (self.lower_a - 1.1).max(0.0);
+        self.angle_deg = (self.angle_deg + rate * 1e-3).clamp(44.1, 135.9);
+        self.step += 1;
+        (state.to_owned(), lift_a > 0.0 || lower_a > 0.0)
+    }
+}
+
+#[test]
+fn another_plant_is_moved_through_the_door() {
+    let mut toy = Toy::new(90.0);
+    for _ in 0..500 {
+        assert_eq!(toy.step(70.0), ("locked".to_owned(), false));
+    }
+    // The operator picks the hitch up: through its angle, and back onto it.
+    toy.step(91.0);
+    for _ in 0..1_000 {
+        toy.step(90.0);
+    }
+    for target_deg in [110.0, 75.0, 80.0] {
+        for _ in 0..3_000 {
+            toy.step(target_deg);
+        }
+        assert!(
+            (toy.angle_deg - target_deg).abs() <= 0.5,
+            "{} for {target_deg}",
+            toy.angle_deg
+        );
+        assert!(
+            (0..2_000).all(|_| !toy.step(target_deg).1),
+            "hunts at {target_deg}"
+        );
+    }
+    assert_eq!(toy.door.close(), (Some(0), String::new()));
+}
+
+#[test]
+fn a_missing_angle_is_a_fault_and_not_an_error() {
+    let mut door = Door::open(HEADER);
+    let answers: Vec<String> = (0..10)
+        .map(|step| {
+            door.send(&format!("{:.3},90,", f64::from(step) * 1e-3));
+            door.answer()
+        })
+        .collect();
+    assert_eq!(
+        answers.last().map(String::as_str),
+        Some("0.000,0.000,fault:angle")
+    );
+    assert_eq!(door.close().0, Some(0));
+}
+
+#[test]
+fn a_bad_line_ends_it_with_its_place() {
+    let mut door = Door::open(HEADER);
+    door.send("0.000,90,90");
+    assert_eq!(door.answer(), "0.000,0.000,locked");
+    door.send("0.001,90,nought");
+    let (code, said) = door.close();
+    assert_eq!(code, Some(2));
+    assert!(
+        said.starts_with("hitch: standard input:3:10: \"nought\" is not a finite number; "),
+        "{said}"
+    );
+    assert_eq!(said.lines().count(), 1);
+}
