@@ -55,6 +55,15 @@ pub struct Candidate {
     pub intervals: Vec<(f64, f64)>,
 }
 
+impl Candidate {
+    /// Fitted values of its parameters, in their units.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        let added = self.fit.estimate.effects.last();
+        added.map_or(&[], |added| &added.values)
+    }
+}
+
 /// Tries effects on a fitted model: all are screened, the promising ones sketched, and those that may be the best fitted
 /// in full. Best first.
 #[must_use]

@@ -13,7 +13,7 @@ use super::candidate::{Candidate, projected, secant, try_effects, weigh};
 use super::estimate::{Estimate, Shared};
 use super::evidence::{log_odds, shares};
 use super::experiment::Experiment;
-use super::fit::{Fit, fit, refine};
+use super::fit::{Fit, evaluate, fit, refine};
 use super::holdout::held_out_error;
 use super::jacobian::{Jacobian, dot};
 use super::regime::Regime;
@@ -288,7 +288,7 @@ fn with_last(experiment: &Experiment, model: &Model, fit: &Fit, effect: usize) -
     let mut estimate = fit.estimate.clone();
     let moved = estimate.effects.remove(effect);
     estimate.effects.push(moved);
-    super::fit::evaluate(experiment, model, estimate)
+    evaluate(experiment, model, estimate)
 }
 
 fn finish(
@@ -302,15 +302,10 @@ fn finish(
     for (index, step) in steps.iter_mut().enumerate() {
         let effect = given + index;
         let whole = with_last(experiment, model, &after, effect);
-        let base = super::fit::evaluate(experiment, model, without(&after.estimate, effect));
+        let base = evaluate(experiment, model, without(&after.estimate, effect));
         let weighed = weigh(experiment, model, &base, step.effect, whole.clone());
         let there = 1.0 / (1.0 + (-candidate_log_odds(&weighed)).exp());
-        step.values = whole
-            .estimate
-            .effects
-            .last()
-            .map(|e| e.values.clone())
-            .unwrap_or_default();
+        step.values = weighed.values().to_vec();
         step.intervals = weighed.intervals;
         step.detectability = weighed.detectability;
         step.indistinguishable = alternatives(experiment, model, &whole, weighed.inflation);

@@ -90,14 +90,7 @@ fn effects(ids: &[String], model: &Model) -> Result<Vec<&'static dyn Effect>, Er
 }
 
 fn shown(candidate: &Candidate) -> String {
-    let values = candidate
-        .fit
-        .estimate
-        .effects
-        .last()
-        .map(|added| added.values.clone())
-        .unwrap_or_default();
-    let parameters = parameters(candidate.effect, &values, &candidate.intervals);
+    let parameters = parameters(candidate.effect, candidate.values(), &candidate.intervals);
     let parameters: Vec<String> = parameters.iter().map(ToString::to_string).collect();
     let (id, error) = (candidate.effect.id(), candidate.fit.error());
     let line = format!(

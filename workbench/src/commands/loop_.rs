@@ -92,32 +92,47 @@ fn load_kg(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Header of the table of moves, for terminal and report.
+pub const HEADER: [&str; 9] = [
+    "move, deg",
+    "load, kg",
+    "time, s",
+    "shortest, s",
+    "ratio",
+    "overshoot, deg",
+    "final error, deg",
+    "active after, s",
+    "pressure swing",
+];
+
+/// What a move is called.
+#[must_use]
+pub fn name(result: &MoveResult) -> String {
+    format!("{:.1} to {:.1}", result.from_deg, result.to_deg)
+}
+
+/// A move's row under [`HEADER`].
+#[must_use]
+pub fn row(result: &MoveResult) -> [String; 9] {
+    [
+        name(result),
+        format!("{:.0}", result.load_kg),
+        format!("{:.3}", result.time_s),
+        format!("{:.3}", result.shortest_s),
+        format!("{:.2}", result.ratio),
+        format!("{:.2}", result.overshoot_deg),
+        format!("{:.2}", result.final_error_deg),
+        format!("{:.3}", result.active_after_s),
+        format!("{:.2}", result.pressure_swing_ratio),
+    ]
+}
+
 /// The figures as a table for a terminal.
 #[must_use]
 pub fn text(moves: &[MoveResult], summary: &Summary) -> String {
-    let mut table = Table::new([
-        "move, deg",
-        "load, kg",
-        "time, s",
-        "shortest, s",
-        "ratio",
-        "overshoot, deg",
-        "final error, deg",
-        "active after, s",
-        "pressure swing",
-    ]);
+    let mut table = Table::new(HEADER);
     for result in moves {
-        table.row([
-            format!("{:.1} to {:.1}", result.from_deg, result.to_deg),
-            format!("{:.0}", result.load_kg),
-            format!("{:.3}", result.time_s),
-            format!("{:.3}", result.shortest_s),
-            format!("{:.2}", result.ratio),
-            format!("{:.2}", result.overshoot_deg),
-            format!("{:.2}", result.final_error_deg),
-            format!("{:.3}", result.active_after_s),
-            format!("{:.2}", result.pressure_swing_ratio),
-        ]);
+        table.row(row(result));
     }
     format!("{table}\n{}", summed_up(summary))
 }

@@ -59,13 +59,6 @@ fn shown(
     candidate: &candidate::Candidate,
     confidence: f64,
 ) -> Candidate {
-    let values = candidate
-        .fit
-        .estimate
-        .effects
-        .last()
-        .map(|added| added.values.clone())
-        .unwrap_or_default();
     Candidate {
         effect: candidate.effect.id(),
         explains: explained(&found.base, &candidate.fit),
@@ -73,7 +66,7 @@ fn shown(
         confidence,
         indistinguishable: twins(found, candidate),
         detectability: candidate.detectability,
-        parameters: parameters(candidate.effect, &values, &candidate.intervals),
+        parameters: parameters(candidate.effect, candidate.values(), &candidate.intervals),
     }
 }
 

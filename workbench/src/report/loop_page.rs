@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::chart::{Chart, Line, Stroke, legend};
 use super::page;
 use crate::closed_loop::{LoopRun, MoveResult, MoveTrace, Sample};
-use crate::commands::loop_::summed_up;
+use crate::commands::loop_::{HEADER, name, row, summed_up};
 
 /// What is shown after arrival, s.
 const AFTER_S: f64 = 0.6;
@@ -19,44 +19,19 @@ pub fn page(model: &Model, run: &LoopRun) -> String {
 /// The page's content, for pages that hold more.
 #[must_use]
 pub fn sections(model: &Model, run: &LoopRun) -> Markup {
-    let header = [
-        "move, deg",
-        "load, kg",
-        "time, s",
-        "shortest, s",
-        "ratio",
-        "overshoot, deg",
-        "final error, deg",
-        "active after, s",
-        "pressure swing",
-    ];
-    let rows: Vec<Vec<String>> = run.results.iter().map(row).collect();
+    let rows: Vec<Vec<String>> = run
+        .results
+        .iter()
+        .map(|result| row(result).to_vec())
+        .collect();
     html! {
         h1 { "Closed loop on " (model.name) }
         p { (summed_up(&run.summary)) }
-        (page::table(&header, &rows))
+        (page::table(&HEADER, &rows))
         h2 { "Every move" }
         (legend(&[(Stroke::Measured, "set point, lift coil"), (Stroke::After, "hitch, lowering coil")]))
         @for (result, trace) in run.results.iter().zip(&run.traces) { (course(result, trace)) }
     }
-}
-
-fn row(result: &MoveResult) -> Vec<String> {
-    vec![
-        name(result),
-        format!("{:.0}", result.load_kg),
-        format!("{:.3}", result.time_s),
-        format!("{:.3}", result.shortest_s),
-        format!("{:.2}", result.ratio),
-        format!("{:.2}", result.overshoot_deg),
-        format!("{:.2}", result.final_error_deg),
-        format!("{:.3}", result.active_after_s),
-        format!("{:.2}", result.pressure_swing_ratio),
-    ]
-}
-
-fn name(result: &MoveResult) -> String {
-    format!("{:.1} to {:.1}", result.from_deg, result.to_deg)
 }
 
 /// Angle, currents and pressure of one move.
