@@ -77,8 +77,8 @@ fn crossed_limits_and_other_layouts_are_refused() {
         }
     ));
     assert!(matches!(
-        refused(|c| c.version = 2),
-        CalibrationError::Version { found: 2 }
+        refused(|c| c.version = 1),
+        CalibrationError::Version { found: 1 }
     ));
 }
 
@@ -118,6 +118,7 @@ fn every_scalar_outside_its_range_is_refused_by_name() {
     check_ranges(|c| &mut c.hydraulics);
     check_ranges(|c| &mut c.sensors);
     check_ranges(|c| &mut c.lock);
+    check_ranges(|c| &mut c.operator);
     check_ranges(|c| &mut c.motion);
     check_ranges(|c| &mut c.position);
     check_ranges(|c| &mut c.rate);

@@ -208,6 +208,7 @@ impl Sensors {
             ))),
             oil_temperature: Some(MilliCelsius(noisy(OIL_TEMPERATURE_C, 0))),
             supply: Some(MilliVolt(13_800)),
+            ..Inputs::default()
         };
         let inputs = self.spoil(scene.fault, healthy);
         self.last = inputs;

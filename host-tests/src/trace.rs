@@ -103,7 +103,7 @@ fn spoiled(random: &mut fastrand::Rng) -> [u8; INPUT_BYTES] {
     let mut record = plausible(random);
     let word = random.usize(1..WORDS);
     if random.bool() {
-        record[0] &= !(1 << (word - 1));
+        record[(word - 1) / 8] &= !(1 << ((word - 1) % 8));
     } else {
         record.as_chunks_mut::<4>().0[word] = random.i32(..).to_le_bytes();
     }
@@ -113,7 +113,14 @@ fn spoiled(random: &mut fastrand::Rng) -> [u8; INPUT_BYTES] {
 /// All signals valid and in the range of a healthy machine; the button is pressed now and then.
 fn plausible(random: &mut fastrand::Rng) -> [u8; INPUT_BYTES] {
     let pressed = random.u8(0..4) == 0;
-    let valid = if pressed { 0b111_1111 } else { 0b111_1101 };
+    // Currents are measured by the board, which isn't here; switches and dials come and go.
+    let fitted = 0b1_0000_0111_1101 | (random.i32(0..8) << 7);
+    let switches = if random.u8(0..8) == 0 {
+        random.i32(0..8) << 16
+    } else {
+        0
+    };
+    let valid = fitted | switches | (i32::from(pressed) << 1);
     let words = [
         valid,
         random.i32(40_000..140_000),
@@ -123,6 +130,12 @@ fn plausible(random: &mut fastrand::Rng) -> [u8; INPUT_BYTES] {
         random.i32(0..160_000),
         random.i32(-20_000..100_000),
         random.i32(9_000..16_000),
+        random.i32(44_000..136_000),
+        random.i32(0..1_000),
+        random.i32(0..2_500),
+        random.i32(0..3_500),
+        random.i32(0..3_500),
+        1_000,
     ];
     let mut record = [0; INPUT_BYTES];
     for (target, word) in record.as_chunks_mut::<4>().0.iter_mut().zip(words) {

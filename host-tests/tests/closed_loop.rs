@@ -1,5 +1,6 @@
 //! The controller in closed loop with the dynamic plant, and what a wrong and a right calibration do to it.
 
+use hitch_firmware::control::units::PerMille;
 use hitch_firmware::control::{Calibration, ValidCalibration};
 use hitch_model::Model;
 use hitch_model::effects::{AddedEffect, find};
@@ -122,4 +123,37 @@ fn a_leaking_lowering_valve_is_corrected_and_then_reported() {
     closed_loop.pick_up();
     let fault = (0..200_000).find_map(|_| closed_loop.step(90.0).outputs.fault);
     assert_eq!(fault, Some(hitch_firmware::control::Fault::Sinking));
+}
+
+/// Time from the lever's drop to the bottom until the hitch is within half a degree of it, s.
+fn full_lowering_s(load_kg: f64, dial: Option<PerMille>) -> f64 {
+    let model = Model::dynamic();
+    let mut closed_loop = ClosedLoop::new(&model, &nominal(), load_kg, 40.0, 135.0, 11);
+    closed_loop.pick_up();
+    let steps = (0..60_000).position(|_| {
+        let sample = closed_loop.step_with(44.6, |inputs| inputs.lowering_dial = dial);
+        sample.angle_deg <= 45.1
+    });
+    steps.expect("comes down") as f64 * 1e-3
+}
+
+#[test]
+fn full_lowering_takes_two_seconds_with_the_dial_as_delivered() {
+    for load_kg in [50.0, 150.0, 250.0] {
+        let [middle_s, open_s] =
+            [500, 1_000].map(|dial| full_lowering_s(load_kg, Some(PerMille(dial))));
+        println!(
+            "{load_kg} kg: full lowering takes {middle_s:.2} s in the middle, {open_s:.2} s with the dial open"
+        );
+        assert!(
+            (2.0..=2.6).contains(&middle_s),
+            "{load_kg} kg: {middle_s} s"
+        );
+        assert!(open_s < middle_s, "{load_kg} kg: the dial does nothing");
+        assert_eq!(
+            open_s,
+            full_lowering_s(load_kg, None),
+            "no dial is an open one"
+        );
+    }
 }

@@ -46,6 +46,7 @@ macro_rules! with_groups {
         $visit(&mut $calibration.hydraulics $(, $argument)*)?;
         $visit(&mut $calibration.sensors $(, $argument)*)?;
         $visit(&mut $calibration.lock $(, $argument)*)?;
+        $visit(&mut $calibration.operator $(, $argument)*)?;
         $visit(&mut $calibration.motion $(, $argument)*)?;
         $visit(&mut $calibration.position $(, $argument)*)?;
         $visit(&mut $calibration.rate $(, $argument)*)?;

@@ -1,14 +1,17 @@
 //! Lines of CSV from a running plant, turned into the controller's inputs.
 
-use hitch_firmware::control::Inputs;
-use hitch_firmware::control::units::{MilliBar, MilliCelsius, MilliDegree, MilliVolt};
+use hitch_firmware::control::units::{
+    MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt, PerMille,
+    RevolutionPerMinute,
+};
+use hitch_firmware::control::{Inputs, Switches};
 use hitch_model::input_error::quote;
 use hitch_model::naming::{offer_names, unknown_name};
 
 /// Columns that have to be there.
 const NEEDED: [&str; 3] = ["time_s", "lever_deg", "rocker_angle_deg"];
 /// All columns.
-const KNOWN: [&str; 7] = [
+const KNOWN: [&str; 16] = [
     "time_s",
     "lever_deg",
     "rocker_angle_deg",
@@ -16,6 +19,15 @@ const KNOWN: [&str; 7] = [
     "pump_pressure_bar",
     "oil_temperature_c",
     "supply_v",
+    "jog_deg_per_s",
+    "upper_limit_deg",
+    "lowering_dial_percent",
+    "engine_speed_rpm",
+    "measured_lift_current_a",
+    "measured_lower_current_a",
+    "transport_lock",
+    "hold",
+    "quick_lift",
 ];
 /// Time from line to line, s: the controller's step, with room for rounded clocks.
 const STEP_S: std::ops::RangeInclusive<f64> = 0.000_45..=0.001_55;
@@ -119,16 +131,7 @@ impl Columns {
             });
         }
         self.check_time(time_column, values[0])?;
-        let milli = |index: usize| values[index].map(|value: f64| (value * 1e3).round() as i32);
-        Ok(Inputs {
-            lever: milli(1).map(MilliDegree),
-            jog: None,
-            rocker_angle: milli(2).map(MilliDegree),
-            cylinder_pressure: milli(3).map(MilliBar),
-            pump_pressure: milli(4).map(MilliBar),
-            oil_temperature: milli(5).map(MilliCelsius),
-            supply: milli(6).map(MilliVolt),
-        })
+        Ok(inputs_of(&values))
     }
 
     fn check_time(&mut self, column: usize, time_s: Option<f64>) -> Result<(), LineError> {
@@ -148,6 +151,35 @@ impl Columns {
             }
         }
         Ok(())
+    }
+}
+
+/// The inputs that the values of [`KNOWN`] make; a switch is on if its value isn't zero.
+fn inputs_of(values: &[Option<f64>; KNOWN.len()]) -> Inputs {
+    let scaled =
+        |index: usize, counts: f64| values[index].map(|value: f64| (value * counts).round() as i32);
+    let milli = |index: usize| scaled(index, 1e3);
+    let on = |index: usize| values[index].is_some_and(|value| value != 0.0);
+    Inputs {
+        lever: milli(1).map(MilliDegree),
+        rocker_angle: milli(2).map(MilliDegree),
+        cylinder_pressure: milli(3).map(MilliBar),
+        pump_pressure: milli(4).map(MilliBar),
+        oil_temperature: milli(5).map(MilliCelsius),
+        supply: milli(6).map(MilliVolt),
+        jog: milli(7).map(MilliDegreePerSecond),
+        upper_limit: milli(8).map(MilliDegree),
+        lowering_dial: scaled(9, 10.0).map(PerMille),
+        engine_speed: scaled(10, 1.0).map(RevolutionPerMinute),
+        lift_current: milli(11).map(MilliAmp),
+        lower_current: milli(12).map(MilliAmp),
+        // The lines are the clock.
+        step_time: None,
+        switches: Switches {
+            transport_lock: on(13),
+            hold: on(14),
+            quick_lift: on(15),
+        },
     }
 }
 
@@ -207,6 +239,24 @@ mod tests {
         assert_eq!(inputs.rocker_angle, Some(MilliDegree(90_500)));
         assert_eq!((inputs.lever, inputs.supply), (None, None));
         assert_eq!(inputs.pump_pressure, Some(MilliBar(4_250)));
+    }
+
+    #[test]
+    fn what_the_operator_sets_has_columns_too() {
+        let mut columns = Columns::parse(
+            "time_s,lever_deg,rocker_angle_deg,lowering_dial_percent,hold,transport_lock,engine_speed_rpm\n",
+        )
+        .unwrap();
+        let inputs = columns.inputs("0,90,90,50.5,1,0,850\n").unwrap();
+        assert_eq!(inputs.lowering_dial, Some(PerMille(505)));
+        assert_eq!(inputs.engine_speed, Some(RevolutionPerMinute(850)));
+        assert_eq!(
+            inputs.switches,
+            Switches {
+                hold: true,
+                ..Switches::default()
+            }
+        );
     }
 
     #[test]

@@ -4,8 +4,8 @@
 //! ranges and curves have been checked; the controller takes no other.
 
 use super::design_parameters::{
-    HoldParameters, HydraulicParameters, LockParameters, MotionParameters, PositionParameters,
-    RateParameters, SafetyParameters, SaturationParameters, SensorParameters,
+    HoldParameters, HydraulicParameters, LockParameters, MotionParameters, OperatorParameters,
+    PositionParameters, RateParameters, SafetyParameters, SaturationParameters, SensorParameters,
 };
 use super::linkage::{LINKAGE_POINTS, LinkageTable};
 use super::nominal;
@@ -14,7 +14,7 @@ use super::units::{MicroLitrePerSecond, MilliAmp};
 use super::valve_map::{VALVE_POINTS, ValveTable};
 
 /// Layout of the block that this firmware reads.
-pub const CALIBRATION_VERSION: u32 = 1;
+pub const CALIBRATION_VERSION: u32 = 2;
 
 /// Largest flow in a table: ten times the pump's, and far from where products saturate.
 const FLOW_LIMIT: MicroLitrePerSecond = MicroLitrePerSecond(10_000_000);
@@ -38,6 +38,8 @@ pub struct Calibration {
     pub sensors: SensorParameters,
     /// Start-up lock.
     pub lock: LockParameters,
+    /// What the operator sets besides the lever.
+    pub operator: OperatorParameters,
     /// Motion estimator.
     pub motion: MotionParameters,
     /// Position control.
@@ -130,6 +132,7 @@ impl Calibration {
             hydraulics: HydraulicParameters::NOMINAL,
             sensors: SensorParameters::NOMINAL,
             lock: LockParameters::NOMINAL,
+            operator: OperatorParameters::NOMINAL,
             motion: MotionParameters::NOMINAL,
             position: PositionParameters::NOMINAL,
             rate: RateParameters::NOMINAL,
@@ -177,6 +180,7 @@ impl Calibration {
         check_group(&self.hydraulics)?;
         check_group(&self.sensors)?;
         check_group(&self.lock)?;
+        check_group(&self.operator)?;
         check_group(&self.motion)?;
         check_group(&self.position)?;
         check_group(&self.rate)?;
@@ -188,6 +192,7 @@ impl Calibration {
     /// Limits that only make sense in one order.
     fn check_order(&self) -> Result<(), CalibrationError> {
         let (position, sensors, hydraulics) = (&self.position, &self.sensors, &self.hydraulics);
+        let operator = &self.operator;
         let pairs = [
             (
                 "position",
@@ -216,6 +221,13 @@ impl Calibration {
                 sensors.lever_min.0,
                 "lever_max",
                 sensors.lever_max.0,
+            ),
+            (
+                "operator",
+                "float_lever",
+                operator.float_lever.0,
+                "float_exit",
+                operator.float_exit.0,
             ),
             (
                 "hydraulics",
@@ -283,6 +295,7 @@ impl Calibration {
         visit_group(&mut self.hydraulics, visit);
         visit_group(&mut self.sensors, visit);
         visit_group(&mut self.lock, visit);
+        visit_group(&mut self.operator, visit);
         visit_group(&mut self.motion, visit);
         visit_group(&mut self.position, visit);
         visit_group(&mut self.rate, visit);

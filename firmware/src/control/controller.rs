@@ -4,6 +4,7 @@ use super::calibration::ValidCalibration;
 use super::load::LoadEstimate;
 use super::mode::{Fault, Mode};
 use super::motion::{Motion, flow, piston_speed};
+use super::operator::{ButtonGuard, EngineWatch, Float, QuickLift, lowering_limit, upper_limit};
 use super::position::{PositionControl, Reason};
 use super::rate::RateControl;
 use super::rest::RestPosition;
@@ -25,6 +26,10 @@ pub struct Controller {
     calibration: ValidCalibration,
     sensors: Sensors,
     mode: Mode,
+    engine: EngineWatch,
+    button: ButtonGuard,
+    quick_lift: QuickLift,
+    float: Float,
     position: PositionControl,
     rate: RateControl,
     motion: Motion,
@@ -47,6 +52,10 @@ impl Controller {
             calibration,
             sensors: Sensors::default(),
             mode: Mode::default(),
+            engine: EngineWatch::default(),
+            button: ButtonGuard::default(),
+            quick_lift: QuickLift::default(),
+            float: Float::default(),
             position: PositionControl::default(),
             rate: RateControl::default(),
             motion: Motion::default(),
@@ -69,7 +78,7 @@ impl Controller {
     /// One step of 1 ms.
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let sensed = self.sensors.judge(inputs, &self.calibration.sensors);
-        let command = match sensed.and_then(|sensed| self.run(&sensed, inputs.jog)) {
+        let command = match sensed.and_then(|sensed| self.run(&sensed, inputs)) {
             Ok(command) => command,
             Err(fault) => self.fail(fault),
         };
@@ -96,18 +105,16 @@ impl Controller {
     /// A fault: both coils off at once.
     fn fail(&mut self, fault: Fault) -> CoilCurrents {
         self.mode = Mode::failed(fault);
+        self.button.distrust();
         self.phase = self.phase.cut();
         CoilCurrents::OFF
     }
 
     /// A step with believable sensors.
-    fn run(
-        &mut self,
-        sensed: &Sensed,
-        jog: Option<MilliDegreePerSecond>,
-    ) -> Result<CoilCurrents, Fault> {
+    fn run(&mut self, sensed: &Sensed, inputs: &Inputs) -> Result<CoilCurrents, Fault> {
         self.estimate(sensed);
-        self.change_mode(jog.is_some());
+        let jog = self.button.pass(inputs.jog);
+        self.change_mode(jog.is_some(), inputs);
         let demand = match &mut self.mode {
             Mode::Locked(lock) => {
                 if lock.picked_up(sensed.lever, sensed.angle, &self.calibration.lock) {
@@ -115,13 +122,10 @@ impl Controller {
                 }
                 None
             }
-            Mode::Position => self.follow_lever(sensed),
+            Mode::Position => self.follow_lever(sensed, inputs),
             // A released button has no demand: the abort ramp stops the hitch, faster than the button's own.
-            Mode::Jog => jog.map(|rate| {
-                self.rate
-                    .demand(rate, sensed.angle, &self.motion, &self.calibration)
-            }),
-            Mode::Fault { .. } => None,
+            Mode::Jog => jog.map(|rate| self.follow_button(rate, sensed.angle, inputs)),
+            Mode::Hold | Mode::TransportLock | Mode::Fault { .. } => None,
         };
         self.advance(demand)?;
         self.watch_saturation(sensed)?;
@@ -154,7 +158,11 @@ impl Controller {
     }
 
     /// Mode transitions that don't depend on the lever.
-    fn change_mode(&mut self, jog_requested: bool) {
+    fn change_mode(&mut self, jog_requested: bool, inputs: &Inputs) {
+        let engine = self
+            .engine
+            .permits(inputs.engine_speed, &self.calibration.lock);
+        self.mode = self.mode.switched(inputs.switches, engine);
         let was_fault = self.mode.fault().is_some();
         self.mode = self.mode.healthy(&self.calibration.lock);
         if was_fault && self.mode.fault().is_none() {
@@ -172,42 +180,81 @@ impl Controller {
             self.rate = RateControl::default();
             self.position = PositionControl::default();
         }
+        let follows_lever = matches!(self.mode, Mode::Position);
+        self.quick_lift
+            .press(inputs.switches.quick_lift, follows_lever);
+        if !follows_lever {
+            self.float.end();
+        }
+    }
+
+    /// Jog mode: the demand that follows from the button. The dials bind it as they bind the lever.
+    fn follow_button(
+        &mut self,
+        rate: MilliDegreePerSecond,
+        angle: MilliDegree,
+        inputs: &Inputs,
+    ) -> Demand {
+        let calibration = &self.calibration;
+        let highest = upper_limit(inputs.upper_limit, &calibration.position);
+        let demand = self
+            .rate
+            .demand(rate, angle, highest, &self.motion, calibration);
+        if demand.direction == Direction::Lift {
+            return demand;
+        }
+        let limit = lowering_limit(
+            inputs.lowering_dial,
+            &calibration.operator,
+            &calibration.position,
+        );
+        Demand {
+            speed: demand.speed.min(limit),
+            ..demand
+        }
     }
 
     /// Position mode: the demand that follows from the lever.
-    fn follow_lever(&mut self, sensed: &Sensed) -> Option<Demand> {
+    fn follow_lever(&mut self, sensed: &Sensed, inputs: &Inputs) -> Option<Demand> {
         let moving = self.phase.is_moving();
-        if self
+        let calibration = &self.calibration;
+        let lever = self
+            .quick_lift
+            .set_point(sensed.lever, &calibration.operator);
+        let highest = upper_limit(inputs.upper_limit, &calibration.position);
+        let changed = self
             .position
-            .follow(sensed.lever, moving, &self.calibration.position)
-            && !moving
-        {
+            .follow(lever, highest, moving, &calibration.position);
+        if changed && !moving {
             self.sink.new_set_point();
             self.saturation.forget();
         }
-        let target = self
-            .calibration
+        let target = calibration
             .linkage
             .travel(self.position.set_point(sensed.angle));
-        if !moving {
-            self.position.reason_to_move(
-                target,
-                self.rest.position(),
-                &self.calibration.position,
-            )?;
+        let resting = !moving
+            && self
+                .position
+                .reason_to_move(target, self.rest.position(), &calibration.position)
+                .is_none();
+        let operator = &calibration.operator;
+        if self.float.update(lever, sensed.angle, resting, operator) || resting {
+            return None;
         }
+        let lower_speed = lowering_limit(inputs.lowering_dial, operator, &calibration.position);
         Some(PositionControl::demand(
             target,
             self.phase,
             &self.motion,
-            &self.calibration,
+            lower_speed,
+            calibration,
         ))
     }
 
     /// The next phase; starting a move forgets the last one's bias, and counts it if nobody asked for it.
     fn advance(&mut self, demand: Option<Demand>) -> Result<(), Fault> {
         let calibration = &self.calibration;
-        if matches!(self.mode, Mode::Locked(_) | Mode::Fault { .. }) {
+        if self.mode.is_still() {
             self.phase = self.phase.cut();
         }
         let resting = self.saturation.is_resting(&calibration.saturation);
@@ -296,6 +343,7 @@ impl Controller {
         match (&self.mode, self.phase) {
             (Mode::Fault { .. }, _) => State::Fault,
             (Mode::Locked(_), _) => State::Locked,
+            (Mode::TransportLock, _) => State::TransportLock,
             (
                 _,
                 Phase::Moving {
@@ -310,6 +358,7 @@ impl Controller {
                     ..
                 },
             ) => State::Lowering,
+            _ if self.float.is_floating() => State::Floating,
             _ if self.saturation.rests() => State::Stalled,
             (_, Phase::Settling { .. }) => State::Settling,
             (_, Phase::Holding) => State::Holding,

@@ -6,7 +6,8 @@
 use super::parameter::parameter_group;
 use super::units::{
     AmperePerSecond, Count, Micrometre, MicrometrePerSecond, MilliAmp, MilliBar, MilliDegree,
-    MilliDegreePerSecond, MillimetrePerSecondSquared, Millisecond, PerSecond, SquareMillimetre,
+    MilliDegreePerSecond, MillimetrePerSecondSquared, Millisecond, PerMille, PerSecond,
+    RevolutionPerMinute, SquareMillimetre,
 };
 
 parameter_group! {
@@ -63,11 +64,37 @@ parameter_group! {
         /// The lever has to come this close to the hitch, or past it: 1 % of the range.
         pick_up_window: MilliDegree = 1_000, 100..=5_000;
         /// ... and to have moved this far: 0.8 % of the range, beyond lever noise.
-        lever_movement: MilliDegree = 700, 100..=10_000;
-        /// ... within this time: a lever that creeps isn't being moved by a hand.
-        lever_time: Millisecond = 1_000, 50..=10_000;
+        lever_movement: MilliDegree = 730, 100..=10_000;
+        /// ... within this time: a lever that creeps at less than 3.7 degrees a second isn't being moved by a hand.
+        lever_time: Millisecond = 200, 50..=10_000;
         /// How long everything has to be healthy before a fault gives way to the lock.
         healthy_time: Millisecond = 500, 10..=60_000;
+        /// Engine speed up to which the lock stays shut: a starter turns the engine slower, and shakes lever and supply.
+        engine_running: RevolutionPerMinute = 400, 0..=2_000;
+        /// ... and for this long after the engine has come up: until its supply has settled.
+        engine_settling: Millisecond = 500, 0..=10_000;
+    }
+}
+
+parameter_group! {
+    /// What the operator sets besides the lever.
+    OperatorParameters, "operator" {
+        /// Lowering-rate dial below which nothing is lowered: the dial's shut end with room for its tolerance.
+        dial_shut: PerMille = 140, 0..=450;
+        /// Lowering speed with the dial in the middle, as delivered: 158 mm in 2.1 s, since full lowering shouldn't take less than 2 s.
+        dial_middle_speed: MicrometrePerSecond = 75_000, 1_000..=1_000_000;
+        /// Dial from which lowering is as fast as `position.lower_speed`: the dial's open end with room for its tolerance.
+        dial_open: PerMille = 960, 550..=1_000;
+        /// Where quick lift goes: 88 % of the range, short of the upper end so that a drive shaft isn't bent by habit.
+        quick_lift_angle: MilliDegree = 124_900, -360_000..=360_000;
+        /// Lever at or below which a hitch that has come down floats: the lever's bottom stop, 0.1 degree above the lowest set point.
+        float_lever: MilliDegree = 44_700, -360_000..=360_000;
+        /// ... if the hitch is below this: 6 % of the range.
+        float_angle: MilliDegree = 49_600, -360_000..=360_000;
+        /// Lever from which floating ends: 0.8 % of the range beyond where it begins, clear of lever noise.
+        float_exit: MilliDegree = 45_450, -360_000..=360_000;
+        /// ... and for how long: a lever that is knocked isn't meant.
+        float_exit_time: Millisecond = 200, 0..=5_000;
     }
 }
 

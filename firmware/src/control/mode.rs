@@ -4,15 +4,20 @@
 //!             power-up, reset
 //!                   |
 //!                   v    lever moved through the hitch
-//!   healthy for  +--------+ ------------------------> +----------+
-//!   healthy_time | Locked |                           | Position |
-//!   +----------> +--------+ <---+                     +----------+
-//!   |               |           | jog released         |     |
-//! +-------+         | jog    +-----+        jog        |     |
-//! | Fault |         +------> | Jog | <-----------------+     |
-//! +-------+                  +-----+                         |
-//!   ^                           | fault                      | fault
-//!   +---------------------------+----------------------------+
+//!   healthy for  +--------+ ------------------------> +----------+  hold   +------+
+//!   healthy_time | Locked |                           | Position | ------> | Hold |
+//!   +----------> +--------+ <---+                     +----------+         +------+
+//!   |               |  ^        | jog released         |     |                |
+//! +-------+         |  |  jog   +-----+        jog     |     |   hold off: Locked
+//! | Fault |         +--|------> | Jog | <--------------+     |
+//! +-------+            |        +-----+                      |
+//!   ^                  |           | fault                   | fault
+//!   +------------------|-----------+-------------------------+
+//!          engine stopped, or transport lock off
+//!                      |
+//!             +---------------+   transport lock on: from any mode but a fault
+//!             | TransportLock | <----------------------------------------------
+//!             +---------------+
 //! ```
 //!
 //! A jog button outside the cab works while the lever is locked (it is held by a hand that sees the
@@ -20,6 +25,7 @@
 
 use super::design_parameters::LockParameters;
 use super::lock::StartLock;
+use super::signals::Switches;
 use super::units::Millisecond;
 
 /// Why the controller refuses to move, with the code it has on links and in traces.
@@ -61,6 +67,10 @@ pub enum Mode {
     Position,
     /// The hitch moves while a button is held.
     Jog,
+    /// The hitch stays where it is; the lever has no say.
+    Hold,
+    /// The operator has locked the hitch for the road.
+    TransportLock,
     /// Both coils off; `healthy_for` counts towards the lock.
     Fault {
         /// What is wrong, or was.
@@ -111,10 +121,33 @@ impl Mode {
     #[must_use]
     pub fn jogged(self, requested: bool) -> Self {
         match (self, requested) {
-            (Self::Locked(_) | Self::Position, true) => Self::Jog,
+            (Self::Locked(_) | Self::Position | Self::Hold, true) => Self::Jog,
             (Self::Jog, false) => Self::locked(),
             (other, _) => other,
         }
+    }
+
+    /// A step with the operator's switches, and with an engine that permits use or doesn't.
+    #[must_use]
+    pub fn switched(self, switches: Switches, engine_permits: bool) -> Self {
+        match self {
+            Self::Fault { .. } => self,
+            _ if switches.transport_lock => Self::TransportLock,
+            Self::TransportLock => Self::locked(),
+            _ if !engine_permits => Self::locked(),
+            Self::Position if switches.hold => Self::Hold,
+            Self::Hold if !switches.hold => Self::locked(),
+            other => other,
+        }
+    }
+
+    /// True where no coil may be on, whatever was going on before.
+    #[must_use]
+    pub const fn is_still(&self) -> bool {
+        matches!(
+            self,
+            Self::Locked(_) | Self::TransportLock | Self::Fault { .. }
+        )
     }
 
     /// The fault, if the mode is one.

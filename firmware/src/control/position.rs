@@ -43,17 +43,18 @@ pub enum Reason {
 }
 
 impl PositionControl {
-    /// Takes in the lever; true if that is a new set point.
+    /// Takes in the lever, and the limit that caps it; true if that is a new set point.
     ///
     /// On the way to a new set point every movement of the lever counts. Once the hitch has arrived, small
     /// ones are noise, also while it is being brought back.
     pub fn follow(
         &mut self,
         lever: MilliDegree,
+        upper_limit: MilliDegree,
         moving: bool,
         parameters: &PositionParameters,
     ) -> bool {
-        let lever = lever.limited(parameters.lower_limit, parameters.upper_limit);
+        let lever = lever.limited(parameters.lower_limit, upper_limit);
         let on_the_way = moving && !self.arrived;
         let band = if on_the_way {
             MilliDegree::ZERO
@@ -112,12 +113,14 @@ impl PositionControl {
         }
     }
 
-    /// The demand of a hitch that moves, or has a reason to, towards `target`.
+    /// The demand of a hitch that moves, or has a reason to, towards `target`; `lower_speed`: the fastest
+    /// lowering that the operator allows.
     #[must_use]
     pub fn demand(
         target: Micrometre,
         phase: Phase,
         motion: &Motion,
+        lower_speed: MicrometrePerSecond,
         calibration: &Calibration,
     ) -> Demand {
         let parameters = &calibration.position;
@@ -132,7 +135,7 @@ impl PositionControl {
                 parameters.lift_deceleration,
             ),
             Direction::Lower => (
-                parameters.lower_speed,
+                lower_speed,
                 parameters.lower_acceleration,
                 parameters.lower_deceleration,
             ),

@@ -19,11 +19,12 @@ pub struct RateControl {
 }
 
 impl RateControl {
-    /// One step towards `request` (zero: released).
+    /// One step towards `request` (zero: released), not beyond `upper_limit`.
     pub fn demand(
         &mut self,
         request: MilliDegreePerSecond,
         angle: MilliDegree,
+        upper_limit: MilliDegree,
         motion: &Motion,
         calibration: &Calibration,
     ) -> Demand {
@@ -42,7 +43,12 @@ impl RateControl {
         let wanted = calibration.linkage.piston_speed(angle, rate).magnitude();
         Demand {
             direction,
-            speed: wanted.min(speed_before_limit(direction, motion, calibration)),
+            speed: wanted.min(speed_before_limit(
+                direction,
+                upper_limit,
+                motion,
+                calibration,
+            )),
             acceleration: calibration.position.lift_acceleration,
         }
     }
@@ -51,12 +57,13 @@ impl RateControl {
 /// Fastest speed from which the hitch still stops at the end of its travel.
 fn speed_before_limit(
     direction: Direction,
+    upper_limit: MilliDegree,
     motion: &Motion,
     calibration: &Calibration,
 ) -> MicrometrePerSecond {
     let position = &calibration.position;
     let (limit, deceleration) = match direction {
-        Direction::Lift => (position.upper_limit, position.lift_deceleration),
+        Direction::Lift => (upper_limit, position.lift_deceleration),
         Direction::Lower => (position.lower_limit, position.lower_deceleration),
     };
     let remaining =

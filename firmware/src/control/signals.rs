@@ -2,9 +2,42 @@
 
 use super::mode::Fault;
 use super::units::{
-    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliAmp, MilliBar, MilliCelsius,
-    MilliDegree, MilliDegreePerSecond, MilliVolt,
+    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp, MilliBar,
+    MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt, PerMille, RevolutionPerMinute,
 };
+
+/// What the operator has switched on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Switches {
+    /// Transport lock: nothing moves, and the lever has to pick the hitch up afterwards.
+    pub transport_lock: bool,
+    /// Hold: the hitch stays where it is whatever the lever does.
+    pub hold: bool,
+    /// Quick lift, a button: the first press raises, the next returns to the lever.
+    pub quick_lift: bool,
+}
+
+impl Switches {
+    /// The bit of the first one in the word of validity bits.
+    const FIRST_BIT: u32 = 16;
+
+    fn to_bits(self) -> u32 {
+        [self.transport_lock, self.hold, self.quick_lift]
+            .into_iter()
+            .rev()
+            .fold(0, |bits, on| (bits << 1) | u32::from(on))
+            << Self::FIRST_BIT
+    }
+
+    fn from_bits(word: u32) -> Self {
+        let on = |index: u32| (word >> Self::FIRST_BIT) >> index & 1 == 1;
+        Self {
+            transport_lock: on(0),
+            hold: on(1),
+            quick_lift: on(2),
+        }
+    }
+}
 
 /// One sample of everything the controller is told. `None`: not fitted, or no valid sample this time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,6 +56,20 @@ pub struct Inputs {
     pub oil_temperature: Option<MilliCelsius>,
     /// Supply voltage.
     pub supply: Option<MilliVolt>,
+    /// Upper-limit dial on the rocker-angle scale: no set point goes beyond it.
+    pub upper_limit: Option<MilliDegree>,
+    /// Lowering-rate dial: 0 is shut, 1000 is open.
+    pub lowering_dial: Option<PerMille>,
+    /// Engine speed.
+    pub engine_speed: Option<RevolutionPerMinute>,
+    /// Measured current of the lift coil.
+    pub lift_current: Option<MilliAmp>,
+    /// Measured current of the lowering coil.
+    pub lower_current: Option<MilliAmp>,
+    /// Time since the last step began, by a clock that isn't the scheduler's.
+    pub step_time: Option<Microsecond>,
+    /// What the operator has switched on.
+    pub switches: Switches,
 }
 
 /// State of the controller, with the code it has on links and in traces.
@@ -44,6 +91,10 @@ pub enum State {
     Stalled = 5,
     /// A fault keeps both coils off; see the fault code.
     Fault = 6,
+    /// Both coils off until the operator opens the transport lock.
+    TransportLock = 7,
+    /// Down with the lever at its bottom stop: both coils off, and where the hitch settles is nobody's fault.
+    Floating = 8,
 }
 
 impl State {
@@ -58,6 +109,8 @@ impl State {
             Self::Settling => "settling",
             Self::Stalled => "stalled",
             Self::Fault => "fault",
+            Self::TransportLock => "transport-lock",
+            Self::Floating => "floating",
         }
     }
 }
@@ -88,12 +141,13 @@ pub struct Outputs {
 }
 
 /// Size of the image of [`Inputs`].
-pub const INPUT_BYTES: usize = 32;
+pub const INPUT_BYTES: usize = 56;
 /// Size of the image of [`Outputs`].
 pub const OUTPUT_BYTES: usize = 36;
 
 impl Inputs {
-    /// A word of validity bits (bit 0: lever, and on in the order of the fields), then the values.
+    /// A word of validity bits (bit 0: lever, and on in the order of the fields) and switches (bit 16:
+    /// transport lock, and on), then the values.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; INPUT_BYTES] {
         let fields = [
@@ -104,13 +158,19 @@ impl Inputs {
             self.pump_pressure.map(|value| value.0),
             self.oil_temperature.map(|value| value.0),
             self.supply.map(|value| value.0),
+            self.upper_limit.map(|value| value.0),
+            self.lowering_dial.map(|value| value.0),
+            self.engine_speed.map(|value| value.0),
+            self.lift_current.map(|value| value.0),
+            self.lower_current.map(|value| value.0),
+            self.step_time.map(|value| value.0),
         ];
         let mut writer = Writer::new([0; INPUT_BYTES]);
         let valid = fields
             .iter()
             .rev()
             .fold(0, |bits, field| (bits << 1) | u32::from(field.is_some()));
-        writer.put(valid.to_le_bytes());
+        writer.put((valid | self.switches.to_bits()).to_le_bytes());
         fields
             .into_iter()
             .for_each(|field| writer.put(field.unwrap_or(0).to_le_bytes()));
@@ -125,7 +185,8 @@ impl Inputs {
             .0
             .iter()
             .map(|word| i32::from_le_bytes(*word));
-        let mut valid = words.next().unwrap_or(0).cast_unsigned();
+        let first = words.next().unwrap_or(0).cast_unsigned();
+        let mut valid = first;
         let mut field = || {
             let present = valid & 1 == 1;
             valid >>= 1;
@@ -139,6 +200,13 @@ impl Inputs {
             pump_pressure: field().map(MilliBar),
             oil_temperature: field().map(MilliCelsius),
             supply: field().map(MilliVolt),
+            upper_limit: field().map(MilliDegree),
+            lowering_dial: field().map(PerMille),
+            engine_speed: field().map(RevolutionPerMinute),
+            lift_current: field().map(MilliAmp),
+            lower_current: field().map(MilliAmp),
+            step_time: field().map(Microsecond),
+            switches: Switches::from_bits(first),
         }
     }
 }
@@ -204,12 +272,18 @@ mod tests {
             lever: Some(MilliDegree(90_000)),
             rocker_angle: Some(MilliDegree(-1)),
             pump_pressure: Some(MilliBar(4_000)),
+            step_time: Some(Microsecond(1_000)),
+            switches: Switches {
+                hold: true,
+                ..Switches::default()
+            },
             ..Inputs::default()
         };
         let bytes = inputs.to_bytes();
         assert_eq!(
-            bytes[0], 0b1_0101,
-            "lever, angle and pump pressure are valid"
+            bytes[..3],
+            [0b1_0101, 0b1_0000, 0b10],
+            "lever, angle, pump pressure and step time are valid; hold is on"
         );
         assert_eq!(Inputs::from_bytes(&bytes), inputs);
     }

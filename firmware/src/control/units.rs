@@ -136,6 +136,18 @@ quantity!(
     Millisecond, "ms", 1
 );
 quantity!(
+    /// Time by a free-running clock, in microseconds.
+    Microsecond, "us", 1
+);
+quantity!(
+    /// A share, in thousandths.
+    PerMille, "percent", 10
+);
+quantity!(
+    /// Speed of the engine, in revolutions a minute.
+    RevolutionPerMinute, "rpm", 1
+);
+quantity!(
     /// A number of occurrences.
     Count, "count", 1
 );

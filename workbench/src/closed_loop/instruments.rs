@@ -51,12 +51,12 @@ impl Instruments {
         let milli = |value: f64| (value * 1e3).round() as i32;
         Inputs {
             lever: Some(MilliDegree(milli(lever_deg))),
-            jog: None,
             rocker_angle: Some(MilliDegree(milli(quantised(angle_deg, ANGLE_STEP_DEG)))),
             cylinder_pressure: Some(MilliBar(milli(quantised(cylinder_bar, PRESSURE_STEP_BAR)))),
             pump_pressure: Some(MilliBar(milli(quantised(pump_bar, PRESSURE_STEP_BAR)))),
             oil_temperature: Some(MilliCelsius(milli(self.oil_temperature_c))),
             supply: Some(MilliVolt(13_800)),
+            ..Inputs::default()
         }
     }
 

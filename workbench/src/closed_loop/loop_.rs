@@ -61,8 +61,14 @@ impl<'m> ClosedLoop<'m> {
 
     /// One millisecond with the lever at `lever_deg`.
     pub fn step(&mut self, lever_deg: f64) -> Sample {
+        self.step_with(lever_deg, |_| {})
+    }
+
+    /// One millisecond in which `alter` changes what the controller is told: operators' switches, faults.
+    pub fn step_with(&mut self, lever_deg: f64, alter: impl FnOnce(&mut Inputs)) -> Sample {
         let truth = self.plant.reading();
-        let inputs = self.instruments.read(&truth, lever_deg);
+        let mut inputs = self.instruments.read(&truth, lever_deg);
+        alter(&mut inputs);
         let outputs = self.controller.step(&inputs);
         let sample = Sample {
             time_s: self.steps as f64 * STEP_S,
