@@ -4,4 +4,5 @@ pub mod emulator;
 pub mod program;
 pub mod recording;
 pub mod replay;
+pub mod second_rig;
 pub mod trace;

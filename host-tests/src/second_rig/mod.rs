@@ -1,0 +1,30 @@
+//! A second rig that measures campaigns whose hidden physics is known.
+//!
+//! Nothing here is the model crate's plant: the equations are written a second time from the rig's data sheet and the
+//! catalogue's literature, move in finer steps, and may have structure that no fitted model has. Only the format of a
+//! campaign is shared.
+//!
+//! ```text
+//! draw           a seed -> family, plan, hidden effects, instruments
+//! hideable       every physics that can be hidden, with its usual sizes; fills a `Physics`
+//! physics        what a rig has beyond its data sheet, as plain numbers
+//! manoeuvres     what the lab and the field do: loads, temperatures, courses of the currents
+//! current_path   coil current -> spool            hydraulics   spools and pressure -> flows
+//! linkage        travel -> angle, height          mechanics    forces and motion
+//! test_stand     one run, sample by sample        instruments  noise, gaps, rounding
+//! campaign_writer  the campaign in memory or in a folder
+//! ```
+
+pub mod campaign_writer;
+pub mod current_path;
+pub mod data_sheet;
+pub mod draw;
+pub mod hideable;
+pub mod hydraulics;
+pub mod instruments;
+pub mod linkage;
+pub mod manoeuvres;
+pub mod mechanics;
+pub mod outside;
+pub mod physics;
+pub mod test_stand;

@@ -1,0 +1,236 @@
+//! One run on the second rig, sample by sample, as perfect instruments would show it.
+
+use std::collections::VecDeque;
+
+use super::current_path::CurrentPath;
+use super::data_sheet::{BAR, KNOWN_SPOOL_LAG_S, LPM};
+use super::hydraulics::{Circuit, Spools};
+use super::linkage;
+use super::manoeuvres::{Manoeuvre, Stand};
+use super::mechanics::{Machine, Motion};
+use super::physics::{Physics, Sensors};
+
+/// Which of the two starting points the rig is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Family {
+    /// Quasi-static.
+    Steady,
+    /// With inertia, compressible oil, spool lag and viscous friction, all known.
+    Dynamic,
+}
+
+/// Samples per second of the logger.
+pub const SAMPLE_RATE_HZ: f64 = 50.0;
+
+/// Values of the four channels, bar, bar, l/min, degree, in the campaign format's order; the angle is not a number on
+/// a flow bench.
+pub type Reading = [f64; 4];
+
+impl Family {
+    /// Integration steps a sample: 1 ms, and 0.5 ms where pressures ring.
+    fn steps(self) -> usize {
+        match self {
+            Self::Steady => 20,
+            Self::Dynamic => 40,
+        }
+    }
+}
+
+/// What does not follow from physics and manoeuvre.
+#[derive(Debug, Clone, Copy)]
+pub struct Circumstances {
+    /// Time since the campaign began, s.
+    pub since_s: f64,
+    /// What the load weighs over what the scales said.
+    pub load_factor: f64,
+}
+
+/// Measures a run; one reading a sample, the first at time zero.
+#[must_use]
+pub fn measure(
+    physics: &Physics,
+    family: Family,
+    run: &Manoeuvre,
+    circumstances: Circumstances,
+) -> Vec<Reading> {
+    let mut rig = Rig::new(physics, family, run, circumstances);
+    let samples = (run.duration_s * SAMPLE_RATE_HZ).round() as usize;
+    let mut readings = vec![rig.read()];
+    for sample in 0..samples {
+        for step in 0..family.steps() {
+            let done = sample as f64 + (step as f64 + 0.5) / family.steps() as f64;
+            rig.advance(run, done / SAMPLE_RATE_HZ);
+        }
+        readings.push(rig.read());
+    }
+    readings
+}
+
+/// The rig in one run.
+struct Rig<'a> {
+    circuit: Circuit<'a>,
+    paths: [CurrentPath; 2],
+    spools: Spools,
+    place: Place<'a>,
+    family: Family,
+    circumstances: Circumstances,
+    step_s: f64,
+}
+
+/// What the valve block is bolted to.
+enum Place<'a> {
+    Hitch(Machine<'a>, Motion, AngleSensor<'a>),
+    Flow(f64),
+}
+
+impl<'a> Rig<'a> {
+    fn new(
+        physics: &'a Physics,
+        family: Family,
+        run: &Manoeuvre,
+        circumstances: Circumstances,
+    ) -> Self {
+        let circuit = Circuit::new(physics, run.oil_temperature_c);
+        let place = match run.stand {
+            Stand::Flow { port_bar } => Place::Flow(port_bar * BAR),
+            Stand::Hitch { load_kg, start_deg } => {
+                let load_kg = load_kg * circumstances.load_factor;
+                let machine = Machine::new(physics, load_kg, circuit.fluidity());
+                let motion = machine.at_rest(linkage::travel_m(start_deg));
+                let sensor = AngleSensor::new(&physics.sensors, motion.travel_m);
+                Place::Hitch(machine, motion, sensor)
+            }
+        };
+        let known_lag_s = match family {
+            Family::Steady => 0.0,
+            Family::Dynamic => KNOWN_SPOOL_LAG_S,
+        };
+        let shifts_a = [physics.lift_shift_a, physics.lower_shift_a];
+        let mut rig = Self {
+            circuit,
+            paths: shifts_a.map(|shift_a| CurrentPath::new(physics, shift_a, known_lag_s)),
+            spools: Spools::default(),
+            place,
+            family,
+            circumstances,
+            step_s: 1.0 / SAMPLE_RATE_HZ / family.steps() as f64,
+        };
+        rig.come_to_rest(run);
+        rig
+    }
+
+    /// Lets spools and compensator settle under the first currents; nothing moves yet.
+    fn come_to_rest(&mut self, run: &Manoeuvre) {
+        let (lift_a, lower_a) = (run.lift.at(0.0), run.lower.at(0.0));
+        for _ in 0..2000 {
+            self.spools = Spools {
+                lift_a: self.paths[0].advance(lift_a, self.step_s),
+                lower_a: self.paths[1].advance(lower_a, self.step_s),
+            };
+            let pressure_pa = self.pressure_pa();
+            self.circuit.advance(self.spools, pressure_pa, self.step_s);
+        }
+        let travel_m = self.travel_m();
+        self.circuit.set_slow(self.circumstances.since_s, travel_m);
+    }
+
+    /// Goes on by a step whose middle is at `time_s`.
+    fn advance(&mut self, run: &Manoeuvre, time_s: f64) {
+        let dt_s = self.step_s;
+        self.spools = Spools {
+            lift_a: self.paths[0].advance(run.lift.at(time_s), dt_s),
+            lower_a: self.paths[1].advance(run.lower.at(time_s), dt_s),
+        };
+        let travel_m = self.travel_m();
+        self.circuit
+            .set_slow(self.circumstances.since_s + time_s, travel_m);
+        let pressure_pa = self.pressure_pa();
+        self.circuit.advance(self.spools, pressure_pa, dt_s);
+        if let Place::Hitch(machine, motion, sensor) = &mut self.place {
+            match self.family {
+                Family::Steady => machine.step_steady(&self.circuit, motion, self.spools, dt_s),
+                Family::Dynamic => machine.step_dynamic(&self.circuit, motion, self.spools, dt_s),
+            }
+            sensor.advance(motion.travel_m, dt_s);
+        }
+    }
+
+    fn pressure_pa(&self) -> f64 {
+        match &self.place {
+            Place::Hitch(_, motion, _) => motion.pressure_pa,
+            Place::Flow(port_pa) => *port_pa,
+        }
+    }
+
+    fn travel_m(&self) -> f64 {
+        match &self.place {
+            Place::Hitch(_, motion, _) => motion.travel_m,
+            Place::Flow(_) => f64::INFINITY,
+        }
+    }
+
+    fn read(&self) -> Reading {
+        let pressure_pa = self.pressure_pa();
+        let flows = self.circuit.flows(self.spools, pressure_pa);
+        let angle_deg = match &self.place {
+            Place::Hitch(_, _, sensor) => sensor.shown_deg(),
+            Place::Flow(_) => f64::NAN,
+        };
+        [
+            flows.pump_pressure_pa / BAR,
+            pressure_pa / BAR,
+            flows.metered_m3_s / LPM,
+            angle_deg,
+        ]
+    }
+}
+
+/// The rocker's angle sensor with its lever.
+struct AngleSensor<'a> {
+    sensors: &'a Sensors,
+    lever_m: f64,
+    lagging_deg: f64,
+    delayed_deg: VecDeque<f64>,
+}
+
+impl<'a> AngleSensor<'a> {
+    fn new(sensors: &'a Sensors, travel_m: f64) -> Self {
+        Self {
+            sensors,
+            lever_m: travel_m,
+            lagging_deg: linkage::at(travel_m).rocker_deg,
+            delayed_deg: VecDeque::new(),
+        }
+    }
+
+    fn advance(&mut self, travel_m: f64, dt_s: f64) {
+        let half_m = 0.5 * self.sensors.backlash_m;
+        self.lever_m = self.lever_m.max(travel_m - half_m).min(travel_m + half_m);
+        let mut angle_deg = linkage::at(self.lever_m).rocker_deg;
+        let mut lag_s = self.sensors.angle_lag_s;
+        if self.sensors.angle_delayed {
+            lag_s *= 0.5;
+            self.delayed_deg.push_back(angle_deg);
+            angle_deg = if self.delayed_deg.len() as f64 * dt_s > lag_s {
+                self.delayed_deg.pop_front().unwrap_or(angle_deg)
+            } else {
+                self.lagging_deg
+            };
+        }
+        let share = if lag_s > 0.0 {
+            -(-dt_s / lag_s).exp_m1()
+        } else {
+            1.0
+        };
+        self.lagging_deg += share * (angle_deg - self.lagging_deg);
+    }
+
+    fn shown_deg(&self) -> f64 {
+        let sensors = self.sensors;
+        let (cam_deg, phase) = sensors.cam;
+        let angle_deg = self.lagging_deg;
+        angle_deg
+            + sensors.angle_gain * (angle_deg - sensors.angle_pivot_deg)
+            + cam_deg * ((4.0 * angle_deg).to_radians() + phase).sin()
+    }
+}
