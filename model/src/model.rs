@@ -80,7 +80,7 @@ impl Model {
 
     /// The linkage.
     #[must_use]
-    pub fn linkage(&self) -> &Linkage {
+    pub fn linkage(&self) -> &Arc<Linkage> {
         &self.linkage
     }
 

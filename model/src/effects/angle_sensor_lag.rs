@@ -52,7 +52,7 @@ impl Effect for AngleSensorLag {
         &[Channel::RockerAngle]
     }
 
-    fn attach(&self, values: &[f64], _: RunConditions, sites: &mut Sites) {
+    fn attach(&self, values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
         sites
             .sensors
             .push(Box::new(AngleLag(Lag::at_rest(values[0], 0.0), values[0])));

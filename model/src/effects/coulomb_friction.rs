@@ -9,7 +9,7 @@ use crate::campaign::Channel;
 use crate::plant::sites::{RunConditions, Sites};
 
 /// Speed at which the friction has reached three quarters of its full value, m/s.
-const TRANSITION_SPEED_M_S: f64 = 0.003;
+pub(super) const TRANSITION_SPEED_M_S: f64 = 0.003;
 
 /// Coulomb friction at the piston.
 #[derive(Debug)]
@@ -61,9 +61,9 @@ impl Effect for CoulombFriction {
         ]
     }
 
-    fn attach(&self, values: &[f64], _: RunConditions, sites: &mut Sites) {
+    fn attach(&self, values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
         let force_n = values[0];
-        sites.friction.push(Box::new(move |speed_m_s| {
+        sites.friction.push(Box::new(move |speed_m_s, _| {
             force_n * (speed_m_s / TRANSITION_SPEED_M_S).tanh()
         }));
     }

@@ -73,7 +73,7 @@ impl Effect for FlowScale {
         &[Channel::Flow, Channel::RockerAngle]
     }
 
-    fn attach(&self, values: &[f64], _: RunConditions, sites: &mut Sites) {
+    fn attach(&self, values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
         let factor = match self.valve {
             Valve::Lift => &mut sites.lift_flow_factor,
             Valve::Lowering => &mut sites.lower_flow_factor,

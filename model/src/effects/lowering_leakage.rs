@@ -52,7 +52,7 @@ impl Effect for LoweringLeakage {
         &[Channel::RockerAngle]
     }
 
-    fn attach(&self, values: &[f64], _: RunConditions, sites: &mut Sites) {
+    fn attach(&self, values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
         let conductance = units::m3_s_from_lpm(values[0]) / units::PA_PER_BAR;
         sites.leakage.push(Box::new(move |pressure_pa| {
             conductance * pressure_pa.max(0.0)

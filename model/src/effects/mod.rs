@@ -7,15 +7,36 @@
 //! 2. One `mod` and one entry in [`CATALOGUE`]. Plant, model files, identification, reports, `hitch effects` and the
 //!    generic tests (null value, continuity, channels, model-file round trip) go through the catalogue.
 
+mod angle_sensor_gain;
 mod angle_sensor_lag;
+mod check_valve_loss;
+mod compensator_droop;
 mod coulomb_friction;
+mod described;
+mod entrained_air;
+mod flow_force;
 mod flow_scale;
+mod ground_contact;
+mod hose_compliance;
+mod load_arm;
+mod load_inertia;
 mod lowering_leakage;
+mod oil_viscosity;
+mod pin_backlash;
+mod pin_friction;
+mod pressure_sensor_offset;
+mod pump_leakage;
+mod relief_override;
 mod return_line_loss;
 mod solenoid_hysteresis;
+mod spool_lag;
+mod spool_stiction;
+mod stribeck_friction;
 mod threshold_shift;
+mod viscous_friction;
 
 use crate::campaign::Channel;
+use crate::model::Dynamics;
 use crate::plant::sites::{RunConditions, Sites};
 
 /// Every effect that the project knows.
@@ -25,10 +46,29 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &flow_scale::LIFT,
     &flow_scale::LOWERING,
     &solenoid_hysteresis::SolenoidHysteresis,
-    &coulomb_friction::CoulombFriction,
+    &spool_stiction::SPOOL_STICTION,
+    &spool_lag::SPOOL_LAG,
+    &flow_force::FLOW_FORCE,
+    &oil_viscosity::OIL_VISCOSITY,
+    &compensator_droop::COMPENSATOR_DROOP,
+    &check_valve_loss::CHECK_VALVE_LOSS,
+    &pump_leakage::PUMP_LEAKAGE,
+    &relief_override::RELIEF_OVERRIDE,
     &return_line_loss::ReturnLineLoss,
     &lowering_leakage::LoweringLeakage,
+    &entrained_air::ENTRAINED_AIR,
+    &hose_compliance::HOSE_COMPLIANCE,
+    &coulomb_friction::CoulombFriction,
+    &stribeck_friction::STRIBECK_FRICTION,
+    &viscous_friction::VISCOUS_FRICTION,
+    &pin_friction::PIN_FRICTION,
+    &pin_backlash::PIN_BACKLASH,
+    &load_inertia::LOAD_INERTIA,
+    &load_arm::LOAD_ARM,
+    &ground_contact::GROUND_CONTACT,
+    &angle_sensor_gain::ANGLE_SENSOR_GAIN,
     &angle_sensor_lag::AngleSensorLag,
+    &pressure_sensor_offset::PRESSURE_SENSOR_OFFSET,
 ];
 
 /// One parameter of an effect.
@@ -42,7 +82,7 @@ pub struct Parameter {
     pub key: &'static str,
     /// What it is, in a few words.
     pub meaning: &'static str,
-    /// Value that turns the effect off exactly.
+    /// Value that turns the effect off exactly; of no account for a parameter that is not the size.
     pub null: f64,
     /// A size that is often met, for starting values, signatures and tests.
     pub typical: f64,
@@ -68,8 +108,12 @@ pub trait Effect: Sync {
     fn parameters(&self) -> &'static [Parameter];
     /// The channels that it changes directly on a lab campaign.
     fn channels(&self) -> &'static [Channel];
+    /// The starting point that it needs, if not every one can show it.
+    fn needs(&self) -> Option<Dynamics> {
+        None
+    }
     /// Puts it into a plant, with a value for each parameter.
-    fn attach(&self, values: &[f64], conditions: RunConditions, sites: &mut Sites);
+    fn attach(&self, values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites);
 }
 
 impl std::fmt::Debug for dyn Effect {
@@ -116,7 +160,7 @@ impl AddedEffect {
     }
 
     /// Puts it into a plant; an effect at its null value is not there at all.
-    pub fn attach(&self, conditions: RunConditions, sites: &mut Sites) {
+    pub fn attach(&self, conditions: RunConditions<'_>, sites: &mut Sites) {
         if !self.is_null() {
             self.effect.attach(&self.values, conditions, sites);
         }

@@ -55,7 +55,7 @@ impl Effect for ReturnLineLoss {
         &[Channel::Flow, Channel::RockerAngle]
     }
 
-    fn attach(&self, values: &[f64], _: RunConditions, sites: &mut Sites) {
+    fn attach(&self, values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
         let reference_m3_s = units::m3_s_from_lpm(REFERENCE_FLOW_LPM);
         let coefficient = units::pa_from_bar(values[0]) / (reference_m3_s * reference_m3_s);
         sites.return_pressure.push(Box::new(move |flow_m3_s| {

@@ -53,7 +53,7 @@ impl Effect for SolenoidHysteresis {
         &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle]
     }
 
-    fn attach(&self, values: &[f64], _: RunConditions, sites: &mut Sites) {
+    fn attach(&self, values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
         sites.currents.push(Box::new(Play {
             half_width_a: 0.5 * values[0],
             spool: Currents::default(),

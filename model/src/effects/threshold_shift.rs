@@ -77,7 +77,7 @@ impl Effect for ThresholdShift {
         self.channels
     }
 
-    fn attach(&self, values: &[f64], _: RunConditions, sites: &mut Sites) {
+    fn attach(&self, values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
         sites.currents.push(Box::new(Shift {
             valve: self.valve,
             shift_a: values[0],

@@ -153,11 +153,7 @@ pub fn diagnose(
     base: Fit,
     progress: Progress,
 ) -> Diagnosis {
-    let absent: Vec<&'static dyn Effect> = CATALOGUE
-        .iter()
-        .copied()
-        .filter(|effect| !has(&base.estimate, *effect))
-        .collect();
+    let absent = absent(model, &base.estimate);
     let candidates = try_effects(experiment, model, &base, &absent, progress);
     let mut odds: Vec<f64> = candidates.iter().map(candidate_log_odds).collect();
     odds.push(0.0);
@@ -168,6 +164,17 @@ pub fn diagnose(
         candidates,
         confidences,
     }
+}
+
+/// Effects that the plant can have and the estimate has not.
+fn absent(model: &Model, estimate: &Estimate) -> Vec<&'static dyn Effect> {
+    let dynamics = model.constants().dynamics;
+    CATALOGUE
+        .iter()
+        .copied()
+        .filter(|effect| effect.needs().is_none_or(|needed| needed == dynamics))
+        .filter(|effect| !has(estimate, *effect))
+        .collect()
 }
 
 fn has(estimate: &Estimate, effect: &dyn Effect) -> bool {
@@ -343,10 +350,8 @@ fn alternatives(
     let base_estimate = without(&whole.estimate, last);
     let variance =
         (super::jacobian::square_sum(&whole.residuals) / whole.weights.count() as f64).max(1.0);
-    let alike: Vec<&'static dyn Effect> = CATALOGUE
-        .par_iter()
-        .copied()
-        .filter(|effect| !has(&whole.estimate, *effect))
+    let alike: Vec<&'static dyn Effect> = absent(model, &whole.estimate)
+        .into_par_iter()
         .filter(|effect| {
             let other = secant(experiment, model, whole, &jacobian, *effect, last);
             cosine(&own, &other) > ALIKE

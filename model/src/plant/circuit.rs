@@ -71,28 +71,77 @@ impl Circuit<'_> {
         }
     }
 
+    /// Pump pressure, Pa, that the compensator sets while lifting against a cylinder pressure, Pa.
+    #[must_use]
+    pub fn lifting_pressure_pa(&self, cylinder_pressure_pa: f64) -> f64 {
+        let compensator = &self.constants.compensator;
+        compensator.lifting_pressure_pa(cylinder_pressure_pa)
+            + self.sites.margin_pa(cylinder_pressure_pa)
+    }
+
+    /// What the lift orifice keeps of the drop from pump to cylinder, Pa.
+    #[must_use]
+    pub fn lift_drop_pa(&self, pump_pressure_pa: f64, cylinder_pressure_pa: f64) -> f64 {
+        let check_valve = &self.constants.check_valve;
+        check_valve.remaining_drop_pa(pump_pressure_pa, cylinder_pressure_pa)
+    }
+
+    /// Flow through lift valve and check valve, m3/s, over the drop that the cracking pressure leaves, Pa.
+    fn lift_valve_m3_s(&self, opening_m3_s: f64, drop_pa: f64) -> f64 {
+        let flow_m3_s = self.constants.lift_valve.flow_m3_s(opening_m3_s, drop_pa);
+        let loss = self.sites.check_valve_loss_pa_s2_m6;
+        if loss == 0.0 || flow_m3_s == 0.0 {
+            return flow_m3_s;
+        }
+        // Two orifices in a row, Q = k sqrt(dp - a Q2): the flow of the first alone, less by sqrt(1 + a Q2 / dp).
+        flow_m3_s / (1.0 + loss * flow_m3_s * flow_m3_s / drop_pa).sqrt()
+    }
+
     /// Lift flow, m3/s, and pump pressure, Pa.
     fn lift(&self, opening_m3_s: f64, cylinder_pressure_pa: f64) -> (f64, f64) {
         let constants = self.constants;
         if opening_m3_s <= 0.0 {
             return (0.0, constants.compensator.idle_pressure_pa());
         }
-        let wanted_pa = constants
-            .compensator
-            .lifting_pressure_pa(cylinder_pressure_pa);
-        let pump_pressure_pa = constants.relief_valve.limit_pa(wanted_pa);
-        let drop_pa = constants
-            .check_valve
-            .remaining_drop_pa(pump_pressure_pa, cylinder_pressure_pa);
-        let flow_m3_s = constants.lift_valve.flow_m3_s(opening_m3_s, drop_pa);
-        let available_m3_s = constants.pump.flow_m3_s();
+        let flow_at = |pump_pressure_pa: f64| {
+            let drop_pa = self.lift_drop_pa(pump_pressure_pa, cylinder_pressure_pa);
+            self.lift_valve_m3_s(opening_m3_s, drop_pa)
+        };
+        let pump_pressure_pa =
+            self.relieved_pa(self.lifting_pressure_pa(cylinder_pressure_pa), &flow_at);
+        let flow_m3_s = flow_at(pump_pressure_pa);
+        let available_m3_s =
+            constants.pump.flow_m3_s() - self.sites.pump_slip_m3_s(pump_pressure_pa);
         if flow_m3_s <= available_m3_s {
             return (flow_m3_s, pump_pressure_pa);
         }
+        let drop_pa = self.lift_drop_pa(pump_pressure_pa, cylinder_pressure_pa);
         // The compensator is shut and still short of its margin: the pump's whole flow sets the drop (equation 5).
         let ratio = available_m3_s / flow_m3_s;
         let short_pa = drop_pa * (1.0 - ratio * ratio);
         (available_m3_s, pump_pressure_pa - short_pa)
+    }
+
+    /// The pump pressure, Pa, that the relief valve leaves of what the compensator wants; `flow_at` is the lift flow over it.
+    fn relieved_pa(&self, wanted_pa: f64, flow_at: &impl Fn(f64) -> f64) -> f64 {
+        let limit_pa = self.constants.relief_valve.limit_pa(wanted_pa);
+        let override_pa = self.sites.relief_override_pa;
+        if override_pa == 0.0 || wanted_pa <= limit_pa {
+            return limit_pa;
+        }
+        // The relief valve passes what the lift valve leaves of the pump's flow: p - p_set = override (1 - Q/Q_pump).
+        let pump_m3_s = self.constants.pump.flow_m3_s();
+        let excess = |pressure_pa: f64| {
+            pressure_pa - limit_pa - override_pa * (1.0 - flow_at(pressure_pa) / pump_m3_s)
+        };
+        let highest_pa = wanted_pa.min(limit_pa + override_pa);
+        super::root::rising(excess, limit_pa, highest_pa, 10.0)
+    }
+
+    /// Flow through the lowering valve, m3/s, over a drop, Pa.
+    fn lower_valve_m3_s(&self, opening_m3_s: f64, drop_pa: f64) -> f64 {
+        let flow_m3_s = self.constants.lower_valve.flow_m3_s(opening_m3_s, drop_pa);
+        flow_m3_s * self.sites.lower_drop_factor(drop_pa)
     }
 
     /// Lowering flow, m3/s: the valve's drop is what the return line leaves.
@@ -100,15 +149,14 @@ impl Circuit<'_> {
         if opening_m3_s <= 0.0 {
             return 0.0;
         }
-        let valve = &self.constants.lower_valve;
-        let free_m3_s = valve.flow_m3_s(opening_m3_s, cylinder_pressure_pa);
+        let free_m3_s = self.lower_valve_m3_s(opening_m3_s, cylinder_pressure_pa);
         if self.sites.return_pressure.is_empty() || free_m3_s == 0.0 {
             return free_m3_s;
         }
         // Root of f(Q) = Q - valve(p - p_T(Q)): it rises in Q, and lies between no flow and the free flow.
         let excess = |flow_m3_s: f64| {
             let drop_pa = cylinder_pressure_pa - self.sites.return_pressure_pa(flow_m3_s);
-            flow_m3_s - valve.flow_m3_s(opening_m3_s, drop_pa)
+            flow_m3_s - self.lower_valve_m3_s(opening_m3_s, drop_pa)
         };
         crate::plant::root::rising(excess, 0.0, free_m3_s, free_m3_s * 1e-7)
     }

@@ -8,8 +8,9 @@
 //! Oil does not pull: a piston that flies on when its valve shuts leaves a void behind, which has to close before the
 //! pressure rises again. Within a step the pressure runs on below the vacuum as the account of that void.
 
+use super::MechanicalState;
 use super::circuit::{Circuit, Openings};
-use super::{HitchRig, MechanicalState};
+use super::forces::Forces;
 use crate::model::Model;
 
 /// Longest step, s: 0.5 rad of the fastest ringing.
@@ -25,44 +26,55 @@ type Derivative = [f64; 3];
 
 /// Derivatives of travel, speed and pressure.
 fn derivative(
-    model: &Model,
+    forces: &Forces,
     circuit: &Circuit,
-    rig: &HitchRig,
     openings: Openings,
     state: MechanicalState,
 ) -> Derivative {
-    let constants = model.constants();
-    let cylinder = &constants.cylinder;
+    let model = forces.model;
+    let cylinder = &circuit.constants.cylinder;
     let area_m2 = cylinder.area_m2();
     let pressure_pa = state.pressure_pa.max(VACUUM_PA);
     let flows = circuit.solve(openings, pressure_pa);
     let (dh_dx, d2h_dx2_1_m) = model.linkage().transmission(state.piston_m);
-    let masses = &constants.masses;
-    let inertia_kg = masses.inertia_kg(rig.load_kg, dh_dx);
-    let slope = masses.half_inertia_slope_kg_m(rig.load_kg, dh_dx, d2h_dx2_1_m);
+    let masses = &circuit.constants.masses;
+    let load_kg = forces.rig.load_kg;
+    let heavier = 1.0 + circuit.sites.inertia_share;
+    let inertia_kg = masses.inertia_kg(load_kg, dh_dx) * heavier;
+    let slope = masses.half_inertia_slope_kg_m(load_kg, dh_dx, d2h_dx2_1_m) * heavier;
     let speed_m_s = state.speed_m_s;
-    let force_n = pressure_pa * area_m2
-        - masses.weight_force_n(rig.load_kg, dh_dx)
+    let weight_n =
+        masses.weight_force_n(load_kg, dh_dx) * circuit.sites.weight_factor(state.piston_m);
+    let force_n = pressure_pa * area_m2 - weight_n + forces.ground_n(state.piston_m, speed_m_s)
         - slope * speed_m_s * speed_m_s
         - cylinder.viscous_friction_n_s_m * speed_m_s
-        - circuit.sites.friction_n(speed_m_s)
+        - forces.friction_n(speed_m_s, weight_n)
         + cylinder.stop_force_n(state.piston_m, speed_m_s);
     [
         speed_m_s,
         force_n / inertia_kg,
-        stiffness_pa_m3(model, state.piston_m) * (flows.net_m3_s() - area_m2 * speed_m_s),
+        stiffness_pa_m3(circuit, state.piston_m, pressure_pa)
+            * (flows.net_m3_s() - area_m2 * speed_m_s),
     ]
 }
 
-/// How much the pressure rises for a volume of oil, Pa/m3: `E/V`.
-fn stiffness_pa_m3(model: &Model, piston_m: f64) -> f64 {
+/// How much the pressure rises for a volume of oil, Pa/m3: one over `V/E(p) + C`, oil and hoses.
+fn stiffness_pa_m3(circuit: &Circuit, piston_m: f64, pressure_pa: f64) -> f64 {
+    let constants = circuit.constants;
+    let modulus_pa = constants.oil.bulk_modulus_pa * circuit.sites.stiffness_factor(pressure_pa);
+    let volume_m3 = constants.cylinder.volume_m3(piston_m.max(0.0));
+    1.0 / (volume_m3 / modulus_pa + circuit.sites.compliance_m3_pa)
+}
+
+/// What a void counts as while the oil column is torn, Pa/m3: the oil's own stiffness.
+fn void_stiffness_pa_m3(model: &Model, piston_m: f64) -> f64 {
     let constants = model.constants();
     constants.oil.bulk_modulus_pa / constants.cylinder.volume_m3(piston_m.max(0.0))
 }
 
 /// The state with its void as pressure below the vacuum.
 fn stretched(model: &Model, state: MechanicalState) -> MechanicalState {
-    let missing_pa = stiffness_pa_m3(model, state.piston_m) * state.void_m3;
+    let missing_pa = void_stiffness_pa_m3(model, state.piston_m) * state.void_m3;
     MechanicalState {
         pressure_pa: state.pressure_pa - missing_pa,
         void_m3: 0.0,
@@ -75,7 +87,7 @@ fn torn(model: &Model, state: MechanicalState) -> MechanicalState {
     let missing_pa = (VACUUM_PA - state.pressure_pa).max(0.0);
     MechanicalState {
         pressure_pa: state.pressure_pa.max(VACUUM_PA),
-        void_m3: missing_pa / stiffness_pa_m3(model, state.piston_m),
+        void_m3: missing_pa / void_stiffness_pa_m3(model, state.piston_m),
         ..state
     }
 }
@@ -91,13 +103,8 @@ fn moved(state: MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState
 
 /// How fast the orifices alone would settle the pressure, 1/s: `E/V dQ/dp`, with `dQ/dp = Q / 2 dp` of each orifice
 /// whose drop hangs on the cylinder pressure.
-fn settling_rate(
-    model: &Model,
-    circuit: &Circuit,
-    openings: Openings,
-    state: MechanicalState,
-) -> f64 {
-    let constants = model.constants();
+fn settling_rate(circuit: &Circuit, openings: Openings, state: MechanicalState) -> f64 {
+    let constants = circuit.constants;
     let flows = circuit.solve(openings, state.pressure_pa);
     let slope = |flow_m3_s: f64, drop_pa: f64, transition_pa: f64| {
         0.5 * flow_m3_s / drop_pa.max(0.5 * transition_pa).max(1.0)
@@ -108,14 +115,11 @@ fn settling_rate(
         constants.lower_valve.transition_drop_pa,
     );
     // A working compensator keeps the lift valve's drop whatever the cylinder pressure is.
-    let compensated =
-        flows.pump_pressure_pa >= constants.compensator.lifting_pressure_pa(state.pressure_pa);
+    let compensated = flows.pump_pressure_pa >= circuit.lifting_pressure_pa(state.pressure_pa);
     let lift = if compensated {
         0.0
     } else {
-        let drop_pa = constants
-            .check_valve
-            .remaining_drop_pa(flows.pump_pressure_pa, state.pressure_pa);
+        let drop_pa = circuit.lift_drop_pa(flows.pump_pressure_pa, state.pressure_pa);
         slope(
             flows.lift_m3_s,
             drop_pa,
@@ -129,9 +133,8 @@ fn settling_rate(
 /// One step with the openings at its start, middle and end.
 #[must_use]
 pub fn step(
-    model: &Model,
+    forces: &Forces,
     circuit: &Circuit,
-    rig: &HitchRig,
     state: MechanicalState,
     openings: [Openings; 3],
     dt_s: f64,
@@ -139,18 +142,18 @@ pub fn step(
     let rate = [openings[0], openings[2]]
         .into_iter()
         .filter(|o| o.lift_m3_s > 0.0 || o.lower_m3_s > 0.0)
-        .map(|o| settling_rate(model, circuit, o, state))
+        .map(|o| settling_rate(circuit, o, state))
         .fold(0.0, f64::max);
     let pieces = (rate * dt_s / STABLE).ceil().clamp(1.0, 64.0) as usize;
     if pieces == 1 {
-        return runge_kutta(model, circuit, rig, state, openings, dt_s);
+        return runge_kutta(forces, circuit, state, openings, dt_s);
     }
     let piece_s = dt_s / pieces as f64;
     let mut state = state;
     for piece in 0..pieces {
         let share = |part: f64| (piece as f64 + part) / pieces as f64;
         let ends = [0.0, 0.5, 1.0].map(|part| between(openings, share(part)));
-        state = runge_kutta(model, circuit, rig, state, ends, piece_s);
+        state = runge_kutta(forces, circuit, state, ends, piece_s);
     }
     state
 }
@@ -169,19 +172,18 @@ fn between(openings: [Openings; 3], share: f64) -> Openings {
 }
 
 fn runge_kutta(
-    model: &Model,
+    forces: &Forces,
     circuit: &Circuit,
-    rig: &HitchRig,
     state: MechanicalState,
     openings: [Openings; 3],
     dt_s: f64,
 ) -> MechanicalState {
-    let rate = |state, openings| derivative(model, circuit, rig, openings, state);
-    let state = stretched(model, state);
+    let rate = |state, openings| derivative(forces, circuit, openings, state);
+    let state = stretched(forces.model, state);
     let k1 = rate(state, openings[0]);
     let k2 = rate(moved(state, k1, 0.5 * dt_s), openings[1]);
     let k3 = rate(moved(state, k2, 0.5 * dt_s), openings[1]);
     let k4 = rate(moved(state, k3, dt_s), openings[2]);
     let mean = std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
-    torn(model, moved(state, mean, dt_s))
+    torn(forces.model, moved(state, mean, dt_s))
 }

@@ -18,6 +18,7 @@ pub mod circuit;
 pub mod compensator;
 pub mod cylinder;
 pub mod dynamic;
+pub mod forces;
 pub mod lag;
 pub mod linkage;
 pub mod load;
@@ -46,6 +47,7 @@ use crate::campaign::Channel;
 use crate::model::{Dynamics, Model};
 use crate::units;
 use circuit::{Circuit, Flows, Openings};
+use forces::Forces;
 use lag::Lag;
 use sites::{RunConditions, Sites};
 
@@ -54,7 +56,7 @@ use sites::{RunConditions, Sites};
 pub struct HitchRig {
     /// Load at the hitch point, kg, without the dead weight of the links.
     pub load_kg: f64,
-    /// Rocker angle at the start, rad.
+    /// Rocker angle at the start as its sensor shows it, rad.
     pub start_angle_rad: f64,
 }
 
@@ -104,6 +106,7 @@ pub struct Plant<'m> {
     spools: [Lag; 2],
     openings: Openings,
     state: MechanicalState,
+    lowest_m: f64,
     flows: Flows,
     input: Currents,
     reading: Reading,
@@ -115,7 +118,12 @@ impl<'m> Plant<'m> {
     pub fn new(model: &'m Model, rig: Rig, oil_temperature_c: f64, at_rest: Currents) -> Self {
         let mut sites = Sites::default();
         for effect in &model.effects {
-            effect.attach(RunConditions { oil_temperature_c }, &mut sites);
+            let conditions = RunConditions {
+                oil_temperature_c,
+                constants: model.constants(),
+                linkage: model.linkage(),
+            };
+            effect.attach(conditions, &mut sites);
         }
         let effective = sites
             .currents
@@ -134,6 +142,7 @@ impl<'m> Plant<'m> {
             spools,
             openings: Openings::default(),
             state: MechanicalState::default(),
+            lowest_m: 0.0,
             flows: Flows::default(),
             input: at_rest,
             reading: Reading::default(),
@@ -141,6 +150,9 @@ impl<'m> Plant<'m> {
         plant.openings = plant
             .circuit()
             .openings(effective.lift_a, effective.lower_a);
+        if let Rig::Hitch(rig) = rig {
+            plant.lowest_m = plant.forces(&rig).lowest_m();
+        }
         plant.state = plant.state_at_rest();
         plant.refresh();
         let mut reading = plant.truth();
@@ -220,6 +232,14 @@ impl<'m> Plant<'m> {
         }
     }
 
+    fn forces<'a>(&'a self, rig: &'a HitchRig) -> Forces<'a> {
+        Forces {
+            model: self.model,
+            sites: &self.sites,
+            rig,
+        }
+    }
+
     /// One integration step.
     fn integrate(&mut self, currents: Currents, dt_s: f64) {
         let from = self.input;
@@ -230,9 +250,14 @@ impl<'m> Plant<'m> {
             }
             (Rig::Hitch(rig), Dynamics::Steady) => {
                 let end = self.open(currents, dt_s);
+                let before = steady::Before {
+                    speed_m_s: self.state.speed_m_s,
+                    dt_s,
+                };
+                let (forces, circuit) = (self.forces(&rig), self.circuit());
                 self.state.piston_m =
-                    steady::step(self.model, &self.circuit(), &rig, self.state, end, dt_s);
-                self.balance(&rig);
+                    steady::step(&forces, &circuit, self.state, end, self.lowest_m, dt_s);
+                self.balance(&rig, Some(before));
             }
             (Rig::Hitch(rig), Dynamics::Dynamic) => {
                 let middle = Currents {
@@ -243,14 +268,8 @@ impl<'m> Plant<'m> {
                 let half = self.open(middle, 0.5 * dt_s);
                 let end = self.open(currents, 0.5 * dt_s);
                 let openings = [start, half, end];
-                self.state = dynamic::step(
-                    self.model,
-                    &self.circuit(),
-                    &rig,
-                    self.state,
-                    openings,
-                    dt_s,
-                );
+                let (forces, circuit) = (self.forces(&rig), self.circuit());
+                self.state = dynamic::step(&forces, &circuit, self.state, openings, dt_s);
             }
         }
     }
@@ -276,14 +295,22 @@ impl<'m> Plant<'m> {
             },
             Rig::Hitch(rig) => {
                 let constants = self.model.constants();
-                let piston_m = self.model.linkage().piston_m(rig.start_angle_rad);
-                let weight_n = constants
-                    .masses
-                    .weight_force_n(rig.load_kg, self.model.linkage().dh_dx(piston_m));
+                let angle_deg = self
+                    .sites
+                    .sensors
+                    .iter()
+                    .rev()
+                    .fold(rig.start_angle_rad.to_degrees(), |shown_deg, sensor| {
+                        sensor.angle_behind_deg(shown_deg)
+                    });
+                let piston_m = self.model.linkage().piston_m(angle_deg.to_radians());
+                let piston_m = piston_m.max(self.lowest_m);
+                let forces = self.forces(&rig);
+                let held_n = forces.weight_n(piston_m) - forces.ground_n(piston_m, 0.0);
                 MechanicalState {
                     piston_m,
                     speed_m_s: 0.0,
-                    pressure_pa: weight_n / constants.cylinder.area_m2(),
+                    pressure_pa: held_n.max(0.0) / constants.cylinder.area_m2(),
                     void_m3: 0.0,
                 }
             }
@@ -291,13 +318,14 @@ impl<'m> Plant<'m> {
     }
 
     /// Brings the quasi-static speed, pressure and flows up to the present openings and travel.
-    fn balance(&mut self, rig: &HitchRig) {
+    fn balance(&mut self, rig: &HitchRig, before: Option<steady::Before>) {
+        let (forces, circuit) = (self.forces(rig), self.circuit());
         let balance = steady::balance(
-            self.model,
-            &self.circuit(),
-            rig,
+            &forces,
+            &circuit,
             self.openings,
             self.state.piston_m,
+            before,
         );
         self.state.speed_m_s = balance.speed_m_s;
         self.state.pressure_pa = balance.pressure_pa;
@@ -307,7 +335,7 @@ impl<'m> Plant<'m> {
     /// Brings the flows up to the present state.
     fn refresh(&mut self) {
         match (self.rig, self.model.constants().dynamics) {
-            (Rig::Hitch(rig), Dynamics::Steady) => self.balance(&rig),
+            (Rig::Hitch(rig), Dynamics::Steady) => self.balance(&rig, None),
             _ => self.flows = self.circuit().solve(self.openings, self.state.pressure_pa),
         }
     }

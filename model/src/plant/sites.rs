@@ -3,7 +3,10 @@
 //! An effect (see [`crate::effects`]) attaches closures or small stateful parts here; the plant calls them where the
 //! physics has them. With nothing attached every sum is empty and the plant is the paper's.
 
-use super::Reading;
+use std::sync::Arc;
+
+use super::{Linkage, Reading};
+use crate::model::Constants;
 
 /// Which of the two solenoid valves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,14 +51,40 @@ pub trait SensorStage: Send + Sync + std::fmt::Debug {
     fn rest(&mut self, reading: &mut Reading);
     /// Goes on by `dt_s` to `reading` and turns it into what is shown.
     fn advance(&mut self, reading: &mut Reading, dt_s: f64);
+    /// The rocker angle, degree, at which an instrument at rest shows `shown_deg`.
+    fn angle_behind_deg(&self, shown_deg: f64) -> f64 {
+        shown_deg
+    }
 }
 
-/// A force on the piston against its motion, N, from its speed, m/s.
-pub type FrictionForce = Box<dyn Fn(f64) -> f64 + Send + Sync>;
-/// A back pressure, Pa, from the flow through the lowering valve, m3/s.
-pub type ReturnPressure = Box<dyn Fn(f64) -> f64 + Send + Sync>;
-/// A flow out of the cylinder past the valves, m3/s, from the cylinder pressure, Pa.
-pub type Leakage = Box<dyn Fn(f64) -> f64 + Send + Sync>;
+/// A quantity as a function of one other; units where it is used.
+pub type Law = Box<dyn Fn(f64) -> f64 + Send + Sync>;
+/// A force on the piston against its motion, N, from its speed, m/s, and the weight's force on it, N.
+pub type FrictionForce = Box<dyn Fn(f64, f64) -> f64 + Send + Sync>;
+
+/// Ground under the hitch: a spring and damper that can only push, and that starts from nothing (Hunt & Crossley 1975).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ground {
+    /// Height of the ground over the shaft, m, where the hitch point touches it.
+    pub height_m: f64,
+    /// Stiffness, N/m.
+    pub stiffness_n_m: f64,
+    /// Damping, s/m: share by which the force grows for each metre a second of approach; the dynamic plant only.
+    pub damping_s_m: f64,
+}
+
+impl Ground {
+    /// Force on the hitch point, N, upwards, at its height, m, and speed, m/s.
+    #[must_use]
+    pub fn force_n(&self, height_m: f64, speed_m_s: f64) -> f64 {
+        let depth_m = self.height_m - height_m;
+        if depth_m <= 0.0 {
+            return 0.0;
+        }
+        let spring_n = self.stiffness_n_m * depth_m;
+        (spring_n * (1.0 - self.damping_s_m * speed_m_s)).max(0.0)
+    }
+}
 
 /// What the active effects have attached to one plant.
 pub struct Sites {
@@ -65,12 +94,32 @@ pub struct Sites {
     pub lift_flow_factor: f64,
     /// Factor on the lowering valve's flow.
     pub lower_flow_factor: f64,
+    /// Factors on the lowering valve's flow, from its pressure drop, Pa.
+    pub lower_drop_factor: Vec<Law>,
+    /// Added to the compensator's margin, Pa, from the cylinder pressure, Pa.
+    pub margin: Vec<Law>,
+    /// What the check valve takes beyond its cracking pressure, over the square of the flow, Pa/(m3/s)2.
+    pub check_valve_loss_pa_s2_m6: f64,
+    /// Pump flow lost to slip, m3/s, from the pump pressure, Pa.
+    pub pump_slip: Vec<Law>,
+    /// Pressure by which the relief valve opens over its setting to pass the pump's whole flow, Pa.
+    pub relief_override_pa: f64,
+    /// Pressure behind the lowering valve, Pa, from the flow through it, m3/s.
+    pub return_pressure: Vec<Law>,
+    /// Flow out of the cylinder past the valves, m3/s, from the cylinder pressure, Pa.
+    pub leakage: Vec<Law>,
+    /// Factors on the oil's bulk modulus, from the cylinder pressure, Pa; the dynamic plant only.
+    pub stiffness_factor: Vec<Law>,
+    /// Volume that hoses and fittings take up besides the oil, m3/Pa; the dynamic plant only.
+    pub compliance_m3_pa: f64,
     /// Friction at the piston.
     pub friction: Vec<FrictionForce>,
-    /// Pressure behind the lowering valve.
-    pub return_pressure: Vec<ReturnPressure>,
-    /// Leakage out of the cylinder.
-    pub leakage: Vec<Leakage>,
+    /// Factors on the weight's force, from the piston travel, m.
+    pub weight_factor: Vec<Law>,
+    /// Inertia that comes on top of the model's own, as a share of load and dead weight.
+    pub inertia_share: f64,
+    /// Ground under the hitch.
+    pub ground: Option<Ground>,
     /// Instruments, in order.
     pub sensors: Vec<Box<dyn SensorStage>>,
 }
@@ -81,43 +130,90 @@ impl Default for Sites {
             currents: Vec::new(),
             lift_flow_factor: 1.0,
             lower_flow_factor: 1.0,
-            friction: Vec::new(),
+            lower_drop_factor: Vec::new(),
+            margin: Vec::new(),
+            check_valve_loss_pa_s2_m6: 0.0,
+            pump_slip: Vec::new(),
+            relief_override_pa: 0.0,
             return_pressure: Vec::new(),
             leakage: Vec::new(),
+            stiffness_factor: Vec::new(),
+            compliance_m3_pa: 0.0,
+            friction: Vec::new(),
+            weight_factor: Vec::new(),
+            inertia_share: 0.0,
+            ground: None,
             sensors: Vec::new(),
         }
     }
 }
 
+fn sum(laws: &[Law], of: f64) -> f64 {
+    laws.iter().map(|law| law(of)).sum()
+}
+
+fn product(laws: &[Law], of: f64) -> f64 {
+    laws.iter().map(|law| law(of)).product()
+}
+
 impl Sites {
-    /// Sum of the friction forces, N, at a piston speed.
+    /// Sum of the friction forces, N, at a piston speed, m/s, under a weight's force, N.
     #[must_use]
-    pub fn friction_n(&self, speed_m_s: f64) -> f64 {
-        self.friction.iter().map(|force| force(speed_m_s)).sum()
+    pub fn friction_n(&self, speed_m_s: f64, weight_n: f64) -> f64 {
+        let forces = self.friction.iter();
+        forces.map(|force| force(speed_m_s, weight_n)).sum()
     }
 
-    /// Sum of the back pressures, Pa, at a flow through the lowering valve.
+    /// Factor on the weight's force at a piston travel, m.
+    #[must_use]
+    pub fn weight_factor(&self, piston_m: f64) -> f64 {
+        product(&self.weight_factor, piston_m)
+    }
+
+    /// Sum of the back pressures, Pa, at a flow through the lowering valve, m3/s.
     #[must_use]
     pub fn return_pressure_pa(&self, flow_m3_s: f64) -> f64 {
-        self.return_pressure
-            .iter()
-            .map(|pressure| pressure(flow_m3_s))
-            .sum()
+        sum(&self.return_pressure, flow_m3_s)
     }
 
-    /// Sum of the leakages, m3/s, at a cylinder pressure.
+    /// Sum of the leakages, m3/s, at a cylinder pressure, Pa.
     #[must_use]
     pub fn leakage_m3_s(&self, cylinder_pressure_pa: f64) -> f64 {
-        self.leakage
-            .iter()
-            .map(|leak| leak(cylinder_pressure_pa))
-            .sum()
+        sum(&self.leakage, cylinder_pressure_pa)
+    }
+
+    /// Factor on the lowering valve's flow at its pressure drop, Pa.
+    #[must_use]
+    pub fn lower_drop_factor(&self, drop_pa: f64) -> f64 {
+        product(&self.lower_drop_factor, drop_pa)
+    }
+
+    /// What comes on top of the compensator's margin, Pa, at a cylinder pressure, Pa.
+    #[must_use]
+    pub fn margin_pa(&self, cylinder_pressure_pa: f64) -> f64 {
+        sum(&self.margin, cylinder_pressure_pa)
+    }
+
+    /// Pump flow lost to slip, m3/s, at a pump pressure, Pa.
+    #[must_use]
+    pub fn pump_slip_m3_s(&self, pump_pressure_pa: f64) -> f64 {
+        sum(&self.pump_slip, pump_pressure_pa)
+    }
+
+    /// Factor on the oil's bulk modulus at a cylinder pressure, Pa.
+    #[must_use]
+    pub fn stiffness_factor(&self, cylinder_pressure_pa: f64) -> f64 {
+        product(&self.stiffness_factor, cylinder_pressure_pa)
     }
 }
 
-/// What an effect may know of the run that it is attached to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RunConditions {
+/// What an effect may know of the run and of the plant that it is attached to.
+#[derive(Debug, Clone, Copy)]
+pub struct RunConditions<'m> {
     /// Oil temperature, degree Celsius.
     pub oil_temperature_c: f64,
+    /// Constants of the plant's components.
+    pub constants: &'m Constants,
+    /// The plant's linkage.
+    pub linkage: &'m Arc<Linkage>,
 }

@@ -6,9 +6,9 @@
 //! The balance knows no contact force, so at a stop the piston stands while pressure and flow stay what they were
 //! (RIG.md defines it so); dead-heading the pump over the relief valve is the dynamic plant's business.
 
+use super::MechanicalState;
 use super::circuit::{Circuit, Flows, Openings};
-use super::{HitchRig, MechanicalState};
-use crate::model::Model;
+use super::forces::Forces;
 
 /// Longest step, s: half a sample of a 50 Hz log.
 pub const LONGEST_STEP_S: f64 = 0.01;
@@ -24,46 +24,29 @@ pub struct Balance {
     pub flows: Flows,
 }
 
+/// Where the motion comes from, for the inertia of an accelerated load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Before {
+    /// Piston speed then, m/s.
+    pub speed_m_s: f64,
+    /// Time since, s.
+    pub dt_s: f64,
+}
+
 /// Flow and force balance at piston travel `piston_m`.
 #[must_use]
 pub fn balance(
-    model: &Model,
+    forces: &Forces,
     circuit: &Circuit,
-    rig: &HitchRig,
     openings: Openings,
     piston_m: f64,
+    before: Option<Before>,
 ) -> Balance {
-    let constants = model.constants();
-    let area_m2 = constants.cylinder.area_m2();
-    let weight_n = constants
-        .masses
-        .weight_force_n(rig.load_kg, model.linkage().dh_dx(piston_m));
-    let free = {
-        let pressure_pa = weight_n / area_m2;
-        let flows = circuit.solve(openings, pressure_pa);
-        Balance {
-            speed_m_s: flows.net_m3_s() / area_m2,
-            pressure_pa,
-            flows,
-        }
-    };
-    if circuit.sites.friction.is_empty() || free.speed_m_s == 0.0 {
-        free
-    } else {
-        with_friction(circuit, openings, weight_n, area_m2, free.speed_m_s)
-    }
-}
-
-/// Friction slows the motion, so the speed lies between rest and the frictionless speed.
-fn with_friction(
-    circuit: &Circuit,
-    openings: Openings,
-    weight_n: f64,
-    area_m2: f64,
-    free_m_s: f64,
-) -> Balance {
-    let at = |speed_m_s: f64| {
-        let pressure_pa = (weight_n + circuit.sites.friction_n(speed_m_s)) / area_m2;
+    let area_m2 = circuit.constants.cylinder.area_m2();
+    let weight_n = forces.weight_n(piston_m);
+    let held_n = (weight_n - forces.ground_n(piston_m, 0.0)).max(0.0);
+    let at_force = |speed_m_s: f64, force_n: f64| {
+        let pressure_pa = force_n / area_m2;
         let flows = circuit.solve(openings, pressure_pa);
         Balance {
             speed_m_s,
@@ -71,24 +54,60 @@ fn with_friction(
             flows,
         }
     };
+    let free = at_force(0.0, held_n);
+    let free_m_s = free.flows.net_m3_s() / area_m2;
+    let inertia_kg = inertia_kg(forces, piston_m);
+    let before = before.filter(|_| inertia_kg > 0.0);
+    if before.is_none() && (circuit.sites.friction.is_empty() || free_m_s == 0.0) {
+        return Balance {
+            speed_m_s: free_m_s,
+            ..free
+        };
+    }
+    // Friction and inertia oppose a change of speed, so the speed lies between rest, the speed before and the free
+    // speed.
+    let at = |speed_m_s: f64| {
+        let inertia_n = before.map_or(0.0, |b| inertia_kg * (speed_m_s - b.speed_m_s) / b.dt_s);
+        let friction_n = forces.friction_n(speed_m_s, weight_n);
+        at_force(speed_m_s, held_n + friction_n + inertia_n)
+    };
     let excess = |speed_m_s: f64| speed_m_s - at(speed_m_s).flows.net_m3_s() / area_m2;
-    let (low, high) = (free_m_s.min(0.0), free_m_s.max(0.0));
+    let speed_before = before.map_or(0.0, |b| b.speed_m_s);
+    let low = free_m_s.min(speed_before).min(0.0);
+    let high = free_m_s.max(speed_before).max(0.0);
     at(super::root::rising(excess, low, high, 1e-9))
 }
 
+/// Inertia at the piston that the effects give the quasi-static plant, kg.
+fn inertia_kg(forces: &Forces, piston_m: f64) -> f64 {
+    let share = forces.sites.inertia_share;
+    if share == 0.0 {
+        return 0.0;
+    }
+    let dh_dx = forces.model.linkage().dh_dx(piston_m);
+    let masses = &forces.model.constants().masses;
+    share * masses.inertia_kg(forces.rig.load_kg, dh_dx)
+}
+
 /// One step of Heun's method from a known balance to the openings at its end; returns the piston's travel there, m.
+///
+/// `lowest_m` is the travel at which the piston rests on its stop or the hitch on the ground.
 #[must_use]
 pub fn step(
-    model: &Model,
+    forces: &Forces,
     circuit: &Circuit,
-    rig: &HitchRig,
     state: MechanicalState,
     end: Openings,
+    lowest_m: f64,
     dt_s: f64,
 ) -> f64 {
-    let stroke_m = model.constants().cylinder.stroke_m;
-    let within = |piston_m: f64| piston_m.clamp(0.0, stroke_m);
+    let stroke_m = circuit.constants.cylinder.stroke_m;
+    let within = |piston_m: f64| piston_m.clamp(lowest_m, stroke_m);
     let guess_m = within(state.piston_m + dt_s * state.speed_m_s);
-    let there = balance(model, circuit, rig, end, guess_m);
+    let before = Before {
+        speed_m_s: state.speed_m_s,
+        dt_s,
+    };
+    let there = balance(forces, circuit, end, guess_m, Some(before));
     within(state.piston_m + 0.5 * dt_s * (state.speed_m_s + there.speed_m_s))
 }

@@ -1,0 +1,89 @@
+//! `spool-stiction`: the spools stick, then jump.
+//!
+//! Two-parameter stick-slip (Choudhury, Thornhill and Shah 2005; Kano 2004): a spool stays until the current has gone
+//! `band` away from where it stuck, then jumps and sticks again, short of the current by `1 - jump` of the band. 0.5 to
+//! 2 % of the current range with dither, 3 to 6 % on plain direct current.
+
+use super::Parameter;
+use super::described::Described;
+use crate::campaign::Channel;
+
+use crate::plant::sites::{CurrentStage, Currents, Valve};
+use crate::plant::sites::{RunConditions, Sites};
+
+/// Stiction of the spools.
+pub static SPOOL_STICTION: Described = Described {
+    id: "spool-stiction",
+    title: "Stiction of the spools",
+    equation: "|I - w| > band: w = I - sign(I - w) (1 - jump) band; else w stays; Q = Q_table(w)",
+    source: "Choudhury et al. 2005, Kano et al. 2004; 0.5 to 2 % of 3.3 A with dither, 3 to 6 % on \
+         plain DC",
+    shows: "a slow ramp of current gives plateaus and jumps of flow; small reversals change nothing; \
+         on steps alone a twin of hysteresis",
+    parameters: &[
+        Parameter {
+            name: "band",
+            unit: "A",
+            key: "band_a",
+            meaning: "change of current that a resting spool does not follow",
+            null: 0.0,
+            typical: 0.08,
+            low: 0.0,
+            high: 0.5,
+        },
+        Parameter {
+            name: "jump",
+            unit: "",
+            key: "jump",
+            meaning: "share of the band that it makes good in one jump",
+            null: 0.5,
+            typical: 0.9,
+            low: 0.3,
+            high: 1.0,
+        },
+    ],
+    channels: &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle],
+    needs: None,
+    attach,
+};
+
+fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+    sites.currents.push(Box::new(StickSlip {
+        band_a: values[0],
+        short_a: values[0] * (1.0 - values[1]),
+        spool: Currents::default(),
+    }));
+}
+
+/// Stick-slip of both spools.
+#[derive(Debug)]
+struct StickSlip {
+    band_a: f64,
+    short_a: f64,
+    spool: Currents,
+}
+
+impl CurrentStage for StickSlip {
+    /// Coming from zero, a spool that had to move has just jumped.
+    fn rest(&mut self, currents: Currents) -> Currents {
+        self.spool = Currents::default();
+        self.advance(currents, 0.0)
+    }
+
+    fn advance(&mut self, currents: Currents, _: f64) -> Currents {
+        let before = self.spool;
+        self.spool = currents.map(|valve, current_a| {
+            let spool_a = match valve {
+                Valve::Lift => before.lift_a,
+                Valve::Lowering => before.lower_a,
+            };
+            let away_a = current_a - spool_a;
+            if away_a.abs() > self.band_a {
+                current_a - self.short_a.copysign(away_a)
+            } else {
+                spool_a
+            }
+        });
+        self.spool
+    }
+}

@@ -1,0 +1,53 @@
+//! The forces on the piston besides the oil's pressure, with what the effects add to them.
+
+use super::HitchRig;
+use super::sites::Sites;
+use crate::model::Model;
+
+/// Forces on the piston of one hitch.
+#[derive(Clone, Copy)]
+pub struct Forces<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// What the effects attach.
+    pub sites: &'a Sites,
+    /// The load.
+    pub rig: &'a HitchRig,
+}
+
+impl Forces<'_> {
+    /// Static force of load and dead weight, N, downwards, at piston travel `piston_m`.
+    #[must_use]
+    pub fn weight_n(&self, piston_m: f64) -> f64 {
+        let dh_dx = self.model.linkage().dh_dx(piston_m);
+        let masses = &self.model.constants().masses;
+        masses.weight_force_n(self.rig.load_kg, dh_dx) * self.sites.weight_factor(piston_m)
+    }
+
+    /// Force of the ground under the hitch, N, upwards, at a piston travel, m, and speed, m/s.
+    #[must_use]
+    pub fn ground_n(&self, piston_m: f64, speed_m_s: f64) -> f64 {
+        let Some(ground) = &self.sites.ground else {
+            return 0.0;
+        };
+        let posture = self.model.linkage().at(piston_m);
+        ground.force_n(posture.height_m, speed_m_s * posture.dh_dx) * posture.dh_dx
+    }
+
+    /// Friction against the motion, N, at a speed, m/s, under a weight's force, N.
+    #[must_use]
+    pub fn friction_n(&self, speed_m_s: f64, weight_n: f64) -> f64 {
+        self.sites.friction_n(speed_m_s, weight_n)
+    }
+
+    /// Lowest travel that the piston can sink to, m: the end of the stroke, or where the ground bears the weight.
+    #[must_use]
+    pub fn lowest_m(&self) -> f64 {
+        if self.sites.ground.is_none() {
+            return 0.0;
+        }
+        let stroke_m = self.model.constants().cylinder.stroke_m;
+        let excess = |piston_m: f64| self.weight_n(piston_m) - self.ground_n(piston_m, 0.0);
+        super::root::rising(excess, 0.0, stroke_m, 1e-6)
+    }
+}
