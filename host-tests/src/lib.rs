@@ -1,6 +1,7 @@
 //! Tests across the crates; see `tests/`. Here is what several of them need.
 
 pub mod emulator;
+pub mod hidden_effects;
 pub mod program;
 pub mod recording;
 pub mod replay;

@@ -69,9 +69,10 @@ pub fn perfect_readings(case: &Case, runs: &[PlannedRun], physics: &Physics) -> 
 #[must_use]
 pub fn campaign(case: &Case) -> Campaign {
     let mut random = Pcg64::seed_from_u64(case.seed.wrapping_mul(3) ^ NOISE_STREAM);
+    let physics = case.physics();
     let runs = planned_runs(case)
         .into_iter()
-        .map(|run| log(case, &run, &mut random))
+        .map(|run| log(case, &physics, &run, &mut random))
         .collect();
     let current_sigma_a = (case.instruments.current_sigma_a * 1e4).round() * 1e-4;
     Campaign {
@@ -88,9 +89,9 @@ pub fn campaign(case: &Case) -> Campaign {
     }
 }
 
-fn log(case: &Case, run: &PlannedRun, random: &mut impl Rng) -> Run {
+fn log(case: &Case, physics: &Physics, run: &PlannedRun, random: &mut impl Rng) -> Run {
     let manoeuvre = &run.manoeuvre;
-    let readings = measure(&case.physics, case.family, manoeuvre, run.circumstances);
+    let readings = measure(physics, case.family, manoeuvre, run.circumstances);
     let time_s: Vec<f64> = (0..readings.len())
         .map(|sample| sample as f64 * 2.0 / 100.0)
         .collect();
@@ -100,11 +101,8 @@ fn log(case: &Case, run: &PlannedRun, random: &mut impl Rng) -> Run {
     };
     let lift_current_a = current(&manoeuvre.lift, random);
     let lower_current_a = current(&manoeuvre.lower, random);
-    let sensors = &case.physics.sensors;
-    let channels = std::array::from_fn(|channel| {
-        case.instruments
-            .log_channel(channel, &readings, sensors, random)
-    });
+    let channels =
+        std::array::from_fn(|channel| case.instruments.log_channel(channel, &readings, random));
     Run {
         file: manoeuvre.file.clone(),
         bench: match manoeuvre.stand {

@@ -134,6 +134,7 @@ impl Stuck {
 #[derive(Debug, Clone)]
 struct Motion {
     motion: SpoolMotion,
+    input_a: f64,
     place_a: f64,
     speed_a_s: f64,
     delayed: VecDeque<f64>,
@@ -143,6 +144,7 @@ impl Motion {
     fn new(motion: SpoolMotion) -> Self {
         Self {
             motion,
+            input_a: 0.0,
             place_a: 0.0,
             speed_a_s: 0.0,
             delayed: VecDeque::new(),
@@ -152,13 +154,11 @@ impl Motion {
     fn advance(&mut self, input_a: f64, dt_s: f64) -> f64 {
         match self.motion {
             SpoolMotion::Immediate => self.place_a = input_a,
+            SpoolMotion::Lagging(0.0) => self.place_a = input_a,
             SpoolMotion::Lagging(tau_s) => {
-                let share = if tau_s > 0.0 {
-                    -(-dt_s / tau_s).exp_m1()
-                } else {
-                    1.0
-                };
-                self.place_a += share * (input_a - self.place_a);
+                // The mean of the step: an input held at its end would be half a step early.
+                let mean_a = 0.5 * (self.input_a + input_a);
+                self.place_a -= (-dt_s / tau_s).exp_m1() * (mean_a - self.place_a);
             }
             SpoolMotion::Swinging {
                 frequency_rad_s,
@@ -178,6 +178,7 @@ impl Motion {
                 self.place_a += dt_s * self.speed_a_s;
             }
         }
+        self.input_a = input_a;
         self.place_a
     }
 }

@@ -12,7 +12,7 @@ use super::physics::Physics;
 use super::test_stand::Family;
 
 /// What kind of case is wanted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
 pub enum Kind {
     /// One effect of the catalogue.
     Single,
@@ -31,6 +31,8 @@ pub struct Hidden {
     pub what: &'static Hideable,
     /// Its size, in its unit.
     pub size: f64,
+    /// What the rest of its shape is drawn from.
+    shape_seed: u64,
 }
 
 /// What a drawn case has to be like; what is left open is drawn.
@@ -69,10 +71,32 @@ pub struct Case {
     pub kind: Kind,
     /// What is hidden.
     pub hidden: Vec<Hidden>,
-    /// The rig's physics with it.
-    pub physics: Physics,
+    /// Physics that nobody has a name for, too small to matter.
+    unnamed: Physics,
     /// The instruments.
     pub instruments: Instruments,
+}
+
+impl Case {
+    /// The rig's physics.
+    #[must_use]
+    pub fn physics(&self) -> Physics {
+        self.physics_with(|_| true)
+    }
+
+    /// The rig's physics with some of what is hidden only.
+    #[must_use]
+    pub fn physics_with(&self, chosen: impl Fn(&Hidden) -> bool) -> Physics {
+        let mut physics = self.unnamed.clone();
+        for hidden in self.hidden.iter().filter(|hidden| chosen(hidden)) {
+            let mut shape = Shape {
+                fidelity: self.fidelity,
+                random: &mut Pcg64::seed_from_u64(hidden.shape_seed),
+            };
+            (hidden.what.hide)(&mut physics, hidden.size, &mut shape);
+        }
+        physics
+    }
 }
 
 /// Draws a case; the same seed and wish give the same one.
@@ -98,17 +122,10 @@ pub fn draw(seed: u64, wish: &Wish) -> Case {
         (None, None) => Kind::Outside,
     };
     let hidden = draw_hidden(wish, kind, &mut random);
-    let mut physics = Physics::default();
-    let mut shape = Shape {
-        fidelity,
-        random: &mut random,
-    };
-    for hidden in &hidden {
-        (hidden.what.hide)(&mut physics, hidden.size, &mut shape);
-    }
+    let mut unnamed = Physics::default();
     if rough {
-        physics.unnamed_force_n = random.random_range(3.0..12.0);
-        physics.unnamed_wobble = random.random_range(0.0005..0.002);
+        unnamed.unnamed_force_n = random.random_range(3.0..12.0);
+        unnamed.unnamed_wobble = random.random_range(0.0005..0.002);
     }
     let instruments = draw_instruments(rough, wish.plan, &mut random);
     Case {
@@ -119,7 +136,7 @@ pub fn draw(seed: u64, wish: &Wish) -> Case {
         rough,
         kind,
         hidden,
-        physics,
+        unnamed,
         instruments,
     }
 }
@@ -149,6 +166,7 @@ fn draw_hidden(wish: &Wish, kind: Kind, random: &mut Pcg64) -> Vec<Hidden> {
             Hidden {
                 what,
                 size: wanted.unwrap_or(size),
+                shape_seed: random.random(),
             }
         })
         .collect()

@@ -13,7 +13,7 @@ use super::physics::{FlowForce, Ground, Physics, Play, SpoolMotion, Stiction};
 use super::test_stand::Family;
 
 /// How true to the textbook a hidden effect is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Fidelity {
     /// The textbook's simplest form.
     Faithful,
@@ -65,6 +65,8 @@ pub struct Hideable {
     pub signed: bool,
     /// Whether the quasi-static rig can have it.
     pub steady: bool,
+    /// Whether the faithful form's size means what the catalogue's first parameter means.
+    pub comparable: bool,
     /// Puts it into a rig.
     pub hide: fn(&mut Physics, f64, &mut Shape),
 }
@@ -109,6 +111,7 @@ const fn steady(
         sizes,
         signed: false,
         steady: true,
+        comparable: true,
         hide,
     }
 }
@@ -121,6 +124,19 @@ const fn signed(
 ) -> Hideable {
     Hideable {
         signed: true,
+        ..steady(id, unit, sizes, hide)
+    }
+}
+
+/// An effect whose size is stated in another way than the catalogue's.
+const fn otherwise(
+    id: &'static str,
+    unit: &'static str,
+    sizes: (f64, f64),
+    hide: fn(&mut Physics, f64, &mut Shape),
+) -> Hideable {
+    Hideable {
+        comparable: false,
         ..steady(id, unit, sizes, hide)
     }
 }
@@ -196,7 +212,7 @@ pub static HIDEABLE: [Hideable; 28] = [
     steady("pump-leakage", "l/min/bar", (0.03, 0.15), |rig, size, _| {
         rig.pump_slip_m3_s_pa = size * LPM / BAR;
     }),
-    steady("relief-override", "bar", (8.0, 30.0), |rig, size, _| {
+    otherwise("relief-override", "bar", (8.0, 30.0), |rig, size, _| {
         rig.relief_override_pa = size * BAR;
     }),
     steady(
@@ -214,7 +230,7 @@ pub static HIDEABLE: [Hideable; 28] = [
         rig.return_turbulent = (1.0 - laminar) * size * BAR / (flow * flow);
         rig.return_laminar = laminar * size * BAR / flow;
     }),
-    steady("oil-viscosity", "", (20.0, 200.0), |rig, size, _| {
+    otherwise("oil-viscosity", "", (20.0, 200.0), |rig, size, _| {
         rig.laminar_flow_number = size;
     }),
     steady(
@@ -231,8 +247,7 @@ pub static HIDEABLE: [Hideable; 28] = [
         "N",
         (80.0, 700.0),
         |rig, size, shape| {
-            rig.friction.coulomb_n = size;
-            rig.friction.stribeck_share = shape.between(0.3, 0.8);
+            rig.friction.stribeck_n = size;
             rig.friction.stribeck_speed_m_s = shape.between(0.005, 0.02);
             rig.friction.gaussian = shape.structured();
         },
@@ -250,10 +265,10 @@ pub static HIDEABLE: [Hideable; 28] = [
         rig.pin_friction = size;
         rig.pin_friction_ripple = shape.usual_or_between(0.0, -0.3, 0.3);
     }),
-    steady("pin-backlash", "m", (0.3e-3, 3e-3), |rig, size, _| {
-        rig.sensors.backlash_m = size;
+    steady("pin-backlash", "mm", (0.3, 3.0), |rig, size, _| {
+        rig.sensors.backlash_m = 1e-3 * size;
     }),
-    steady("load-arm", "m", (0.1, 0.6), |rig, size, _| {
+    otherwise("load-arm", "m", (0.1, 0.6), |rig, size, _| {
         rig.load_arm_m = size;
     }),
     steady("ground-contact", "m", (0.06, 0.25), |rig, size, shape| {
@@ -289,18 +304,19 @@ pub static HIDEABLE: [Hideable; 28] = [
     }),
     dynamic(
         "hose-compliance",
-        "m3/Pa",
-        (1e-13, 8e-13),
+        "cm3/bar",
+        (0.01, 0.08),
         |rig, size, shape| {
-            rig.hose_m3_pa = size;
+            rig.hose_m3_pa = 1e-6 * size / BAR;
             rig.hose_retardation_s = shape.usual_or_between(0.0, 0.02, 0.1);
         },
     ),
-    dynamic("load-inertia", "kg", (80.0, 900.0), |rig, size, shape| {
-        // Two thirds of it may sit on the rocker shaft, whose turn over travel is about 10 rad/m at mid-stroke.
-        let on_shaft = shape.usual_or_between(0.0, 0.3, 0.7);
-        rig.inertia_kg = (1.0 - on_shaft) * size;
-        rig.rocker_inertia_kg_m2 = on_shaft * size / 100.0;
+    dynamic("load-inertia", "", (0.1, 1.0), |rig, size, shape| {
+        // Part of it may be rocker and arms, which no load makes heavier: at 150 kg some 2000 kg at the piston, and the
+        // shaft turns by about 10 rad/m.
+        let on_shaft = shape.usual_or_between(0.0, 0.1, 0.4);
+        rig.inertia_share = (1.0 - on_shaft) * size;
+        rig.rocker_inertia_kg_m2 = on_shaft * size * 20.0;
     }),
 ];
 

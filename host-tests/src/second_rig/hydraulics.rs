@@ -52,6 +52,17 @@ pub struct Spools {
     pub lower_a: f64,
 }
 
+impl Spools {
+    /// Half-way between two places.
+    #[must_use]
+    pub fn middle(a: Self, b: Self) -> Self {
+        Self {
+            lift_a: 0.5 * (a.lift_a + b.lift_a),
+            lower_a: 0.5 * (a.lower_a + b.lower_a),
+        }
+    }
+}
+
 impl<'a> Circuit<'a> {
     /// The circuit at rest.
     #[must_use]

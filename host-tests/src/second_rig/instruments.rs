@@ -3,8 +3,6 @@
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::data_sheet::BAR;
-use super::physics::Sensors;
 use super::test_stand::Reading;
 
 /// One sigma of the four channels, bar, bar, l/min, degree.
@@ -65,18 +63,12 @@ impl Instruments {
         &self,
         channel: usize,
         readings: &[Reading],
-        sensors: &Sensors,
         random: &mut impl Rng,
     ) -> Option<Vec<f64>> {
         let on_hitch = readings[0][3].is_finite();
         if !self.logged[channel] || !readings[0][channel].is_finite() {
             return None;
         }
-        let offset = if channel == 1 {
-            sensors.pressure_offset_pa / BAR
-        } else {
-            0.0
-        };
         let noise = self.noise(readings.len(), random);
         let mut shown: Vec<f64> = noise
             .into_iter()
@@ -88,7 +80,7 @@ impl Instruments {
                 } else {
                     readings[seen][channel]
                 };
-                rounded(truth + offset + CHANNEL_SIGMA[channel] * noise, DIGIT)
+                rounded(truth + CHANNEL_SIGMA[channel] * noise, DIGIT)
             })
             .collect();
         self.drop_out(&mut shown, random);

@@ -8,7 +8,7 @@ use super::data_sheet::{
 use super::linkage;
 
 /// Where and how a campaign is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Plan {
     /// Flow bench, single moves at several loads and currents, a hold, duty cycles at three temperatures.
     Lab,

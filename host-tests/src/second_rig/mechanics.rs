@@ -124,7 +124,7 @@ impl<'a> Machine<'a> {
     /// Dry friction that full sliding reaches, N (Stribeck).
     fn dry_limit_n(&self, speed_m_s: f64) -> f64 {
         let friction = &self.physics.friction;
-        if friction.stribeck_share == 0.0 {
+        if friction.stribeck_n == 0.0 {
             return friction.coulomb_n;
         }
         let relative = (speed_m_s / friction.stribeck_speed_m_s).abs();
@@ -133,7 +133,7 @@ impl<'a> Machine<'a> {
         } else {
             relative
         };
-        friction.coulomb_n * (1.0 + friction.stribeck_share * (-exponent).exp())
+        friction.coulomb_n + friction.stribeck_n * (-exponent).exp()
     }
 
     /// Rate of the bristles (LuGre, Canudas de Wit 1995), m/s.
@@ -147,13 +147,19 @@ impl<'a> Machine<'a> {
     }
 
     /// Quasi-static step of the midpoint rule: the piston's speed is what flow and forces agree on.
-    pub fn step_steady(&self, circuit: &Circuit, motion: &mut Motion, spools: Spools, dt_s: f64) {
+    pub fn step_steady(
+        &self,
+        circuit: &Circuit,
+        motion: &mut Motion,
+        [from, to]: [Spools; 2],
+        dt_s: f64,
+    ) {
         let mut middle = *motion;
         middle.travel_m = within(motion.travel_m + 0.5 * dt_s * motion.speed_m_s);
-        let middle = self.settled(circuit, middle, spools);
+        let middle = self.settled(circuit, middle, Spools::middle(from, to));
         motion.travel_m = within(motion.travel_m + dt_s * middle.speed_m_s);
         motion.bristles_m += dt_s * self.bristle_rate(motion, middle.speed_m_s);
-        *motion = self.settled(circuit, *motion, spools);
+        *motion = self.settled(circuit, *motion, to);
     }
 
     /// The state with the speed and pressure that balance flows and forces.
@@ -180,7 +186,14 @@ impl<'a> Machine<'a> {
     }
 
     /// Dynamic step: classical Runge-Kutta in pieces that the orifices' settling allows, then stops and void.
-    pub fn step_dynamic(&self, circuit: &Circuit, motion: &mut Motion, spools: Spools, dt_s: f64) {
+    pub fn step_dynamic(
+        &self,
+        circuit: &Circuit,
+        motion: &mut Motion,
+        [from, to]: [Spools; 2],
+        dt_s: f64,
+    ) {
+        let spools = Spools::middle(from, to);
         let pieces = (self.settling_rate(circuit, motion, spools) * dt_s)
             .ceil()
             .clamp(1.0, 40.0);
@@ -224,9 +237,8 @@ impl<'a> Machine<'a> {
         let posture = linkage::at(motion.travel_m);
         let speed_m_s = motion.speed_m_s;
         let hitch_kg = self.load_kg + DEAD_WEIGHT_KG;
-        let inertia_kg = hitch_kg * posture.slope * posture.slope
-            + PISTON_KG
-            + self.physics.inertia_kg
+        let known_kg = hitch_kg * posture.slope * posture.slope + PISTON_KG;
+        let inertia_kg = known_kg * (1.0 + self.physics.inertia_share)
             + self.physics.rocker_inertia_kg_m2 * posture.rocker_slope_rad_m.powi(2);
         let weight_n = self.weight_n(&posture, speed_m_s);
         let force_n = motion.pressure_pa * AREA_M2

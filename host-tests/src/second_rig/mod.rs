@@ -28,3 +28,4 @@ pub mod mechanics;
 pub mod outside;
 pub mod physics;
 pub mod test_stand;
+pub mod wish_arguments;

@@ -15,6 +15,7 @@ const fn outside(
         sizes,
         signed: false,
         steady: true,
+        comparable: false,
         hide,
     }
 }

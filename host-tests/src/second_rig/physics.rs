@@ -53,8 +53,8 @@ pub struct FlowForce {
 pub struct Friction {
     /// Coulomb force, N.
     pub coulomb_n: f64,
-    /// What the force is more at rest, as a share.
-    pub stribeck_share: f64,
+    /// What the force is more at rest, N.
+    pub stribeck_n: f64,
     /// Speed over which that fades, m/s.
     pub stribeck_speed_m_s: f64,
     /// Whether it fades with the square of the speed (Gauss) or linearly in the exponent (Tustin).
@@ -156,8 +156,8 @@ pub struct Physics {
     pub load_arm_m: f64,
     /// The ground.
     pub ground: Option<Ground>,
-    /// Mass at the piston that the data sheet does not have, kg.
-    pub inertia_kg: f64,
+    /// Inertia of load and piston beyond what the weights are, as a share of that.
+    pub inertia_share: f64,
     /// Moment of inertia on the rocker shaft that it does not have, kg m2.
     pub rocker_inertia_kg_m2: f64,
     /// Volume share of free air in the oil at atmospheric pressure.
@@ -189,6 +189,7 @@ impl Physics {
         let friction = &self.friction;
         let forces = [
             friction.coulomb_n,
+            friction.stribeck_n,
             friction.viscous_n_s_m,
             friction.square_n_s2_m2,
             friction.bump.0,
@@ -227,7 +228,7 @@ impl Default for Physics {
             pin_friction_ripple: 0.0,
             load_arm_m: 0.0,
             ground: None,
-            inertia_kg: 0.0,
+            inertia_share: 0.0,
             rocker_inertia_kg_m2: 0.0,
             air_fraction: 0.0,
             air_exponent: 1.4,

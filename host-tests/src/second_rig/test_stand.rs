@@ -11,7 +11,7 @@ use super::mechanics::{Machine, Motion};
 use super::physics::{Physics, Sensors};
 
 /// Which of the two starting points the rig is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Family {
     /// Quasi-static.
     Steady,
@@ -58,7 +58,7 @@ pub fn measure(
     let mut readings = vec![rig.read()];
     for sample in 0..samples {
         for step in 0..family.steps() {
-            let done = sample as f64 + (step as f64 + 0.5) / family.steps() as f64;
+            let done = sample as f64 + (step + 1) as f64 / family.steps() as f64;
             rig.advance(run, done / SAMPLE_RATE_HZ);
         }
         readings.push(rig.read());
@@ -74,6 +74,7 @@ struct Rig<'a> {
     place: Place<'a>,
     family: Family,
     circumstances: Circumstances,
+    pressure_offset_pa: f64,
     step_s: f64,
 }
 
@@ -113,6 +114,7 @@ impl<'a> Rig<'a> {
             place,
             family,
             circumstances,
+            pressure_offset_pa: physics.sensors.pressure_offset_pa,
             step_s: 1.0 / SAMPLE_RATE_HZ / family.steps() as f64,
         };
         rig.come_to_rest(run);
@@ -134,9 +136,10 @@ impl<'a> Rig<'a> {
         self.circuit.set_slow(self.circumstances.since_s, travel_m);
     }
 
-    /// Goes on by a step whose middle is at `time_s`.
+    /// Goes on by a step that ends at `time_s`.
     fn advance(&mut self, run: &Manoeuvre, time_s: f64) {
         let dt_s = self.step_s;
+        let from = self.spools;
         self.spools = Spools {
             lift_a: self.paths[0].advance(run.lift.at(time_s), dt_s),
             lower_a: self.paths[1].advance(run.lower.at(time_s), dt_s),
@@ -146,10 +149,11 @@ impl<'a> Rig<'a> {
             .set_slow(self.circumstances.since_s + time_s, travel_m);
         let pressure_pa = self.pressure_pa();
         self.circuit.advance(self.spools, pressure_pa, dt_s);
+        let spools = [from, self.spools];
         if let Place::Hitch(machine, motion, sensor) = &mut self.place {
             match self.family {
-                Family::Steady => machine.step_steady(&self.circuit, motion, self.spools, dt_s),
-                Family::Dynamic => machine.step_dynamic(&self.circuit, motion, self.spools, dt_s),
+                Family::Steady => machine.step_steady(&self.circuit, motion, spools, dt_s),
+                Family::Dynamic => machine.step_dynamic(&self.circuit, motion, spools, dt_s),
             }
             sensor.advance(motion.travel_m, dt_s);
         }
@@ -178,7 +182,7 @@ impl<'a> Rig<'a> {
         };
         [
             flows.pump_pressure_pa / BAR,
-            pressure_pa / BAR,
+            (pressure_pa + self.pressure_offset_pa) / BAR,
             flows.metered_m3_s / LPM,
             angle_deg,
         ]
@@ -189,6 +193,7 @@ impl<'a> Rig<'a> {
 struct AngleSensor<'a> {
     sensors: &'a Sensors,
     lever_m: f64,
+    true_deg: f64,
     lagging_deg: f64,
     delayed_deg: VecDeque<f64>,
 }
@@ -198,6 +203,7 @@ impl<'a> AngleSensor<'a> {
         Self {
             sensors,
             lever_m: travel_m,
+            true_deg: linkage::at(travel_m).rocker_deg,
             lagging_deg: linkage::at(travel_m).rocker_deg,
             delayed_deg: VecDeque::new(),
         }
@@ -217,12 +223,14 @@ impl<'a> AngleSensor<'a> {
                 self.lagging_deg
             };
         }
-        let share = if lag_s > 0.0 {
-            -(-dt_s / lag_s).exp_m1()
+        // The mean of the step: an input held at its end would be half a step early.
+        let mean_deg = 0.5 * (self.true_deg + angle_deg);
+        self.true_deg = angle_deg;
+        if lag_s > 0.0 {
+            self.lagging_deg -= (-dt_s / lag_s).exp_m1() * (mean_deg - self.lagging_deg);
         } else {
-            1.0
-        };
-        self.lagging_deg += share * (angle_deg - self.lagging_deg);
+            self.lagging_deg = angle_deg;
+        }
     }
 
     fn shown_deg(&self) -> f64 {

@@ -1,0 +1,53 @@
+//! The project's own identification.
+
+use hitch_model::Model;
+use hitch_model::campaign::Campaign;
+use hitch_model::identification::experiment::Experiment;
+use hitch_model::identification::explain::{Verdict, explain};
+
+use super::answer::{Abilities, Answer, Method};
+
+/// What `hitch explain` does.
+#[derive(Debug)]
+pub struct Explaining;
+
+impl Method for Explaining {
+    fn name(&self) -> &'static str {
+        "hitch explain"
+    }
+
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            names: true,
+            unknown: true,
+            intervals: true,
+        }
+    }
+
+    fn answer(&self, campaign: &Campaign, model: &Model) -> Answer {
+        let experiment = Experiment::new(campaign, model);
+        let explanation = explain(&experiment, model, &|_| {});
+        let steps = &explanation.steps;
+        let id = |effect: &dyn hitch_model::effects::Effect| effect.id().to_owned();
+        Answer {
+            named: steps.iter().map(|step| id(step.effect)).collect(),
+            group: steps
+                .iter()
+                .flat_map(|step| step.indistinguishable.iter().map(|effect| id(*effect)))
+                .collect(),
+            unknown: explanation.verdict == Verdict::Unexplained,
+            intervals: steps
+                .iter()
+                .filter_map(|step| {
+                    let (low, high) = *step.intervals.first()?;
+                    Some((id(step.effect), low, high))
+                })
+                .collect(),
+            // What it leaves alone is no better on other runs than before.
+            held_out: Some(steps.first().zip(steps.last()).map_or_else(
+                || (explanation.before.error(), explanation.before.error()),
+                |(first, last)| (first.held_out_before, last.held_out_after),
+            )),
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! Can the hidden effect be named? Methods answer for cases of the [second rig](crate::second_rig), and are graded.
+
+pub mod answer;
+pub mod detectability;
+pub mod explaining;
+pub mod gaussian_process;
+pub mod grade;
+pub mod information_criterion;
+pub mod residuals;
+pub mod sparse_regression;
+pub mod tally;
+
+use crate::second_rig::test_stand::Family;
+use answer::Method;
+use hitch_model::Model;
+
+/// Every method, the project's own first.
+#[must_use]
+pub fn methods() -> Vec<Box<dyn Method>> {
+    vec![
+        Box::new(explaining::Explaining),
+        Box::new(information_criterion::InformationCriterion),
+        Box::new(sparse_regression::SparseRegression),
+        Box::new(gaussian_process::GaussianProcess),
+    ]
+}
+
+/// The starting point that knows what a family is known for.
+#[must_use]
+pub fn starting_point(family: Family) -> Model {
+    match family {
+        Family::Steady => Model::nominal(),
+        Family::Dynamic => Model::dynamic(),
+    }
+}

@@ -1,0 +1,274 @@
+//! How often is the hidden effect named? Cases of the second rig, answered by `hitch explain` and by what is usual today.
+//!
+//! ```text
+//! cargo bench --bench hidden_effects -- --count 40 --family steady --plan lab
+//! ```
+//!
+//! Prints a Markdown table a family and plan, and every miss of the project's own method with the command that repeats
+//! it. The rig that measures shares no equation with the model that is fitted.
+
+use clap::Parser;
+use comfy_table::{Table, presets};
+use host_tests::hidden_effects::answer::Method;
+use host_tests::hidden_effects::grade::{Graded, Posed};
+use host_tests::hidden_effects::methods;
+use host_tests::hidden_effects::tally::{BINS, Tally};
+use host_tests::second_rig::draw::{Kind, draw};
+use host_tests::second_rig::manoeuvres::Plan;
+use host_tests::second_rig::test_stand::Family;
+use host_tests::second_rig::wish_arguments::WishArguments;
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// How often is the hidden effect named?
+#[derive(Debug, Parser)]
+struct Arguments {
+    /// Seed of the first case; the next ones count up
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Cases for each family and plan
+    #[arg(long, default_value_t = 20)]
+    count: u64,
+    /// Families of rigs
+    #[arg(
+        long,
+        value_enum,
+        value_delimiter = ',',
+        default_value = "steady,dynamic"
+    )]
+    family: Vec<Family>,
+    /// Plans of campaigns
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "lab,field")]
+    plan: Vec<Plan>,
+    #[command(flatten)]
+    wish: WishArguments,
+    /// Methods, by a part of their name
+    #[arg(long, value_delimiter = ',')]
+    methods: Vec<String>,
+    /// Given by cargo
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+impl Arguments {
+    fn chosen_methods(&self) -> Vec<Box<dyn Method>> {
+        let wanted = |name: &str| {
+            let name = name.to_lowercase();
+            self.methods.is_empty()
+                || self
+                    .methods
+                    .iter()
+                    .any(|part| name.contains(&part.to_lowercase()))
+        };
+        methods()
+            .into_iter()
+            .filter(|method| wanted(method.name()))
+            .collect()
+    }
+}
+
+fn main() {
+    let arguments = Arguments::parse();
+    let methods = arguments.chosen_methods();
+    let groups = arguments.family.len() * arguments.plan.len() * methods.len();
+    let bar = ProgressBar::new(groups as u64 * arguments.count).with_style(
+        ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {msg}")
+            .expect("a sound template"),
+    );
+    for &family in &arguments.family {
+        for &plan in &arguments.plan {
+            let answers = answers(&arguments, &methods, family, plan, &bar);
+            bar.suspend(|| show(&arguments, &methods, &answers, family, plan));
+        }
+    }
+    bar.finish_and_clear();
+}
+
+/// Answers of every method, in the methods' order.
+fn answers(
+    arguments: &Arguments,
+    methods: &[Box<dyn Method>],
+    family: Family,
+    plan: Plan,
+    bar: &ProgressBar,
+) -> Vec<Vec<Graded>> {
+    let mut answers: Vec<Vec<Graded>> = methods.iter().map(|_| Vec::new()).collect();
+    for seed in arguments.seed..arguments.seed + arguments.count {
+        let posed = Posed::new(draw(seed, &arguments.wish.wish(family, plan)));
+        for (method, answers) in methods.iter().zip(&mut answers) {
+            bar.set_message(format!("{family:?} {plan:?} {seed} {}", method.name()));
+            answers.push(posed.ask(method.as_ref()));
+            bar.inc(1);
+        }
+    }
+    answers
+}
+
+fn show(
+    arguments: &Arguments,
+    methods: &[Box<dyn Method>],
+    answers: &[Vec<Graded>],
+    family: Family,
+    plan: Plan,
+) {
+    println!("\n## {family:?} rig, {plan:?} plan\n");
+    println!("{}\n", table(methods, answers));
+    for (method, answers) in methods.iter().zip(answers) {
+        if method.abilities().unknown {
+            show_misses(arguments, answers, family, plan);
+        }
+    }
+}
+
+fn table(methods: &[Box<dyn Method>], answers: &[Vec<Graded>]) -> Table {
+    let mut table = Table::new();
+    table.load_preset(presets::ASCII_MARKDOWN);
+    let names = methods.iter().map(|method| method.name());
+    table.set_header(std::iter::once("").chain(names));
+    let columns: Vec<Vec<(String, String)>> = methods
+        .iter()
+        .zip(answers)
+        .map(|(method, answers)| column(method.as_ref(), &Tally(answers.iter().collect())))
+        .collect();
+    for row in 0..columns[0].len() {
+        let cells = columns.iter().map(|column| column[row].1.clone());
+        table.add_row(std::iter::once(columns[0][row].0.clone()).chain(cells));
+    }
+    table
+}
+
+/// Labels and cells of a method's column.
+fn column(method: &dyn Method, all: &Tally) -> Vec<(String, String)> {
+    let able = method.abilities();
+    let cannot = |can: bool, cell: String| if can { cell } else { "cannot".to_owned() };
+    let one = all.of(Kind::Single);
+    let two = all.of(Kind::Pair);
+    let clean = all.of(Kind::Nothing);
+    let mut rows = vec![
+        (
+            "one hidden: named first".to_owned(),
+            cannot(able.names, one.rate(Graded::named_first).to_string()),
+        ),
+        (
+            "one hidden: in the group".to_owned(),
+            cannot(able.names, one.rate(Graded::named_in_group).to_string()),
+        ),
+        (
+            "one hidden: only wrong names".to_owned(),
+            cannot(able.names, one.rate(Graded::wrong).to_string()),
+        ),
+    ];
+    for bin in BINS {
+        rows.push((
+            format!("named first, d {} to {}", bin.0, bin.1),
+            cannot(
+                able.names,
+                one.within(bin).rate(Graded::named_first).to_string(),
+            ),
+        ));
+    }
+    rows.push((
+        "two hidden: exactly both".to_owned(),
+        cannot(able.names, two.rate(Graded::exact).to_string()),
+    ));
+    let visible = two.within((BINS[1].0, f64::INFINITY));
+    rows.push((
+        format!("exactly both, d over {}", BINS[1].0),
+        cannot(able.names, visible.rate(Graded::exact).to_string()),
+    ));
+    rows.push((
+        "nothing hidden: something named".to_owned(),
+        cannot(
+            able.names,
+            clean.rate(|g| !g.answer.named.is_empty()).to_string(),
+        ),
+    ));
+    rows.push((
+        "nothing hidden: unknown claimed".to_owned(),
+        cannot(able.unknown, clean.rate(|g| g.answer.unknown).to_string()),
+    ));
+    rows.extend(column_of_measures(method, all));
+    rows
+}
+
+/// The rest of a column.
+fn column_of_measures(method: &dyn Method, all: &Tally) -> Vec<(String, String)> {
+    let able = method.abilities();
+    let cannot = |can: bool, cell: String| if can { cell } else { "cannot".to_owned() };
+    let outside = all.of(Kind::Outside);
+    let held_out = all
+        .filtered(|g| !g.posed.case.hidden.is_empty())
+        .held_out()
+        .map_or("-".to_owned(), |(before, after)| {
+            format!("{before:.2} to {after:.2}")
+        });
+    let seconds = |share| {
+        all.seconds(share)
+            .map_or("-".to_owned(), |s| format!("{s:.1} s"))
+    };
+    vec![
+        (
+            "outside the catalogue: said so".to_owned(),
+            cannot(able.unknown, outside.rate(|g| g.answer.unknown).to_string()),
+        ),
+        (
+            "said so, d over 0.25".to_owned(),
+            cannot(
+                able.unknown,
+                outside
+                    .within((BINS[1].0, f64::INFINITY))
+                    .rate(|g| g.answer.unknown)
+                    .to_string(),
+            ),
+        ),
+        (
+            "95 % intervals that hold the truth".to_owned(),
+            cannot(able.intervals, all.coverage().to_string()),
+        ),
+        ("held-out error, medians".to_owned(), held_out),
+        ("time, median".to_owned(), seconds(0.5)),
+        ("time, 95 %".to_owned(), seconds(0.95)),
+    ]
+}
+
+fn show_misses(arguments: &Arguments, answers: &[Graded], family: Family, plan: Plan) {
+    for graded in answers {
+        for missed in graded.missed_intervals() {
+            println!("- interval, seed {}: {missed}", graded.posed.case.seed);
+        }
+    }
+    let name = |what: String| what.to_lowercase();
+    for graded in answers.iter().filter(|graded| !graded.good()) {
+        let case = &graded.posed.case;
+        let hidden: Vec<String> = case
+            .hidden
+            .iter()
+            .map(|hidden| format!("{} {:.4} {}", hidden.what.id, hidden.size, hidden.what.unit))
+            .collect();
+        println!(
+            "- {}{} {:?}, d {:.2}: [{}] answered {:?}{}{}",
+            name(format!("{:?}", case.fidelity)),
+            if case.rough { ", rough" } else { "" },
+            case.kind,
+            graded.posed.detectability,
+            hidden.join(", "),
+            graded.answer.named,
+            if graded.answer.group.is_empty() {
+                String::new()
+            } else {
+                format!(" or {:?}", graded.answer.group)
+            },
+            if graded.answer.unknown {
+                ", something unknown left"
+            } else {
+                ""
+            },
+        );
+        println!(
+            "  `cargo bench --bench hidden_effects -- --seed {} --count 1 --family {} --plan {}{}`",
+            case.seed,
+            name(format!("{family:?}")),
+            name(format!("{plan:?}")),
+            arguments.wish.typed(),
+        );
+    }
+}
