@@ -56,6 +56,29 @@ impl<'a> TomlTable<'a> {
         self.source.error_at(byte, what, mend)
     }
 
+    /// A fault of the text of `key`, at a byte of the text; at its beginning if it is written with escapes.
+    pub fn error_inside(
+        &self,
+        key: &str,
+        byte: usize,
+        what: impl Into<String>,
+        mend: impl Into<String>,
+    ) -> InputError {
+        let inside = || {
+            let value = self.entries.get(key)?;
+            let DeValue::String(text) = value.get_ref() else {
+                return None;
+            };
+            let written = self.source.text.get(value.span())?;
+            // One quote or three; what stands between them is the text itself unless it is escaped.
+            Some(value.span().start + written.find(text.as_ref())?.max(1) + byte)
+        };
+        match inside() {
+            Some(byte) => self.source.error_at(byte, what, mend),
+            None => self.error_at(key, what, mend),
+        }
+    }
+
     /// The file this table stands in.
     pub fn source(&self) -> &'a SourceFile {
         self.source
@@ -202,10 +225,11 @@ impl<'a> TomlTable<'a> {
             return Err(self.error_at(
                 key,
                 what,
-                format!("write a line [{key}] and its keys below it"),
+                format!("write a line [{}] and its keys below it", self.path(key)),
             ));
         };
-        Ok(Some(self.inner(format!("[{key}]"), value.span(), entries)))
+        let name = format!("[{}]", self.path(key));
+        Ok(Some(self.inner(name, value.span(), entries)))
     }
 
     /// The tables `[[key]]`, in the order of the file; none if there is none.
@@ -216,7 +240,8 @@ impl<'a> TomlTable<'a> {
         let Some(value) = self.entries.get(key) else {
             return Ok(Vec::new());
         };
-        let mend = format!("write a line [[{key}]] and its keys below it");
+        let name = format!("[[{}]]", self.path(key));
+        let mend = format!("write a line {name} and its keys below it");
         let DeValue::Array(items) = value.get_ref() else {
             let what = format!(
                 "{key} has to be a list of tables, not {}",
@@ -225,7 +250,7 @@ impl<'a> TomlTable<'a> {
             return Err(self.error_at(key, what, mend));
         };
         let table = |item: &Spanned<DeValue<'a>>| match item.get_ref() {
-            DeValue::Table(entries) => Ok(self.inner(format!("[[{key}]]"), item.span(), entries)),
+            DeValue::Table(entries) => Ok(self.inner(name.clone(), item.span(), entries)),
             other => {
                 let what = format!(
                     "{key} has to be a list of tables, but holds {}",
@@ -243,6 +268,16 @@ impl<'a> TomlTable<'a> {
             format!("{} has no {key}", self.name),
             format!("add a line {key} = ..."),
         )
+    }
+
+    /// A key of this table as a heading names it.
+    fn path(&self, key: &str) -> String {
+        let own = self.name.trim_matches(['[', ']']);
+        if own == self.name {
+            key.to_owned()
+        } else {
+            format!("{own}.{key}")
+        }
     }
 
     fn inner(&self, name: String, span: Range<usize>, entries: &DeTable<'a>) -> TomlTable<'a> {
