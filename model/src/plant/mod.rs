@@ -27,6 +27,7 @@ pub mod orifice_valve;
 pub mod pump;
 pub mod relief_valve;
 pub mod root;
+pub mod signals;
 pub mod sites;
 pub mod steady;
 pub mod valve_curve;
