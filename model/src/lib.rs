@@ -3,6 +3,7 @@
 
 pub mod campaign;
 pub mod effects;
+pub mod expression;
 pub mod identification;
 pub mod input_error;
 pub mod model;
