@@ -6,6 +6,8 @@
 //!    small stateful parts at the [`Sites`] of the plant where the physics acts.
 //! 2. One `mod` and one entry in [`CATALOGUE`]. Plant, model files, identification, reports, `hitch effects` and the
 //!    generic tests (null value, continuity, channels, model-file round trip) go through the catalogue.
+//!
+//! A [`TermEffect`] is an effect that is not in the catalogue: a formula that a user wrote into a model file.
 
 mod angle_sensor_gain;
 mod angle_sensor_lag;
@@ -32,8 +34,11 @@ mod solenoid_hysteresis;
 mod spool_lag;
 mod spool_stiction;
 mod stribeck_friction;
+mod term;
 mod threshold_shift;
 mod viscous_friction;
+
+pub use term::TermEffect;
 
 use crate::campaign::Channel;
 use crate::model::Dynamics;

@@ -5,7 +5,9 @@
 
 use std::sync::Arc;
 
+use super::signals::Signals;
 use super::{Linkage, Reading};
+use crate::expression::Place;
 use crate::model::Constants;
 
 /// Which of the two solenoid valves.
@@ -86,6 +88,9 @@ impl Ground {
     }
 }
 
+/// A term of a user's own, in the SI unit of its place, from the state of the plant.
+pub type TermFunction = Box<dyn Fn(&Signals) -> f64 + Send + Sync>;
+
 /// What the active effects have attached to one plant.
 pub struct Sites {
     /// Between coil current and effective spool current, in order.
@@ -122,6 +127,8 @@ pub struct Sites {
     pub ground: Option<Ground>,
     /// Instruments, in order.
     pub sensors: Vec<Box<dyn SensorStage>>,
+    /// Terms of a user's own, with the place where each acts.
+    pub terms: Vec<(Place, TermFunction)>,
 }
 
 impl Default for Sites {
@@ -144,6 +151,7 @@ impl Default for Sites {
             inertia_share: 0.0,
             ground: None,
             sensors: Vec::new(),
+            terms: Vec::new(),
         }
     }
 }
