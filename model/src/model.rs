@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::effects::AddedEffect;
+use crate::effects::{AddedEffect, CATALOGUE, Effect, TermEffect};
 use crate::plant::{
     CheckValve, Compensator, Cylinder, Linkage, LinkageDimensions, LinkageError, Masses, Oil,
     OrificeValve, Pump, ReliefValve,
@@ -53,6 +53,8 @@ pub struct Model {
     pub name: String,
     /// Effects added to the paper's plant, in the order in which they were added.
     pub effects: Vec<AddedEffect>,
+    /// Terms that its file adds to the catalogue, whether they are among its effects or not.
+    pub terms: Vec<&'static TermEffect>,
     constants: Arc<Constants>,
     linkage: Arc<Linkage>,
 }
@@ -67,6 +69,7 @@ impl Model {
         Ok(Self {
             name: name.into(),
             effects: Vec::new(),
+            terms: Vec::new(),
             constants: Arc::new(constants),
             linkage: Arc::new(linkage),
         })
@@ -91,5 +94,21 @@ impl Model {
             effects,
             ..self.clone()
         }
+    }
+
+    /// The same model with other terms of a user's own.
+    #[must_use]
+    pub fn with_terms(&self, terms: Vec<&'static TermEffect>) -> Self {
+        Self {
+            terms,
+            ..self.clone()
+        }
+    }
+
+    /// Every effect that can be added to it: the catalogue and then its own terms.
+    #[must_use]
+    pub fn catalogue(&self) -> Vec<&'static dyn Effect> {
+        let own = self.terms.iter().map(|term| *term as &dyn Effect);
+        CATALOGUE.iter().copied().chain(own).collect()
     }
 }

@@ -2,7 +2,8 @@
 use std::fs;
 
 use hitch_model::Model;
-use hitch_model::effects::{AddedEffect, CATALOGUE};
+use hitch_model::effects::{AddedEffect, CATALOGUE, TermEffect};
+use hitch_model::expression::{ParameterDefinition, Place, TermDefinition};
 use proptest::prelude::*;
 use tempfile::TempDir;
 
@@ -23,20 +24,41 @@ fn fault(text: &str) -> String {
         .unwrap_or_else(|| "no fault".to_owned())
 }
 
+/// A term of a user's own whose texts need quoting.
+fn term() -> &'static TermEffect {
+    let size = ParameterDefinition {
+        name: "c".to_owned(),
+        unit: "N*s/m".to_owned(),
+        meaning: "a \"drag\",\nas it were \\".to_owned(),
+        null: 0.0,
+        start: 1.0 / 3.0,
+        low: -1e-9,
+        high: 1e9,
+    };
+    let definition = TermDefinition {
+        id: "drag".to_owned(),
+        title: String::new(),
+        place: Place::Friction,
+        formula: "c *\n v".to_owned(),
+        parameters: vec![size],
+    };
+    TermEffect::define(definition).unwrap()
+}
+
 #[test]
 fn every_model_comes_back_bit_for_bit() {
-    let effects: Vec<AddedEffect> = CATALOGUE
-        .iter()
-        .map(|effect| AddedEffect::typical(*effect))
-        .collect();
+    let with_term = Model::dynamic().with_terms(vec![term()]);
+    let effects = with_term.catalogue().into_iter();
+    let effects = effects.map(AddedEffect::typical).collect();
     for model in [
         Model::nominal(),
         Model::dynamic(),
-        Model::dynamic().with_effects(effects),
+        with_term.with_effects(effects),
     ] {
         let back = read(model.to_toml().as_bytes()).unwrap();
         assert_eq!(back.constants(), model.constants());
         assert_eq!(back.name, model.name);
+        assert_eq!(back.to_toml(), model.to_toml());
         let values = |model: &Model| -> Vec<(&str, Vec<f64>)> {
             model
                 .effects
@@ -172,7 +194,8 @@ proptest! {
     /// Whatever happens to the bytes of a model file, it is either read or refused in one line.
     #[test]
     fn mutations_never_panic(edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..3_u8), 1..6)) {
-        let mut bytes = Model::dynamic().with_effects(vec![AddedEffect::typical(CATALOGUE[0])]).to_toml().into_bytes();
+        let effects = vec![AddedEffect::typical(CATALOGUE[0]), AddedEffect::typical(term())];
+        let mut bytes = Model::dynamic().with_terms(vec![term()]).with_effects(effects).to_toml().into_bytes();
         for (place, byte, edit) in edits {
             let at = place.index(bytes.len());
             match edit {

@@ -14,10 +14,40 @@
 //! shift_a = 0.199
 //! ```
 //!
+//! A file can have terms of its own beside the effects of the catalogue: see [`crate::expression`]. `[[term]]` defines
+//! one; it acts once an `[[effect]]` adds it with a value for each parameter, and until then a fit may try it.
+//!
+//! ```toml
+//! [[term]]
+//! id = "end-cushion"
+//! place = "lower-flow-factor"
+//! formula = "-c * ramp(1 - x / depth)"
+//!
+//! [[term.parameter]]          # the first one is its size, which is off at `null`
+//! name = "c"
+//! null = 0
+//! start = 0.5
+//! low = 0
+//! high = 1
+//!
+//! [[term.parameter]]
+//! name = "depth"
+//! unit = "mm"
+//! start = 20
+//! low = 5
+//! high = 50
+//!
+//! [[effect]]
+//! id = "end-cushion"
+//! c = 0.41
+//! depth_mm = 22
+//! ```
+//!
 //! Keys end in their unit. Without `base`, every constant has to be there; a file that the program writes is complete.
 mod constants;
 mod read;
 mod round_trip;
+mod terms;
 mod write;
 
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Reads a model file.
 use super::constants::{CONSTANTS, CURRENT, CURVES, Constant, Curve, FLOW, TABLES, keys, unset};
-use super::{FORMAT, starting_point};
-use crate::effects::{self, AddedEffect, CATALOGUE, Effect};
+use super::{FORMAT, starting_point, terms};
+use crate::effects::{AddedEffect, Effect, Parameter};
 use crate::input_error::{InputError, quote};
 use crate::model::{Constants, Dynamics, Model};
 use crate::naming::offer_names;
@@ -25,7 +25,7 @@ pub fn model(source: &SourceFile) -> Result<Model, InputError> {
     }
     top.only(
         &[
-            &["format", "name", "base", "dynamics", "effect"],
+            &["format", "name", "base", "dynamics", "term", "effect"],
             &TABLES[..],
         ]
         .concat(),
@@ -42,7 +42,9 @@ pub fn model(source: &SourceFile) -> Result<Model, InputError> {
         .map_or_else(|| file_stem(source), str::to_owned);
     let model =
         Model::new(name, constants).map_err(|error| linkage_fault(&top, &error.to_string()))?;
-    Ok(model.with_effects(added_effects(&top)?))
+    let model = model.with_terms(terms::read(&top)?);
+    let effects = added_effects(&top, &model.catalogue())?;
+    Ok(model.with_effects(effects))
 }
 
 /// The starting point that the file builds on.
@@ -143,10 +145,13 @@ fn read_curve(
     }
 }
 
-fn added_effects(top: &TomlTable<'_>) -> Result<Vec<AddedEffect>, InputError> {
+fn added_effects(
+    top: &TomlTable<'_>,
+    catalogue: &[&'static dyn Effect],
+) -> Result<Vec<AddedEffect>, InputError> {
     let mut added: Vec<AddedEffect> = Vec::new();
     for table in &top.tables("effect")? {
-        let effect = effect_of(table)?;
+        let effect = effect_of(table, catalogue)?;
         if added.iter().any(|other| other.effect.id() == effect.id()) {
             let what = format!("{} is there twice", effect.id());
             return Err(table.error_at("id", what, "delete one of the two [[effect]] blocks"));
@@ -157,7 +162,7 @@ fn added_effects(top: &TomlTable<'_>) -> Result<Vec<AddedEffect>, InputError> {
             .chain(parameters.iter().map(|parameter| parameter.key))
             .collect();
         table.only(&known)?;
-        let value = |parameter: &effects::Parameter| {
+        let value = |parameter: &Parameter| {
             table.required_number(parameter.key, parameter.low..=parameter.high)
         };
         added.push(AddedEffect {
@@ -168,10 +173,14 @@ fn added_effects(top: &TomlTable<'_>) -> Result<Vec<AddedEffect>, InputError> {
     Ok(added)
 }
 
-fn effect_of(table: &TomlTable<'_>) -> Result<&'static dyn Effect, InputError> {
+fn effect_of(
+    table: &TomlTable<'_>,
+    catalogue: &[&'static dyn Effect],
+) -> Result<&'static dyn Effect, InputError> {
     let id = table.required_text("id")?;
-    effects::find(id).ok_or_else(|| {
-        let known: Vec<&str> = CATALOGUE.iter().map(|effect| effect.id()).collect();
+    let found = catalogue.iter().find(|effect| effect.id() == id);
+    found.copied().ok_or_else(|| {
+        let known: Vec<&str> = catalogue.iter().map(|effect| effect.id()).collect();
         table.error_at(
             "id",
             format!("effect {} is not known", quote(id)),

@@ -3,6 +3,7 @@ use std::fmt::Write as _;
 
 use super::constants::{CONSTANTS, CURRENT, CURVES, Curve, FLOW, TABLES};
 use super::round_trip::decimal;
+use super::terms;
 use crate::effects::AddedEffect;
 use crate::model::{Constants, Dynamics, Model};
 use crate::units::M3_S_PER_LPM;
@@ -27,6 +28,9 @@ pub fn model(model: &Model) -> String {
         for curve in CURVES.iter().filter(|curve| curve.table == table) {
             write_curve(&mut text, curve, &mut constants);
         }
+    }
+    for term in &model.terms {
+        terms::write(&mut text, term);
     }
     for effect in &model.effects {
         write_effect(&mut text, effect);
@@ -53,7 +57,7 @@ fn write_effect(text: &mut String, added: &AddedEffect) {
 }
 
 /// A TOML basic string.
-fn quoted(text: &str) -> String {
+pub fn quoted(text: &str) -> String {
     let mut quoted = String::from('"');
     for c in text.chars() {
         match c {
