@@ -40,6 +40,8 @@ pub struct Controller {
     envelope: Envelope,
     rest: RestPosition,
     scale: DropScale,
+    /// Flow asked of the valves, positive into the cylinder.
+    demanded_flow: MicroLitrePerSecond,
 }
 
 impl Controller {
@@ -66,6 +68,7 @@ impl Controller {
             envelope: Envelope::default(),
             rest: RestPosition::default(),
             scale,
+            demanded_flow: MicroLitrePerSecond::ZERO,
         }
     }
 
@@ -106,6 +109,7 @@ impl Controller {
     fn fail(&mut self, fault: Fault) -> CoilCurrents {
         self.mode = Mode::failed(fault);
         self.button.distrust();
+        self.demanded_flow = MicroLitrePerSecond::ZERO;
         self.phase = self.phase.cut();
         CoilCurrents::OFF
     }
@@ -325,14 +329,11 @@ impl Controller {
         MicrometrePerSecond(direction.sign(wanted.0))
     }
 
-    fn demanded_flow(&self) -> MicroLitrePerSecond {
-        flow(self.mapped_speed(), self.calibration.hydraulics.piston_area)
-    }
-
     /// Coil currents of the present phase.
-    fn currents(&self) -> CoilCurrents {
+    fn currents(&mut self) -> CoilCurrents {
+        let flow = flow(self.mapped_speed(), self.calibration.hydraulics.piston_area);
+        self.demanded_flow = flow;
         let map = valve_map(&self.calibration, self.scale);
-        let flow = self.demanded_flow();
         CoilCurrents {
             lift: map.lift_current(flow),
             lower: map.lower_current(-flow),
@@ -375,7 +376,7 @@ impl Controller {
             travel: self.motion.position(),
             speed: self.motion.speed(),
             demanded_speed: self.phase.speed(),
-            demanded_flow: self.demanded_flow(),
+            demanded_flow: self.demanded_flow,
             drop: self.load.drop(),
         }
     }
