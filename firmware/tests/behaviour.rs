@@ -1,7 +1,5 @@
 //! What the controller does in the situations that an operator, or a failing part, puts it in.
 
-use hitch_firmware::control::design_parameters::SafetyParameters;
-use hitch_firmware::control::safety::{CoilCurrents, Envelope};
 use hitch_firmware::control::units::{MilliAmp, MilliBar, MilliDegree, MilliDegreePerSecond};
 use hitch_firmware::control::{Calibration, Controller, Fault, Inputs, Outputs, State};
 
@@ -272,24 +270,4 @@ fn swapped_coils_trip_the_envelope() {
     }
     assert_eq!(fault, Some(Fault::Envelope));
     assert!(hitch.angle_deg() > 85.0, "fell to {}", hitch.angle_deg());
-}
-
-#[test]
-fn currents_rise_along_the_slope_and_fall_at_once() {
-    let parameters = SafetyParameters::NOMINAL;
-    let mut envelope = Envelope::default();
-    let full = CoilCurrents {
-        lift: MilliAmp(3_500),
-        lower: MilliAmp(0),
-    };
-    let angle = Some(MilliDegree(90_000));
-    let rise: Vec<i32> = (0..60)
-        .map(|_| envelope.pass(Some(full), angle, &parameters).lift.0)
-        .collect();
-    assert_eq!(rise[..3], [1_540, 1_580, 1_620]);
-    assert_eq!(rise[59], 3_500);
-    assert_eq!(
-        envelope.pass(Some(CoilCurrents::OFF), angle, &parameters),
-        CoilCurrents::OFF
-    );
 }

@@ -1,7 +1,5 @@
 //! What holds whatever the controller is told.
 
-use hitch_firmware::control::design_parameters::SafetyParameters;
-use hitch_firmware::control::safety::{CoilCurrents, Envelope};
 use hitch_firmware::control::signals::INPUT_BYTES;
 use hitch_firmware::control::units::{MilliAmp, MilliBar, MilliDegree, MilliDegreePerSecond};
 use hitch_firmware::control::{Calibration, Controller, Inputs, Outputs, State};
@@ -135,27 +133,6 @@ proptest! {
         for (inputs, steps) in segments {
             for _ in 0..steps {
                 prop_assert_eq!(one.step(&inputs).to_bytes(), other.step(&inputs).to_bytes());
-            }
-        }
-    }
-
-    #[test]
-    fn the_envelope_needs_no_controller(
-        commands in prop::collection::vec((prop::option::of((any::<i32>(), any::<i32>())), prop::option::of(any::<i32>())), 1..300),
-    ) {
-        let parameters = SafetyParameters::NOMINAL;
-        let mut envelope = Envelope::default();
-        let mut silent = 0;
-        for (command, angle) in commands {
-            let command = command.map(|(lift, lower)| CoilCurrents { lift: MilliAmp(lift), lower: MilliAmp(lower) });
-            silent = if command.is_some() { 0 } else { silent + 1 };
-            let both = command.is_some_and(|command| command.lift > MilliAmp(0) && command.lower > MilliAmp(0));
-            let passed = envelope.pass(command, angle.map(MilliDegree), &parameters);
-            prop_assert!(passed.lift == MilliAmp(0) || passed.lower == MilliAmp(0));
-            prop_assert!(passed.lift <= parameters.lift_current_limit && passed.lower <= parameters.lower_current_limit);
-            prop_assert!(passed.lift >= MilliAmp(0) && passed.lower >= MilliAmp(0));
-            if both || envelope.is_tripped() || silent >= parameters.command_age.0 {
-                prop_assert_eq!(passed, CoilCurrents::OFF);
             }
         }
     }

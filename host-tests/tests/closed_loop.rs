@@ -131,7 +131,7 @@ fn full_lowering_s(load_kg: f64, dial: Option<PerMille>) -> f64 {
     let mut closed_loop = ClosedLoop::new(&model, &nominal(), load_kg, 40.0, 135.0, 11);
     closed_loop.pick_up();
     let steps = (0..60_000).position(|_| {
-        let sample = closed_loop.step_with(44.6, |inputs| inputs.lowering_dial = dial);
+        let sample = closed_loop.step_with(44.6, |inputs| inputs.lowering_dial = dial, |_, _| {});
         sample.angle_deg <= 45.1
     });
     steps.expect("comes down") as f64 * 1e-3

@@ -2,6 +2,7 @@
 
 mod check;
 mod image;
+mod mutants;
 mod process;
 mod setup;
 mod size;
@@ -22,6 +23,7 @@ usage: cargo xtask <task> [--arm rustup|debian]
   check   formatting, clippy and rustdoc, with warnings denied
   ci      check, then test
   arm     build the ARM images and say how large they are
+  mutants change the safety envelope in every way that cargo-mutants knows; its tests have to notice
   setup   find or install the ARM toolchain and the emulator
 
   --arm   take this ARM toolchain instead of the first that works:
@@ -50,6 +52,7 @@ fn run(arguments: &[String]) -> Result<()> {
         "check" => check::run(way),
         "ci" => check::run(way).and_then(|()| test::run(way)),
         "arm" => image::build_all(setup::toolchain(way)?).map(drop),
+        "mutants" => mutants::run(),
         "setup" => setup::run(way),
         "help" | "--help" | "-h" => {
             println!("{USAGE}");

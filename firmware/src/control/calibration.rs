@@ -230,6 +230,13 @@ impl Calibration {
                 operator.float_exit.0,
             ),
             (
+                "safety",
+                "supply_min",
+                self.safety.supply_min.0,
+                "supply_max",
+                self.safety.supply_max.0,
+            ),
+            (
                 "hydraulics",
                 "smallest_drop",
                 hydraulics.smallest_drop.0,
@@ -273,12 +280,15 @@ impl Calibration {
 
     fn computed_checksum(&self) -> u32 {
         const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
-        let bytes = self.to_bytes();
-        CRC.checksum(
-            bytes
-                .split_last_chunk::<4>()
-                .map_or(&[], |(content, _)| content),
-        )
+        let mut digest = CRC.digest();
+        let mut words_left = CALIBRATION_BYTES / 4 - 1;
+        self.clone().for_each_word(&mut |word| {
+            if words_left > 0 {
+                words_left -= 1;
+                digest.update(&word.to_le_bytes());
+            }
+        });
+        digest.finalize()
     }
 
     /// Visits every word in the order of the memory image.

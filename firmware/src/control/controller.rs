@@ -8,7 +8,7 @@ use super::operator::{ButtonGuard, EngineWatch, Float, QuickLift, lowering_limit
 use super::position::{PositionControl, Reason};
 use super::rate::RateControl;
 use super::rest::RestPosition;
-use super::safety::{CoilCurrents, Envelope};
+use super::safety::{CoilCurrents, Envelope, Limits};
 use super::saturation::SaturationWatch;
 use super::sensors::{Sensed, Sensors};
 use super::signals::{Inputs, Outputs, State};
@@ -86,11 +86,13 @@ impl Controller {
             Err(fault) => self.fail(fault),
         };
         let angle = sensed.ok().map(|sensed| sensed.angle);
-        let currents = self
-            .envelope
-            .pass(Some(command), angle, &self.calibration.safety);
-        if self.envelope.is_tripped() {
-            self.fail(Fault::Envelope);
+        let limits = Limits {
+            safety: &self.calibration.safety,
+            sensors: &self.calibration.sensors,
+        };
+        let currents = self.envelope.pass(Some(command), inputs, limits);
+        if let Some(trip) = self.envelope.objection() {
+            self.fail(trip.fault());
         }
         let hydraulics = &self.calibration.hydraulics;
         let present = self.load.present_drop(hydraulics);
@@ -281,6 +283,11 @@ impl Controller {
             }
         }
         self.phase = next;
+        let follows_lever = matches!(self.mode, Mode::Position);
+        if next.is_moving() && follows_lever && self.position.has_arrived() {
+            let speed = self.motion.model_speed();
+            self.sink.correcting(speed, &self.calibration.hold)?;
+        }
         Ok(())
     }
 
@@ -372,6 +379,7 @@ impl Controller {
             lower_current: currents.lower,
             state: self.state(),
             fault: self.mode.fault(),
+            trip: self.envelope.tripped(),
             target: self.position.set_point(angle),
             travel: self.motion.position(),
             speed: self.motion.speed(),

@@ -5,9 +5,9 @@
 
 use super::parameter::parameter_group;
 use super::units::{
-    AmperePerSecond, Count, Micrometre, MicrometrePerSecond, MilliAmp, MilliBar, MilliDegree,
-    MilliDegreePerSecond, MillimetrePerSecondSquared, Millisecond, PerMille, PerSecond,
-    RevolutionPerMinute, SquareMillimetre,
+    AmperePerSecond, Count, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp, MilliBar,
+    MilliDegree, MilliDegreePerSecond, MilliVolt, MillimetrePerSecondSquared, Millisecond,
+    PerMille, PerSecond, RevolutionPerMinute, SquareMillimetre,
 };
 
 parameter_group! {
@@ -161,6 +161,8 @@ parameter_group! {
         rest_time: Millisecond = 250, 1..=5_000;
         /// How often a hitch that left its place by itself is brought back before that is a fault.
         corrections: Count = 5, 0..=100;
+        /// How far a hitch that leaves its place by itself is brought back, all corrections together: each rightful one is less than 1 degree.
+        corrected_travel: Micrometre = 4_500, 500..=50_000;
         /// A correction is forgotten after this time: a seated valve sinks less than a restart band in it.
         correction_memory: Millisecond = 600_000, 1_000..=86_400_000;
     }
@@ -193,9 +195,51 @@ parameter_group! {
         free_current: MilliAmp = 1_500, 0..=5_000;
         /// Above it currents rise no faster than this: full flow in 50 ms at the earliest. Falling is always free.
         current_slope: AmperePerSecond = 40, 1..=10_000;
-        /// Age at which a command is stale and both coils go off.
+        /// How far the lever has to move since power-up or the last trip before any coil is switched on: half of what opens the lock, clear of noise.
+        arming_movement: MilliDegree = 350, 50..=5_000;
+        /// Age at which a command is stale and both coils go off for good: at full speed the hitch moves less than 1 degree.
         command_age: Millisecond = 5, 1..=1_000;
+        /// How long a signal has to be missing, out of range or jumping: the same.
+        sensor_time: Millisecond = 5, 1..=100;
+        /// A step that begins later than this after the last is an overrun: half a step of slack.
+        longest_step: Microsecond = 1_500, 1_000..=100_000;
+        /// How long steps have to be late: one may be, for a flash page that is written.
+        overrun_time: Millisecond = 2, 1..=100;
+        /// Lowest supply voltage: below it the largest current no longer fits through a hot coil, and converters lose their reference.
+        supply_min: MilliVolt = 8_000, 5_000..=24_000;
+        /// Highest supply voltage: a charging fault, or somebody jump-starts with 24 V.
+        supply_max: MilliVolt = 16_800, 9_000..=36_000;
+        /// How long the supply has to be wrong: longer than the swing as a relay switches, and at full speed less than 2 degrees.
+        supply_time: Millisecond = 10, 1..=1_000;
+        /// A sample that stays the same to the last bit for this long is suspicious: eight throws of noise.
+        frozen_time: Millisecond = 8, 2..=1_000;
+        /// ... if the hitch should have moved this far meanwhile: twenty converter steps.
+        frozen_travel: MilliDegree = 750, 50..=20_000;
+        /// A sensor that trembles at rest is frozen once it is still for this long: a healthy one is by chance once in a million years.
+        still_time: Millisecond = 20, 5..=1_000;
+        /// Mean second difference from which a sensor is too noisy: six times that of a healthy one, whose sigma of 0.05 degree gives 0.1 degree.
+        noise_limit: MilliDegree = 600, 50..=20_000;
+        /// Speed from which a stop is telling: ten times the noise of its measurement.
+        telling_speed: MilliDegreePerSecond = 30_000, 5_000..=200_000;
+        /// A current that was reduced by more than this explains why the hitch got slower.
+        unchanged_current: MilliAmp = 100, 10..=1_000;
+        /// ... for this long: three lags of the spool.
+        following_time: Millisecond = 150, 10..=2_000;
+        /// How long a hitch has to stand still: longer than half a swing of a load on its oil.
+        not_following_time: Millisecond = 50, 5..=1_000;
         /// Movement against the energised coil that trips: above noise and the swing at a start.
         contradiction: MilliDegree = 4_000, 500..=45_000;
+        /// Current from which a broken wire can be told.
+        testable_current: MilliAmp = 500, 50..=5_000;
+        /// How long less than half of it has to flow: four time constants of a coil.
+        open_time: Millisecond = 40, 2..=1_000;
+        /// Current beyond what was asked for that means a short: twice what a controller overshoots.
+        excess_current: MilliAmp = 500, 50..=5_000;
+        /// How long: longer than a supply step takes to be regulated away, shorter than the spool needs to follow.
+        short_time: Millisecond = 10, 1..=1_000;
+        /// Current that may be left in a coil that is off.
+        leftover_current: MilliAmp = 200, 20..=1_000;
+        /// How long a coil may take to lose its current before that counts: six time constants with a freewheeling diode.
+        decay_time: Millisecond = 30, 2..=1_000;
     }
 }

@@ -40,8 +40,16 @@ pub enum Fault {
     Sinking = 3,
     /// Flow is demanded and the hitch doesn't move: relief valve, obstacle, valve or angle sensor stuck.
     NotMoving = 4,
-    /// The safety envelope tripped: the hitch moves against the energised coil.
+    /// The safety envelope tripped on a command or a movement that must not be.
     Envelope = 5,
+    /// The hitch was moving and seems to have stopped: obstacle, or an angle sensor that no longer follows.
+    NotFollowing = 6,
+    /// A coil, its wire or its driver.
+    Coil = 7,
+    /// The supply voltage is outside its limits.
+    Supply = 8,
+    /// The controller isn't called in time.
+    Overrun = 9,
 }
 
 impl Fault {
@@ -54,6 +62,10 @@ impl Fault {
             Self::Sinking => "sinking",
             Self::NotMoving => "not-moving",
             Self::Envelope => "envelope",
+            Self::NotFollowing => "not-following",
+            Self::Coil => "coil",
+            Self::Supply => "supply",
+            Self::Overrun => "overrun",
         }
     }
 }

@@ -84,6 +84,12 @@ impl PositionControl {
         self.accepted = true;
     }
 
+    /// True if the hitch has rested at the set point: where it is now, it went by itself.
+    #[must_use]
+    pub const fn has_arrived(&self) -> bool {
+        self.arrived
+    }
+
     /// The reason for which a resting hitch should move to `target`, if there is one.
     pub fn reason_to_move(
         &mut self,

@@ -1,6 +1,7 @@
 //! What goes into a step and what comes out, with fixed little-endian images for traces and links.
 
 use super::mode::Fault;
+use super::safety::Trip;
 use super::units::{
     MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp, MilliBar,
     MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt, PerMille, RevolutionPerMinute,
@@ -126,6 +127,8 @@ pub struct Outputs {
     pub state: State,
     /// Fault, if there is one.
     pub fault: Option<Fault>,
+    /// What tripped the safety envelope, if it is tripped.
+    pub trip: Option<Trip>,
     /// Set point that is being worked on, inside the limits.
     pub target: MilliDegree,
     /// Estimated piston travel.
@@ -212,14 +215,14 @@ impl Inputs {
 }
 
 impl Outputs {
-    /// State, fault (0: none) and two bytes of zero, then the values in the order of the fields.
+    /// State, fault (0: none), trip (0: none) and a byte of zero, then the values in the order of the fields.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; OUTPUT_BYTES] {
         let mut writer = Writer::new([0; OUTPUT_BYTES]);
         writer.put([
             self.state as u8,
             self.fault.map_or(0, |fault| fault as u8),
-            0,
+            self.trip.map_or(0, |trip| trip as u8),
             0,
         ]);
         let values = [

@@ -61,14 +61,20 @@ impl<'m> ClosedLoop<'m> {
 
     /// One millisecond with the lever at `lever_deg`.
     pub fn step(&mut self, lever_deg: f64) -> Sample {
-        self.step_with(lever_deg, |_| {})
+        self.step_with(lever_deg, |_| {}, |_, _| {})
     }
 
-    /// One millisecond in which `alter` changes what the controller is told: operators' switches, faults.
-    pub fn step_with(&mut self, lever_deg: f64, alter: impl FnOnce(&mut Inputs)) -> Sample {
+    /// One millisecond in which `tell` changes what the controller is told (operators' switches, faults of
+    /// sensors) and `wire` what the coils get of what it asks for (faults of coils and drivers).
+    pub fn step_with(
+        &mut self,
+        lever_deg: f64,
+        tell: impl FnOnce(&mut Inputs),
+        wire: impl FnOnce(&Outputs, &mut Currents),
+    ) -> Sample {
         let truth = self.plant.reading();
         let mut inputs = self.instruments.read(&truth, lever_deg);
-        alter(&mut inputs);
+        tell(&mut inputs);
         let outputs = self.controller.step(&inputs);
         let sample = Sample {
             time_s: self.steps as f64 * STEP_S,
@@ -79,10 +85,9 @@ impl<'m> ClosedLoop<'m> {
             inputs,
             outputs,
         };
-        self.plant.step(
-            Instruments::drive(outputs.lift_current, outputs.lower_current),
-            STEP_S,
-        );
+        let mut currents = Instruments::drive(outputs.lift_current, outputs.lower_current);
+        wire(&outputs, &mut currents);
+        self.plant.step(currents, STEP_S);
         self.steps += 1;
         sample
     }

@@ -1,0 +1,225 @@
+//! Watches the angle: one sensor, and what it must do while a coil moves the hitch.
+
+use super::super::design_parameters::{SafetyParameters, SensorParameters};
+use super::super::units::{MilliAmp, MilliDegree, MilliDegreePerSecond, Millisecond};
+use super::CoilCurrents;
+
+/// Samples over which the speed is measured: noise of 0.05 degree is then 4 degrees a second.
+const SPAN: usize = 16;
+/// From the difference between the ends of [`SPAN`] samples to a second: 1000 / 15, half a percent too large.
+const TO_SPEED: i32 = 67;
+/// A sensor trembles if this many more of its steps at rest went to and fro than went on, and is sure to at most this.
+const TREMBLES: i32 = 100;
+const MOST_TREMBLE: i32 = 1_000;
+/// The noise measure averages over this many samples.
+const NOISE_SAMPLES: i32 = 32;
+
+/// What is wrong with the angle in this step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AngleFaults {
+    /// Missing or out of range.
+    pub missing: bool,
+    /// Further from the last good sample than the hitch can move.
+    pub jumps: bool,
+    /// The same to the last bit although the hitch was moving.
+    pub frozen: bool,
+    /// Noisier than the sensor.
+    pub noisy: bool,
+    /// Was moving and seems to have stopped, at an unchanged current.
+    pub not_following: bool,
+    /// Moves against the energised coil.
+    pub against: bool,
+}
+
+/// The watch.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct AngleWatch {
+    /// The last good samples, the newest at `newest`.
+    samples: [MilliDegree; SPAN],
+    newest: usize,
+    /// Any of them.
+    filled: bool,
+    bad_for: Millisecond,
+    /// The last sample in range, and the step to it.
+    last: MilliDegree,
+    step: MilliDegree,
+    /// How long the sample has been the same, and the speed before.
+    same_for: Millisecond,
+    speed_before: MilliDegreePerSecond,
+    /// How much a resting sensor trembles: steps to and fro count up, steps onwards down.
+    tremble: i32,
+    /// Mean magnitude of the second difference, times [`NOISE_SAMPLES`].
+    noise_sum: i32,
+    /// Since the coil was switched on.
+    stroke: Option<Stroke>,
+}
+
+/// Motion since a coil was switched on.
+#[derive(Clone, Copy, Debug)]
+struct Stroke {
+    /// Furthest angle along the coil's way.
+    furthest: MilliDegree,
+    /// Fastest speed along it, and the current that gave it.
+    fastest: MilliDegreePerSecond,
+    current: MilliAmp,
+    /// Since the current was reduced; until the hitch has followed, no speed is fast.
+    settling: Millisecond,
+}
+
+impl AngleWatch {
+    /// One step with the sample and the currents that were passed in the last one.
+    pub fn judge(
+        &mut self,
+        sample: Option<MilliDegree>,
+        passed: CoilCurrents,
+        sensors: &SensorParameters,
+        safety: &SafetyParameters,
+    ) -> AngleFaults {
+        let in_range =
+            sample.filter(|angle| sensors.angle_min <= *angle && *angle <= sensors.angle_max);
+        let believed = in_range.filter(|&angle| !self.jumps_to(angle, sensors));
+        let mut faults = AngleFaults {
+            missing: in_range.is_none(),
+            jumps: in_range.is_some() && believed.is_none(),
+            ..AngleFaults::default()
+        };
+        if let Some(angle) = in_range {
+            self.judge_noise(angle, passed == CoilCurrents::OFF, safety, &mut faults);
+        }
+        match believed {
+            Some(angle) => {
+                self.bad_for = Millisecond::ZERO;
+                self.take(angle);
+                self.judge_motion(angle, passed, safety, &mut faults);
+            }
+            None => self.bad_for = self.bad_for.next(),
+        }
+        faults
+    }
+
+    /// After a gap that has been a fault, any angle will do.
+    fn jumps_to(&self, angle: MilliDegree, sensors: &SensorParameters) -> bool {
+        self.bad_for <= sensors.bridged
+            && self.filled
+            && (angle - self.back(0)).magnitude() > sensors.angle_jump
+    }
+
+    /// The sample `steps` before the newest.
+    fn back(&self, steps: usize) -> MilliDegree {
+        let at = self.newest.wrapping_sub(steps) % SPAN;
+        self.samples.get(at).copied().unwrap_or_default()
+    }
+
+    /// What a sample in range says by its last bits, whether it is believed or not.
+    fn judge_noise(
+        &mut self,
+        angle: MilliDegree,
+        resting: bool,
+        safety: &SafetyParameters,
+        faults: &mut AngleFaults,
+    ) {
+        if !self.filled {
+            self.last = angle;
+        }
+        let step = angle - self.last;
+        self.last = angle;
+        if step == MilliDegree::ZERO {
+            self.same_for = self.same_for.next();
+        } else {
+            let to_and_fro = (step < MilliDegree::ZERO) != (self.step < MilliDegree::ZERO);
+            if resting {
+                let change = if to_and_fro { 1 } else { -1 };
+                self.tremble = self.tremble.saturating_add(change).clamp(0, MOST_TREMBLE);
+            }
+            self.same_for = Millisecond::ZERO;
+            self.speed_before = self.speed();
+        }
+        // A single jump is no noise: it counts for no more than twice the limit.
+        let most = safety.noise_limit + safety.noise_limit;
+        let bend = (step - self.step).magnitude().min(most).0;
+        self.step = step;
+        let mean = self.noise_sum / NOISE_SAMPLES;
+        self.noise_sum = self.noise_sum.saturating_add(bend).saturating_sub(mean);
+        faults.noisy = mean > safety.noise_limit.0;
+        faults.frozen = self.tremble >= TREMBLES && self.same_for >= safety.still_time;
+    }
+
+    /// Takes in a good sample.
+    fn take(&mut self, angle: MilliDegree) {
+        if !self.filled {
+            self.samples = [angle; SPAN];
+        }
+        self.newest = self.newest.wrapping_add(1) % SPAN;
+        if let Some(slot) = self.samples.get_mut(self.newest) {
+            *slot = angle;
+        }
+        self.filled = true;
+    }
+
+    /// Speed over the last samples.
+    fn speed(&self) -> MilliDegreePerSecond {
+        let oldest = self.back(SPAN - 1);
+        MilliDegreePerSecond((self.back(0) - oldest).0.saturating_mul(TO_SPEED))
+    }
+
+    fn judge_motion(
+        &mut self,
+        angle: MilliDegree,
+        passed: CoilCurrents,
+        safety: &SafetyParameters,
+        faults: &mut AngleFaults,
+    ) {
+        let lifting = passed.lift > MilliAmp::ZERO;
+        if !lifting && passed.lower <= MilliAmp::ZERO {
+            self.stroke = None;
+            // A hitch that has been let go may stop as it likes.
+            self.speed_before = MilliDegreePerSecond::ZERO;
+            return;
+        }
+        // What the hitch should have moved since the sample froze.
+        let owed = self
+            .speed_before
+            .magnitude()
+            .0
+            .saturating_mul(self.same_for.0);
+        faults.frozen |= self.same_for >= safety.frozen_time
+            && owed >= safety.frozen_travel.0.saturating_mul(1000);
+        let speed = self.speed();
+        let (along, speed, current) = match lifting {
+            true => (angle, speed, passed.lift),
+            false => (-angle, -speed, passed.lower),
+        };
+        let stroke = self.stroke.get_or_insert(Stroke {
+            furthest: along,
+            fastest: speed,
+            current,
+            settling: safety.following_time,
+        });
+        stroke.furthest = stroke.furthest.max(along);
+        faults.against = stroke.furthest - along > safety.contradiction;
+        faults.not_following = stroke.stands_still(speed, current, safety);
+    }
+}
+
+impl Stroke {
+    /// One step; true if the hitch was moving and, at an unchanged current, has all but stopped.
+    fn stands_still(
+        &mut self,
+        speed: MilliDegreePerSecond,
+        current: MilliAmp,
+        safety: &SafetyParameters,
+    ) -> bool {
+        if self.current - current > safety.unchanged_current {
+            self.settling = Millisecond::ZERO;
+        }
+        if self.settling < safety.following_time {
+            self.settling = self.settling.next();
+            self.current = current;
+            self.fastest = speed;
+            return false;
+        }
+        self.current = self.current.max(current);
+        self.fastest = self.fastest.max(speed);
+        self.fastest >= safety.telling_speed && speed.0 < self.fastest.0 / 4
+    }
+}
