@@ -124,5 +124,6 @@ fn every_scalar_outside_its_range_is_refused_by_name() {
     check_ranges(|c| &mut c.rate);
     check_ranges(|c| &mut c.hold);
     check_ranges(|c| &mut c.saturation);
+    check_ranges(|c| &mut c.current);
     check_ranges(|c| &mut c.safety);
 }

@@ -444,6 +444,20 @@ fn row_9_a_noisy_angle() {
 }
 
 #[test]
+fn noise_at_its_limit_is_borne() {
+    for (amplitude, trips) in [(150, false), (151, true)] {
+        let mut rig = Rig::new();
+        for step in 0..2_000 {
+            rig.step_with(Order::Rest, |inputs| {
+                inputs.rocker_angle = Some(MilliDegree(90_000 + (step % 2 * 2 - 1) * amplitude));
+            });
+        }
+        let trip = trips.then_some(Trip::AngleNoisy);
+        assert_eq!(rig.envelope.tripped(), trip, "{amplitude}");
+    }
+}
+
+#[test]
 fn row_10_a_hitch_that_stops_at_an_unchanged_current() {
     for order in [LIFT, LOWER] {
         let mut rig = Rig::moving(order);

@@ -5,11 +5,13 @@
 
 use hitch_firmware::control::signals::INPUT_BYTES;
 use hitch_firmware::control::units::{
-    MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt,
+    Duty, Microsecond, MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond,
+    MilliVolt,
 };
 use hitch_firmware::control::{Inputs, Outputs};
 use hitch_model::Model;
 use hitch_model::plant::{Currents, HitchRig, Plant, Rig};
+use hitch_workbench::closed_loop::Coil;
 
 use crate::replay;
 use crate::trace::Trace;
@@ -22,6 +24,8 @@ const OIL_TEMPERATURE_C: f64 = 40.0;
 /// Noise of the instruments: half the width of an even distribution.
 const ANGLE_NOISE_MILLIDEGREE: i32 = 80;
 const PRESSURE_NOISE_MILLIBAR: i32 = 150;
+const CURRENT_NOISE_MILLIAMPERE: i32 = 5;
+const SUPPLY_V: f64 = 13.8;
 
 /// What happens to the signals on their way from the hitch to the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,22 +150,27 @@ pub fn record() -> Trace {
     );
     let mut controller = replay::controller();
     let mut sensors = Sensors::default();
+    let mut coils = [Coil::of_the_rig(); 2];
+    let mut currents = Currents::default();
     let mut trace = Trace::new();
     for scene in SCRIPT {
         for _ in 0..scene.steps {
-            let inputs = sensors.read(scene, &plant);
-            plant.step(currents(&controller.step(&inputs)), STEP_S);
+            let inputs = sensors.read(scene, &plant, currents);
+            currents = driven(&mut coils, &controller.step(&inputs));
+            plant.step(currents, STEP_S);
             trace.push(inputs.to_bytes());
         }
     }
     trace
 }
 
-fn currents(outputs: &Outputs) -> Currents {
-    let ampere = |milliamp: i32| f64::from(milliamp) * 1e-3;
+/// The currents of a millisecond.
+fn driven(coils: &mut [Coil; 2], outputs: &Outputs) -> Currents {
+    let [lift, lower] = coils;
+    let share = |duty: Duty| f64::from(duty.0) * 1e-5;
     Currents {
-        lift_a: ampere(outputs.lift_current.0),
-        lower_a: ampere(outputs.lower_current.0),
+        lift_a: lift.step(share(outputs.lift_duty), SUPPLY_V),
+        lower_a: lower.step(share(outputs.lower_duty), SUPPLY_V),
     }
 }
 
@@ -183,7 +192,7 @@ impl Default for Sensors {
 }
 
 impl Sensors {
-    fn read(&mut self, scene: &Scene, plant: &Plant<'_>) -> Inputs {
+    fn read(&mut self, scene: &Scene, plant: &Plant<'_>, currents: Currents) -> Inputs {
         let way = scene.lever_degree * 1_000 - self.lever;
         self.lever += way.clamp(-LEVER_STEP_MILLIDEGREE, LEVER_STEP_MILLIDEGREE);
         let reading = plant.reading();
@@ -207,7 +216,10 @@ impl Sensors {
                 PRESSURE_NOISE_MILLIBAR,
             ))),
             oil_temperature: Some(MilliCelsius(noisy(OIL_TEMPERATURE_C, 0))),
-            supply: Some(MilliVolt(13_800)),
+            supply: Some(MilliVolt(noisy(SUPPLY_V, 20))),
+            lift_current: Some(MilliAmp(noisy(currents.lift_a, CURRENT_NOISE_MILLIAMPERE))),
+            lower_current: Some(MilliAmp(noisy(currents.lower_a, CURRENT_NOISE_MILLIAMPERE))),
+            step_time: Some(Microsecond(noisy(1.0, 20))),
             ..Inputs::default()
         };
         let inputs = self.spoil(scene.fault, healthy);

@@ -60,11 +60,10 @@ const EVERY_MS: usize = 35;
 /// How long the hitch is watched afterwards, ms.
 const WATCHED_MS: usize = 600;
 
-/// What the sensors last said and the coils last got.
+/// What the sensors last said.
 #[derive(Clone, Copy, Default)]
 struct Memory {
     inputs: Inputs,
-    got: [i32; 2],
 }
 
 /// One run: trouble at `instant_ms` of the move.
@@ -85,8 +84,6 @@ fn tell(trouble: Trouble, step: usize, memory: &Memory, inputs: &mut Inputs) {
     let shifted =
         |inputs: &Inputs, by: i32| inputs.rocker_angle.map(|angle| angle + MilliDegree(by));
     inputs.step_time = Some(Microsecond(1_000));
-    inputs.lift_current = Some(MilliAmp(memory.got[0]));
-    inputs.lower_current = Some(MilliAmp(memory.got[1]));
     match trouble {
         CutAtOnce | CoilOpen | CoilShorted | LiftStuck | LowerStuck => {}
         AngleLost => inputs.rocker_angle = None,
@@ -107,12 +104,16 @@ fn tell(trouble: Trouble, step: usize, memory: &Memory, inputs: &mut Inputs) {
 fn wire(trouble: Trouble, outputs: &Outputs, currents: &mut Currents) {
     // A trip also opens the switch that feeds both drivers.
     let fed = outputs.trip.is_none();
-    let on = |asked: MilliAmp| asked > MilliAmp(0);
     match trouble {
         CutAtOnce | CoilOpen => *currents = Currents::default(),
+        // Whatever the regulation does about it.
         CoilShorted if fed => {
-            currents.lift_a += if on(outputs.lift_current) { 1.0 } else { 0.0 };
-            currents.lower_a += if on(outputs.lower_current) { 1.0 } else { 0.0 };
+            let shorted = |asked: MilliAmp| match asked > MilliAmp(0) {
+                true => f64::from(asked.0) * 1e-3 + 1.0,
+                false => 0.0,
+            };
+            currents.lift_a = shorted(outputs.lift_current);
+            currents.lower_a = shorted(outputs.lower_current);
         }
         LiftStuck if fed => currents.lift_a = 3.5,
         LowerStuck if fed => currents.lower_a = 3.5,
@@ -133,7 +134,6 @@ fn run(
     let mut memory = Memory::default();
     let mut step = |step: usize, trouble: Option<Trouble>| -> Sample {
         let before = memory;
-        let mut got = [0; 2];
         let sample = closed_loop.step_with(
             to_deg,
             |inputs| tell(trouble.unwrap_or(CutAtOnce), step, &before, inputs),
@@ -141,12 +141,10 @@ fn run(
                 if let Some(trouble) = trouble {
                     wire(trouble, outputs, currents);
                 }
-                got = [currents.lift_a, currents.lower_a].map(|ampere| (ampere * 1e3) as i32);
             },
         );
         memory = Memory {
             inputs: sample.inputs,
-            got,
         };
         sample
     };

@@ -4,8 +4,9 @@
 //! ranges and curves have been checked; the controller takes no other.
 
 use super::design_parameters::{
-    HoldParameters, HydraulicParameters, LockParameters, MotionParameters, OperatorParameters,
-    PositionParameters, RateParameters, SafetyParameters, SaturationParameters, SensorParameters,
+    CurrentParameters, HoldParameters, HydraulicParameters, LockParameters, MotionParameters,
+    OperatorParameters, PositionParameters, RateParameters, SafetyParameters, SaturationParameters,
+    SensorParameters,
 };
 use super::linkage::{LINKAGE_POINTS, LinkageTable};
 use super::nominal;
@@ -50,6 +51,8 @@ pub struct Calibration {
     pub hold: HoldParameters,
     /// Compensator logic.
     pub saturation: SaturationParameters,
+    /// Regulation of the coils' currents.
+    pub current: CurrentParameters,
     /// Safety envelope.
     pub safety: SafetyParameters,
     /// CRC-32 (ISO-HDLC) over everything before it, words in little-endian order.
@@ -138,6 +141,7 @@ impl Calibration {
             rate: RateParameters::NOMINAL,
             hold: HoldParameters::NOMINAL,
             saturation: SaturationParameters::NOMINAL,
+            current: CurrentParameters::NOMINAL,
             safety: SafetyParameters::NOMINAL,
             checksum: 0,
         }
@@ -186,6 +190,7 @@ impl Calibration {
         check_group(&self.rate)?;
         check_group(&self.hold)?;
         check_group(&self.saturation)?;
+        check_group(&self.current)?;
         check_group(&self.safety)
     }
 
@@ -228,6 +233,13 @@ impl Calibration {
                 operator.float_lever.0,
                 "float_exit",
                 operator.float_exit.0,
+            ),
+            (
+                "current",
+                "lowest_resistance",
+                self.current.lowest_resistance.0,
+                "highest_resistance",
+                self.current.highest_resistance.0,
             ),
             (
                 "safety",
@@ -311,6 +323,7 @@ impl Calibration {
         visit_group(&mut self.rate, visit);
         visit_group(&mut self.hold, visit);
         visit_group(&mut self.saturation, visit);
+        visit_group(&mut self.current, visit);
         visit_group(&mut self.safety, visit);
         visit_unsigned(&mut self.checksum, visit);
     }

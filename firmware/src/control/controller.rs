@@ -1,6 +1,7 @@
 //! One millisecond of control.
 
 use super::calibration::ValidCalibration;
+use super::current::{Duties, Regulation};
 use super::load::LoadEstimate;
 use super::mode::{Fault, Mode};
 use super::motion::{Motion, flow, piston_speed};
@@ -38,6 +39,7 @@ pub struct Controller {
     sink: SinkWatch,
     saturation: SaturationWatch,
     envelope: Envelope,
+    regulation: Regulation,
     rest: RestPosition,
     scale: DropScale,
     /// Flow asked of the valves, positive into the cylinder.
@@ -50,6 +52,7 @@ impl Controller {
     pub fn new(calibration: ValidCalibration) -> Self {
         let load = LoadEstimate::new(&calibration.hydraulics);
         let scale = DropScale::new(calibration.hydraulics.reference_drop, load.drop());
+        let regulation = Regulation::new(&calibration.current);
         Self {
             calibration,
             sensors: Sensors::default(),
@@ -66,6 +69,7 @@ impl Controller {
             sink: SinkWatch::default(),
             saturation: SaturationWatch::default(),
             envelope: Envelope::default(),
+            regulation,
             rest: RestPosition::default(),
             scale,
             demanded_flow: MicroLitrePerSecond::ZERO,
@@ -104,7 +108,10 @@ impl Controller {
             &map,
             &self.calibration.hydraulics,
         );
-        self.outputs(currents, angle.unwrap_or_default())
+        let duties = self
+            .regulation
+            .drive(currents, inputs, &self.calibration.current);
+        self.outputs(currents, duties, angle.unwrap_or_default())
     }
 
     /// A fault: both coils off at once.
@@ -373,7 +380,7 @@ impl Controller {
         }
     }
 
-    fn outputs(&self, currents: CoilCurrents, angle: MilliDegree) -> Outputs {
+    fn outputs(&self, currents: CoilCurrents, duties: Duties, angle: MilliDegree) -> Outputs {
         Outputs {
             lift_current: currents.lift,
             lower_current: currents.lower,
@@ -386,6 +393,8 @@ impl Controller {
             demanded_speed: self.phase.speed(),
             demanded_flow: self.demanded_flow,
             drop: self.load.drop(),
+            lift_duty: duties.lift,
+            lower_duty: duties.lower,
         }
     }
 }

@@ -6,8 +6,9 @@
 use super::parameter::parameter_group;
 use super::units::{
     AmperePerSecond, Count, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp, MilliBar,
-    MilliDegree, MilliDegreePerSecond, MilliVolt, MillimetrePerSecondSquared, Millisecond,
-    PerMille, PerSecond, RevolutionPerMinute, SquareMillimetre,
+    MilliDegree, MilliDegreePerSecond, MilliOhm, MilliOhmPerSecond, MilliVolt,
+    MillimetrePerSecondSquared, Millisecond, PerMille, PerSecond, RevolutionPerMinute,
+    SquareMillimetre,
 };
 
 parameter_group! {
@@ -181,6 +182,34 @@ parameter_group! {
         retry_time: Millisecond = 1_500, 100..=60_000;
         /// Attempts before a hitch that doesn't move is a fault.
         attempts: Count = 3, 1..=100;
+    }
+}
+
+parameter_group! {
+    /// Regulating the coils' currents.
+    CurrentParameters, "current" {
+        /// Resistance of a coil at 20 C with wiring and driver, where the estimate starts.
+        nominal_resistance: MilliOhm = 2_300, 500..=20_000;
+        /// Lowest resistance that the estimate may take: a coil at -40 C, less the spread of new ones.
+        lowest_resistance: MilliOhm = 1_500, 100..=20_000;
+        /// Highest: a coil at 120 C.
+        highest_resistance: MilliOhm = 3_300, 500..=50_000;
+        /// How fast the estimate follows: 30 % of a coil within its first fifth of a second; a step is 0.1 % of it.
+        adaptation: MilliOhmPerSecond = 3_000, 0..=10_000;
+        /// Time after a change of the request before the estimate learns: four time constants of a coil.
+        settling_time: Millisecond = 30, 1..=1_000;
+        /// Voltage for each ampere that is missing: closes the gap in three steps of 1 ms on 12 mH.
+        proportional: MilliOhm = 5_000, 0..=50_000;
+        /// The same for each step that it has been missing: cancels the coil's own time constant of 5 ms.
+        integral: MilliOhm = 1_000, 0..=20_000;
+        /// Drop over the diode through which the current flows on while the driver is off.
+        freewheel_drop: MilliVolt = 700, 0..=2_000;
+        /// Supply where it isn't measured: a running alternator.
+        assumed_supply: MilliVolt = 13_500, 6_000..=36_000;
+        /// Amplitude of the dither: 3 % of the largest current, which halves the hysteresis of a spool on plain current.
+        dither_amplitude: MilliAmp = 100, 0..=400;
+        /// Period of the dither: 125 Hz, above what a spool follows and below what a coil swallows.
+        dither_period: Millisecond = 8, 4..=20;
     }
 }
 

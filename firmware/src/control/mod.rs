@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Inputs -> sensors -> start-up lock, modes -> position | rate control -> desired piston speed
-//!        -> check-valve and compensator logic -> inverse valve map -> safety envelope -> Outputs
+//!        -> check-valve and compensator logic -> inverse valve map -> safety envelope -> current regulation -> Outputs
 //! ```
 //!
 //! Quantities are integers with their unit in the type ([`units`]); their arithmetic saturates.
@@ -11,6 +11,7 @@
 
 pub mod calibration;
 pub mod controller;
+pub mod current;
 pub mod design_parameters;
 pub mod fixed;
 pub mod linkage;

@@ -3,7 +3,7 @@
 use super::mode::Fault;
 use super::safety::Trip;
 use super::units::{
-    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp, MilliBar,
+    Duty, MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp, MilliBar,
     MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt, PerMille, RevolutionPerMinute,
 };
 
@@ -141,12 +141,16 @@ pub struct Outputs {
     pub demanded_flow: MicroLitrePerSecond,
     /// Pressure drop that the lowering map uses.
     pub drop: MilliBar,
+    /// Share of the supply for the lift coil.
+    pub lift_duty: Duty,
+    /// Share of the supply for the lowering coil.
+    pub lower_duty: Duty,
 }
 
 /// Size of the image of [`Inputs`].
 pub const INPUT_BYTES: usize = 56;
 /// Size of the image of [`Outputs`].
-pub const OUTPUT_BYTES: usize = 36;
+pub const OUTPUT_BYTES: usize = 44;
 
 impl Inputs {
     /// A word of validity bits (bit 0: lever, and on in the order of the fields) and switches (bit 16:
@@ -234,6 +238,8 @@ impl Outputs {
             self.demanded_speed.0,
             self.demanded_flow.0,
             self.drop.0,
+            self.lift_duty.0,
+            self.lower_duty.0,
         ];
         values
             .into_iter()
@@ -301,6 +307,6 @@ mod tests {
         };
         let bytes = outputs.to_bytes();
         assert_eq!(bytes[..8], [2, 0, 0, 0, 2, 1, 0, 0]);
-        assert_eq!(bytes[32..], [255; 4]);
+        assert_eq!(bytes[32..36], [255; 4]);
     }
 }

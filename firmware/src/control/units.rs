@@ -140,6 +140,18 @@ quantity!(
     Microsecond, "us", 1
 );
 quantity!(
+    /// Share of the supply voltage, in thousandths of a percent.
+    Duty, "percent", 1000
+);
+quantity!(
+    /// Resistance, in milliohms; also a gain from current to voltage.
+    MilliOhm, "ohm", 1000
+);
+quantity!(
+    /// Change of a resistance, in milliohms a second.
+    MilliOhmPerSecond, "ohm_per_s", 1000
+);
+quantity!(
     /// A share, in thousandths.
     PerMille, "percent", 10
 );

@@ -17,8 +17,12 @@ const PUMP_NOISE_BAR: f64 = 0.15;
 const ANGLE_STEP_DEG: f64 = 110.0 / (0.8 * 4096.0);
 /// Step of the same converter over 250 bar, bar.
 const PRESSURE_STEP_BAR: f64 = 250.0 / (0.8 * 4096.0);
-/// Resolution of the current driver, A.
-const CURRENT_STEP_A: f64 = 0.002;
+/// One sigma of a measured coil current, A.
+const CURRENT_NOISE_A: f64 = 0.003;
+/// Step of the same converter over 5 A, A.
+const CURRENT_STEP_A: f64 = 5.0 / 4096.0;
+/// Supply of a running tractor, V.
+pub const SUPPLY_V: f64 = 13.8;
 
 /// A set of instruments with a random stream of its own.
 pub struct Instruments {
@@ -26,6 +30,7 @@ pub struct Instruments {
     angle: Normal<f64>,
     cylinder: Normal<f64>,
     pump: Normal<f64>,
+    current: Normal<f64>,
     oil_temperature_c: f64,
 }
 
@@ -39,12 +44,21 @@ impl Instruments {
             angle: normal(ANGLE_NOISE_DEG),
             cylinder: normal(CYLINDER_NOISE_BAR),
             pump: normal(PUMP_NOISE_BAR),
+            current: normal(CURRENT_NOISE_A),
             oil_temperature_c,
         }
     }
 
-    /// What the controller is told of `truth`, with the lever at `lever_deg`.
-    pub fn read(&mut self, truth: &Reading, lever_deg: f64) -> Inputs {
+    /// What the controller is told of `truth` and of the `currents` in the coils, with the lever at `lever_deg`.
+    pub fn read(&mut self, truth: &Reading, currents: Currents, lever_deg: f64) -> Inputs {
+        let mut ampere = |true_a: f64| {
+            let read_a = quantised(
+                true_a + self.current.sample(&mut self.random),
+                CURRENT_STEP_A,
+            );
+            MilliAmp((read_a * 1e3).round() as i32)
+        };
+        let (lift_current, lower_current) = (ampere(currents.lift_a), ampere(currents.lower_a));
         let angle_deg = truth.rocker_angle_deg + self.angle.sample(&mut self.random);
         let cylinder_bar = truth.cylinder_pressure_bar + self.cylinder.sample(&mut self.random);
         let pump_bar = truth.pump_pressure_bar + self.pump.sample(&mut self.random);
@@ -55,18 +69,10 @@ impl Instruments {
             cylinder_pressure: Some(MilliBar(milli(quantised(cylinder_bar, PRESSURE_STEP_BAR)))),
             pump_pressure: Some(MilliBar(milli(quantised(pump_bar, PRESSURE_STEP_BAR)))),
             oil_temperature: Some(MilliCelsius(milli(self.oil_temperature_c))),
-            supply: Some(MilliVolt(13_800)),
+            supply: Some(MilliVolt(milli(SUPPLY_V))),
+            lift_current: Some(lift_current),
+            lower_current: Some(lower_current),
             ..Inputs::default()
-        }
-    }
-
-    /// The current that a coil gets when the controller asks for `asked`.
-    #[must_use]
-    pub fn drive(lift: MilliAmp, lower: MilliAmp) -> Currents {
-        let ampere = |asked: MilliAmp| quantised(f64::from(asked.0) * 1e-3, CURRENT_STEP_A);
-        Currents {
-            lift_a: ampere(lift),
-            lower_a: ampere(lower),
         }
     }
 }

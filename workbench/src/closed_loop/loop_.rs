@@ -1,10 +1,12 @@
 //! One hitch with its controller, a millisecond at a time.
 
+use hitch_firmware::control::units::Duty;
 use hitch_firmware::control::{Controller, Inputs, Outputs, ValidCalibration};
 use hitch_model::Model;
 use hitch_model::plant::{Currents, HitchRig, Plant, Rig};
 
-use super::instruments::Instruments;
+use super::coil::Coil;
+use super::instruments::{Instruments, SUPPLY_V};
 
 /// The controller's step, s.
 pub const STEP_S: f64 = 1e-3;
@@ -28,11 +30,14 @@ pub struct Sample {
     pub outputs: Outputs,
 }
 
-/// Plant, instruments and controller.
+/// Plant, coils, instruments and controller.
 pub struct ClosedLoop<'m> {
     plant: Plant<'m>,
     instruments: Instruments,
     controller: Controller,
+    lift_coil: Coil,
+    lower_coil: Coil,
+    currents: Currents,
     steps: u64,
 }
 
@@ -55,6 +60,9 @@ impl<'m> ClosedLoop<'m> {
             plant: Plant::new(model, rig, oil_temperature_c, Currents::default()),
             instruments: Instruments::new(seed, oil_temperature_c),
             controller: Controller::new(calibration.clone()),
+            lift_coil: Coil::of_the_rig(),
+            lower_coil: Coil::of_the_rig(),
+            currents: Currents::default(),
             steps: 0,
         }
     }
@@ -73,7 +81,7 @@ impl<'m> ClosedLoop<'m> {
         wire: impl FnOnce(&Outputs, &mut Currents),
     ) -> Sample {
         let truth = self.plant.reading();
-        let mut inputs = self.instruments.read(&truth, lever_deg);
+        let mut inputs = self.instruments.read(&truth, self.currents, lever_deg);
         tell(&mut inputs);
         let outputs = self.controller.step(&inputs);
         let sample = Sample {
@@ -85,9 +93,12 @@ impl<'m> ClosedLoop<'m> {
             inputs,
             outputs,
         };
-        let mut currents = Instruments::drive(outputs.lift_current, outputs.lower_current);
-        wire(&outputs, &mut currents);
-        self.plant.step(currents, STEP_S);
+        self.currents = Currents {
+            lift_a: self.lift_coil.step(share(outputs.lift_duty), SUPPLY_V),
+            lower_a: self.lower_coil.step(share(outputs.lower_duty), SUPPLY_V),
+        };
+        wire(&outputs, &mut self.currents);
+        self.plant.step(self.currents, STEP_S);
         self.steps += 1;
         sample
     }
@@ -103,4 +114,8 @@ impl<'m> ClosedLoop<'m> {
             self.step(here_deg);
         }
     }
+}
+
+fn share(duty: Duty) -> f64 {
+    f64::from(duty.0) * 1e-5
 }

@@ -1,5 +1,6 @@
 //! The firmware's controller in closed loop with a plant: what a hitch with this calibration would do.
 
+mod coil;
 mod ideal_ramp;
 mod instruments;
 mod loop_;
@@ -7,6 +8,7 @@ mod metrics;
 mod moves;
 mod scenario;
 
+pub use coil::Coil;
 pub use ideal_ramp::IdealRamp;
 pub use instruments::Instruments;
 pub use loop_::{ClosedLoop, Sample};

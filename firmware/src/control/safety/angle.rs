@@ -1,5 +1,7 @@
 //! Watches the angle: one sensor, and what it must do while a coil moves the hitch.
 
+use core::cmp::Ordering;
+
 use super::super::design_parameters::{SafetyParameters, SensorParameters};
 use super::super::units::{MilliAmp, MilliDegree, MilliDegreePerSecond, Millisecond};
 use super::CoilCurrents;
@@ -32,7 +34,7 @@ pub struct AngleFaults {
 }
 
 /// The watch.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct AngleWatch {
     /// The last good samples, the newest at `newest`.
     samples: [MilliDegree; SPAN],
@@ -40,9 +42,10 @@ pub struct AngleWatch {
     /// Any of them.
     filled: bool,
     bad_for: Millisecond,
-    /// The last sample in range, and the step to it.
+    /// The last sample in range, the step to it, and which way it last went.
     last: MilliDegree,
     step: MilliDegree,
+    way: Ordering,
     /// How long the sample has been the same, and the speed before.
     same_for: Millisecond,
     speed_before: MilliDegreePerSecond,
@@ -64,6 +67,25 @@ struct Stroke {
     current: MilliAmp,
     /// Since the current was reduced; until the hitch has followed, no speed is fast.
     settling: Millisecond,
+}
+
+impl Default for AngleWatch {
+    fn default() -> Self {
+        Self {
+            samples: [MilliDegree::ZERO; SPAN],
+            newest: 0,
+            filled: false,
+            bad_for: Millisecond::ZERO,
+            last: MilliDegree::ZERO,
+            step: MilliDegree::ZERO,
+            way: Ordering::Equal,
+            same_for: Millisecond::ZERO,
+            speed_before: MilliDegreePerSecond::ZERO,
+            tremble: 0,
+            noise_sum: 0,
+            stroke: None,
+        }
+    }
 }
 
 impl AngleWatch {
@@ -123,16 +145,17 @@ impl AngleWatch {
         }
         let step = angle - self.last;
         self.last = angle;
-        if step == MilliDegree::ZERO {
-            self.same_for = self.same_for.next();
-        } else {
-            let to_and_fro = (step < MilliDegree::ZERO) != (self.step < MilliDegree::ZERO);
-            if resting {
-                let change = if to_and_fro { 1 } else { -1 };
-                self.tremble = self.tremble.saturating_add(change).clamp(0, MOST_TREMBLE);
+        match step.cmp(&MilliDegree::ZERO) {
+            Ordering::Equal => self.same_for = self.same_for.next(),
+            way => {
+                if resting {
+                    let change = if way == self.way { -1 } else { 1 };
+                    self.tremble = self.tremble.saturating_add(change).clamp(0, MOST_TREMBLE);
+                }
+                self.way = way;
+                self.same_for = Millisecond::ZERO;
+                self.speed_before = self.speed();
             }
-            self.same_for = Millisecond::ZERO;
-            self.speed_before = self.speed();
         }
         // A single jump is no noise: it counts for no more than twice the limit.
         let most = safety.noise_limit + safety.noise_limit;
