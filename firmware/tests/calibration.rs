@@ -33,6 +33,17 @@ fn every_flipped_bit_is_noticed() {
 }
 
 #[test]
+fn a_block_that_was_never_written_is_refused() {
+    for erased in [0x00, 0xFF] {
+        let calibration = Calibration::from_bytes(&[erased; CALIBRATION_BYTES]);
+        assert!(matches!(
+            calibration.validate(),
+            Err(CalibrationError::Version { .. })
+        ));
+    }
+}
+
+#[test]
 fn curves_that_make_no_map_are_refused() {
     assert!(matches!(
         refused(|c| c.lift.count = 1),
@@ -124,6 +135,7 @@ fn every_scalar_outside_its_range_is_refused_by_name() {
     check_ranges(|c| &mut c.rate);
     check_ranges(|c| &mut c.hold);
     check_ranges(|c| &mut c.saturation);
+    check_ranges(|c| &mut c.teach);
     check_ranges(|c| &mut c.current);
     check_ranges(|c| &mut c.safety);
 }

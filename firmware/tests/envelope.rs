@@ -499,8 +499,8 @@ fn a_hitch_that_never_moved_has_not_stopped() {
         None,
         "stuck: that is for the controller to try again"
     );
-    assert_eq!(slow(20), None, "too slow to tell");
-    assert_eq!(slow(40), Some(Trip::NotFollowing));
+    assert_eq!(slow(30), None, "too slow to tell");
+    assert_eq!(slow(45), Some(Trip::NotFollowing));
 }
 
 #[test]

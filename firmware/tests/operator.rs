@@ -208,6 +208,7 @@ fn every_switch_at_once_moves_nothing() {
         transport_lock: true,
         hold: true,
         quick_lift: true,
+        teach: true,
     };
     hitch.inputs.jog = Some(MilliDegreePerSecond(10_000));
     hitch.lever(120_000);

@@ -64,7 +64,10 @@ fn check(outputs: &Outputs) -> Result<(), TestCaseError> {
         );
     }
     let on = lift > MilliAmp(0) || lower > MilliAmp(0);
-    let may_move = matches!(outputs.state, State::Lifting | State::Lowering);
+    let may_move = matches!(
+        outputs.state,
+        State::Lifting | State::Lowering | State::Teaching
+    );
     prop_assert!(!on || may_move, "current without a move: {outputs:?}");
     prop_assert!(
         outputs.fault.is_none() || !on,

@@ -52,6 +52,7 @@ macro_rules! with_groups {
         $visit(&mut $calibration.rate $(, $argument)*)?;
         $visit(&mut $calibration.hold $(, $argument)*)?;
         $visit(&mut $calibration.saturation $(, $argument)*)?;
+        $visit(&mut $calibration.teach $(, $argument)*)?;
         $visit(&mut $calibration.current $(, $argument)*)?;
         $visit(&mut $calibration.safety $(, $argument)*)?;
     };

@@ -179,6 +179,8 @@ fn inputs_of(values: &[Option<f64>; KNOWN.len()]) -> Inputs {
             transport_lock: on(13),
             hold: on(14),
             quick_lift: on(15),
+            // A stored calibration is needed for that, and there is none here.
+            teach: false,
         },
     }
 }

@@ -6,7 +6,7 @@
 use super::design_parameters::{
     CurrentParameters, HoldParameters, HydraulicParameters, LockParameters, MotionParameters,
     OperatorParameters, PositionParameters, RateParameters, SafetyParameters, SaturationParameters,
-    SensorParameters,
+    SensorParameters, TeachParameters,
 };
 use super::linkage::{LINKAGE_POINTS, LinkageTable};
 use super::nominal;
@@ -51,6 +51,8 @@ pub struct Calibration {
     pub hold: HoldParameters,
     /// Compensator logic.
     pub saturation: SaturationParameters,
+    /// Teaching.
+    pub teach: TeachParameters,
     /// Regulation of the coils' currents.
     pub current: CurrentParameters,
     /// Safety envelope.
@@ -141,6 +143,7 @@ impl Calibration {
             rate: RateParameters::NOMINAL,
             hold: HoldParameters::NOMINAL,
             saturation: SaturationParameters::NOMINAL,
+            teach: TeachParameters::NOMINAL,
             current: CurrentParameters::NOMINAL,
             safety: SafetyParameters::NOMINAL,
             checksum: 0,
@@ -190,6 +193,7 @@ impl Calibration {
         check_group(&self.rate)?;
         check_group(&self.hold)?;
         check_group(&self.saturation)?;
+        check_group(&self.teach)?;
         check_group(&self.current)?;
         check_group(&self.safety)
     }
@@ -323,6 +327,7 @@ impl Calibration {
         visit_group(&mut self.rate, visit);
         visit_group(&mut self.hold, visit);
         visit_group(&mut self.saturation, visit);
+        visit_group(&mut self.teach, visit);
         visit_group(&mut self.current, visit);
         visit_group(&mut self.safety, visit);
         visit_unsigned(&mut self.checksum, visit);

@@ -14,6 +14,7 @@ use super::saturation::SaturationWatch;
 use super::sensors::{Sensed, Sensors};
 use super::signals::{Inputs, Outputs, State};
 use super::sink::SinkWatch;
+use super::teach::{Taught, Teach, TeachError};
 use super::units::{MicroLitrePerSecond, MicrometrePerSecond, MilliDegree, MilliDegreePerSecond};
 use super::valve_logic::{Demand, Direction, Phase};
 use super::valve_map::{DropScale, ValveMap};
@@ -42,6 +43,7 @@ pub struct Controller {
     regulation: Regulation,
     rest: RestPosition,
     scale: DropScale,
+    teach: Teach,
     /// Flow asked of the valves, positive into the cylinder.
     demanded_flow: MicroLitrePerSecond,
 }
@@ -72,6 +74,7 @@ impl Controller {
             regulation,
             rest: RestPosition::default(),
             scale,
+            teach: Teach::default(),
             demanded_flow: MicroLitrePerSecond::ZERO,
         }
     }
@@ -80,6 +83,12 @@ impl Controller {
     #[must_use]
     pub fn calibration(&self) -> &ValidCalibration {
         &self.calibration
+    }
+
+    /// What teaching found, if the machine has been taught since power-up.
+    #[must_use]
+    pub const fn taught(&self) -> Option<Result<Taught, TeachError>> {
+        self.teach.result()
     }
 
     /// One step of 1 ms.
@@ -116,6 +125,9 @@ impl Controller {
 
     /// A fault: both coils off at once.
     fn fail(&mut self, fault: Fault) -> CoilCurrents {
+        if matches!(self.mode, Mode::Teach) {
+            self.teach.abort();
+        }
         self.mode = Mode::failed(fault);
         self.button.distrust();
         self.demanded_flow = MicroLitrePerSecond::ZERO;
@@ -128,6 +140,9 @@ impl Controller {
         self.estimate(sensed);
         let jog = self.button.pass(inputs.jog);
         self.change_mode(jog.is_some(), inputs);
+        if matches!(self.mode, Mode::Teach) {
+            return Ok(self.teach.step(sensed.angle, self.scale, &self.calibration));
+        }
         let demand = match &mut self.mode {
             Mode::Locked(lock) => {
                 if lock.picked_up(sensed.lever, sensed.angle, &self.calibration.lock) {
@@ -138,7 +153,7 @@ impl Controller {
             Mode::Position => self.follow_lever(sensed, inputs),
             // A released button has no demand: the abort ramp stops the hitch, faster than the button's own.
             Mode::Jog => jog.map(|rate| self.follow_button(rate, sensed.angle, inputs)),
-            Mode::Hold | Mode::TransportLock | Mode::Fault { .. } => None,
+            Mode::Hold | Mode::Teach | Mode::TransportLock | Mode::Fault { .. } => None,
         };
         self.advance(demand)?;
         self.watch_saturation(sensed)?;
@@ -172,6 +187,7 @@ impl Controller {
 
     /// Mode transitions that don't depend on the lever.
     fn change_mode(&mut self, jog_requested: bool, inputs: &Inputs) {
+        let taught = matches!(self.mode, Mode::Teach);
         let engine = self
             .engine
             .permits(inputs.engine_speed, &self.calibration.lock);
@@ -186,9 +202,15 @@ impl Controller {
         // A released button ramps down before the lock falls shut.
         let jogged = jog_requested || self.phase.is_moving();
         let in_jog = matches!(self.mode, Mode::Jog);
-        self.mode = self
-            .mode
-            .jogged(if in_jog { jogged } else { jog_requested });
+        self.mode = self.mode.jogged(
+            if in_jog { jogged } else { jog_requested },
+            inputs.switches.teach && !self.phase.is_moving(),
+        );
+        match (taught, matches!(self.mode, Mode::Teach)) {
+            (false, true) => self.teach = Teach::default(),
+            (true, false) => self.teach.abort(),
+            _ => {}
+        }
         if jog_requested && !in_jog {
             self.rate = RateControl::default();
             self.position = PositionControl::default();
@@ -359,6 +381,7 @@ impl Controller {
             (Mode::Fault { .. }, _) => State::Fault,
             (Mode::Locked(_), _) => State::Locked,
             (Mode::TransportLock, _) => State::TransportLock,
+            (Mode::Teach, _) => State::Teaching,
             (
                 _,
                 Phase::Moving {

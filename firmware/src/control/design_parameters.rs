@@ -5,9 +5,9 @@
 
 use super::parameter::parameter_group;
 use super::units::{
-    AmperePerSecond, Count, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp, MilliBar,
-    MilliDegree, MilliDegreePerSecond, MilliOhm, MilliOhmPerSecond, MilliVolt,
-    MillimetrePerSecondSquared, Millisecond, PerMille, PerSecond, RevolutionPerMinute,
+    AmperePerSecond, Count, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp,
+    MilliAmpPerSecond, MilliBar, MilliDegree, MilliDegreePerSecond, MilliOhm, MilliOhmPerSecond,
+    MilliVolt, MillimetrePerSecondSquared, Millisecond, PerMille, PerSecond, RevolutionPerMinute,
     SquareMillimetre,
 };
 
@@ -186,6 +186,44 @@ parameter_group! {
 }
 
 parameter_group! {
+    /// Teaching thresholds and ends.
+    TeachParameters, "teach" {
+        /// Rest before each ramp: a load has swung out, and the angle's average has settled.
+        rest_time: Millisecond = 600, 50..=10_000;
+        /// Average of the angle: takes its noise to a sixth.
+        filter_time: Millisecond = 16, 1..=500;
+        /// Where a ramp begins: below the lowest threshold of this kind of valve.
+        ramp_start: MilliAmp = 600, 0..=5_000;
+        /// How fast it rises: the hitch gets no faster than a walking snail before it is noticed to move.
+        ramp_slope: MilliAmpPerSecond = 400, 10..=10_000;
+        /// Where it gives up: beyond the highest threshold, where the valve is a quarter open.
+        ramp_end: MilliAmp = 2_000, 100..=5_000;
+        /// What counts as moved: 0.17 degree, twenty times what is left of the noise.
+        moved: Micrometre = 300, 20..=10_000;
+        /// Furthest that a threshold may be off the curve: valves of one kind differ by 0.1 A, and plugs age.
+        most_shift: MilliAmp = 300, 10..=1_000;
+        /// Furthest that the ramps of one valve may be apart: what its friction leaves uncertain.
+        most_spread: MilliAmp = 30, 2..=500;
+        /// Current above the threshold on the way up to the end: 17 mm/s, slow enough for an end stop.
+        lift_excess: MilliAmp = 250, 20..=2_000;
+        /// Current above the threshold on the way down: the same, beyond the metering notch.
+        lower_excess: MilliAmp = 620, 20..=2_000;
+        /// A hitch that hasn't moved for this long is at an end.
+        look_time: Millisecond = 300, 50..=5_000;
+        /// Longest way to an end.
+        longest_drive: Millisecond = 60_000, 1_000..=600_000;
+        /// Stroke of the cylinder, from end to end.
+        stroke: Micrometre = 158_000, 10_000..=2_000_000;
+        /// How far the sensor may be turned against the linkage: beyond it is mounted a tooth off.
+        most_offset: MilliDegree = 3_000, 100..=45_000;
+        /// How far the travel may differ from what the linkage allows: an obstacle, or another linkage.
+        most_stretch: MilliDegree = 1_500, 100..=45_000;
+        /// Set points stay this far inside the ends, so that the end stops aren't worked against.
+        end_margin: MilliDegree = 500, 0..=10_000;
+    }
+}
+
+parameter_group! {
     /// Regulating the coils' currents.
     CurrentParameters, "current" {
         /// Resistance of a coil at 20 C with wiring and driver, where the estimate starts.
@@ -248,8 +286,8 @@ parameter_group! {
         still_time: Millisecond = 20, 5..=1_000;
         /// Mean second difference from which a sensor is too noisy: six times that of a healthy one, whose sigma of 0.05 degree gives 0.1 degree.
         noise_limit: MilliDegree = 600, 50..=20_000;
-        /// Speed from which a stop is telling: ten times the noise of its measurement.
-        telling_speed: MilliDegreePerSecond = 30_000, 5_000..=200_000;
+        /// Speed from which a stop is telling: eight times the noise of its measurement, and faster than the way to an end stop in teaching.
+        telling_speed: MilliDegreePerSecond = 40_000, 5_000..=200_000;
         /// A current that was reduced by more than this explains why the hitch got slower.
         unchanged_current: MilliAmp = 100, 10..=1_000;
         /// ... for this long: three lags of the spool.

@@ -30,6 +30,7 @@ pub mod saturation;
 pub mod sensors;
 pub mod signals;
 pub mod sink;
+pub mod teach;
 pub mod units;
 pub mod valve_logic;
 pub mod valve_map;

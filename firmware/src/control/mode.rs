@@ -20,6 +20,9 @@
 //!             +---------------+
 //! ```
 //!
+//! With the service switch on, the button outside teaches a locked machine instead of moving it; letting go, or
+//! switching the switch off, locks.
+//!
 //! A jog button outside the cab works while the lever is locked (it is held by a hand that sees the
 //! hitch) and leaves the lever locked. A fault wins over everything from any mode.
 
@@ -81,6 +84,8 @@ pub enum Mode {
     Jog,
     /// The hitch stays where it is; the lever has no say.
     Hold,
+    /// The machine is being taught.
+    Teach,
     /// The operator has locked the hitch for the road.
     TransportLock,
     /// Both coils off; `healthy_for` counts towards the lock.
@@ -129,12 +134,13 @@ impl Mode {
         }
     }
 
-    /// A step with or without a jog request.
+    /// A step with or without a jog request; `teach`: it is a request to teach.
     #[must_use]
-    pub fn jogged(self, requested: bool) -> Self {
+    pub fn jogged(self, requested: bool, teach: bool) -> Self {
         match (self, requested) {
+            (Self::Locked(_), true) if teach => Self::Teach,
             (Self::Locked(_) | Self::Position | Self::Hold, true) => Self::Jog,
-            (Self::Jog, false) => Self::locked(),
+            (Self::Jog | Self::Teach, false) => Self::locked(),
             (other, _) => other,
         }
     }
@@ -147,6 +153,7 @@ impl Mode {
             _ if switches.transport_lock => Self::TransportLock,
             Self::TransportLock => Self::locked(),
             _ if !engine_permits => Self::locked(),
+            Self::Teach if !switches.teach => Self::locked(),
             Self::Position if switches.hold => Self::Hold,
             Self::Hold if !switches.hold => Self::locked(),
             other => other,

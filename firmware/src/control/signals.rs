@@ -16,6 +16,8 @@ pub struct Switches {
     pub hold: bool,
     /// Quick lift, a button: the first press raises, the next returns to the lever.
     pub quick_lift: bool,
+    /// Service: with it, the button outside teaches a locked machine for as long as it is held.
+    pub teach: bool,
 }
 
 impl Switches {
@@ -23,7 +25,7 @@ impl Switches {
     const FIRST_BIT: u32 = 16;
 
     fn to_bits(self) -> u32 {
-        [self.transport_lock, self.hold, self.quick_lift]
+        [self.transport_lock, self.hold, self.quick_lift, self.teach]
             .into_iter()
             .rev()
             .fold(0, |bits, on| (bits << 1) | u32::from(on))
@@ -36,6 +38,7 @@ impl Switches {
             transport_lock: on(0),
             hold: on(1),
             quick_lift: on(2),
+            teach: on(3),
         }
     }
 }
@@ -96,6 +99,8 @@ pub enum State {
     TransportLock = 7,
     /// Down with the lever at its bottom stop: both coils off, and where the hitch settles is nobody's fault.
     Floating = 8,
+    /// Finding thresholds and ends, as long as the button is held.
+    Teaching = 9,
 }
 
 impl State {
@@ -112,6 +117,7 @@ impl State {
             Self::Fault => "fault",
             Self::TransportLock => "transport-lock",
             Self::Floating => "floating",
+            Self::Teaching => "teaching",
         }
     }
 }

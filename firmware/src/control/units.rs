@@ -120,6 +120,10 @@ quantity!(
     AmperePerSecond, "a_per_s", 1
 );
 quantity!(
+    /// Slow slope of a coil current, in milliamperes a second, which is microamperes a millisecond.
+    MilliAmpPerSecond, "a_per_s", 1000
+);
+quantity!(
     /// Pressure above ambient, in millibars.
     MilliBar, "bar", 1000
 );

@@ -103,6 +103,12 @@ impl<'m> ClosedLoop<'m> {
         sample
     }
 
+    /// The controller.
+    #[must_use]
+    pub const fn controller(&self) -> &Controller {
+        &self.controller
+    }
+
     /// Picks the hitch up with the lever, as an operator does after power-up, and leaves both at rest.
     pub fn pick_up(&mut self) {
         const AWAY_DEG: f64 = 2.0;

@@ -1,0 +1,212 @@
+//! The firmware teaches itself thresholds and ends on plants whose valves and sensors are off.
+
+use hitch_firmware::control::teach::{Taught, TeachError};
+use hitch_firmware::control::units::{MilliDegree, MilliDegreePerSecond};
+use hitch_firmware::control::{Calibration, Inputs, State, ValidCalibration};
+use hitch_model::Model;
+use hitch_model::effects::{AddedEffect, find};
+use hitch_workbench::closed_loop::{ClosedLoop, LoopRun, Scenario, run};
+
+fn nominal() -> ValidCalibration {
+    Calibration::nominal().validate().unwrap()
+}
+
+fn plant(effects: &[(&str, &[f64])]) -> Model {
+    let added = effects.iter().map(|(id, values)| AddedEffect {
+        effect: find(id).unwrap(),
+        values: values.to_vec(),
+    });
+    Model::dynamic().with_effects(added.collect())
+}
+
+fn shifted(lift_a: f64, lower_a: f64) -> Model {
+    plant(&[
+        ("lift-threshold-shift", &[lift_a]),
+        ("lower-threshold-shift", &[lower_a]),
+    ])
+}
+
+/// Holds switch and button for `steps`, or until there is a result; what came of it once they are let go.
+fn taught_with(
+    model: &Model,
+    load_kg: f64,
+    steps: usize,
+    tell: impl Fn(usize, &mut Inputs),
+) -> Option<Result<Taught, TeachError>> {
+    let mut closed_loop = ClosedLoop::new(model, &nominal(), load_kg, 40.0, 80.0, 21);
+    for _ in 0..100 {
+        closed_loop.step_with(60.0, |inputs| tell(0, inputs), |_, _| {});
+    }
+    for step in 0..steps {
+        let sample = closed_loop.step_with(
+            60.0,
+            |inputs| {
+                inputs.switches.teach = true;
+                inputs.jog = Some(MilliDegreePerSecond(1));
+                tell(step, inputs);
+            },
+            |_, _| {},
+        );
+        if closed_loop.controller().taught().is_some() {
+            break;
+        }
+        assert!(
+            matches!(sample.outputs.state, State::Teaching | State::Fault),
+            "{:?}",
+            sample.outputs
+        );
+    }
+    for _ in 0..2_000 {
+        let sample = closed_loop.step(60.0);
+        assert_eq!(
+            (
+                sample.outputs.lift_current.0,
+                sample.outputs.lower_current.0
+            ),
+            (0, 0)
+        );
+    }
+    closed_loop.controller().taught()
+}
+
+fn taught(model: &Model, load_kg: f64) -> Result<Taught, TeachError> {
+    taught_with(model, load_kg, 120_000, |_, _| {}).expect("ends within two minutes")
+}
+
+/// As good as a machine whose valves are as the calibration says.
+fn assert_as_good(run: &LoopRun, right: &LoopRun) {
+    let (summary, right) = (run.summary, right.summary);
+    assert!(summary.final_error_max_deg <= 0.3, "{summary:?}");
+    assert!(
+        summary.overshoot_max_deg <= right.overshoot_max_deg.max(0.3),
+        "{summary:?}, not {right:?}"
+    );
+    assert_eq!(summary.switched_on_after, 0, "{summary:?}");
+    assert!(
+        summary.ratio_median <= right.ratio_median + 0.02,
+        "{summary:?}, not {right:?}"
+    );
+    assert!(
+        summary.ratio_p95 <= right.ratio_p95 + 0.05,
+        "{summary:?}, not {right:?}"
+    );
+}
+
+#[test]
+fn thresholds_that_are_off_by_a_quarter_ampere_are_found() {
+    println!("shifts, A       load   found, A         ends, deg        moves afterwards");
+    for (lift_a, lower_a) in [(0.25, 0.25), (-0.25, -0.25), (0.25, -0.25), (-0.25, 0.25)] {
+        for load_kg in [50.0, 150.0, 250.0] {
+            let model = shifted(lift_a, lower_a);
+            let found = taught(&model, load_kg).unwrap();
+            let [lift_found_a, lower_found_a] =
+                [found.lift_shift, found.lower_shift].map(|shift| f64::from(shift.0) * 1e-3);
+            let calibration = found.applied_to(&nominal()).validate().unwrap();
+            let right = run(
+                &Model::dynamic(),
+                &nominal(),
+                &Scenario::Moves.moves(Some(load_kg)),
+            )
+            .unwrap();
+            let moves = run(&model, &calibration, &Scenario::Moves.moves(Some(load_kg))).unwrap();
+            let [lower_end_deg, upper_end_deg] =
+                [found.lower_end, found.upper_end].map(|end| f64::from(end.0) * 1e-3);
+            println!(
+                "{lift_a:5.2} {lower_a:5.2} {load_kg:8} {lift_found_a:7.3} {lower_found_a:7.3} {lower_end_deg:8.2} {upper_end_deg:7.2} ratio {:.2} {:.2}, overshoot {:.2}",
+                moves.summary.ratio_median,
+                moves.summary.ratio_p95,
+                moves.summary.overshoot_max_deg
+            );
+            assert!(
+                (lift_found_a - lift_a).abs() <= 0.02 && (lower_found_a - lower_a).abs() <= 0.02
+            );
+            assert!((lower_end_deg - 44.1).abs() <= 0.1 && (upper_end_deg - 135.9).abs() <= 0.1);
+            assert_as_good(&moves, &right);
+        }
+    }
+}
+
+#[test]
+fn a_sensor_that_is_turned_on_its_shaft_moves_linkage_and_limits() {
+    let turned = |_, inputs: &mut Inputs| {
+        inputs.rocker_angle = inputs.rocker_angle.map(|angle| angle + MilliDegree(2_000))
+    };
+    let found = taught_with(&Model::dynamic(), 150.0, 120_000, turned)
+        .unwrap()
+        .unwrap();
+    let calibration = found.applied_to(&nominal());
+    assert!(
+        (calibration.linkage.first_angle.0 - 46_000).abs() <= 100,
+        "{:?}",
+        calibration.linkage.first_angle
+    );
+    assert!((calibration.position.lower_limit.0 - 46_600).abs() <= 100);
+    assert!((calibration.position.upper_limit.0 - 137_400).abs() <= 100);
+    assert!(calibration.validate().is_ok());
+    let too_far = |_, inputs: &mut Inputs| {
+        inputs.rocker_angle = inputs.rocker_angle.map(|angle| angle + MilliDegree(3_500))
+    };
+    let refused = taught_with(&Model::dynamic(), 150.0, 120_000, too_far);
+    assert_eq!(refused, Some(Err(TeachError::Ends)));
+}
+
+#[test]
+fn what_is_implausible_is_refused() {
+    assert_eq!(
+        taught(&shifted(0.4, 0.0), 150.0),
+        Err(TeachError::OutOfRange)
+    );
+    assert_eq!(
+        taught(&shifted(0.0, -0.4), 150.0),
+        Err(TeachError::OutOfRange)
+    );
+    assert_eq!(taught(&shifted(1.0, 0.0), 150.0), Err(TeachError::NoMotion));
+    // A link that shortens the travel that the sensor sees.
+    let squeezed = |_, inputs: &mut Inputs| {
+        inputs.rocker_angle = inputs
+            .rocker_angle
+            .map(|angle| MilliDegree(90_000 + (angle.0 - 90_000) * 97 / 100));
+    };
+    assert_eq!(
+        taught_with(&Model::dynamic(), 150.0, 120_000, squeezed),
+        Some(Err(TeachError::Ends))
+    );
+    // Somebody pushes the hitch up for a moment during the third ramp.
+    let pushed = |step: usize, inputs: &mut Inputs| {
+        if (5_900..6_100).contains(&step) {
+            inputs.rocker_angle = inputs.rocker_angle.map(|angle| angle + MilliDegree(400));
+        }
+    };
+    assert_eq!(
+        taught_with(&Model::dynamic(), 150.0, 120_000, pushed),
+        Some(Err(TeachError::Spread))
+    );
+}
+
+#[test]
+fn letting_go_or_a_fault_ends_it_without_a_result() {
+    assert_eq!(
+        taught_with(&Model::dynamic(), 150.0, 5_000, |_, _| {}),
+        Some(Err(TeachError::Aborted))
+    );
+    let lost = |step: usize, inputs: &mut Inputs| {
+        if step > 4_000 {
+            inputs.rocker_angle = None;
+        }
+    };
+    assert_eq!(
+        taught_with(&Model::dynamic(), 150.0, 120_000, lost),
+        Some(Err(TeachError::Aborted))
+    );
+}
+
+#[test]
+fn without_the_switch_the_button_jogs_and_without_the_button_the_switch_does_nothing() {
+    let model = Model::dynamic();
+    let mut closed_loop = ClosedLoop::new(&model, &nominal(), 150.0, 40.0, 80.0, 3);
+    for _ in 0..500 {
+        let sample = closed_loop.step_with(60.0, |inputs| inputs.switches.teach = true, |_, _| {});
+        assert_eq!(sample.outputs.state, State::Locked);
+    }
+    assert_eq!(closed_loop.controller().taught(), None);
+}
