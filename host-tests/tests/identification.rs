@@ -6,6 +6,7 @@ use fastrand::Rng;
 use hitch_model::Model;
 use hitch_model::campaign::{Campaign, Channel};
 use hitch_model::effects::{AddedEffect, find};
+use hitch_model::identification::clocks::Clocks;
 use hitch_model::identification::conditioning::Drive;
 use hitch_model::identification::evidence::variance_inflation;
 use hitch_model::identification::experiment::{Experiment, Nuisance};
@@ -56,7 +57,7 @@ fn cleaning_a_current_removes_noise_and_keeps_corners_where_they_are() {
         lift_a: sigma_a,
         lower_a: sigma_a,
     };
-    let drive = Drive::new(&time_s, &logged, &vec![0.0; 600], sigma);
+    let drive = Drive::new(&time_s, &logged, &vec![0.0; 600], sigma, 0.0);
     let off: Vec<f64> = drive
         .currents
         .iter()
@@ -113,7 +114,7 @@ fn ringing_campaign(hidden: &AddedEffect, seed: u64) -> Campaign {
         let nuisance = Nuisance {
             load: 0.003 * normal(&mut rng),
         };
-        let trace = ready.simulate(&rig, nuisance, 0.0, 0.0);
+        let trace = ready.simulate(&rig, nuisance, &Clocks::default(), 0.0);
         for channel in Channel::ALL {
             if let Some(measured) = &mut run.channels[channel.index()] {
                 let sigma = experiment.noise[channel.index()];

@@ -11,6 +11,7 @@ use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_
 use hitch_model::Model;
 use hitch_model::campaign::{Campaign, Channel};
 use hitch_model::effects::{self, AddedEffect};
+use hitch_model::identification::clocks::Clocks;
 use hitch_model::identification::experiment::{Experiment, Nuisance, ReadyRun};
 use hitch_model::identification::explain::explain;
 use hitch_workbench::demonstration;
@@ -37,7 +38,7 @@ fn measured_on_a_dynamic_rig() -> Campaign {
     let experiment = Experiment::new(&campaign, &rig);
     let mut random = Pcg64::seed_from_u64(1);
     for (run, ready) in campaign.runs.iter_mut().zip(&experiment.runs) {
-        let trace = ready.simulate(&rig, Nuisance::default(), 0.0, 0.0);
+        let trace = ready.simulate(&rig, Nuisance::default(), &Clocks::default(), 0.0);
         for channel in Channel::ALL {
             let sigma = experiment.noise[channel.index()];
             if let Some(values) = &mut run.channels[channel.index()] {
@@ -70,7 +71,12 @@ fn simulate_runs(criterion: &mut Criterion) {
             group.bench_function(&model.name, |bencher| {
                 bencher.iter(|| {
                     for run in &runs {
-                        black_box(run.simulate(&model, Nuisance::default(), 0.0, 0.0));
+                        black_box(run.simulate(
+                            &model,
+                            Nuisance::default(),
+                            &Clocks::default(),
+                            0.0,
+                        ));
                     }
                 });
             });

@@ -6,6 +6,7 @@
 use hitch_model::Model;
 use hitch_model::campaign::Channel;
 use hitch_model::effects::{AddedEffect, CATALOGUE, Effect};
+use hitch_model::identification::clocks::Clocks;
 use hitch_model::identification::estimate::Estimate;
 use hitch_model::identification::experiment::{Experiment, Nuisance};
 use hitch_model::identification::residual::Weights;
@@ -36,7 +37,7 @@ impl<'a> Comparison<'a> {
     pub fn traces(&self, effects: &[AddedEffect]) -> Vec<Trace> {
         let model = self.model.with_effects(effects.to_vec());
         let runs = self.experiment.runs.iter();
-        runs.map(|run| run.simulate(&model, Nuisance::default(), 0.0, 0.0))
+        runs.map(|run| run.simulate(&model, Nuisance::default(), &Clocks::default(), 0.0))
             .collect()
     }
 

@@ -1,11 +1,14 @@
-//! `relief-override`: the relief valve needs more than its setting to pass the whole flow.
+//! `relief-override`: the relief valve opens before its setting and needs more than it to pass the whole flow.
 //!
-//! `p_P = 154 bar + override Q_relief / Q_pump`: its spring gives as it opens (Merritt 5.6). 10 to 25 bar at 48 l/min.
+//! `p_P = p_crack + override Q_relief / Q_pump`: its spring gives as it opens (Merritt 5.6). The setting is stated at some
+//! flow: `above` is the part of the override that lies above the 154 bar, none if they hold at the pump's whole flow.
+//! 10 to 25 bar at 48 l/min; valves crack at 0.85 to 0.93 of their setting.
 
 use super::Parameter;
 use super::described::Described;
 use crate::campaign::Channel;
 
+use crate::plant::sites::ReliefOverride;
 use crate::plant::sites::{RunConditions, Sites};
 use crate::units::pa_from_bar;
 
@@ -13,26 +16,42 @@ use crate::units::pa_from_bar;
 pub static RELIEF_OVERRIDE: Described = Described {
     id: "relief-override",
     title: "Override of the relief valve",
-    equation: "p_P = 154 bar + override Q_relief / 48 l/min",
+    equation: "p_P = 154 bar + override (Q_relief / 48 l/min - 1 + above)",
     source: "Merritt 5.6; 10 to 25 bar over the range of a direct-acting valve, Hopsan's example 15 \
          bar at 42 l/min",
-    shows: "pump pressure at the upper end of the stroke with the lift valve open: only there does \
-         the relief valve work",
-    parameters: &[Parameter {
-        name: "override",
-        unit: "bar",
-        key: "override_bar",
-        meaning: "pressure over the setting at the pump's whole flow",
-        null: 0.0,
-        typical: 15.0,
-        low: -30.0,
-        high: 60.0,
-    }],
-    channels: &[Channel::PumpPressure],
+    shows: "lifting against more than 130 bar and pump pressure at the upper end of the stroke: only \
+         there does the relief valve work",
+    parameters: &[
+        Parameter {
+            name: "override",
+            unit: "bar",
+            key: "override_bar",
+            meaning: "rise of the pump pressure from cracking to the pump's whole flow",
+            null: 0.0,
+            typical: 15.0,
+            low: 0.0,
+            high: 60.0,
+        },
+        Parameter {
+            name: "above",
+            unit: "",
+            key: "above",
+            meaning: "share of it above the setting",
+            null: 0.0,
+            typical: 0.2,
+            low: 0.0,
+            high: 1.0,
+        },
+    ],
+    channels: &[Channel::PumpPressure, Channel::Flow],
     needs: None,
     attach,
 };
 
 fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
-    sites.relief_override_pa += pa_from_bar(values[0]);
+    let override_pa = pa_from_bar(values[0]);
+    sites.relief = Some(ReliefOverride {
+        override_pa,
+        below_setting_pa: override_pa * (1.0 - values[1]),
+    });
 }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::estimate::{Estimate, Shared};
-use super::evidence::{detectability, variance_inflation};
+use super::evidence::{detectability, log_odds, variance_inflation};
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate_weighted, refine, sketch};
 use super::frame::Frame;
@@ -56,6 +56,22 @@ pub struct Candidate {
 }
 
 impl Candidate {
+    /// Logarithm of the odds that the effect is there: a shape of its own costs an effect as much as it has to explain.
+    #[must_use]
+    pub fn log_odds(&self) -> f64 {
+        log_odds(
+            self.likelihood_ratio,
+            self.effect.parameters().len(),
+            self.effective_samples(),
+        )
+    }
+
+    /// Compared samples at their effective number.
+    #[must_use]
+    pub fn effective_samples(&self) -> f64 {
+        self.fit.weights.count() as f64 / self.inflation
+    }
+
     /// Fitted values of its parameters, in their units.
     #[must_use]
     pub fn values(&self) -> &[f64] {
@@ -101,7 +117,7 @@ pub fn try_effects(
             candidate
         })
         .collect();
-    candidates.sort_by(|a, b| b.likelihood_ratio.total_cmp(&a.likelihood_ratio));
+    candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
     candidates
 }
 
@@ -222,31 +238,27 @@ fn starts(
     effect: &'static dyn Effect,
 ) -> (f64, Vec<Estimate>) {
     let frame = Frame::new(jacobian, &base.estimate, None);
-    let size = &effect.parameters()[0];
-    let signs: &[f64] = if size.low < size.null {
-        &[1.0, -1.0]
-    } else {
-        &[1.0]
+    let rank = |added: Vec<AddedEffect>| {
+        let mut ranked: Vec<(f64, Estimate)> = added
+            .into_iter()
+            .map(|added| {
+                let mut estimate = base.estimate.clone();
+                estimate.effects.push(added);
+                let residuals = huber_residuals(experiment, model, &base.weights, &estimate);
+                (frame.cost_after(&residuals), estimate)
+            })
+            .collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        ranked
     };
-    let values = SIZES
-        .iter()
-        .flat_map(|s| {
-            signs
-                .iter()
-                .map(move |sign| size.null + sign * s * (size.typical - size.null))
-        })
-        .filter(|value| (size.low..=size.high).contains(value));
-    let mut ranked: Vec<(f64, Estimate)> = values
-        .map(|value| {
-            let mut estimate = base.estimate.clone();
-            let mut added = AddedEffect::typical(effect);
-            added.values[0] = value;
-            estimate.effects.push(added);
-            let residuals = huber_residuals(experiment, model, &base.weights, &estimate);
-            (frame.cost_after(&residuals), estimate)
-        })
-        .collect();
-    ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut ranked = rank(sizes(effect));
+    if let Some((cost, best)) = ranked.first().cloned()
+        && base.cost - cost > WORTH_A_FIT
+    {
+        let best = best.effects.last().expect("pushed above").clone();
+        ranked.extend(rank(shapes(&best)));
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
     let predicted = ranked.first().map_or(base.cost, |first| first.0);
     let starts = ranked
         .into_iter()
@@ -254,6 +266,45 @@ fn starts(
         .map(|(_, start)| start)
         .collect();
     (predicted, starts)
+}
+
+/// An effect at the sizes of the secants.
+fn sizes(effect: &'static dyn Effect) -> Vec<AddedEffect> {
+    let size = &effect.parameters()[0];
+    let signs: &[f64] = if size.low < size.null {
+        &[1.0, -1.0]
+    } else {
+        &[1.0]
+    };
+    SIZES
+        .iter()
+        .flat_map(|s| {
+            signs
+                .iter()
+                .map(move |sign| size.null + sign * s * (size.typical - size.null))
+        })
+        .filter(|value| (size.low..=size.high).contains(value))
+        .map(|value| {
+            let mut added = AddedEffect::typical(effect);
+            added.values[0] = value;
+            added
+        })
+        .collect()
+}
+
+/// An effect with each parameter of its shape at either end of its range in turn; none without a shape.
+fn shapes(at: &AddedEffect) -> Vec<AddedEffect> {
+    let parameters = at.effect.parameters().iter().enumerate().skip(1);
+    parameters
+        .flat_map(|(index, range)| {
+            let ends = [range.low, range.high].into_iter();
+            ends.filter(|end| end.is_finite()).map(move |end| {
+                let mut added = at.clone();
+                added.values[index] = end;
+                added
+            })
+        })
+        .collect()
 }
 
 /// The candidate of an effect that the screen found nothing of.

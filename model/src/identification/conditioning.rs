@@ -26,11 +26,18 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Cleans the two logged currents, A, whose noise has the given sigmas, A.
+    /// Cleans the two logged currents, A, whose noise has the given sigmas, A; `slow_share` of its variance is so slow
+    /// that no window takes it away.
     #[must_use]
-    pub fn new(time_s: &[f64], lift_a: &[f64], lower_a: &[f64], sigma: Currents) -> Self {
-        let (lift, lift_spread) = clean(lift_a, sigma.lift_a);
-        let (lower, lower_spread) = clean(lower_a, sigma.lower_a);
+    pub fn new(
+        time_s: &[f64],
+        lift_a: &[f64],
+        lower_a: &[f64],
+        sigma: Currents,
+        slow_share: f64,
+    ) -> Self {
+        let (lift, lift_spread) = clean(lift_a, sigma.lift_a, slow_share);
+        let (lower, lower_spread) = clean(lower_a, sigma.lower_a, slow_share);
         let join = |lift: Vec<f64>, lower: Vec<f64>| {
             lift.into_iter()
                 .zip(lower)
@@ -96,7 +103,7 @@ fn jump_before(current_a: &[f64], sample: usize) -> f64 {
 }
 
 /// Cleans one current; returns it and its spread, A.
-fn clean(logged_a: &[f64], sigma_a: f64) -> (Vec<f64>, Vec<f64>) {
+fn clean(logged_a: &[f64], sigma_a: f64, slow_share: f64) -> (Vec<f64>, Vec<f64>) {
     let samples = logged_a.len();
     let mut cleaned = logged_a.to_vec();
     let mut variance = vec![1.0; samples];
@@ -118,7 +125,7 @@ fn clean(logged_a: &[f64], sigma_a: f64) -> (Vec<f64>, Vec<f64>) {
     }
     let spread = (0..samples)
         .map(|sample| {
-            (sigma_a * sigma_a * variance[sample])
+            (sigma_a * sigma_a * (variance[sample] + slow_share).min(1.0))
                 .sqrt()
                 .hypot(jump_before(&cleaned, sample) * JUMP_SHARE)
         })

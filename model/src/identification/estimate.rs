@@ -1,6 +1,7 @@
 //! What a fit may change, and its scaling.
 
-use super::experiment::{Experiment, LOAD_PRIOR, Nuisance, SKEW_PRIOR_S};
+use super::clocks::{Clocks, OFFSET_PRIOR_S};
+use super::experiment::{Experiment, LOAD_PRIOR, Nuisance};
 use super::jacobian::Step;
 use crate::effects::{AddedEffect, Parameter};
 
@@ -9,8 +10,8 @@ use crate::effects::{AddedEffect, Parameter};
 pub struct Estimate {
     /// The model's effects with their present values.
     pub effects: Vec<AddedEffect>,
-    /// How far the log's currents are ahead of its other channels, s.
-    pub skew_s: f64,
+    /// What the log's clocks are off by.
+    pub clocks: Clocks,
     /// What each run may be off by.
     pub nuisances: Vec<Nuisance>,
 }
@@ -23,8 +24,24 @@ const FARTHEST: f64 = 5.0;
 pub enum Shared {
     /// Parameter of an effect, by the two indices.
     Effect(usize, usize),
-    /// The skew.
-    Skew,
+    /// How late a channel is stamped, by its index.
+    Offset(usize),
+}
+
+/// The shared nuisances, in the order of their columns.
+pub const CLOCKS: [Shared; 4] = [
+    Shared::Offset(0),
+    Shared::Offset(1),
+    Shared::Offset(2),
+    Shared::Offset(3),
+];
+
+impl Shared {
+    /// Whether it is a nuisance with a prior of one scale about nothing.
+    #[must_use]
+    pub fn has_prior(self) -> bool {
+        !matches!(self, Self::Effect(..))
+    }
 }
 
 impl Estimate {
@@ -33,18 +50,18 @@ impl Estimate {
     pub fn new(experiment: &Experiment, effects: Vec<AddedEffect>) -> Self {
         Self {
             effects,
-            skew_s: 0.0,
+            clocks: Clocks::default(),
             nuisances: vec![Nuisance::default(); experiment.runs.len()],
         }
     }
 
-    /// Every shared parameter that is free, effects first, the skew last.
+    /// Every shared parameter that is free, effects first, then [`CLOCKS`].
     #[must_use]
     pub fn shared(&self) -> Vec<Shared> {
         let effects = self.effects.iter().enumerate().flat_map(|(effect, added)| {
             (0..added.values.len()).map(move |parameter| Shared::Effect(effect, parameter))
         });
-        effects.chain([Shared::Skew]).collect()
+        effects.chain(CLOCKS).collect()
     }
 
     /// Description of an effect's parameter.
@@ -58,7 +75,7 @@ impl Estimate {
     pub fn scale(&self, shared: Shared) -> f64 {
         match shared {
             Shared::Effect(effect, parameter) => self.parameter(effect, parameter).typical.abs(),
-            Shared::Skew => SKEW_PRIOR_S,
+            Shared::Offset(_) => OFFSET_PRIOR_S,
         }
     }
 
@@ -67,7 +84,7 @@ impl Estimate {
     pub fn get(&self, shared: Shared) -> f64 {
         match shared {
             Shared::Effect(effect, parameter) => self.effects[effect].values[parameter],
-            Shared::Skew => self.skew_s,
+            Shared::Offset(channel) => self.clocks.offsets_s[channel],
         }
     }
 
@@ -78,9 +95,9 @@ impl Estimate {
                 let range = self.parameter(effect, parameter);
                 self.effects[effect].values[parameter] = value.max(range.low).min(range.high);
             }
-            Shared::Skew => {
-                let farthest = FARTHEST * SKEW_PRIOR_S;
-                self.skew_s = value.max(-farthest).min(farthest);
+            Shared::Offset(channel) => {
+                let farthest = FARTHEST * OFFSET_PRIOR_S;
+                self.clocks.offsets_s[channel] = value.max(-farthest).min(farthest);
             }
         }
     }
@@ -117,6 +134,10 @@ impl Estimate {
             .iter()
             .map(|nuisance| (nuisance.load / LOAD_PRIOR).powi(2))
             .sum();
-        loads + (self.skew_s / SKEW_PRIOR_S).powi(2)
+        let clocks: f64 = CLOCKS
+            .iter()
+            .map(|&clock| (self.get(clock) / self.scale(clock)).powi(2))
+            .sum();
+        loads + clocks
     }
 }

@@ -1,5 +1,6 @@
 //! A campaign made ready for comparing and fitting: cleaned currents, instrument noise, regimes, masks.
 
+use super::clocks::Clocks;
 use super::conditioning::Drive;
 use super::noise::from_second_differences;
 use super::regime::{Regime, regimes};
@@ -30,9 +31,6 @@ pub struct Nuisance {
 
 /// Prior sigma of [`Nuisance::load`]: a load is weighed to about half a percent (DATA.md).
 pub const LOAD_PRIOR: f64 = 0.005;
-
-/// Prior sigma of the skew between logged currents and the other channels, s: a quarter of a sample.
-pub const SKEW_PRIOR_S: f64 = 0.005;
 
 /// One run, ready.
 #[derive(Debug, Clone)]
@@ -78,17 +76,20 @@ impl Experiment {
     pub fn new(campaign: &Campaign, model: &Model) -> Self {
         let noise = Channel::ALL.map(|channel| channel_noise(campaign, channel));
         let sigma = current_noise(campaign);
+        let persistence = current_persistence(campaign, sigma);
+        // What of the noise no mean over half a second takes away.
+        let slow_share = (persistence - 1.0) / persistence_block(campaign) as f64;
         let runs = campaign
             .runs
             .iter()
-            .map(|run| ReadyRun::new(run, model, sigma))
+            .map(|run| ReadyRun::new(run, model, sigma, slow_share))
             .collect();
         Self {
             name: campaign.name.clone(),
             runs,
             noise,
             current_noise: sigma,
-            current_persistence: current_persistence(campaign, sigma),
+            current_persistence: persistence,
             ringing: model.constants().dynamics == Dynamics::Dynamic,
         }
     }
@@ -105,12 +106,13 @@ impl Experiment {
 }
 
 impl ReadyRun {
-    fn new(run: &Run, model: &Model, sigma: Currents) -> Self {
+    fn new(run: &Run, model: &Model, sigma: Currents, slow_share: f64) -> Self {
         let drive = Drive::new(
             &run.time_s,
             &run.lift_current_a,
             &run.lower_current_a,
             sigma,
+            slow_share,
         );
         let mut measured = run.channels.clone();
         let settling_samples = settling_samples(run);
@@ -164,16 +166,40 @@ impl ReadyRun {
         }
     }
 
-    /// Simulates the run, with its currents `skew_s` later and moved by `spreads` of their sigmas.
+    /// Simulates the run as clocks with these errors would have logged it, with its currents moved by `spreads` of their
+    /// sigmas.
     #[must_use]
-    pub fn simulate(&self, model: &Model, nuisance: Nuisance, skew_s: f64, spreads: f64) -> Trace {
-        simulate(
-            model,
-            self.rig(nuisance),
-            self.oil_temperature_c,
-            &self.drive.time_s,
-            &self.drive.shifted(skew_s, spreads),
-        )
+    pub fn simulate(
+        &self,
+        model: &Model,
+        nuisance: Nuisance,
+        clocks: &Clocks,
+        spreads: f64,
+    ) -> Trace {
+        let currents = self.drive.shifted(0.0, spreads);
+        self.simulate_under(model, nuisance, &currents, clocks)
+    }
+
+    /// [`ReadyRun::simulate`] with every channel in step.
+    #[must_use]
+    pub fn simulate_in_step(&self, model: &Model, nuisance: Nuisance, spreads: f64) -> Trace {
+        self.simulate(model, nuisance, &Clocks::default(), spreads)
+    }
+
+    /// Simulates the run under other currents, one a sample, A.
+    #[must_use]
+    pub fn simulate_under(
+        &self,
+        model: &Model,
+        nuisance: Nuisance,
+        currents: &[Currents],
+        clocks: &Clocks,
+    ) -> Trace {
+        let time_s = &self.drive.time_s;
+        let rig = self.rig(nuisance);
+        let mut trace = simulate(model, rig, self.oil_temperature_c, time_s, currents);
+        clocks.stamp(time_s, &mut trace);
+        trace
     }
 }
 
@@ -262,11 +288,16 @@ fn current_noise(campaign: &Campaign) -> Currents {
     }
 }
 
+/// Half a second, samples.
+fn persistence_block(campaign: &Campaign) -> usize {
+    ((0.5 * campaign.sample_rate_hz).round() as usize).max(2)
+}
+
 /// How much more the mean of the currents' noise over half a second varies than that of white noise would.
 ///
 /// Part of a logger's noise is slow; on plateaus of the current the variance of block means shows how much.
 fn current_persistence(campaign: &Campaign, sigma: Currents) -> f64 {
-    let block = ((0.5 * campaign.sample_rate_hz).round() as usize).max(2);
+    let block = persistence_block(campaign);
     let (mut ratio_sum, mut blocks) = (0.0, 0.0);
     for run in &campaign.runs {
         for (record, sigma_a) in [

@@ -11,7 +11,7 @@ use super::adequacy::{Cell, adequate, cells};
 use super::attribution::{Attribution, attribute};
 use super::candidate::{Candidate, projected, secant, try_effects, weigh};
 use super::estimate::{Estimate, Shared};
-use super::evidence::{log_odds, shares};
+use super::evidence::shares;
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate, fit, refine};
 use super::holdout::held_out_error;
@@ -26,6 +26,13 @@ pub const BELIEVED: f64 = 11.0;
 /// Smallest detectability that is believed, sigmas. Channels a few milliseconds out of step, a logger's rounding and
 /// the plant's discretisation make signatures of up to 0.05 on steady and 0.09 on ringing campaigns with nothing hidden.
 const VISIBLE: f64 = 0.1;
+
+/// What more it needs for each parameter of a shape that it brings.
+const BELIEVED_PER_SHAPE: f64 = 3.0;
+
+/// Smallest detectability that is believed where the model is adequate without the effect: what is left is noise
+/// already, and what a faint signature explains of it may as well be the instruments' own.
+const VISIBLE_IN_NOISE: f64 = 0.15;
 
 /// Likelihood ratio by which an alternative has to be worse to be told apart.
 pub const TOLD_APART: f64 = 10.0;
@@ -155,7 +162,7 @@ pub fn diagnose(
 ) -> Diagnosis {
     let absent = absent(model, &base.estimate);
     let candidates = try_effects(experiment, model, &base, &absent, progress);
-    let mut odds: Vec<f64> = candidates.iter().map(candidate_log_odds).collect();
+    let mut odds: Vec<f64> = candidates.iter().map(Candidate::log_odds).collect();
     odds.push(0.0);
     let mut confidences = shares(&odds);
     confidences.pop();
@@ -184,15 +191,6 @@ fn has(estimate: &Estimate, effect: &dyn Effect) -> bool {
         .any(|added| added.effect.id() == effect.id())
 }
 
-fn candidate_log_odds(candidate: &Candidate) -> f64 {
-    let effective = candidate.fit.weights.count() as f64 / candidate.inflation;
-    log_odds(
-        candidate.likelihood_ratio,
-        candidate.effect.parameters().len(),
-        effective,
-    )
-}
-
 /// Names, adds and repeats until nothing more is worth adding.
 #[must_use]
 pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Explanation {
@@ -209,8 +207,16 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
         if present_held_out.is_nan() {
             present_held_out = held_out_error(experiment, model, &present.estimate);
         }
-        let Some((best, held_out_after)) = proven(experiment, model, &diagnosis, present_held_out)
-        else {
+        let visible = if adequate(experiment, &cells(experiment, &present), &present) {
+            VISIBLE_IN_NOISE
+        } else {
+            VISIBLE
+        };
+        let proof = Proof {
+            visible,
+            held_out: present_held_out,
+        };
+        let Some((best, held_out_after)) = proven(experiment, model, &diagnosis, proof) else {
             break;
         };
         steps.push(Step {
@@ -236,7 +242,16 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
     finish(experiment, model, before, present, steps)
 }
 
-/// The most likely believable candidate with a smaller held-out error than `present`, and that error.
+/// What a candidate has to show.
+#[derive(Debug, Clone, Copy)]
+struct Proof {
+    /// At least this detectability.
+    visible: f64,
+    /// A smaller held-out error than this.
+    held_out: f64,
+}
+
+/// The most likely believable candidate with a smaller held-out error than without it, and that error.
 ///
 /// The likeliest may fail here though it is there: a leak that only one run shows is misjudged from the others as long
 /// as another effect is missing. Then the next one goes first.
@@ -244,24 +259,29 @@ fn proven<'a>(
     experiment: &Experiment,
     model: &Model,
     diagnosis: &'a Diagnosis,
-    present: f64,
+    proof: Proof,
 ) -> Option<(&'a Candidate, f64)> {
     diagnosis
         .candidates
         .iter()
-        .filter(|candidate| believable(candidate))
+        .filter(|candidate| believable(candidate, proof.visible))
         .take(MOST_TRIED)
         .map(|candidate| {
             let held_out = held_out_error(experiment, model, &candidate.fit.estimate);
             (candidate, held_out)
         })
         // A campaign of one run has no held-out error; it is not held against it.
-        .find(|(_, held_out)| held_out.is_nan() || *held_out < present)
+        .find(|(_, held_out)| held_out.is_nan() || *held_out < proof.held_out)
 }
 
 /// Whether a candidate's evidence is strong enough and its signature large enough.
-fn believable(candidate: &Candidate) -> bool {
-    candidate.likelihood_ratio >= BELIEVED && candidate.detectability >= VISIBLE
+fn believable(candidate: &Candidate, visible: f64) -> bool {
+    candidate.likelihood_ratio >= believed(candidate.effect) && candidate.detectability >= visible
+}
+
+/// Likelihood ratio that an effect needs.
+fn believed(effect: &dyn Effect) -> f64 {
+    BELIEVED + BELIEVED_PER_SHAPE * (effect.parameters().len() - 1) as f64
 }
 
 /// Drops the first step whose effect the later ones have made needless; returns the fit without it.
@@ -276,7 +296,7 @@ fn drop_needless(
         let without = refine(experiment, model, without(&present.estimate, given + index));
         let whole = with_last(experiment, model, present, given + index);
         let weighed = weigh(experiment, model, &without, steps[index].effect, whole);
-        if weighed.likelihood_ratio < BELIEVED {
+        if weighed.likelihood_ratio < believed(steps[index].effect) {
             steps.remove(index);
             return Some(without);
         }
@@ -311,7 +331,7 @@ fn finish(
         let whole = with_last(experiment, model, &after, effect);
         let base = evaluate(experiment, model, without(&after.estimate, effect));
         let weighed = weigh(experiment, model, &base, step.effect, whole.clone());
-        let there = 1.0 / (1.0 + (-candidate_log_odds(&weighed)).exp());
+        let there = 1.0 / (1.0 + (-weighed.log_odds()).exp());
         step.values = weighed.values().to_vec();
         step.intervals = weighed.intervals;
         step.detectability = weighed.detectability;
@@ -360,10 +380,15 @@ fn alternatives(
     if alike.is_empty() {
         return alike;
     }
+    let own_parameters = whole.estimate.effects[last].values.len();
     let base = refine(experiment, model, base_estimate);
     try_effects(experiment, model, &base, &alike, &|_| {})
         .into_iter()
-        .filter(|swapped| (swapped.fit.cost - whole.cost) / (variance * inflation) < TOLD_APART)
+        .filter(|swapped| {
+            let worse = (swapped.fit.cost - whole.cost) / (variance * inflation);
+            let shapes = swapped.effect.parameters().len() as f64 - own_parameters as f64;
+            worse + shapes * swapped.effective_samples().ln() < TOLD_APART
+        })
         .map(|swapped| swapped.effect)
         .collect()
 }

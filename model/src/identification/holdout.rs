@@ -29,7 +29,7 @@ pub fn held_out_error(experiment: &Experiment, model: &Model, estimate: &Estimat
             let (test, test_start) = part(experiment, estimate, |run| !outside(run));
             let start = Estimate {
                 effects: trained.effects,
-                skew_s: trained.skew_s,
+                clocks: trained.clocks,
                 nuisances: test_start.nuisances,
             };
             let loaded = fit_loads(&test, model, start);

@@ -8,13 +8,18 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use super::clocks::OFFSET_PRIOR_S;
 use super::estimate::{Estimate, Shared};
 use super::experiment::Experiment;
 use super::residual::Weights;
+use crate::campaign::Channel;
 use crate::model::Model;
 
 /// Step of a difference quotient, in scales of the parameter.
 const STEP: f64 = 0.02;
+
+/// The same for a channel's offset, in prior sigmas.
+const STEP_OF_OFFSET: f64 = 0.25;
 
 /// One run's residuals and their sensitivities to steps of one scale.
 #[derive(Debug, Clone)]
@@ -63,7 +68,7 @@ pub fn residuals(
         .into_par_iter()
         .map(|index| {
             let run = &experiment.runs[index];
-            let trace = run.simulate(&model, estimate.nuisances[index], estimate.skew_s, 0.0);
+            let trace = run.simulate(&model, estimate.nuisances[index], &estimate.clocks, 0.0);
             weights.runs[index].whiten(run, &trace)
         })
         .collect()
@@ -101,10 +106,19 @@ pub fn square_sum(residuals: &[Vec<f64>]) -> f64 {
     residuals.iter().flatten().map(|e| e * e).sum()
 }
 
-/// Dot product.
+/// Dot product. Eight sums side by side: one alone could not be vectorised, as the order of a sum of floats counts.
 #[must_use]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    let (a_parts, a_rest) = a.as_chunks::<8>();
+    let (b_parts, b_rest) = b.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for (a, b) in a_parts.iter().zip(b_parts) {
+        for lane in 0..8 {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 /// Takes `share` times `part` from `column`.
@@ -171,10 +185,48 @@ fn load_columns(
     )
 }
 
-/// Columns that hardly change from one iteration to the next: of the skew and of the loads.
+/// Sensitivities of all runs to the channels' offsets, a step of one prior sigma; by channel, then by run.
+///
+/// An offset only moves a channel of a trace that is there already: one simulation serves all four.
+fn offset_columns(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    estimate: &Estimate,
+) -> [Vec<Vec<f64>>; 4] {
+    let model = model.with_effects(estimate.effects.clone());
+    let columns: Vec<[Vec<f64>; 4]> = (0..experiment.runs.len())
+        .into_par_iter()
+        .map(|index| {
+            let run = &experiment.runs[index];
+            let (time_s, clocks) = (&run.drive.time_s, estimate.clocks);
+            let plain = run.simulate_in_step(&model, estimate.nuisances[index], 0.0);
+            let mut stamped = plain.clone();
+            clocks.stamp(time_s, &mut stamped);
+            let base = huber(vec![weights.runs[index].whiten(run, &stamped)]);
+            std::array::from_fn(|channel| {
+                if channel == Channel::PumpPressure.index() && !experiment.ringing {
+                    // All that a clock could move are its jumps, and those are left out.
+                    return vec![0.0; base[0].len()];
+                }
+                let mut moved = clocks;
+                moved.offsets_s[channel] += STEP_OF_OFFSET * OFFSET_PRIOR_S;
+                let mut trace = stamped.clone();
+                trace.channels[channel].clone_from(&plain.channels[channel]);
+                moved.stamp_channel(channel, time_s, &mut trace);
+                let moved = huber(vec![weights.runs[index].whiten(run, &trace)]);
+                quotient(&base, moved, STEP_OF_OFFSET).swap_remove(0)
+            })
+        })
+        .collect();
+    std::array::from_fn(|channel| columns.iter().map(|run| run[channel].clone()).collect())
+}
+
+/// Columns that hardly change from one iteration to the next: of the clocks and of the loads.
 #[derive(Debug, Clone)]
 pub struct SlowColumns {
-    skew: Vec<Vec<f64>>,
+    /// In the order of [`super::estimate::CLOCKS`], by run.
+    clocks: [Vec<Vec<f64>>; 4],
     loads: Vec<Vec<f64>>,
 }
 
@@ -188,11 +240,11 @@ impl SlowColumns {
         estimate: &Estimate,
         base: &[Vec<f64>],
     ) -> Self {
-        let (skew, loads) = rayon::join(
-            || shared_column(experiment, model, weights, estimate, base, Shared::Skew),
+        let (clocks, loads) = rayon::join(
+            || offset_columns(experiment, model, weights, estimate),
             || load_columns(experiment, model, weights, estimate, base),
         );
-        Self { skew, loads }
+        Self { clocks, loads }
     }
 }
 
@@ -233,7 +285,7 @@ impl Jacobian {
         Self::with_slow_columns(experiment, model, weights, estimate, &base, &slow)
     }
 
-    /// The same with the residuals known, and the columns of skew and loads taken from a point nearby.
+    /// The same with the residuals known, and the columns of clocks and loads taken from a point nearby.
     #[must_use]
     pub fn with_slow_columns(
         experiment: &Experiment,
@@ -246,7 +298,7 @@ impl Jacobian {
         let shared = estimate.shared();
         let columns: Vec<Vec<Vec<f64>>> = shared
             .par_iter()
-            .filter(|&&parameter| parameter != Shared::Skew)
+            .filter(|parameter| !parameter.has_prior())
             .map(|&parameter| shared_column(experiment, model, weights, estimate, base, parameter))
             .collect();
         let runs = (0..base.len())
@@ -255,7 +307,7 @@ impl Jacobian {
                 shared: columns
                     .iter()
                     .map(|column| column[run].clone())
-                    .chain([slow.skew[run].clone()])
+                    .chain(slow.clocks.iter().map(|clock| clock[run].clone()))
                     .collect(),
                 load: experiment.runs[run]
                     .on_hitch()
@@ -278,7 +330,7 @@ impl Jacobian {
             right += r;
         }
         for (column, &shared) in self.shared.iter().enumerate() {
-            if shared == Shared::Skew {
+            if shared.has_prior() {
                 matrix[(column, column)] += 1.0;
                 right[column] -= estimate.get(shared) / estimate.scale(shared);
             }

@@ -3,6 +3,7 @@
 pub mod adequacy;
 pub mod attribution;
 pub mod candidate;
+pub mod clocks;
 pub mod conditioning;
 pub mod estimate;
 pub mod evidence;

@@ -100,15 +100,20 @@ impl RunWeights {
     fn new(experiment: &Experiment, index: usize, model: &Model, estimate: &Estimate) -> Self {
         let run = &experiment.runs[index];
         let nuisance = estimate.nuisances[index];
-        let [below, above] =
-            [-1.0, 1.0].map(|spreads| run.simulate(model, nuisance, estimate.skew_s, spreads));
-        let [early, late] = [-TIMING_S, TIMING_S]
-            .map(|shift_s| run.simulate(model, nuisance, estimate.skew_s + shift_s, 0.0));
+        let clocks = &estimate.clocks;
+        let [mut below, mut above] =
+            [-1.0, 1.0].map(|spreads| run.simulate_in_step(model, nuisance, spreads));
+        let edges = pump_edges(run, model, [&below, &above]);
+        clocks.stamp(&run.drive.time_s, &mut below);
+        clocks.stamp(&run.drive.time_s, &mut above);
+        let [early, late] = [-TIMING_S, TIMING_S].map(|shift_s| {
+            let currents = run.drive.shifted(shift_s, 0.0);
+            run.simulate_under(model, nuisance, &currents, clocks)
+        });
         let mut weights = Self {
             scale: vec![0.0; 4 * run.len()],
             gain: vec![0.0; run.len()],
         };
-        let edges = pump_edges(run, model, [&below, &above]);
         let stops = at_a_stop(run, model, [&below, &above]);
         let ringing = experiment.ringing;
         for channel in [
@@ -220,8 +225,11 @@ fn ringing_tolerance(time_s: &[f64], pressure: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Samples within one sample of a jump of the pump pressure between idle and load pressure: a log whose channels may
-/// be a sample out of step cannot say on which side of the jump they lie.
+/// How many samples on either side of a jump of the pump pressure are left out: a log whose channels may be a sample
+/// out of step cannot say on which side of the jump they lie.
+const EDGE_SAMPLES: usize = 2;
+
+/// Samples next to a jump of the pump pressure between idle and load pressure.
 fn pump_edges(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
     let idle_bar = units::bar_from_pa(model.constants().compensator.idle_pressure_pa());
     let last = run.len() - 1;
@@ -230,12 +238,10 @@ fn pump_edges(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
     };
     (0..=last)
         .map(|sample| {
-            let around = lifts(sample.saturating_sub(1))
-                .into_iter()
-                .chain(lifts(sample))
-                .chain(lifts((sample + 1).min(last)));
-            let on = around.filter(|&lifting| lifting).count();
-            on != 0 && on != 6
+            let around = sample.saturating_sub(EDGE_SAMPLES)..=(sample + EDGE_SAMPLES).min(last);
+            let number = 2 * around.clone().count();
+            let on = around.flat_map(lifts).filter(|&lifting| lifting).count();
+            on != 0 && on != number
         })
         .collect()
 }

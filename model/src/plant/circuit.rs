@@ -124,18 +124,21 @@ impl Circuit<'_> {
 
     /// The pump pressure, Pa, that the relief valve leaves of what the compensator wants; `flow_at` is the lift flow over it.
     fn relieved_pa(&self, wanted_pa: f64, flow_at: &impl Fn(f64) -> f64) -> f64 {
-        let limit_pa = self.constants.relief_valve.limit_pa(wanted_pa);
-        let override_pa = self.sites.relief_override_pa;
-        if override_pa == 0.0 || wanted_pa <= limit_pa {
-            return limit_pa;
+        let Some(relief) = &self.sites.relief else {
+            return self.constants.relief_valve.limit_pa(wanted_pa);
+        };
+        let crack_pa = self.constants.relief_valve.set_pressure_pa - relief.below_setting_pa;
+        if wanted_pa <= crack_pa || relief.override_pa <= 0.0 {
+            return wanted_pa.min(crack_pa);
         }
-        // The relief valve passes what the lift valve leaves of the pump's flow: p - p_set = override (1 - Q/Q_pump).
+        // It passes at most what the lift valve leaves of the pump's flow: p - p_crack = override (1 - Q/Q_pump).
         let pump_m3_s = self.constants.pump.flow_m3_s();
         let excess = |pressure_pa: f64| {
-            pressure_pa - limit_pa - override_pa * (1.0 - flow_at(pressure_pa) / pump_m3_s)
+            let left = 1.0 - flow_at(pressure_pa) / pump_m3_s;
+            pressure_pa - crack_pa - relief.override_pa * left
         };
-        let highest_pa = wanted_pa.min(limit_pa + override_pa);
-        super::root::rising(excess, limit_pa, highest_pa, 10.0)
+        let highest_pa = wanted_pa.min(crack_pa + relief.override_pa);
+        super::root::rising(excess, crack_pa, highest_pa, 10.0)
     }
 
     /// Flow through the lowering valve, m3/s, over a drop, Pa.

@@ -64,6 +64,15 @@ pub type Law = Box<dyn Fn(f64) -> f64 + Send + Sync>;
 /// A force on the piston against its motion, N, from its speed, m/s, and the weight's force on it, N.
 pub type FrictionForce = Box<dyn Fn(f64, f64) -> f64 + Send + Sync>;
 
+/// A relief valve whose pressure rises with the flow through it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReliefOverride {
+    /// Rise of the pressure from cracking to the pump's whole flow, Pa.
+    pub override_pa: f64,
+    /// How far below its setting it cracks, Pa.
+    pub below_setting_pa: f64,
+}
+
 /// Ground under the hitch: a spring and damper that can only push, and that starts from nothing (Hunt & Crossley 1975).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ground {
@@ -107,8 +116,8 @@ pub struct Sites {
     pub check_valve_loss_pa_s2_m6: f64,
     /// Pump flow lost to slip, m3/s, from the pump pressure, Pa.
     pub pump_slip: Vec<Law>,
-    /// Pressure by which the relief valve opens over its setting to pass the pump's whole flow, Pa.
-    pub relief_override_pa: f64,
+    /// What the relief valve lacks of an ideal one.
+    pub relief: Option<ReliefOverride>,
     /// Pressure behind the lowering valve, Pa, from the flow through it, m3/s.
     pub return_pressure: Vec<Law>,
     /// Flow out of the cylinder past the valves, m3/s, from the cylinder pressure, Pa.
@@ -141,7 +150,7 @@ impl Default for Sites {
             margin: Vec::new(),
             check_valve_loss_pa_s2_m6: 0.0,
             pump_slip: Vec::new(),
-            relief_override_pa: 0.0,
+            relief: None,
             return_pressure: Vec::new(),
             leakage: Vec::new(),
             stiffness_factor: Vec::new(),
