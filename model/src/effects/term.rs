@@ -128,7 +128,6 @@ impl Effect for TermEffect {
     }
 
     fn attach(&self, values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
-        // HOOK: the plant does not yet read `sites.terms`; each place has to add what its terms give.
         let place = self.term.definition().place;
         sites.terms.push((place, self.function(values)));
     }

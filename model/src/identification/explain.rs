@@ -17,7 +17,7 @@ use super::fit::{Fit, evaluate, fit, refine};
 use super::holdout::held_out_error;
 use super::jacobian::{Jacobian, dot};
 use super::regime::Regime;
-use crate::effects::{CATALOGUE, Effect};
+use crate::effects::Effect;
 use crate::model::Model;
 
 /// Likelihood ratio that an effect needs: chi-squared with one degree of freedom at 5 % over some fifty tries.
@@ -176,9 +176,9 @@ pub fn diagnose(
 /// Effects that the plant can have and the estimate has not.
 fn absent(model: &Model, estimate: &Estimate) -> Vec<&'static dyn Effect> {
     let dynamics = model.constants().dynamics;
-    CATALOGUE
-        .iter()
-        .copied()
+    model
+        .catalogue()
+        .into_iter()
         .filter(|effect| effect.needs().is_none_or(|needed| needed == dynamics))
         .filter(|effect| !has(estimate, *effect))
         .collect()

@@ -1,6 +1,9 @@
 //! The hydraulic circuit at one instant: which flows and which pump pressure go with a cylinder pressure.
 
+use super::MechanicalState;
+use super::moment::Moment;
 use super::sites::Sites;
+use crate::expression::Place;
 use crate::model::Constants;
 
 /// How far the two valves are open, as their flow at the reference drop, m3/s.
@@ -45,7 +48,12 @@ pub struct Circuit<'a> {
     pub constants: &'a Constants,
     /// What the effects attach to them.
     pub sites: &'a Sites,
+    /// What terms may depend on.
+    pub moment: Moment<'a>,
 }
+
+/// Greatest factor that terms can bring to a valve's flow.
+const GREATEST_FACTOR: f64 = 10.0;
 
 impl Circuit<'_> {
     /// Opens the valves as far as effective currents, A, tell.
@@ -59,24 +67,56 @@ impl Circuit<'_> {
         }
     }
 
-    /// Solves the circuit for a cylinder pressure, Pa.
+    /// Solves the circuit with the piston and the oil under it in a state.
     #[must_use]
-    pub fn solve(&self, openings: Openings, cylinder_pressure_pa: f64) -> Flows {
-        let (lift_m3_s, pump_pressure_pa) = self.lift(openings.lift_m3_s, cylinder_pressure_pa);
+    pub fn solve(&self, openings: Openings, state: &MechanicalState) -> Flows {
+        let (lift_m3_s, pump_pressure_pa) = self.lift(openings.lift_m3_s, state);
+        let leakage_m3_s = self.sites.leakage_m3_s(state.pressure_pa);
         Flows {
             lift_m3_s,
-            lower_m3_s: self.lower_m3_s(openings.lower_m3_s, cylinder_pressure_pa),
-            leakage_m3_s: self.sites.leakage_m3_s(cylinder_pressure_pa),
+            lower_m3_s: self.lower_m3_s(openings.lower_m3_s, state),
+            leakage_m3_s: leakage_m3_s + self.moment.term(Place::Leakage, state, |_| ()),
             pump_pressure_pa,
         }
     }
 
-    /// Pump pressure, Pa, that the compensator sets while lifting against a cylinder pressure, Pa.
+    /// Pump pressure, Pa, that the compensator sets while lifting against the cylinder pressure of a state.
     #[must_use]
-    pub fn lifting_pressure_pa(&self, cylinder_pressure_pa: f64) -> f64 {
+    pub fn lifting_pressure_pa(&self, state: &MechanicalState) -> f64 {
         let compensator = &self.constants.compensator;
-        compensator.lifting_pressure_pa(cylinder_pressure_pa)
-            + self.sites.margin_pa(cylinder_pressure_pa)
+        compensator.lifting_pressure_pa(state.pressure_pa)
+            + self.sites.margin_pa(state.pressure_pa)
+            + self.moment.term(Place::CompensatorMargin, state, |_| ())
+    }
+
+    /// What terms of a user's own leave of the lift valve's opening, m3/s.
+    fn lift_opening_m3_s(&self, opening_m3_s: f64, state: &MechanicalState) -> f64 {
+        if self.sites.terms.is_empty() {
+            return opening_m3_s;
+        }
+        let term = self.moment.term(Place::LiftFlowFactor, state, |signals| {
+            signals.lift_flow_m3_s = opening_m3_s;
+        });
+        opening_m3_s * (1.0 + term).clamp(0.0, GREATEST_FACTOR)
+    }
+
+    /// What terms of a user's own leave of the lowering valve's opening, m3/s.
+    fn lower_opening_m3_s(&self, opening_m3_s: f64, state: &MechanicalState) -> f64 {
+        if self.sites.terms.is_empty() {
+            return opening_m3_s;
+        }
+        let term = self.moment.term(Place::LowerFlowFactor, state, |signals| {
+            signals.lower_flow_m3_s = self.lower_valve_m3_s(opening_m3_s, state.pressure_pa);
+        });
+        opening_m3_s * (1.0 + term).clamp(0.0, GREATEST_FACTOR)
+    }
+
+    /// Pressure behind the lowering valve, Pa, at a flow through it, m3/s.
+    fn return_pressure_pa(&self, flow_m3_s: f64, state: &MechanicalState) -> f64 {
+        let term = self.moment.term(Place::ReturnPressure, state, |signals| {
+            signals.lower_flow_m3_s = flow_m3_s;
+        });
+        self.sites.return_pressure_pa(flow_m3_s) + term
     }
 
     /// What the lift orifice keeps of the drop from pump to cylinder, Pa.
@@ -98,17 +138,18 @@ impl Circuit<'_> {
     }
 
     /// Lift flow, m3/s, and pump pressure, Pa.
-    fn lift(&self, opening_m3_s: f64, cylinder_pressure_pa: f64) -> (f64, f64) {
+    fn lift(&self, opening_m3_s: f64, state: &MechanicalState) -> (f64, f64) {
         let constants = self.constants;
+        let cylinder_pressure_pa = state.pressure_pa;
         if opening_m3_s <= 0.0 {
             return (0.0, constants.compensator.idle_pressure_pa());
         }
+        let opening_m3_s = self.lift_opening_m3_s(opening_m3_s, state);
         let flow_at = |pump_pressure_pa: f64| {
             let drop_pa = self.lift_drop_pa(pump_pressure_pa, cylinder_pressure_pa);
             self.lift_valve_m3_s(opening_m3_s, drop_pa)
         };
-        let pump_pressure_pa =
-            self.relieved_pa(self.lifting_pressure_pa(cylinder_pressure_pa), &flow_at);
+        let pump_pressure_pa = self.relieved_pa(self.lifting_pressure_pa(state), &flow_at);
         let flow_m3_s = flow_at(pump_pressure_pa);
         let available_m3_s =
             constants.pump.flow_m3_s() - self.sites.pump_slip_m3_s(pump_pressure_pa);
@@ -148,19 +189,28 @@ impl Circuit<'_> {
     }
 
     /// Lowering flow, m3/s: the valve's drop is what the return line leaves.
-    fn lower_m3_s(&self, opening_m3_s: f64, cylinder_pressure_pa: f64) -> f64 {
+    fn lower_m3_s(&self, opening_m3_s: f64, state: &MechanicalState) -> f64 {
         if opening_m3_s <= 0.0 {
             return 0.0;
         }
-        let free_m3_s = self.lower_valve_m3_s(opening_m3_s, cylinder_pressure_pa);
-        if self.sites.return_pressure.is_empty() || free_m3_s == 0.0 {
+        let opening_m3_s = self.lower_opening_m3_s(opening_m3_s, state);
+        let free_m3_s = self.lower_valve_m3_s(opening_m3_s, state.pressure_pa);
+        let terms = self.sites.has_term(Place::ReturnPressure);
+        if (self.sites.return_pressure.is_empty() && !terms) || free_m3_s == 0.0 {
             return free_m3_s;
         }
-        // Root of f(Q) = Q - valve(p - p_T(Q)): it rises in Q, and lies between no flow and the free flow.
-        let excess = |flow_m3_s: f64| {
-            let drop_pa = cylinder_pressure_pa - self.sites.return_pressure_pa(flow_m3_s);
-            flow_m3_s - self.lower_valve_m3_s(opening_m3_s, drop_pa)
+        let passed_m3_s = |flow_m3_s: f64| {
+            let drop_pa = state.pressure_pa - self.return_pressure_pa(flow_m3_s, state);
+            self.lower_valve_m3_s(opening_m3_s, drop_pa)
         };
-        crate::plant::root::rising(excess, 0.0, free_m3_s, free_m3_s * 1e-7)
+        // Root of f(Q) = Q - valve(p - p_T(Q)): it rises in Q, and lies between no flow and the free flow, or above
+        // that where a term draws oil off.
+        let highest_m3_s = if terms {
+            free_m3_s.max(passed_m3_s(0.0)).max(passed_m3_s(free_m3_s))
+        } else {
+            free_m3_s
+        };
+        let excess = |flow_m3_s: f64| flow_m3_s - passed_m3_s(flow_m3_s);
+        crate::plant::root::rising(excess, 0.0, highest_m3_s, highest_m3_s * 1e-7)
     }
 }

@@ -35,7 +35,11 @@ fn derivative(
     let cylinder = &circuit.constants.cylinder;
     let area_m2 = cylinder.area_m2();
     let pressure_pa = state.pressure_pa.max(VACUUM_PA);
-    let flows = circuit.solve(openings, pressure_pa);
+    let state = MechanicalState {
+        pressure_pa,
+        ..state
+    };
+    let flows = circuit.solve(openings, &state);
     let (dh_dx, d2h_dx2_1_m) = model.linkage().transmission(state.piston_m);
     let masses = &circuit.constants.masses;
     let load_kg = forces.rig.load_kg;
@@ -43,12 +47,11 @@ fn derivative(
     let inertia_kg = masses.inertia_kg(load_kg, dh_dx) * heavier;
     let slope = masses.half_inertia_slope_kg_m(load_kg, dh_dx, d2h_dx2_1_m) * heavier;
     let speed_m_s = state.speed_m_s;
-    let weight_n =
-        masses.weight_force_n(load_kg, dh_dx) * circuit.sites.weight_factor(state.piston_m);
+    let weight_n = forces.weight_at_n(dh_dx, &state);
     let force_n = pressure_pa * area_m2 - weight_n + forces.ground_n(state.piston_m, speed_m_s)
         - slope * speed_m_s * speed_m_s
         - cylinder.viscous_friction_n_s_m * speed_m_s
-        - forces.friction_n(speed_m_s, weight_n)
+        - forces.friction_n(&state, weight_n)
         + cylinder.stop_force_n(state.piston_m, speed_m_s);
     [
         speed_m_s,
@@ -105,7 +108,7 @@ fn moved(state: MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState
 /// whose drop hangs on the cylinder pressure.
 fn settling_rate(circuit: &Circuit, openings: Openings, state: MechanicalState) -> f64 {
     let constants = circuit.constants;
-    let flows = circuit.solve(openings, state.pressure_pa);
+    let flows = circuit.solve(openings, &state);
     let slope = |flow_m3_s: f64, drop_pa: f64, transition_pa: f64| {
         0.5 * flow_m3_s / drop_pa.max(0.5 * transition_pa).max(1.0)
     };
@@ -115,7 +118,7 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: MechanicalState) 
         constants.lower_valve.transition_drop_pa,
     );
     // A working compensator keeps the lift valve's drop whatever the cylinder pressure is.
-    let compensated = flows.pump_pressure_pa >= circuit.lifting_pressure_pa(state.pressure_pa);
+    let compensated = flows.pump_pressure_pa >= circuit.lifting_pressure_pa(&state);
     let lift = if compensated {
         0.0
     } else {
@@ -179,11 +182,17 @@ fn runge_kutta(
     dt_s: f64,
 ) -> MechanicalState {
     let rate = |state, openings| derivative(forces, circuit, openings, state);
+    let stopped = MechanicalState {
+        speed_m_s: 0.0,
+        ..state
+    };
     let state = stretched(forces.model, state);
     let k1 = rate(state, openings[0]);
     let k2 = rate(moved(state, k1, 0.5 * dt_s), openings[1]);
     let k3 = rate(moved(state, k2, 0.5 * dt_s), openings[1]);
     let k4 = rate(moved(state, k3, dt_s), openings[2]);
     let mean = std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
-    torn(forces.model, moved(state, mean, dt_s))
+    let end = torn(forces.model, moved(state, mean, dt_s));
+    // A force that no integrator can follow, from a term or from constants far off: the plant stands still.
+    if end.is_finite() { end } else { stopped }
 }

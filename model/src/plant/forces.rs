@@ -1,7 +1,9 @@
 //! The forces on the piston besides the oil's pressure, with what the effects add to them.
 
-use super::HitchRig;
+use super::moment::Moment;
 use super::sites::Sites;
+use super::{HitchRig, MechanicalState};
+use crate::expression::Place;
 use crate::model::Model;
 
 /// Forces on the piston of one hitch.
@@ -13,15 +15,36 @@ pub struct Forces<'a> {
     pub sites: &'a Sites,
     /// The load.
     pub rig: &'a HitchRig,
+    /// What terms may depend on.
+    pub moment: Moment<'a>,
 }
 
 impl Forces<'_> {
-    /// Static force of load and dead weight, N, downwards, at piston travel `piston_m`.
+    /// Static force of load and dead weight, N, downwards, at piston travel `piston_m`, all else as it was before.
     #[must_use]
     pub fn weight_n(&self, piston_m: f64) -> f64 {
         let dh_dx = self.model.linkage().dh_dx(piston_m);
+        self.weight_at_n(dh_dx, &self.before(piston_m))
+    }
+
+    /// Static force of load and dead weight, N, downwards, in a state where the linkage has the transmission `dh_dx`.
+    #[must_use]
+    pub fn weight_at_n(&self, dh_dx: f64, state: &MechanicalState) -> f64 {
         let masses = &self.model.constants().masses;
-        masses.weight_force_n(self.rig.load_kg, dh_dx) * self.sites.weight_factor(piston_m)
+        let factor = self.sites.weight_factor(state.piston_m);
+        masses.weight_force_n(self.rig.load_kg, dh_dx) * factor
+            + self.moment.term(Place::Weight, state, |_| ())
+    }
+
+    /// A state at a piston travel, with speed and pressure of the step before.
+    #[must_use]
+    pub fn before(&self, piston_m: f64) -> MechanicalState {
+        MechanicalState {
+            piston_m,
+            speed_m_s: self.moment.before.speed_m_s,
+            pressure_pa: self.moment.before.cylinder_pressure_pa,
+            void_m3: 0.0,
+        }
     }
 
     /// Force of the ground under the hitch, N, upwards, at a piston travel, m, and speed, m/s.
@@ -34,10 +57,11 @@ impl Forces<'_> {
         ground.force_n(posture.height_m, speed_m_s * posture.dh_dx) * posture.dh_dx
     }
 
-    /// Friction against the motion, N, at a speed, m/s, under a weight's force, N.
+    /// Friction against the motion, N, in a state under a weight's force, N.
     #[must_use]
-    pub fn friction_n(&self, speed_m_s: f64, weight_n: f64) -> f64 {
-        self.sites.friction_n(speed_m_s, weight_n)
+    pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {
+        self.sites.friction_n(state.speed_m_s, weight_n)
+            + self.moment.term(Place::Friction, state, |_| ())
     }
 
     /// Lowest travel that the piston can sink to, m: the end of the stroke, or where the ground bears the weight.

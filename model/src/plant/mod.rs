@@ -22,10 +22,13 @@ pub mod forces;
 pub mod lag;
 pub mod linkage;
 pub mod load;
+pub mod moment;
 pub mod oil;
 pub mod orifice_valve;
 pub mod pump;
+pub mod reading;
 pub mod relief_valve;
+mod rest;
 pub mod root;
 pub mod signals;
 pub mod sites;
@@ -40,16 +43,18 @@ pub use load::Masses;
 pub use oil::Oil;
 pub use orifice_valve::OrificeValve;
 pub use pump::Pump;
+pub use reading::Reading;
 pub use relief_valve::ReliefValve;
 pub use sites::{Currents, Valve};
 pub use valve_curve::{ValveCurve, ValveCurveError};
 
-use crate::campaign::Channel;
+use crate::expression::Place;
 use crate::model::{Dynamics, Model};
-use crate::units;
 use circuit::{Circuit, Flows, Openings};
 use forces::Forces;
 use lag::Lag;
+use moment::Moment;
+use signals::Signals;
 use sites::{RunConditions, Sites};
 
 /// A hitch with a load on it.
@@ -86,17 +91,17 @@ pub struct MechanicalState {
     pub void_m3: f64,
 }
 
-/// What the instruments show, in their units.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Reading {
-    /// Pump pressure, bar.
-    pub pump_pressure_bar: f64,
-    /// Cylinder pressure, bar.
-    pub cylinder_pressure_bar: f64,
-    /// Flow into the cylinder, l/min.
-    pub flow_lpm: f64,
-    /// Rocker angle, degree; on a flow bench not a number.
-    pub rocker_angle_deg: f64,
+impl MechanicalState {
+    fn is_finite(&self) -> bool {
+        [
+            self.piston_m,
+            self.speed_m_s,
+            self.pressure_pa,
+            self.void_m3,
+        ]
+        .iter()
+        .all(|value| value.is_finite())
+    }
 }
 
 /// The plant in motion.
@@ -111,6 +116,8 @@ pub struct Plant<'m> {
     flows: Flows,
     input: Currents,
     reading: Reading,
+    /// Kept up only for terms of a user's own.
+    signals: Signals,
 }
 
 impl<'m> Plant<'m> {
@@ -147,20 +154,21 @@ impl<'m> Plant<'m> {
             flows: Flows::default(),
             input: at_rest,
             reading: Reading::default(),
+            signals: rest::signals_of_run(rig, oil_temperature_c),
         };
-        plant.openings = plant
-            .circuit()
-            .openings(effective.lift_a, effective.lower_a);
         if let Rig::Hitch(rig) = rig {
             plant.lowest_m = plant.forces(&rig).lowest_m();
         }
         plant.state = plant.state_at_rest();
+        plant.remember();
+        plant.shift(effective.lift_a, effective.lower_a);
         plant.refresh();
+        plant.remember();
         let mut reading = plant.truth();
         for sensor in &mut plant.sites.sensors {
             sensor.rest(&mut reading);
         }
-        plant.reading = reading;
+        plant.reading = plant.with_sensor_terms(reading);
         plant
     }
 
@@ -181,17 +189,12 @@ impl<'m> Plant<'m> {
             };
             self.integrate(currents, dt_s / pieces as f64);
         }
-        if !matches!(
-            (self.rig, self.model.constants().dynamics),
-            (Rig::Hitch(_), Dynamics::Steady)
-        ) {
-            self.refresh();
-        }
+        self.refresh_unless_balanced();
         let mut reading = self.truth();
         for sensor in &mut self.sites.sensors {
             sensor.advance(&mut reading, dt_s);
         }
-        self.reading = reading;
+        self.reading = self.with_sensor_terms(reading);
     }
 
     /// What the instruments show now.
@@ -230,6 +233,7 @@ impl<'m> Plant<'m> {
         Circuit {
             constants: self.model.constants(),
             sites: &self.sites,
+            moment: self.moment(),
         }
     }
 
@@ -238,6 +242,15 @@ impl<'m> Plant<'m> {
             model: self.model,
             sites: &self.sites,
             rig,
+            moment: self.moment(),
+        }
+    }
+
+    fn moment(&self) -> Moment<'_> {
+        Moment {
+            model: self.model,
+            sites: &self.sites,
+            before: &self.signals,
         }
     }
 
@@ -273,6 +286,10 @@ impl<'m> Plant<'m> {
                 self.state = dynamic::step(&forces, &circuit, self.state, openings, dt_s);
             }
         }
+        if !self.sites.terms.is_empty() {
+            self.refresh_unless_balanced();
+            self.remember();
+        }
     }
 
     /// Takes the currents through effects and spools to openings.
@@ -284,38 +301,36 @@ impl<'m> Plant<'m> {
             .fold(currents, |currents, stage| stage.advance(currents, dt_s));
         let lift_a = self.spools[0].advance(effective.lift_a, dt_s);
         let lower_a = self.spools[1].advance(effective.lower_a, dt_s);
-        self.openings = self.circuit().openings(lift_a, lower_a);
+        self.shift(lift_a, lower_a);
         self.openings
     }
 
-    fn state_at_rest(&self) -> MechanicalState {
-        match self.rig {
-            Rig::Flow { port_pressure_pa } => MechanicalState {
-                pressure_pa: port_pressure_pa,
-                ..MechanicalState::default()
-            },
-            Rig::Hitch(rig) => {
-                let constants = self.model.constants();
-                let angle_deg = self
-                    .sites
-                    .sensors
-                    .iter()
-                    .rev()
-                    .fold(rig.start_angle_rad.to_degrees(), |shown_deg, sensor| {
-                        sensor.angle_behind_deg(shown_deg)
-                    });
-                let piston_m = self.model.linkage().piston_m(angle_deg.to_radians());
-                let piston_m = piston_m.max(self.lowest_m);
-                let forces = self.forces(&rig);
-                let held_n = forces.weight_n(piston_m) - forces.ground_n(piston_m, 0.0);
-                MechanicalState {
-                    piston_m,
-                    speed_m_s: 0.0,
-                    pressure_pa: held_n.max(0.0) / constants.cylinder.area_m2(),
-                    void_m3: 0.0,
-                }
-            }
+    /// Shifts the spools as far as effective currents, A, and terms of a user's own tell.
+    fn shift(&mut self, lift_a: f64, lower_a: f64) {
+        let (mut lift_a, mut lower_a) = (lift_a, lower_a);
+        if !self.sites.terms.is_empty() {
+            self.signals.lift_current_a = lift_a;
+            self.signals.lower_current_a = lower_a;
+            lift_a += self.sites.term(Place::LiftCurrent, &self.signals);
+            lower_a += self.sites.term(Place::LowerCurrent, &self.signals);
+            self.signals.lift_current_a = lift_a;
+            self.signals.lower_current_a = lower_a;
         }
+        self.openings = self.circuit().openings(lift_a, lower_a);
+    }
+
+    /// Notes the signals of the present for the terms of the next step.
+    fn remember(&mut self) {
+        if self.sites.terms.is_empty() {
+            return;
+        }
+        let now = self.moment().signals(&self.state);
+        self.signals = Signals {
+            pump_pressure_pa: self.flows.pump_pressure_pa,
+            lift_flow_m3_s: self.flows.lift_m3_s,
+            lower_flow_m3_s: self.flows.lower_m3_s,
+            ..now
+        };
     }
 
     /// Brings the quasi-static speed, pressure and flows up to the present openings and travel.
@@ -333,34 +348,21 @@ impl<'m> Plant<'m> {
         self.flows = balance.flows;
     }
 
+    /// Brings the flows up to the present state if the step has not done so itself.
+    fn refresh_unless_balanced(&mut self) {
+        if !matches!(
+            (self.rig, self.model.constants().dynamics),
+            (Rig::Hitch(_), Dynamics::Steady)
+        ) {
+            self.refresh();
+        }
+    }
+
     /// Brings the flows up to the present state.
     fn refresh(&mut self) {
         match (self.rig, self.model.constants().dynamics) {
             (Rig::Hitch(rig), Dynamics::Steady) => self.balance(&rig, None),
-            _ => self.flows = self.circuit().solve(self.openings, self.state.pressure_pa),
-        }
-    }
-
-    /// The quantities themselves, in the instruments' units.
-    fn truth(&self) -> Reading {
-        Reading {
-            pump_pressure_bar: units::bar_from_pa(self.flows.pump_pressure_pa),
-            cylinder_pressure_bar: units::bar_from_pa(self.state.pressure_pa),
-            flow_lpm: units::lpm_from_m3_s(self.flows.metered_m3_s()),
-            rocker_angle_deg: self.rocker_angle_rad().to_degrees(),
-        }
-    }
-}
-
-impl Reading {
-    /// The reading of one channel, in the channel's unit.
-    #[must_use]
-    pub fn channel(&self, channel: Channel) -> f64 {
-        match channel {
-            Channel::PumpPressure => self.pump_pressure_bar,
-            Channel::CylinderPressure => self.cylinder_pressure_bar,
-            Channel::Flow => self.flow_lpm,
-            Channel::RockerAngle => self.rocker_angle_deg,
+            _ => self.flows = self.circuit().solve(self.openings, &self.state),
         }
     }
 }

@@ -174,6 +174,21 @@ fn product(laws: &[Law], of: f64) -> f64 {
 }
 
 impl Sites {
+    /// Whether a term of a user's own acts at a place.
+    #[inline(always)]
+    #[must_use]
+    pub fn has_term(&self, place: Place) -> bool {
+        self.terms.iter().any(|(at, _)| *at == place)
+    }
+
+    /// Sum of the terms at a place, in its SI unit; one that is not finite is left out.
+    #[must_use]
+    pub fn term(&self, place: Place, signals: &Signals) -> f64 {
+        let here = self.terms.iter().filter(|(at, _)| *at == place);
+        let values = here.map(|(_, term)| term(signals));
+        values.filter(|value| value.is_finite()).sum()
+    }
+
     /// Sum of the friction forces, N, at a piston speed, m/s, under a weight's force, N.
     #[must_use]
     pub fn friction_n(&self, speed_m_s: f64, weight_n: f64) -> f64 {

@@ -9,9 +9,13 @@
 use super::MechanicalState;
 use super::circuit::{Circuit, Flows, Openings};
 use super::forces::Forces;
+use crate::expression::Place;
 
 /// Longest step, s: half a sample of a 50 Hz log.
 pub const LONGEST_STEP_S: f64 = 0.01;
+
+/// Speed beyond all others by which terms of a user's own could move the piston, m/s.
+const FASTEST_M_S: f64 = 0.5;
 
 /// What the balances give at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,20 +49,31 @@ pub fn balance(
     let area_m2 = circuit.constants.cylinder.area_m2();
     let weight_n = forces.weight_n(piston_m);
     let held_n = (weight_n - forces.ground_n(piston_m, 0.0)).max(0.0);
+    let last = forces.before(piston_m);
     let at_force = |speed_m_s: f64, force_n: f64| {
         let pressure_pa = force_n / area_m2;
-        let flows = circuit.solve(openings, pressure_pa);
+        let state = MechanicalState {
+            pressure_pa,
+            ..last
+        };
+        let flows = circuit.solve(openings, &state);
         Balance {
             speed_m_s,
             pressure_pa,
             flows,
         }
     };
-    let free = at_force(0.0, held_n);
+    let friction_n = |speed_m_s: f64| {
+        let state = MechanicalState { speed_m_s, ..last };
+        forces.friction_n(&state, weight_n)
+    };
+    let terms = circuit.sites.has_term(Place::Friction);
+    // A term may press on a piston at rest, too: a spring does.
+    let free = at_force(0.0, held_n + if terms { friction_n(0.0) } else { 0.0 });
     let free_m_s = free.flows.net_m3_s() / area_m2;
     let inertia_kg = inertia_kg(forces, piston_m);
     let before = before.filter(|_| inertia_kg > 0.0);
-    if before.is_none() && (circuit.sites.friction.is_empty() || free_m_s == 0.0) {
+    if before.is_none() && ((circuit.sites.friction.is_empty() && !terms) || free_m_s == 0.0) {
         return Balance {
             speed_m_s: free_m_s,
             ..free
@@ -68,13 +83,14 @@ pub fn balance(
     // speed.
     let at = |speed_m_s: f64| {
         let inertia_n = before.map_or(0.0, |b| inertia_kg * (speed_m_s - b.speed_m_s) / b.dt_s);
-        let friction_n = forces.friction_n(speed_m_s, weight_n);
-        at_force(speed_m_s, held_n + friction_n + inertia_n)
+        at_force(speed_m_s, held_n + friction_n(speed_m_s) + inertia_n)
     };
     let excess = |speed_m_s: f64| speed_m_s - at(speed_m_s).flows.net_m3_s() / area_m2;
     let speed_before = before.map_or(0.0, |b| b.speed_m_s);
-    let low = free_m_s.min(speed_before).min(0.0);
-    let high = free_m_s.max(speed_before).max(0.0);
+    // A term may be a force that drives: then the speed can be any that the valves let through.
+    let beyond_m_s = if terms { FASTEST_M_S } else { 0.0 };
+    let low = free_m_s.min(speed_before).min(0.0) - beyond_m_s;
+    let high = free_m_s.max(speed_before).max(0.0) + beyond_m_s;
     at(super::root::rising(excess, low, high, 1e-9))
 }
 

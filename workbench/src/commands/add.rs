@@ -70,7 +70,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
 fn effects(ids: &[String], model: &Model) -> Result<Vec<&'static dyn Effect>, Error> {
     let mut effects: Vec<&'static dyn Effect> = Vec::new();
     for id in ids {
-        let effect = find(id)?;
+        let effect = find(model, id)?;
         let present = model
             .effects
             .iter()

@@ -1,19 +1,30 @@
-//! `hitch effects`: the catalogue of physical effects.
+//! `hitch effects`: the catalogue of physical effects, and what formulas of one's own are made of.
+mod formulas;
+
 use std::fmt::Write as _;
 
-use hitch_model::effects::{self, CATALOGUE, Effect};
+use hitch_model::Model;
+use hitch_model::effects::Effect;
 use hitch_model::naming::offer_names;
 
 use crate::error::Error;
+use crate::model_arg::ModelArg;
 use crate::output;
 use crate::text::{Table, wrapped};
 
 /// Arguments of `hitch effects`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Examples:\n  hitch effects\n  hitch effects lower-threshold-shift")]
+#[command(
+    after_help = "Examples:\n  hitch effects\n  hitch effects lower-threshold-shift\n  hitch effects --formulas"
+)]
 pub struct Args {
     /// Show this effect only, with all that is known of it
     effect: Option<String>,
+    /// List the places, signals and functions of formulas in a model file instead
+    #[arg(long, conflicts_with = "effect")]
+    formulas: bool,
+    #[command(flatten)]
+    model: ModelArg,
 }
 
 /// Runs the command.
@@ -21,19 +32,25 @@ pub struct Args {
 /// # Errors
 /// If the effect is not in the catalogue.
 pub fn run(args: &Args) -> Result<(), Error> {
+    if args.formulas {
+        return output::print(&formulas::text());
+    }
+    let model = args.model.load()?;
     match &args.effect {
-        None => output::print(&list()),
-        Some(id) => output::print(&card(find(id)?)),
+        None => output::print(&list(&model)),
+        Some(id) => output::print(&card(find(&model, id)?)),
     }
 }
 
-/// Looks up an effect that a user named.
+/// Looks up an effect that a user named: of the catalogue, or a term of the model's file.
 ///
 /// # Errors
-/// If it is not in the catalogue; the nearest name is offered.
-pub fn find(id: &str) -> Result<&'static dyn Effect, Error> {
-    effects::find(id).ok_or_else(|| {
-        let known: Vec<&str> = CATALOGUE.iter().map(|effect| effect.id()).collect();
+/// If there is none; the nearest name is offered.
+pub fn find(model: &Model, id: &str) -> Result<&'static dyn Effect, Error> {
+    let catalogue = model.catalogue();
+    let found = catalogue.iter().copied().find(|effect| effect.id() == id);
+    found.ok_or_else(|| {
+        let known: Vec<&str> = catalogue.iter().map(|effect| effect.id()).collect();
         Error::Usage(format!(
             "effect {id:?} is not known; {}",
             offer_names(id, &known)
@@ -41,9 +58,9 @@ pub fn find(id: &str) -> Result<&'static dyn Effect, Error> {
     })
 }
 
-fn list() -> String {
+fn list(model: &Model) -> String {
     let mut text = String::new();
-    for effect in CATALOGUE {
+    for effect in model.catalogue() {
         let _ = writeln!(
             text,
             "{:<24} {}\n{:24} {}",
@@ -53,7 +70,8 @@ fn list() -> String {
             effect.equation()
         );
     }
-    text + "\nhitch effects EFFECT shows all that is known of one.\n"
+    text + "\nhitch effects EFFECT shows all that is known of one; hitch effects --formulas what formulas of one's own \
+            in a model file are made of.\n"
 }
 
 /// All that is known of an effect. (Writing to a string cannot fail, so the results are dropped.)
@@ -112,6 +130,8 @@ fn card(effect: &dyn Effect) -> String {
 
 #[cfg(test)]
 mod tests {
+    use hitch_model::effects::CATALOGUE;
+
     use super::*;
 
     #[test]
@@ -128,14 +148,16 @@ mod tests {
                 path: "card.toml".into(),
                 text,
             };
-            let model = hitch_model::Model::from_source(&source).unwrap();
+            let model = Model::from_source(&source).unwrap();
             assert_eq!(model.effects[0].effect.id(), effect.id());
         }
     }
 
     #[test]
     fn a_misspelt_effect_is_offered_its_neighbour() {
-        let error = find("coulomb-fricton").unwrap_err().to_string();
+        let error = find(&Model::nominal(), "coulomb-fricton")
+            .unwrap_err()
+            .to_string();
         assert!(error.contains("did you mean coulomb-friction?"), "{error}");
     }
 }

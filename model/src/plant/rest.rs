@@ -1,0 +1,77 @@
+//! The plant at rest, as a run begins.
+
+use super::signals::Signals;
+use super::{HitchRig, MechanicalState, Plant, Rig, oil, root};
+use crate::expression::Place;
+
+impl Plant<'_> {
+    /// The plant at rest with the angle that its sensor shows.
+    pub(super) fn state_at_rest(&self) -> MechanicalState {
+        match self.rig {
+            Rig::Flow { port_pressure_pa } => MechanicalState {
+                pressure_pa: port_pressure_pa,
+                ..MechanicalState::default()
+            },
+            Rig::Hitch(rig) => {
+                let piston_m = self.piston_at_rest_m(&rig).max(self.lowest_m);
+                self.held_at(&rig, piston_m)
+            }
+        }
+    }
+
+    /// The hitch held at a piston travel.
+    fn held_at(&self, rig: &HitchRig, piston_m: f64) -> MechanicalState {
+        let forces = self.forces(rig);
+        let held_n = forces.weight_n(piston_m) - forces.ground_n(piston_m, 0.0);
+        MechanicalState {
+            piston_m,
+            speed_m_s: 0.0,
+            pressure_pa: held_n.max(0.0) / self.model.constants().cylinder.area_m2(),
+            void_m3: 0.0,
+        }
+    }
+
+    /// Piston travel, m, at which the angle sensor shows the start angle.
+    fn piston_at_rest_m(&self, rig: &HitchRig) -> f64 {
+        let linkage = self.model.linkage();
+        let shown_deg = rig.start_angle_rad.to_degrees();
+        let angle_behind_rad = |shown_deg: f64| {
+            let stages = self.sites.sensors.iter().rev();
+            let angle_deg = stages.fold(shown_deg, |deg, stage| stage.angle_behind_deg(deg));
+            angle_deg.to_radians()
+        };
+        if !self.sites.has_term(Place::AngleSensor) {
+            return linkage.piston_m(angle_behind_rad(shown_deg));
+        }
+        let excess_rad = |piston_m: f64| {
+            let signals = self.moment().signals(&self.held_at(rig, piston_m));
+            let term_deg = self.sites.term(Place::AngleSensor, &signals).to_degrees();
+            signals.rocker_angle_rad - angle_behind_rad(shown_deg - term_deg)
+        };
+        let stroke_m = self.model.constants().cylinder.stroke_m;
+        root::rising(excess_rad, 0.0, stroke_m, 1e-7)
+    }
+}
+
+/// The signals that a run has from its start.
+pub(super) fn signals_of_run(rig: Rig, oil_temperature_c: f64) -> Signals {
+    let run = Signals {
+        oil_temperature_c,
+        viscosity_m2_s: oil::viscosity_m2_s(oil_temperature_c),
+        ..Signals::default()
+    };
+    match rig {
+        Rig::Hitch(rig) => Signals {
+            load_kg: rig.load_kg,
+            ..run
+        },
+        Rig::Flow { .. } => Signals {
+            travel_m: f64::NAN,
+            speed_m_s: f64::NAN,
+            rocker_angle_rad: f64::NAN,
+            load_kg: f64::NAN,
+            weight_n: f64::NAN,
+            ..run
+        },
+    }
+}

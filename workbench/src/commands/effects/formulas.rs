@@ -1,0 +1,80 @@
+//! What formulas of a user's own in a model file are made of.
+use std::fmt::Write as _;
+
+use hitch_model::expression::Place;
+use hitch_model::expression::operation::FUNCTIONS;
+use hitch_model::plant::signals::SIGNALS;
+
+use crate::text::Table;
+
+const HEAD: &str = "\
+A term of your own in a model file is fitted, added and reported like an effect of the catalogue:
+
+  [[term]]
+  id = \"end-cushion\"
+  place = \"lower-flow-factor\"
+  formula = \"-share * ramp(1 - x / depth)\"
+
+  [[term.parameter]]
+  name = \"share\"
+  null = 0
+  start = 0.5
+  low = 0
+  high = 1
+
+  [[term.parameter]]
+  name = \"depth\"
+  unit = \"mm\"
+  start = 40
+  low = 5
+  high = 150
+
+The first parameter is the size: at its null value the term has to be zero. Inside everything is SI and the units are
+checked; a number takes a unit as in 3[mm/s]. Operators: + - * / ^ and parentheses. hitch effects --model FILE lists the
+terms of a file.
+";
+
+/// Places, signals and functions. (Writing to a string cannot fail, so the results are dropped.)
+pub fn text() -> String {
+    let mut text = HEAD.to_owned();
+    let mut places = Table::new(["place", "unit", "what a term does there"]);
+    for place in Place::all() {
+        places.row([place.id(), place.unit(), place.meaning()].map(str::to_owned));
+    }
+    let mut signals = Table::new(["signal", "unit", "what it is"]);
+    for signal in &SIGNALS {
+        signals.row([signal.name, signal.unit, signal.meaning].map(str::to_owned));
+    }
+    let _ = write!(text, "\n{places}\n{signals}\n  function\n");
+    for (_, _, meaning) in FUNCTIONS {
+        let _ = writeln!(text, "  {meaning}");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_example_is_a_model_file() {
+        let term = HEAD.split("\n\n").skip(1).take(3).collect::<Vec<_>>();
+        let source = hitch_model::source_file::SourceFile {
+            path: "term.toml".into(),
+            text: format!("format = 1\nbase = \"nominal\"\n{}", term.join("\n")),
+        };
+        let model = hitch_model::Model::from_source(&source).unwrap();
+        assert_eq!(model.terms.len(), 1);
+    }
+
+    #[test]
+    fn every_name_is_listed() {
+        let text = text();
+        for name in Place::all().map(Place::id) {
+            assert!(text.contains(name), "{name}");
+        }
+        for (name, ..) in FUNCTIONS {
+            assert!(text.contains(&format!("{name}(")), "{name}");
+        }
+    }
+}
