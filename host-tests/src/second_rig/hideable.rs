@@ -299,7 +299,8 @@ pub static HIDEABLE: [Hideable; 28] = [
         },
     ),
     dynamic("entrained-air", "", (0.004, 0.06), |rig, size, shape| {
-        rig.air_fraction = size;
+        // A volume share of the mixture; the equation wants the ratio to the oil.
+        rig.air_ratio = size / (1.0 - size);
         rig.air_exponent = shape.usual_or_between(1.4, 1.0, 1.4);
     }),
     dynamic(

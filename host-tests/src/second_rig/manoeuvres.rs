@@ -238,7 +238,7 @@ fn single_move(
         start_deg: from_deg + random.random_range(-0.5..0.5),
     };
     let mut course = Course::default();
-    course.pulse(0.5 + random.random_range(0.0..0.02), seconds, current_a);
+    course.pulse(0.5, seconds, current_a);
     let file = format!("{name}_{current_a}A_{load_kg:03}kg.csv");
     let still = Manoeuvre::still(file, stand, 40.0, seconds + 2.0);
     Manoeuvre::of_one_valve(way, course, still)

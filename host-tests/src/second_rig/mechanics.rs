@@ -217,14 +217,19 @@ impl<'a> Machine<'a> {
     /// Rates of travel, speed, pressure, bristles and hose wall.
     fn rates(&self, circuit: &Circuit, motion: &Motion, spools: Spools) -> [f64; 5] {
         let flows = circuit.flows(spools, motion.pressure_pa);
-        let gained_m3_s = flows.net_m3_s - AREA_M2 * motion.speed_m_s;
+        let mut acceleration = self.acceleration(motion);
+        let mut speed_m_s = motion.speed_m_s;
+        if at_a_stop(motion, acceleration) {
+            (speed_m_s, acceleration) = (0.0, 0.0);
+        }
+        let gained_m3_s = flows.net_m3_s - AREA_M2 * speed_m_s;
         let compliance = self.oil_m3_pa(motion);
         let (hose, retarded) = self.hose(motion);
         [
-            motion.speed_m_s,
-            self.acceleration(motion),
+            speed_m_s,
+            acceleration,
             (gained_m3_s - retarded) / (compliance + hose),
-            self.bristle_rate(motion, motion.speed_m_s),
+            self.bristle_rate(motion, speed_m_s),
             if self.physics.hose_retardation_s > 0.0 {
                 (motion.pressure_pa - motion.wall_pa) / self.physics.hose_retardation_s
             } else {
@@ -237,13 +242,13 @@ impl<'a> Machine<'a> {
         let posture = linkage::at(motion.travel_m);
         let speed_m_s = motion.speed_m_s;
         let hitch_kg = self.load_kg + DEAD_WEIGHT_KG;
-        let known_kg = hitch_kg * posture.slope * posture.slope + PISTON_KG;
-        let inertia_kg = known_kg * (1.0 + self.physics.inertia_share)
+        let heavier = 1.0 + self.physics.inertia_share;
+        let inertia_kg = (hitch_kg * posture.slope * posture.slope + PISTON_KG) * heavier
             + self.physics.rocker_inertia_kg_m2 * posture.rocker_slope_rad_m.powi(2);
         let weight_n = self.weight_n(&posture, speed_m_s);
         let force_n = motion.pressure_pa * AREA_M2
             - weight_n
-            - hitch_kg * posture.slope * posture.bend_1_m * speed_m_s * speed_m_s
+            - heavier * hitch_kg * posture.slope * posture.bend_1_m * speed_m_s * speed_m_s
             - KNOWN_VISCOUS_N_S_M * speed_m_s
             - self.friction_n(motion, weight_n, speed_m_s);
         force_n / inertia_kg
@@ -254,10 +259,10 @@ impl<'a> Machine<'a> {
         let modulus_pa = BULK_MODULUS_PA / (1.0 + self.physics.compressibility_error);
         let stiff = 1.0 / modulus_pa;
         let volume_m3 = DEAD_VOLUME_M3 + AREA_M2 * motion.travel_m.max(0.0);
-        if self.physics.air_fraction == 0.0 {
+        if self.physics.air_ratio == 0.0 {
             return volume_m3 * stiff;
         }
-        let (share, n) = (self.physics.air_fraction, self.physics.air_exponent);
+        let (share, n) = (self.physics.air_ratio, self.physics.air_exponent);
         let absolute_pa = (motion.pressure_pa + ATMOSPHERE_PA).max(0.05 * ATMOSPHERE_PA);
         let bubbles = share * (ATMOSPHERE_PA / absolute_pa).powf(1.0 / n);
         volume_m3 * (stiff + bubbles / (n * absolute_pa)) / (1.0 + bubbles)
@@ -302,7 +307,7 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// The stops take a piston's speed and hold it as long as it is pushed against them.
+    /// The stops take a piston's speed.
     fn stop(&self, motion: &mut Motion) {
         if motion.travel_m >= STROKE_M {
             motion.travel_m = STROKE_M;
@@ -325,6 +330,13 @@ impl Motion {
             void_m3: self.void_m3,
         }
     }
+}
+
+/// Whether a stop carries what pushes the piston: no oil is lost to a piston that stands.
+fn at_a_stop(motion: &Motion, acceleration: f64) -> bool {
+    let (travel_m, speed_m_s) = (motion.travel_m, motion.speed_m_s);
+    (travel_m >= STROKE_M && speed_m_s >= 0.0 && acceleration >= 0.0)
+        || (travel_m <= 0.0 && speed_m_s <= 0.0 && acceleration <= 0.0)
 }
 
 fn within(travel_m: f64) -> f64 {

@@ -160,8 +160,8 @@ pub struct Physics {
     pub inertia_share: f64,
     /// Moment of inertia on the rocker shaft that it does not have, kg m2.
     pub rocker_inertia_kg_m2: f64,
-    /// Volume share of free air in the oil at atmospheric pressure.
-    pub air_fraction: f64,
+    /// Volume of free air over that of the oil at atmospheric pressure.
+    pub air_ratio: f64,
     /// Polytropic exponent of that air.
     pub air_exponent: f64,
     /// Relative change of the oil's compressibility.
@@ -230,7 +230,7 @@ impl Default for Physics {
             ground: None,
             inertia_share: 0.0,
             rocker_inertia_kg_m2: 0.0,
-            air_fraction: 0.0,
+            air_ratio: 0.0,
             air_exponent: 1.4,
             compressibility_error: 0.0,
             hose_m3_pa: 0.0,
