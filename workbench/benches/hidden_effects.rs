@@ -96,8 +96,17 @@ fn answers(
         let posed = Posed::new(draw(seed, &arguments.wish.wish(family, plan)));
         for (method, answers) in methods.iter().zip(&mut answers) {
             bar.set_message(format!("{family:?} {plan:?} {seed} {}", method.name()));
-            answers.push(posed.ask(method.as_ref()));
+            let graded = posed.ask(method.as_ref());
             bar.inc(1);
+            let verdict = if graded.good() { "good" } else { "miss" };
+            let line = format!(
+                "{family:?} {plan:?} {seed} {}: {verdict}, {:?} in {:.1} s",
+                method.name(),
+                graded.answer.named,
+                graded.seconds
+            );
+            bar.suspend(|| eprintln!("{line}"));
+            answers.push(graded);
         }
     }
     answers

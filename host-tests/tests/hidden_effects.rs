@@ -1,0 +1,137 @@
+//! A few cases of the second rig, always the same: the hidden effect is named, nothing is named where nothing is hidden,
+//! and what is in no catalogue is owned up to. `cargo bench --bench hidden_effects` asks many more.
+
+use host_tests::hidden_effects::answer::Method;
+use host_tests::hidden_effects::explaining::Explaining;
+use host_tests::hidden_effects::grade::{Graded, Posed};
+use host_tests::hidden_effects::starting_point;
+use host_tests::second_rig::campaign_writer::{campaign, planned_runs, write};
+use host_tests::second_rig::draw::{Kind, Wish, draw};
+use host_tests::second_rig::hideable::{Fidelity, find};
+use host_tests::second_rig::manoeuvres::Plan;
+use host_tests::second_rig::test_stand::Family;
+
+/// Seed, what is to be hidden, how true to the textbook, on good instruments or rough ones.
+type Question = (u64, &'static str, Fidelity, bool);
+
+fn wish(family: Family, plan: Plan, (_, id, fidelity, rough): Question) -> Wish {
+    Wish {
+        family,
+        plan,
+        fidelity: Some(fidelity),
+        rough: Some(rough),
+        kind: Some(Kind::Nothing),
+        effect: find(id).map(|what| (what, None)),
+        known: |_| true,
+    }
+}
+
+/// Answers, told on the way so that a miss can be drawn again.
+fn ask(family: Family, plan: Plan, questions: &[Question]) -> Vec<Graded> {
+    questions
+        .iter()
+        .map(|&question| {
+            let posed = Posed::new(draw(question.0, &wish(family, plan, question)));
+            let graded = posed.ask(&Explaining);
+            println!(
+                "{question:?}: d {:.2}, named {:?} or {:?}, unknown {}, {:.1} s",
+                graded.posed.detectability,
+                graded.answer.named,
+                graded.answer.group,
+                graded.answer.unknown,
+                graded.seconds
+            );
+            graded
+        })
+        .collect()
+}
+
+#[test]
+fn effects_of_a_steady_rig_are_named_in_the_lab() {
+    let graded = ask(
+        Family::Steady,
+        Plan::Lab,
+        &[
+            (1, "flow-force", Fidelity::Faithful, false),
+            (4, "return-line-loss", Fidelity::Structured, false),
+            (5, "pin-friction", Fidelity::Structured, true),
+            (6, "lower-threshold-shift", Fidelity::Faithful, true),
+        ],
+    );
+    assert!(graded.iter().filter(|graded| graded.named_first()).count() >= 3);
+    assert!(!graded.iter().any(Graded::wrong));
+}
+
+#[test]
+fn nothing_is_named_where_nothing_is_hidden() {
+    let graded = ask(
+        Family::Steady,
+        Plan::Lab,
+        &[(7, "nothing", Fidelity::Faithful, false)],
+    );
+    assert!(graded[0].answer.named.is_empty() && !graded[0].answer.unknown);
+    let rough = ask(
+        Family::Steady,
+        Plan::Field,
+        &[(8, "nothing", Fidelity::Faithful, true)],
+    );
+    assert!(rough[0].answer.named.is_empty());
+}
+
+#[test]
+fn what_is_outside_the_catalogue_is_owned_up_to() {
+    let graded = ask(
+        Family::Steady,
+        Plan::Lab,
+        &[(9, "cam-error", Fidelity::Faithful, false)],
+    );
+    assert!(graded[0].answer.unknown);
+}
+
+#[test]
+fn an_effect_is_named_in_the_field() {
+    let graded = ask(
+        Family::Steady,
+        Plan::Field,
+        &[(10, "flow-force", Fidelity::Faithful, true)],
+    );
+    assert!(graded[0].named_first());
+}
+
+/// The short moves of the lab alone: ringing pressures take long to simulate.
+#[test]
+fn an_effect_is_named_where_pressures_ring() {
+    let question = (11, "entrained-air", Fidelity::Faithful, false);
+    let case = draw(question.0, &wish(Family::Dynamic, Plan::Lab, question));
+    let mut measured = campaign(&case);
+    measured.runs.retain(|run| {
+        ["lift", "lower"]
+            .iter()
+            .any(|kind| run.file.starts_with(kind))
+    });
+    let answer = Explaining.answer(&measured, &starting_point(case.family));
+    println!("{question:?}: {answer:?}");
+    assert_eq!(answer.named, ["entrained-air"]);
+}
+
+/// What is written is what was measured.
+#[test]
+fn a_written_campaign_is_read_back() {
+    let question = (12, "angle-sensor-lag", Fidelity::Structured, true);
+    let case = draw(question.0, &wish(Family::Steady, Plan::Field, question));
+    let folder = tempfile::tempdir().expect("a folder");
+    write(&case, &folder.path().join("drawn")).expect("written");
+    let read = hitch_model::campaign::Campaign::load(&folder.path().join("drawn"));
+    let read = read.expect("a sound campaign");
+    let measured = campaign(&case);
+    assert_eq!(read.runs.len(), planned_runs(&case).len());
+    for (read, measured) in read.runs.iter().zip(&measured.runs) {
+        assert_eq!(read.bench, measured.bench);
+        assert_eq!(read.lift_current_a, measured.lift_current_a);
+        // Dropouts are no numbers, so text has to do.
+        assert_eq!(
+            format!("{:?}", read.channels),
+            format!("{:?}", measured.channels)
+        );
+    }
+}
