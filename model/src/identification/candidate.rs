@@ -12,7 +12,10 @@ use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
 /// Sizes of the secants, in typical sizes: derivatives at zero miss a play or a gap, one size misses what saturates.
-const SIZES: [f64; 4] = [0.03, 0.3, 1.0, 4.0];
+const SIZES: [f64; 2] = [0.1, 1.0];
+
+/// How far a secant is trusted, in its own size.
+const REACH: f64 = 8.0;
 
 /// How many starts of an effect are sketched while the model is far from the data: there are valleys to fall into.
 const STARTS: usize = 2;
@@ -241,11 +244,18 @@ fn starts(
     let rank = |added: Vec<AddedEffect>| {
         let mut ranked: Vec<(f64, Estimate)> = added
             .into_iter()
-            .map(|added| {
+            .map(|mut added| {
+                let size = added.values[0];
                 let mut estimate = base.estimate.clone();
-                estimate.effects.push(added);
+                estimate.effects.push(added.clone());
                 let residuals = huber_residuals(experiment, model, &base.weights, &estimate);
-                (frame.cost_after(&residuals), estimate)
+                let (lowest, highest) = reach(&added);
+                let (share, cost) = frame.along(&residuals, lowest, highest);
+                let range = &added.effect.parameters()[0];
+                added.values[0] = range.null + share * (size - range.null);
+                estimate.effects.pop();
+                estimate.effects.push(added);
+                (cost, estimate)
             })
             .collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -271,25 +281,25 @@ fn starts(
 /// An effect at the sizes of the secants.
 fn sizes(effect: &'static dyn Effect) -> Vec<AddedEffect> {
     let size = &effect.parameters()[0];
-    let signs: &[f64] = if size.low < size.null {
-        &[1.0, -1.0]
-    } else {
-        &[1.0]
-    };
     SIZES
         .iter()
-        .flat_map(|s| {
-            signs
-                .iter()
-                .map(move |sign| size.null + sign * s * (size.typical - size.null))
-        })
-        .filter(|value| (size.low..=size.high).contains(value))
-        .map(|value| {
+        .map(|s| {
             let mut added = AddedEffect::typical(effect);
-            added.values[0] = value;
+            added.values[0] = size.null + s * (size.typical - size.null);
             added
         })
         .collect()
+}
+
+/// Smallest and largest multiple of an effect's size that its range and the trust in a secant allow.
+fn reach(added: &AddedEffect) -> (f64, f64) {
+    let range = &added.effect.parameters()[0];
+    let size = added.values[0] - range.null;
+    let ends = [range.low, range.high].map(|end| (end - range.null) / size);
+    (
+        ends[0].min(ends[1]).max(-REACH),
+        ends[0].max(ends[1]).min(REACH),
+    )
 }
 
 /// An effect with each parameter of its shape at either end of its range in turn; none without a shape.

@@ -205,7 +205,7 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
         }
         let diagnosis = diagnose(experiment, model, present.clone(), progress);
         if present_held_out.is_nan() {
-            present_held_out = held_out_error(experiment, model, &present.estimate);
+            present_held_out = held_out_error(experiment, model, &present);
         }
         let visible = if adequate(experiment, &cells(experiment, &present), &present) {
             VISIBLE_IN_NOISE
@@ -235,7 +235,7 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
         present = best.fit.clone();
         present_held_out = held_out_after;
         if let Some(lighter) = drop_needless(experiment, model, &present, given, &mut steps) {
-            present_held_out = held_out_error(experiment, model, &lighter.estimate);
+            present_held_out = held_out_error(experiment, model, &lighter);
             present = lighter;
         }
     }
@@ -267,7 +267,7 @@ fn proven<'a>(
         .filter(|candidate| believable(candidate, proof.visible))
         .take(MOST_TRIED)
         .map(|candidate| {
-            let held_out = held_out_error(experiment, model, &candidate.fit.estimate);
+            let held_out = held_out_error(experiment, model, &candidate.fit);
             (candidate, held_out)
         })
         // A campaign of one run has no held-out error; it is not held against it.

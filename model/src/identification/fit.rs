@@ -176,23 +176,31 @@ pub fn refine(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
     // The weights belong to the values: once more with those of the values found.
     let weights = Weights::new(experiment, model, &estimate);
     let estimate = descend(experiment, model, &weights, estimate, FINE_ITERATIONS);
-    evaluate(experiment, model, estimate)
+    evaluate_weighted(experiment, model, estimate, weights)
 }
 
-/// One round from a start that is all but there already.
+/// One round under given weights from a start that is all but there already.
 #[must_use]
-pub fn refine_once(experiment: &Experiment, model: &Model, start: Estimate) -> Estimate {
-    let weights = Weights::new(experiment, model, &start);
-    descend(experiment, model, &weights, start, LAST_ITERATIONS)
+pub fn refine_once(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    start: Estimate,
+) -> Estimate {
+    descend(experiment, model, weights, start, LAST_ITERATIONS)
 }
 
-/// Fits only each run's load error: two Gauss-Newton steps, it is all but linear.
+/// Fits only each run's load error, under given weights: two Gauss-Newton steps, it is all but linear.
 #[must_use]
-pub fn fit_loads(experiment: &Experiment, model: &Model, start: Estimate) -> Estimate {
+pub fn fit_loads(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    start: Estimate,
+) -> Estimate {
     let mut estimate = start;
     for _ in 0..2 {
-        let weights = Weights::new(experiment, model, &estimate);
-        let steps = load_steps(experiment, model, &weights, &estimate);
+        let steps = load_steps(experiment, model, weights, &estimate);
         for (run, step) in steps.into_iter().enumerate() {
             estimate.set_load(run, estimate.load(run) + step);
         }

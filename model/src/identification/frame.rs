@@ -12,6 +12,8 @@ pub struct Frame<'a> {
     normal: Option<Cholesky<f64, Dyn>>,
     /// Pull of the priors of the shared parameters.
     priors: DVector<f64>,
+    /// [`Frame::cost_after`] of the frame's own residuals.
+    here: f64,
 }
 
 impl<'a> Frame<'a> {
@@ -30,6 +32,7 @@ impl<'a> Frame<'a> {
             jacobian,
             normal,
             priors: DVector::zeros(kept.len()),
+            here: 0.0,
             kept,
         };
         let own: Vec<Vec<f64>> = jacobian
@@ -38,6 +41,7 @@ impl<'a> Frame<'a> {
             .map(|run| run.residual.clone())
             .collect();
         frame.priors = right.select_rows(&frame.kept) - frame.pull(&own);
+        frame.here = frame.cost_after(&own);
         frame
     }
 
@@ -70,6 +74,32 @@ impl<'a> Frame<'a> {
         }
         let pull = self.pull(residuals) + &self.priors;
         cost - pull.dot(&self.shares(&pull))
+    }
+
+    /// How far to go from the frame's own residuals to `residuals` for the least [`Frame::cost_after`], within `low` to
+    /// `high` times the way, and that cost: a parabola through both ends and the same way backwards.
+    #[must_use]
+    pub fn along(&self, residuals: &[Vec<f64>], low: f64, high: f64) -> (f64, f64) {
+        let own = |run: usize| &self.jacobian.runs[run].residual;
+        let backwards: Vec<Vec<f64>> = residuals
+            .iter()
+            .enumerate()
+            .map(|(run, moved)| {
+                own(run)
+                    .iter()
+                    .zip(moved)
+                    .map(|(o, m)| 2.0 * o - m)
+                    .collect()
+            })
+            .collect();
+        let (ahead, behind) = (self.cost_after(residuals), self.cost_after(&backwards));
+        let here = self.here;
+        let (slope, bend) = (0.5 * (ahead - behind), 0.5 * (ahead + behind) - here);
+        if bend <= 0.0 {
+            return (1.0, ahead);
+        }
+        let share = (-0.5 * slope / bend).clamp(low, high);
+        (share, here + share * (slope + share * bend))
     }
 
     /// Pull of residuals on the free parameters, the loads eliminated.

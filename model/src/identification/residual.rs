@@ -66,6 +66,17 @@ impl Weights {
             .into_par_iter()
             .map(|index| RunWeights::new(experiment, index, &model, estimate))
             .collect();
+        Self::counted(runs)
+    }
+
+    /// The weights of some of the runs.
+    #[must_use]
+    pub fn of_runs(&self, picked: &[usize]) -> Self {
+        let runs = picked.iter().map(|&run| self.runs[run].clone()).collect();
+        Self::counted(runs)
+    }
+
+    fn counted(runs: Vec<RunWeights>) -> Self {
         let mut counts = [0; 4];
         for run in &runs {
             for (channel, count) in counts.iter_mut().enumerate() {

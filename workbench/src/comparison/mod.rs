@@ -8,6 +8,7 @@ use hitch_model::campaign::{Campaign, Channel};
 use hitch_model::identification::estimate::Estimate;
 use hitch_model::identification::experiment::{Experiment, ReadyRun};
 use hitch_model::identification::fit::{ErrorSums, Fit, evaluate, fit_loads};
+use hitch_model::identification::residual::Weights;
 use hitch_model::simulation::Trace;
 use serde::Serialize;
 
@@ -100,7 +101,8 @@ impl Evaluated {
     pub fn new(campaign: &Campaign, model: &Model) -> Self {
         let experiment = Experiment::new(campaign, model);
         let start = Estimate::new(&experiment, model.effects.clone());
-        let loaded = fit_loads(&experiment, model, start);
+        let weights = Weights::new(&experiment, model, &start);
+        let loaded = fit_loads(&experiment, model, &weights, start);
         let fit = evaluate(&experiment, model, loaded);
         Self { experiment, fit }
     }
