@@ -7,7 +7,7 @@
 
 use rayon::prelude::*;
 
-use super::experiment::Experiment;
+use super::experiment::{Experiment, ReadyRun};
 use super::jacobian::square_sum;
 
 /// Reach of the autocovariances, s.
@@ -24,10 +24,7 @@ pub fn variance_inflation(
     let sums: Vec<(f64, f64)> = (0..residuals.len())
         .into_par_iter()
         .map(|run| {
-            let time_s = &experiment.runs[run].drive.time_s;
-            let samples = time_s.len();
-            let step_s = (time_s[samples - 1] - time_s[0]) / (samples - 1) as f64;
-            let reach = ((REACH_S / step_s) as usize).clamp(1, samples / 2);
+            let (samples, reach) = (experiment.runs[run].len(), reach(&experiment.runs[run]));
             let mut sums = (0.0, 0.0);
             for channel in 0..4 {
                 let part = channel * samples..(channel + 1) * samples;
@@ -49,28 +46,100 @@ pub fn variance_inflation(
     }
 }
 
+/// Reach of the autocovariances in a run, samples.
+fn reach(run: &ReadyRun) -> usize {
+    let (samples, time_s) = (run.len(), &run.drive.time_s);
+    let step_s = (time_s[samples - 1] - time_s[0]) / (samples - 1) as f64;
+    ((REACH_S / step_s) as usize).clamp(1, samples / 2)
+}
+
+/// Mean product of a series with itself `lag` samples later.
+fn covariance(series: &[f64], lag: usize) -> f64 {
+    let products = series[lag..].iter().zip(series).map(|(a, b)| a * b);
+    products.sum::<f64>() / series.len() as f64
+}
+
+/// Weight of a lag in a Bartlett window.
+fn bartlett(lag: usize, reach: usize) -> f64 {
+    1.0 - lag as f64 / (reach + 1) as f64
+}
+
 /// Bartlett-windowed sum of products of autocovariances, and its term without lag.
 fn windowed(residual: &[f64], signature: &[f64], reach: usize) -> (f64, f64) {
     if signature.iter().all(|&value| value == 0.0) {
         return (0.0, 0.0);
     }
     let samples = residual.len() as f64;
-    let covariance = |series: &[f64], lag: usize| -> f64 {
-        series[lag..]
-            .iter()
-            .zip(series)
-            .map(|(a, b)| a * b)
-            .sum::<f64>()
-            / samples
-    };
     let at_zero = covariance(residual, 0) * covariance(signature, 0) * samples;
     let lagged: f64 = (1..=reach)
         .map(|lag| {
-            let weight = 1.0 - lag as f64 / (reach + 1) as f64;
-            2.0 * weight * covariance(residual, lag) * covariance(signature, lag) * samples
+            2.0 * bartlett(lag, reach)
+                * covariance(residual, lag)
+                * covariance(signature, lag)
+                * samples
         })
         .sum();
     (at_zero + lagged, at_zero)
+}
+
+/// Autocorrelation of residuals over all runs, by channel and then by lag, in samples; empty for a channel without any.
+#[must_use]
+pub fn persistence(experiment: &Experiment, residuals: &[Vec<f64>]) -> [Vec<f64>; 4] {
+    std::array::from_fn(|channel| {
+        let parts = experiment
+            .runs
+            .iter()
+            .zip(residuals)
+            .map(|(run, residual)| {
+                let samples = run.len();
+                (
+                    &residual[channel * samples..(channel + 1) * samples],
+                    reach(run),
+                )
+            });
+        let mut sums: Vec<f64> = Vec::new();
+        for (part, reach) in parts {
+            sums.resize(sums.len().max(reach + 1), 0.0);
+            for (lag, sum) in sums.iter_mut().enumerate().take(reach + 1) {
+                *sum += covariance(part, lag) * part.len() as f64;
+            }
+        }
+        let square = sums.first().copied().unwrap_or(0.0);
+        if square > 0.0 {
+            sums.iter().map(|sum| sum / square).collect()
+        } else {
+            Vec::new()
+        }
+    })
+}
+
+/// [`variance_inflation`] that a signature will meet in runs yet to be measured, whose noise is as persistent as that
+/// of runs which were.
+#[must_use]
+pub fn expected_inflation(
+    experiment: &Experiment,
+    persistence: &[Vec<f64>; 4],
+    signature: &[Vec<f64>],
+) -> f64 {
+    let (mut long, mut short) = (0.0, 0.0);
+    for (run, signature) in experiment.runs.iter().zip(signature) {
+        let (samples, reach) = (run.len(), reach(run));
+        for (channel, correlation) in persistence.iter().enumerate() {
+            let part = &signature[channel * samples..(channel + 1) * samples];
+            let at_zero = covariance(part, 0) * samples as f64;
+            short += at_zero;
+            long += at_zero;
+            for (lag, rho) in correlation.iter().enumerate().take(reach + 1).skip(1) {
+                let weight = 2.0 * bartlett(lag, reach) * rho;
+                long += weight * covariance(part, lag) * samples as f64;
+            }
+        }
+    }
+    if short > 0.0 {
+        (long / short).max(1.0)
+    } else {
+        1.0
+    }
 }
 
 /// Root mean square of a signature over the compared samples, in sigmas.
