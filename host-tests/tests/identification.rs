@@ -161,6 +161,6 @@ fn a_campaign_that_only_holds_cannot_decide() {
     assert!(
         explanation
             .next_experiment
-            .is_some_and(|what| what.contains("lift"))
+            .is_some_and(|next| next.to_string().contains("lift"))
     );
 }

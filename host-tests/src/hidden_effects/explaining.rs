@@ -33,7 +33,7 @@ impl Method for Explaining {
             named: steps.iter().map(|step| id(step.effect)).collect(),
             group: steps
                 .iter()
-                .flat_map(|step| step.indistinguishable.iter().map(|effect| id(*effect)))
+                .flat_map(|step| step.indistinguishable.iter().map(|other| id(other.effect)))
                 .collect(),
             unknown: explanation.verdict == Verdict::Unexplained,
             intervals: steps

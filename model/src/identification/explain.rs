@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::adequacy::{Cell, adequate, cells};
 use super::attribution::{Attribution, attribute};
 use super::candidate::{Candidate, projected, secant, try_effects, weigh};
+use super::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
 use super::estimate::{Estimate, Shared};
 use super::evidence::shares;
 use super::experiment::Experiment;
@@ -99,7 +100,7 @@ pub struct Step {
     /// Root mean square of its projected signature, in sigmas.
     pub detectability: f64,
     /// Effects that would explain the campaign as well in its place.
-    pub indistinguishable: Vec<&'static dyn Effect>,
+    pub indistinguishable: Vec<Alternative>,
     /// Values of its parameters in the final model.
     pub values: Vec<f64>,
     /// Their 95 % intervals.
@@ -123,8 +124,8 @@ pub struct Explanation {
     pub cells: Vec<Cell>,
     /// What the rest goes with; empty if the rest is noise.
     pub rest: Attribution,
-    /// What to measure next if the campaign cannot decide.
-    pub next_experiment: Option<&'static str>,
+    /// What to measure next if the campaign cannot decide, or not between two effects.
+    pub next_experiment: Option<NextExperiment>,
 }
 
 /// A campaign and a model with every effect of the catalogue tried once.
@@ -346,6 +347,11 @@ fn finish(
     } else {
         Attribution::default()
     };
+    let next_experiment = match verdict {
+        Verdict::Ambiguous => next_experiment(experiment, model, &pairs(&after, &steps)),
+        Verdict::NotEnoughData => missing.map(NextExperiment::missing),
+        _ => None,
+    };
     Explanation {
         before,
         after,
@@ -353,8 +359,25 @@ fn finish(
         verdict,
         cells,
         rest,
-        next_experiment: missing.filter(|_| verdict == Verdict::NotEnoughData),
+        next_experiment,
     }
+}
+
+/// Every named effect with each that could stand in its place.
+fn pairs<'a>(after: &'a Fit, steps: &'a [Step]) -> Vec<Pair<'a>> {
+    let of_step = |step: &'a Step| {
+        step.indistinguishable.iter().map(|alternative| Pair {
+            named: Rival {
+                effect: step.effect,
+                fit: after,
+            },
+            other: Rival {
+                effect: alternative.effect,
+                fit: &alternative.fit,
+            },
+        })
+    };
+    steps.iter().flat_map(of_step).collect()
 }
 
 /// Effects that fit as well in place of the last one.
@@ -363,7 +386,7 @@ fn alternatives(
     model: &Model,
     whole: &Fit,
     inflation: f64,
-) -> Vec<&'static dyn Effect> {
+) -> Vec<Alternative> {
     let last = whole.estimate.effects.len() - 1;
     let jacobian = Jacobian::new(experiment, model, &whole.weights, &whole.estimate);
     let own = projected(whole, &jacobian, Shared::Effect(last, 0));
@@ -378,7 +401,7 @@ fn alternatives(
         })
         .collect();
     if alike.is_empty() {
-        return alike;
+        return Vec::new();
     }
     let own_parameters = whole.estimate.effects[last].values.len();
     let base = refine(experiment, model, base_estimate);
@@ -389,7 +412,7 @@ fn alternatives(
             let shapes = swapped.effect.parameters().len() as f64 - own_parameters as f64;
             worse + shapes * swapped.effective_samples().ln() < TOLD_APART
         })
-        .map(|swapped| swapped.effect)
+        .filter_map(|swapped| Alternative::new(experiment, model, whole, swapped.fit))
         .collect()
 }
 

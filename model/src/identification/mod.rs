@@ -5,6 +5,7 @@ pub mod attribution;
 pub mod candidate;
 pub mod clocks;
 pub mod conditioning;
+pub mod design;
 pub mod estimate;
 pub mod evidence;
 pub mod experiment;

@@ -1,11 +1,13 @@
 //! What `hitch explain` and `hitch diagnose` found, as scripts read it (JSON) and as people do (text).
 mod found;
+mod next;
 mod of_diagnosis;
 mod of_explanation;
 mod rebuilt;
 mod show;
 
 pub use found::Found;
+pub use next::{Detail, Next};
 pub use of_explanation::parameters;
 pub use rebuilt::rebuilt;
 
@@ -23,7 +25,8 @@ pub struct Explanation {
     /// What stays unexplained.
     pub unexplained: Unexplained,
     /// The experiment that would tell most, if one is needed.
-    pub next_experiment: Option<String>,
+    #[serde(flatten)]
+    pub next: Next,
 }
 
 /// Result of `hitch diagnose`.
@@ -34,6 +37,9 @@ pub struct Diagnosis {
     pub head: Head,
     /// Effects that could be missing, best first.
     pub candidates: Vec<Candidate>,
+    /// The experiment that would tell the best two apart, if these data do not.
+    #[serde(flatten)]
+    pub next: Next,
 }
 
 /// What every result on a campaign begins with.
@@ -72,10 +78,23 @@ pub struct Step {
     pub confidence: f64,
     /// Effects that it cannot be told from on these data.
     pub indistinguishable: Vec<&'static str>,
+    /// The same with how far apart they are.
+    pub alternatives: Vec<Alternative>,
     /// Root mean square of its signature that nothing else can take on, in sigma.
     pub detectability: f64,
     /// Its parameters.
     pub parameters: Vec<Parameter>,
+}
+
+/// An effect that explains the campaign as well in place of another.
+#[derive(Debug, Clone, Serialize)]
+pub struct Alternative {
+    /// Id of the effect.
+    pub effect: &'static str,
+    /// Angle between what the two do to this campaign that nothing else could, degree.
+    pub angle_deg: f64,
+    /// Error with it instead, in sigma.
+    pub error_after: f64,
 }
 
 /// An effect that could be missing.

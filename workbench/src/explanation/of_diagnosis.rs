@@ -2,6 +2,7 @@
 use hitch_model::Model;
 use hitch_model::identification::adequacy::{adequate, cells};
 use hitch_model::identification::candidate;
+use hitch_model::identification::design::{NextExperiment, Pair, Rival, next_experiment};
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::{self, BELIEVED, TOLD_APART, Verdict};
 use hitch_model::identification::fit::Fit;
@@ -31,6 +32,7 @@ impl Diagnosis {
             candidates: candidates
                 .map(|(candidate, share)| shown(found, candidate, *share))
                 .collect(),
+            next: next(experiment, model, found, believed).into(),
         }
     }
 }
@@ -54,6 +56,23 @@ fn verdict(
     }
 }
 
+/// What would tell the best candidate from the next best of those that fit as well.
+fn next(
+    experiment: &Experiment,
+    model: &Model,
+    found: &explain::Diagnosis,
+    believed: Option<&candidate::Candidate>,
+) -> Option<NextExperiment> {
+    let best = believed?;
+    let twin = *twins(found, best).first()?;
+    let [named, other] = [best, twin].map(|candidate| Rival {
+        effect: candidate.effect,
+        fit: &candidate.fit,
+    });
+    let pair = Pair { named, other };
+    next_experiment(experiment, model, &[pair])
+}
+
 fn shown(
     found: &explain::Diagnosis,
     candidate: &candidate::Candidate,
@@ -64,7 +83,10 @@ fn shown(
         explains: explained(&found.base, &candidate.fit),
         error_after: candidate.fit.error(),
         confidence,
-        indistinguishable: twins(found, candidate),
+        indistinguishable: twins(found, candidate)
+            .iter()
+            .map(|twin| twin.effect.id())
+            .collect(),
         detectability: candidate.detectability,
         parameters: parameters(candidate.effect, candidate.values(), &candidate.intervals),
     }
@@ -81,7 +103,10 @@ fn explained(base: &Fit, with: &Fit) -> f64 {
 }
 
 /// Other effects that fit these data as well as a candidate that is believed.
-fn twins(found: &explain::Diagnosis, candidate: &candidate::Candidate) -> Vec<&'static str> {
+fn twins<'a>(
+    found: &'a explain::Diagnosis,
+    candidate: &candidate::Candidate,
+) -> Vec<&'a candidate::Candidate> {
     if candidate.likelihood_ratio < BELIEVED {
         return Vec::new();
     }
@@ -91,10 +116,5 @@ fn twins(found: &explain::Diagnosis, candidate: &candidate::Candidate) -> Vec<&'
             && other.likelihood_ratio >= BELIEVED
             && (other.fit.cost - candidate.fit.cost).abs() < TOLD_APART * unit
     };
-    found
-        .candidates
-        .iter()
-        .filter(as_good)
-        .map(|other| other.effect.id())
-        .collect()
+    found.candidates.iter().filter(as_good).collect()
 }

@@ -2,12 +2,13 @@
 use hitch_model::Model;
 use hitch_model::campaign::Channel;
 use hitch_model::effects::Effect;
+use hitch_model::identification::design;
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain;
 use hitch_model::identification::fit::Fit;
 use serde_json::{Map, Value, json};
 
-use super::{Explanation, Head, Parameter, Step, Unexplained};
+use super::{Alternative, Explanation, Head, Parameter, Step, Unexplained};
 
 impl Explanation {
     /// What is shown of an explanation of a campaign that began with a model.
@@ -28,7 +29,7 @@ impl Explanation {
                 depends_on: found.rest.depends_on.clone(),
                 suggested_term: None,
             },
-            next_experiment: found.next_experiment.map(str::to_owned),
+            next: found.next_experiment.clone().into(),
         }
     }
 }
@@ -44,10 +45,19 @@ fn step(step: &explain::Step) -> Step {
         indistinguishable: step
             .indistinguishable
             .iter()
-            .map(|effect| effect.id())
+            .map(|alternative| alternative.effect.id())
             .collect(),
+        alternatives: step.indistinguishable.iter().map(alternative).collect(),
         detectability: step.detectability,
         parameters: parameters(step.effect, &step.values, &step.intervals),
+    }
+}
+
+fn alternative(alternative: &design::Alternative) -> Alternative {
+    Alternative {
+        effect: alternative.effect.id(),
+        angle_deg: alternative.angle_deg,
+        error_after: alternative.error_after,
     }
 }
 

@@ -1,7 +1,7 @@
 //! The same results as text.
 use std::fmt;
 
-use super::{Diagnosis, Explanation, Head, Parameter, Step, Unexplained};
+use super::{Alternative, Diagnosis, Explanation, Head, Next, Parameter, Step, Unexplained};
 use crate::text::{Table, wrapped};
 
 /// Width of running text, characters.
@@ -24,15 +24,31 @@ impl fmt::Display for Explanation {
                 WIDTH
             )
         )?;
-        write!(f, "{}", self.unexplained)?;
-        if let Some(experiment) = &self.next_experiment {
-            writeln!(
-                f,
-                "{}",
-                wrapped(&format!("Next experiment: {experiment}"), WIDTH)
-            )?;
+        write!(f, "{}{}", self.unexplained, self.next)
+    }
+}
+
+impl fmt::Display for Next {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.next_experiment {
+            Some(sentence) => {
+                let line = format!("Next experiment: {sentence}.");
+                writeln!(f, "{}", wrapped(&line, WIDTH))
+            }
+            None => Ok(()),
         }
-        Ok(())
+    }
+}
+
+impl fmt::Display for Alternative {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            effect, angle_deg, ..
+        } = self;
+        write!(
+            f,
+            "{effect} ({angle_deg:.1} degrees apart on this campaign)"
+        )
     }
 }
 
@@ -101,7 +117,8 @@ impl fmt::Display for Diagnosis {
             f,
             "Verdict with the best candidate alone: {}.",
             self.head.verdict
-        )
+        )?;
+        write!(f, "{}", self.next)
     }
 }
 
@@ -146,12 +163,9 @@ impl fmt::Display for Step {
             self.confidence,
             self.detectability
         )?;
-        if !self.indistinguishable.is_empty() {
-            writeln!(
-                f,
-                "     cannot be told from: {}",
-                self.indistinguishable.join(", ")
-            )?;
+        if !self.alternatives.is_empty() {
+            let others: Vec<String> = self.alternatives.iter().map(ToString::to_string).collect();
+            writeln!(f, "     cannot be told from: {}", others.join(", "))?;
         }
         Ok(())
     }

@@ -69,6 +69,9 @@ fn verdict(shown: &Explanation) -> Markup {
             p { (format!("{:.1} % of the squared error above the noise stays; it goes with ", 100.0 * shown.unexplained.share))
                 (shown.unexplained.depends_on.join(", ")) "." }
         }
+        @if let Some(next) = &shown.next.next_experiment {
+            p { strong { "Next experiment: " } (next) "." }
+        }
     }
 }
 
@@ -87,11 +90,7 @@ fn stairs(shown: &Explanation) -> Vec<staircase::Step> {
 fn steps(steps: &[Step]) -> Markup {
     let row = |step: &Step| {
         let parameters: Vec<String> = step.parameters.iter().map(ToString::to_string).collect();
-        let twins = if step.indistinguishable.is_empty() {
-            "–".to_owned()
-        } else {
-            step.indistinguishable.join(", ")
-        };
+        let twins: Vec<String> = step.alternatives.iter().map(ToString::to_string).collect();
         vec![
             step.effect.to_owned(),
             parameters.join("; "),
@@ -99,7 +98,11 @@ fn steps(steps: &[Step]) -> Markup {
             format!("{:.2} → {:.2}", step.held_out_before, step.held_out_after),
             format!("{:.2}", step.confidence),
             format!("{:.2}", step.detectability),
-            twins,
+            if twins.is_empty() {
+                "–".to_owned()
+            } else {
+                twins.join(", ")
+            },
         ]
     };
     let header = [

@@ -1,0 +1,129 @@
+//! Effects that explain a campaign as well as the named one, and how far apart the two are on it.
+
+use super::super::estimate::Shared;
+use super::super::experiment::Experiment;
+use super::super::fit::Fit;
+use super::super::frame::Frame;
+use super::super::jacobian::{Jacobian, dot, residuals};
+use crate::effects::{AddedEffect, Effect};
+use crate::model::Model;
+
+/// An effect that would explain the campaign as well in place of another.
+#[derive(Debug, Clone)]
+pub struct Alternative {
+    /// Which effect.
+    pub effect: &'static dyn Effect,
+    /// Angle between the two effects' signatures at their fitted sizes, all that is free besides projected out, degree:
+    /// 0 if they are one on this campaign, 90 if they have nothing in common.
+    pub angle_deg: f64,
+    /// Fitted values of its parameters, in their units.
+    pub values: Vec<f64>,
+    /// Error of the model with it instead.
+    pub error_after: f64,
+    /// The model with it instead, as fitted; it is the last of the effects.
+    pub fit: Fit,
+}
+
+impl Alternative {
+    /// An effect that was fitted, last of all, in place of the last one of `whole`.
+    #[must_use]
+    pub fn new(experiment: &Experiment, model: &Model, whole: &Fit, fit: Fit) -> Option<Self> {
+        let added = fit.estimate.effects.last()?.clone();
+        Some(Self {
+            effect: added.effect,
+            angle_deg: angle_deg(experiment, model, whole, &added)?,
+            values: added.values,
+            error_after: fit.error(),
+            fit,
+        })
+    }
+}
+
+/// Angle between what the last effect of a fit does to the campaign and what `other` would do in its place, degree,
+/// both without what the other effects, the loads and the clocks can imitate. `None` without a last effect.
+#[must_use]
+pub fn angle_deg(
+    experiment: &Experiment,
+    model: &Model,
+    whole: &Fit,
+    other: &AddedEffect,
+) -> Option<f64> {
+    let last = whole.estimate.effects.len().checked_sub(1)?;
+    let with = |effect: AddedEffect| {
+        let mut estimate = whole.estimate.clone();
+        estimate.effects[last] = effect;
+        residuals(experiment, model, &whole.weights, &estimate)
+    };
+    let own = &whole.estimate.effects[last];
+    let absent = with(AddedEffect::null(own.effect));
+    let jacobian = without(
+        Jacobian::new(experiment, model, &whole.weights, &whole.estimate),
+        last,
+    );
+    let frame = Frame::new(&jacobian, &whole.estimate, None);
+    let signature = |present: &[Vec<f64>]| frame.project(difference(&absent, present));
+    Some(between_deg(
+        &signature(&whole.residuals),
+        &signature(&with(other.clone())),
+    ))
+}
+
+/// A Jacobian without the columns of one effect.
+fn without(mut jacobian: Jacobian, effect: usize) -> Jacobian {
+    let kept: Vec<bool> = jacobian
+        .shared
+        .iter()
+        .map(|shared| !matches!(shared, Shared::Effect(of, _) if *of == effect))
+        .collect();
+    let retain = |index: &mut usize| {
+        *index += 1;
+        kept[*index - 1]
+    };
+    for run in &mut jacobian.runs {
+        let mut index = 0;
+        run.shared.retain(|_| retain(&mut index));
+    }
+    let mut index = 0;
+    jacobian.shared.retain(|_| retain(&mut index));
+    jacobian
+}
+
+fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let runs = a.iter().zip(b);
+    runs.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect())
+        .collect()
+}
+
+/// Angle between two signatures, degree; a right one if either is nothing.
+fn between_deg(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    let product =
+        |x: &[Vec<f64>], y: &[Vec<f64>]| -> f64 { x.iter().zip(y).map(|(x, y)| dot(x, y)).sum() };
+    let (aa, bb, ab) = (product(a, a), product(b, b), product(a, b));
+    if aa <= 0.0 || bb <= 0.0 {
+        return 90.0;
+    }
+    // The arc cosine loses half of the digits of a small angle; the arc tangent does not.
+    let sine_square = (1.0 - ab / aa * (ab / bb)).max(0.0);
+    sine_square
+        .sqrt()
+        .atan2(ab.abs() / (aa * bb).sqrt())
+        .to_degrees()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::between_deg;
+
+    #[test]
+    fn angles_are_those_of_geometry() {
+        let a = vec![vec![2.0, 0.0], vec![0.0]];
+        for (degrees, b) in [
+            (0.0, vec![vec![-3.0, 0.0], vec![0.0]]),
+            (45.0, vec![vec![1.0, 0.0], vec![1.0]]),
+            (90.0, vec![vec![0.0, 1.0], vec![0.0]]),
+            (90.0, vec![vec![0.0, 0.0], vec![0.0]]),
+        ] {
+            assert!((between_deg(&a, &b) - degrees).abs() < 1e-6);
+        }
+    }
+}
