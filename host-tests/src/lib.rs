@@ -2,6 +2,7 @@
 
 pub mod emulator;
 pub mod hidden_effects;
+pub mod lab;
 pub mod program;
 pub mod recording;
 pub mod replay;

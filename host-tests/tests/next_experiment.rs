@@ -1,0 +1,326 @@
+//! What to measure next: proposed on campaigns that leave two effects alike, then measured, then decided.
+
+use hitch_model::Model;
+use hitch_model::effects::{AddedEffect, find};
+use hitch_model::identification::candidate::weigh;
+use hitch_model::identification::design::alternative::angle_deg;
+use hitch_model::identification::design::manoeuvre::MANOEUVRES;
+use hitch_model::identification::design::plan::{Manoeuvre, RunPlan, Segment, Stand};
+use hitch_model::identification::design::separation::Bench;
+use hitch_model::identification::design::{NextExperiment, Pair, Rival, next_experiment};
+use hitch_model::identification::estimate::Estimate;
+use hitch_model::identification::experiment::Experiment;
+use hitch_model::identification::explain::{Explanation, Step, TOLD_APART, Verdict};
+use hitch_model::identification::fit::{Fit, evaluate, refine};
+use hitch_model::plant::Currents;
+use host_tests::lab::{Lab, RATE_HZ};
+
+const ALL: [bool; 4] = [true; 4];
+const NO_PUMP_SENSOR: [bool; 4] = [false, true, true, true];
+const ANGLE_ONLY: [bool; 4] = [false, false, false, true];
+
+const fn lift(lift_a: f64, ramp_s: f64, stay_s: f64) -> Segment {
+    let lower_a = 0.0;
+    let to = Currents { lift_a, lower_a };
+    Segment { to, ramp_s, stay_s }
+}
+
+const fn lower(lower_a: f64, ramp_s: f64, stay_s: f64) -> Segment {
+    let lift_a = 0.0;
+    let to = Currents { lift_a, lower_a };
+    Segment { to, ramp_s, stay_s }
+}
+
+const fn hitch(load_kg: f64, start: f64, course: &'static [Segment]) -> RunPlan {
+    RunPlan {
+        stand: Stand::Hitch { load_kg, start },
+        oil_temperature_c: 40.0,
+        course,
+    }
+}
+
+/// The one load of the campaigns, kg.
+const LOAD_KG: f64 = 150.0;
+
+/// Steps up from rest at one load, each log ended before the current falls.
+static RISING_LIFTS: [RunPlan; 4] = [
+    hitch(LOAD_KG, 0.1, &[lift(1.3, 0.01, 4.0)]),
+    hitch(LOAD_KG, 0.1, &[lift(1.5, 0.01, 3.0)]),
+    hitch(LOAD_KG, 0.1, &[lift(1.9, 0.01, 1.5)]),
+    hitch(LOAD_KG, 0.1, &[lift(2.4, 0.01, 1.0)]),
+];
+
+/// Lifts and lowerings in steps, at one load.
+static STEPS: [RunPlan; 6] = [
+    hitch(LOAD_KG, 0.1, &[lift(1.4, 0.2, 3.0), lift(0.0, 0.2, 1.0)]),
+    hitch(LOAD_KG, 0.1, &[lift(1.8, 0.2, 1.5), lift(0.0, 0.2, 1.0)]),
+    hitch(LOAD_KG, 0.1, &[lift(2.4, 0.2, 1.0), lift(0.0, 0.2, 1.0)]),
+    hitch(LOAD_KG, 0.9, &[lower(1.6, 0.2, 3.0), lower(0.0, 0.2, 1.0)]),
+    hitch(LOAD_KG, 0.9, &[lower(1.9, 0.2, 1.5), lower(0.0, 0.2, 1.0)]),
+    hitch(LOAD_KG, 0.9, &[lower(2.4, 0.2, 0.8), lower(0.0, 0.2, 1.0)]),
+];
+
+fn effect(id: &str, values: &[f64]) -> AddedEffect {
+    let mut added = AddedEffect::typical(find(id).expect("in the catalogue"));
+    added.values[..values.len()].copy_from_slice(values);
+    added
+}
+
+/// The listed manoeuvre that an experiment proposes.
+fn proposed(next: &NextExperiment) -> &'static Manoeuvre {
+    MANOEUVRES
+        .iter()
+        .find(|manoeuvre| manoeuvre.instruction == next.manoeuvre)
+        .unwrap_or_else(|| panic!("a listed manoeuvre, not {next}"))
+}
+
+/// Ids of the effects that an explanation names, and whether it leaves any of them open.
+fn named(explanation: &Explanation) -> (Vec<&'static str>, bool) {
+    let steps = explanation.steps.iter();
+    let open = |step: &Step| !step.indistinguishable.is_empty();
+    (
+        steps.clone().map(|step| step.effect.id()).collect(),
+        steps.clone().any(open),
+    )
+}
+
+/// Explains a campaign that leaves `hidden` and `twin` open, measures what is proposed, and explains again: then the
+/// hidden effect has a name. Returns what was proposed.
+fn closes(hidden: AddedEffect, twin: &str, lab: &mut Lab) -> &'static Manoeuvre {
+    let first = lab.explain();
+    assert_eq!(first.verdict, Verdict::Ambiguous, "{:?}", named(&first));
+    let next = first.next_experiment.expect("ambiguous");
+    let pair = next.separates.iter().map(|(a, b)| [a.id(), b.id()]);
+    let id = hidden.effect.id();
+    assert!(
+        pair.clone().any(|pair| pair.contains(&id))
+            && pair.clone().any(|pair| pair.contains(&twin)),
+        "{id}, {twin}: {next}"
+    );
+    let manoeuvre = proposed(&next);
+    lab.measure(manoeuvre.runs);
+    let second = lab.explain();
+    let step = second.steps.iter().find(|step| step.effect.id() == id);
+    let step = step.unwrap_or_else(|| panic!("{id}, not {:?}", named(&second)));
+    let others: Vec<&str> = step
+        .indistinguishable
+        .iter()
+        .map(|a| a.effect.id())
+        .collect();
+    assert!(!others.contains(&twin), "{id} or {others:?}");
+    manoeuvre
+}
+
+/// Whether a manoeuvre is at another load than the campaigns of these tests, or at a port pressure.
+fn changes_pressure(manoeuvre: &Manoeuvre) -> bool {
+    let new = |run: &RunPlan| match run.stand {
+        Stand::Hitch { load_kg, .. } => load_kg != LOAD_KG,
+        Stand::Flow { .. } => true,
+    };
+    manoeuvre.runs.iter().any(new)
+}
+
+/// At one load, and without a sensor at the pump, a compensator that droops and a smaller orifice are one.
+#[test]
+fn a_drooping_compensator_is_told_from_a_scaled_flow_by_another_load() {
+    for (hidden, twin) in [
+        (effect("compensator-droop", &[0.005]), "lift-flow-scale"),
+        (effect("lift-flow-scale", &[0.04]), "compensator-droop"),
+    ] {
+        let mut lab = Lab::new(Model::nominal(), &hidden, NO_PUMP_SENSOR, &STEPS);
+        let manoeuvre = closes(hidden, twin, &mut lab);
+        assert!(changes_pressure(manoeuvre), "{}", manoeuvre.name);
+    }
+}
+
+/// Currents that only rise see one branch of a hysteresis: a shifted threshold.
+#[test]
+fn hysteresis_is_told_from_a_shifted_threshold_by_a_current_that_comes_back() {
+    for (hidden, twin) in [
+        (
+            effect("solenoid-hysteresis", &[0.1]),
+            "lift-threshold-shift",
+        ),
+        (
+            effect("lift-threshold-shift", &[0.05]),
+            "solenoid-hysteresis",
+        ),
+    ] {
+        let mut lab = Lab::new(Model::nominal(), &hidden, ALL, &RISING_LIFTS);
+        let manoeuvre = closes(hidden, twin, &mut lab);
+        assert!(
+            ["triangle", "reversals", "staircase"]
+                .iter()
+                .any(|kind| manoeuvre.name.contains(kind)),
+            "{}",
+            manoeuvre.name
+        );
+    }
+}
+
+/// Both of a pair fitted to what a lab has measured, and the angle between them.
+struct Twins {
+    experiment: Experiment,
+    fits: [Fit; 2],
+    angle_deg: f64,
+}
+
+impl Twins {
+    fn new(lab: &Lab, ids: [&str; 2]) -> Self {
+        let experiment = lab.experiment();
+        let fits = ids.map(|id| {
+            let start = Estimate::new(&experiment, vec![effect(id, &[])]);
+            refine(&experiment, &lab.model, start)
+        });
+        let other = &fits[1].estimate.effects[0];
+        let angle = angle_deg(&experiment, &lab.model, &fits[0], other);
+        Self {
+            angle_deg: angle.expect("an effect"),
+            fits,
+            experiment,
+        }
+    }
+
+    fn pair(&self) -> Pair<'_> {
+        let [named, other] = self.fits.each_ref().map(|fit| Rival {
+            effect: fit.estimate.effects[0].effect,
+            fit,
+        });
+        Pair { named, other }
+    }
+}
+
+/// The twins that the catalogue warns of are close on plain steps, and far apart with what is proposed.
+#[test]
+fn twins_come_apart() {
+    for (ids, channels, plans) in [
+        (
+            ["solenoid-hysteresis", "lift-threshold-shift"],
+            ALL,
+            &RISING_LIFTS[..],
+        ),
+        (
+            ["solenoid-hysteresis", "spool-stiction"],
+            ALL,
+            &RISING_LIFTS,
+        ),
+        (
+            ["compensator-droop", "lift-flow-scale"],
+            NO_PUMP_SENSOR,
+            &STEPS,
+        ),
+        (["coulomb-friction", "pin-friction"], ALL, &STEPS),
+        (["oil-viscosity", "lower-flow-scale"], ALL, &STEPS),
+    ] {
+        let mut lab = Lab::new(Model::nominal(), &effect(ids[0], &[]), channels, plans);
+        let before = Twins::new(&lab, ids);
+        let next = next_experiment(&before.experiment, &lab.model, &[before.pair()]);
+        let next = next.expect("a pair");
+        lab.measure(proposed(&next).runs);
+        let after = Twins::new(&lab, ids).angle_deg;
+        let before = before.angle_deg;
+        assert!(
+            before < 6.0 && after > 20.0,
+            "{ids:?}: {before} to {after} degrees"
+        );
+    }
+}
+
+/// Air in the oil and a soft hose ring alike until the load changes.
+#[test]
+fn a_ringing_plant_is_designed_for_as_well() {
+    let ids = ["entrained-air", "hose-compliance"];
+    let lab = Lab::new(Model::dynamic(), &effect(ids[0], &[]), ALL, &STEPS);
+    let twins = Twins::new(&lab, ids);
+    let next = next_experiment(&twins.experiment, &lab.model, &[twins.pair()]);
+    let next = next.expect("a pair");
+    assert!(changes_pressure(proposed(&next)), "{next}");
+}
+
+/// Without a pressure sensor a little friction in the pins is a little less flow, whatever is done.
+#[test]
+fn a_sensor_is_asked_for_where_no_manoeuvre_helps() {
+    let ids = ["pin-friction", "lower-flow-scale"];
+    let lab = Lab::new(Model::nominal(), &effect(ids[0], &[]), ANGLE_ONLY, &STEPS);
+    let twins = Twins::new(&lab, ids);
+    assert!(twins.angle_deg < 3.0, "{}", twins.angle_deg);
+    let next = next_experiment(&twins.experiment, &lab.model, &[twins.pair()]);
+    let next = next.expect("a pair");
+    assert!(next.separates.is_empty() && next.minutes.is_nan());
+    assert!(next.expected_likelihood_ratio < TOLD_APART);
+    let sentence = next.to_string();
+    assert!(
+        sentence.starts_with("none of the listed manoeuvres"),
+        "{sentence}"
+    );
+    assert!(
+        sentence.ends_with("a pressure sensor at the cylinder"),
+        "{sentence}"
+    );
+}
+
+/// What is promised is what a measurement then gives.
+#[test]
+fn the_expected_likelihood_ratio_is_met() {
+    let hidden = effect("compensator-droop", &[0.005]);
+    let ids = ["compensator-droop", "lift-flow-scale"];
+    let lab = || Lab::new(Model::nominal(), &hidden, NO_PUMP_SENSOR, &STEPS);
+    let excess = |twins: &Twins| twins.fits[1].cost - twins.fits[0].cost;
+    let first = lab();
+    let twins = Twins::new(&first, ids);
+    let bench = Bench::new(&twins.experiment, &first.model, &twins.fits[0]);
+    let known = [bench.known(twins.pair())];
+    for name in ["light-and-heavy-lift", "creep-and-stop", "full-opening"] {
+        let manoeuvre = MANOEUVRES.iter().find(|manoeuvre| manoeuvre.name == name);
+        let manoeuvre = manoeuvre.expect("listed");
+        let expected = bench.likelihood_ratios(manoeuvre, &known)[0];
+        let mut more = lab();
+        more.measure(manoeuvre.runs);
+        let measured = Twins::new(&more, ids);
+        let own = measured.fits[0].clone();
+        let base = evaluate(
+            &measured.experiment,
+            &more.model,
+            Estimate::new(&measured.experiment, vec![]),
+        );
+        let inflation =
+            weigh(&measured.experiment, &more.model, &base, hidden.effect, own).inflation;
+        let found = (excess(&measured) - excess(&twins)) / inflation;
+        assert!(
+            (0.5..3.0).contains(&(found / expected)),
+            "{name}: {found}, not {expected}"
+        );
+    }
+}
+
+#[test]
+fn manoeuvres_can_be_carried_out() {
+    for (index, manoeuvre) in MANOEUVRES.iter().enumerate() {
+        let name = manoeuvre.name;
+        assert!(
+            MANOEUVRES[..index].iter().all(|other| other.name != name),
+            "{name} twice"
+        );
+        assert!(!manoeuvre.instruction.ends_with('.') && !manoeuvre.runs.is_empty());
+        assert!(
+            (1.0..60.0).contains(&manoeuvre.minutes()),
+            "{name}: {}",
+            manoeuvre.minutes()
+        );
+        for run in manoeuvre.runs {
+            for time_s in run.time_s(RATE_HZ) {
+                let Currents { lift_a, lower_a } = run.currents(time_s);
+                assert!(
+                    (0.0..=3.5).contains(&lift_a) && (0.0..=3.5).contains(&lower_a),
+                    "{name}"
+                );
+                assert!(
+                    lift_a == 0.0 || lower_a == 0.0,
+                    "{name}: both coils at {time_s} s"
+                );
+            }
+            let end = run.currents(run.duration_s());
+            assert_eq!(end, Currents::default(), "{name} leaves a valve open");
+        }
+    }
+}
