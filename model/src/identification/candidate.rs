@@ -7,7 +7,7 @@ use super::evidence::{detectability, log_odds, variance_inflation};
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate_weighted, refine, sketch};
 use super::frame::Frame;
-use super::jacobian::{Jacobian, huber_residuals, residuals, square_sum};
+use super::jacobian::{Jacobian, huber_residuals, square_sum};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
@@ -420,30 +420,4 @@ pub fn projected(fit: &Fit, jacobian: &Jacobian, shared: Shared) -> Vec<Vec<f64>
         .map(|run| run.shared[column].clone())
         .collect();
     Frame::new(jacobian, &fit.estimate, Some(column)).project(signature)
-}
-
-/// Projected signature of an effect at its typical size on a fitted model whose effect `left_out` is not free.
-#[must_use]
-pub fn secant(
-    experiment: &Experiment,
-    model: &Model,
-    fit: &Fit,
-    jacobian: &Jacobian,
-    effect: &'static dyn Effect,
-    left_out: usize,
-) -> Vec<Vec<f64>> {
-    let mut estimate = fit.estimate.clone();
-    estimate.effects.push(AddedEffect::typical(effect));
-    let moved = residuals(experiment, model, &fit.weights, &estimate);
-    let signature = fit
-        .residuals
-        .iter()
-        .zip(moved)
-        .map(|(base, moved)| base.iter().zip(moved).map(|(b, m)| b - m).collect())
-        .collect();
-    let column = jacobian
-        .shared
-        .iter()
-        .position(|&s| s == Shared::Effect(left_out, 0));
-    Frame::new(jacobian, &fit.estimate, column).project(signature)
 }

@@ -9,16 +9,16 @@ use rayon::prelude::*;
 
 use super::adequacy::{Cell, adequate, cells};
 use super::attribution::{Attribution, attribute};
-use super::candidate::{Candidate, projected, secant, try_effects, weigh};
-use super::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
-use super::estimate::{Estimate, Shared};
+use super::candidate::{Candidate, try_effects, weigh};
+use super::design::{Alternative, NextExperiment, Pair, Place, Rival, next_experiment};
+use super::estimate::Estimate;
 use super::evidence::shares;
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate, fit, refine};
 use super::holdout::held_out_error;
-use super::jacobian::{Jacobian, dot};
+use super::jacobian::square_sum;
 use super::regime::Regime;
-use crate::effects::Effect;
+use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
 /// Likelihood ratio that an effect needs: chi-squared with one degree of freedom at 5 % over some fifty tries.
@@ -41,8 +41,8 @@ pub const TOLD_APART: f64 = 10.0;
 /// Fewest compared samples that anything is concluded from.
 const FEWEST_SAMPLES: usize = 50;
 
-/// Cosine above which two projected signatures are worth a fit of the one in place of the other.
-const ALIKE: f64 = 0.8;
+/// Angle between two signatures under which the one is worth a fit in place of the other, degree.
+const ALIKE_DEG: f64 = 37.0;
 
 /// Most effects that are added.
 const MOST_STEPS: usize = 5;
@@ -388,17 +388,14 @@ fn alternatives(
     inflation: f64,
 ) -> Vec<Alternative> {
     let last = whole.estimate.effects.len() - 1;
-    let jacobian = Jacobian::new(experiment, model, &whole.weights, &whole.estimate);
-    let own = projected(whole, &jacobian, Shared::Effect(last, 0));
+    let Some(place) = Place::new(experiment, model, whole) else {
+        return Vec::new();
+    };
     let base_estimate = without(&whole.estimate, last);
-    let variance =
-        (super::jacobian::square_sum(&whole.residuals) / whole.weights.count() as f64).max(1.0);
+    let variance = (square_sum(&whole.residuals) / whole.weights.count() as f64).max(1.0);
     let alike: Vec<&'static dyn Effect> = absent(model, &whole.estimate)
         .into_par_iter()
-        .filter(|effect| {
-            let other = secant(experiment, model, whole, &jacobian, *effect, last);
-            cosine(&own, &other) > ALIKE
-        })
+        .filter(|effect| place.angle_deg(&AddedEffect::typical(*effect)) < ALIKE_DEG)
         .collect();
     if alike.is_empty() {
         return Vec::new();
@@ -414,17 +411,6 @@ fn alternatives(
         })
         .filter_map(|swapped| Alternative::new(experiment, model, whole, swapped.fit))
         .collect()
-}
-
-fn cosine(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
-    let product =
-        |x: &[Vec<f64>], y: &[Vec<f64>]| -> f64 { x.iter().zip(y).map(|(x, y)| dot(x, y)).sum() };
-    let lengths = (product(a, a) * product(b, b)).sqrt();
-    if lengths > 0.0 {
-        (product(a, b) / lengths).abs()
-    } else {
-        0.0
-    }
 }
 
 fn verdict(

@@ -48,24 +48,55 @@ pub fn angle_deg(
     whole: &Fit,
     other: &AddedEffect,
 ) -> Option<f64> {
-    let last = whole.estimate.effects.len().checked_sub(1)?;
-    let with = |effect: AddedEffect| {
-        let mut estimate = whole.estimate.clone();
-        estimate.effects[last] = effect;
-        residuals(experiment, model, &whole.weights, &estimate)
-    };
-    let own = &whole.estimate.effects[last];
-    let absent = with(AddedEffect::null(own.effect));
-    let jacobian = without(
-        Jacobian::new(experiment, model, &whole.weights, &whole.estimate),
-        last,
-    );
-    let frame = Frame::new(&jacobian, &whole.estimate, None);
-    let signature = |present: &[Vec<f64>]| frame.project(difference(&absent, present));
-    Some(between_deg(
-        &signature(&whole.residuals),
-        &signature(&with(other.clone())),
-    ))
+    Some(Place::new(experiment, model, whole)?.angle_deg(other))
+}
+
+/// The place of the last effect of a fit, for others to be tried in.
+pub struct Place<'a> {
+    experiment: &'a Experiment,
+    model: &'a Model,
+    whole: &'a Fit,
+    last: usize,
+    /// Sensitivities of all that is free besides the last effect.
+    jacobian: Jacobian,
+    /// Residuals with nothing in the place.
+    empty: Vec<Vec<f64>>,
+}
+
+impl<'a> Place<'a> {
+    /// The place of the last effect; `None` if there is none.
+    #[must_use]
+    pub fn new(experiment: &'a Experiment, model: &'a Model, whole: &'a Fit) -> Option<Self> {
+        let last = whole.estimate.effects.len().checked_sub(1)?;
+        let jacobian = Jacobian::new(experiment, model, &whole.weights, &whole.estimate);
+        let mut place = Self {
+            experiment,
+            model,
+            whole,
+            last,
+            jacobian: without(jacobian, last),
+            empty: Vec::new(),
+        };
+        place.empty = place.residuals(AddedEffect::null(whole.estimate.effects[last].effect));
+        Some(place)
+    }
+
+    /// Angle between the signatures of the effect that is there and of `other` in its place, degree.
+    #[must_use]
+    pub fn angle_deg(&self, other: &AddedEffect) -> f64 {
+        let frame = Frame::new(&self.jacobian, &self.whole.estimate, None);
+        let signature = |present: &[Vec<f64>]| frame.project(difference(&self.empty, present));
+        between_deg(
+            &signature(&self.whole.residuals),
+            &signature(&self.residuals(other.clone())),
+        )
+    }
+
+    fn residuals(&self, effect: AddedEffect) -> Vec<Vec<f64>> {
+        let mut estimate = self.whole.estimate.clone();
+        estimate.effects[self.last] = effect;
+        residuals(self.experiment, self.model, &self.whole.weights, &estimate)
+    }
 }
 
 /// A Jacobian without the columns of one effect.
