@@ -89,7 +89,8 @@ pub fn campaign(case: &Case) -> Campaign {
     }
 }
 
-fn log(case: &Case, physics: &Physics, run: &PlannedRun, random: &mut impl Rng) -> Run {
+/// The log of one run.
+pub fn log(case: &Case, physics: &Physics, run: &PlannedRun, random: &mut impl Rng) -> Run {
     let manoeuvre = &run.manoeuvre;
     let readings = measure(physics, case.family, manoeuvre, run.circumstances);
     let time_s: Vec<f64> = (0..readings.len())

@@ -38,6 +38,12 @@ pub enum Stand {
 pub struct Course(Vec<(f64, f64)>);
 
 impl Course {
+    /// Straight lines between knots of rising time, s, and current, A.
+    #[must_use]
+    pub fn through(knots: Vec<(f64, f64)>) -> Self {
+        Self(knots)
+    }
+
     /// Current at a time, A; before the first knot and behind the last one as there, zero without knots.
     #[must_use]
     pub fn at(&self, time_s: f64) -> f64 {

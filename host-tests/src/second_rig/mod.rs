@@ -12,6 +12,7 @@
 //! current_path   coil current -> spool            hydraulics   spools and pressure -> flows
 //! linkage        travel -> angle, height          mechanics    forces and motion
 //! test_stand     one run, sample by sample        instruments  noise, gaps, rounding
+//! on_order       runs that a design of experiments asks for
 //! campaign_writer  the campaign in memory or in a folder
 //! ```
 
@@ -25,6 +26,7 @@ pub mod instruments;
 pub mod linkage;
 pub mod manoeuvres;
 pub mod mechanics;
+pub mod on_order;
 pub mod outside;
 pub mod physics;
 pub mod test_stand;

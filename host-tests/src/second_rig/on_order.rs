@@ -1,0 +1,44 @@
+//! Runs that somebody else planned, as the second rig carries them out.
+
+use hitch_model::Model;
+use hitch_model::identification::design::plan::{RunPlan, Stand as PlannedStand};
+use hitch_model::plant::{Currents, Rig};
+
+use super::manoeuvres::{Course, Manoeuvre, Stand};
+
+/// A planned run; `model` says where its start is.
+#[must_use]
+pub fn on_order(plan: &RunPlan, model: &Model) -> Manoeuvre {
+    let stand = match (plan.stand, plan.rig(model)) {
+        (PlannedStand::Hitch { load_kg, .. }, Rig::Hitch(rig)) => Stand::Hitch {
+            load_kg,
+            start_deg: rig.start_angle_rad.to_degrees(),
+        },
+        (PlannedStand::Hitch { .. }, Rig::Flow { .. }) => unreachable!("a hitch is no flow bench"),
+        (PlannedStand::Flow { port_pressure_bar }, _) => Stand::Flow {
+            port_bar: port_pressure_bar,
+        },
+    };
+    Manoeuvre {
+        file: String::new(),
+        stand,
+        oil_temperature_c: plan.oil_temperature_c,
+        duration_s: plan.duration_s(),
+        lift: course(plan, |currents| currents.lift_a),
+        lower: course(plan, |currents| currents.lower_a),
+    }
+}
+
+/// One current of a plan.
+fn course(plan: &RunPlan, current_a: impl Fn(Currents) -> f64) -> Course {
+    let segments: f64 = plan.course.iter().map(|s| s.ramp_s + s.stay_s).sum();
+    let mut time_s = plan.duration_s() - segments;
+    let mut knots = vec![(time_s, 0.0)];
+    for segment in plan.course {
+        let to_a = current_a(segment.to);
+        knots.push((time_s + segment.ramp_s, to_a));
+        time_s += segment.ramp_s + segment.stay_s;
+        knots.push((time_s, to_a));
+    }
+    Course::through(knots)
+}
