@@ -76,6 +76,71 @@ fn a_term_in_the_model_file_is_named_and_explains_the_campaign() {
 }
 
 #[test]
+fn a_term_is_suggested_where_the_catalogue_ends() {
+    let folder = TempDir::new().expect("a folder");
+    let campaign = campaign();
+    let arguments = [
+        "explain",
+        campaign.to_str().expect("a path"),
+        "--out",
+        "found.toml",
+        "--report",
+        "found.html",
+        "--json",
+        "-",
+    ];
+    let found: Value = serde_json::from_str(&printed(&folder, &arguments)).expect("JSON");
+    assert_eq!(found["verdict"], "unexplained");
+    let unexplained = &found["unexplained"];
+    assert_eq!(unexplained["depends_on"][0], "rocker_angle_deg");
+    let place = unexplained["where"].as_str().expect("where it is largest");
+    assert!(place.ends_with("near the bottom while lowering"), "{place}");
+    let suggested = &unexplained["suggested"];
+    assert_eq!(suggested["place"], "lower-flow-factor", "{suggested}");
+    let formula = suggested["formula"].as_str().expect("a formula");
+    assert!(formula.contains("x"), "{formula}");
+    let term = unexplained["suggested_term"].as_str().expect("a term");
+    assert!(term.contains(formula), "{term}");
+    let held_out = suggested["held_out_after"].as_f64().expect("an error");
+    assert!(held_out <= 1.15, "held out {held_out}");
+    let report = fs::read_to_string(folder.path().join("found.html")).expect("the report");
+    assert!(report.contains("near the bottom while lowering") && report.contains("[[term]]"));
+    let file = fs::read_to_string(folder.path().join("found.toml")).expect("the model");
+    assert!(file.contains("[[term]]"));
+
+    let pasted = suggested["model_file"].as_str().expect("a text");
+    let pasted = format!("format = 1\nbase = \"nominal\"\n\n{pasted}");
+    fs::write(folder.path().join("pasted.toml"), pasted).expect("a file");
+    let id = found_id(&folder);
+    let arguments = [
+        "add",
+        &id,
+        "--campaign",
+        campaign.to_str().expect("a path"),
+        "--model",
+        "pasted.toml",
+        "--out",
+        "added.toml",
+    ];
+    let added = printed(&folder, &arguments);
+    let error = added.rsplit("error ").next().expect("an error");
+    let error: f64 = error
+        .split(' ')
+        .next()
+        .expect("a number")
+        .parse()
+        .expect("a number");
+    assert!(error <= 1.15, "{added}");
+}
+
+/// The name of the term in the pasted file.
+fn found_id(folder: &TempDir) -> String {
+    let file = fs::read_to_string(folder.path().join("pasted.toml")).expect("the model");
+    let (_, rest) = file.split_once("[[term]]\nid = \"").expect("a term");
+    rest.split('"').next().expect("a name").to_owned()
+}
+
+#[test]
 fn a_term_can_be_listed_and_added() {
     let folder = folder();
     let listed = printed(

@@ -77,9 +77,19 @@ fn models() -> [Model; 2] {
     [Model::nominal(), Model::dynamic()]
 }
 
+/// Place, formula, unit and value of a term, and an effect of the catalogue with its values.
+type Twin = (
+    Place,
+    &'static str,
+    &'static str,
+    f64,
+    &'static str,
+    &'static [f64],
+);
+
 /// A formula and the effect of the catalogue that it writes down, with its values.
 #[rustfmt::skip]
-const TWINS: [(Place, &str, &str, f64, &str, &[f64]); 9] = [
+const TWINS: [Twin; 9] = [
     (Place::LiftCurrent, "-c", "A", 0.05, "lift-threshold-shift", &[0.05]),
     (Place::LowerCurrent, "-c", "A", 0.05, "lower-threshold-shift", &[0.05]),
     (Place::LiftFlowFactor, "c", "", 0.1, "lift-flow-scale", &[0.1]),

@@ -40,12 +40,9 @@ pub fn attribute(experiment: &Experiment, before: &Fit, after: &Fit) -> Attribut
     let squares = squares_by_sample(experiment, after);
     let mut ranked: Vec<(f64, &str)> = SIGNALS
         .iter()
-        .enumerate()
-        .map(|(signal, &name)| {
-            (
-                correlation_ratio(&signal_values(experiment, signal), &squares),
-                name,
-            )
+        .filter_map(|&name| {
+            let values = signal_values(experiment, name)?;
+            Some((correlation_ratio(&values, &squares), name))
         })
         .collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -75,7 +72,9 @@ fn squares_by_sample(experiment: &Experiment, fit: &Fit) -> Vec<f64> {
     squares
 }
 
-fn signal_values(experiment: &Experiment, signal: usize) -> Vec<f64> {
+/// A signal, by its name, at every sample of every run; `None` for another name.
+pub(super) fn signal_values(experiment: &Experiment, name: &str) -> Option<Vec<f64>> {
+    let signal = SIGNALS.iter().position(|&signal| signal == name)?;
     let mut values = Vec::new();
     for run in &experiment.runs {
         let measured = |channel: Channel, sample: usize| {
@@ -99,7 +98,7 @@ fn signal_values(experiment: &Experiment, signal: usize) -> Vec<f64> {
             });
         }
     }
-    values
+    Some(values)
 }
 
 /// Part of the variance of `y` that lies between the bins of `x` (Pearson's correlation ratio, squared).

@@ -17,3 +17,5 @@ pub mod jacobian;
 pub mod noise;
 pub mod regime;
 pub mod residual;
+pub mod suggestion;
+pub mod whereabouts;

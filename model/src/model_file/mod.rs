@@ -52,9 +52,18 @@ mod write;
 
 use std::path::Path;
 
+use crate::effects::TermEffect;
 use crate::input_error::InputError;
 use crate::model::Model;
 use crate::source_file::SourceFile;
+
+/// A term as it stands in a model file.
+#[must_use]
+pub fn term_text(term: &TermEffect) -> String {
+    let mut text = String::new();
+    terms::write(&mut text, term);
+    text.trim_start().to_owned()
+}
 
 /// The only format there is.
 const FORMAT: f64 = 1.0;

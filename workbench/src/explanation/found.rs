@@ -1,8 +1,11 @@
 //! An explanation together with what it was found from.
 use hitch_model::Model;
 use hitch_model::campaign::Campaign;
+use hitch_model::effects::Effect;
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain;
+use hitch_model::identification::suggestion::{Suggestion, suggest};
+use hitch_model::identification::whereabouts::Profile;
 
 use super::{Explanation, rebuilt};
 use crate::progress::Progress;
@@ -16,6 +19,10 @@ pub struct Found {
     pub experiment: Experiment,
     /// The explanation as the identification gives it.
     pub explanation: explain::Explanation,
+    /// Where what stays unexplained is largest, along the first signal that it goes with.
+    pub rest: Option<Profile>,
+    /// A term for it.
+    pub suggestion: Option<Suggestion>,
     /// The explanation as it is shown.
     pub shown: Explanation,
 }
@@ -28,8 +35,22 @@ impl Found {
         let explanation = explain::explain(&experiment, &model, &|what| {
             progress.say(format!("trying {what}"))
         });
-        let shown = Explanation::new(&experiment, &model, &explanation);
+        let rest = explanation
+            .rest
+            .depends_on
+            .first()
+            .and_then(|signal| Profile::new(&experiment, &explanation.after, signal));
+        let suggestion = suggest(&experiment, &model, &explanation, &|what| {
+            progress.say(format!("trying a term of its own, {what}"))
+        });
+        let mut shown = Explanation::new(&experiment, &model, &explanation);
+        shown.unexplained.whereabouts = rest.as_ref().map(ToString::to_string);
+        if let Some(suggestion) = &suggestion {
+            shown.unexplained.suggest(suggestion);
+        }
         Self {
+            rest,
+            suggestion,
             model,
             experiment,
             explanation,
@@ -37,8 +58,15 @@ impl Found {
         }
     }
 
-    /// The model with the effects that were found.
+    /// The model with the effects that were found; a suggested term is defined in it, but not added.
     pub fn rebuilt(&self, name: String) -> Model {
-        rebuilt(&self.model, &self.explanation.after.estimate.effects, name)
+        let mut model = rebuilt(&self.model, &self.explanation.after.estimate.effects, name);
+        let defined: Vec<&str> = model.terms.iter().map(|term| term.id()).collect();
+        if let Some(suggestion) = &self.suggestion
+            && !defined.contains(&suggestion.term.id())
+        {
+            model.terms.push(suggestion.term);
+        }
+        model
     }
 }

@@ -3,6 +3,7 @@ mod found;
 mod next;
 mod of_diagnosis;
 mod of_explanation;
+mod of_suggestion;
 mod rebuilt;
 mod show;
 
@@ -138,6 +139,32 @@ pub struct Unexplained {
     pub share: f64,
     /// Signals that it goes with, best first.
     pub depends_on: Vec<String>,
-    /// A formula for it, if one was found.
+    /// Where it is largest: range of the first of these signals, end of the travel, motion.
+    #[serde(rename = "where")]
+    pub whereabouts: Option<String>,
+    /// A formula for it, with the place where it acts, if one was found.
     pub suggested_term: Option<String>,
+    /// The same with all that belongs to it.
+    pub suggested: Option<Suggested>,
+}
+
+/// A term that would help: a candidate for a model file, not an identified cause.
+#[derive(Debug, Clone, Serialize)]
+pub struct Suggested {
+    /// Where it acts.
+    pub place: &'static str,
+    /// Its formula.
+    pub formula: String,
+    /// Its parameters.
+    pub parameters: Vec<Parameter>,
+    /// Error without it, on runs that were not used to fit.
+    pub held_out_before: f64,
+    /// Error with it, on runs that were not used to fit.
+    pub held_out_after: f64,
+    /// Error with it.
+    pub error_after: f64,
+    /// Steps that are not needed beside it.
+    pub replaces: Vec<&'static str>,
+    /// The term as it is written into a model file.
+    pub model_file: String,
 }

@@ -27,7 +27,9 @@ impl Explanation {
             unexplained: Unexplained {
                 share: found.rest.share,
                 depends_on: found.rest.depends_on.clone(),
+                whereabouts: None,
                 suggested_term: None,
+                suggested: None,
             },
             next: found.next_experiment.clone().into(),
         }

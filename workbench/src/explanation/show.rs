@@ -1,7 +1,9 @@
 //! The same results as text.
 use std::fmt;
 
-use super::{Alternative, Diagnosis, Explanation, Head, Next, Parameter, Step, Unexplained};
+use super::{
+    Alternative, Diagnosis, Explanation, Head, Next, Parameter, Step, Suggested, Unexplained,
+};
 use crate::text::{Table, wrapped};
 
 /// Width of running text, characters.
@@ -205,10 +207,39 @@ impl fmt::Display for Unexplained {
         if !self.depends_on.is_empty() {
             write!(f, "; it goes with {}", self.depends_on.join(", "))?;
         }
-        if let Some(term) = &self.suggested_term {
-            write!(f, "; a term to try: {term}")?;
+        writeln!(f)?;
+        if let Some(place) = &self.whereabouts {
+            writeln!(f, "  It is largest at {place}.")?;
         }
-        writeln!(f)
+        self.suggested
+            .as_ref()
+            .map_or(Ok(()), |term| write!(f, "{term}"))
+    }
+}
+
+impl fmt::Display for Suggested {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parameters: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
+        write!(
+            f,
+            "\n  A term that would bring the error on held-out runs from {:.2} to {:.2}",
+            self.held_out_before, self.held_out_after
+        )?;
+        if !self.replaces.is_empty() {
+            write!(f, ", in place of {}", self.replaces.join(", "))?;
+        }
+        writeln!(
+            f,
+            ":\n\n    {} = {}\n    {}\n\n  To be judged by you, and put into a model file like this:",
+            self.place,
+            self.formula,
+            parameters.join(", ")
+        )?;
+        for line in self.model_file.lines() {
+            let indent = if line.is_empty() { "" } else { "    " };
+            writeln!(f, "{indent}{line}")?;
+        }
+        Ok(())
     }
 }
 

@@ -3,6 +3,7 @@ use hitch_model::identification::fit::Fit;
 use maud::{Markup, html};
 
 use super::page;
+use super::rest_figure::{picture, suggestion};
 use super::run_views::run_views;
 use super::runs::runs;
 use super::staircase::{self, staircase};
@@ -34,6 +35,8 @@ pub fn findings(found: &Found) -> Markup {
         h2 { "The error, step by step" }
         (staircase(&stairs(&found.shown)))
         @if !found.shown.steps.is_empty() { (steps(&found.shown.steps)) }
+        @if let Some(rest) = &found.rest { (picture(rest)) }
+        @if let Some(term) = &found.shown.unexplained.suggested { (suggestion(term)) }
     }
 }
 

@@ -7,6 +7,7 @@ pub mod loop_page;
 pub mod main_page;
 pub mod page;
 pub mod rebuild_page;
+mod rest_figure;
 pub mod run_views;
 pub mod runs;
 pub mod scale;

@@ -1,0 +1,30 @@
+//! From a suggested term to what is shown of it.
+use hitch_model::identification::suggestion::Suggestion;
+use hitch_model::model_file::term_text;
+
+use super::{Suggested, Unexplained, parameters};
+
+impl Suggested {
+    fn new(found: &Suggestion) -> Self {
+        let definition = found.term.term().definition();
+        Self {
+            place: definition.place.id(),
+            formula: definition.formula.clone(),
+            parameters: parameters(found.term, &found.values, &found.intervals),
+            held_out_before: found.held_out_before,
+            held_out_after: found.held_out_after,
+            error_after: found.fit.error(),
+            replaces: found.needless.iter().map(|effect| effect.id()).collect(),
+            model_file: term_text(found.term),
+        }
+    }
+}
+
+impl Unexplained {
+    /// Puts in a suggestion.
+    pub fn suggest(&mut self, found: &Suggestion) {
+        let suggested = Suggested::new(found);
+        self.suggested_term = Some(format!("{} = {}", suggested.place, suggested.formula));
+        self.suggested = Some(suggested);
+    }
+}

@@ -1,0 +1,86 @@
+//! What the catalogue leaves unexplained: residuals along the signal that they go with, and a term that would help.
+use hitch_model::identification::whereabouts::{Bin, Profile};
+use maud::{Markup, html};
+
+use super::chart::{Chart, Line, Stroke};
+use crate::explanation::Suggested;
+
+/// Residuals of the worst channel along a signal: mean and scatter of every bin.
+pub fn picture(profile: &Profile) -> Markup {
+    let column = |value: fn(&Bin) -> f64| profile.bins.iter().map(value).collect::<Vec<f64>>();
+    let x = column(|bin| bin.centre);
+    let (mean, above, below) = (
+        column(|bin| bin.mean),
+        column(|bin| bin.mean + bin.deviation),
+        column(|bin| bin.mean - bin.deviation),
+    );
+    let line = |name, stroke, y| Line {
+        name,
+        stroke,
+        x: &x,
+        y,
+    };
+    let chart = Chart {
+        caption: format!(
+            "What the model leaves of the {}: mean and scatter",
+            profile.channel.title().to_lowercase()
+        ),
+        x_title: &profile.signal,
+        y_title: "measured - simulated, sigma",
+        lines: vec![
+            line("mean + scatter", Stroke::Measured, &above),
+            line("mean - scatter", Stroke::Measured, &below),
+            line("mean", Stroke::After, &mean),
+        ],
+    };
+    html! {
+        h2 { "What stays" }
+        p { "It is largest at " strong { (profile.to_string()) } "." }
+        (chart.figure())
+    }
+}
+
+/// A suggested term, ready to be put into a model file.
+pub fn suggestion(term: &Suggested) -> Markup {
+    let parameters: Vec<String> = term.parameters.iter().map(ToString::to_string).collect();
+    html! {
+        h3 { "A term that would help" }
+        p { code { (term.place) " = " (term.formula) } ", " (parameters.join(", ")) }
+        p {
+            "It would bring the error on held-out runs from "
+            strong { (format!("{:.2}", term.held_out_before)) } " to "
+            strong { (format!("{:.2}", term.held_out_after)) } " sigma"
+            @if !term.replaces.is_empty() { ", in place of " (term.replaces.join(", ")) }
+            ". It is a formula that fits, not a cause that was identified. In a model file:"
+        }
+        pre { (term.model_file) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use hitch_model::campaign::Channel;
+
+    use super::*;
+
+    #[test]
+    fn the_picture_has_mean_and_scatter() {
+        let bin = |centre: f64| Bin {
+            centre,
+            samples: 50,
+            mean: -2.0,
+            deviation: 1.0,
+        };
+        let profile = Profile {
+            signal: "rocker_angle_deg".to_owned(),
+            channel: Channel::Flow,
+            bins: vec![bin(50.0), bin(60.0)],
+            stretch: (45.0, 65.0),
+            motion: Some("lowering"),
+            end: Some("near the bottom"),
+        };
+        let text = picture(&profile).into_string();
+        assert!(text.contains("rocker_angle_deg 45 to 65, near the bottom while lowering"));
+        assert_eq!(text.matches("<path").count(), 3);
+    }
+}
