@@ -89,7 +89,7 @@ fn the_hitch_follows_the_lever_and_then_rests_with_both_coils_off() {
             "{} for {target}",
             hitch.angle_deg()
         );
-        assert_eq!(outputs.state, State::Holding);
+        assert_eq!(outputs.state, State::Holding, "{outputs:?}");
         assert!((0..60_000).all(|_| off(&hitch.run(1))), "hunts at {target}");
     }
 }

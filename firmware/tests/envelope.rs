@@ -405,6 +405,29 @@ fn a_frozen_angle_takes_its_time_and_its_travel() {
 }
 
 #[test]
+fn a_slow_hitch_may_stick_and_a_slowed_one_may_stop() {
+    let freezes = |speed: i32, current: i32| {
+        let mut rig = Rig::armed();
+        let mut angle = rig.angle;
+        for _ in 0..200 {
+            angle += speed;
+            rig.step_with(LIFT, |inputs| {
+                inputs.rocker_angle = Some(MilliDegree(angle));
+            });
+        }
+        for _ in 0..100 {
+            rig.step_with(Order::Lift(current), |inputs| {
+                inputs.rocker_angle = Some(MilliDegree(angle));
+            });
+        }
+        rig.envelope.tripped() == Some(Trip::AngleFrozen)
+    };
+    assert!(freezes(15, 2_500) && freezes(15, 2_450));
+    assert!(!freezes(14, 2_500), "sticks");
+    assert!(!freezes(15, 2_449), "was slowed down");
+}
+
+#[test]
 fn a_resting_sensor_may_be_as_still_as_it_likes() {
     let mut rig = Rig::moving(LIFT);
     let angle = rig.angle;

@@ -7,4 +7,5 @@ pub mod program;
 pub mod recording;
 pub mod replay;
 pub mod second_rig;
+pub mod teaching;
 pub mod trace;

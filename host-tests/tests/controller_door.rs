@@ -160,3 +160,24 @@ fn a_bad_line_ends_it_with_its_place() {
     );
     assert_eq!(said.lines().count(), 1);
 }
+
+#[test]
+fn the_example_of_the_documentation_runs() {
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/own_plant.py");
+    let program = hitch().get_program().to_owned();
+    let output = std::process::Command::new("python3")
+        .arg(example)
+        .arg(program)
+        .output()
+        .expect("the example needs python3");
+    let said = String::from_utf8_lossy(&output.stdout);
+    println!("{said}");
+    assert!(
+        output.status.success(),
+        "{said}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert_eq!(said.lines().count(), 3);
+    let lines = std::fs::read_to_string(example).unwrap().lines().count();
+    assert!(lines <= 40, "{lines} lines are no short example");
+}

@@ -1,76 +1,17 @@
 //! The firmware teaches itself thresholds and ends on plants whose valves and sensors are off.
 
-use hitch_firmware::control::teach::{Taught, TeachError};
-use hitch_firmware::control::units::{MilliDegree, MilliDegreePerSecond};
-use hitch_firmware::control::{Calibration, Inputs, State, ValidCalibration};
+use hitch_firmware::control::teach::TeachError;
+use hitch_firmware::control::units::MilliDegree;
+use hitch_firmware::control::{Inputs, State};
 use hitch_model::Model;
-use hitch_model::effects::{AddedEffect, find};
 use hitch_workbench::closed_loop::{ClosedLoop, LoopRun, Scenario, run};
-
-fn nominal() -> ValidCalibration {
-    Calibration::nominal().validate().unwrap()
-}
-
-fn plant(effects: &[(&str, &[f64])]) -> Model {
-    let added = effects.iter().map(|(id, values)| AddedEffect {
-        effect: find(id).unwrap(),
-        values: values.to_vec(),
-    });
-    Model::dynamic().with_effects(added.collect())
-}
+use host_tests::teaching::{dynamic_with, nominal, teach as taught, teach_with as taught_with};
 
 fn shifted(lift_a: f64, lower_a: f64) -> Model {
-    plant(&[
+    dynamic_with(&[
         ("lift-threshold-shift", &[lift_a]),
         ("lower-threshold-shift", &[lower_a]),
     ])
-}
-
-/// Holds switch and button for `steps`, or until there is a result; what came of it once they are let go.
-fn taught_with(
-    model: &Model,
-    load_kg: f64,
-    steps: usize,
-    tell: impl Fn(usize, &mut Inputs),
-) -> Option<Result<Taught, TeachError>> {
-    let mut closed_loop = ClosedLoop::new(model, &nominal(), load_kg, 40.0, 80.0, 21);
-    for _ in 0..100 {
-        closed_loop.step_with(60.0, |inputs| tell(0, inputs), |_, _| {});
-    }
-    for step in 0..steps {
-        let sample = closed_loop.step_with(
-            60.0,
-            |inputs| {
-                inputs.switches.teach = true;
-                inputs.jog = Some(MilliDegreePerSecond(1));
-                tell(step, inputs);
-            },
-            |_, _| {},
-        );
-        if closed_loop.controller().taught().is_some() {
-            break;
-        }
-        assert!(
-            matches!(sample.outputs.state, State::Teaching | State::Fault),
-            "{:?}",
-            sample.outputs
-        );
-    }
-    for _ in 0..2_000 {
-        let sample = closed_loop.step(60.0);
-        assert_eq!(
-            (
-                sample.outputs.lift_current.0,
-                sample.outputs.lower_current.0
-            ),
-            (0, 0)
-        );
-    }
-    closed_loop.controller().taught()
-}
-
-fn taught(model: &Model, load_kg: f64) -> Result<Taught, TeachError> {
-    taught_with(model, load_kg, 120_000, |_, _| {}).expect("ends within two minutes")
 }
 
 /// As good as a machine whose valves are as the calibration says.

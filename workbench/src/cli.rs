@@ -3,7 +3,7 @@ use clap::{Parser, Subcommand};
 
 use crate::commands::{
     add, calibrate, compare, controller, diagnose, effects, explain, loop_, main_job, paper,
-    simulate,
+    simulate, tune,
 };
 use crate::error::Error;
 use crate::output;
@@ -48,6 +48,8 @@ pub enum Command {
     Loop(loop_::Args),
     /// The firmware's controller on stdin/stdout, for anyone's own plant
     Controller(controller::Args),
+    /// Tunes position and rate control against the plant over loads and valve spread
+    Tune(tune::Args),
     /// Turns an identified model into the firmware's calibration: valve map, thresholds, limits
     Calibrate(calibrate::Args),
 }
@@ -68,6 +70,7 @@ impl Command {
             Self::Paper(args) => paper::run(args),
             Self::Loop(args) => loop_::run(args),
             Self::Controller(args) => controller::run(args),
+            Self::Tune(args) => tune::run(args),
             Self::Calibrate(args) => calibrate::run(args),
         }
     }

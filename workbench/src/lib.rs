@@ -18,4 +18,5 @@ pub mod progress;
 pub mod rebuild;
 pub mod report;
 pub mod text;
+pub mod tuning;
 pub mod valve_survey;

@@ -1,10 +1,11 @@
 //! One millisecond of control.
 
 use super::calibration::ValidCalibration;
+use super::closing::ClosingCurve;
 use super::current::{Duties, Regulation};
 use super::load::LoadEstimate;
 use super::mode::{Fault, Mode};
-use super::motion::{Motion, flow, piston_speed};
+use super::motion::{Closing, Motion, Slack, flow, piston_speed};
 use super::operator::{ButtonGuard, EngineWatch, Float, QuickLift, lowering_limit, upper_limit};
 use super::position::{PositionControl, Reason};
 use super::rate::RateControl;
@@ -15,7 +16,10 @@ use super::sensors::{Sensed, Sensors};
 use super::signals::{Inputs, Outputs, State};
 use super::sink::SinkWatch;
 use super::teach::{Taught, Teach, TeachError};
-use super::units::{MicroLitrePerSecond, MicrometrePerSecond, MilliDegree, MilliDegreePerSecond};
+use super::units::{
+    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliAmp, MilliDegree,
+    MilliDegreePerSecond,
+};
 use super::valve_logic::{Demand, Direction, Phase};
 use super::valve_map::{DropScale, ValveMap};
 
@@ -35,6 +39,10 @@ pub struct Controller {
     position: PositionControl,
     rate: RateControl,
     motion: Motion,
+    closing: Closing,
+    slack: Slack,
+    /// Set point and its travel: looked up when it changes.
+    target: (MilliDegree, Micrometre),
     load: LoadEstimate,
     phase: Phase,
     sink: SinkWatch,
@@ -44,6 +52,8 @@ pub struct Controller {
     rest: RestPosition,
     scale: DropScale,
     teach: Teach,
+    /// Fastest speed that the valve in use can give.
+    available: MicrometrePerSecond,
     /// Flow asked of the valves, positive into the cylinder.
     demanded_flow: MicroLitrePerSecond,
 }
@@ -54,6 +64,11 @@ impl Controller {
     pub fn new(calibration: ValidCalibration) -> Self {
         let load = LoadEstimate::new(&calibration.hydraulics);
         let scale = DropScale::new(calibration.hydraulics.reference_drop, load.drop());
+        let closing = Closing {
+            lift: ClosingCurve::of(&calibration.lift, calibration.hydraulics.hysteresis),
+            lower: ClosingCurve::of(&calibration.lower, calibration.hydraulics.hysteresis),
+        };
+        let origin = calibration.linkage.travel(MilliDegree::ZERO);
         let regulation = Regulation::new(&calibration.current);
         Self {
             calibration,
@@ -66,6 +81,9 @@ impl Controller {
             position: PositionControl::default(),
             rate: RateControl::default(),
             motion: Motion::default(),
+            closing,
+            slack: Slack::default(),
+            target: (MilliDegree::ZERO, origin),
             load,
             phase: Phase::default(),
             sink: SinkWatch::default(),
@@ -75,6 +93,7 @@ impl Controller {
             rest: RestPosition::default(),
             scale,
             teach: Teach::default(),
+            available: MicrometrePerSecond::ZERO,
             demanded_flow: MicroLitrePerSecond::ZERO,
         }
     }
@@ -112,8 +131,8 @@ impl Controller {
         let scale = DropScale::new(hydraulics.reference_drop, present);
         let map = valve_map(&self.calibration, scale);
         self.motion.drive(
-            currents.lift,
-            currents.lower,
+            currents,
+            self.slack.is_taken(),
             &map,
             &self.calibration.hydraulics,
         );
@@ -264,9 +283,11 @@ impl Controller {
             self.sink.new_set_point();
             self.saturation.forget();
         }
-        let target = calibration
-            .linkage
-            .travel(self.position.set_point(sensed.angle));
+        let set_point = self.position.set_point(sensed.angle);
+        if set_point != self.target.0 {
+            self.target = (set_point, calibration.linkage.travel(set_point));
+        }
+        let target = self.target.1;
         let resting = !moving
             && self
                 .position
@@ -281,7 +302,9 @@ impl Controller {
             target,
             self.phase,
             &self.motion,
+            &self.closing,
             lower_speed,
+            self.scale,
             calibration,
         ))
     }
@@ -294,9 +317,15 @@ impl Controller {
         }
         let resting = self.saturation.is_resting(&calibration.saturation);
         let demand = demand.filter(|_| !resting);
-        let available = demand.map_or(MicrometrePerSecond::ZERO, |demand| {
-            self.available(demand.direction)
+        // A move that is called off ends on its own valve.
+        let direction = match self.phase {
+            Phase::Moving { direction, .. } => Some(direction),
+            _ => demand.map(|demand| demand.direction),
+        };
+        let available = direction.map_or(MicrometrePerSecond::ZERO, |direction| {
+            self.available(direction)
         });
+        self.available = available;
         let still = self.motion.model_speed() == MicrometrePerSecond::ZERO;
         let next = self.phase.step(
             demand,
@@ -361,7 +390,7 @@ impl Controller {
             return MicrometrePerSecond::ZERO;
         };
         let excess = MicrometrePerSecond(direction.sign(self.motion.bias().0));
-        let wanted = (speed - excess).limited(MicrometrePerSecond(1), self.available(direction));
+        let wanted = (speed - excess).limited(MicrometrePerSecond(1), self.available);
         MicrometrePerSecond(direction.sign(wanted.0))
     }
 
@@ -369,10 +398,14 @@ impl Controller {
     fn currents(&mut self) -> CoilCurrents {
         let flow = flow(self.mapped_speed(), self.calibration.hydraulics.piston_area);
         self.demanded_flow = flow;
+        let slack = self.slack.take_up(
+            self.phase.speed().magnitude(),
+            self.calibration.hydraulics.hysteresis,
+        );
         let map = valve_map(&self.calibration, self.scale);
         CoilCurrents {
-            lift: map.lift_current(flow),
-            lower: map.lower_current(-flow),
+            lift: (map.lift_current(flow) - slack).max(MilliAmp::ZERO),
+            lower: (map.lower_current(-flow) - slack).max(MilliAmp::ZERO),
         }
     }
 

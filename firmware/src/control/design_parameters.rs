@@ -18,6 +18,8 @@ parameter_group! {
         piston_area: SquareMillimetre = 4537, 500..=50_000;
         /// Time constant of solenoid and spool: what flows on after the coil has been told to stop.
         spool_lag: Millisecond = 45, 0..=500;
+        /// Hysteresis of coil and spool: how much further the current has to fall than it rose for the same flow. 2 % of the range, half of what valves have with dither: believing too much of it is worse than too little.
+        hysteresis: MilliAmp = 65, 0..=1_000;
         /// Pressure drop at which the lowering table was measured.
         reference_drop: MilliBar = 15_000, 1_000..=250_000;
         /// Drop taken for lowering until a sensor or a lowering move tells better: a 150 kg load holds near it.
@@ -26,8 +28,8 @@ parameter_group! {
         smallest_drop: MilliBar = 1_000, 200..=10_000;
         /// Largest drop that the lowering map believes: above the relief valve only shocks remain.
         largest_drop: MilliBar = 200_000, 20_000..=350_000;
-        /// Low-pass on the cylinder pressure: slower than the load swinging on its oil (12 Hz and up), whose damping a faster map would cancel.
-        pressure_filter: Millisecond = 80, 1..=1_000;
+        /// Low-pass on the cylinder pressure: slower than the load swinging on its oil (4 Hz with air in it, and up), whose damping a faster map would cancel.
+        pressure_filter: Millisecond = 240, 1..=1_000;
         /// Time in which the load estimate follows the sinking speed when there is no pressure sensor.
         drop_learning: Millisecond = 250, 20..=5_000;
         /// Setting of the pump's relief valve.
@@ -103,7 +105,7 @@ parameter_group! {
     /// The motion estimator.
     MotionParameters, "motion" {
         /// Time constant of the position estimate: averages the angle noise to a sixth, and stays below the load's own frequency.
-        position_time: Millisecond = 20, 1..=500;
+        position_time: Millisecond = 18, 1..=500;
         /// Largest error of the valve map that the estimator may blame on it: 0.25 A of threshold at 15 bar is 34 mm/s.
         bias_limit: MicrometrePerSecond = 80_000, 0..=500_000;
     }
@@ -118,26 +120,26 @@ parameter_group! {
         upper_limit: MilliDegree = 135_400, -360_000..=360_000;
         /// A resting hitch follows the lever only when it moves by more than this: 0.2 % of the range, beyond lever noise.
         lever_deadband: MilliDegree = 200, 0..=5_000;
-        /// The coil is cut when that would bring the hitch this close: two steps at creep speed.
-        stop_band: Micrometre = 20, 0..=5_000;
+        /// The coil is cut when that would bring the hitch this close: six steps at creep speed.
+        stop_band: Micrometre = 40, 0..=5_000;
         /// A resting hitch that is further off than this is corrected: 0.35 degree, inside the 0.5 degree that is asked for.
         restart_band: Micrometre = 600, 20..=10_000;
-        /// Speed per remaining distance at the end of the approach: 4 Hz, a third of the slowest frequency at which a load swings on its oil.
-        approach_gain: PerSecond = 25, 1..=200;
-        /// Slowest approach: cutting the coil at this speed swings the pressure of 250 kg by 10 bar, no more than a normal edge.
-        creep_speed: MicrometrePerSecond = 12_000, 0..=100_000;
+        /// Speed per remaining distance at the end of the approach: 7 Hz, below the frequency at which a load swings on its oil.
+        approach_gain: PerSecond = 46, 1..=200;
+        /// Slowest approach: cutting the coil at this speed swings the pressure of 250 kg by 6 bar, less than a normal edge.
+        creep_speed: MicrometrePerSecond = 6_400, 0..=100_000;
         /// Fastest lifting: beyond the valve's saturation, so it doesn't limit.
         lift_speed: MicrometrePerSecond = 150_000, 1_000..=1_000_000;
         /// Fastest lowering: 250 kg through the fully open valve; lower it for slow implements.
         lower_speed: MicrometrePerSecond = 300_000, 1_000..=1_000_000;
-        /// Acceleration when lifting: full speed in 75 ms, which the lag of the spool rounds to the edge of a normal manoeuvre.
-        lift_acceleration: MillimetrePerSecondSquared = 2_000, 50..=20_000;
-        /// Deceleration when lifting: full speed in 100 ms; a gravity-loaded piston would bounce from 3 m/s2 on at light load.
-        lift_deceleration: MillimetrePerSecondSquared = 1_500, 50..=20_000;
-        /// Acceleration when lowering: 250 kg keep half of their pressure.
-        lower_acceleration: MillimetrePerSecondSquared = 2_500, 50..=20_000;
-        /// Deceleration when lowering: what stops 250 kg adds half of their pressure, and the map still closes fast enough.
-        lower_deceleration: MillimetrePerSecondSquared = 1_250, 50..=20_000;
+        /// Acceleration when lifting: full speed in 40 ms, which the lag of the spool rounds to the edge of a normal manoeuvre.
+        lift_acceleration: MillimetrePerSecondSquared = 3_800, 50..=20_000;
+        /// Deceleration when lifting: full speed in 160 ms; a gravity-loaded piston would bounce from 3 m/s2 on at light load, and the time lost against it is little.
+        lift_deceleration: MillimetrePerSecondSquared = 900, 50..=20_000;
+        /// Acceleration when lowering, at the reference drop; it goes with the speed that the load gives. 250 kg keep half of their pressure.
+        lower_acceleration: MillimetrePerSecondSquared = 3_200, 50..=20_000;
+        /// Deceleration when lowering, at the reference drop: what stops 250 kg adds half of their pressure, and thick oil still lets the estimate follow.
+        lower_deceleration: MillimetrePerSecondSquared = 950, 50..=20_000;
         /// Deceleration when a move is called off or reversed: twice the ramp, for the operator has changed their mind.
         abort_deceleration: MillimetrePerSecondSquared = 3_000, 50..=20_000;
     }
@@ -280,7 +282,9 @@ parameter_group! {
         supply_time: Millisecond = 10, 1..=1_000;
         /// A sample that stays the same to the last bit for this long is suspicious: eight throws of noise.
         frozen_time: Millisecond = 8, 2..=1_000;
-        /// ... if the hitch should have moved this far meanwhile: twenty converter steps.
+        /// ... if the hitch was at least this fast, at a current that hasn't been reduced since: slower ones may stick.
+        frozen_speed: MilliDegreePerSecond = 15_000, 1_000..=200_000;
+        /// ... and if the hitch should have moved this far meanwhile: twenty converter steps.
         frozen_travel: MilliDegree = 750, 50..=20_000;
         /// A sensor that trembles at rest is frozen once it is still for this long: a healthy one is by chance once in a million years.
         still_time: Millisecond = 20, 5..=1_000;

@@ -12,12 +12,23 @@
 //! valves are meant to move something. Position is kept in nanometres: a speed in um/s is then just
 //! the way of one millisecond.
 
+use super::closing::ClosingCurve;
 use super::design_parameters::{HydraulicParameters, MotionParameters};
 use super::fixed::Divisor;
+use super::safety::CoilCurrents;
 use super::units::{
     MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliAmp, SquareMillimetre,
 };
 use super::valve_map::ValveMap;
+
+/// How both valves close.
+#[derive(Clone, Copy, Debug)]
+pub struct Closing {
+    /// Lift valve.
+    pub lift: ClosingCurve,
+    /// Lowering valve.
+    pub lower: ClosingCurve,
+}
 
 /// Estimated motion of the piston.
 #[derive(Clone, Copy, Debug, Default)]
@@ -29,7 +40,8 @@ pub struct Motion {
     model_speed: MicrometrePerSecond,
     lift_spool: Spool,
     lower_spool: Spool,
-    closing_permille: i32,
+    /// Currents that the spools have followed to, lift and lowering.
+    spools: [MilliAmp; 2],
 }
 
 impl Motion {
@@ -60,22 +72,41 @@ impl Motion {
         self.bias = MicrometrePerSecond(bias_time.0.divide(self.bias_sum_nm));
     }
 
-    /// Takes in the currents that have just been sent to the coils.
+    /// Takes in the currents that have just been sent to the coils; `slowing`: a move is coming to its end.
     pub fn drive(
         &mut self,
-        lift: MilliAmp,
-        lower: MilliAmp,
+        currents: CoilCurrents,
+        slowing: bool,
         map: &ValveMap<'_>,
         hydraulics: &HydraulicParameters,
     ) {
         let lag = hydraulics.spool_lag.divisor();
-        let lift = self.lift_spool.follow(lift, lag);
-        let lower = self.lower_spool.follow(lower, lag);
+        let lift = self
+            .lift_spool
+            .follow(currents.lift, hydraulics.hysteresis, lag);
+        let lower = self
+            .lower_spool
+            .follow(currents.lower, hydraulics.hysteresis, lag);
         let up = map.lift.flow(lift);
         let down = map.scale.to_present(map.lower.flow(lower));
+        let before = self.model_speed;
         self.model_speed = piston_speed(up - down, hydraulics.piston_area);
-        let closing = half_closing_share(lift, map.lift.threshold());
-        self.closing_permille = closing.max(half_closing_share(lower, map.lower.threshold()));
+        if slowing {
+            self.shrink_bias(before);
+        }
+        self.spools = [lift, lower];
+    }
+
+    /// What the map gets wrong is mostly a share of the flow (load, viscosity), so it shrinks with the flow; waiting
+    /// until the sensor tells so would take longer than stopping does.
+    fn shrink_bias(&mut self, before: MicrometrePerSecond) {
+        let fall = before.magnitude() - self.model_speed.magnitude();
+        if fall > MicrometrePerSecond::ZERO {
+            let share = Divisor::at_least_one(before.magnitude().0).divide(self.bias_sum_nm);
+            self.bias_sum_nm = self
+                .bias_sum_nm
+                .saturating_sub(share.saturating_mul(fall.0));
+        }
     }
 
     /// Forgets what the map got wrong: the next move may go the other way.
@@ -120,20 +151,50 @@ impl Motion {
 
     /// Where the piston comes to rest if the coil is cut now.
     ///
-    /// The spool then makes for zero current, not for its threshold: from current `I` it is shut after
-    /// `T ln(I / I0)`, about `T (I - I0) / I0`, and flow falls evenly meanwhile: half of that at full speed.
+    /// The spool then makes for zero current, not for its threshold, and is shut sooner; see [`ClosingCurve`].
     #[must_use]
-    pub fn cut_point(&self, hydraulics: &HydraulicParameters) -> Micrometre {
+    pub fn cut_point(&self, closing: &Closing, hydraulics: &HydraulicParameters) -> Micrometre {
         let full = self.resting_point(hydraulics) - self.position();
-        self.position() + full.scaled(self.closing_permille, Divisor::THOUSAND)
+        let [lift, lower] = self.spools;
+        let share = match self.model_speed < MicrometrePerSecond::ZERO {
+            true => closing.lower.share(lower),
+            false => closing.lift.share(lift),
+        };
+        self.position() + full.scaled(share, Divisor::THOUSAND)
     }
 }
 
-/// `(I - I0) / (2 I0)` in thousandths, at most one.
-fn half_closing_share(current: MilliAmp, threshold: MilliAmp) -> i32 {
-    let above = (current - threshold).max(MilliAmp::ZERO);
-    let twice = Divisor::at_least_one(threshold.0.saturating_mul(2));
-    above.scaled(1000, twice).0.min(1000)
+/// Takes up the play of a valve once a move slows down, and keeps it taken up until the move is over.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Slack {
+    fastest: MicrometrePerSecond,
+    taken: MilliAmp,
+}
+
+impl Slack {
+    /// True once a move slows down.
+    #[must_use]
+    pub fn is_taken(&self) -> bool {
+        self.taken > MilliAmp::ZERO
+    }
+
+    /// One step at the demanded `speed`; how much less current the same flow needs.
+    pub fn take_up(&mut self, speed: MicrometrePerSecond, hysteresis: MilliAmp) -> MilliAmp {
+        /// Slower than the fastest by this much means slowing down: more than corrections of the map.
+        const SLOWER: MicrometrePerSecond = MicrometrePerSecond(4_000);
+        /// Taken up over so many steps: a step of current would swing the load.
+        const STEPS: i32 = 16;
+        if speed <= MicrometrePerSecond::ZERO {
+            *self = Self::default();
+            return MilliAmp::ZERO;
+        }
+        self.fastest = self.fastest.max(speed);
+        if self.fastest - speed > SLOWER {
+            let step = MilliAmp((hysteresis.0 / STEPS).max(1));
+            self.taken = (self.taken + step).min(hysteresis);
+        }
+        self.taken
+    }
 }
 
 /// `4 T^2` as divisor and as number: from the sum of position errors to the bias.
@@ -156,15 +217,18 @@ pub fn piston_speed(flow: MicroLitrePerSecond, area: SquareMillimetre) -> Microm
     MicrometrePerSecond(flow.0).scaled(1000, Divisor::at_least_one(area.0))
 }
 
-/// First-order lag of solenoid and spool, in current.
+/// Play and first-order lag of solenoid and spool, in current on the rising branch.
 #[derive(Clone, Copy, Debug, Default)]
 struct Spool {
+    play: MilliAmp,
     microampere: i32,
 }
 
 impl Spool {
-    fn follow(&mut self, coil: MilliAmp, lag: Divisor) -> MilliAmp {
-        let error = coil.0.saturating_mul(1000).saturating_sub(self.microampere);
+    fn follow(&mut self, coil: MilliAmp, hysteresis: MilliAmp, lag: Divisor) -> MilliAmp {
+        self.play = self.play.limited(coil, coil + hysteresis);
+        let goal = self.play.0.saturating_mul(1000);
+        let error = goal.saturating_sub(self.microampere);
         self.microampere = self.microampere.saturating_add(lag.divide(error));
         MilliAmp(Divisor::THOUSAND.divide(self.microampere))
     }

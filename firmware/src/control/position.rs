@@ -15,11 +15,12 @@
 use super::calibration::Calibration;
 use super::design_parameters::PositionParameters;
 use super::fixed::{Divisor, mul_div, square_root};
-use super::motion::Motion;
+use super::motion::{Closing, Motion};
 use super::units::{
     Micrometre, MicrometrePerSecond, MilliDegree, MillimetrePerSecondSquared, PerSecond,
 };
 use super::valve_logic::{Demand, Direction, Phase};
+use super::valve_map::DropScale;
 
 /// Follows the lever.
 #[derive(Clone, Copy, Debug, Default)]
@@ -126,7 +127,9 @@ impl PositionControl {
         target: Micrometre,
         phase: Phase,
         motion: &Motion,
+        closing: &Closing,
         lower_speed: MicrometrePerSecond,
+        scale: DropScale,
         calibration: &Calibration,
     ) -> Demand {
         let parameters = &calibration.position;
@@ -142,13 +145,15 @@ impl PositionControl {
             ),
             Direction::Lower => (
                 lower_speed,
-                parameters.lower_acceleration,
-                parameters.lower_deceleration,
+                scale.ramp_at_present(parameters.lower_acceleration),
+                scale.ramp_at_present(parameters.lower_deceleration),
             ),
         };
         let ahead_of = |point: Micrometre| Micrometre(direction.sign((target - point).0));
-        let cut = ahead_of(motion.cut_point(&calibration.hydraulics)) <= parameters.stop_band;
         let remaining = ahead_of(motion.resting_point(&calibration.hydraulics));
+        // A cut carries less far than a ramp to zero, so it needn't be looked at before that would do.
+        let cut = remaining <= parameters.stop_band
+            && ahead_of(motion.cut_point(closing, &calibration.hydraulics)) <= parameters.stop_band;
         let approach = approach_speed(remaining, deceleration, parameters.approach_gain);
         let speed = match cut {
             true => MicrometrePerSecond::ZERO,

@@ -12,7 +12,7 @@
 //!   drop at which the table was measured: `Q_ref = Q sqrt(dp_ref / dp)`.
 
 use super::fixed::{interpolate, mul_shift_16, square_root_of_ratio_16};
-use super::units::{MicroLitrePerSecond, MilliAmp, MilliBar};
+use super::units::{MicroLitrePerSecond, MilliAmp, MilliBar, MillimetrePerSecondSquared};
 
 /// Room for breakpoints in a valve table.
 pub const VALVE_POINTS: usize = 32;
@@ -133,6 +133,12 @@ impl DropScale {
     #[must_use]
     pub fn to_present(self, flow: MicroLitrePerSecond) -> MicroLitrePerSecond {
         MicroLitrePerSecond(mul_shift_16(flow.0, self.inverse))
+    }
+
+    /// An acceleration of the reference drop at the present one: ramps take the same time whatever the valve can give.
+    #[must_use]
+    pub fn ramp_at_present(self, slope: MillimetrePerSecondSquared) -> MillimetrePerSecondSquared {
+        MillimetrePerSecondSquared(mul_shift_16(slope.0, self.inverse))
     }
 }
 

@@ -13,5 +13,5 @@ pub use ideal_ramp::IdealRamp;
 pub use instruments::Instruments;
 pub use loop_::{ClosedLoop, Sample};
 pub use metrics::{MoveResult, Summary};
-pub use moves::{LoopRun, MoveTrace, run};
+pub use moves::{Course, LoopRun, MoveTrace, courses, figures, run};
 pub use scenario::{Move, Scenario};

@@ -5,7 +5,7 @@ use hitch_model::Model;
 use rayon::prelude::*;
 
 use super::ideal_ramp::IdealRamp;
-use super::loop_::{ClosedLoop, Sample};
+use super::loop_::{ClosedLoop, STEP_S, Sample};
 use super::metrics::{MoveResult, Summary, judge};
 use super::scenario::Move;
 use crate::valve_survey::ValveEnds;
@@ -37,17 +37,39 @@ pub struct LoopRun {
     pub traces: Vec<MoveTrace>,
 }
 
-/// Drives `moves`; `None` if there are none.
+/// A move, and the shortest manoeuvre that does it.
+#[derive(Debug, Clone, Copy)]
+pub struct Course {
+    order: Move,
+    ideal: IdealRamp,
+    seed: u64,
+}
+
+/// Finds the shortest manoeuvre of each move.
 #[must_use]
-pub fn run(model: &Model, calibration: &ValidCalibration, moves: &[Move]) -> Option<LoopRun> {
+pub fn courses(model: &Model, moves: &[Move]) -> Vec<Course> {
     let ends = [ValveEnds::of_lift(model), ValveEnds::of_lowering(model)];
-    let driven: Vec<(MoveResult, MoveTrace)> = moves
+    moves
         .par_iter()
         .enumerate()
-        .map(|(index, order)| {
-            let ends = ends[usize::from(order.to_deg < order.from_deg)];
-            drive(model, calibration, order, ends, SEED + index as u64)
+        .map(|(index, order)| Course {
+            order: *order,
+            ideal: IdealRamp::find(
+                model,
+                order,
+                ends[usize::from(order.to_deg < order.from_deg)],
+            ),
+            seed: SEED + index as u64,
         })
+        .collect()
+}
+
+/// Drives `moves` and the minute after each; `None` if there are none.
+#[must_use]
+pub fn run(model: &Model, calibration: &ValidCalibration, moves: &[Move]) -> Option<LoopRun> {
+    let driven: Vec<(MoveResult, MoveTrace)> = courses(model, moves)
+        .par_iter()
+        .map(|course| drive(model, calibration, course))
         .collect();
     let (results, traces): (Vec<_>, Vec<_>) = driven.into_iter().unzip();
     Some(LoopRun {
@@ -57,37 +79,57 @@ pub fn run(model: &Model, calibration: &ValidCalibration, moves: &[Move]) -> Opt
     })
 }
 
+/// Figures of `courses` that are watched for `after_s` beyond three times their shortest time.
+#[must_use]
+pub fn figures(
+    model: &Model,
+    calibration: &ValidCalibration,
+    courses: &[Course],
+    after_s: f64,
+) -> Vec<MoveResult> {
+    courses
+        .par_iter()
+        .map(|course| {
+            let steps = ((3.0 * course.ideal.time_s + after_s) / STEP_S) as usize;
+            let samples = samples(model, calibration, course, steps);
+            judge(&course.order, &samples, &course.ideal)
+        })
+        .collect()
+}
+
 fn drive(
     model: &Model,
     calibration: &ValidCalibration,
-    order: &Move,
-    ends: ValveEnds,
-    seed: u64,
+    course: &Course,
 ) -> (MoveResult, MoveTrace) {
-    let ideal = IdealRamp::find(model, order, ends);
+    let mut samples = samples(model, calibration, course, RUN_STEPS);
+    let result = judge(&course.order, &samples, &course.ideal);
+    samples.truncate(KEPT_STEPS);
+    let order = course.order;
+    (result, MoveTrace { order, samples })
+}
+
+/// What happens from the step of the set point on, time zero there.
+fn samples(
+    model: &Model,
+    calibration: &ValidCalibration,
+    course: &Course,
+    steps: usize,
+) -> Vec<Sample> {
+    let order = &course.order;
     let mut closed_loop = ClosedLoop::new(
         model,
         calibration,
         order.load_kg,
         order.oil_temperature_c,
         order.from_deg,
-        seed,
+        course.seed,
     );
     closed_loop.pick_up();
-    let mut samples: Vec<Sample> = (0..RUN_STEPS)
-        .map(|_| closed_loop.step(order.to_deg))
-        .collect();
+    let mut samples: Vec<Sample> = (0..steps).map(|_| closed_loop.step(order.to_deg)).collect();
     let start_s = samples.first().map_or(0.0, |first| first.time_s);
     samples
         .iter_mut()
         .for_each(|sample| sample.time_s -= start_s);
-    let result = judge(order, &samples, &ideal);
-    samples.truncate(KEPT_STEPS);
-    (
-        result,
-        MoveTrace {
-            order: *order,
-            samples,
-        },
-    )
+    samples
 }

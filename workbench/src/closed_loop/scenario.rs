@@ -24,12 +24,18 @@ pub enum Scenario {
     Fine,
     /// Moves that start or end within a degree of the limits of travel
     Ends,
+    /// Moves of 2 to 80 degrees with cold, warm and hot oil, few of them: for tuning
+    Tuning,
+    /// Moves of 2 to 80 degrees with oil at 10, 40 and 70 C: what the bars of motion are about
+    Limits,
 }
 
 /// Loads of the rig, kg.
 const LOADS_KG: [f64; 3] = [50.0, 150.0, 250.0];
 /// Oil temperature of the rig's data, C.
 const OIL_TEMPERATURE_C: f64 = 40.0;
+/// Oil from a cold morning to a hot afternoon, C.
+const COLD_TO_HOT_C: [f64; 3] = [10.0, OIL_TEMPERATURE_C, 70.0];
 /// Rocker straight down, degree: the middle of the travel.
 const MIDDLE_DEG: f64 = 90.0;
 
@@ -44,19 +50,28 @@ impl Scenario {
             Self::Quick => [5.0, 30.0].map(about_middle).to_vec(),
             Self::Fine => [1.0, 2.0, 3.0].map(about_middle).to_vec(),
             Self::Ends => vec![(45.0, 65.0), (115.0, 135.0)],
+            Self::Tuning => [2.0, 8.0, 25.0, 80.0].map(about_middle).to_vec(),
+            Self::Limits => [2.0, 5.0, 10.0, 20.0, 40.0, 60.0, 80.0]
+                .map(about_middle)
+                .to_vec(),
+        };
+        let temperatures_c: &[f64] = match self {
+            Self::Limits | Self::Tuning => &COLD_TO_HOT_C,
+            _ => &[OIL_TEMPERATURE_C],
         };
         let loads = load_kg.map_or(LOADS_KG.to_vec(), |load| vec![load]);
         let mut moves = Vec::new();
         for load_kg in loads {
-            for &(low, high) in &pairs {
-                for (from_deg, to_deg) in [(low, high), (high, low)] {
-                    let oil_temperature_c = OIL_TEMPERATURE_C;
-                    moves.push(Move {
-                        from_deg,
-                        to_deg,
-                        load_kg,
-                        oil_temperature_c,
-                    });
+            for &oil_temperature_c in temperatures_c {
+                for &(low, high) in &pairs {
+                    for (from_deg, to_deg) in [(low, high), (high, low)] {
+                        moves.push(Move {
+                            from_deg,
+                            to_deg,
+                            load_kg,
+                            oil_temperature_c,
+                        });
+                    }
                 }
             }
         }

@@ -25,6 +25,9 @@ pub struct Args {
     /// The controller's calibration; without it, the nominal one
     #[arg(long, value_name = "C.toml")]
     calibration: Option<PathBuf>,
+    /// Changes a value of the calibration, as in position.approach_gain=30; may be given several times
+    #[arg(long, value_name = "GROUP.KEY=VALUE")]
+    set: Vec<String>,
     /// Which moves are driven
     #[arg(long, value_enum, default_value_t = Scenario::Moves)]
     scenario: Scenario,
@@ -53,7 +56,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     args.json.check()?;
     output::check_writable(args.report.as_deref())?;
     let model = Model::named(&args.model)?;
-    let calibration = calibration(args.calibration.as_ref())?;
+    let calibration = changed(calibration(args.calibration.as_ref())?, &args.set)?;
     let moves = args.scenario.moves(args.load);
     let progress = Progress::start(format!("driving {} moves", moves.len()));
     let driven = closed_loop::run(&model, &calibration, &moves)
@@ -68,6 +71,19 @@ pub fn run(args: &Args) -> Result<(), Error> {
     };
     args.json
         .print(&document, || text(&driven.results, &driven.summary))
+}
+
+/// The calibration with settings from the command line.
+fn changed(calibration: ValidCalibration, settings: &[String]) -> Result<ValidCalibration, Error> {
+    let mut changed = (*calibration).clone();
+    for setting in settings {
+        calibration_file::set(&mut changed, setting)
+            .map_err(|what| Error::Usage(format!("--set: {what}")))?;
+    }
+    changed
+        .sealed()
+        .validate()
+        .map_err(|error| Error::Usage(format!("--set: these values don't go together: {error:?}")))
 }
 
 /// The calibration of a file, or the nominal one.

@@ -10,3 +10,4 @@ pub mod loop_;
 pub mod main_job;
 pub mod paper;
 pub mod simulate;
+pub mod tune;

@@ -49,6 +49,8 @@ pub struct AngleWatch {
     /// How long the sample has been the same, and the speed before.
     same_for: Millisecond,
     speed_before: MilliDegreePerSecond,
+    /// The current at that time.
+    current_before: MilliAmp,
     /// How much a resting sensor trembles: steps to and fro count up, steps onwards down.
     tremble: i32,
     /// Mean magnitude of the second difference, times [`NOISE_SAMPLES`].
@@ -81,6 +83,7 @@ impl Default for AngleWatch {
             way: Ordering::Equal,
             same_for: Millisecond::ZERO,
             speed_before: MilliDegreePerSecond::ZERO,
+            current_before: MilliAmp::ZERO,
             tremble: 0,
             noise_sum: 0,
             stroke: None,
@@ -106,7 +109,7 @@ impl AngleWatch {
             ..AngleFaults::default()
         };
         if let Some(angle) = in_range {
-            self.judge_noise(angle, passed == CoilCurrents::OFF, safety, &mut faults);
+            self.judge_noise(angle, passed, safety, &mut faults);
         }
         match believed {
             Some(angle) => {
@@ -136,7 +139,7 @@ impl AngleWatch {
     fn judge_noise(
         &mut self,
         angle: MilliDegree,
-        resting: bool,
+        passed: CoilCurrents,
         safety: &SafetyParameters,
         faults: &mut AngleFaults,
     ) {
@@ -148,13 +151,14 @@ impl AngleWatch {
         match step.cmp(&MilliDegree::ZERO) {
             Ordering::Equal => self.same_for = self.same_for.next(),
             way => {
-                if resting {
+                if passed == CoilCurrents::OFF {
                     let change = if way == self.way { -1 } else { 1 };
                     self.tremble = self.tremble.saturating_add(change).clamp(0, MOST_TREMBLE);
                 }
                 self.way = way;
                 self.same_for = Millisecond::ZERO;
                 self.speed_before = self.speed();
+                self.current_before = passed.lift + passed.lower;
             }
         }
         // A single jump is no noise: it counts for no more than twice the limit.
@@ -205,7 +209,11 @@ impl AngleWatch {
             .magnitude()
             .0
             .saturating_mul(self.same_for.0);
-        faults.frozen |= self.same_for >= safety.frozen_time
+        let unchanged = self.current_before - (passed.lift + passed.lower)
+            <= MilliAmp(safety.unchanged_current.0 / 2);
+        faults.frozen |= unchanged
+            && self.speed_before.magnitude() >= safety.frozen_speed
+            && self.same_for >= safety.frozen_time
             && owed >= safety.frozen_travel.0.saturating_mul(1000);
         let speed = self.speed();
         let (along, speed, current) = match lifting {

@@ -1,0 +1,75 @@
+//! `hitch tune`, and tuning by hand with `hitch loop --set`.
+
+use std::path::Path;
+
+use host_tests::program::run;
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Summary of `hitch loop` on the quick moves.
+fn summary(folder: &Path, more: &[&str]) -> serde_json::Value {
+    let mut arguments = vec!["loop", "--scenario", "quick", "--json", "-"];
+    arguments.extend(more);
+    let output = run(folder, &arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    document["summary"].clone()
+}
+
+#[test]
+fn tuning_makes_a_bad_calibration_better_and_writes_one_that_can_be_driven() {
+    let folder = tempfile::tempdir().unwrap();
+    let bad =
+        "format = 1\n[position]\nlower_deceleration_mm_per_s2 = 400\ncreep_speed_mm_per_s = 30\n";
+    std::fs::write(folder.path().join("bad.toml"), bad).unwrap();
+    let arguments = "tune --calibration bad.toml --scenario quick --trials 60 --out tuned.toml";
+    let output = run(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
+    let said = text(&output.stdout);
+    println!("{said}");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let ratio = |calibration: &str| {
+        summary(folder.path(), &["--calibration", calibration])["ratio_median"]
+            .as_f64()
+            .unwrap()
+    };
+    let (before, after) = (ratio("bad.toml"), ratio("tuned.toml"));
+    println!("median time ratio {before:.3} -> {after:.3}");
+    assert!(after <= before - 0.02, "{before} -> {after}");
+    let costs: Vec<f64> = said
+        .lines()
+        .find(|line| line.trim_start().starts_with("cost"))
+        .map(|line| {
+            line.split_whitespace()
+                .filter_map(|cell| cell.parse().ok())
+                .collect()
+        })
+        .unwrap();
+    assert!(costs[1] < costs[0], "{costs:?}");
+}
+
+#[test]
+fn a_value_set_by_hand_is_driven_and_a_wrong_one_is_refused_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let swift = summary(folder.path(), &[]);
+    let slow = summary(
+        folder.path(),
+        &[
+            "--set",
+            "position.lift_speed=30",
+            "--set",
+            "position.lower_speed=30",
+        ],
+    );
+    assert!(slow["ratio_p95"].as_f64().unwrap() > swift["ratio_p95"].as_f64().unwrap() + 0.5);
+    for bad in ["position.kp=1", "position.approach_gain=1e6", "nonsense"] {
+        let output = run(folder.path(), &["loop", "--set", bad]);
+        assert_eq!(output.status.code(), Some(2), "{bad}");
+        let said = text(&output.stderr);
+        assert!(
+            said.starts_with("hitch: --set: ") && said.lines().count() == 1,
+            "{said}"
+        );
+    }
+}

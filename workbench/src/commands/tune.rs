@@ -1,0 +1,111 @@
+//! `hitch tune`: gains, ramps and limits for a plant.
+use std::path::PathBuf;
+
+use hitch_firmware::control::Calibration;
+use hitch_model::Model;
+
+use crate::calibrate::calibrate;
+use crate::calibration_file;
+use crate::closed_loop::Scenario;
+use crate::error::Error;
+use crate::output;
+use crate::progress::Progress;
+use crate::text::Table;
+use crate::tuning::{Judged, Trial, changes};
+
+/// Arguments of `hitch tune`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example: hitch tune --model explained.toml --out tuned.toml\n\n\
+    The valve map is the model's; what is searched are ramps, approach, cut-off and filters. Each candidate drives moves both\n\
+    ways at three loads, on the model and with thresholds 0.02 A off. By hand: hitch loop --set position.approach_gain=30"
+)]
+pub struct Args {
+    /// The plant: nominal, dynamic, or the name of a model file
+    #[arg(long, value_name = "MODEL", default_value = "dynamic")]
+    model: String,
+    /// Where the calibration goes
+    #[arg(long, value_name = "C.toml")]
+    out: PathBuf,
+    /// Calibration to start from; without it, the nominal one with the model's valve map
+    #[arg(long, value_name = "C.toml")]
+    calibration: Option<PathBuf>,
+    /// How many candidates are tried
+    #[arg(long, value_name = "COUNT", default_value_t = 400, value_parser = clap::value_parser!(u32).range(10..=100_000))]
+    trials: u32,
+    /// Which moves are driven
+    #[arg(long, value_enum, default_value_t = Scenario::Tuning)]
+    scenario: Scenario,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the model or the calibration is wrong, or the result cannot be written.
+pub fn run(args: &Args) -> Result<(), Error> {
+    output::check_writable(Some(&args.out))?;
+    let model = Model::named(&args.model)?;
+    let base = match &args.calibration {
+        Some(path) => calibration_file::read(path)?,
+        None => calibrate(&model, &Calibration::nominal())
+            .map_err(|error| Error::Usage(format!("{}: {error}", args.model)))?,
+    };
+    let progress = Progress::start("finding the shortest manoeuvres");
+    let trial = Trial::new(&model, &args.scenario.moves(None));
+    let failed = || Error::Failed("the search found no valid calibration".to_owned());
+    let before = trial.judge(&base).ok_or_else(failed)?;
+    let after = trial
+        .search(&base, args.trials as usize, |count, cost| {
+            progress.say(format!(
+                "candidate {count} of {}, best cost {cost:.3}",
+                args.trials
+            ));
+        })
+        .ok_or_else(failed)?;
+    drop(progress);
+    let text = calibration_file::write(&after.calibration);
+    output::write_file(&args.out, text.as_bytes())?;
+    output::print(&told(&before, &after))
+}
+
+/// Before and after: the values, and what they do.
+fn told(before: &Judged, after: &Judged) -> String {
+    let mut values = Table::new(["value", "before", "after"]);
+    for change in changes(&before.calibration, &after.calibration) {
+        values.row([
+            change.key,
+            format!("{:.3}", change.before),
+            format!("{:.3}", change.after),
+        ]);
+    }
+    let mut figures = Table::new(["figure", "before", "after"]);
+    let (old, new) = (&before.summary, &after.summary);
+    for (name, old, new) in [
+        ("time ratio, median", old.ratio_median, new.ratio_median),
+        ("time ratio, 95 %", old.ratio_p95, new.ratio_p95),
+        (
+            "overshoot, deg",
+            old.overshoot_max_deg,
+            new.overshoot_max_deg,
+        ),
+        (
+            "final error, deg",
+            old.final_error_max_deg,
+            new.final_error_max_deg,
+        ),
+        (
+            "pressure swing",
+            old.pressure_swing_ratio_max,
+            new.pressure_swing_ratio_max,
+        ),
+        (
+            "switched on after arrival",
+            f64::from(old.switched_on_after),
+            f64::from(new.switched_on_after),
+        ),
+        ("cost", before.cost, after.cost),
+    ] {
+        figures.row([name.to_owned(), format!("{old:.3}"), format!("{new:.3}")]);
+    }
+    format!("{values}\n{figures}")
+}

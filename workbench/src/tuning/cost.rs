@@ -1,0 +1,74 @@
+//! One number for a set of moves: time, and what the bars of motion forbid.
+
+use crate::closed_loop::MoveResult;
+
+/// Bars, a little inside those that are promised.
+const OVERSHOOT_DEG: f64 = 0.25;
+const FINAL_ERROR_DEG: f64 = 0.25;
+const SWING: f64 = 1.4;
+
+/// Mean time ratio, plus ten times what the slowest twentieth loses, plus penalties for what lies beyond the bars.
+#[must_use]
+pub fn cost(results: &[MoveResult]) -> f64 {
+    let count = results.len().max(1) as f64;
+    let mean = |of: &dyn Fn(&MoveResult) -> f64| results.iter().map(of).sum::<f64>() / count;
+    let beyond = |value: f64, bar: f64| (value - bar).max(0.0);
+    let slow = mean(&|result| beyond(result.ratio, 1.35));
+    let overshoot = mean(&|result| beyond(result.overshoot_deg, OVERSHOOT_DEG));
+    let error = mean(&|result| beyond(result.final_error_deg, FINAL_ERROR_DEG));
+    let swing = mean(&|result| beyond(result.pressure_swing_ratio, SWING));
+    let restarts = mean(&|result| f64::from(result.switched_on_after));
+    mean(&|result| result.ratio.min(5.0))
+        + 10.0 * slow.min(5.0)
+        + 100.0 * overshoot
+        + 100.0 * error
+        + 10.0 * swing
+        + 10.0 * restarts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: MoveResult = MoveResult {
+        from_deg: 80.0,
+        to_deg: 100.0,
+        load_kg: 150.0,
+        oil_temperature_c: 40.0,
+        time_s: 0.5,
+        shortest_s: 0.45,
+        ratio: 1.1,
+        overshoot_deg: 0.1,
+        final_error_deg: 0.1,
+        active_after_s: 0.0,
+        switched_on_after: 0,
+        pressure_swing_ratio: 1.0,
+    };
+
+    #[test]
+    fn a_move_inside_the_bars_costs_its_time_and_every_excess_costs_more() {
+        assert!((cost(&[GOOD]) - 1.1).abs() < 1e-12);
+        let worse = [
+            MoveResult { ratio: 1.5, ..GOOD },
+            MoveResult {
+                overshoot_deg: 0.3,
+                ..GOOD
+            },
+            MoveResult {
+                final_error_deg: 0.3,
+                ..GOOD
+            },
+            MoveResult {
+                pressure_swing_ratio: 1.5,
+                ..GOOD
+            },
+            MoveResult {
+                switched_on_after: 1,
+                ..GOOD
+            },
+        ];
+        for result in worse {
+            assert!(cost(&[result]) > 1.5, "{result:?}: {}", cost(&[result]));
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! What may be turned, and by how much.
+
+use hitch_firmware::control::{Calibration, ValidCalibration};
+
+use super::Change;
+use crate::calibration_file::{scalar, set};
+
+/// `group.name` of the values that are searched.
+pub const KNOBS: [&str; 10] = [
+    "position.lift_acceleration",
+    "position.lift_deceleration",
+    "position.lower_acceleration",
+    "position.lower_deceleration",
+    "position.approach_gain",
+    "position.creep_speed",
+    "position.stop_band",
+    "motion.position_time",
+    "hydraulics.hysteresis",
+    "hydraulics.pressure_filter",
+];
+
+/// No value gets more than so many times larger or smaller: beyond that its reason no longer holds.
+const MOST_DOUBLINGS: f64 = 2.0;
+
+/// `base` with each value times two to the power of its coordinate; `None` if that isn't a valid calibration.
+pub fn with_values(base: &Calibration, point: &[f64]) -> Option<ValidCalibration> {
+    let mut calibration = base.clone();
+    for (key, doublings) in KNOBS.iter().zip(point) {
+        let found = scalar(base, key)?;
+        let factor = doublings.clamp(-MOST_DOUBLINGS, MOST_DOUBLINGS).exp2();
+        let value = (found.value * factor).clamp(found.low, found.high);
+        set(&mut calibration, &format!("{key}={value}")).ok()?;
+    }
+    calibration.sealed().validate().ok()
+}
+
+/// The values before and after.
+pub fn changes(before: &Calibration, after: &Calibration) -> Vec<Change> {
+    KNOBS
+        .iter()
+        .filter_map(|key| {
+            let (old, new) = (scalar(before, key)?, scalar(after, key)?);
+            Some(Change {
+                key: format!("{key}_{}", old.suffix),
+                before: old.value,
+                after: new.value,
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,136 @@
+//! Searches gains, ramps and limits for the bars of motion: CMA-ES over a set of moves.
+//!
+//! Thresholds that are a little off belong to the plant, not to the tuning: each candidate is driven on the model itself
+//! and on two whose thresholds are shifted up and down by what teaching leaves.
+
+mod cost;
+mod knobs;
+
+use cmaes::{CMAESOptions, DVector};
+use hitch_firmware::control::{Calibration, ValidCalibration};
+use hitch_model::Model;
+use hitch_model::effects::{AddedEffect, find};
+
+use crate::closed_loop::{Course, Move, MoveResult, Summary, courses, figures};
+pub use cost::cost;
+use knobs::{KNOBS, with_values};
+
+/// What teaching leaves of a threshold's error, A.
+const SPREAD_A: f64 = 0.02;
+/// How long a candidate is watched after a move, s: long enough for every correction that follows at once.
+const AFTER_S: f64 = 1.5;
+/// Where the search starts, in halvings and doublings of each value: 0.3 is a fifth up or down.
+const START_SIGMA: f64 = 0.3;
+
+/// Plants with the moves that are driven on them.
+pub struct Trial {
+    plants: Vec<(Model, Vec<Course>)>,
+}
+
+/// A calibration and what it does.
+#[derive(Debug, Clone)]
+pub struct Judged {
+    /// The calibration.
+    pub calibration: ValidCalibration,
+    /// Figures of all moves on all plants.
+    pub summary: Summary,
+    /// What the search makes small.
+    pub cost: f64,
+}
+
+/// One value that was searched.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    /// `group.key`
+    pub key: String,
+    /// Before, engineering units.
+    pub before: f64,
+    /// After, engineering units.
+    pub after: f64,
+}
+
+impl Trial {
+    /// Prepares `moves` on `model` and its neighbours.
+    #[must_use]
+    pub fn new(model: &Model, moves: &[Move]) -> Self {
+        let plants = [0.0, SPREAD_A, -SPREAD_A].map(|shift_a| {
+            let plant = shifted(model, shift_a);
+            let courses = courses(&plant, moves);
+            (plant, courses)
+        });
+        Self {
+            plants: plants.into(),
+        }
+    }
+
+    /// Drives everything.
+    #[must_use]
+    pub fn judge(&self, calibration: &ValidCalibration) -> Option<Judged> {
+        let results: Vec<MoveResult> = self
+            .plants
+            .iter()
+            .flat_map(|(plant, courses)| figures(plant, calibration, courses, AFTER_S))
+            .collect();
+        Some(Judged {
+            calibration: calibration.clone(),
+            summary: Summary::of(&results)?,
+            cost: cost(&results),
+        })
+    }
+
+    /// Searches from `base` with about `trials` candidates; `tell` hears of each: how many so far, and the best cost.
+    #[must_use]
+    pub fn search(
+        &self,
+        base: &Calibration,
+        trials: usize,
+        tell: impl Fn(usize, f64) + Sync,
+    ) -> Option<Judged> {
+        let state = std::sync::Mutex::new((0, None::<Judged>));
+        let objective = |point: &DVector<f64>| {
+            let judged = with_values(base, point.as_slice())
+                .and_then(|calibration| self.judge(&calibration));
+            let cost = judged.as_ref().map_or(f64::MAX, |judged| judged.cost);
+            // Nothing panics while the lock is held.
+            if let Ok(mut state) = state.lock() {
+                state.0 += 1;
+                if state.1.as_ref().is_none_or(|best| cost < best.cost) {
+                    state.1 = judged;
+                }
+                tell(state.0, state.1.as_ref().map_or(f64::MAX, |best| best.cost));
+            }
+            cost
+        };
+        // The start is a candidate as well: nothing worse is ever returned.
+        objective(&DVector::zeros(KNOBS.len()));
+        let mut search = CMAESOptions::new(vec![0.0; KNOBS.len()], START_SIGMA)
+            .max_function_evals(trials)
+            .seed(1)
+            .build(objective)
+            .ok()?;
+        search.run();
+        drop(search);
+        state.into_inner().ok()?.1
+    }
+}
+
+/// What a search changed.
+#[must_use]
+pub fn changes(before: &Calibration, after: &Calibration) -> Vec<Change> {
+    knobs::changes(before, after)
+}
+
+/// The model with both thresholds shifted.
+fn shifted(model: &Model, shift_a: f64) -> Model {
+    let mut effects = model.effects.clone();
+    for id in ["lift-threshold-shift", "lower-threshold-shift"] {
+        match effects.iter_mut().find(|added| added.effect.id() == id) {
+            Some(added) => added.values.iter_mut().for_each(|value| *value += shift_a),
+            None => effects.extend(find(id).map(|effect| AddedEffect {
+                effect,
+                values: vec![shift_a],
+            })),
+        }
+    }
+    model.clone().with_effects(effects)
+}
