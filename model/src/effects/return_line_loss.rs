@@ -58,8 +58,6 @@ impl Effect for ReturnLineLoss {
     fn attach(&self, values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
         let reference_m3_s = units::m3_s_from_lpm(REFERENCE_FLOW_LPM);
         let coefficient = units::pa_from_bar(values[0]) / (reference_m3_s * reference_m3_s);
-        sites.return_pressure.push(Box::new(move |flow_m3_s| {
-            coefficient * flow_m3_s * flow_m3_s
-        }));
+        sites.return_loss_pa_s2_m6 += coefficient;
     }
 }

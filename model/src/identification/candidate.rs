@@ -8,11 +8,19 @@ use super::experiment::Experiment;
 use super::fit::{Fit, evaluate_weighted, refine, sketch};
 use super::frame::Frame;
 use super::jacobian::{Jacobian, huber_residuals, square_sum};
+use crate::campaign::Channel;
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
 /// Sizes of the secants, in typical sizes: derivatives at zero miss a play or a gap, one size misses what saturates.
-const SIZES: [f64; 2] = [0.1, 1.0];
+const SIZES: [f64; 3] = [0.1, 1.0, 4.0];
+
+/// The same for what shows in a ringing pressure alone: its phase makes many valleys of the cost, and a secant is no
+/// guide from one to the next.
+const SIZES_OF_RINGING: [f64; 7] = [0.1, 0.3, 0.6, 1.0, 2.0, 4.0, 8.0];
+
+/// Sizes that differ by less than this share of the larger are one start.
+const SAME_VALLEY: f64 = 0.3;
 
 /// How far a secant is trusted, in its own size.
 const REACH: f64 = 8.0;
@@ -241,27 +249,26 @@ fn starts(
     effect: &'static dyn Effect,
 ) -> (f64, Vec<Estimate>) {
     let frame = Frame::new(jacobian, &base.estimate, None);
+    // Of every secant both its end and the best point along it: the one is sure, the other may be far better.
     let rank = |added: Vec<AddedEffect>| {
         let mut ranked: Vec<(f64, Estimate)> = added
             .into_iter()
-            .map(|mut added| {
-                let size = added.values[0];
-                let mut estimate = base.estimate.clone();
-                estimate.effects.push(added.clone());
-                let residuals = huber_residuals(experiment, model, &base.weights, &estimate);
+            .flat_map(|added| {
+                let end = with(&base.estimate, added.clone());
+                let residuals = huber_residuals(experiment, model, &base.weights, &end);
                 let (lowest, highest) = reach(&added);
                 let (share, cost) = frame.along(&residuals, lowest, highest);
                 let range = &added.effect.parameters()[0];
-                added.values[0] = range.null + share * (size - range.null);
-                estimate.effects.pop();
-                estimate.effects.push(added);
-                (cost, estimate)
+                let mut best = added;
+                best.values[0] = range.null + share * (best.values[0] - range.null);
+                let best = with(&base.estimate, best);
+                [(cost, best), (frame.cost_after(&residuals), end)]
             })
             .collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         ranked
     };
-    let mut ranked = rank(sizes(effect));
+    let mut ranked = rank(sizes(experiment, effect));
     if let Some((cost, best)) = ranked.first().cloned()
         && base.cost - cost > WORTH_A_FIT
     {
@@ -270,24 +277,44 @@ fn starts(
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
     }
     let predicted = ranked.first().map_or(base.cost, |first| first.0);
-    let starts = ranked
-        .into_iter()
-        .take(STARTS)
-        .map(|(_, start)| start)
-        .collect();
+    let mut starts: Vec<Estimate> = Vec::new();
+    for (_, start) in ranked {
+        if starts.len() < STARTS && starts.iter().all(|other| apart(other, &start)) {
+            starts.push(start);
+        }
+    }
     (predicted, starts)
 }
 
+/// Whether the last effects of two estimates are sizes that lead to different valleys.
+fn apart(a: &Estimate, b: &Estimate) -> bool {
+    let last = |estimate: &Estimate| estimate.effects.last().map(|added| added.values.clone());
+    let (Some(a), Some(b)) = (last(a), last(b)) else {
+        return true;
+    };
+    let alike = |x: f64, y: f64| (x - y).abs() <= SAME_VALLEY * x.abs().max(y.abs());
+    !(alike(a[0], b[0]) && a[1..] == b[1..])
+}
+
+fn with(estimate: &Estimate, added: AddedEffect) -> Estimate {
+    let mut with = estimate.clone();
+    with.effects.push(added);
+    with
+}
+
 /// An effect at the sizes of the secants.
-fn sizes(effect: &'static dyn Effect) -> Vec<AddedEffect> {
+fn sizes(experiment: &Experiment, effect: &'static dyn Effect) -> Vec<AddedEffect> {
     let size = &effect.parameters()[0];
-    SIZES
+    let rings = experiment.ringing && effect.channels() == [Channel::CylinderPressure];
+    let sizes = if rings { &SIZES_OF_RINGING[..] } else { &SIZES };
+    sizes
         .iter()
         .map(|s| {
             let mut added = AddedEffect::typical(effect);
             added.values[0] = size.null + s * (size.typical - size.null);
             added
         })
+        .filter(|added| (size.low..=size.high).contains(&added.values[0]))
         .collect()
 }
 

@@ -15,6 +15,14 @@ pub struct Openings {
     pub lower_m3_s: f64,
 }
 
+impl Openings {
+    /// Whether both valves are shut.
+    #[must_use]
+    pub fn shut(&self) -> bool {
+        self.lift_m3_s <= 0.0 && self.lower_m3_s <= 0.0
+    }
+}
+
 /// Flows and pump pressure of the circuit.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Flows {
@@ -196,8 +204,15 @@ impl Circuit<'_> {
         let opening_m3_s = self.lower_opening_m3_s(opening_m3_s, state);
         let free_m3_s = self.lower_valve_m3_s(opening_m3_s, state.pressure_pa);
         let terms = self.sites.has_term(Place::ReturnPressure);
-        if (self.sites.return_pressure.is_empty() && !terms) || free_m3_s == 0.0 {
+        let loss = self.sites.return_loss_pa_s2_m6;
+        if (loss == 0.0 && !terms) || free_m3_s == 0.0 {
             return free_m3_s;
+        }
+        let square_root_law = self.constants.lower_valve.transition_drop_pa == 0.0
+            && self.sites.lower_drop_factor.is_empty();
+        if square_root_law && !terms {
+            // Two orifices in a row, Q = k sqrt(p - a Q2).
+            return free_m3_s / (1.0 + loss * free_m3_s * free_m3_s / state.pressure_pa).sqrt();
         }
         let passed_m3_s = |flow_m3_s: f64| {
             let drop_pa = state.pressure_pa - self.return_pressure_pa(flow_m3_s, state);

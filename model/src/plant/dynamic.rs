@@ -13,8 +13,16 @@ use super::circuit::{Circuit, Openings};
 use super::forces::Forces;
 use crate::model::Model;
 
-/// Longest step, s: 0.5 rad of the fastest ringing.
-pub const LONGEST_STEP_S: f64 = 0.002;
+/// Longest step, in rad of the ringing of load on oil: classical Runge-Kutta keeps its amplitude to 1e-4 a period.
+const LONGEST_STEP_RAD: f64 = 0.55;
+
+/// Longest step, s, however slow the ringing: the spools' lag bends the openings.
+const LONGEST_STEP_S: f64 = 0.004;
+
+/// Speed, m/s, and acceleration, m/s2, below which a hitch that nothing drives is at rest: what is left of the ringing
+/// is less than a hundredth of any instrument's last digit.
+const AT_REST_M_S: f64 = 5e-7;
+const AT_REST_M_S2: f64 = 4e-5;
 
 /// Largest rate times step that the integrator is given; its stability ends at 2.78.
 const STABLE: f64 = 1.5;
@@ -131,6 +139,32 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: MechanicalState) 
     };
     let volume_m3 = constants.cylinder.volume_m3(state.piston_m.max(0.0));
     (lower + lift) * constants.oil.bulk_modulus_pa / volume_m3
+}
+
+/// Longest step, s, that follows the ringing of load and oil where the piston stands.
+#[must_use]
+pub fn longest_step_s(forces: &Forces, circuit: &Circuit, state: MechanicalState) -> f64 {
+    let dh_dx = forces.model.linkage().dh_dx(state.piston_m);
+    let area_m2 = circuit.constants.cylinder.area_m2();
+    let stiffness_n_m = area_m2 * area_m2 * void_stiffness_pa_m3(forces.model, state.piston_m);
+    let masses = &circuit.constants.masses;
+    let ringing_rad_s = (stiffness_n_m / masses.inertia_kg(forces.rig.load_kg, dh_dx)).sqrt();
+    (LONGEST_STEP_RAD / ringing_rad_s).min(LONGEST_STEP_S)
+}
+
+/// Whether a step with these openings would leave the hitch where it stands.
+#[must_use]
+pub fn rests(
+    forces: &Forces,
+    circuit: &Circuit,
+    state: MechanicalState,
+    openings: [Openings; 3],
+) -> bool {
+    circuit.sites.holds_tight()
+        && openings.iter().all(Openings::shut)
+        && state.void_m3 == 0.0
+        && state.speed_m_s.abs() < AT_REST_M_S
+        && derivative(forces, circuit, Openings::default(), state)[1].abs() < AT_REST_M_S2
 }
 
 /// One step with the openings at its start, middle and end.

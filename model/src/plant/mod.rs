@@ -174,9 +174,11 @@ impl<'m> Plant<'m> {
 
     /// Goes on by `dt_s` while the coil currents run linearly to `currents`.
     pub fn step(&mut self, currents: Currents, dt_s: f64) {
-        let longest_s = match self.model.constants().dynamics {
-            Dynamics::Steady => steady::LONGEST_STEP_S,
-            Dynamics::Dynamic => dynamic::LONGEST_STEP_S,
+        let longest_s = match (self.rig, self.model.constants().dynamics) {
+            (Rig::Hitch(rig), Dynamics::Dynamic) => {
+                dynamic::longest_step_s(&self.forces(&rig), &self.circuit(), self.state)
+            }
+            _ => steady::LONGEST_STEP_S,
         };
         // A hair of slack: 0.02 s read from a log as a difference must not become one piece more.
         let pieces = (dt_s / longest_s - 1e-6).ceil().max(1.0) as usize;
@@ -263,7 +265,12 @@ impl<'m> Plant<'m> {
                 self.open(currents, dt_s);
             }
             (Rig::Hitch(rig), Dynamics::Steady) => {
+                let start = self.openings;
                 let end = self.open(currents, dt_s);
+                let stands = self.state.speed_m_s == 0.0 && self.sites.holds_tight();
+                if stands && start.shut() && end.shut() {
+                    return;
+                }
                 let before = steady::Before {
                     speed_m_s: self.state.speed_m_s,
                     dt_s,
@@ -283,6 +290,9 @@ impl<'m> Plant<'m> {
                 let end = self.open(currents, 0.5 * dt_s);
                 let openings = [start, half, end];
                 let (forces, circuit) = (self.forces(&rig), self.circuit());
+                if dynamic::rests(&forces, &circuit, self.state, openings) {
+                    return;
+                }
                 self.state = dynamic::step(&forces, &circuit, self.state, openings, dt_s);
             }
         }

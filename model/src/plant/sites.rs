@@ -118,8 +118,8 @@ pub struct Sites {
     pub pump_slip: Vec<Law>,
     /// What the relief valve lacks of an ideal one.
     pub relief: Option<ReliefOverride>,
-    /// Pressure behind the lowering valve, Pa, from the flow through it, m3/s.
-    pub return_pressure: Vec<Law>,
+    /// Pressure behind the lowering valve over the square of the flow through it, Pa/(m3/s)2.
+    pub return_loss_pa_s2_m6: f64,
     /// Flow out of the cylinder past the valves, m3/s, from the cylinder pressure, Pa.
     pub leakage: Vec<Law>,
     /// Factors on the oil's bulk modulus, from the cylinder pressure, Pa; the dynamic plant only.
@@ -151,7 +151,7 @@ impl Default for Sites {
             check_valve_loss_pa_s2_m6: 0.0,
             pump_slip: Vec::new(),
             relief: None,
-            return_pressure: Vec::new(),
+            return_loss_pa_s2_m6: 0.0,
             leakage: Vec::new(),
             stiffness_factor: Vec::new(),
             compliance_m3_pa: 0.0,
@@ -202,10 +202,16 @@ impl Sites {
         product(&self.weight_factor, piston_m)
     }
 
-    /// Sum of the back pressures, Pa, at a flow through the lowering valve, m3/s.
+    /// Pressure behind the lowering valve, Pa, at a flow through it, m3/s.
     #[must_use]
     pub fn return_pressure_pa(&self, flow_m3_s: f64) -> f64 {
-        sum(&self.return_pressure, flow_m3_s)
+        self.return_loss_pa_s2_m6 * flow_m3_s * flow_m3_s
+    }
+
+    /// Whether the oil behind two shut valves stays where it is.
+    #[must_use]
+    pub fn holds_tight(&self) -> bool {
+        self.leakage.is_empty() && self.terms.is_empty()
     }
 
     /// Sum of the leakages, m3/s, at a cylinder pressure, Pa.
