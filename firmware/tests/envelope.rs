@@ -78,7 +78,7 @@ impl Rig {
 
     /// At 90 degrees and full speed, with `order` on for long enough that every watch has settled.
     fn moving(order: Order) -> Self {
-        const STEPS: i32 = 260;
+        const STEPS: i32 = 420;
         let speed = match order {
             Order::Lower(_) => -FULL_SPEED,
             _ => FULL_SPEED,
@@ -406,25 +406,23 @@ fn a_frozen_angle_takes_its_time_and_its_travel() {
 
 #[test]
 fn a_slow_hitch_may_stick_and_a_slowed_one_may_stop() {
-    let freezes = |speed: i32, current: i32| {
+    let freezes = |make: fn(i32) -> Order, way: i32, speed: i32, current: i32| {
         let mut rig = Rig::armed();
         let mut angle = rig.angle;
-        for _ in 0..200 {
-            angle += speed;
-            rig.step_with(LIFT, |inputs| {
-                inputs.rocker_angle = Some(MilliDegree(angle));
-            });
-        }
-        for _ in 0..100 {
-            rig.step_with(Order::Lift(current), |inputs| {
+        for step in 0..300 {
+            angle += if step < 200 { speed * way } else { 0 };
+            let order = make(if step < 200 { 2_500 } else { current });
+            rig.step_with(order, |inputs| {
                 inputs.rocker_angle = Some(MilliDegree(angle));
             });
         }
         rig.envelope.tripped() == Some(Trip::AngleFrozen)
     };
-    assert!(freezes(15, 2_500) && freezes(15, 2_450));
-    assert!(!freezes(14, 2_500), "sticks");
-    assert!(!freezes(15, 2_449), "was slowed down");
+    for (make, way) in [(Order::Lift as fn(i32) -> Order, 1), (Order::Lower, -1)] {
+        assert!(freezes(make, way, 15, 2_500) && freezes(make, way, 15, 2_450));
+        assert!(!freezes(make, way, 14, 2_500), "sticks");
+        assert!(!freezes(make, way, 15, 2_449), "was slowed down");
+    }
 }
 
 #[test]
@@ -487,19 +485,19 @@ fn row_10_a_hitch_that_stops_at_an_unchanged_current() {
         rig.speed = 0;
         let cut = rig.cut_after(order, |_, _| {});
         assert_eq!(rig.envelope.tripped(), Some(Trip::NotFollowing));
-        // 50 ms, and as long as the measured speed takes to fall to a quarter; noise makes a step of difference.
-        assert!(matches!(cut, Some(60 | 61)), "{order:?}: {cut:?}");
+        // 50 ms, and as long as the measured speed takes to fall to an eighth; noise makes a step of difference.
+        assert!(matches!(cut, Some(60..=64)), "{order:?}: {cut:?}");
     }
 }
 
 #[test]
-fn a_hitch_may_get_slower_for_less_current_or_by_less_than_three_quarters() {
+fn a_hitch_may_get_slower_for_less_current_or_by_less_than_seven_eighths() {
     let stops = |speed: i32, current: i32| {
         let mut rig = Rig::moving(LIFT);
         rig.speed = speed;
         rig.cut_after(Order::Lift(current), |_, _| {}).is_some()
     };
-    assert!(stops(0, 2_500) && stops(0, 2_400) && stops(10, 2_500));
+    assert!(stops(0, 2_500) && stops(0, 2_400) && stops(5, 2_500));
     assert!(
         !stops(20, 2_500),
         "more than a quarter of the speed is left"
@@ -512,7 +510,7 @@ fn a_hitch_that_never_moved_has_not_stopped() {
     let slow = |speed: i32| {
         let mut rig = Rig::armed();
         rig.speed = speed;
-        rig.run(LIFT, 300);
+        rig.run(LIFT, 450);
         rig.speed = 0;
         rig.run(LIFT, 300);
         rig.envelope.tripped()

@@ -157,3 +157,26 @@ fn full_lowering_takes_two_seconds_with_the_dial_as_delivered() {
         );
     }
 }
+
+#[test]
+fn a_map_that_is_wrong_by_a_fifth_of_an_ampere_is_no_fault() {
+    let shifted = with_effect("lower-threshold-shift", &[0.2]);
+    for load_kg in [50.0, 150.0, 250.0] {
+        for half_deg in [2.5, 5.0, 10.0, 20.0, 30.0] {
+            for seed in 0..12 {
+                let (from_deg, to_deg) = (90.0 + half_deg, 90.0 - half_deg);
+                let mut closed_loop =
+                    ClosedLoop::new(&shifted, &nominal(), load_kg, 40.0, from_deg, seed);
+                closed_loop.pick_up();
+                for step in 0..3_000 {
+                    let outputs = closed_loop.step(to_deg).outputs;
+                    assert_eq!(
+                        outputs.fault, None,
+                        "{load_kg} kg, {from_deg} to {to_deg}, seed {seed}, {step} ms: {:?}",
+                        outputs.trip
+                    );
+                }
+            }
+        }
+    }
+}

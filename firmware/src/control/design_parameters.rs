@@ -294,8 +294,8 @@ parameter_group! {
         telling_speed: MilliDegreePerSecond = 40_000, 5_000..=200_000;
         /// A current that was reduced by more than this explains why the hitch got slower.
         unchanged_current: MilliAmp = 100, 10..=1_000;
-        /// ... for this long: three lags of the spool.
-        following_time: Millisecond = 150, 10..=2_000;
+        /// ... for this long: six lags of the spool, and the time in which a wrong map is made up for.
+        following_time: Millisecond = 300, 10..=2_000;
         /// How long a hitch has to stand still: longer than half a swing of a load on its oil.
         not_following_time: Millisecond = 50, 5..=1_000;
         /// Movement against the energised coil that trips: above noise and the swing at a start.

@@ -251,6 +251,6 @@ impl Stroke {
         }
         self.current = self.current.max(current);
         self.fastest = self.fastest.max(speed);
-        self.fastest >= safety.telling_speed && speed.0 < self.fastest.0 / 4
+        self.fastest >= safety.telling_speed && speed.0 < self.fastest.0 / 8
     }
 }
