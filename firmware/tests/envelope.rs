@@ -505,6 +505,33 @@ fn a_hitch_may_get_slower_for_less_current_or_by_less_than_seven_eighths() {
     assert!(!stops(0, 2_399), "the current was reduced");
 }
 
+/// Without noise: `fast` steps at 80 mdeg/ms, of which the first `before` at a larger current, then at `slow`.
+fn slowed(before: i32, fast: i32, slow: i32) -> Option<Trip> {
+    let mut rig = Rig::armed_at(60_000);
+    let mut angle = rig.angle;
+    for step in 0..fast + 300 {
+        angle += if step < fast { 80 } else { slow };
+        let order = Order::Lift(if step < before { 2_601 } else { 2_500 });
+        rig.step_with(order, |inputs| {
+            inputs.rocker_angle = Some(MilliDegree(angle));
+        });
+    }
+    rig.envelope.tripped()
+}
+
+#[test]
+fn an_eighth_of_the_speed_is_enough() {
+    assert_eq!(slowed(0, 450, 10), None);
+    assert_eq!(slowed(0, 450, 9), Some(Trip::NotFollowing));
+}
+
+#[test]
+fn a_hitch_has_its_time_to_follow_a_reduced_current() {
+    let unnoticed = (200..400).filter(|&after| slowed(150, 150 + after, 5).is_none());
+    // 300 ms, less half of the span over which the speed is measured.
+    assert_eq!(unnoticed.max(), Some(293));
+}
+
 #[test]
 fn a_hitch_that_never_moved_has_not_stopped() {
     let slow = |speed: i32| {

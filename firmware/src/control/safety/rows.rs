@@ -108,10 +108,9 @@ impl Rows {
     /// The rows of a list of conditions in the order of the table.
     #[must_use]
     pub fn of(holds: [bool; ROWS]) -> Self {
-        let bits = holds
-            .into_iter()
-            .rev()
-            .fold(0, |bits, holds| (bits << 1) | u32::from(holds));
+        let bits = holds.into_iter().rev().fold(0_u32, |bits, holds| {
+            (bits << 1).saturating_add(u32::from(holds))
+        });
         Self(bits)
     }
 
