@@ -36,9 +36,9 @@ pub static GROUND_CONTACT: Described = Described {
             key: "stiffness_kn_m",
             meaning: "stiffness of the ground",
             null: 0.0,
-            typical: 300.0,
-            low: 20.0,
-            high: 10000.0,
+            typical: 500.0,
+            low: 50.0,
+            high: 5000.0,
         },
     ],
     channels: &[

@@ -1,7 +1,7 @@
 //! `spool-stiction`: the spools stick, then jump.
 //!
 //! Two-parameter stick-slip (Choudhury, Thornhill and Shah 2005; Kano 2004): a spool stays until the current has gone
-//! `band` away from where it stuck, then jumps and sticks again, short of the current by `1 - jump` of the band. 0.5 to
+//! `band` away from where it stuck, then jumps after it by the share `jump` of the band and sticks again. 0.5 to
 //! 2 % of the current range with dither, 3 to 6 % on plain direct current.
 
 use super::Parameter;
@@ -15,7 +15,7 @@ use crate::plant::sites::{RunConditions, Sites};
 pub static SPOOL_STICTION: Described = Described {
     id: "spool-stiction",
     title: "Stiction of the spools",
-    equation: "|I - w| > band: w = I - sign(I - w) (1 - jump) band; else w stays; Q = Q_table(w)",
+    equation: "|I - w| > band: w = w + sign(I - w) jump band; else w stays; Q = Q_table(w)",
     source: "Choudhury et al. 2005, Kano et al. 2004; 0.5 to 2 % of 3.3 A with dither, 3 to 6 % on \
          plain DC",
     shows: "a slow ramp of current gives plateaus and jumps of flow; small reversals change nothing; \
@@ -38,7 +38,7 @@ pub static SPOOL_STICTION: Described = Described {
             meaning: "share of the band that it makes good in one jump",
             null: 0.5,
             typical: 0.9,
-            low: 0.3,
+            low: 0.6,
             high: 1.0,
         },
     ],
@@ -50,7 +50,7 @@ pub static SPOOL_STICTION: Described = Described {
 fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
     sites.currents.push(Box::new(StickSlip {
         band_a: values[0],
-        short_a: values[0] * (1.0 - values[1]),
+        jump_a: values[0] * values[1],
         spool: Currents::default(),
     }));
 }
@@ -59,7 +59,7 @@ fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
 #[derive(Debug)]
 struct StickSlip {
     band_a: f64,
-    short_a: f64,
+    jump_a: f64,
     spool: Currents,
 }
 
@@ -70,6 +70,7 @@ impl CurrentStage for StickSlip {
         self.advance(currents, 0.0)
     }
 
+    /// Every jump starts where the current was just a band away, whenever the step notices.
     fn advance(&mut self, currents: Currents, _: f64) -> Currents {
         let before = self.spool;
         self.spool = currents.map(|valve, current_a| {
@@ -78,11 +79,8 @@ impl CurrentStage for StickSlip {
                 Valve::Lowering => before.lower_a,
             };
             let away_a = current_a - spool_a;
-            if away_a.abs() > self.band_a {
-                current_a - self.short_a.copysign(away_a)
-            } else {
-                spool_a
-            }
+            let jumps = ((away_a.abs() - self.band_a) / self.jump_a).ceil().max(0.0);
+            spool_a + (jumps * self.jump_a).copysign(away_a)
         });
         self.spool
     }

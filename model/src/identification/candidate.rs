@@ -15,9 +15,8 @@ use crate::model::Model;
 /// Sizes of the secants, in typical sizes: derivatives at zero miss a play or a gap, one size misses what saturates.
 const SIZES: [f64; 3] = [0.1, 1.0, 4.0];
 
-/// The same for what shows in a ringing pressure alone: its phase makes many valleys of the cost, and a secant is no
-/// guide from one to the next.
-const SIZES_OF_RINGING: [f64; 7] = [0.1, 0.3, 0.6, 1.0, 2.0, 4.0, 8.0];
+/// The same where the cost has many valleys and a secant is no guide from one to the next.
+const DENSE_SIZES: [f64; 7] = [0.1, 0.3, 0.6, 1.0, 2.0, 4.0, 8.0];
 
 /// Sizes that differ by less than this share of the larger are one start.
 const SAME_VALLEY: f64 = 0.3;
@@ -128,8 +127,36 @@ pub fn try_effects(
             candidate
         })
         .collect();
-    candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
+    rank(base, &mut candidates);
     candidates
+}
+
+/// Sorts candidates by their odds against each other, the best first.
+///
+/// All are counted at the inflation of the one with the least cost: each at its own would prefer what leaves a rest that
+/// hardly correlates with its signature over what leaves less.
+fn rank(base: &Fit, candidates: &mut [Candidate]) {
+    let Some(odds) = mutual_odds(base, candidates) else {
+        return;
+    };
+    candidates.sort_by(|a, b| odds(b).total_cmp(&odds(a)));
+}
+
+/// Logarithm of the odds of candidates against their common base, all at one inflation; `None` without candidates.
+pub fn mutual_odds(
+    base: &Fit,
+    candidates: &[Candidate],
+) -> Option<impl Fn(&Candidate) -> f64 + use<>> {
+    let best = candidates
+        .iter()
+        .min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost))?;
+    let compared = best.fit.weights.count() as f64;
+    let variance = (square_sum(&best.fit.residuals) / compared).max(1.0);
+    let (inflation, effective, base_cost) = (best.inflation, best.effective_samples(), base.cost);
+    Some(move |candidate: &Candidate| {
+        let ratio = (base_cost - candidate.fit.cost) / (variance * inflation);
+        log_odds(ratio, candidate.effect.parameters().len(), effective)
+    })
 }
 
 /// An effect after the screen: what it might leave, and where to start from; at least one start.
@@ -226,9 +253,14 @@ fn sketch_starts(
     starts: Vec<Estimate>,
 ) -> (f64, Estimate) {
     let far = base.error() > FAR;
+    // Where there are valleys the starts have been looked for one by one; a coarse fit would lead away from them.
+    let valleys = starts.iter().any(|start| {
+        let last = start.effects.last();
+        last.is_some_and(|added| has_valleys(experiment, added.effect))
+    });
     let mut best = (base.cost, base.estimate.clone());
     for start in starts.into_iter().take(if far { STARTS } else { 1 }) {
-        let found = sketch(experiment, model, &base.weights, start, far);
+        let found = sketch(experiment, model, &base.weights, start, far && !valleys);
         if best.1.effects.len() < found.1.effects.len() || found.0 < best.0 {
             best = found;
         }
@@ -302,11 +334,20 @@ fn with(estimate: &Estimate, added: AddedEffect) -> Estimate {
     with
 }
 
+/// Whether an effect's cost has many valleys: the phase of a ringing pressure makes them, and a shape beside the size.
+fn has_valleys(experiment: &Experiment, effect: &dyn Effect) -> bool {
+    let rings = experiment.ringing && effect.channels() == [Channel::CylinderPressure];
+    rings || effect.parameters().len() > 1
+}
+
 /// An effect at the sizes of the secants.
 fn sizes(experiment: &Experiment, effect: &'static dyn Effect) -> Vec<AddedEffect> {
     let size = &effect.parameters()[0];
-    let rings = experiment.ringing && effect.channels() == [Channel::CylinderPressure];
-    let sizes = if rings { &SIZES_OF_RINGING[..] } else { &SIZES };
+    let sizes = if has_valleys(experiment, effect) {
+        &DENSE_SIZES[..]
+    } else {
+        &SIZES
+    };
     sizes
         .iter()
         .map(|s| {

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::adequacy::{Cell, adequate, cells};
 use super::attribution::{Attribution, attribute};
-use super::candidate::{Candidate, try_effects, weigh};
+use super::candidate::{Candidate, mutual_odds, try_effects, weigh};
 use super::design::{Alternative, NextExperiment, Pair, Place, Rival, next_experiment};
 use super::estimate::Estimate;
 use super::evidence::shares;
@@ -163,7 +163,8 @@ pub fn diagnose(
 ) -> Diagnosis {
     let absent = absent(model, &base.estimate);
     let candidates = try_effects(experiment, model, &base, &absent, progress);
-    let mut odds: Vec<f64> = candidates.iter().map(Candidate::log_odds).collect();
+    let mut odds: Vec<f64> = mutual_odds(&base, &candidates)
+        .map_or_else(Vec::new, |odds| candidates.iter().map(odds).collect());
     odds.push(0.0);
     let mut confidences = shares(&odds);
     confidences.pop();
