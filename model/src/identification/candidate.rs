@@ -9,7 +9,7 @@ use super::fit::{Fit, evaluate_weighted, refine, sketch};
 use super::frame::Frame;
 use super::jacobian::{Jacobian, huber_residuals, square_sum};
 use crate::campaign::Channel;
-use crate::effects::{AddedEffect, Effect};
+use crate::effects::{AddedEffect, Effect, Parameter};
 use crate::model::Model;
 
 /// Sizes of the secants, in typical sizes: derivatives at zero miss a play or a gap, one size misses what saturates.
@@ -18,8 +18,16 @@ const SIZES: [f64; 3] = [0.1, 1.0, 4.0];
 /// The same where the cost has many valleys and a secant is no guide from one to the next.
 const DENSE_SIZES: [f64; 7] = [0.1, 0.3, 0.6, 1.0, 2.0, 4.0, 8.0];
 
+/// Sizes that are tried next to the best of those, in its own size: a valley may be a tenth wide.
+const NEXT_SIZES: [f64; 6] = [0.7, 0.8, 0.9, 1.12, 1.25, 1.4];
+
 /// Sizes that differ by less than this share of the larger are one start.
-const SAME_VALLEY: f64 = 0.3;
+const SAME_VALLEY: f64 = 0.08;
+
+/// See [`systematic`].
+const SYSTEMATIC_A: f64 = 0.000_7;
+const SYSTEMATIC_S: f64 = 0.001;
+const SYSTEMATIC_SHARE: f64 = 0.005;
 
 /// How far a secant is trusted, in its own size.
 const REACH: f64 = 8.0;
@@ -307,6 +315,11 @@ fn starts(
         let best = best.effects.last().expect("pushed above").clone();
         ranked.extend(rank(shapes(&best)));
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if has_valleys(experiment, effect) {
+            let best = ranked[0].1.effects.last().expect("pushed above").clone();
+            ranked.extend(rank(neighbours(&best)));
+            ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        }
     }
     let predicted = ranked.first().map_or(base.cost, |first| first.0);
     let mut starts: Vec<Estimate> = Vec::new();
@@ -353,6 +366,20 @@ fn sizes(experiment: &Experiment, effect: &'static dyn Effect) -> Vec<AddedEffec
         .map(|s| {
             let mut added = AddedEffect::typical(effect);
             added.values[0] = size.null + s * (size.typical - size.null);
+            added
+        })
+        .filter(|added| (size.low..=size.high).contains(&added.values[0]))
+        .collect()
+}
+
+/// An effect at sizes next to the one it has.
+fn neighbours(at: &AddedEffect) -> Vec<AddedEffect> {
+    let size = &at.effect.parameters()[0];
+    NEXT_SIZES
+        .iter()
+        .map(|s| {
+            let mut added = at.clone();
+            added.values[0] = size.null + s * (at.values[0] - size.null);
             added
         })
         .filter(|added| (size.low..=size.high).contains(&added.values[0]))
@@ -420,10 +447,12 @@ pub fn weigh(
     let intervals = signatures
         .iter()
         .map(|signature| {
-            let deviation = 1.96 * (variance * signature.inflation / signature.square).sqrt();
-            let half = deviation * fit.estimate.scale(signature.shared);
+            let deviation = (variance * signature.inflation / signature.square).sqrt();
             let value = fit.estimate.get(signature.shared);
             let range = &effect.parameters()[signature.parameter];
+            let half = 1.96
+                * (deviation * fit.estimate.scale(signature.shared))
+                    .hypot(systematic(range, value));
             (
                 (value - half).max(range.low),
                 (value + half).min(range.high),
@@ -440,6 +469,19 @@ pub fn weigh(
         intervals,
         fit,
     }
+}
+
+/// One sigma of what no number of samples takes away from a parameter, in its unit.
+///
+/// A log tells where a ramp of the current bends only to within a sample, and the last of its noise holds a play open:
+/// some 0.7 mA, and as much time as a tenth of a sample. Loads, areas and tables are good to half a percent.
+fn systematic(parameter: &Parameter, value: f64) -> f64 {
+    let absolute = match parameter.unit {
+        "A" => SYSTEMATIC_A,
+        "s" => SYSTEMATIC_S,
+        _ => 0.0,
+    };
+    absolute.hypot(SYSTEMATIC_SHARE * value)
 }
 
 /// A parameter's signature with all that is free besides it projected out.

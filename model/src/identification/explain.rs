@@ -328,17 +328,28 @@ fn finish(
     mut steps: Vec<Step>,
 ) -> Explanation {
     let given = model.effects.len();
+    let mut faint = None;
     for (index, step) in steps.iter_mut().enumerate() {
         let effect = given + index;
         let whole = with_last(experiment, model, &after, effect);
         let base = evaluate(experiment, model, without(&after.estimate, effect));
         let weighed = weigh(experiment, model, &base, step.effect, whole.clone());
+        if weighed.detectability < VISIBLE {
+            faint = Some(index);
+            break;
+        }
         let there = 1.0 / (1.0 + (-weighed.log_odds()).exp());
         step.values = weighed.values().to_vec();
         step.intervals = weighed.intervals;
         step.detectability = weighed.detectability;
         step.indistinguishable = alternatives(experiment, model, &whole, weighed.inflation);
         step.confidence = there / (1 + step.indistinguishable.len()) as f64;
+    }
+    if let Some(index) = faint {
+        // A later step has taken over what this one stood for.
+        steps.remove(index);
+        let lighter = refine(experiment, model, without(&after.estimate, given + index));
+        return finish(experiment, model, before, lighter, steps);
     }
     let cells = cells(experiment, &after);
     let missing = missing_manoeuvre(experiment, &after);
