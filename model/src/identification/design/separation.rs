@@ -124,7 +124,7 @@ impl<'a> Bench<'a> {
         self.rate_hz
     }
 
-    /// Whether the campaign measures each channel, by [`Channel::index`].
+    /// Whether the campaign measures each channel, by `Channel::index`.
     #[must_use]
     pub fn channels(&self) -> [bool; 4] {
         self.experiment.noise.map(f64::is_finite)
