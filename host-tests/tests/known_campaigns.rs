@@ -31,7 +31,11 @@ fn hidden(name: &str) -> Vec<(String, f64)> {
 }
 
 fn is_named(name: &str) {
-    let explanation = explained(name, &Model::nominal());
+    is_named_on(name, &Model::nominal());
+}
+
+fn is_named_on(name: &str, model: &Model) {
+    let explanation = explained(name, model);
     let hidden = hidden(name);
     let named: Vec<&str> = explanation
         .steps
@@ -94,6 +98,22 @@ fn back_pressure_is_named() {
 #[test]
 fn a_leak_and_a_sensor_lag_are_both_named() {
     is_named("known-leak-and-lag");
+}
+
+#[test]
+fn a_drooping_compensator_is_named() {
+    is_named("known-droop-rough");
+}
+
+/// Duty cycles alone, without a flow bench.
+#[test]
+fn a_flow_force_is_named_from_field_logs() {
+    is_named("known-field");
+}
+
+#[test]
+fn air_in_the_oil_is_named_where_pressures_ring() {
+    is_named_on("known-air", &Model::dynamic());
 }
 
 #[test]

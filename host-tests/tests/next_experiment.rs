@@ -135,12 +135,14 @@ fn a_drooping_compensator_is_told_from_a_scaled_flow_by_another_load() {
     }
 }
 
-/// Currents that only rise see one branch of a hysteresis: a shifted threshold, or a spool that sticks.
+/// On rising currents hysteresis is a shifted threshold; what tells them apart is a current that comes back.
 #[test]
-fn hysteresis_is_told_from_its_twins_by_a_current_that_comes_back() {
-    let hidden = "solenoid-hysteresis";
-    let mut lab = Lab::new(Family::Steady, (hidden, 0.1), ALL, &RISING_LIFTS);
-    let (manoeuvre, _) = closes(hidden, &mut lab);
+fn hysteresis_is_told_from_a_threshold_by_a_current_that_comes_back() {
+    let ids = ["solenoid-hysteresis", "lift-threshold-shift"];
+    let lab = Lab::new(Family::Steady, usual(ids[0]), ALL, &RISING_LIFTS);
+    let twins = Twins::new(&lab, ids);
+    let next = next_experiment(&twins.experiment, &lab.model, &[twins.pair()]);
+    let manoeuvre = proposed(&next.expect("a pair"));
     let comes_back = ["triangle", "reversals", "staircase"];
     assert!(
         comes_back.iter().any(|kind| manoeuvre.name.contains(kind)),
@@ -210,7 +212,7 @@ fn twins_come_apart() {
         let after = Twins::new(&lab, ids).angle_deg;
         let before = before.angle_deg;
         assert!(
-            before < 10.0 && after > 20.0,
+            before < 15.0 && after > 20.0,
             "{ids:?}: {before} to {after} degrees"
         );
     }

@@ -1,13 +1,21 @@
 //! The catalogue of physical effects: one file an effect, one line in [`CATALOGUE`] each.
 //!
 //! # Adding an effect
-//! 1. A new file beside this one with a unit struct that implements [`Effect`]: its equation and source in the doc
-//!    comment, its parameters with unit, range, null value and typical size, and `attach`, which puts closures or
-//!    small stateful parts at the [`Sites`] of the plant where the physics acts.
-//! 2. One `mod` and one entry in [`CATALOGUE`]. Plant, model files, identification, reports, `hitch effects` and the
-//!    generic tests (null value, continuity, channels, model-file round trip) go through the catalogue.
+//! 1. A new file beside this one, named like the effect. Its doc comment states the equation, where it comes from and
+//!    how large the effect usually is.
+//! 2. In it one `pub static` of type `described::Described`: texts, parameters with unit, range, null value and typical
+//!    size, the channels in which it shows on a lab campaign, the starting point that it needs if not every one can show
+//!    it, and `attach`. The first parameter is the size: at its null value the effect is not there, whatever the others
+//!    are. `flow_force.rs` is a short example, `pin_backlash.rs` one that remembers.
+//! 3. `attach` gets a value for each parameter, in its unit, and what is known of the run ([`RunConditions`]), and puts
+//!    numbers, closures or small stateful parts at the [`Sites`] where the physics acts; SI inside. If no site is where
+//!    it acts, add one to [`Sites`] and call it from the component concerned.
+//! 4. One `mod` and one line in [`CATALOGUE`].
 //!
-//! A [`TermEffect`] is an effect that is not in the catalogue: a formula that a user wrote into a model file.
+//! Nothing else: plant, model files, identification, reports and `hitch effects` go through the catalogue, and so do the
+//! generic tests of `tests/effects.rs`: the null value changes not a bit, next to it the effect is next to nothing, a
+//! typical size shows in the channels named. A term that is to be tried without recompiling goes into a model file
+//! instead (see `term.rs`).
 
 mod angle_sensor_gain;
 mod angle_sensor_lag;
