@@ -1,8 +1,8 @@
 //! Draws a case of the second rig and writes its campaign to a folder, with what is hidden in it beside the folder.
 //!
 //! ```text
-//! cargo run --release -p host-tests --example draw_campaign -- --seed 7 --effect flow-force --out /tmp/drawn
-//! cargo run --release -- explain /tmp/drawn
+//! cargo run --release -p host-tests --example draw_campaign -- --seed 7 --effect flow-force --out drawn
+//! cargo run --release -- explain drawn
 //! ```
 
 use std::path::PathBuf;

@@ -17,5 +17,6 @@ pub mod jacobian;
 pub mod noise;
 pub mod regime;
 pub mod residual;
+mod starts;
 pub mod suggestion;
 pub mod whereabouts;
