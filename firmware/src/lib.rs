@@ -2,7 +2,16 @@
 //!
 //! [`control`] is the controller itself: pure, without clock, heap, I/O or floating point, and so
 //! bit-identical on the ECU and on the host. Everything else in this crate carries it.
+//!
+//! Beside it, and as pure: [`can`] frames and their text form, [`j1939`] (the hitch on the tractor's
+//! bus), [`xcp`] (measuring and calibrating), and [`storage`] of the calibration in flash. They are fed
+//! with frames and time, hand out frames, and do a bounded amount of work a call.
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod can;
 pub mod control;
+mod fnv;
+pub mod j1939;
+pub mod storage;
+pub mod xcp;

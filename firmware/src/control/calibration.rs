@@ -3,6 +3,7 @@
 //! [`Calibration`] is raw: anything may stand in it. [`ValidCalibration`] is one whose checksum, version,
 //! ranges and curves have been checked; the controller takes no other.
 
+use super::calibration_words::CALIBRATION_WORDS;
 use super::design_parameters::{
     CurrentParameters, HoldParameters, HydraulicParameters, LockParameters, MotionParameters,
     OperatorParameters, PositionParameters, RateParameters, SafetyParameters, SaturationParameters,
@@ -18,8 +19,8 @@ use super::valve_map::{VALVE_POINTS, ValveTable};
 pub const CALIBRATION_VERSION: u32 = 2;
 
 /// Largest flow in a table: ten times the pump's, and far from where products saturate.
-const FLOW_LIMIT: MicroLitrePerSecond = MicroLitrePerSecond(10_000_000);
-const CURRENT_LIMIT: MilliAmp = MilliAmp(5_000);
+pub(super) const FLOW_LIMIT: MicroLitrePerSecond = MicroLitrePerSecond(10_000_000);
+pub(super) const CURRENT_LIMIT: MilliAmp = MilliAmp(5_000);
 
 /// The raw block. All of it is 32-bit words, so its memory image has no padding.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -122,6 +123,15 @@ impl core::ops::Deref for ValidCalibration {
     type Target = Calibration;
     fn deref(&self) -> &Calibration {
         &self.0
+    }
+}
+
+impl ValidCalibration {
+    /// The calibration of an untaught machine.
+    #[must_use]
+    pub fn nominal() -> Self {
+        // It passes validation, as a test says; there is nothing better to fall back to.
+        Self(Calibration::nominal())
     }
 }
 
@@ -272,26 +282,21 @@ impl Calibration {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; CALIBRATION_BYTES] {
         let mut bytes = [0; CALIBRATION_BYTES];
-        let mut words = bytes.chunks_exact_mut(4);
-        self.clone().for_each_word(&mut |word| {
-            if let Some(target) = words.next() {
-                target.copy_from_slice(&word.to_le_bytes());
-            }
-        });
+        let targets = bytes.chunks_exact_mut(4);
+        for (target, word) in targets.zip(self.to_words()) {
+            target.copy_from_slice(&word.to_le_bytes());
+        }
         bytes
     }
 
     /// The block of a memory image; nothing of it is checked.
     #[must_use]
     pub fn from_bytes(bytes: &[u8; CALIBRATION_BYTES]) -> Self {
-        let mut calibration = Self::nominal();
-        let mut words = bytes.chunks_exact(4);
-        calibration.for_each_word(&mut |word| {
-            if let Some([a, b, c, d]) = words.next() {
-                *word = i32::from_le_bytes([*a, *b, *c, *d]);
-            }
-        });
-        calibration
+        let mut words = [0; CALIBRATION_WORDS];
+        for (word, source) in words.iter_mut().zip(bytes.as_chunks::<4>().0) {
+            *word = i32::from_le_bytes(*source);
+        }
+        Self::from_words(&words)
     }
 
     fn computed_checksum(&self) -> u32 {
@@ -308,7 +313,7 @@ impl Calibration {
     }
 
     /// Visits every word in the order of the memory image.
-    fn for_each_word(&mut self, visit: &mut impl FnMut(&mut i32)) {
+    pub(super) fn for_each_word(&mut self, visit: &mut impl FnMut(&mut i32)) {
         visit_unsigned(&mut self.version, visit);
         visit_valve(&mut self.lift, visit);
         visit_valve(&mut self.lower, visit);

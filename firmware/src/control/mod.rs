@@ -10,6 +10,7 @@
 //! validated, so that nothing here has to doubt it again.
 
 pub mod calibration;
+pub mod calibration_words;
 pub mod closing;
 pub mod controller;
 pub mod current;

@@ -1,0 +1,264 @@
+//! The calibration block as a list of words, with what each may hold: the view that tools and storage have of it.
+
+use super::calibration::{CALIBRATION_BYTES, CURRENT_LIMIT, Calibration, FLOW_LIMIT};
+use super::design_parameters::{
+    CurrentParameters, HoldParameters, HydraulicParameters, LockParameters, MotionParameters,
+    OperatorParameters, PositionParameters, RateParameters, SafetyParameters, SaturationParameters,
+    SensorParameters, TeachParameters,
+};
+use super::linkage::LINKAGE_POINTS;
+use super::parameter::{ParameterGroup, ParameterInfo};
+use super::valve_map::VALVE_POINTS;
+use crate::fnv;
+
+/// Words in a block.
+pub const CALIBRATION_WORDS: usize = CALIBRATION_BYTES / 4;
+
+/// Words of a valve table: the number of points, then flow and current of each.
+pub const VALVE_WORDS: usize = 1 + 2 * VALVE_POINTS;
+/// Words of the linkage table: first angle, step, then the travel at each point.
+pub const LINKAGE_WORDS: usize = 2 + LINKAGE_POINTS;
+/// Word of the lift valve's table at which it begins.
+pub const LIFT_WORD: usize = 1;
+/// The same for the lowering valve.
+pub const LOWER_WORD: usize = LIFT_WORD + VALVE_WORDS;
+/// The same for the linkage.
+pub const LINKAGE_WORD: usize = LOWER_WORD + VALVE_WORDS;
+/// The first word of the scalars.
+pub const SCALARS_WORD: usize = LINKAGE_WORD + LINKAGE_WORDS;
+
+/// A group of scalars, as it follows the tables.
+#[derive(Clone, Copy, Debug)]
+pub struct Group {
+    /// Name of the group.
+    pub name: &'static str,
+    /// Its scalars, a word each.
+    pub parameters: &'static [ParameterInfo],
+    /// True if they may be changed while the hitch moves.
+    pub live: bool,
+}
+
+const fn group<G: ParameterGroup>(live: bool) -> Group {
+    Group {
+        name: G::NAME,
+        parameters: G::INFO,
+        live,
+    }
+}
+
+/// Changing it while the hitch moves is harmless: ramps, gains and limits of set points, which the controller takes up
+/// from wherever it is. Everything else says what the machine is or what is safe, and is changed at rest.
+const LIVE: bool = true;
+const AT_REST: bool = false;
+
+/// The groups in the order of the block.
+pub const GROUPS: [Group; 12] = [
+    group::<HydraulicParameters>(AT_REST),
+    group::<SensorParameters>(AT_REST),
+    group::<LockParameters>(AT_REST),
+    group::<OperatorParameters>(AT_REST),
+    group::<MotionParameters>(AT_REST),
+    group::<PositionParameters>(LIVE),
+    group::<RateParameters>(LIVE),
+    group::<HoldParameters>(AT_REST),
+    group::<SaturationParameters>(AT_REST),
+    group::<TeachParameters>(AT_REST),
+    group::<CurrentParameters>(AT_REST),
+    group::<SafetyParameters>(AT_REST),
+];
+
+/// What a word may hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WordRange {
+    /// Smallest.
+    pub min: i32,
+    /// Largest.
+    pub max: i32,
+    /// True if it may be changed while the hitch moves.
+    pub live: bool,
+}
+
+/// What word `index` may hold; `None` for version and checksum, which belong to the block, and beyond its end.
+#[must_use]
+pub fn word_range(index: usize) -> Option<WordRange> {
+    let (min, max) = match index {
+        0 => return None,
+        LIFT_WORD..LOWER_WORD => valve_range(index.wrapping_sub(LIFT_WORD)),
+        LOWER_WORD..LINKAGE_WORD => valve_range(index.wrapping_sub(LOWER_WORD)),
+        LINKAGE_WORD..SCALARS_WORD => linkage_range(index.wrapping_sub(LINKAGE_WORD)),
+        _ => return scalar_range(index.wrapping_sub(SCALARS_WORD)),
+    };
+    Some(WordRange {
+        min,
+        max,
+        live: false,
+    })
+}
+
+/// Largest number of points in a valve table.
+const MOST_POINTS: i32 = VALVE_POINTS as i32;
+/// A whole turn, in millidegrees.
+const FULL_TURN: i32 = 360_000;
+/// Longest piston travel, in micrometres.
+pub const LONGEST_TRAVEL: i32 = 2_000_000;
+
+const fn valve_range(word: usize) -> (i32, i32) {
+    match word {
+        0 => (2, MOST_POINTS),
+        _ if word % 2 == 1 => (0, FLOW_LIMIT.0),
+        _ => (0, CURRENT_LIMIT.0),
+    }
+}
+
+const fn linkage_range(word: usize) -> (i32, i32) {
+    match word {
+        0 => (-FULL_TURN, FULL_TURN),
+        1 => (1, FULL_TURN),
+        _ => (-LONGEST_TRAVEL, LONGEST_TRAVEL),
+    }
+}
+
+fn scalar_range(index: usize) -> Option<WordRange> {
+    SCALARS.get(index).map(|scalar| scalar.range)
+}
+
+/// A stretch of words that belongs together, with a key that stays the same when the block's layout changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Item {
+    /// Hash of names, unit and scale, 24 bits: what gets another unit is another item.
+    pub key: u32,
+    /// Its first word.
+    pub first: usize,
+    /// How many words it has, at most 255.
+    pub count: u8,
+}
+
+/// The items of a block in their order; version and checksum are none.
+pub fn items() -> impl Iterator<Item = Item> + Clone {
+    let scalars = (SCALARS_WORD..).zip(&SCALARS).map(|(first, scalar)| Item {
+        key: scalar.key,
+        first,
+        count: 1,
+    });
+    TABLES.into_iter().chain(scalars)
+}
+
+const TABLES: [Item; 3] = [
+    Item {
+        key: key("lift", "current over flow", "a", 1_000),
+        first: LIFT_WORD,
+        count: VALVE_WORDS as u8,
+    },
+    Item {
+        key: key("lower", "current over flow", "a", 1_000),
+        first: LOWER_WORD,
+        count: VALVE_WORDS as u8,
+    },
+    Item {
+        key: key("linkage", "travel over angle", "mm", 1_000),
+        first: LINKAGE_WORD,
+        count: LINKAGE_WORDS as u8,
+    },
+];
+
+/// What the ECU itself needs of a scalar: names and reasons stay out of its flash.
+#[derive(Clone, Copy)]
+struct Scalar {
+    key: u32,
+    range: WordRange,
+}
+
+const SCALAR_COUNT: usize = CALIBRATION_WORDS - SCALARS_WORD - 1;
+
+static SCALARS: [Scalar; SCALAR_COUNT] = scalars();
+
+const fn scalars() -> [Scalar; SCALAR_COUNT] {
+    let nothing = Scalar {
+        key: 0,
+        range: WordRange {
+            min: 0,
+            max: 0,
+            live: false,
+        },
+    };
+    let mut all = [nothing; SCALAR_COUNT];
+    let (mut next, mut of_group) = (0, 0);
+    while of_group < GROUPS.len() {
+        let group = GROUPS[of_group];
+        let mut index = 0;
+        while index < group.parameters.len() {
+            let parameter = group.parameters[index];
+            all[next] = Scalar {
+                key: key(
+                    group.name,
+                    parameter.name,
+                    parameter.suffix,
+                    parameter.counts_per_unit,
+                ),
+                range: WordRange {
+                    min: parameter.min,
+                    max: parameter.max,
+                    live: group.live,
+                },
+            };
+            next += 1;
+            index += 1;
+        }
+        of_group += 1;
+    }
+    assert!(next == SCALAR_COUNT, "the groups don't fill the block");
+    all
+}
+
+/// 24 bits from the name of a group, the name in it, the unit and the scale.
+const fn key(group: &str, name: &str, unit: &str, scale: i32) -> u32 {
+    let hash = fnv::text(fnv::text(fnv::text(fnv::START, group), name), unit);
+    let hash = fnv::number(hash, scale);
+    (hash >> 24) ^ (hash & 0xFF_FFFF)
+}
+
+/// A hash of the whole layout: equal only if every word means the same.
+#[must_use]
+pub(crate) const fn hash() -> u32 {
+    let mut hash = fnv::number(fnv::START, CALIBRATION_WORDS as i32);
+    let mut index = 0;
+    while index < TABLES.len() {
+        hash = fnv::number(hash, TABLES[index].key.cast_signed());
+        index += 1;
+    }
+    let all = scalars();
+    let mut index = 0;
+    while index < all.len() {
+        hash = fnv::number(hash, all[index].key.cast_signed());
+        index += 1;
+    }
+    hash
+}
+
+impl Calibration {
+    /// The block as words.
+    #[must_use]
+    pub fn to_words(&self) -> [i32; CALIBRATION_WORDS] {
+        let mut words = [0; CALIBRATION_WORDS];
+        let mut targets = words.iter_mut();
+        self.clone().for_each_word(&mut |word| {
+            if let Some(target) = targets.next() {
+                *target = *word;
+            }
+        });
+        words
+    }
+
+    /// The block of words; nothing of it is checked.
+    #[must_use]
+    pub fn from_words(words: &[i32; CALIBRATION_WORDS]) -> Self {
+        let mut calibration = Self::nominal();
+        let mut sources = words.iter();
+        calibration.for_each_word(&mut |word| {
+            if let Some(source) = sources.next() {
+                *word = *source;
+            }
+        });
+        calibration
+    }
+}

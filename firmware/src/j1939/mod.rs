@@ -1,0 +1,25 @@
+//! The hitch on the tractor's bus: J1939 and ISO 11783 (ISOBUS) over 250 kbit/s CAN.
+//!
+//! [`Node`] is all of it: it claims an address, reports the hitch ten times a second, takes its commands
+//! from an implement, reports what is wrong, and answers requests. The other modules are its parts, each
+//! a table or a state machine of its own.
+//!
+//! Nothing here waits: [`Node::receive`] takes a frame, [`Node::poll`] gives the next one that is due.
+//! Both do a bounded amount of work, and what a node answers in a second is bounded too, whatever the
+//! others on the bus do.
+
+pub mod claim;
+pub mod hitch;
+mod id;
+mod name;
+mod node;
+pub mod remote;
+mod time;
+pub mod trouble;
+
+pub use hitch::{ExitCode, HitchCommand, HitchStatus, Limit, LimitStatus};
+pub use id::{Id, Pgn};
+pub use name::{Name, NameFields};
+pub use node::{Node, PREFERRED_ADDRESS, Settings};
+pub use remote::Remote;
+pub use trouble::{Trouble, Troubles};

@@ -1,0 +1,85 @@
+//! The NAME of a node: who it is, and who wins when two want one address (SAE J1939-81, ISO 11783-5).
+
+/// The 64 bits of a NAME. The smaller one has priority.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Name(pub u64);
+
+/// The fields of a NAME.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NameFields {
+    /// Serial number of the unit, 21 bits.
+    pub identity: u32,
+    /// Code of the manufacturer, 11 bits, assigned by SAE.
+    pub manufacturer: u16,
+    /// Which unit of those that do one function together, 3 bits.
+    pub ecu_instance: u8,
+    /// Which one of several equal functions, 5 bits.
+    pub function_instance: u8,
+    /// What the unit does; 130 is control of the rear hitch.
+    pub function: u8,
+    /// What it is mounted on, 7 bits; 1 is a tractor.
+    pub device_class: u8,
+    /// Which of several equal devices, 4 bits.
+    pub device_class_instance: u8,
+    /// 3 bits; 2 is agriculture and forestry.
+    pub industry_group: u8,
+    /// True if it takes another address when it loses its own.
+    pub self_configurable: bool,
+}
+
+impl NameFields {
+    /// The rear hitch of a tractor with this serial number.
+    ///
+    /// The code of the manufacturer is 0, "reserved": who sells a unit puts their own there.
+    #[must_use]
+    pub const fn rear_hitch(identity: u32) -> Self {
+        Self {
+            identity,
+            manufacturer: 0,
+            ecu_instance: 0,
+            function_instance: 0,
+            function: 130,
+            device_class: 1,
+            device_class_instance: 0,
+            industry_group: 2,
+            self_configurable: true,
+        }
+    }
+}
+
+impl From<NameFields> for Name {
+    fn from(fields: NameFields) -> Self {
+        let part = |value: u64, bits: u32, at: u32| (value & ((1 << bits) - 1)) << at;
+        Self(
+            part(fields.identity.into(), 21, 0)
+                | part(fields.manufacturer.into(), 11, 21)
+                | part(fields.ecu_instance.into(), 3, 32)
+                | part(fields.function_instance.into(), 5, 35)
+                | part(fields.function.into(), 8, 40)
+                | part(fields.device_class.into(), 7, 49)
+                | part(fields.device_class_instance.into(), 4, 56)
+                | part(fields.industry_group.into(), 3, 60)
+                | part(fields.self_configurable.into(), 1, 63),
+        )
+    }
+}
+
+impl Name {
+    /// True if the node may take another address.
+    #[must_use]
+    pub const fn is_self_configurable(self) -> bool {
+        self.0 >> 63 == 1
+    }
+
+    /// As in a message.
+    #[must_use]
+    pub const fn to_bytes(self) -> [u8; 8] {
+        self.0.to_le_bytes()
+    }
+
+    /// From a message.
+    #[must_use]
+    pub const fn from_bytes(bytes: [u8; 8]) -> Self {
+        Self(u64::from_le_bytes(bytes))
+    }
+}

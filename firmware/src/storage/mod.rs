@@ -1,0 +1,10 @@
+//! The calibration in flash: two copies, of which the newer good one counts.
+//!
+//! [`store`] writes the copy that doesn't count, so whatever power does in the middle of it, the other one stays as
+//! it was; a copy counts once its last byte is right. [`record`] is what a copy looks like: every value stands there
+//! under a key, so firmware with another layout finds what it knows and takes its own defaults for the rest.
+
+pub mod record;
+pub mod store;
+
+pub use store::{CalibrationStore, Copy, Loaded, Progress, Source, StoreError};

@@ -1,0 +1,409 @@
+//! Two copies in flash, and the steps in which one of them is written.
+//!
+//! ```text
+//!            begin                       all erased                 all written
+//!   +------+ -----> +-------+ page by +---------+ chunk by +--------+ good: the other copy counts now
+//!   | Idle |        | Erase | page    | Program | chunk    | Verify | bad: reported, the old one still counts
+//!   +------+        +-------+ ------> +---------+ -------> +--------+
+//! ```
+
+use embedded_storage::nor_flash::NorFlash;
+
+use super::record::{self, CRC, Carried, HEADER_WORDS, Header};
+use crate::control::ValidCalibration;
+use crate::control::calibration_words::CALIBRATION_WORDS;
+
+/// Bytes that are read or programmed at a time: a multiple of what any flash takes at once.
+const CHUNK: usize = 32;
+const CHUNK_WORDS: usize = CHUNK / 4;
+
+/// One of the two copies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Copy {
+    /// Complete.
+    Good {
+        /// The higher one counts.
+        sequence: u32,
+    },
+    /// Never written, or just erased.
+    Blank,
+    /// Neither: a power cut while it was written, or worn-out flash.
+    Damaged,
+}
+
+/// Where a calibration came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// From a copy.
+    Stored {
+        /// Which one.
+        copy: usize,
+        /// Version of the block in it; another one than this firmware's has been migrated.
+        version: u32,
+        /// What couldn't be carried over.
+        carried: Carried,
+    },
+    /// No copy makes a calibration: this is the factory's.
+    Factory,
+}
+
+/// What was found at start.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Loaded {
+    /// What to run on.
+    pub calibration: ValidCalibration,
+    /// Where it came from.
+    pub source: Source,
+    /// Both copies.
+    pub copies: [Copy; 2],
+}
+
+/// Why storing failed. The calibration that was stored before is still there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StoreError<E> {
+    /// The flash refused.
+    Flash(E),
+    /// The flash is too small for two copies.
+    TooSmall,
+    /// What was read back isn't what was written.
+    Verify,
+    /// Something is being stored already.
+    Busy,
+}
+
+/// How far storing is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// Nothing is being stored.
+    Idle,
+    /// There is more to do.
+    Busy,
+    /// Done: what was given to [`CalibrationStore::begin`] is what will be loaded.
+    Done,
+}
+
+#[derive(Clone, Debug)]
+enum Job {
+    Erase { page: usize },
+    Program { chunk: usize },
+    Verify,
+}
+
+#[derive(Clone, Debug)]
+struct Writing {
+    job: Job,
+    copy: usize,
+    sequence: u32,
+    words: [i32; CALIBRATION_WORDS],
+    checksum: u32,
+}
+
+/// The store.
+#[derive(Debug)]
+pub struct CalibrationStore<F> {
+    flash: F,
+    writing: Option<Writing>,
+}
+
+impl<F: NorFlash> CalibrationStore<F> {
+    const CHUNK_FITS: () = assert!(
+        CHUNK.is_multiple_of(F::WRITE_SIZE) && CHUNK.is_multiple_of(F::READ_SIZE),
+        "flash that is read or programmed in larger pieces than a chunk"
+    );
+
+    /// A store on all of `flash`: the first half is one copy, the second half the other.
+    #[must_use]
+    pub const fn new(flash: F) -> Self {
+        const { Self::CHUNK_FITS };
+        Self {
+            flash,
+            writing: None,
+        }
+    }
+
+    /// Gives the flash back.
+    #[must_use]
+    pub fn release(self) -> F {
+        self.flash
+    }
+
+    /// What is stored.
+    ///
+    /// # Errors
+    /// If the flash can't be read.
+    pub fn load(&mut self) -> Result<Loaded, F::Error> {
+        let copies = self.copies()?;
+        for copy in newest_first(copies) {
+            if let Some((calibration, source)) = self.decode(copy)? {
+                return Ok(Loaded {
+                    calibration,
+                    source,
+                    copies,
+                });
+            }
+        }
+        Ok(Loaded {
+            calibration: ValidCalibration::nominal(),
+            source: Source::Factory,
+            copies,
+        })
+    }
+
+    /// Begins to store. The application then calls [`Self::step`] until it is done; the hitch has to be at rest,
+    /// for many controllers stand still while a page is erased.
+    ///
+    /// # Errors
+    /// If that can't be.
+    pub fn begin(&mut self, calibration: &ValidCalibration) -> Result<(), StoreError<F::Error>> {
+        if self.writing.is_some() {
+            return Err(StoreError::Busy);
+        }
+        if self.copy_bytes() < 4 * record::record_words() {
+            return Err(StoreError::TooSmall);
+        }
+        let copies = self.copies().map_err(StoreError::Flash)?;
+        let newest = newest_first(copies).next();
+        let copy = newest.map_or(0, |newest| 1 - newest.min(1));
+        let sequence = match newest.and_then(|newest| copies.get(newest)) {
+            Some(Copy::Good { sequence }) => sequence.wrapping_add(1),
+            _ => 1,
+        };
+        let words = calibration.to_words();
+        self.writing = Some(Writing {
+            job: Job::Erase { page: 0 },
+            copy,
+            sequence,
+            checksum: checksum(record::words(&words, sequence)),
+            words,
+        });
+        Ok(())
+    }
+
+    /// Does the next step: erases a page, programs a chunk, or reads everything back.
+    ///
+    /// # Errors
+    /// If it fails; then storing is over, and what was stored before still counts.
+    pub fn step(&mut self) -> Result<Progress, StoreError<F::Error>> {
+        let Some(mut writing) = self.writing.take() else {
+            return Ok(Progress::Idle);
+        };
+        match self.advance(&mut writing)? {
+            Some(job) => {
+                writing.job = job;
+                self.writing = Some(writing);
+                Ok(Progress::Busy)
+            }
+            None => Ok(Progress::Done),
+        }
+    }
+
+    /// Stores in one go, where nothing else has to be done meanwhile.
+    ///
+    /// # Errors
+    /// If it fails; then what was stored before still counts.
+    pub fn store(&mut self, calibration: &ValidCalibration) -> Result<(), StoreError<F::Error>> {
+        self.begin(calibration)?;
+        while self.step()? == Progress::Busy {}
+        Ok(())
+    }
+
+    /// The job that comes next, `None` after the last.
+    fn advance(&mut self, writing: &mut Writing) -> Result<Option<Job>, StoreError<F::Error>> {
+        let start = self.copy_start(writing.copy);
+        match writing.job {
+            Job::Erase { page } => {
+                let at = start + page * F::ERASE_SIZE;
+                let erased = self.flash.erase(address(at), address(at + F::ERASE_SIZE));
+                erased.map_err(StoreError::Flash)?;
+                let next = page + 1;
+                let more = next * F::ERASE_SIZE < 4 * record::record_words();
+                Ok(Some(if more {
+                    Job::Erase { page: next }
+                } else {
+                    Job::Program { chunk: 0 }
+                }))
+            }
+            Job::Program { chunk } => {
+                let bytes = chunk_bytes(writing, chunk);
+                let written = self.flash.write(address(start + chunk * CHUNK), &bytes);
+                written.map_err(StoreError::Flash)?;
+                let next = chunk + 1;
+                let more = next * CHUNK_WORDS < record::record_words();
+                Ok(Some(if more {
+                    Job::Program { chunk: next }
+                } else {
+                    Job::Verify
+                }))
+            }
+            Job::Verify => match self.examine(writing.copy).map_err(StoreError::Flash)? {
+                Copy::Good { sequence } if sequence == writing.sequence => Ok(None),
+                _ => Err(StoreError::Verify),
+            },
+        }
+    }
+
+    fn copies(&mut self) -> Result<[Copy; 2], F::Error> {
+        Ok([self.examine(0)?, self.examine(1)?])
+    }
+
+    /// What a copy is worth, by its checksum.
+    fn examine(&mut self, copy: usize) -> Result<Copy, F::Error> {
+        let mut reader = self.reader(copy);
+        let first = reader.header()?;
+        let Some(header) = Header::from_words(first) else {
+            let blank = first.iter().all(|&word| word == u32::MAX);
+            return Ok(if blank { Copy::Blank } else { Copy::Damaged });
+        };
+        let Some(rest) = reader.entries(&header) else {
+            return Ok(Copy::Damaged);
+        };
+        let mut digest = CRC.digest();
+        first
+            .iter()
+            .for_each(|word| digest.update(&word.to_le_bytes()));
+        for _ in 0..rest {
+            digest.update(&reader.word()?.to_le_bytes());
+        }
+        Ok(if reader.word()? == digest.finalize() {
+            Copy::Good {
+                sequence: header.sequence,
+            }
+        } else {
+            Copy::Damaged
+        })
+    }
+
+    /// The calibration in a good copy, if it makes one.
+    fn decode(&mut self, copy: usize) -> Result<Option<(ValidCalibration, Source)>, F::Error> {
+        let mut reader = self.reader(copy);
+        let header = Header::from_words(reader.header()?);
+        let Some((header, rest)) =
+            header.and_then(|header| Some((header, reader.entries(&header)?)))
+        else {
+            return Ok(None);
+        };
+        let mut failed = None;
+        let entries =
+            (0..rest).map_while(|_| reader.word().map_err(|error| failed = Some(error)).ok());
+        let decoded = record::decode(entries);
+        if let Some(error) = failed {
+            return Err(error);
+        }
+        Ok(decoded.map(|(calibration, carried)| {
+            let source = Source::Stored {
+                copy,
+                version: header.version,
+                carried,
+            };
+            (calibration, source)
+        }))
+    }
+
+    /// Size of a copy: half of the flash, in whole pages.
+    fn copy_bytes(&self) -> usize {
+        self.flash.capacity() / 2 / F::ERASE_SIZE * F::ERASE_SIZE
+    }
+
+    fn copy_start(&self, copy: usize) -> usize {
+        copy * self.copy_bytes()
+    }
+
+    fn reader(&mut self, copy: usize) -> Reader<'_, F> {
+        let at = self.copy_start(copy);
+        let end = at + self.copy_bytes();
+        Reader {
+            flash: &mut self.flash,
+            at,
+            end,
+            chunk: [0; CHUNK],
+            next: CHUNK_WORDS,
+        }
+    }
+}
+
+/// Reads a copy word by word.
+struct Reader<'a, F> {
+    flash: &'a mut F,
+    at: usize,
+    end: usize,
+    chunk: [u8; CHUNK],
+    /// The next word in the chunk.
+    next: usize,
+}
+
+impl<F: NorFlash> Reader<'_, F> {
+    fn header(&mut self) -> Result<[u32; HEADER_WORDS], F::Error> {
+        let mut words = [0; HEADER_WORDS];
+        for word in &mut words {
+            *word = self.word()?;
+        }
+        Ok(words)
+    }
+
+    /// Words between header and checksum, if the record fits into the copy.
+    fn entries(&self, header: &Header) -> Option<usize> {
+        let words = usize::try_from(header.words).ok()?;
+        let room = (self.end - self.at + CHUNK) / 4;
+        let fits = words <= room;
+        words.checked_sub(HEADER_WORDS + 1).filter(|_| fits)
+    }
+
+    /// The next word; an erased one beyond the end.
+    fn word(&mut self) -> Result<u32, F::Error> {
+        if self.next >= CHUNK_WORDS {
+            if self.at + CHUNK > self.end {
+                return Ok(u32::MAX);
+            }
+            self.flash.read(address(self.at), &mut self.chunk)?;
+            self.at += CHUNK;
+            self.next = 0;
+        }
+        let (words, _) = self.chunk.as_chunks::<4>();
+        let word = words.get(self.next).copied().unwrap_or([u8::MAX; 4]);
+        self.next += 1;
+        Ok(u32::from_le_bytes(word))
+    }
+}
+
+/// The good copies, the newer one first.
+fn newest_first(copies: [Copy; 2]) -> impl Iterator<Item = usize> {
+    let order = match copies {
+        [
+            Copy::Good { sequence: first },
+            Copy::Good { sequence: second },
+        ] => {
+            // Sequences wrap; they are at most one apart.
+            if first.wrapping_sub(second) < 1 << 31 {
+                [Some(0), Some(1)]
+            } else {
+                [Some(1), Some(0)]
+            }
+        }
+        [Copy::Good { .. }, _] => [Some(0), None],
+        [_, Copy::Good { .. }] => [Some(1), None],
+        _ => [None, None],
+    };
+    order.into_iter().flatten()
+}
+
+fn checksum(words: impl Iterator<Item = u32>) -> u32 {
+    let mut digest = CRC.digest();
+    words.for_each(|word| digest.update(&word.to_le_bytes()));
+    digest.finalize()
+}
+
+/// A chunk of the record, the last one filled up with what erased flash holds.
+fn chunk_bytes(writing: &Writing, chunk: usize) -> [u8; CHUNK] {
+    let mut bytes = [u8::MAX; CHUNK];
+    let all = record::words(&writing.words, writing.sequence).chain([writing.checksum]);
+    let (targets, _) = bytes.as_chunks_mut::<4>();
+    for (target, word) in targets.iter_mut().zip(all.skip(chunk * CHUNK_WORDS)) {
+        *target = word.to_le_bytes();
+    }
+    bytes
+}
+
+/// Flash is addressed with 32 bits.
+fn address(offset: usize) -> u32 {
+    u32::try_from(offset).unwrap_or(u32::MAX)
+}
