@@ -24,6 +24,8 @@ use crate::can::Frame;
 pub const SILENCE_MS: u32 = 250;
 /// Answers to claims come no closer than this, ms: a node that babbles claims is not joined by another one.
 const LEAST_SPACING_MS: u32 = 5;
+/// Who uses our address without a claim is reminded no more often than this, ms.
+const REMINDER_MS: u32 = 5_000;
 /// Addresses that self-configurable nodes choose from.
 const FREE_ADDRESSES: core::ops::RangeInclusive<u8> = 128..=247;
 /// Priority of a claim.
@@ -112,9 +114,14 @@ impl AddressClaim {
         }
     }
 
-    /// Somebody else sends from our address: our claim reminds them.
+    /// Somebody else sends from our address: our claim reminds them, now and then.
     pub fn address_violated(&mut self, now_ms: u32) {
-        self.owe(now_ms);
+        let reminded = self
+            .last_sent_ms
+            .is_some_and(|last| since_ms(last, now_ms) < REMINDER_MS);
+        if !reminded {
+            self.owe(now_ms);
+        }
     }
 
     /// The claim that is due.

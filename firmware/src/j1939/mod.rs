@@ -9,17 +9,21 @@
 //! others on the bus do.
 
 pub mod claim;
+pub mod diagnostics;
 pub mod hitch;
 mod id;
 mod name;
 mod node;
 pub mod remote;
+pub mod request;
 mod time;
+pub mod transport;
 pub mod trouble;
 
+pub use diagnostics::Variant;
 pub use hitch::{ExitCode, HitchCommand, HitchStatus, Limit, LimitStatus};
 pub use id::{Id, Pgn};
 pub use name::{Name, NameFields};
 pub use node::{Node, PREFERRED_ADDRESS, Settings};
 pub use remote::Remote;
-pub use trouble::{Trouble, Troubles};
+pub use trouble::{Trouble, TroubleFinder, Troubles};

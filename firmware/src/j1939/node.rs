@@ -1,11 +1,14 @@
 //! The hitch as a node on the bus: what it hears, and what it says when.
 
 use super::claim::AddressClaim;
+use super::diagnostics::{Diagnostics, Message, Variant};
 use super::hitch::{HitchCommand, HitchStatus, StatusMessage};
-use super::id::{GLOBAL, Id, Pgn};
+use super::id::{GLOBAL, Id, NULL, Pgn};
 use super::name::Name;
 use super::remote::{Remote, RemoteControl};
+use super::request::{Control, Request, Requests, acknowledgement};
 use super::time::since_ms;
+use super::transport::{self, Transport};
 use crate::can::Frame;
 
 /// The rear hitch status is repeated this often, ms.
@@ -14,6 +17,8 @@ const STATUS_PERIOD_MS: u32 = 100;
 const STATUS_SPACING_MS: u32 = 20;
 /// Priority of the rear hitch status.
 const STATUS_PRIORITY: u8 = 3;
+/// Priority of diagnostic messages.
+const DIAGNOSTIC_PRIORITY: u8 = 6;
 
 /// The address that a node asks for first unless told otherwise: the first that self-configurable nodes may take.
 pub const PREFERRED_ADDRESS: u8 = 128;
@@ -25,6 +30,8 @@ pub struct Settings {
     pub name: Name,
     /// The address that it asks for first.
     pub preferred_address: u8,
+    /// How trouble codes are reported.
+    pub variant: Variant,
 }
 
 /// The node.
@@ -33,6 +40,11 @@ pub struct Node {
     claim: AddressClaim,
     remote: RemoteControl,
     remote_permitted: bool,
+    diagnostics: Diagnostics,
+    requests: Requests,
+    transport: Transport,
+    /// Somebody wants to send us a long message.
+    unwanted: Option<(Pgn, u8)>,
     last_status: Option<([u8; 8], u32)>,
 }
 
@@ -44,6 +56,10 @@ impl Node {
             claim: AddressClaim::new(settings.name, settings.preferred_address),
             remote: RemoteControl::default(),
             remote_permitted: false,
+            diagnostics: Diagnostics::new(settings.variant),
+            requests: Requests::default(),
+            transport: Transport::default(),
+            unwanted: None,
             last_status: None,
         }
     }
@@ -65,20 +81,49 @@ impl Node {
         let Some(id) = frame.extended_data_id().map(Id::unpack) else {
             return;
         };
-        let Some(bytes) = frame.eight() else {
-            return;
-        };
-        match id.pgn {
-            Pgn::ADDRESS_CLAIMED => {
-                self.claim
-                    .heard_claim(id.source, Name::from_bytes(*bytes), now_ms);
+        if id.pgn == Pgn::REQUEST {
+            if let Some(request) = Request::from_message(&id, frame.data()) {
+                self.requested(request, id.destination, now_ms);
             }
+        } else if let Some(bytes) = frame.eight() {
+            self.receive_eight(&id, bytes, now_ms);
+        }
+    }
+
+    fn receive_eight(&mut self, id: &Id, bytes: &[u8; 8], now_ms: u32) {
+        if id.pgn == Pgn::ADDRESS_CLAIMED {
+            let name = Name::from_bytes(*bytes);
+            return self.claim.heard_claim(id.source, name, now_ms);
+        }
+        if id.source >= NULL {
+            return;
+        }
+        if Some(id.source) == self.address() {
+            return self.claim.address_violated(now_ms);
+        }
+        let for_us = Some(id.destination) == self.address();
+        match id.pgn {
             Pgn::HITCH_COMMANDS => {
                 let command = HitchCommand::from_bytes(bytes);
                 let permitted = self.remote_permitted;
                 self.remote.command(command, id.source, permitted, now_ms);
             }
+            Pgn::TRANSPORT_CONNECTION
+                if for_us && self.transport.receive(bytes, id.source, now_ms) =>
+            {
+                let [.., a, b, c] = *bytes;
+                self.unwanted = Some((Pgn::from_bytes([a, b, c]), id.source));
+            }
             _ => {}
+        }
+    }
+
+    fn requested(&mut self, request: Request, destination: u8, now_ms: u32) {
+        if !request.global && Some(destination) != self.claim.claimed_or_claiming() {
+        } else if request.group == Pgn::ADDRESS_CLAIMED {
+            self.claim.asked(now_ms);
+        } else if self.address().is_some() {
+            self.requests.push(request);
         }
     }
 
@@ -86,19 +131,25 @@ impl Node {
     pub fn poll(&mut self, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
         self.remote_permitted = status.remote_permitted;
         self.remote.update(status, now_ms);
-        if let Some(claim) = self.claim.poll(now_ms) {
-            return Some(claim);
-        }
-        let source = self.claim.address()?;
-        self.hitch_status(source, now_ms, status)
+        self.diagnostics.update(status.troubles);
+        let claim = self.claim.poll(now_ms);
+        let Some(source) = self.claim.address() else {
+            // What was begun under an address ends with it.
+            self.transport.reset();
+            self.requests.clear();
+            self.unwanted = None;
+            return claim;
+        };
+        claim
+            .or_else(|| self.hitch_status(source, now_ms, status))
+            .or_else(|| self.transport.poll(source, now_ms))
+            .or_else(|| self.periodic_dm1(source, now_ms))
+            .or_else(|| self.refuse(source))
+            .or_else(|| self.answer(source, now_ms, status))
     }
 
     fn hitch_status(&mut self, source: u8, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
-        let message = StatusMessage::new(
-            status,
-            self.remote.limit_status(status),
-            self.remote.exit_code(status),
-        );
+        let message = self.status_message(status);
         let bytes = message.to_bytes();
         if let Some((last, sent_ms)) = self.last_status {
             let age_ms = since_ms(sent_ms, now_ms);
@@ -109,12 +160,86 @@ impl Node {
         }
         self.last_status = Some((bytes, now_ms));
         self.remote.reported(message.position);
-        let id = Id {
-            priority: STATUS_PRIORITY,
-            pgn: Pgn::REAR_HITCH_STATUS,
-            destination: GLOBAL,
-            source,
+        Some(broadcast(Pgn::REAR_HITCH_STATUS, STATUS_PRIORITY, source).frame(bytes))
+    }
+
+    fn status_message(&self, status: &HitchStatus) -> StatusMessage {
+        StatusMessage::new(
+            status,
+            self.remote.limit_status(status),
+            self.remote.exit_code(status),
+        )
+    }
+
+    fn periodic_dm1(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
+        if !self.diagnostics.due(now_ms) || !self.transport.has_room(GLOBAL) {
+            return None;
+        }
+        self.diagnostics.sent(now_ms);
+        let message = self.diagnostics.dm1();
+        self.send(Pgn::DM1, &message, GLOBAL, source, now_ms)
+    }
+
+    fn refuse(&mut self, source: u8) -> Option<Frame> {
+        let (group, destination) = self.unwanted.take()?;
+        Some(transport::refusal(group, destination, source))
+    }
+
+    fn answer(&mut self, source: u8, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
+        let request = self.requests.next(now_ms)?;
+        let message = match request.group {
+            Pgn::REAR_HITCH_STATUS => {
+                let bytes = self.status_message(status).to_bytes();
+                return Some(broadcast(request.group, STATUS_PRIORITY, source).frame(bytes));
+            }
+            Pgn::DM1 => self.diagnostics.dm1(),
+            Pgn::DM2 => self.diagnostics.dm2(),
+            Pgn::DM3 => {
+                self.diagnostics.clear_previous();
+                return acknowledged(Control::Positive, &request, source);
+            }
+            _ => return acknowledged(Control::Negative, &request, source),
         };
-        Some(id.frame(bytes))
+        let destination = if request.global { GLOBAL } else { request.from };
+        if self.transport.has_room(destination) {
+            self.send(request.group, &message, destination, source, now_ms)
+        } else {
+            acknowledged(Control::CannotRespond, &request, source)
+        }
+    }
+
+    /// The frame of a message that fits into one, filled up with ones; else the first of a longer transport.
+    fn send(
+        &mut self,
+        group: Pgn,
+        message: &Message,
+        destination: u8,
+        source: u8,
+        now_ms: u32,
+    ) -> Option<Frame> {
+        if message.len() > Frame::MOST_BYTES {
+            self.transport
+                .send(group, message.clone(), destination, now_ms);
+            return self.transport.poll(source, now_ms);
+        }
+        let mut bytes = [0xFF; Frame::MOST_BYTES];
+        for (target, byte) in bytes.iter_mut().zip(message) {
+            *target = *byte;
+        }
+        Some(broadcast(group, DIAGNOSTIC_PRIORITY, source).frame(bytes))
+    }
+}
+
+/// An acknowledgement; requests to everybody aren't acknowledged.
+fn acknowledged(control: Control, request: &Request, source: u8) -> Option<Frame> {
+    (!request.global).then(|| acknowledgement(control, request, source))
+}
+
+const fn broadcast(pgn: Pgn, priority: u8, source: u8) -> Id {
+    Id {
+        priority,
+        pgn,
+        destination: GLOBAL,
+        source,
     }
 }

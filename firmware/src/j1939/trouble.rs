@@ -6,7 +6,7 @@
 //! 13 out of calibration, 31 condition exists.
 
 use crate::control::safety::Trip;
-use crate::control::units::MilliVolt;
+use crate::control::units::{MilliAmp, MilliVolt};
 use crate::control::{Fault, Inputs, Outputs};
 
 /// A diagnostic trouble code without its count.
@@ -163,20 +163,71 @@ impl Troubles {
             .copied()
             .filter(move |&trouble| self.contains(trouble))
     }
+}
 
+impl From<Trouble> for Troubles {
+    fn from(trouble: Trouble) -> Self {
+        let mut set = Self::NONE;
+        set.insert(trouble);
+        set
+    }
+}
+
+/// Coil that was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Coil {
+    Lift,
+    Lowering,
+}
+
+/// Turns what the controller finds into troubles. Which coil or which side of a limit is meant shows at the moment when
+/// something trips, and no longer when both coils are off; so it is settled then.
+#[derive(Clone, Debug, Default)]
+pub struct TroubleFinder {
+    last_asked: Option<Coil>,
+    tripped: Option<(Trip, Trouble)>,
+}
+
+impl TroubleFinder {
     /// What a step of the controller found.
-    #[must_use]
-    pub fn of_step(inputs: &Inputs, outputs: &Outputs) -> Self {
-        let mut found = Self::NONE;
-        let trouble = match (outputs.trip, outputs.fault) {
-            (Some(trip), _) => Some(of_trip(trip, inputs, outputs)),
-            (None, Some(fault)) => Some(of_fault(fault, inputs)),
-            (None, None) => None,
+    pub fn update(&mut self, inputs: &Inputs, outputs: &Outputs) -> Troubles {
+        if outputs.lift_current > MilliAmp::ZERO {
+            self.last_asked = Some(Coil::Lift);
+        } else if outputs.lower_current > MilliAmp::ZERO {
+            self.last_asked = Some(Coil::Lowering);
+        }
+        let Some(trip) = outputs.trip else {
+            self.tripped = None;
+            let fault = outputs.fault.map(|fault| of_fault(fault, inputs));
+            return fault.map_or(Troubles::NONE, Troubles::from);
         };
-        trouble
-            .into_iter()
-            .for_each(|trouble| found.insert(trouble));
-        found
+        let trouble = match self.tripped {
+            Some((known, trouble)) if known == trip => trouble,
+            _ => self.of_trip(trip, inputs),
+        };
+        self.tripped = Some((trip, trouble));
+        trouble.into()
+    }
+
+    fn of_trip(&self, trip: Trip, inputs: &Inputs) -> Trouble {
+        match trip {
+            Trip::Stale | Trip::BothCoils => Trouble::Controller,
+            Trip::Overrun => Trouble::Overrun,
+            Trip::Supply => of_supply(inputs),
+            Trip::Lever => Trouble::LeverMissing,
+            Trip::AngleMissing => Trouble::AngleMissing,
+            Trip::AngleJumps => Trouble::AngleJumps,
+            Trip::AngleFrozen => Trouble::AngleFrozen,
+            Trip::AngleNoisy => Trouble::AngleNoisy,
+            Trip::NotFollowing => Trouble::NotFollowing,
+            Trip::Against => Trouble::Against,
+            Trip::CoilOpen => match self.last_asked {
+                Some(Coil::Lift) => Trouble::LiftCoilOpen,
+                Some(Coil::Lowering) => Trouble::LoweringCoilOpen,
+                None => Trouble::Coils,
+            },
+            Trip::CoilShort | Trip::CoilStuck => of_short(inputs),
+        }
     }
 }
 
@@ -190,28 +241,13 @@ fn of_supply(inputs: &Inputs) -> Trouble {
     }
 }
 
-fn of_trip(trip: Trip, inputs: &Inputs, outputs: &Outputs) -> Trouble {
-    match trip {
-        Trip::Stale | Trip::BothCoils => Trouble::Controller,
-        Trip::Overrun => Trouble::Overrun,
-        Trip::Supply => of_supply(inputs),
-        Trip::Lever => Trouble::LeverMissing,
-        Trip::AngleMissing => Trouble::AngleMissing,
-        Trip::AngleJumps => Trouble::AngleJumps,
-        Trip::AngleFrozen => Trouble::AngleFrozen,
-        Trip::AngleNoisy => Trouble::AngleNoisy,
-        Trip::NotFollowing => Trouble::NotFollowing,
-        Trip::Against => Trouble::Against,
-        // Once it has tripped neither coil is asked for, so the current tells which one is meant; an open coil has none.
-        Trip::CoilOpen => Trouble::Coils,
-        Trip::CoilShort | Trip::CoilStuck => short(inputs, outputs),
-    }
-}
-
-fn short(inputs: &Inputs, _outputs: &Outputs) -> Trouble {
+/// The coil with too much current is the one with more.
+fn of_short(inputs: &Inputs) -> Trouble {
     match (inputs.lift_current, inputs.lower_current) {
         (Some(lift), Some(lower)) if lift > lower => Trouble::LiftCoilShort,
         (Some(lift), Some(lower)) if lower > lift => Trouble::LoweringCoilShort,
+        (Some(_), None) => Trouble::LiftCoilShort,
+        (None, Some(_)) => Trouble::LoweringCoilShort,
         _ => Trouble::Coils,
     }
 }

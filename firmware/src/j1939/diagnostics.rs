@@ -1,0 +1,167 @@
+//! Active and previously active trouble codes, and the messages DM1 and DM2 (SAE J1939-73, ISO 11783-12).
+//!
+//! ```text
+//! byte 1     2      3        4         5                        6                 7..
+//! lamps   flashing  SPN low  SPN high  SPN bits 18..16 and FMI  0 and occurrence  more codes, or FF FF
+//! ```
+//!
+//! The two standards differ in when DM1 is sent and in its first two bytes; see [`Variant`].
+
+use heapless::Vec;
+
+use super::time::since_ms;
+use super::trouble::{Trouble, Troubles};
+
+/// DM1 comes no more often than this, ms; while something is active it comes this often.
+pub const DM1_PERIOD_MS: u32 = 1_000;
+/// How many there can be.
+const KINDS: usize = Trouble::ALL.len();
+/// Longest message: the lamps, and a code for each trouble.
+pub const LONGEST_MESSAGE: usize = 2 + 4 * KINDS;
+/// Occurrences are counted up to here; 127 says that there is no count.
+const MOST_OCCURRENCES: u8 = 126;
+
+/// A message of trouble codes.
+pub type Message = Vec<u8, LONGEST_MESSAGE>;
+
+/// Which standard the bus follows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Variant {
+    /// ISO 11783: no lamps (FF FF), and DM1 stops when nothing is active.
+    #[default]
+    Iso11783,
+    /// SAE J1939: the state of the lamps, and DM1 goes on, saying that nothing is active.
+    J1939,
+}
+
+/// What is wrong, what was, and how often.
+#[derive(Clone, Debug)]
+pub struct Diagnostics {
+    variant: Variant,
+    active: Troubles,
+    previous: Troubles,
+    occurrences: [u8; KINDS],
+    sent_ms: Option<u32>,
+}
+
+impl Diagnostics {
+    /// Nothing has happened yet.
+    #[must_use]
+    pub const fn new(variant: Variant) -> Self {
+        Self {
+            variant,
+            active: Troubles::NONE,
+            previous: Troubles::NONE,
+            occurrences: [0; KINDS],
+            sent_ms: None,
+        }
+    }
+
+    /// Takes in what is wrong now.
+    pub fn update(&mut self, troubles: Troubles) {
+        if troubles == self.active {
+            return;
+        }
+        for begun in troubles.without(self.active).iter() {
+            if let Some(count) = self.occurrences.get_mut(begun as usize) {
+                *count = count.saturating_add(1).min(MOST_OCCURRENCES);
+            }
+        }
+        let ended = self.active.without(troubles);
+        self.previous = self.previous.union(ended).without(troubles);
+        self.active = troubles;
+    }
+
+    /// Forgets what was wrong before and how often (DM3). What is active stays.
+    pub fn clear_previous(&mut self) {
+        for forgotten in self.previous.iter() {
+            if let Some(count) = self.occurrences.get_mut(forgotten as usize) {
+                *count = 0;
+            }
+        }
+        self.previous = Troubles::NONE;
+    }
+
+    /// True if DM1 is due. A change is reported at once, if the last message is old enough.
+    #[must_use]
+    pub fn due(&self, now_ms: u32) -> bool {
+        let waited = self
+            .sent_ms
+            .is_none_or(|sent| since_ms(sent, now_ms) >= DM1_PERIOD_MS);
+        waited
+            && match self.variant {
+                Variant::J1939 => true,
+                Variant::Iso11783 => !self.active.is_empty(),
+            }
+    }
+
+    /// DM1 went out.
+    pub fn sent(&mut self, now_ms: u32) {
+        self.sent_ms = Some(now_ms);
+    }
+
+    /// DM1: what is active.
+    #[must_use]
+    pub fn dm1(&self) -> Message {
+        self.message(self.active)
+    }
+
+    /// DM2: what was active before.
+    #[must_use]
+    pub fn dm2(&self) -> Message {
+        self.message(self.previous)
+    }
+
+    fn message(&self, troubles: Troubles) -> Message {
+        let lamps = match self.variant {
+            Variant::Iso11783 => 0xFF,
+            Variant::J1939 => lamps(self.active),
+        };
+        let head = [lamps, 0xFF];
+        let nothing = [[0; 4]].into_iter().filter(|_| troubles.is_empty());
+        let codes = troubles.iter().map(|trouble| self.code(trouble));
+        head.into_iter()
+            .chain(nothing.flatten())
+            .chain(codes.flatten())
+            .take(LONGEST_MESSAGE)
+            .collect()
+    }
+
+    /// A code of four bytes, in the order of version 4 of the conversion method.
+    fn code(&self, trouble: Trouble) -> [u8; 4] {
+        let code = trouble.code();
+        let [low, high, highest, _] = code.spn.to_le_bytes();
+        let count = self.occurrences.get(trouble as usize);
+        [
+            low,
+            high,
+            (highest << 5) | (code.fmi & 0x1F),
+            count.copied().unwrap_or(MOST_OCCURRENCES),
+        ]
+    }
+}
+
+/// The amber lamp for anything, the red one for what must be mended before the hitch is used again. The bits of the
+/// other two say "off".
+fn lamps(active: Troubles) -> u8 {
+    const AMBER: u8 = 0b01 << 2;
+    const RED: u8 = 0b01 << 4;
+    if active.iter().any(is_grave) {
+        RED
+    } else if active.is_empty() {
+        0
+    } else {
+        AMBER
+    }
+}
+
+const fn is_grave(trouble: Trouble) -> bool {
+    matches!(
+        trouble,
+        Trouble::LiftCoilShort
+            | Trouble::LoweringCoilShort
+            | Trouble::Against
+            | Trouble::Sinking
+            | Trouble::Controller
+    )
+}

@@ -1,0 +1,8 @@
+//! The hitch as a node of J1939 and ISO 11783.
+
+mod bus;
+mod claim;
+mod diagnostics;
+mod flood;
+mod messages;
+mod remote;
