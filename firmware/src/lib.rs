@@ -11,6 +11,7 @@
 
 pub mod can;
 pub mod control;
+pub mod crc32;
 mod fnv;
 pub mod j1939;
 pub mod storage;

@@ -7,7 +7,8 @@ use hitch_firmware::control::calibration::CALIBRATION_VERSION;
 use hitch_firmware::control::calibration_words::{CALIBRATION_WORDS, items};
 use hitch_firmware::control::units::MicrometrePerSecond;
 use hitch_firmware::control::{Calibration, ValidCalibration};
-use hitch_firmware::storage::record::{self, CRC, Carried};
+use hitch_firmware::crc32::CRC_32;
+use hitch_firmware::storage::record::{self, Carried};
 use hitch_firmware::storage::{CalibrationStore, Copy, Progress, Source, StoreError};
 
 const PAGE: usize = 1_024;
@@ -123,7 +124,7 @@ fn bytes_changed() -> usize {
 /// A record in the first copy of blank flash.
 fn flash_with_record(words: &[u32]) -> Flash {
     let mut flash = Flash::blank();
-    let mut digest = CRC.digest();
+    let mut digest = CRC_32.digest();
     words
         .iter()
         .for_each(|word| digest.update(&word.to_le_bytes()));

@@ -14,6 +14,7 @@ use super::nominal;
 use super::parameter::{OutOfRange, ParameterGroup};
 use super::units::{MicroLitrePerSecond, MilliAmp};
 use super::valve_map::{VALVE_POINTS, ValveTable};
+use crate::crc32::CRC_32;
 
 /// Layout of the block that this firmware reads.
 pub const CALIBRATION_VERSION: u32 = 2;
@@ -300,8 +301,7 @@ impl Calibration {
     }
 
     fn computed_checksum(&self) -> u32 {
-        const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
-        let mut digest = CRC.digest();
+        let mut digest = CRC_32.digest();
         let mut words_left = CALIBRATION_BYTES / 4 - 1;
         self.clone().for_each_word(&mut |word| {
             if words_left > 0 {

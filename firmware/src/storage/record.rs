@@ -16,8 +16,6 @@ use crate::control::{Calibration, ValidCalibration};
 pub const MAGIC: u32 = u32::from_le_bytes(*b"HCAL");
 /// Words before the entries.
 pub const HEADER_WORDS: usize = 4;
-/// CRC-32 (ISO-HDLC), as of a calibration block.
-pub const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
 
 /// The beginning of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,9 +9,10 @@
 
 use embedded_storage::nor_flash::NorFlash;
 
-use super::record::{self, CRC, Carried, HEADER_WORDS, Header};
+use super::record::{self, Carried, HEADER_WORDS, Header};
 use crate::control::ValidCalibration;
 use crate::control::calibration_words::CALIBRATION_WORDS;
+use crate::crc32::CRC_32;
 
 /// Bytes that are read or programmed at a time: a multiple of what any flash takes at once.
 const CHUNK: usize = 32;
@@ -257,7 +258,7 @@ impl<F: NorFlash> CalibrationStore<F> {
         let Some(rest) = reader.entries(&header) else {
             return Ok(Copy::Damaged);
         };
-        let mut digest = CRC.digest();
+        let mut digest = CRC_32.digest();
         first
             .iter()
             .for_each(|word| digest.update(&word.to_le_bytes()));
@@ -387,7 +388,7 @@ fn newest_first(copies: [Copy; 2]) -> impl Iterator<Item = usize> {
 }
 
 fn checksum(words: impl Iterator<Item = u32>) -> u32 {
-    let mut digest = CRC.digest();
+    let mut digest = CRC_32.digest();
     words.for_each(|word| digest.update(&word.to_le_bytes()));
     digest.finalize()
 }

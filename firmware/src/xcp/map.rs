@@ -4,14 +4,15 @@
 //! |---|---|---|
 //! | [`CALIBRATION_BASE`] | the calibration block, on the page that is chosen | a word each, signed |
 //! | [`MEASUREMENT_BASE`] | the measurements | four bytes each; the first ones count |
-//! | [`IDENTITY_BASE`] | what a description file has to agree with | text |
+//! | [`IDENTITY_BASE`] | what a description file has to agree with, and names | text |
 //!
 //! A word of the calibration is checked and changed as a whole; see [`CalibrationPages::write`].
 
 use super::error::Refusal;
 use super::measurements::{self, Measurements};
-use super::memory::{Memory, Page};
+use super::memory::{Memory, Page, Place, Text};
 use super::pages::CalibrationPages;
+use super::slave::Event;
 use crate::control::calibration::CALIBRATION_BYTES;
 use crate::control::calibration_words;
 
@@ -26,9 +27,14 @@ pub const IDENTITY_BASE: u32 = 0x3000_0000;
 
 /// Version of this map: what a description file has to agree with. Made from the names, units and places of everything
 /// in the calibration and the measurements.
-pub static IDENTITY: [u8; 14] = identity();
+pub static IDENTITY: [u8; IDENTITY_BYTES] = identity();
+const IDENTITY_BYTES: usize = 14;
+/// The beginning of the identity is the name of the description file.
+const FILE_NAME_BYTES: u8 = 5;
+/// Names of the events, one after the other, behind the identity.
+static EVENT_NAMES: &[u8] = b"1 ms10 ms100 ms";
 
-const fn identity() -> [u8; 14] {
+const fn identity() -> [u8; IDENTITY_BYTES] {
     let mut text = *b"hitch ########";
     let hash = measurements::hash(calibration_words::hash());
     let mut place = 0;
@@ -81,7 +87,7 @@ impl EcuMemory<'_> {
         let word = if address >= IDENTITY_BASE {
             let offset = address.wrapping_sub(IDENTITY_BASE);
             let index = usize::try_from(offset).unwrap_or(usize::MAX);
-            let byte = IDENTITY.get(index);
+            let byte = IDENTITY.iter().chain(EVENT_NAMES).nth(index);
             return byte.copied().ok_or(Refusal::AccessDenied);
         } else if address >= MEASUREMENT_BASE {
             self.measurements.slot(slot(MEASUREMENT_BASE))
@@ -120,6 +126,20 @@ impl Memory for EcuMemory<'_> {
             Access::Locked => Err(Refusal::AccessLocked),
             Access::Moving => self.pages.write(offset, bytes, true),
             Access::AtRest => self.pages.write(offset, bytes, false),
+        }
+    }
+
+    fn text(&self, text: Text) -> Place {
+        let (offset, length) = match text {
+            Text::Identity => (0, IDENTITY_BYTES as u8),
+            Text::DescriptionFile => (0, FILE_NAME_BYTES),
+            Text::Event(Event::Every1Ms) => (IDENTITY_BYTES as u8, 4),
+            Text::Event(Event::Every10Ms) => (IDENTITY_BYTES as u8 + 4, 5),
+            Text::Event(Event::Every100Ms) => (IDENTITY_BYTES as u8 + 9, 6),
+        };
+        Place {
+            address: IDENTITY_BASE | u32::from(offset),
+            length,
         }
     }
 

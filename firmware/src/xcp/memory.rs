@@ -1,6 +1,7 @@
 //! What a slave reads and writes.
 
 use super::error::Refusal;
+use super::slave::Event;
 
 /// Page of the calibration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,6 +26,26 @@ impl Page {
     }
 }
 
+/// A text that tools ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Text {
+    /// What the description file has to agree with.
+    Identity,
+    /// Name of the description file, without its ending.
+    DescriptionFile,
+    /// Name of an event.
+    Event(Event),
+}
+
+/// Where something is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// Its first byte.
+    pub address: u32,
+    /// Number of bytes.
+    pub length: u8,
+}
+
 /// Addresses, and what is behind them.
 pub trait Memory {
     /// Reads; all of `target` or nothing.
@@ -38,6 +59,9 @@ pub trait Memory {
     /// # Errors
     /// If not all of it may be written, or a value is outside its range.
     fn write(&mut self, address: u32, bytes: &[u8]) -> Result<(), Refusal>;
+
+    /// Where a text can be read.
+    fn text(&self, text: Text) -> Place;
 
     /// True if writing is permitted at all just now: somebody at the machine has enabled tuning.
     fn may_calibrate(&self) -> bool;

@@ -6,16 +6,22 @@
 //! depends on the tables of this crate and not on where a linker put what, and nothing else can be read or
 //! written at all.
 
+mod checksum;
+mod command;
+mod daq;
 mod error;
 pub mod map;
 pub mod measurements;
+mod measuring;
 mod memory;
+mod packet;
 pub mod pages;
+mod paging;
 mod slave;
 
 pub use error::Refusal;
 pub use map::{Access, EcuMemory};
 pub use measurements::Measurements;
-pub use memory::{Memory, Page};
+pub use memory::{Memory, Page, Place, Text};
 pub use pages::CalibrationPages;
-pub use slave::{Event, Slave};
+pub use slave::{Event, Slave, TOOL_ADDRESS};

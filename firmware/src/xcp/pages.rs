@@ -26,7 +26,7 @@ pub enum Applied {
 /// Bytes of a word.
 const WORD_BYTES: usize = 4;
 /// Most bytes that one command writes.
-const LONGEST_PIECE: usize = 6;
+const LONGEST_PIECE: usize = 7;
 
 /// The beginning of a word whose end hasn't come yet.
 #[derive(Clone, Debug, Default)]
@@ -123,7 +123,7 @@ impl CalibrationPages {
 
     /// Writes bytes of the block from `offset` on; `moving`: only what may be changed while the hitch moves.
     ///
-    /// A word is checked and changed as a whole. Tools write what doesn't fit one message in pieces of six bytes,
+    /// A word is checked and changed as a whole. Tools write what doesn't fit one message in pieces of six or seven bytes,
     /// so a piece may end inside a word; what there is of it waits for the next piece to complete it. A piece that
     /// begins inside a word and doesn't go on where the last one ended is refused.
     ///

@@ -1,0 +1,404 @@
+//! Measuring: lists of what is sampled with an event, in tables (ODT) of what goes into one packet.
+//!
+//! ```text
+//! list 0 -> ODT 0 -> entry, entry, entry      packet: number of the ODT, time (first one of a list only), values
+//!        -> ODT 1 -> entry, entry
+//! list 1 -> ODT 2 -> entry
+//! ```
+//!
+//! Lists, tables and entries are handed out in this order, so each is a stretch of the next. A sample is sent whole or
+//! not at all: if the queue hasn't room for all of its packets, it is dropped, and the tool is told once.
+
+use heapless::{Deque, Vec};
+
+use super::error::Refusal;
+use super::memory::Memory;
+use super::packet::{MOST_BYTES, Packet, packet};
+use super::slave::Event;
+
+/// Lists at most.
+const LISTS: usize = 4;
+/// Tables of all lists together.
+const TABLES: usize = 16;
+/// Entries of all tables together.
+const ENTRIES: usize = 64;
+/// Packets that wait for the bus.
+const QUEUE: usize = 32;
+/// Bytes of a packet for values; in the first one of a list with time, four fewer.
+const ROOM: usize = MOST_BYTES - 1;
+const TIME_BYTES: usize = 4;
+/// Mode of a list: with time.
+const WITH_TIME: u8 = 0x10;
+
+/// Something to be sampled.
+#[derive(Clone, Copy, Debug, Default)]
+struct Entry {
+    address: u32,
+    /// 0: nothing yet.
+    size: u8,
+}
+
+/// A stretch of the next level.
+#[derive(Clone, Copy, Debug, Default)]
+struct Stretch {
+    first: u8,
+    count: u8,
+}
+
+impl Stretch {
+    fn of<T>(self, all: &[T]) -> &[T] {
+        let first = usize::from(self.first);
+        all.get(first..first.saturating_add(usize::from(self.count)))
+            .unwrap_or(&[])
+    }
+
+    /// The place of its `index`th.
+    fn place(self, index: u8) -> Option<usize> {
+        (index < self.count).then(|| usize::from(self.first).saturating_add(usize::from(index)))
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Activity {
+    Stopped,
+    Selected,
+    Running,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct List {
+    tables: Stretch,
+    event: u8,
+    prescaler: u8,
+    /// Events until the next sample.
+    countdown: u8,
+    mode: u8,
+    activity: Activity,
+}
+
+/// What is measured.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Daq {
+    lists: Vec<List, LISTS>,
+    tables: Vec<Stretch, TABLES>,
+    entries: Vec<Entry, ENTRIES>,
+    /// Where the next entry is written: list, table, entry.
+    pointer: Option<(u8, u8, u8)>,
+    queue: Deque<Packet, QUEUE>,
+    overload: Overload,
+}
+
+/// Whether samples are being dropped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Overload {
+    #[default]
+    None,
+    /// The tool is to be told.
+    New,
+    Told,
+}
+
+impl Daq {
+    /// Forgets everything.
+    pub fn free(&mut self) {
+        *self = Self::default();
+    }
+
+    /// True while anything is measured.
+    pub fn is_running(&self) -> bool {
+        self.lists
+            .iter()
+            .any(|list| list.activity == Activity::Running)
+    }
+
+    /// Hands out lists.
+    pub fn allocate_lists(&mut self, count: u16) -> Result<(), Refusal> {
+        self.must_rest()?;
+        if !self.tables.is_empty() {
+            return Err(Refusal::Sequence);
+        }
+        self.lists.clear();
+        let list = List {
+            tables: Stretch::default(),
+            event: Event::Every10Ms as u8,
+            prescaler: 1,
+            countdown: 0,
+            mode: 0,
+            activity: Activity::Stopped,
+        };
+        self.lists
+            .resize(usize::from(count), list)
+            .map_err(|_| Refusal::MemoryOverflow)
+    }
+
+    /// Hands out tables of a list; lists in their order.
+    pub fn allocate_tables(&mut self, list: u16, count: u8) -> Result<(), Refusal> {
+        self.must_rest()?;
+        let in_order = self.entries.is_empty() && self.tables_follow(list)?;
+        let first = length(&self.tables);
+        let wanted = self.tables.len().saturating_add(usize::from(count));
+        let target = self.list_mut(list)?;
+        if !in_order {
+            return Err(Refusal::Sequence);
+        }
+        target.tables = Stretch { first, count };
+        if self.tables.resize(wanted, Stretch::default()).is_err() {
+            self.list_mut(list)?.tables = Stretch::default();
+            return Err(Refusal::MemoryOverflow);
+        }
+        Ok(())
+    }
+
+    /// True if no list from this one on has tables.
+    fn tables_follow(&self, list: u16) -> Result<bool, Refusal> {
+        let rest = self.lists.get(usize::from(list)..);
+        let rest = rest.filter(|rest| !rest.is_empty());
+        let rest = rest.ok_or(Refusal::OutOfRange)?;
+        Ok(rest.iter().all(|list| list.tables.count == 0))
+    }
+
+    /// Hands out entries of a table; tables in their order.
+    pub fn allocate_entries(&mut self, list: u16, table: u8, count: u8) -> Result<(), Refusal> {
+        self.must_rest()?;
+        let place = self.list(list)?.tables.place(table);
+        let place = place.ok_or(Refusal::OutOfRange)?;
+        let rest = self.tables.get(place..).unwrap_or(&[]);
+        if rest.iter().any(|table| table.count > 0) {
+            return Err(Refusal::Sequence);
+        }
+        let first = length(&self.entries);
+        let wanted = self.entries.len().saturating_add(usize::from(count));
+        self.entries
+            .resize(wanted, Entry::default())
+            .map_err(|_| Refusal::MemoryOverflow)?;
+        if let Some(table) = self.tables.get_mut(place) {
+            *table = Stretch { first, count };
+        }
+        Ok(())
+    }
+
+    /// Chooses the entry that is written or read next.
+    pub fn point_to(&mut self, list: u16, table: u8, entry: u8) -> Result<(), Refusal> {
+        let number = u8::try_from(list).map_err(|_| Refusal::OutOfRange)?;
+        self.pointer = Some((number, table, entry));
+        let found = self.pointed_at().map(|_| ());
+        if found.is_err() {
+            self.pointer = None;
+        }
+        found
+    }
+
+    /// The entry that is pointed at.
+    fn pointed_at(&self) -> Result<usize, Refusal> {
+        let (list, table, entry) = self.pointer.ok_or(Refusal::Sequence)?;
+        let table = self.list(list.into())?.tables.place(table);
+        let table = table.and_then(|place| self.tables.get(place));
+        let place = table.and_then(|table| table.place(entry));
+        place.ok_or(Refusal::OutOfRange)
+    }
+
+    /// The pointer goes on to the next entry.
+    fn advance(&mut self) {
+        if let Some((_, _, entry)) = &mut self.pointer {
+            *entry = entry.saturating_add(1);
+        }
+    }
+
+    /// Writes the entry that is pointed at.
+    pub fn write(&mut self, address: u32, size: u8, memory: &impl Memory) -> Result<(), Refusal> {
+        let place = self.pointed_at()?;
+        let (list, ..) = self.pointer.ok_or(Refusal::Sequence)?;
+        if self.list(list.into())?.activity == Activity::Running {
+            return Err(Refusal::DaqActive);
+        }
+        let mut value = [0; ROOM];
+        let value = value.get_mut(..usize::from(size)).filter(|_| size > 0);
+        memory.read(address, value.ok_or(Refusal::OutOfRange)?)?;
+        if let Some(entry) = self.entries.get_mut(place) {
+            *entry = Entry { address, size };
+        }
+        self.advance();
+        Ok(())
+    }
+
+    /// Address and size of the entry that is pointed at.
+    pub fn read(&mut self) -> Result<(u32, u8), Refusal> {
+        let place = self.pointed_at()?;
+        self.advance();
+        let entry = self.entries.get(place).ok_or(Refusal::OutOfRange)?;
+        Ok((entry.address, entry.size))
+    }
+
+    /// Sets when and how a list is sampled.
+    pub fn set_mode(
+        &mut self,
+        list: u16,
+        mode: u8,
+        event: u16,
+        prescaler: u8,
+    ) -> Result<(), Refusal> {
+        let event = Event::from_number(event).ok_or(Refusal::OutOfRange)?;
+        let list = self.list_mut(list)?;
+        if list.activity == Activity::Running {
+            return Err(Refusal::DaqActive);
+        }
+        // Stimulation, packets without a number, and alternating displays there are none.
+        if mode & !WITH_TIME != 0 {
+            return Err(Refusal::ModeNotValid);
+        }
+        list.mode = mode;
+        list.event = event as u8;
+        list.prescaler = prescaler.max(1);
+        Ok(())
+    }
+
+    /// Mode (with what it does just now), event and prescaler of a list.
+    pub fn mode(&self, list: u16) -> Result<(u8, u8, u8), Refusal> {
+        const RUNNING: u8 = 0x40;
+        const SELECTED: u8 = 0x01;
+        let list = self.list(list)?;
+        let activity = match list.activity {
+            Activity::Stopped => 0,
+            Activity::Selected => SELECTED,
+            Activity::Running => RUNNING,
+        };
+        Ok((list.mode | activity, list.event, list.prescaler))
+    }
+
+    /// Stops, starts or selects a list; the number of its first packet.
+    pub fn start_stop(&mut self, list: u16, mode: u8) -> Result<u8, Refusal> {
+        let activity = match mode {
+            0 => Activity::Stopped,
+            1 => Activity::Running,
+            2 => Activity::Selected,
+            _ => return Err(Refusal::ModeNotValid),
+        };
+        if activity != Activity::Stopped {
+            self.must_make_sense(list)?;
+        }
+        let list = self.list_mut(list)?;
+        list.activity = activity;
+        list.countdown = 0;
+        Ok(list.tables.first)
+    }
+
+    /// Stops all lists (0), starts (1) or stops (2) the selected ones.
+    pub fn start_stop_selected(&mut self, mode: u8) -> Result<(), Refusal> {
+        for list in &mut self.lists {
+            let selected = list.activity == Activity::Selected;
+            list.activity = match mode {
+                0 => Activity::Stopped,
+                1 if selected => Activity::Running,
+                2 if selected => Activity::Stopped,
+                1 | 2 => list.activity,
+                _ => return Err(Refusal::ModeNotValid),
+            };
+            list.countdown = 0;
+        }
+        Ok(())
+    }
+
+    /// Samples the running lists of an event.
+    pub fn sample(&mut self, event: Event, memory: &impl Memory, now_us: u32) {
+        let (tables, entries) = (&self.tables, &self.entries);
+        for list in &mut self.lists {
+            if list.activity != Activity::Running || list.event != event as u8 {
+                continue;
+            }
+            if list.countdown > 0 {
+                list.countdown = list.countdown.saturating_sub(1);
+                continue;
+            }
+            list.countdown = list.prescaler.saturating_sub(1);
+            let room = QUEUE.saturating_sub(self.queue.len());
+            if room < usize::from(list.tables.count) {
+                if self.overload == Overload::None {
+                    self.overload = Overload::New;
+                }
+                continue;
+            }
+            let time = now_us.to_le_bytes();
+            let mut time = (list.mode & WITH_TIME != 0).then_some(time);
+            for (number, table) in (list.tables.first..).zip(list.tables.of(tables)) {
+                let mut sample = packet(number, time.take().as_ref().map_or(&[], |time| time));
+                for entry in table.of(entries) {
+                    append(&mut sample, entry, memory);
+                }
+                let _ = self.queue.push_back(sample);
+            }
+        }
+    }
+
+    /// The next packet. An overload is over once all of them are sent.
+    pub fn next_packet(&mut self) -> Option<Packet> {
+        let next = self.queue.pop_front();
+        if next.is_none() && self.overload == Overload::Told {
+            self.overload = Overload::None;
+        }
+        next
+    }
+
+    /// True once after samples began to be dropped.
+    pub fn take_overload(&mut self) -> bool {
+        let new = self.overload == Overload::New;
+        if new {
+            self.overload = Overload::Told;
+        }
+        new
+    }
+
+    fn must_rest(&self) -> Result<(), Refusal> {
+        if self.is_running() {
+            Err(Refusal::DaqActive)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// A list can be started if it has tables, its entries are written, and each table fits into a packet.
+    fn must_make_sense(&self, number: u16) -> Result<(), Refusal> {
+        let list = self.list(number)?;
+        let mut room = if list.mode & WITH_TIME != 0 {
+            ROOM - TIME_BYTES
+        } else {
+            ROOM
+        };
+        let tables = list.tables.of(&self.tables);
+        for table in tables {
+            let entries = table.of(&self.entries);
+            let bytes: usize = entries.iter().map(|entry| usize::from(entry.size)).sum();
+            if bytes > room || entries.iter().any(|entry| entry.size == 0) {
+                return Err(Refusal::DaqConfiguration);
+            }
+            room = ROOM;
+        }
+        if tables.is_empty() {
+            return Err(Refusal::DaqConfiguration);
+        }
+        Ok(())
+    }
+
+    fn list(&self, number: u16) -> Result<&List, Refusal> {
+        let list = self.lists.get(usize::from(number));
+        list.ok_or(Refusal::OutOfRange)
+    }
+
+    fn list_mut(&mut self, number: u16) -> Result<&mut List, Refusal> {
+        let list = self.lists.get_mut(usize::from(number));
+        list.ok_or(Refusal::OutOfRange)
+    }
+}
+
+/// Puts the value of an entry behind a packet. What can't be read any more is zero, so that the others stay in place.
+fn append(sample: &mut Packet, entry: &Entry, memory: &impl Memory) {
+    let mut value = [0; ROOM];
+    if let Some(value) = value.get_mut(..usize::from(entry.size)) {
+        let _ = memory.read(entry.address, value);
+        let _ = sample.extend_from_slice(value);
+    }
+}
+
+/// How many there are; capacities are far below 256.
+fn length<T>(all: &[T]) -> u8 {
+    u8::try_from(all.len()).unwrap_or(u8::MAX)
+}

@@ -1,0 +1,94 @@
+//! Commands that choose and copy pages of the calibration. It has one segment of two pages: working and reference.
+
+use super::error::Refusal;
+use super::memory::{Memory, Page};
+use super::packet::{Answer, done, response};
+
+const SEGMENTS: u8 = 1;
+const PAGES: u8 = 2;
+/// Who a page is chosen for.
+const CONTROLLER: u8 = 0x01;
+const TOOL: u8 = 0x02;
+/// For all segments, whatever number is given.
+const ALL: u8 = 0x80;
+
+/// SET_CAL_PAGE: mode, segment, page.
+pub(super) fn set_page(rest: &[u8], memory: &mut impl Memory) -> Answer {
+    let [mode, segment, number, ..] = *rest else {
+        return Err(Refusal::Syntax);
+    };
+    if segment >= SEGMENTS && mode & ALL == 0 {
+        return Err(Refusal::SegmentNotValid);
+    }
+    let page = Page::from_number(number).ok_or(Refusal::PageNotValid)?;
+    if mode & (CONTROLLER | TOOL) == 0 {
+        return Err(Refusal::ModeNotValid);
+    }
+    // The one that can be refused comes first, so that nothing is changed then.
+    if mode & CONTROLLER != 0 {
+        memory.set_controller_page(page)?;
+    }
+    if mode & TOOL != 0 {
+        memory.set_tool_page(page)?;
+    }
+    done()
+}
+
+/// GET_CAL_PAGE: who for, segment.
+pub(super) fn page(rest: &[u8], memory: &impl Memory) -> Answer {
+    let [access, segment, ..] = *rest else {
+        return Err(Refusal::Syntax);
+    };
+    if segment >= SEGMENTS {
+        return Err(Refusal::SegmentNotValid);
+    }
+    let page = match access {
+        CONTROLLER => memory.controller_page(),
+        TOOL => memory.tool_page(),
+        _ => return Err(Refusal::ModeNotValid),
+    };
+    response(&[0, 0, page as u8])
+}
+
+/// GET_PAG_PROCESSOR_INFO: one segment, no freezing.
+pub(super) fn info() -> Answer {
+    response(&[SEGMENTS, 0])
+}
+
+/// GET_PAGE_INFO: the controller and a tool reach both pages, whatever the other one does; only the working page is
+/// written, and only by a tool.
+pub(super) fn page_info(rest: &[u8]) -> Answer {
+    /// Either of both, with or without the other: bits 0 and 1 for the controller, 2 and 3 for reading by the tool.
+    const READABLE: u8 = 0x0F;
+    /// By the tool, whatever the controller does.
+    const WRITABLE: u8 = 0x30;
+    let [_, segment, page, ..] = *rest else {
+        return Err(Refusal::Syntax);
+    };
+    if segment >= SEGMENTS {
+        return Err(Refusal::SegmentNotValid);
+    }
+    match Page::from_number(page).ok_or(Refusal::PageNotValid)? {
+        Page::Working => response(&[READABLE | WRITABLE, 0]),
+        Page::Reference => response(&[READABLE, 0]),
+    }
+}
+
+/// COPY_CAL_PAGE: from the reference page to the working page, and nothing else.
+pub(super) fn copy(rest: &[u8], memory: &mut impl Memory) -> Answer {
+    let [from_segment, from, to_segment, to, ..] = *rest else {
+        return Err(Refusal::Syntax);
+    };
+    if from_segment >= SEGMENTS || to_segment >= SEGMENTS {
+        return Err(Refusal::SegmentNotValid);
+    }
+    if from >= PAGES || to >= PAGES {
+        return Err(Refusal::PageNotValid);
+    }
+    match (Page::from_number(from), Page::from_number(to)) {
+        (Some(Page::Reference), Some(Page::Working)) => memory.restore_working_page()?,
+        (_, Some(Page::Reference)) => return Err(Refusal::WriteProtected),
+        _ => return Err(Refusal::ModeNotValid),
+    }
+    done()
+}
