@@ -18,7 +18,7 @@ pub struct ParameterInfo {
     pub max: i32,
     /// Default, raw counts.
     pub nominal: i32,
-    /// What it is and why it has that default.
+    /// What it is and why it has that default. Empty on the ECU, whose flash it would fill with prose.
     pub reason: &'static str,
 }
 
@@ -88,7 +88,7 @@ macro_rules! parameter_group {
                     min: $min,
                     max: $max,
                     nominal: $nominal,
-                    reason: concat!($($doc),+),
+                    reason: if cfg!(target_os = "none") { "" } else { concat!($($doc),+) },
                 }, )+
             ];
 
