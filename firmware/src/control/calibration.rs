@@ -3,6 +3,7 @@
 //! [`Calibration`] is raw: anything may stand in it. [`ValidCalibration`] is one whose checksum, version,
 //! ranges and curves have been checked; the controller takes no other.
 
+use super::calibration_words;
 use super::calibration_words::CALIBRATION_WORDS;
 use super::design_parameters::{
     CurrentParameters, HoldParameters, HydraulicParameters, LockParameters, MotionParameters,
@@ -194,19 +195,12 @@ impl Calibration {
         Ok(ValidCalibration(self))
     }
 
+    /// By the ranges that tools are held to as well.
     fn check_parameters(&self) -> Result<(), CalibrationError> {
-        check_group(&self.hydraulics)?;
-        check_group(&self.sensors)?;
-        check_group(&self.lock)?;
-        check_group(&self.operator)?;
-        check_group(&self.motion)?;
-        check_group(&self.position)?;
-        check_group(&self.rate)?;
-        check_group(&self.hold)?;
-        check_group(&self.saturation)?;
-        check_group(&self.teach)?;
-        check_group(&self.current)?;
-        check_group(&self.safety)
+        match calibration_words::scalar_out_of_range(self) {
+            Some((group, what)) => Err(CalibrationError::Parameter { group, what }),
+            None => Ok(()),
+        }
     }
 
     /// Limits that only make sense in one order.
@@ -312,8 +306,9 @@ impl Calibration {
         digest.finalize()
     }
 
-    /// Visits every word in the order of the memory image.
-    pub(super) fn for_each_word(&mut self, visit: &mut impl FnMut(&mut i32)) {
+    /// Visits every word in the order of the memory image. One copy of this code serves all visitors: it is long.
+    #[inline(never)]
+    pub(super) fn for_each_word(&mut self, visit: &mut dyn FnMut(&mut i32)) {
         visit_unsigned(&mut self.version, visit);
         visit_valve(&mut self.lift, visit);
         visit_valve(&mut self.lower, visit);
@@ -323,50 +318,34 @@ impl Calibration {
             .travel
             .iter_mut()
             .for_each(|point| visit(&mut point.0));
-        visit_group(&mut self.hydraulics, visit);
-        visit_group(&mut self.sensors, visit);
-        visit_group(&mut self.lock, visit);
-        visit_group(&mut self.operator, visit);
-        visit_group(&mut self.motion, visit);
-        visit_group(&mut self.position, visit);
-        visit_group(&mut self.rate, visit);
-        visit_group(&mut self.hold, visit);
-        visit_group(&mut self.saturation, visit);
-        visit_group(&mut self.teach, visit);
-        visit_group(&mut self.current, visit);
-        visit_group(&mut self.safety, visit);
+        self.hydraulics.visit(visit);
+        self.sensors.visit(visit);
+        self.lock.visit(visit);
+        self.operator.visit(visit);
+        self.motion.visit(visit);
+        self.position.visit(visit);
+        self.rate.visit(visit);
+        self.hold.visit(visit);
+        self.saturation.visit(visit);
+        self.teach.visit(visit);
+        self.current.visit(visit);
+        self.safety.visit(visit);
         visit_unsigned(&mut self.checksum, visit);
     }
 }
 
-fn visit_unsigned(word: &mut u32, visit: &mut impl FnMut(&mut i32)) {
+fn visit_unsigned(word: &mut u32, visit: &mut dyn FnMut(&mut i32)) {
     let mut signed = word.cast_signed();
     visit(&mut signed);
     *word = signed.cast_unsigned();
 }
 
-fn visit_valve(table: &mut ValveTable, visit: &mut impl FnMut(&mut i32)) {
+fn visit_valve(table: &mut ValveTable, visit: &mut dyn FnMut(&mut i32)) {
     visit_unsigned(&mut table.count, visit);
     for point in &mut table.points {
         visit(&mut point.flow.0);
         visit(&mut point.current.0);
     }
-}
-
-fn visit_group<G: ParameterGroup>(group: &mut G, visit: &mut impl FnMut(&mut i32)) {
-    for index in 0..G::INFO.len() {
-        if let Some(mut counts) = group.get(index) {
-            visit(&mut counts);
-            group.set(index, counts);
-        }
-    }
-}
-
-fn check_group<G: ParameterGroup>(group: &G) -> Result<(), CalibrationError> {
-    group.check().map_err(|what| CalibrationError::Parameter {
-        group: G::NAME,
-        what,
-    })
 }
 
 fn check_valve(valve: &'static str, table: &ValveTable) -> Result<(), CalibrationError> {

@@ -7,7 +7,7 @@ use super::design_parameters::{
     SensorParameters, TeachParameters,
 };
 use super::linkage::LINKAGE_POINTS;
-use super::parameter::{ParameterGroup, ParameterInfo};
+use super::parameter::{OutOfRange, ParameterGroup, ParameterInfo};
 use super::valve_map::VALVE_POINTS;
 use crate::fnv;
 
@@ -121,6 +121,51 @@ const fn linkage_range(word: usize) -> (i32, i32) {
 fn scalar_range(index: usize) -> Option<WordRange> {
     SCALARS.get(index).map(|scalar| scalar.range)
 }
+
+/// The first scalar of a block that is outside its range, with the name of its group.
+pub(super) fn scalar_out_of_range(calibration: &Calibration) -> Option<(&'static str, OutOfRange)> {
+    let mut tables_left = SCALARS_WORD;
+    let mut scalars = (0..SCALAR_COUNT).zip(&SCALARS);
+    let mut outside = None;
+    calibration.clone().for_each_word(&mut |word| {
+        if tables_left > 0 {
+            tables_left -= 1;
+        } else if let Some((index, scalar)) = scalars.next()
+            && !(scalar.range.min..=scalar.range.max).contains(word)
+        {
+            outside = outside.or(Some((index, *word)));
+        }
+    });
+    outside.map(|(index, found)| {
+        let (group, parameter) = description(index);
+        (group, OutOfRange { parameter, found })
+    })
+}
+
+/// Group and description of a scalar.
+#[cfg(not(target_os = "none"))]
+fn description(index: usize) -> (&'static str, &'static ParameterInfo) {
+    let named = GROUPS
+        .iter()
+        .flat_map(|group| group.parameters.iter().map(|info| (group.name, info)));
+    named.into_iter().nth(index).unwrap_or(("", &NAMELESS))
+}
+
+/// Nobody reads names on the ECU, where they would fill a tenth of the flash.
+#[cfg(target_os = "none")]
+fn description(_index: usize) -> (&'static str, &'static ParameterInfo) {
+    ("", &NAMELESS)
+}
+
+static NAMELESS: ParameterInfo = ParameterInfo {
+    name: "",
+    suffix: "",
+    counts_per_unit: 1,
+    min: i32::MIN,
+    max: i32::MAX,
+    nominal: 0,
+    reason: "",
+};
 
 /// A stretch of words that belongs together, with a key that stays the same when the block's layout changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

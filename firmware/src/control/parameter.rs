@@ -43,19 +43,8 @@ pub trait ParameterGroup: Sized {
     /// Sets field `index`, if there is such a field, without checking its range.
     fn set(&mut self, index: usize, counts: i32);
 
-    /// Checks every field against its range.
-    ///
-    /// # Errors
-    /// The first field that is outside.
-    fn check(&self) -> Result<(), OutOfRange> {
-        for (index, parameter) in Self::INFO.iter().enumerate() {
-            let found = self.get(index).unwrap_or(parameter.min);
-            if found < parameter.min || found > parameter.max {
-                return Err(OutOfRange { parameter, found });
-            }
-        }
-        Ok(())
-    }
+    /// Visits the raw counts of every field, in their order.
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut i32));
 }
 
 /// Declares a group: `name: Type = default, min..=max;` with the reason as doc comment.
@@ -94,6 +83,10 @@ macro_rules! parameter_group {
 
             fn get(&self, index: usize) -> Option<i32> {
                 [$( self.$field.0, )+].get(index).copied()
+            }
+
+            fn visit(&mut self, visit: &mut dyn FnMut(&mut i32)) {
+                [$( &mut self.$field.0, )+].into_iter().for_each(visit);
             }
 
             fn set(&mut self, index: usize, counts: i32) {
