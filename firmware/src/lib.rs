@@ -6,12 +6,18 @@
 //! Beside it, and as pure: [`can`] frames and their text form, [`j1939`] (the hitch on the tractor's
 //! bus), [`xcp`] (measuring and calibrating), and [`storage`] of the calibration in flash. They are fed
 //! with frames and time, hand out frames, and do a bounded amount of work a call.
+//!
+//! [`ecu`] ties all of it together into the application that runs on the ECU.
 #![no_std]
 #![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
 
 pub mod can;
 pub mod control;
 pub mod crc32;
+pub mod ecu;
 mod fnv;
 pub mod j1939;
 pub mod storage;

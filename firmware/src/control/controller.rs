@@ -64,10 +64,7 @@ impl Controller {
     pub fn new(calibration: ValidCalibration) -> Self {
         let load = LoadEstimate::new(&calibration.hydraulics);
         let scale = DropScale::new(calibration.hydraulics.reference_drop, load.drop());
-        let closing = Closing {
-            lift: ClosingCurve::of(&calibration.lift, calibration.hydraulics.hysteresis),
-            lower: ClosingCurve::of(&calibration.lower, calibration.hydraulics.hysteresis),
-        };
+        let closing = closing(&calibration);
         let origin = calibration.linkage.travel(MilliDegree::ZERO);
         let regulation = Regulation::new(&calibration.current);
         Self {
@@ -102,6 +99,13 @@ impl Controller {
     #[must_use]
     pub fn calibration(&self) -> &ValidCalibration {
         &self.calibration
+    }
+
+    /// Takes another calibration of the same machine: one whose ramps, gains or limits differ. The hitch may be moving,
+    /// and goes on from where it is.
+    pub fn recalibrate(&mut self, calibration: ValidCalibration) {
+        self.closing = closing(&calibration);
+        self.calibration = calibration;
     }
 
     /// What teaching found, if the machine has been taught since power-up.
@@ -452,6 +456,14 @@ impl Controller {
             lift_duty: duties.lift,
             lower_duty: duties.lower,
         }
+    }
+}
+
+fn closing(calibration: &ValidCalibration) -> Closing {
+    let hysteresis = calibration.hydraulics.hysteresis;
+    Closing {
+        lift: ClosingCurve::of(&calibration.lift, hysteresis),
+        lower: ClosingCurve::of(&calibration.lower, hysteresis),
     }
 }
 

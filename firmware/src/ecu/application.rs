@@ -1,0 +1,227 @@
+//! The application: its parts, and the order in which a millisecond goes through them.
+
+use embedded_storage::nor_flash::NorFlash;
+use heapless::Deque;
+
+use super::arbiter::Arbiter;
+use super::drive::Drive;
+use super::flow::{FlowMonitor, Kick, Task};
+use super::hardware::{Contacts, Hardware};
+use super::pace::Pace;
+use super::panel::Contact;
+use super::service::{Service, Storing};
+use super::status::status;
+use crate::can::Frame;
+use crate::control::{Controller, Inputs, Outputs, State};
+use crate::j1939::{NameFields, Node, PREFERRED_ADDRESS, Remote, Settings, TroubleFinder, Variant};
+use crate::xcp::measurements::{EcuState, Measurements};
+use crate::xcp::{Access, EcuMemory, Event, Slave};
+
+/// Most frames that are heard in a millisecond: twice what a bus of 250 kbit/s carries at its fullest.
+const MOST_HEARD: usize = 8;
+/// Most frames that are made in a millisecond.
+const MOST_SAID: usize = 4;
+/// Frames that wait for the bus.
+const OUTBOX: usize = 8;
+/// The address of a node that has none.
+const NO_ADDRESS: u8 = 254;
+
+/// The ECU.
+#[derive(Debug)]
+pub struct Ecu<F> {
+    controller: Controller,
+    arbiter: Arbiter,
+    service: Service<F>,
+    node: Node,
+    trouble_finder: TroubleFinder,
+    slave: Slave,
+    measurements: Measurements,
+    outbox: Deque<Frame, OUTBOX>,
+    pace: Pace,
+    flow: FlowMonitor,
+    inputs: Inputs,
+    outputs: Outputs,
+}
+
+impl<F: NorFlash> Ecu<F> {
+    /// The ECU as it is after power-up, with the calibration that `flash` holds. `serial_number` tells its node from
+    /// others on the bus.
+    #[must_use]
+    pub fn start(flash: F, serial_number: u32) -> Self {
+        let (service, controller) = Service::start(flash);
+        let settings = Settings {
+            name: NameFields::rear_hitch(serial_number).into(),
+            preferred_address: PREFERRED_ADDRESS,
+            variant: Variant::J1939,
+        };
+        Self {
+            controller,
+            arbiter: Arbiter::default(),
+            service,
+            node: Node::new(settings),
+            trouble_finder: TroubleFinder::default(),
+            slave: Slave::new(),
+            measurements: Measurements::default(),
+            outbox: Deque::new(),
+            pace: Pace::default(),
+            flow: FlowMonitor::default(),
+            inputs: Inputs::default(),
+            outputs: Outputs::default(),
+        }
+    }
+
+    /// One millisecond. The watchdog may be kicked with what it gives; it gives nothing unless every task has run.
+    pub fn tick(&mut self, contacts: &Contacts, hardware: &mut impl Hardware) -> Option<Kick> {
+        self.sample(contacts);
+        self.flow.passed(Task::Sample);
+        self.outputs = self.controller.step(&self.inputs);
+        self.flow.passed(Task::Control);
+        hardware.drive(Drive::from(&self.outputs));
+        self.flow.passed(Task::Drive);
+        self.serve_bus(contacts, hardware);
+        self.flow.passed(Task::Bus);
+        self.flow.end()
+    }
+
+    /// What the controller was told in the last millisecond.
+    #[must_use]
+    pub const fn inputs(&self) -> &Inputs {
+        &self.inputs
+    }
+
+    /// What it asked for.
+    #[must_use]
+    pub const fn outputs(&self) -> &Outputs {
+        &self.outputs
+    }
+
+    fn sample(&mut self, contacts: &Contacts) {
+        let mut inputs = contacts.panel.added_to(contacts.samples.inputs());
+        inputs.step_time = self.pace.begin(contacts.clock_us);
+        // Many a part stands still while its flash is erased: nothing may move then.
+        inputs.switches.transport_lock |= self.service.is_storing();
+        let limits = &self.controller.calibration().position;
+        self.inputs = self.arbiter.decide(inputs, self.node.remote(), limits);
+    }
+
+    fn serve_bus(&mut self, contacts: &Contacts, hardware: &mut impl Hardware) {
+        let access = self.access(contacts);
+        self.measure(hardware.frames_dropped());
+        self.hear(access, contacts.clock_us, hardware);
+        self.sample_for_tool(access, contacts.clock_us);
+        let at_rest = is_at_rest(&self.outputs);
+        let stored = self
+            .service
+            .update(&mut self.controller, &mut self.slave, at_rest);
+        if stored == Storing::Busy {
+            self.pace.forgive();
+        }
+        self.say(hardware);
+    }
+
+    /// What a tool may write: nothing unless somebody at the machine has switched service on.
+    fn access(&self, contacts: &Contacts) -> Access {
+        if self.service.is_storing() || !contacts.panel.is_closed(Contact::Service) {
+            return Access::Locked;
+        }
+        match is_at_rest(&self.outputs) {
+            true => Access::AtRest,
+            false => Access::Moving,
+        }
+    }
+
+    fn measure(&mut self, frames_dropped: u16) {
+        let state = EcuState {
+            remote_set_point: match self.node.remote() {
+                Remote::Position(position) => position.0,
+                Remote::Idle => -1,
+            },
+            address: self.node.address().unwrap_or(NO_ADDRESS),
+            calibration_state: self.service.pages.applied() as u8,
+            longest_step_us: self.pace.longest_us(),
+            frames_dropped,
+        };
+        self.measurements
+            .sample(&self.inputs, &self.outputs, &state);
+    }
+
+    fn hear(&mut self, access: Access, now_us: u32, hardware: &mut impl Hardware) {
+        self.slave.set_address(self.node.address());
+        for _ in 0..MOST_HEARD {
+            let Some(frame) = hardware.receive() else {
+                return;
+            };
+            self.node.receive(&frame, self.pace.now_ms());
+            let mut memory = EcuMemory {
+                pages: &mut self.service.pages,
+                measurements: &self.measurements,
+                access,
+            };
+            self.slave.receive(&frame, &mut memory, now_us);
+        }
+    }
+
+    fn sample_for_tool(&mut self, access: Access, now_us: u32) {
+        let now_ms = self.pace.now_ms();
+        let memory = EcuMemory {
+            pages: &mut self.service.pages,
+            measurements: &self.measurements,
+            access,
+        };
+        let events = [
+            (1, Event::Every1Ms),
+            (10, Event::Every10Ms),
+            (100, Event::Every100Ms),
+        ];
+        for (period_ms, event) in events {
+            if now_ms.is_multiple_of(period_ms) {
+                self.slave.event(event, &memory, now_us);
+            }
+        }
+    }
+
+    /// Makes the frames that are due and hands over what the bus takes.
+    fn say(&mut self, hardware: &mut impl Hardware) {
+        let found = self.trouble_finder.update(&self.inputs, &self.outputs);
+        let status = status(
+            &self.inputs,
+            &self.outputs,
+            &self.controller.calibration().position,
+            self.service.troubles().union(found),
+            self.arbiter.is_overridden(),
+        );
+        // The node's time goes on whether or not the bus takes anything: what is old then gives way.
+        for _ in 0..MOST_SAID {
+            let Some(frame) = self.node.poll(self.pace.now_ms(), &status) else {
+                break;
+            };
+            self.push(frame);
+        }
+        while self.outbox.len() < OUTBOX
+            && let Some(frame) = self.slave.poll()
+        {
+            self.push(frame);
+        }
+        while let Some(frame) = self.outbox.front()
+            && hardware.send(frame)
+        {
+            self.outbox.pop_front();
+        }
+    }
+
+    fn push(&mut self, frame: Frame) {
+        if self.outbox.is_full() {
+            self.outbox.pop_front();
+        }
+        // There is room now.
+        let _ = self.outbox.push_back(frame);
+    }
+}
+
+/// Both coils are off and stay off until the operator picks the hitch up.
+const fn is_at_rest(outputs: &Outputs) -> bool {
+    matches!(
+        outputs.state,
+        State::Locked | State::TransportLock | State::Fault
+    )
+}

@@ -1,0 +1,32 @@
+//! What the application needs of whatever it runs on.
+
+use super::converter::Samples;
+use super::drive::Drive;
+use super::panel::Panel;
+use crate::can::Frame;
+
+/// What is read at the beginning of a millisecond.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Contacts {
+    /// The converters' codes.
+    pub samples: Samples,
+    /// The operator's contacts.
+    pub panel: Panel,
+    /// A free-running clock apart from the one that paces the milliseconds, us; it wraps.
+    pub clock_us: u32,
+}
+
+/// Drivers and bus. None of it waits.
+pub trait Hardware {
+    /// Hands the coils' drivers their values.
+    fn drive(&mut self, drive: Drive);
+
+    /// The next frame that was received.
+    fn receive(&mut self) -> Option<Frame>;
+
+    /// Takes a frame for the bus; false if there is no room for it now.
+    fn send(&mut self, frame: &Frame) -> bool;
+
+    /// Frames that were received and dropped since the start.
+    fn frames_dropped(&self) -> u16;
+}

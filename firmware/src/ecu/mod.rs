@@ -1,0 +1,29 @@
+//! The ECU's application: from converter codes and frames to pulse widths and frames, one [`Ecu::tick`] a millisecond.
+//!
+//! ```text
+//! Samples, Panel -> Inputs -> (an implement's set point) -> Controller -> Drive
+//!                                                              |
+//!                    bus <-> Node, XCP slave <- measurements <-+-> calibration pages <-> flash
+//! ```
+//!
+//! Pure as the rest of the library: what it runs on is a [`Hardware`], which the board, the emulator and the tests each
+//! have one of. So the same code runs on all three, and does the same.
+
+mod application;
+mod arbiter;
+mod converter;
+mod drive;
+mod flow;
+mod hardware;
+pub mod link;
+mod pace;
+mod panel;
+mod service;
+mod status;
+
+pub use application::Ecu;
+pub use converter::{AdcCode, Samples, WireFault};
+pub use drive::{Compare, Drive, PWM_STEPS};
+pub use flow::{FlowMonitor, Kick, Task};
+pub use hardware::{Contacts, Hardware};
+pub use panel::{Contact, Panel};

@@ -1,0 +1,170 @@
+//! Changing and keeping the calibration: what tools write, what teaching finds, and the copies in flash.
+
+use embedded_storage::nor_flash::NorFlash;
+
+use crate::control::{Calibration, Controller, ValidCalibration};
+use crate::j1939::{Trouble, Troubles};
+use crate::storage::{CalibrationStore, Copy, Progress, Source};
+use crate::xcp::{CalibrationPages, Slave};
+
+/// What became of a step of storing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Storing {
+    /// Nothing is being stored.
+    Idle,
+    /// Flash was erased or programmed; the processor may have stood still meanwhile.
+    Busy,
+}
+
+/// The calibration's keeper.
+#[derive(Debug)]
+pub struct Service<F> {
+    /// What tools see.
+    pub pages: CalibrationPages,
+    store: CalibrationStore<F>,
+    storing: bool,
+    /// A tool waits for the end of storing.
+    tool_waits: bool,
+    /// What teaching found has been looked at.
+    taught_seen: bool,
+    troubles: Troubles,
+}
+
+impl<F: NorFlash> Service<F> {
+    /// Reads what is stored; with it, the controller as it is after power-up.
+    pub fn start(flash: F) -> (Self, Controller) {
+        let mut store = CalibrationStore::new(flash);
+        let mut troubles = Troubles::NONE;
+        let calibration = match store.load() {
+            Ok(loaded) => {
+                if loaded.source == Source::Factory {
+                    troubles.insert(Trouble::CalibrationLost);
+                } else if loaded.copies.contains(&Copy::Damaged) {
+                    troubles.insert(Trouble::CalibrationCopyLost);
+                }
+                loaded.calibration
+            }
+            Err(_) => {
+                troubles.insert(Trouble::CalibrationLost);
+                ValidCalibration::nominal()
+            }
+        };
+        let service = Self {
+            pages: CalibrationPages::new(&calibration),
+            store,
+            storing: false,
+            tool_waits: false,
+            taught_seen: false,
+            troubles,
+        };
+        (service, Controller::new(calibration))
+    }
+
+    /// True while something is being stored; the hitch has to be locked meanwhile.
+    #[must_use]
+    pub const fn is_storing(&self) -> bool {
+        self.storing
+    }
+
+    /// What is wrong with what is stored.
+    #[must_use]
+    pub const fn troubles(&self) -> Troubles {
+        self.troubles
+    }
+
+    /// The keeper's part of a millisecond. `at_rest`: both coils are off and the lock is shut.
+    pub fn update(
+        &mut self,
+        controller: &mut Controller,
+        slave: &mut Slave,
+        at_rest: bool,
+    ) -> Storing {
+        if self.storing {
+            return self.store_on(slave);
+        }
+        let mut wanted = at_rest && self.take_taught(controller);
+        if let Some(Ok(calibration)) = self.pages.take_change() {
+            apply(calibration, controller);
+        }
+        if slave.take_store_request() {
+            self.tool_waits = true;
+            wanted = true;
+        }
+        if wanted {
+            self.begin(slave, at_rest);
+        }
+        Storing::Idle
+    }
+
+    /// Puts what teaching found on the working page, once; true if there was something.
+    fn take_taught(&mut self, controller: &Controller) -> bool {
+        let Some(result) = controller.taught() else {
+            self.taught_seen = false;
+            return false;
+        };
+        if core::mem::replace(&mut self.taught_seen, true) {
+            return false;
+        }
+        let calibration =
+            result.map(|taught| taught.applied_to(controller.calibration()).validate());
+        match calibration {
+            Ok(Ok(calibration)) => {
+                self.pages.replace_working(&calibration);
+                true
+            }
+            _ => false,
+        }
+    }
+
+    fn begin(&mut self, slave: &mut Slave, at_rest: bool) {
+        let begun = match self.pages.to_store() {
+            Ok(calibration) if at_rest => self.store.begin(&calibration).is_ok(),
+            _ => false,
+        };
+        self.storing = begun;
+        if !begun {
+            self.end(slave, false);
+        }
+    }
+
+    fn store_on(&mut self, slave: &mut Slave) -> Storing {
+        match self.store.step() {
+            Ok(Progress::Busy) => {}
+            Ok(Progress::Done | Progress::Idle) => {
+                // Nothing could be written to the page meanwhile, so it is what was stored.
+                if let Ok(calibration) = self.pages.to_store() {
+                    self.pages.stored(&calibration);
+                }
+                self.troubles = Troubles::NONE;
+                self.end(slave, true);
+            }
+            Err(_) => {
+                self.troubles.insert(Trouble::CalibrationCopyLost);
+                self.end(slave, false);
+            }
+        }
+        Storing::Busy
+    }
+
+    fn end(&mut self, slave: &mut Slave, success: bool) {
+        self.storing = false;
+        if core::mem::take(&mut self.tool_waits) {
+            slave.stored(success);
+        }
+    }
+}
+
+/// Hands a calibration to the controller. Ramps, gains and limits change under a moving hitch; whatever else changes makes
+/// it another machine, which the operator has to pick up anew.
+fn apply(calibration: ValidCalibration, controller: &mut Controller) {
+    let same_machine = Calibration {
+        position: calibration.position,
+        rate: calibration.rate,
+        checksum: calibration.checksum,
+        ..(**controller.calibration()).clone()
+    };
+    match same_machine == *calibration {
+        true => controller.recalibrate(calibration),
+        false => *controller = Controller::new(calibration),
+    }
+}
