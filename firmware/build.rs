@@ -11,6 +11,10 @@ fn main() {
     // The linker runs in the workspace's root, so that `link.x` finds `memory.x` there.
     println!("cargo:rustc-link-arg-bins=-Tlink.x");
     println!("cargo:rustc-link-arg-bins=--nmagic");
+    println!("cargo:rustc-link-arg-bin=ecu=-Tdefmt.x");
+    if env::var_os("CARGO_FEATURE_STM32G474").is_some() {
+        println!("cargo:rustc-link-arg-bin=ecu=--defsym=_stm32g474=1");
+    }
     if env::var_os("CARGO_FEATURE_EMULATED").is_some() {
         println!("cargo:rustc-link-arg-bin=emulated=--defsym=_mps2_an386=1");
     }

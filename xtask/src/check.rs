@@ -3,7 +3,7 @@
 use anyhow::Result;
 
 use crate::toolchain::Way;
-use crate::{process, setup, workspace};
+use crate::{image, process, setup, workspace};
 
 /// Runs all checks; the first that fails ends it.
 pub fn run(way: Option<Way>) -> Result<()> {
@@ -33,14 +33,12 @@ fn lint_images(way: Way) -> Result<()> {
         Way::Rustup => "clippy",
         Way::Debian => "check",
     };
-    let mut command = way.cargo(subcommand)?;
-    command.args([
-        "--package",
-        "hitch-firmware",
-        "--lib",
-        "--bins",
-        "--features",
-        "emulated",
-    ]);
-    process::run(command.env("RUSTFLAGS", "--deny warnings"))
+    for feature in std::iter::once("emulated").chain(image::PARTS) {
+        let mut command = way.cargo(subcommand)?;
+        command
+            .args(["--package", "hitch-firmware", "--lib", "--bins"])
+            .args(["--features", feature]);
+        process::run(command.env("RUSTFLAGS", "--deny warnings"))?;
+    }
+    Ok(())
 }

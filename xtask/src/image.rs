@@ -1,5 +1,6 @@
 //! Building the images for ARM.
 
+use std::fs;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
@@ -10,8 +11,11 @@ use crate::{process, size};
 /// The profile that images are built with: optimised, and arithmetic that overflows is caught.
 const PROFILE: &str = "firmware";
 
-/// Builds the control layer as the ECU takes it, proves that it can't panic, and builds the image for the emulator,
-/// whose path is returned.
+/// Parts that there is a board for, by the features that choose them.
+pub const PARTS: [&str; 2] = ["stm32f405", "stm32g474"];
+
+/// Builds the control layer as the ECU takes it, proves that it can't panic, builds the images for the boards and the one
+/// for the emulator, whose path is returned.
 pub fn build_all(way: Way) -> Result<PathBuf> {
     let folder = way.target_dir().join(TARGET).join(PROFILE);
     build(way, &["--lib"])?;
@@ -22,6 +26,14 @@ pub fn build_all(way: Way) -> Result<PathBuf> {
         "the controller can't panic; with its start-up code it takes {}",
         size::of(&folder.join("panic_proof"))?
     );
+    for part in PARTS {
+        build(way, &["--bin", "ecu", "--features", part])?;
+        // All parts build into the same place; each image is kept under its own name.
+        let image = folder.join(format!("ecu-{part}"));
+        fs::copy(folder.join("ecu"), &image)
+            .with_context(|| format!("can't write {}", image.display()))?;
+        println!("{} takes {}", image.display(), size::of(&image)?);
+    }
     build(way, &["--bin", "emulated", "--features", "emulated"])?;
     let image = folder.join("emulated");
     println!("the emulated image takes {}", size::of(&image)?);

@@ -1,0 +1,25 @@
+//! A free-running clock of microseconds (TIM2), apart from the timer that paces the milliseconds: if that one runs at
+//! a wrong rate, the controller sees it.
+
+use stm32_metapac::TIM2;
+
+/// The clock.
+pub struct Clock(());
+
+impl Clock {
+    /// Starts it from a timer clock of `timer_hz`.
+    pub fn start(timer_hz: u32) -> Self {
+        let prescaler = timer_hz / 1_000_000 - 1;
+        TIM2.psc()
+            .write_value(u16::try_from(prescaler).unwrap_or(u16::MAX));
+        TIM2.arr().write_value(u32::MAX);
+        TIM2.egr().write(|w| w.set_ug(true));
+        TIM2.cr1().write(|w| w.set_cen(true));
+        Self(())
+    }
+
+    /// Microseconds since the start; wraps after 71 minutes.
+    pub fn now_us(&self) -> u32 {
+        TIM2.cnt().read()
+    }
+}

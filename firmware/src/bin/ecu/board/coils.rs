@@ -1,0 +1,73 @@
+//! Pulse-width outputs for the coils, the enable line, and the trigger of the converters: all from TIM1.
+//!
+//! ```text
+//!   counter   /\    /\    /\         up and down: 2 x 5 250 steps of 168 MHz, 16 kHz
+//!            /  \  /  \  /  \        output high while below the compare value
+//!   update   ^ every 32nd turning point = every millisecond, in the middle between two edges:
+//!              TRGO starts the injected conversions, when the coil's current passes its mean
+//! ```
+//!
+//! One timer paces everything, so the controller can't run at another rate than the drivers. Compare values
+//! take effect at once: waiting for the next update would add a millisecond of dead time to the current regulation.
+
+use hitch_firmware::ecu::{Drive, PWM_STEPS};
+use stm32_metapac::timer::vals::{Cms, Mms, Ocm};
+use stm32_metapac::{GPIOA, GPIOB, TIM1};
+
+use super::pins;
+
+/// Turning points of the counter in a millisecond: two a pulse, 16 pulses.
+const TURNING_POINTS: u16 = 32;
+const LIFT: usize = 0;
+const LOWER: usize = 1;
+/// PB10.
+const ENABLE_PIN: usize = 10;
+
+/// The coils' drivers.
+pub struct Coils(());
+
+impl Coils {
+    /// Outputs low, counter stopped. `function` is TIM1's alternate function on PA8 and PA9.
+    pub fn start(function: u8) -> Self {
+        pins::output(GPIOB, ENABLE_PIN);
+        TIM1.arr().write(|w| w.set_arr(PWM_STEPS));
+        TIM1.rcr().write(|w| w.set_rep(TURNING_POINTS - 1));
+        TIM1.cr1().write(|w| w.set_cms(Cms::CENTER_ALIGNED1));
+        TIM1.cr2().write(|w| w.set_mms(Mms::UPDATE));
+        for channel in [LIFT, LOWER] {
+            TIM1.ccmr_output(0)
+                .modify(|w| w.set_ocm(channel, Ocm::PWM_MODE1));
+            TIM1.ccer().modify(|w| w.set_cce(channel, true));
+        }
+        TIM1.bdtr().modify(|w| w.set_moe(true));
+        // Loads the shadow registers.
+        TIM1.egr().write(|w| w.set_ug(true));
+        pins::alternate(GPIOA, 8, function);
+        pins::alternate(GPIOA, 9, function);
+        Self(())
+    }
+
+    /// Starts the counter, and with it the conversions.
+    pub fn run(&self) {
+        TIM1.cr1().modify(|w| w.set_cen(true));
+    }
+
+    /// Hands the drivers their values.
+    pub fn drive(&mut self, drive: Drive) {
+        GPIOB.bsrr().write(|w| match drive.enable {
+            true => w.set_bs(ENABLE_PIN, true),
+            false => w.set_br(ENABLE_PIN, true),
+        });
+        TIM1.ccr(LIFT).write(|w| w.set_ccr(drive.lift.get()));
+        TIM1.ccr(LOWER).write(|w| w.set_ccr(drive.lower.get()));
+    }
+}
+
+/// Cuts both coils for good, whatever state the program is in: the enable line drops and the timer lets go of its outputs,
+/// which pull-down resistors then hold low.
+pub fn cut() {
+    GPIOB.bsrr().write(|w| w.set_br(ENABLE_PIN, true));
+    TIM1.bdtr().modify(|w| w.set_moe(false));
+    TIM1.ccr(LIFT).write(|w| w.set_ccr(0));
+    TIM1.ccr(LOWER).write(|w| w.set_ccr(0));
+}

@@ -1,0 +1,73 @@
+//! Registers, and nothing else: what differs from part to part is in the part's file and in the drivers that it names.
+//!
+//! The register layouts come from `stm32-metapac`, whose accesses are safe; a reserved bit or a wrong order of writes is
+//! what reading the reference manuals (RM0090 for the STM32F405, RM0440 for the STM32G474) has to prevent.
+
+mod clock;
+mod coils;
+mod flash;
+mod inbox;
+mod pins;
+mod reset;
+mod serial_number;
+mod switches;
+mod watchdog;
+
+#[cfg(feature = "stm32f405")]
+#[path = "stm32f405/mod.rs"]
+mod part;
+#[cfg(feature = "stm32g474")]
+#[path = "stm32g474/mod.rs"]
+mod part;
+
+#[cfg(all(feature = "stm32f405", feature = "stm32g474"))]
+compile_error!("an image is for one part: choose the feature `stm32f405` or `stm32g474`");
+
+pub use clock::Clock;
+pub use coils::{Coils, cut};
+pub use flash::CalibrationFlash;
+pub use part::{Can, Converters};
+pub use reset::reset_cause;
+pub use serial_number::serial_number;
+pub use switches::SwitchInputs;
+pub use watchdog::Watchdog;
+
+/// Everything that the ECU's board has.
+pub struct Board {
+    /// The pulse-width outputs and the enable line.
+    pub coils: Coils,
+    /// The converters, which also pace the milliseconds.
+    pub converters: Converters,
+    /// The bus.
+    pub can: Can,
+    /// The operator's contacts.
+    pub switches: SwitchInputs,
+    /// The clock that the controller checks its pace by.
+    pub clock: Clock,
+    /// Resets the ECU unless it is kicked.
+    pub watchdog: Watchdog,
+    /// Where the calibration is kept.
+    pub flash: CalibrationFlash,
+}
+
+impl Board {
+    /// Sets everything up; the coils are off. The watchdog comes first: a crystal that doesn't start ends in a reset.
+    pub fn start() -> Self {
+        let watchdog = Watchdog::start();
+        part::start_clocks();
+        part::set_brown_out_level();
+        let coils = Coils::start(part::TIMER_FUNCTION);
+        let converters = Converters::start();
+        let board = Self {
+            switches: SwitchInputs::start(),
+            clock: Clock::start(part::TIMER_HZ),
+            can: Can::start(),
+            flash: CalibrationFlash::new(),
+            coils,
+            converters,
+            watchdog,
+        };
+        board.coils.run();
+        board
+    }
+}

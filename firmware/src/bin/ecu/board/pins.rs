@@ -1,0 +1,30 @@
+//! What a pin is for.
+
+use stm32_metapac::gpio::Gpio;
+use stm32_metapac::gpio::vals::{Moder, Ospeedr, Pupdr};
+
+/// A converter's input.
+pub fn analog(port: Gpio, pin: usize) {
+    port.pupdr().modify(|w| w.set_pupdr(pin, Pupdr::FLOATING));
+    port.moder().modify(|w| w.set_moder(pin, Moder::ANALOG));
+}
+
+/// A peripheral's pin, by the number of its function in the data sheet.
+pub fn alternate(port: Gpio, pin: usize, function: u8) {
+    port.afr(pin / 8).modify(|w| w.set_afr(pin % 8, function));
+    port.ospeedr()
+        .modify(|w| w.set_ospeedr(pin, Ospeedr::MEDIUM_SPEED));
+    port.moder().modify(|w| w.set_moder(pin, Moder::ALTERNATE));
+}
+
+/// An output, low.
+pub fn output(port: Gpio, pin: usize) {
+    port.bsrr().write(|w| w.set_br(pin, true));
+    port.moder().modify(|w| w.set_moder(pin, Moder::OUTPUT));
+}
+
+/// A contact to ground.
+pub fn input_with_pull_up(port: Gpio, pin: usize) {
+    port.pupdr().modify(|w| w.set_pupdr(pin, Pupdr::PULL_UP));
+    port.moder().modify(|w| w.set_moder(pin, Moder::INPUT));
+}

@@ -1,0 +1,69 @@
+//! Sectors 10 and 11, of 128 KiB each.
+//!
+//! The program can't run while a sector is erased (1 to 2 s): the ECU only erases while it is locked, and the
+//! watchdog is given patience for it.
+
+use stm32_metapac::FLASH;
+use stm32_metapac::flash::vals::Psize;
+
+use crate::board::watchdog::with_patience;
+
+/// First address.
+pub const BASE: usize = 0x080C_0000;
+/// Sectors.
+pub const PIECES: usize = 2;
+/// Bytes of a sector.
+pub const PIECE_BYTES: usize = 128 * 1024;
+/// Bytes that are programmed together.
+pub const WORD_BYTES: usize = 4;
+
+const FIRST_SECTOR: u8 = 10;
+
+/// Lets the flash be changed (RM0090, 3.6.1).
+pub fn unlock() {
+    FLASH.keyr().write_value(0x4567_0123);
+    FLASH.keyr().write_value(0xCDEF_89AB);
+    FLASH.cr().modify(|w| w.set_psize(Psize::PSIZE32));
+}
+
+/// Erases a sector, by its number in the calibration's place.
+pub fn erase_piece(number: u8) {
+    FLASH.cr().modify(|w| {
+        w.set_ser(true);
+        w.set_snb(FIRST_SECTOR + number);
+    });
+    FLASH.cr().modify(|w| w.set_strt(true));
+    with_patience(wait);
+    FLASH.cr().modify(|w| w.set_ser(false));
+}
+
+/// Programs a word.
+///
+/// # Safety
+/// `address` is that of an aligned word that belongs to the calibration.
+pub unsafe fn program(address: usize, word: &[u8; WORD_BYTES]) {
+    FLASH.cr().modify(|w| w.set_pg(true));
+    // SAFETY: the caller's promise; programming is switched on, so the write ends in the flash.
+    unsafe { (address as *mut u32).write_volatile(u32::from_le_bytes(*word)) };
+    wait();
+    FLASH.cr().modify(|w| w.set_pg(false));
+}
+
+/// Locks the flash again, and says whether all went well since it was unlocked.
+pub fn finish() -> bool {
+    let status = FLASH.sr().read();
+    // Writing ones clears.
+    FLASH.sr().write_value(status);
+    FLASH.cr().modify(|w| w.set_lock(true));
+    !(status.wrperr() || status.pgaerr() || status.pgperr() || status.pgserr())
+}
+
+/// Opens the option bytes (RM0090, 3.7.2).
+pub fn unlock_options() {
+    FLASH.optkeyr().write_value(0x0819_2A3B);
+    FLASH.optkeyr().write_value(0x4C5D_6E7F);
+}
+
+fn wait() {
+    while FLASH.sr().read().bsy() {}
+}

@@ -1,0 +1,90 @@
+//! STM32G474RE: clocks, brown-out level, and where its converters find their signals.
+
+mod can;
+mod converters;
+pub mod flash;
+
+pub use can::Can;
+pub use converters::Converters;
+
+use stm32_metapac::flash::vals::Latency;
+use stm32_metapac::rcc::vals::{Fdcansel, Hpre, Pllm, Plln, Pllr, Pllsrc, Sw};
+use stm32_metapac::{FLASH, PWR, RCC};
+
+/// TIM1 on PA8 and PA9 (data sheet, table 13).
+pub const TIMER_FUNCTION: u8 = 6;
+/// Clock of TIM2: that of the core.
+pub const TIMER_HZ: u32 = 168_000_000;
+
+/// 168 MHz from a crystal of 8 MHz, whose failure raises the non-maskable interrupt. The buses run as fast; the CAN
+/// controller runs from the crystal itself.
+pub fn start_clocks() {
+    RCC.apb1enr1().modify(|w| w.set_pwren(true));
+    let _ = RCC.apb1enr1().read();
+    // Boost, for clocks above 150 MHz (RM0440, 6.1.5).
+    PWR.cr5().modify(|w| w.set_r1mode(false));
+    RCC.cr().modify(|w| w.set_hseon(true));
+    while !RCC.cr().read().hserdy() {}
+    RCC.pllcfgr().write(|w| {
+        w.set_pllsrc(Pllsrc::HSE);
+        // 8 MHz / 2 * 84 / 2
+        w.set_pllm(Pllm::DIV2);
+        w.set_plln(Plln::MUL84);
+        w.set_pllr(Pllr::DIV2);
+        w.set_pllren(true);
+    });
+    RCC.cr().modify(|w| {
+        w.set_pllon(true);
+        w.set_csson(true);
+    });
+    while !RCC.cr().read().pllrdy() {}
+    // The flash has to be slowed down before the core speeds up.
+    FLASH.acr().write(|w| {
+        w.set_latency(Latency::WS4);
+        w.set_prften(true);
+        w.set_icen(true);
+        w.set_dcen(true);
+    });
+    while FLASH.acr().read().latency() != Latency::WS4 {}
+    // By way of half the clock, for a microsecond at least (RM0440, 7.2.7).
+    RCC.cfgr().modify(|w| w.set_hpre(Hpre::DIV2));
+    RCC.cfgr().modify(|w| w.set_sw(Sw::PLL1_R));
+    while RCC.cfgr().read().sws() != Sw::PLL1_R {}
+    cortex_m::asm::delay(168);
+    RCC.cfgr().modify(|w| w.set_hpre(Hpre::DIV1));
+    start_peripherals();
+}
+
+fn start_peripherals() {
+    RCC.ccipr().modify(|w| w.set_fdcansel(Fdcansel::HSE));
+    RCC.ahb2enr().modify(|w| {
+        w.set_gpioaen(true);
+        w.set_gpioben(true);
+        w.set_gpiocen(true);
+        w.set_adc12en(true);
+        w.set_adc345en(true);
+    });
+    RCC.apb1enr1().modify(|w| {
+        w.set_tim2en(true);
+        w.set_fdcanen(true);
+    });
+    RCC.apb2enr().modify(|w| w.set_tim1en(true));
+    // Two cycles until a clock has arrived; reading back takes as long.
+    let _ = RCC.apb2enr().read();
+}
+
+/// Holds the part in reset below 2.8 V (level 4). An option byte, written once in the life of a part.
+pub fn set_brown_out_level() {
+    /// `BOR_LEV` of level 4.
+    const LEVEL_4: u8 = 0b100;
+    if FLASH.optr().read().bor_lev() == LEVEL_4 {
+        return;
+    }
+    flash::unlock();
+    flash::unlock_options();
+    FLASH.optr().modify(|w| w.set_bor_lev(LEVEL_4));
+    FLASH.cr().modify(|w| w.set_optstrt(true));
+    super::watchdog::with_patience(|| while FLASH.sr().read().bsy() {});
+    FLASH.cr().modify(|w| w.set_optlock(true));
+    flash::finish();
+}

@@ -1,0 +1,137 @@
+//! The ECU: the application on a board.
+//!
+//! A cyclic executive: TIM1 starts the converters a thousand times a second, and when they are done one tick of the
+//! application runs. There is one task and nothing interrupts it, so nothing is shared, nothing waits for a lock,
+//! the stack's depth is one call chain, and the order of things is the order of the source. The bus is listened to while
+//! the converters are awaited: between two looks at it no more frames can arrive than its queue holds.
+
+#![no_std]
+#![no_main]
+
+mod board;
+
+use core::panic::PanicInfo;
+
+use cortex_m_rt::{ExceptionFrame, entry, exception};
+use defmt_rtt as _;
+use hitch_firmware::can::Frame;
+use hitch_firmware::control::{Fault, State};
+use hitch_firmware::ecu::{Contacts, Drive, Ecu, Hardware, Samples};
+
+use board::{Board, Can, Clock, Coils, Converters};
+
+/// Coils and bus, as the application sees them.
+struct Outside {
+    coils: Coils,
+    can: Can,
+}
+
+impl Hardware for Outside {
+    fn drive(&mut self, drive: Drive) {
+        self.coils.drive(drive);
+    }
+
+    fn receive(&mut self) -> Option<Frame> {
+        self.can.next_heard()
+    }
+
+    fn send(&mut self, frame: &Frame) -> bool {
+        self.can.send(frame)
+    }
+
+    fn frames_dropped(&self) -> u16 {
+        self.can.dropped()
+    }
+}
+
+#[entry]
+fn main() -> ! {
+    defmt::info!("reset by {=str}", board::reset_cause());
+    let board = Board::start();
+    let mut watchdog = board.watchdog;
+    let mut converters = board.converters;
+    let mut outside = Outside {
+        coils: board.coils,
+        can: board.can,
+    };
+    let mut ecu = Ecu::start(board.flash, board::serial_number());
+    watchdog.kick_at_start();
+    let mut logged = Logged::default();
+    loop {
+        let samples = next_samples(&mut converters, &mut outside.can);
+        let contacts = contacts(samples, &board.switches, &board.clock);
+        // Without permission the watchdog isn't kicked, and resets the ECU.
+        if let Some(permission) = ecu.tick(&contacts, &mut outside) {
+            watchdog.kick(permission);
+        }
+        logged.update(ecu.outputs().state, ecu.outputs().fault);
+    }
+}
+
+/// Listens to the bus until the converters are done. If they never are, the watchdog ends it.
+fn next_samples(converters: &mut Converters, can: &mut Can) -> Samples {
+    loop {
+        can.listen();
+        if let Some(samples) = converters.take() {
+            return samples;
+        }
+    }
+}
+
+fn contacts(samples: Samples, switches: &board::SwitchInputs, clock: &Clock) -> Contacts {
+    Contacts {
+        samples,
+        panel: switches.read(),
+        clock_us: clock.now_us(),
+    }
+}
+
+/// What was logged last: only what changes is logged.
+#[derive(Default)]
+struct Logged {
+    state: State,
+    fault: Option<Fault>,
+}
+
+impl Logged {
+    fn update(&mut self, state: State, fault: Option<Fault>) {
+        if state != self.state {
+            defmt::info!("{=str}", state.name());
+            self.state = state;
+        }
+        if fault != self.fault {
+            defmt::warn!("fault: {=str}", fault.map_or("none", Fault::name));
+            self.fault = fault;
+        }
+    }
+}
+
+/// Cuts the coils and lets the watchdog reset the ECU.
+fn give_up() -> ! {
+    board::cut();
+    loop {
+        core::hint::spin_loop();
+    }
+}
+
+#[panic_handler]
+fn on_panic(_: &PanicInfo<'_>) -> ! {
+    give_up()
+}
+
+#[exception]
+unsafe fn HardFault(_: &ExceptionFrame) -> ! {
+    give_up()
+}
+
+/// The crystal has failed; whatever comes now comes at another pace.
+#[exception]
+unsafe fn NonMaskableInt() -> ! {
+    give_up()
+}
+
+/// No interrupt is enabled.
+#[exception]
+unsafe fn DefaultHandler(_: i16) -> ! {
+    give_up()
+}
