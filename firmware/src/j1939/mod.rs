@@ -22,7 +22,7 @@ pub mod trouble;
 
 pub use diagnostics::Variant;
 pub use hitch::{ExitCode, HitchCommand, HitchStatus, Limit, LimitStatus};
-pub use id::{Id, Pgn};
+pub use id::{GLOBAL, Id, NULL, Pgn};
 pub use name::{Name, NameFields};
 pub use node::{Node, PREFERRED_ADDRESS, Settings};
 pub use remote::Remote;
