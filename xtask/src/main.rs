@@ -1,5 +1,6 @@
 //! Project tasks that need more than cargo.
 
+mod a2l;
 mod check;
 mod image;
 mod mutants;
@@ -24,6 +25,7 @@ usage: cargo xtask <task> [--arm rustup|debian]
   ci      check, then test
   arm     build the ARM images and say how large they are
   mutants change the safety envelope in every way that cargo-mutants knows; its tests have to notice
+  a2l     write firmware/hitch.a2l, the description of parameters and measurements for tuning tools
   setup   find or install the ARM toolchain and the emulator
 
   --arm   take this ARM toolchain instead of the first that works:
@@ -53,6 +55,7 @@ fn run(arguments: &[String]) -> Result<()> {
         "ci" => check::run(way).and_then(|()| test::run(way)),
         "arm" => image::build_all(setup::toolchain(way)?).map(drop),
         "mutants" => mutants::run(),
+        "a2l" => a2l::write(),
         "setup" => setup::run(way),
         "help" | "--help" | "-h" => {
             println!("{USAGE}");

@@ -56,6 +56,19 @@ pub enum Fault {
 }
 
 impl Fault {
+    /// All of them, in the order of their codes, which begin at 1.
+    pub const ALL: [Self; 9] = [
+        Self::Lever,
+        Self::Angle,
+        Self::Sinking,
+        Self::NotMoving,
+        Self::Envelope,
+        Self::NotFollowing,
+        Self::Coil,
+        Self::Supply,
+        Self::Overrun,
+    ];
+
     /// Name as it appears in text outputs.
     #[must_use]
     pub const fn name(self) -> &'static str {

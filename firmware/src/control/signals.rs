@@ -104,6 +104,20 @@ pub enum State {
 }
 
 impl State {
+    /// All of them, in the order of their codes.
+    pub const ALL: [Self; 10] = [
+        Self::Locked,
+        Self::Holding,
+        Self::Lifting,
+        Self::Lowering,
+        Self::Settling,
+        Self::Stalled,
+        Self::Fault,
+        Self::TransportLock,
+        Self::Floating,
+        Self::Teaching,
+    ];
+
     /// Name as it appears in text outputs.
     #[must_use]
     pub const fn name(self) -> &'static str {
