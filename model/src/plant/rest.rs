@@ -3,6 +3,7 @@
 use super::signals::Signals;
 use super::{HitchRig, MechanicalState, Plant, Rig, oil, root};
 use crate::expression::Place;
+use crate::model::Dynamics;
 
 impl Plant<'_> {
     /// The plant at rest with the angle that its sensor shows.
@@ -13,7 +14,14 @@ impl Plant<'_> {
                 ..MechanicalState::default()
             },
             Rig::Hitch(rig) => {
-                let piston_m = self.piston_at_rest_m(&rig).max(self.lowest_m);
+                let shown_m = self.piston_at_rest_m(&rig);
+                let lowest_m = self.forces(&rig).lowest_m();
+                let piston_m = match self.model.constants().dynamics {
+                    // A hitch that is seen below the ground's height stands in a hollow.
+                    Dynamics::Steady => shown_m,
+                    // With inertia the ground would throw it out of there.
+                    Dynamics::Dynamic => shown_m.max(lowest_m),
+                };
                 self.held_at(&rig, piston_m)
             }
         }
