@@ -31,6 +31,7 @@ pub static ANGLE_SENSOR_GAIN: Described = Described {
     }],
     channels: &[Channel::RockerAngle],
     needs: None,
+    erratic: false,
     attach,
 };
 

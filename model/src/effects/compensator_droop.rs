@@ -30,6 +30,7 @@ pub static COMPENSATOR_DROOP: Described = Described {
     }],
     channels: &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle],
     needs: None,
+    erratic: false,
     attach,
 };
 

@@ -15,6 +15,7 @@ pub struct Described {
     pub(super) parameters: &'static [Parameter],
     pub(super) channels: &'static [Channel],
     pub(super) needs: Option<Dynamics>,
+    pub(super) erratic: bool,
     pub(super) attach: fn(&[f64], RunConditions<'_>, &mut Sites),
 }
 
@@ -49,6 +50,10 @@ impl Effect for Described {
 
     fn needs(&self) -> Option<Dynamics> {
         self.needs
+    }
+
+    fn erratic(&self) -> bool {
+        self.erratic
     }
 
     fn attach(&self, values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {

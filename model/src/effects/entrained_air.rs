@@ -49,6 +49,7 @@ pub static ENTRAINED_AIR: Described = Described {
     ],
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
+    erratic: false,
     attach,
 };
 

@@ -31,6 +31,7 @@ pub static FLOW_FORCE: Described = Described {
     }],
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
+    erratic: false,
     attach,
 };
 

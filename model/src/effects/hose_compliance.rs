@@ -30,6 +30,7 @@ pub static HOSE_COMPLIANCE: Described = Described {
     }],
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
+    erratic: false,
     attach,
 };
 

@@ -30,6 +30,7 @@ pub static LOAD_INERTIA: Described = Described {
     }],
     channels: &[Channel::CylinderPressure],
     needs: None,
+    erratic: false,
     attach,
 };
 

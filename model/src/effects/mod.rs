@@ -5,7 +5,7 @@
 //!    how large the effect usually is.
 //! 2. In it one `pub static` of type `described::Described`: texts, parameters with unit, range, null value and typical
 //!    size, the channels in which it shows on a lab campaign, the starting point that it needs if not every one can show
-//!    it, and `attach`. The first parameter is the size: at its null value the effect is not there, whatever the others
+//!    it, whether it is erratic, and `attach`. The first parameter is the size: at its null value the effect is not there, whatever the others
 //!    are. `flow_force.rs` is a short example, `pin_backlash.rs` one that remembers.
 //! 3. `attach` gets a value for each parameter, in its unit, and what is known of the run ([`RunConditions`]), and puts
 //!    numbers, closures or small stateful parts at the [`Sites`] where the physics acts; SI inside. If no site is where
@@ -52,7 +52,8 @@ use crate::campaign::Channel;
 use crate::model::Dynamics;
 use crate::plant::sites::{RunConditions, Sites};
 
-/// Every effect that the project knows.
+/// Every effect that the project knows, from the coil to the instruments: where several act at one place, they act in
+/// this order.
 pub static CATALOGUE: &[&dyn Effect] = &[
     &threshold_shift::LIFT,
     &threshold_shift::LOWERING,
@@ -105,6 +106,19 @@ pub struct Parameter {
     pub high: f64,
 }
 
+impl Parameter {
+    /// A natural size of a step of it, in its unit: from nothing to the typical value, or what there is of that.
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        let width = self.high - self.low;
+        [self.typical - self.null, self.typical, 0.1 * width, 1.0]
+            .into_iter()
+            .map(f64::abs)
+            .find(|size| *size > 0.0 && size.is_finite())
+            .unwrap_or(1.0)
+    }
+}
+
 /// A physical effect that a plant can have beyond the paper's model.
 pub trait Effect: Sync {
     /// Its name in files, commands and reports.
@@ -124,6 +138,11 @@ pub trait Effect: Sync {
     /// The starting point that it needs, if not every one can show it.
     fn needs(&self) -> Option<Dynamics> {
         None
+    }
+    /// Whether a size that is a few percent off can be worse than none: what jumps or bounces does so at another time
+    /// then, and a fit has to start close by.
+    fn erratic(&self) -> bool {
+        false
     }
     /// Puts it into a plant, with a value for each parameter.
     fn attach(&self, values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites);

@@ -46,6 +46,7 @@ pub static OIL_VISCOSITY: Described = Described {
     ],
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
+    erratic: false,
     attach,
 };
 

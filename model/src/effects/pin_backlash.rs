@@ -32,6 +32,7 @@ pub static PIN_BACKLASH: Described = Described {
     }],
     channels: &[Channel::RockerAngle],
     needs: None,
+    erratic: false,
     attach,
 };
 

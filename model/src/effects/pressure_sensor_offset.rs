@@ -30,6 +30,7 @@ pub static PRESSURE_SENSOR_OFFSET: Described = Described {
     }],
     channels: &[Channel::CylinderPressure],
     needs: None,
+    erratic: false,
     attach,
 };
 

@@ -30,6 +30,7 @@ pub static PUMP_LEAKAGE: Described = Described {
     }],
     channels: &[Channel::PumpPressure, Channel::Flow],
     needs: None,
+    erratic: false,
     attach,
 };
 

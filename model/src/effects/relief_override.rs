@@ -45,6 +45,7 @@ pub static RELIEF_OVERRIDE: Described = Described {
     ],
     channels: &[Channel::PumpPressure, Channel::Flow],
     needs: None,
+    erratic: false,
     attach,
 };
 

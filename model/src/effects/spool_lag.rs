@@ -46,6 +46,7 @@ pub static SPOOL_LAG: Described = Described {
     ],
     channels: &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle],
     needs: None,
+    erratic: false,
     attach,
 };
 

@@ -44,6 +44,7 @@ pub static SPOOL_STICTION: Described = Described {
     ],
     channels: &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle],
     needs: None,
+    erratic: true,
     attach,
 };
 

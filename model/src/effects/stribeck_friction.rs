@@ -53,6 +53,7 @@ pub static STRIBECK_FRICTION: Described = Described {
     ],
     channels: &[Channel::CylinderPressure, Channel::RockerAngle],
     needs: None,
+    erratic: false,
     attach,
 };
 

@@ -35,6 +35,7 @@ pub static VISCOUS_FRICTION: Described = Described {
         Channel::RockerAngle,
     ],
     needs: None,
+    erratic: false,
     attach,
 };
 

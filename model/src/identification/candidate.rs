@@ -7,7 +7,7 @@ use super::evidence::{detectability, log_odds, variance_inflation};
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate_weighted, refine, sketch};
 use super::frame::Frame;
-use super::jacobian::{Jacobian, square_sum};
+use super::jacobian::{Jacobian, huber_residuals, square_sum};
 use super::starts::{has_valleys, starts};
 use crate::effects::{AddedEffect, Effect, Parameter};
 use crate::model::Model;
@@ -295,7 +295,10 @@ pub fn weigh(
     let signatures: Vec<Signature> = (0..effect.parameters().len())
         .map(|parameter| Signature::new(experiment, &fit, &jacobian, index, parameter))
         .collect();
-    let inflation = signatures[0].inflation;
+    let Seen {
+        detectability,
+        inflation,
+    } = Seen::new(experiment, model, &fit, &jacobian);
     let intervals = signatures
         .iter()
         .map(|signature| {
@@ -311,13 +314,11 @@ pub fn weigh(
             )
         })
         .collect();
-    let size = fit.estimate.effects[index].values[0] - effect.parameters()[0].null;
     Candidate {
         effect,
         likelihood_ratio: (base.cost - fit.cost) / (variance * inflation),
         inflation,
-        detectability: signatures[0].detectability
-            * (size / fit.estimate.scale(signatures[0].shared)).abs(),
+        detectability,
         intervals,
         fit,
     }
@@ -342,7 +343,6 @@ struct Signature {
     shared: Shared,
     square: f64,
     inflation: f64,
-    detectability: f64,
 }
 
 impl Signature {
@@ -354,32 +354,66 @@ impl Signature {
         parameter: usize,
     ) -> Self {
         let shared = Shared::Effect(effect, parameter);
-        let projected = projected(fit, jacobian, shared);
+        let (projected, price) = projected(fit, jacobian, shared);
         Self {
             parameter,
             shared,
-            square: square_sum(&projected).max(1e-12),
+            square: (square_sum(&projected) + price).max(1e-12),
             inflation: variance_inflation(experiment, &fit.residuals, &projected),
-            detectability: detectability(&projected, fit.weights.count()),
         }
     }
 }
 
-/// A parameter's signature, a step of one scale, with all that is free besides it projected out.
-#[must_use]
-pub fn projected(fit: &Fit, jacobian: &Jacobian, shared: Shared) -> Vec<Vec<f64>> {
+/// A parameter's signature, a step of one scale, with all that is free besides it projected out, and what imitating it
+/// costs in priors.
+fn projected(fit: &Fit, jacobian: &Jacobian, shared: Shared) -> (Vec<Vec<f64>>, f64) {
     let column = jacobian.shared.iter().position(|&s| s == shared);
     let Some(column) = column else {
-        return fit
-            .residuals
-            .iter()
-            .map(|run| vec![0.0; run.len()])
-            .collect();
+        let nothing = |run: &Vec<f64>| vec![0.0; run.len()];
+        return (fit.residuals.iter().map(nothing).collect(), 0.0);
     };
     let signature = jacobian
         .runs
         .iter()
         .map(|run| run.shared[column].clone())
         .collect();
-    Frame::new(jacobian, &fit.estimate, Some(column)).project(signature)
+    Frame::new(jacobian, &fit.estimate, column..column + 1).project_at_a_price(signature)
+}
+
+/// How much of the last effect of a fit is seen.
+struct Seen {
+    /// Root mean square of what it changes at its fitted size, in sigmas, less what all that is free besides it can
+    /// imitate.
+    detectability: f64,
+    /// Variance inflation of that change.
+    inflation: f64,
+}
+
+impl Seen {
+    /// From the whole change, not its derivative: an effect that begins late, or jumps, is less than that promises.
+    fn new(experiment: &Experiment, model: &Model, fit: &Fit, jacobian: &Jacobian) -> Self {
+        let last = fit.estimate.effects.len() - 1;
+        let mut without = fit.estimate.clone();
+        without.effects[last] = AddedEffect::null(without.effects[last].effect);
+        let without = huber_residuals(experiment, model, &fit.weights, &without);
+        let change = jacobian
+            .runs
+            .iter()
+            .zip(without)
+            .map(|(run, without)| {
+                let both = without.iter().zip(&run.residual);
+                both.map(|(without, with)| without - with).collect()
+            })
+            .collect();
+        let own = |shared: &Shared| matches!(shared, Shared::Effect(effect, _) if *effect == last);
+        let columns = &jacobian.shared;
+        let first = columns.iter().position(own).unwrap_or(0);
+        let count = columns.iter().filter(|shared| own(shared)).count();
+        let frame = Frame::new(jacobian, &fit.estimate, first..first + count);
+        let (left, price) = frame.project_at_a_price(change);
+        Self {
+            detectability: detectability(&left, price, fit.weights.count()),
+            inflation: variance_inflation(experiment, &fit.residuals, &left),
+        }
+    }
 }

@@ -74,7 +74,7 @@ impl Estimate {
     #[must_use]
     pub fn scale(&self, shared: Shared) -> f64 {
         match shared {
-            Shared::Effect(effect, parameter) => self.parameter(effect, parameter).typical.abs(),
+            Shared::Effect(effect, parameter) => self.parameter(effect, parameter).scale(),
             Shared::Offset(_) => OFFSET_PRIOR_S,
         }
     }
@@ -88,17 +88,25 @@ impl Estimate {
         }
     }
 
-    /// Sets a shared parameter, within its range.
-    pub fn set(&mut self, shared: Shared, value: f64) {
+    /// Smallest and largest value of a shared parameter, in its unit.
+    #[must_use]
+    pub fn range(&self, shared: Shared) -> (f64, f64) {
         match shared {
             Shared::Effect(effect, parameter) => {
                 let range = self.parameter(effect, parameter);
-                self.effects[effect].values[parameter] = value.max(range.low).min(range.high);
+                (range.low, range.high)
             }
-            Shared::Offset(channel) => {
-                let farthest = FARTHEST * OFFSET_PRIOR_S;
-                self.clocks.offsets_s[channel] = value.max(-farthest).min(farthest);
-            }
+            Shared::Offset(_) => (-FARTHEST * OFFSET_PRIOR_S, FARTHEST * OFFSET_PRIOR_S),
+        }
+    }
+
+    /// Sets a shared parameter, within its range.
+    pub fn set(&mut self, shared: Shared, value: f64) {
+        let (low, high) = self.range(shared);
+        let value = value.max(low).min(high);
+        match shared {
+            Shared::Effect(effect, parameter) => self.effects[effect].values[parameter] = value,
+            Shared::Offset(channel) => self.clocks.offsets_s[channel] = value,
         }
     }
 

@@ -142,10 +142,10 @@ pub fn expected_inflation(
     }
 }
 
-/// Root mean square of a signature over the compared samples, in sigmas.
+/// Root mean square of a signature over the compared samples, in sigmas; `price` is what imitating it costs in priors.
 #[must_use]
-pub fn detectability(signature: &[Vec<f64>], compared: usize) -> f64 {
-    (square_sum(signature) / compared as f64).sqrt()
+pub fn detectability(signature: &[Vec<f64>], price: f64, compared: usize) -> f64 {
+    ((square_sum(signature) + price) / compared as f64).sqrt()
 }
 
 /// Logarithm of the odds that an effect with one more parameter is there: the fall of the cost, in effective units,

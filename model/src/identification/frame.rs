@@ -1,5 +1,7 @@
 //! What the parameters that are already free could absorb, taken out of residuals and signatures.
 
+use std::ops::Range;
+
 use nalgebra::{Cholesky, DVector, Dyn};
 
 use super::estimate::Estimate;
@@ -17,15 +19,15 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// All shared parameters of the Jacobian but `left_out`.
+    /// All shared parameters of the Jacobian but the columns `left_out`.
     #[must_use]
-    pub fn new(jacobian: &'a Jacobian, estimate: &Estimate, left_out: Option<usize>) -> Self {
+    pub fn new(jacobian: &'a Jacobian, estimate: &Estimate, left_out: Range<usize>) -> Self {
         let (mut matrix, right) = jacobian.reduced(estimate);
         for k in 0..matrix.nrows() {
             matrix[(k, k)] += 1e-9;
         }
         let kept: Vec<usize> = (0..jacobian.shared.len())
-            .filter(|&column| Some(column) != left_out)
+            .filter(|column| !left_out.contains(column))
             .collect();
         let normal = matrix.select_rows(&kept).select_columns(&kept).cholesky();
         let mut frame = Self {
@@ -47,8 +49,17 @@ impl<'a> Frame<'a> {
 
     /// Removes from a signature what the free parameters and the loads can imitate.
     #[must_use]
-    pub fn project(&self, mut signature: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    pub fn project(&self, signature: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        self.project_at_a_price(signature).0
+    }
+
+    /// [`Frame::project`], and what the imitation costs in priors: a load far from what was weighed speaks against it.
+    #[must_use]
+    pub fn project_at_a_price(&self, mut signature: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, f64) {
         let shares = self.shares(&self.coupling(&signature));
+        let with_prior = |&(&kept, _): &(&usize, &f64)| self.jacobian.shared[kept].has_prior();
+        let clocks = self.kept.iter().zip(shares.iter()).filter(with_prior);
+        let mut price: f64 = clocks.map(|(_, share)| share * share).sum();
         for (run, column) in self.jacobian.runs.iter().zip(&mut signature) {
             for (&kept, &share) in self.kept.iter().zip(shares.iter()) {
                 subtract(column, share, &run.shared[kept]);
@@ -56,9 +67,10 @@ impl<'a> Frame<'a> {
             if let Some(load) = &run.load {
                 let share = dot(load, column) / (dot(load, load) + 1.0);
                 subtract(column, share, load);
+                price += share * share;
             }
         }
-        signature
+        (signature, price)
     }
 
     /// Cost that would be left if the free parameters took from `residuals` what they can, to first order; `residuals`

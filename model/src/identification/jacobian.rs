@@ -175,14 +175,23 @@ fn load_columns(
     base: &[Vec<f64>],
 ) -> Vec<Vec<f64>> {
     let mut moved = estimate.clone();
-    for run in 0..experiment.runs.len() {
-        moved.set_load(run, estimate.load(run) + 1.0);
+    let steps: Vec<f64> = (0..experiment.runs.len())
+        .map(|run| {
+            let load = estimate.load(run);
+            moved.set_load(run, load + 1.0);
+            if moved.load(run) - load < 0.5 {
+                // It stands at the end of its range.
+                moved.set_load(run, load - 1.0);
+            }
+            moved.load(run) - load
+        })
+        .collect();
+    let moved = huber_residuals(experiment, model, weights, &moved);
+    let mut columns = quotient(base, moved, 1.0);
+    for (column, step) in columns.iter_mut().zip(steps) {
+        column.iter_mut().for_each(|change| *change /= step);
     }
-    quotient(
-        base,
-        huber_residuals(experiment, model, weights, &moved),
-        1.0,
-    )
+    columns
 }
 
 /// Sensitivities of all runs to the channels' offsets, a step of one prior sigma; by channel, then by run.
@@ -339,13 +348,30 @@ impl Jacobian {
     }
 
     /// The step that the damped normal equations give; `None` if they are singular.
+    ///
+    /// A parameter that stands at an end of its range and would leave it is held there, and the others step without it:
+    /// stopped only afterwards it would drag them along to where it cannot follow.
     #[must_use]
     pub fn step(&self, estimate: &Estimate, damping: f64) -> Option<Step> {
-        let (mut matrix, right) = self.reduced(estimate);
+        let (mut matrix, mut right) = self.reduced(estimate);
         for k in 0..matrix.nrows() {
             matrix[(k, k)] = matrix[(k, k)] * (1.0 + damping) + 1e-9;
         }
-        let shared = matrix.cholesky()?.solve(&right);
+        let shared = loop {
+            let step = matrix.clone().cholesky()?.solve(&right);
+            let leaving = (0..step.len()).find(|&k| {
+                let value = estimate.get(self.shared[k]);
+                let (low, high) = estimate.range(self.shared[k]);
+                (value <= low && step[k] < 0.0) || (value >= high && step[k] > 0.0)
+            });
+            let Some(held) = leaving else {
+                break step;
+            };
+            matrix.row_mut(held).fill(0.0);
+            matrix.column_mut(held).fill(0.0);
+            matrix[(held, held)] = 1.0;
+            right[held] = 0.0;
+        };
         let loads = self
             .runs
             .iter()

@@ -17,6 +17,7 @@ pub mod jacobian;
 pub mod noise;
 pub mod regime;
 pub mod residual;
+mod scan;
 mod starts;
 pub mod suggestion;
 pub mod whereabouts;

@@ -6,6 +6,7 @@ use super::experiment::Experiment;
 use super::fit::Fit;
 use super::frame::Frame;
 use super::jacobian::{Jacobian, huber_residuals};
+use super::scan::scan;
 use crate::campaign::Channel;
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
@@ -22,6 +23,18 @@ const NEXT_SIZES: [f64; 6] = [0.7, 0.8, 0.9, 1.12, 1.25, 1.4];
 /// Sizes that differ by less than this share of the larger are one start.
 const SAME_VALLEY: f64 = 0.08;
 
+/// Most promises of secants that are put to the test at a time.
+const MOST_PROMISES: usize = 4;
+
+/// A promise is broken if less than this share of it is there.
+const BROKEN: f64 = 0.1;
+
+/// Error from which an erratic effect is looked for in fine steps.
+const SCANNED: f64 = 1.15;
+
+/// Sections of a search between a promise and the end of its secant.
+const SECTIONS: usize = 6;
+
 /// How far a secant is trusted, in its own size.
 const REACH: f64 = 8.0;
 
@@ -34,47 +47,154 @@ pub(super) fn starts(
     jacobian: &Jacobian,
     effect: &'static dyn Effect,
 ) -> (f64, Vec<Estimate>) {
-    let frame = Frame::new(jacobian, &base.estimate, None);
-    // Of every secant both its end and the best point along it: the one is sure, the other may be far better.
-    let rank = |added: Vec<AddedEffect>| {
-        let mut ranked: Vec<(f64, Estimate)> = added
-            .into_iter()
-            .flat_map(|added| {
-                let end = with(&base.estimate, added.clone());
-                let residuals = huber_residuals(experiment, model, &base.weights, &end);
-                let (lowest, highest) = reach(&added);
-                let (share, cost) = frame.along(&residuals, lowest, highest);
-                let range = &added.effect.parameters()[0];
-                let mut best = added;
-                best.values[0] = range.null + share * (best.values[0] - range.null);
-                let best = with(&base.estimate, best);
-                [(cost, best), (frame.cost_after(&residuals), end)]
-            })
-            .collect();
-        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        ranked
+    let search = Search {
+        experiment,
+        model,
+        base,
+        frame: Frame::new(jacobian, &base.estimate, 0..0),
     };
-    let mut ranked = rank(sizes(experiment, effect));
-    if let Some((cost, best)) = ranked.first().cloned()
-        && base.cost - cost > WORTH_A_FIT
+    let mut ranked = search.rank(sizes(experiment, effect));
+    if effect.erratic()
+        && base.error() > SCANNED
+        && let Some(first) = ranked.first()
     {
-        let best = best.effects.last().expect("pushed above").clone();
-        ranked.extend(rank(shapes(&best)));
-        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        ranked.extend(search.rank(scan(experiment, model, base, &first.last())));
+        search.sort(&mut ranked);
+    }
+    if let Some(best) = search.promising(&ranked) {
+        ranked.extend(search.rank(shapes(&best)));
+        search.sort(&mut ranked);
         if has_valleys(experiment, effect) {
-            let best = ranked[0].1.effects.last().expect("pushed above").clone();
-            ranked.extend(rank(neighbours(&best)));
-            ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let best = ranked[0].last();
+            ranked.extend(search.rank(neighbours(&best)));
+            search.sort(&mut ranked);
         }
     }
-    let predicted = ranked.first().map_or(base.cost, |first| first.0);
+    let predicted = ranked.first().map_or(base.cost, |first| first.cost);
     let mut starts: Vec<Estimate> = Vec::new();
-    for (_, start) in ranked {
-        if starts.len() < STARTS && starts.iter().all(|other| apart(other, &start)) {
-            starts.push(start);
+    for start in ranked {
+        if starts.len() < STARTS && starts.iter().all(|other| apart(other, &start.estimate)) {
+            starts.push(start.estimate);
         }
     }
     (predicted, starts)
+}
+
+/// A start and the cost that it leaves once all else has adapted.
+struct Start {
+    cost: f64,
+    estimate: Estimate,
+    /// How many times its size away the secant ends that promises the cost; `None` if the cost was simulated.
+    promised_from: Option<f64>,
+}
+
+impl Start {
+    /// The effect that it starts.
+    fn last(&self) -> AddedEffect {
+        let last = self.estimate.effects.last();
+        last.expect("a start has its effect last").clone()
+    }
+}
+
+/// What starts are looked for on.
+struct Search<'a> {
+    experiment: &'a Experiment,
+    model: &'a Model,
+    base: &'a Fit,
+    frame: Frame<'a>,
+}
+
+impl Search<'_> {
+    /// Of every secant its end and the best point along it: the one is sure, the other may be far better. Best first.
+    fn rank(&self, added: Vec<AddedEffect>) -> Vec<Start> {
+        let mut ranked: Vec<Start> = added
+            .into_iter()
+            .flat_map(|added| {
+                let (residuals, end) = self.simulated(added.clone());
+                let (lowest, highest) = reach(&added);
+                let (share, cost) = self.frame.along(&residuals, lowest, highest);
+                let promised = Start {
+                    cost,
+                    estimate: with(&self.base.estimate, scaled(&added, share)),
+                    promised_from: Some(1.0 / share),
+                };
+                [promised, end]
+            })
+            .collect();
+        self.sort(&mut ranked);
+        ranked
+    }
+
+    /// Sorts starts, and has the best one simulated until that is no promise.
+    fn sort(&self, ranked: &mut [Start]) {
+        for _ in 0..MOST_PROMISES {
+            ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            match ranked.first_mut() {
+                Some(first) => match first.promised_from {
+                    Some(end) => *first = self.kept(first, end),
+                    None => return,
+                },
+                None => return,
+            }
+        }
+        ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    }
+
+    /// What becomes of a promise. A secant that begins with nothing, like the slip of a pump that has flow to spare,
+    /// promises what is not there yet; then the size is looked for on the way to the secant's `end`.
+    fn kept(&self, promise: &Start, end: f64) -> Start {
+        let size = promise.last();
+        let start = self.simulated(size.clone()).1;
+        let (gain, promised) = (self.base.cost - start.cost, self.base.cost - promise.cost);
+        if end <= 1.0 || gain > BROKEN * promised {
+            return start;
+        }
+        let cost_at = |share: f64| self.simulated(scaled(&size, share)).1;
+        golden_section(cost_at, 1.0, end).unwrap_or(start)
+    }
+
+    /// The best start's effect if it explains enough to be worth a closer look.
+    fn promising(&self, ranked: &[Start]) -> Option<AddedEffect> {
+        let first = ranked.first()?;
+        (self.base.cost - first.cost > WORTH_A_FIT).then(|| first.last())
+    }
+
+    /// What an added effect leaves, and that as a start.
+    fn simulated(&self, added: AddedEffect) -> (Vec<Vec<f64>>, Start) {
+        let estimate = with(&self.base.estimate, added);
+        let residuals = huber_residuals(self.experiment, self.model, &self.base.weights, &estimate);
+        let start = Start {
+            cost: self.frame.cost_after(&residuals),
+            estimate,
+            promised_from: None,
+        };
+        (residuals, start)
+    }
+}
+
+/// The best of some starts between two sizes: a golden section search.
+fn golden_section(start_at: impl Fn(f64) -> Start, mut low: f64, mut high: f64) -> Option<Start> {
+    let inner = 0.5 * (5f64.sqrt() - 1.0);
+    let mut tried: Vec<Start> = Vec::new();
+    for _ in 0..SECTIONS {
+        let [left, right] = [high - inner * (high - low), low + inner * (high - low)];
+        let [at_left, at_right] = [left, right].map(&start_at);
+        if at_left.cost < at_right.cost {
+            high = right;
+        } else {
+            low = left;
+        }
+        tried.extend([at_left, at_right]);
+    }
+    tried.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost))
+}
+
+/// An effect at a multiple of its size.
+fn scaled(added: &AddedEffect, share: f64) -> AddedEffect {
+    let null = added.effect.parameters()[0].null;
+    let mut scaled = added.clone();
+    scaled.values[0] = null + share * (scaled.values[0] - null);
+    scaled
 }
 
 /// Whether the last effects of two estimates are sizes that lead to different valleys.
@@ -93,10 +213,10 @@ fn with(estimate: &Estimate, added: AddedEffect) -> Estimate {
     with
 }
 
-/// Whether an effect's cost has many valleys: the phase of a ringing pressure makes them, and a shape beside the size.
+/// Whether an effect's cost has many valleys: the phase of a ringing pressure makes them, and what jumps or bounces.
 pub(super) fn has_valleys(experiment: &Experiment, effect: &dyn Effect) -> bool {
     let rings = experiment.ringing && effect.channels() == [Channel::CylinderPressure];
-    rings || effect.parameters().len() > 1
+    rings || effect.erratic()
 }
 
 /// An effect at the sizes of the secants.

@@ -131,7 +131,8 @@ impl Circuit<'_> {
     #[must_use]
     pub fn lift_drop_pa(&self, pump_pressure_pa: f64, cylinder_pressure_pa: f64) -> f64 {
         let check_valve = &self.constants.check_valve;
-        check_valve.remaining_drop_pa(pump_pressure_pa, cylinder_pressure_pa)
+        let load_pa = cylinder_pressure_pa + self.sites.cracking_extra_pa;
+        check_valve.remaining_drop_pa(pump_pressure_pa, load_pa)
     }
 
     /// Flow through lift valve and check valve, m3/s, over the drop that the cracking pressure leaves, Pa.
@@ -157,18 +158,25 @@ impl Circuit<'_> {
             let drop_pa = self.lift_drop_pa(pump_pressure_pa, cylinder_pressure_pa);
             self.lift_valve_m3_s(opening_m3_s, drop_pa)
         };
-        let pump_pressure_pa = self.relieved_pa(self.lifting_pressure_pa(state), &flow_at);
-        let flow_m3_s = flow_at(pump_pressure_pa);
-        let available_m3_s =
-            constants.pump.flow_m3_s() - self.sites.pump_slip_m3_s(pump_pressure_pa);
-        if flow_m3_s <= available_m3_s {
-            return (flow_m3_s, pump_pressure_pa);
+        let wanted_pa = self.relieved_pa(self.lifting_pressure_pa(state), &flow_at);
+        let pumped_m3_s = |pump_pressure_pa: f64| {
+            constants.pump.flow_m3_s() - self.sites.pump_slip_m3_s(pump_pressure_pa)
+        };
+        let flow_m3_s = flow_at(wanted_pa);
+        if flow_m3_s <= pumped_m3_s(wanted_pa) {
+            return (flow_m3_s, wanted_pa);
         }
-        let drop_pa = self.lift_drop_pa(pump_pressure_pa, cylinder_pressure_pa);
         // The compensator is shut and still short of its margin: the pump's whole flow sets the drop (equation 5).
-        let ratio = available_m3_s / flow_m3_s;
-        let short_pa = drop_pa * (1.0 - ratio * ratio);
-        (available_m3_s, pump_pressure_pa - short_pa)
+        let drop_pa = self.lift_drop_pa(wanted_pa, cylinder_pressure_pa);
+        let short_pa = if self.sites.pump_slip.is_empty() {
+            let ratio = pumped_m3_s(wanted_pa) / flow_m3_s;
+            drop_pa * (1.0 - ratio * ratio)
+        } else {
+            let spare =
+                |short_pa: f64| pumped_m3_s(wanted_pa - short_pa) - flow_at(wanted_pa - short_pa);
+            super::root::rising(spare, 0.0, drop_pa, 10.0)
+        };
+        (pumped_m3_s(wanted_pa - short_pa), wanted_pa - short_pa)
     }
 
     /// The pump pressure, Pa, that the relief valve leaves of what the compensator wants; `flow_at` is the lift flow over it.

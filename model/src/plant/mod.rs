@@ -48,6 +48,7 @@ pub use relief_valve::ReliefValve;
 pub use sites::{Currents, Valve};
 pub use valve_curve::{ValveCurve, ValveCurveError};
 
+use crate::effects::{AddedEffect, CATALOGUE};
 use crate::expression::Place;
 use crate::model::{Dynamics, Model};
 use circuit::{Circuit, Flows, Openings};
@@ -125,7 +126,7 @@ impl<'m> Plant<'m> {
     #[must_use]
     pub fn new(model: &'m Model, rig: Rig, oil_temperature_c: f64, at_rest: Currents) -> Self {
         let mut sites = Sites::default();
-        for effect in &model.effects {
+        for effect in in_the_order_of_the_machine(&model.effects) {
             let conditions = RunConditions {
                 oil_temperature_c,
                 constants: model.constants(),
@@ -156,10 +157,11 @@ impl<'m> Plant<'m> {
             reading: Reading::default(),
             signals: rest::signals_of_run(rig, oil_temperature_c),
         };
-        if let Rig::Hitch(rig) = rig {
-            plant.lowest_m = plant.forces(&rig).lowest_m();
-        }
         plant.state = plant.state_at_rest();
+        if let Rig::Hitch(rig) = rig {
+            let lowest_m = plant.forces(&rig).lowest_m();
+            plant.lowest_m = lowest_m.min(plant.state.piston_m);
+        }
         plant.remember();
         plant.shift(effective.lift_a, effective.lower_a);
         plant.refresh();
@@ -375,4 +377,16 @@ impl<'m> Plant<'m> {
             _ => self.flows = self.circuit().solve(self.openings, &self.state),
         }
     }
+}
+
+/// Effects in the catalogue's order, terms of a user's own behind them: from the coil to the instruments, whichever was
+/// added first. A spool that sticks behind a solenoid with hysteresis is not the same the other way round.
+fn in_the_order_of_the_machine(effects: &[AddedEffect]) -> Vec<&AddedEffect> {
+    let place = |added: &&AddedEffect| {
+        let found = CATALOGUE.iter().position(|e| e.id() == added.effect.id());
+        found.unwrap_or(CATALOGUE.len())
+    };
+    let mut ordered: Vec<&AddedEffect> = effects.iter().collect();
+    ordered.sort_by_key(place);
+    ordered
 }

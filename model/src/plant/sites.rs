@@ -112,6 +112,8 @@ pub struct Sites {
     pub lower_drop_factor: Vec<Law>,
     /// Added to the compensator's margin, Pa, from the cylinder pressure, Pa.
     pub margin: Vec<Law>,
+    /// Added to the check valve's cracking pressure, Pa.
+    pub cracking_extra_pa: f64,
     /// What the check valve takes beyond its cracking pressure, over the square of the flow, Pa/(m3/s)2.
     pub check_valve_loss_pa_s2_m6: f64,
     /// Pump flow lost to slip, m3/s, from the pump pressure, Pa.
@@ -148,6 +150,7 @@ impl Default for Sites {
             lower_flow_factor: 1.0,
             lower_drop_factor: Vec::new(),
             margin: Vec::new(),
+            cracking_extra_pa: 0.0,
             check_valve_loss_pa_s2_m6: 0.0,
             pump_slip: Vec::new(),
             relief: None,

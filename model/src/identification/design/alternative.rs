@@ -84,7 +84,7 @@ impl<'a> Place<'a> {
     /// Angle between the signatures of the effect that is there and of `other` in its place, degree.
     #[must_use]
     pub fn angle_deg(&self, other: &AddedEffect) -> f64 {
-        let frame = Frame::new(&self.jacobian, &self.whole.estimate, None);
+        let frame = Frame::new(&self.jacobian, &self.whole.estimate, 0..0);
         let signature = |present: &[Vec<f64>]| frame.project(difference(&self.empty, present));
         between_deg(
             &signature(&self.whole.residuals),

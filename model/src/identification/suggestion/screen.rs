@@ -23,7 +23,7 @@ pub fn best(
     count: usize,
 ) -> Vec<&'static TermEffect> {
     let jacobian = Jacobian::new(experiment, model, &fit.weights, &fit.estimate);
-    let frame = Frame::new(&jacobian, &fit.estimate, None);
+    let frame = Frame::new(&jacobian, &fit.estimate, 0..0);
     let base: Vec<Vec<f64>> = jacobian.runs.iter().map(|r| r.residual.clone()).collect();
     let left = frame.project(base.clone());
     let mut ranked: Vec<(f64, &'static TermEffect)> = definitions
