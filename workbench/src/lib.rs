@@ -3,6 +3,7 @@
 
 pub mod calibrate;
 pub mod calibration_file;
+pub mod can_door;
 pub mod cli;
 pub mod closed_loop;
 pub mod commands;

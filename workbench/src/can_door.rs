@@ -1,0 +1,235 @@
+//! A CAN bus behind a TCP port: every connection is an adapter that speaks slcan, as python-can, slcand and others expect
+//! of one (`slcan` on `socket://HOST:PORT`).
+//!
+//! It is one bus: what a connection sends reaches the ECU and all other connections. Nothing here waits.
+
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::{SocketAddr, TcpListener, TcpStream, ToSocketAddrs};
+
+use hitch_firmware::can::Frame;
+use hitch_firmware::can::slcan::{Adapter, encode};
+
+/// Connections at a time; more have to wait.
+const MOST_CONNECTIONS: usize = 8;
+/// Bytes taken from a connection at a time: what a full bus carries in some milliseconds.
+const MOST_READ: usize = 512;
+/// Bytes that may wait for a connection that doesn't read, some seconds of a full bus; then it is closed.
+const MOST_WAITING: usize = 1 << 18;
+
+/// The port and who is connected to it.
+#[derive(Debug)]
+pub struct CanDoor {
+    listener: TcpListener,
+    connections: Vec<Connection>,
+}
+
+#[derive(Debug)]
+struct Connection {
+    stream: TcpStream,
+    adapter: Adapter,
+    /// What the other end hasn't taken yet.
+    waiting: Vec<u8>,
+    open: bool,
+}
+
+impl CanDoor {
+    /// Opens the port; 0 takes any that is free.
+    ///
+    /// # Errors
+    /// If the address can't be had.
+    pub fn open(address: impl ToSocketAddrs) -> io::Result<Self> {
+        let listener = TcpListener::bind(address)?;
+        listener.set_nonblocking(true)?;
+        Ok(Self {
+            listener,
+            connections: Vec::new(),
+        })
+    }
+
+    /// Where it is.
+    ///
+    /// # Errors
+    /// If the system doesn't say.
+    pub fn address(&self) -> io::Result<SocketAddr> {
+        self.listener.local_addr()
+    }
+
+    /// How many are connected.
+    #[must_use]
+    pub fn connected(&self) -> usize {
+        self.connections.len()
+    }
+
+    /// The frames that were sent since the last time.
+    pub fn receive(&mut self) -> Vec<Frame> {
+        self.accept();
+        let mut heard = Vec::new();
+        for sender in 0..self.connections.len() {
+            let frames = self.connections[sender].read();
+            for frame in &frames {
+                for (index, connection) in self.connections.iter_mut().enumerate() {
+                    if index != sender {
+                        connection.send(frame);
+                    }
+                }
+            }
+            heard.extend(frames);
+        }
+        self.flush();
+        heard
+    }
+
+    /// Sends a frame to all connections.
+    pub fn send(&mut self, frame: &Frame) {
+        for connection in &mut self.connections {
+            connection.send(frame);
+        }
+        self.flush();
+    }
+
+    fn accept(&mut self) {
+        while self.connections.len() < MOST_CONNECTIONS {
+            let Ok((stream, _)) = self.listener.accept() else {
+                return;
+            };
+            // A connection that can't be set up so would hold up the bus.
+            if stream.set_nonblocking(true).is_ok() && stream.set_nodelay(true).is_ok() {
+                self.connections.push(Connection {
+                    stream,
+                    adapter: Adapter::default(),
+                    waiting: Vec::new(),
+                    open: true,
+                });
+            }
+        }
+    }
+
+    fn flush(&mut self) {
+        self.connections.iter_mut().for_each(Connection::flush);
+        self.connections.retain(|connection| connection.open);
+    }
+}
+
+impl Connection {
+    /// The frames that the other end has sent; its other commands are answered.
+    fn read(&mut self) -> Vec<Frame> {
+        let mut bytes = [0; MOST_READ];
+        let read = match self.stream.read(&mut bytes) {
+            Ok(0) => {
+                self.open = false;
+                0
+            }
+            Ok(read) => read,
+            Err(error) => {
+                self.open &= is_harmless(&error);
+                0
+            }
+        };
+        let mut frames = Vec::new();
+        for byte in &bytes[..read] {
+            if let Some(heard) = self.adapter.receive(*byte) {
+                self.waiting.extend(heard.reply);
+                frames.extend(heard.frame);
+            }
+        }
+        frames
+    }
+
+    fn send(&mut self, frame: &Frame) {
+        if self.adapter.is_open() {
+            self.waiting.extend(encode(frame));
+        }
+    }
+
+    fn flush(&mut self) {
+        while !self.waiting.is_empty() {
+            match self.stream.write(&self.waiting) {
+                Ok(0) => break,
+                Ok(written) => drop(self.waiting.drain(..written)),
+                Err(error) => {
+                    self.open &= is_harmless(&error);
+                    break;
+                }
+            }
+        }
+        self.open &= self.waiting.len() <= MOST_WAITING;
+    }
+}
+
+/// True if it only says that there is nothing to be had just now.
+fn is_harmless(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        ErrorKind::WouldBlock | ErrorKind::Interrupted | ErrorKind::TimedOut
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use hitch_firmware::can::ExtendedId;
+
+    use super::*;
+
+    fn frame(byte: u8) -> Frame {
+        Frame::of_eight(ExtendedId::new(0x0CFE_4580).unwrap(), [byte; 8])
+    }
+
+    /// Serves the door until something comes of it.
+    fn served<T>(
+        door: &mut CanDoor,
+        mut done: impl FnMut(&mut CanDoor, Vec<Frame>) -> Option<T>,
+    ) -> T {
+        let begun = Instant::now();
+        loop {
+            let frames = door.receive();
+            if let Some(result) = done(door, frames) {
+                return result;
+            }
+            assert!(begun.elapsed() < Duration::from_secs(10), "nothing comes");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    fn connected(door: &mut CanDoor) -> TcpStream {
+        let before = door.connected();
+        let mut stream = TcpStream::connect(door.address().unwrap()).unwrap();
+        stream.write_all(b"C\rS5\rO\r").unwrap();
+        served(door, |door, _| (door.connected() > before).then_some(()));
+        let mut replies = [0; 3];
+        served(door, |_, _| Some(()));
+        stream.read_exact(&mut replies).unwrap();
+        assert_eq!(&replies, b"\r\r\r");
+        stream
+    }
+
+    #[test]
+    fn what_one_sends_reaches_the_ecu_and_the_others() {
+        let mut door = CanDoor::open("127.0.0.1:0").unwrap();
+        let (mut one, mut other) = (connected(&mut door), connected(&mut door));
+        one.write_all(&encode(&frame(7))).unwrap();
+        let heard = served(&mut door, |_, frames| frames.first().copied());
+        assert_eq!(heard, frame(7));
+        let mut line = encode(&frame(7)).to_vec();
+        other.read_exact(&mut line).unwrap();
+        assert_eq!(line[..], encode(&frame(7))[..]);
+        door.send(&frame(9));
+        one.read_exact(&mut line[..2]).unwrap();
+        assert_eq!(&line[..2], b"Z\r", "its own isn't echoed, but acknowledged");
+        one.read_exact(&mut line).unwrap();
+        assert_eq!(line[..], encode(&frame(9))[..]);
+    }
+
+    #[test]
+    fn who_goes_away_or_never_reads_is_let_go() {
+        let mut door = CanDoor::open("127.0.0.1:0").unwrap();
+        drop(connected(&mut door));
+        served(&mut door, |door, _| (door.connected() == 0).then_some(()));
+        let _deaf = connected(&mut door);
+        served(&mut door, |door, _| {
+            (0..1_000).for_each(|_| door.send(&frame(1)));
+            (door.connected() == 0).then_some(())
+        });
+    }
+}
