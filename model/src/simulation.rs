@@ -17,6 +17,16 @@ impl Trace {
     pub fn channel(&self, channel: Channel) -> &[f64] {
         &self.channels[channel.index()]
     }
+
+    /// Keeps some of the samples, given in rising order.
+    pub fn keep(&mut self, samples: &[usize]) {
+        for channel in &mut self.channels {
+            for (to, &from) in samples.iter().enumerate() {
+                channel[to] = channel[from];
+            }
+            channel.truncate(samples.len());
+        }
+    }
 }
 
 /// Simulates a run that starts at rest under its first currents.

@@ -186,7 +186,7 @@ impl ReadyRun {
         self.simulate(model, nuisance, &Clocks::default(), spreads)
     }
 
-    /// Simulates the run under other currents, one a sample, A.
+    /// Simulates the run under other currents, A, at the points of [`Drive::course_s`].
     #[must_use]
     pub fn simulate_under(
         &self,
@@ -197,7 +197,9 @@ impl ReadyRun {
     ) -> Trace {
         let time_s = &self.drive.time_s;
         let rig = self.rig(nuisance);
-        let mut trace = simulate(model, rig, self.oil_temperature_c, time_s, currents);
+        let course_s = self.drive.course_s();
+        let mut trace = simulate(model, rig, self.oil_temperature_c, course_s, currents);
+        trace.keep(self.drive.samples());
         clocks.stamp(time_s, &mut trace);
         trace
     }
