@@ -61,6 +61,7 @@ pub struct Controller {
 impl Controller {
     /// A controller as it is after power-up: locked.
     #[must_use]
+    #[inline(never)]
     pub fn new(calibration: ValidCalibration) -> Self {
         let load = LoadEstimate::new(&calibration.hydraulics);
         let scale = DropScale::new(calibration.hydraulics.reference_drop, load.drop());

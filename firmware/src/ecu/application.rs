@@ -9,11 +9,12 @@ use super::flow::{FlowMonitor, Kick, Task};
 use super::hardware::{Contacts, Hardware};
 use super::pace::Pace;
 use super::panel::Contact;
-use super::service::{Service, Storing};
+use super::service::{self, Service, Storing};
 use super::status::status;
 use crate::can::Frame;
 use crate::control::{Controller, Inputs, Outputs, State};
 use crate::j1939::{NameFields, Node, PREFERRED_ADDRESS, Remote, Settings, TroubleFinder, Variant};
+use crate::storage::CalibrationStore;
 use crate::xcp::measurements::{EcuState, Measurements};
 use crate::xcp::{Access, EcuMemory, Event, Slave};
 
@@ -47,17 +48,19 @@ impl<F: NorFlash> Ecu<F> {
     /// The ECU as it is after power-up, with the calibration that `flash` holds. `serial_number` tells its node from
     /// others on the bus.
     #[must_use]
+    #[inline(never)]
     pub fn start(flash: F, serial_number: u32) -> Self {
-        let (service, controller) = Service::start(flash);
+        let mut store = CalibrationStore::new(flash);
+        let (calibration, troubles) = service::load(&mut store);
         let settings = Settings {
             name: NameFields::rear_hitch(serial_number).into(),
             preferred_address: PREFERRED_ADDRESS,
             variant: Variant::J1939,
         };
         Self {
-            controller,
+            service: Service::new(store, &calibration, troubles),
+            controller: Controller::new(calibration),
             arbiter: Arbiter::default(),
-            service,
             node: Node::new(settings),
             trouble_finder: TroubleFinder::default(),
             slave: Slave::new(),
@@ -71,6 +74,7 @@ impl<F: NorFlash> Ecu<F> {
     }
 
     /// One millisecond. The watchdog may be kicked with what it gives; it gives nothing unless every task has run.
+    #[inline(never)]
     pub fn tick(&mut self, contacts: &Contacts, hardware: &mut impl Hardware) -> Option<Kick> {
         self.sample(contacts);
         self.flow.passed(Task::Sample);

@@ -30,34 +30,36 @@ pub struct Service<F> {
     troubles: Troubles,
 }
 
+/// Reads what is stored, and what is wrong with it.
+pub fn load<F: NorFlash>(store: &mut CalibrationStore<F>) -> (ValidCalibration, Troubles) {
+    let Ok(loaded) = store.load() else {
+        return (ValidCalibration::nominal(), Trouble::CalibrationLost.into());
+    };
+    let troubles = if loaded.source == Source::Factory {
+        Trouble::CalibrationLost.into()
+    } else if loaded.copies.contains(&Copy::Damaged) {
+        Trouble::CalibrationCopyLost.into()
+    } else {
+        Troubles::NONE
+    };
+    (loaded.calibration, troubles)
+}
+
 impl<F: NorFlash> Service<F> {
-    /// Reads what is stored; with it, the controller as it is after power-up.
-    pub fn start(flash: F) -> (Self, Controller) {
-        let mut store = CalibrationStore::new(flash);
-        let mut troubles = Troubles::NONE;
-        let calibration = match store.load() {
-            Ok(loaded) => {
-                if loaded.source == Source::Factory {
-                    troubles.insert(Trouble::CalibrationLost);
-                } else if loaded.copies.contains(&Copy::Damaged) {
-                    troubles.insert(Trouble::CalibrationCopyLost);
-                }
-                loaded.calibration
-            }
-            Err(_) => {
-                troubles.insert(Trouble::CalibrationLost);
-                ValidCalibration::nominal()
-            }
-        };
-        let service = Self {
-            pages: CalibrationPages::new(&calibration),
+    /// The keeper of `calibration`, which `store` gave with these troubles.
+    pub fn new(
+        store: CalibrationStore<F>,
+        calibration: &ValidCalibration,
+        troubles: Troubles,
+    ) -> Self {
+        Self {
+            pages: CalibrationPages::new(calibration),
             store,
             storing: false,
             tool_waits: false,
             taught_seen: false,
             troubles,
-        };
-        (service, Controller::new(calibration))
+        }
     }
 
     /// True while something is being stored; the hitch has to be locked meanwhile.

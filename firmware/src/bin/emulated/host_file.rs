@@ -9,72 +9,67 @@ use cortex_m_semihosting::{nr, syscall};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HostFileError {
     /// It could not be opened.
-    Open,
+    Open(&'static str),
     /// It ended inside a record.
     Truncated,
-    /// Not all bytes could be written.
-    Write,
+    /// Not all bytes could be read or written where they should be.
+    Access,
 }
 
 impl fmt::Display for HostFileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Open => "can't open a host file: the emulator must run where `inputs` is and `outputs` may be made",
-            Self::Truncated => "`inputs` ends inside a record: its length must be a multiple of the record's",
-            Self::Write => "can't write all bytes to the host: is its disk full, or the reader gone?",
-        })
+        match self {
+            Self::Open(name) => write!(f, "can't open the host's `{name}`"),
+            Self::Truncated => f.write_str("the input ends inside a record"),
+            Self::Access => f.write_str(
+                "can't read or write on the host: is its disk full, or the reader gone?",
+            ),
+        }
     }
 }
 
 /// An open file; the host closes it when the emulator ends.
+#[derive(Clone, Copy)]
 pub struct HostFile {
     handle: usize,
 }
 
 impl HostFile {
-    /// Opens `name` in the emulator's working directory for reading; a named pipe is as good as a file.
-    pub fn open_for_reading(name: &CStr) -> Result<Self, HostFileError> {
-        Self::open(name, nr::open::R_BINARY)
+    /// The emulator's standard input.
+    pub fn input() -> Result<Self, HostFileError> {
+        Self::open(c"/dev/stdin", nr::open::R_BINARY)
     }
 
-    /// Creates or empties `name` in the emulator's working directory for writing.
-    pub fn open_for_writing(name: &CStr) -> Result<Self, HostFileError> {
-        Self::open(name, nr::open::W_TRUNC_BINARY)
+    /// The emulator's standard output.
+    pub fn output() -> Result<Self, HostFileError> {
+        Self::open(c"/dev/stdout", nr::open::W_APPEND_BINARY)
     }
 
-    /// The emulator's console.
+    /// Opens a file that exists for reading and writing, anywhere in it.
+    pub fn open_for_both(name: &'static CStr) -> Result<Self, HostFileError> {
+        Self::open(name, nr::open::RW_BINARY)
+    }
+
+    /// The emulator's standard error.
     pub fn console() -> Result<Self, HostFileError> {
-        Self::open(c":tt", nr::open::W_TRUNC)
+        Self::open(c"/dev/stderr", nr::open::W_APPEND)
     }
 
-    fn open(name: &CStr, mode: usize) -> Result<Self, HostFileError> {
+    fn open(name: &'static CStr, mode: usize) -> Result<Self, HostFileError> {
         let block = [name.as_ptr() as usize, mode, name.count_bytes()];
         // SAFETY: SYS_OPEN takes the address of a C string, a mode and the string's length, all alive during the call.
         match unsafe { syscall(nr::OPEN, &block) } {
-            usize::MAX => Err(HostFileError::Open),
+            usize::MAX => Err(HostFileError::Open(name.to_str().unwrap_or("?"))),
             handle => Ok(Self { handle }),
         }
     }
 
-    /// Fills `record`; false at the end of the file.
-    pub fn read_record(&mut self, record: &mut [u8]) -> Result<bool, HostFileError> {
-        let mut filled = 0;
-        // A pipe may hand over a record in pieces.
-        while filled < record.len() {
-            let rest = &mut record[filled..];
-            let block = [self.handle, rest.as_mut_ptr() as usize, rest.len()];
-            // SAFETY: SYS_READ takes a handle that SYS_OPEN gave and a buffer that it may fill.
-            let missing = unsafe { syscall(nr::READ, &block) };
-            match rest.len().checked_sub(missing) {
-                Some(0) | None => break,
-                Some(read) => filled += read,
-            }
-        }
-        match filled {
-            0 => Ok(false),
-            all if all == record.len() => Ok(true),
-            _ => Err(HostFileError::Truncated),
-        }
+    /// Reads what there is, waiting until there is something; 0 at the end.
+    pub fn read(&mut self, target: &mut [u8]) -> usize {
+        let block = [self.handle, target.as_mut_ptr() as usize, target.len()];
+        // SAFETY: SYS_READ takes a handle that SYS_OPEN gave and a buffer that it may fill.
+        let missing = unsafe { syscall(nr::READ, &block) };
+        target.len().saturating_sub(missing)
     }
 
     /// Writes all of `bytes`.
@@ -83,7 +78,16 @@ impl HostFile {
         // SAFETY: SYS_WRITE takes a handle that SYS_OPEN gave and a buffer that it only reads.
         match unsafe { syscall(nr::WRITE, &block) } {
             0 => Ok(()),
-            _ => Err(HostFileError::Write),
+            _ => Err(HostFileError::Access),
+        }
+    }
+
+    /// Goes to a place in the file.
+    pub fn seek(&mut self, offset: usize) -> Result<(), HostFileError> {
+        // SAFETY: SYS_SEEK takes a handle that SYS_OPEN gave and a number.
+        match unsafe { syscall(nr::SEEK, &[self.handle, offset]) } {
+            0 => Ok(()),
+            _ => Err(HostFileError::Access),
         }
     }
 }

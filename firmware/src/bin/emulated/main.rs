@@ -1,27 +1,31 @@
-//! The controller on an emulated Cortex-M4 (QEMU `mps2-an386`).
+//! The firmware on an emulated Cortex-M4 (QEMU `mps2-an386`).
 //!
-//! Reads records of inputs from the host's file or pipe `inputs`, steps the controller once a record and writes to
-//! `outputs`, for each step, the outputs and the timer ticks that the step took (u32, little endian). At the end it
-//! says on the console how many steps it ran and how much stack it used, and ends the emulator with a status.
-//! `inputs` is opened first: a host that uses pipes must open them in the same order.
+//! Told `ecu` by the emulator (`-semihosting-config arg=ecu`), it is the ECU: the application in lock step with whoever
+//! is at the emulator's standard input and output. Otherwise it steps the controller alone. At the end of the input it says
+//! on the console what it did and how much stack that took, and ends the emulator with a status.
 
 #![no_std]
 #![no_main]
 
+mod application;
+mod command_line;
+mod flash_file;
 mod host_file;
+mod link;
 mod stack;
+mod steps;
 mod stopwatch;
 
 use core::fmt::{Arguments, Write};
-use core::hint::{black_box, spin_loop};
+use core::hint::spin_loop;
 use core::panic::PanicInfo;
 
 use cortex_m_rt::{ExceptionFrame, entry, exception};
 use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 
-use hitch_firmware::control::signals::INPUT_BYTES;
-use hitch_firmware::control::{Calibration, CalibrationError, Controller, Inputs, Outputs};
+use hitch_firmware::control::CalibrationError;
 use host_file::{HostFile, HostFileError};
+use link::Link;
 use stopwatch::Stopwatch;
 
 /// Why the image ends early.
@@ -39,9 +43,11 @@ impl From<HostFileError> for Failure {
 #[entry]
 fn main() -> ! {
     match run() {
-        Ok(steps) => {
+        Ok(done) => {
             say(format_args!(
-                "steps={steps}\nstack_bytes={}\n",
+                "steps={}\nlongest_ticks={}\nstack_bytes={}\n",
+                done.ticks,
+                done.longest,
                 stack::high_water_mark()
             ));
             debug::exit(EXIT_SUCCESS);
@@ -54,32 +60,22 @@ fn main() -> ! {
     halt()
 }
 
-/// Steps the controller until `inputs` ends; the number of steps.
-fn run() -> Result<u32, Failure> {
-    let calibration = Calibration::nominal()
-        .validate()
-        .map_err(Failure::Calibration)?;
-    let mut controller = Controller::new(calibration);
-    let mut inputs = HostFile::open_for_reading(c"inputs")?;
-    let mut outputs = HostFile::open_for_writing(c"outputs")?;
+fn run() -> Result<Done, Failure> {
+    let mut link = Link::open()?;
     let stopwatch = Stopwatch::start();
-    let mut record = [0; INPUT_BYTES];
-    let mut steps = 0;
-    while inputs.read_record(&mut record)? {
-        let given = Inputs::from_bytes(&record);
-        let (taken, ticks) =
-            stopwatch.ticks_of(|| step(black_box(&mut controller), black_box(&given)));
-        outputs.write_all(&taken.to_bytes())?;
-        outputs.write_all(&ticks.to_le_bytes())?;
-        steps += 1;
+    match command_line::is(b"ecu") {
+        true => application::run(&mut link, &stopwatch),
+        false => steps::run(&mut link, &stopwatch),
     }
-    Ok(steps)
 }
 
-/// The step as the ECU's control task calls it: not merged into the loop around it.
-#[inline(never)]
-fn step(controller: &mut Controller, inputs: &Inputs) -> Outputs {
-    controller.step(inputs)
+/// What was done.
+#[derive(Default)]
+struct Done {
+    /// Steps or milliseconds.
+    ticks: u32,
+    /// The longest of them, in ticks of the stopwatch.
+    longest: u32,
 }
 
 fn say(text: Arguments<'_>) {

@@ -1,0 +1,74 @@
+//! The whole application, as on the ECU: requests in, replies out (see [`hitch_firmware::ecu::link`]).
+
+use hitch_firmware::can::Frame;
+use hitch_firmware::ecu::link::{
+    FRAME_BYTES, MOST_FRAMES, REQUEST_BYTES, Reply, Request, frame_from_bytes, frame_to_bytes,
+};
+use hitch_firmware::ecu::{Contacts, Machine};
+
+use crate::flash_file::FlashFile;
+use crate::link::Link;
+use crate::stopwatch::Stopwatch;
+use crate::{Done, Failure};
+
+/// Serial number of the emulated part.
+const SERIAL_NUMBER: u32 = 1;
+
+/// Runs until the requests end.
+pub fn run(link: &mut Link, stopwatch: &Stopwatch) -> Result<Done, Failure> {
+    let flash = FlashFile::open()?;
+    let mut done = Done::default();
+    while power_up(flash, link, stopwatch, &mut done)? == End::PowerCut {}
+    Ok(done)
+}
+
+/// Why a machine came to its end.
+#[derive(PartialEq, Eq)]
+enum End {
+    PowerCut,
+    NoMoreRequests,
+}
+
+/// The life of a machine.
+#[inline(never)]
+fn power_up(
+    flash: FlashFile,
+    link: &mut Link,
+    stopwatch: &Stopwatch,
+    done: &mut Done,
+) -> Result<End, Failure> {
+    let mut machine = Machine::start(flash, SERIAL_NUMBER);
+    while let Some(record) = link.read::<REQUEST_BYTES>()? {
+        let Request::Tick { contacts, frames } = Request::from_bytes(&record) else {
+            return Ok(End::PowerCut);
+        };
+        let heard = hear(link, frames)?;
+        let (reply, ticks) = stopwatch.ticks_of(|| tick(&mut machine, &contacts, &heard));
+        done.ticks += 1;
+        done.longest = done.longest.max(ticks);
+        link.write(&reply.to_bytes())?;
+        for frame in machine.said() {
+            link.write(&frame_to_bytes(frame))?;
+        }
+    }
+    Ok(End::NoMoreRequests)
+}
+
+/// The millisecond as the ECU's loop calls it: not merged into the loop around it.
+#[inline(never)]
+fn tick(machine: &mut Machine<FlashFile>, contacts: &Contacts, heard: &[Frame]) -> Reply {
+    machine.tick(contacts, heard)
+}
+
+/// The frames that follow a request; what makes no frame is left out.
+fn hear(link: &mut Link, frames: usize) -> Result<heapless::Vec<Frame, MOST_FRAMES>, Failure> {
+    let mut heard = heapless::Vec::new();
+    for _ in 0..frames {
+        let bytes = link.read::<FRAME_BYTES>()?;
+        if let Some(frame) = bytes.as_ref().and_then(frame_from_bytes) {
+            // A request has no more frames than this holds.
+            let _ = heard.push(frame);
+        }
+    }
+    Ok(heard)
+}

@@ -1,0 +1,69 @@
+//! Records from the host and back.
+//!
+//! What has come is read in one go and what was said is written in one go, just before there is nothing more to read:
+//! a host that asks record by record gets every answer at once, and one that sends a file isn't slowed down by
+//! a call to it for each record.
+
+use crate::host_file::{HostFile, HostFileError};
+
+const BUFFER_BYTES: usize = 2_048;
+
+/// Both directions.
+pub struct Link {
+    input: HostFile,
+    output: HostFile,
+    heard: [u8; BUFFER_BYTES],
+    /// Where in `heard` the next record begins, and where what has come ends.
+    next: usize,
+    end: usize,
+    said: heapless::Vec<u8, BUFFER_BYTES>,
+}
+
+impl Link {
+    /// The emulator's standard input and output.
+    pub fn open() -> Result<Self, HostFileError> {
+        Ok(Self {
+            input: HostFile::input()?,
+            output: HostFile::output()?,
+            heard: [0; BUFFER_BYTES],
+            next: 0,
+            end: 0,
+            said: heapless::Vec::new(),
+        })
+    }
+
+    /// The next record; `None` at the end.
+    pub fn read<const N: usize>(&mut self) -> Result<Option<[u8; N]>, HostFileError> {
+        while self.end - self.next < N {
+            self.flush()?;
+            self.heard.copy_within(self.next..self.end, 0);
+            self.end -= self.next;
+            self.next = 0;
+            match self.input.read(&mut self.heard[self.end..]) {
+                0 if self.end == 0 => return Ok(None),
+                0 => return Err(HostFileError::Truncated),
+                more => self.end += more,
+            }
+        }
+        let record = self.heard[self.next..].first_chunk().copied();
+        self.next += N;
+        Ok(record)
+    }
+
+    /// Says `bytes`, now or before the next wait for the host.
+    pub fn write(&mut self, bytes: &[u8]) -> Result<(), HostFileError> {
+        if self.said.extend_from_slice(bytes).is_err() {
+            self.flush()?;
+            return self.output.write_all(bytes);
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> Result<(), HostFileError> {
+        if !self.said.is_empty() {
+            self.output.write_all(&self.said)?;
+            self.said.clear();
+        }
+        Ok(())
+    }
+}
