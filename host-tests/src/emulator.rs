@@ -1,20 +1,19 @@
-//! Runs the controller's image on an emulated Cortex-M4.
+//! Runs the firmware's image on an emulated Cortex-M4, from a file to a file.
 
 use std::env;
 use std::fs::{self, File};
+use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Child, ExitStatus, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
 use hitch_firmware::control::signals::{INPUT_BYTES, OUTPUT_BYTES};
-
-/// Environment variable that names the image.
-pub const IMAGE_VARIABLE: &str = "HITCH_EMULATED_IMAGE";
+use hitch_workbench::ecu::{IMAGE_VARIABLE, Mode, emulator_command};
 
 /// Far longer than any trace takes; an image that hangs must not hang the tests.
-const PATIENCE: Duration = Duration::from_secs(300);
+const PATIENCE: Duration = Duration::from_secs(900);
 
 const TICK_BYTES: usize = size_of::<u32>();
 
@@ -43,7 +42,8 @@ pub fn image() -> Result<PathBuf> {
 
 /// Boots the image, lets it step through `inputs`, and collects what it wrote.
 pub fn run(image: &Path, inputs: &[[u8; INPUT_BYTES]]) -> Result<EmulatedRun> {
-    let console = boot(image, inputs.as_flattened())?;
+    let folder = tempfile::tempdir()?;
+    let console = boot(image, folder.path(), Mode::Steps, inputs.as_flattened())?;
     let steps = said(&console.text, "steps")?;
     let (outputs, instructions) = parse_records(&console.outputs)?;
     ensure!(
@@ -66,46 +66,28 @@ pub struct Console {
     pub outputs: Vec<u8>,
 }
 
-/// Runs the emulator in a folder of its own, with `inputs` in the file that the image reads.
-pub fn boot(image: &Path, inputs: &[u8]) -> Result<Console> {
-    let folder = tempfile::tempdir()?;
-    fs::write(folder.path().join("inputs"), inputs)?;
-    let console = folder.path().join("console");
-    let mut emulator = Command::new("qemu-system-arm")
-        .args([
-            "-machine",
-            "mps2-an386",
-            "-display",
-            "none",
-            "-monitor",
-            "none",
-            "-serial",
-            "none",
-        ])
-        // An instruction takes 64 ns of emulated time whatever the host does: counts repeat exactly.
-        .args([
-            "-icount",
-            "shift=6",
-            "-semihosting-config",
-            "enable=on,target=native",
-            "-kernel",
-        ])
-        .arg(image)
-        .current_dir(folder.path())
-        .stdin(Stdio::null())
-        .stdout(File::create(&console)?)
-        .stderr(File::options().append(true).open(&console)?)
+/// Runs the emulator in `folder` on `input`.
+pub fn boot(image: &Path, folder: &Path, mode: Mode, input: &[u8]) -> Result<Console> {
+    let (inputs, outputs) = (folder.join("inputs"), folder.join("outputs"));
+    fs::write(&inputs, input)?;
+    let mut emulator = emulator_command(image, folder, mode)
+        .stdin(File::open(&inputs)?)
+        .stdout(File::create(&outputs)?)
+        .stderr(Stdio::piped())
         .spawn()
         .context("can't start qemu-system-arm: `cargo xtask setup` installs it")?;
     let status = wait(&mut emulator)?;
-    let text = fs::read_to_string(&console)?;
+    let mut text = String::new();
+    if let Some(mut said) = emulator.stderr.take() {
+        said.read_to_string(&mut text)?;
+    }
     ensure!(
         status.success(),
         "the image ended with {status} and said: {text}"
     );
     Ok(Console {
         text,
-        outputs: fs::read(folder.path().join("outputs"))?,
+        outputs: fs::read(&outputs)?,
     })
 }
 
@@ -123,7 +105,7 @@ fn wait(emulator: &mut Child) -> Result<ExitStatus> {
 }
 
 /// The number in the console's line `key=number`.
-fn said(console: &str, key: &str) -> Result<u64> {
+pub fn said(console: &str, key: &str) -> Result<u64> {
     let value = console
         .lines()
         .find_map(|line| line.strip_prefix(key)?.strip_prefix('='));

@@ -2,7 +2,7 @@
 use clap::{Parser, Subcommand};
 
 use crate::commands::{
-    add, calibrate, compare, controller, diagnose, effects, explain, loop_, main_job, paper,
+    add, calibrate, compare, controller, diagnose, ecu, effects, explain, loop_, main_job, paper,
     simulate, tune,
 };
 use crate::error::Error;
@@ -48,6 +48,8 @@ pub enum Command {
     Loop(loop_::Args),
     /// The firmware's controller on stdin/stdout, for anyone's own plant
     Controller(controller::Args),
+    /// The real firmware image on an emulated Cortex-M4, plant attached, CAN on a TCP port
+    Ecu(ecu::Args),
     /// Tunes position and rate control against the plant over loads and valve spread
     Tune(tune::Args),
     /// Turns an identified model into the firmware's calibration: valve map, thresholds, limits
@@ -70,6 +72,7 @@ impl Command {
             Self::Paper(args) => paper::run(args),
             Self::Loop(args) => loop_::run(args),
             Self::Controller(args) => controller::run(args),
+            Self::Ecu(args) => ecu::run(args),
             Self::Tune(args) => tune::run(args),
             Self::Calibrate(args) => calibrate::run(args),
         }

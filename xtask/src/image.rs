@@ -17,7 +17,7 @@ pub const PARTS: [&str; 2] = ["stm32f405", "stm32g474"];
 /// Builds the control layer as the ECU takes it, proves that it can't panic, builds the images for the boards and the one
 /// for the emulator, whose path is returned.
 pub fn build_all(way: Way) -> Result<PathBuf> {
-    let folder = way.target_dir().join(TARGET).join(PROFILE);
+    let folder = folder(way);
     build(way, &["--lib"])?;
     build(way, &["--bin", "panic_proof", "--features", "emulated"]).context(
         "if `the_controller_can_panic` is undefined above, a step of the controller can panic",
@@ -34,10 +34,19 @@ pub fn build_all(way: Way) -> Result<PathBuf> {
             .with_context(|| format!("can't write {}", image.display()))?;
         println!("{} takes {}", image.display(), size::of(&image)?);
     }
-    build(way, &["--bin", "emulated", "--features", "emulated"])?;
-    let image = folder.join("emulated");
+    let image = build_emulated(way)?;
     println!("the emulated image takes {}", size::of(&image)?);
     Ok(image)
+}
+
+/// Builds the image for the emulator; its path.
+pub fn build_emulated(way: Way) -> Result<PathBuf> {
+    build(way, &["--bin", "emulated", "--features", "emulated"])?;
+    Ok(folder(way).join("emulated"))
+}
+
+fn folder(way: Way) -> PathBuf {
+    way.target_dir().join(TARGET).join(PROFILE)
 }
 
 fn build(way: Way, what: &[&str]) -> Result<()> {

@@ -24,6 +24,7 @@ usage: cargo xtask <task> [--arm rustup|debian]
   check   formatting, clippy and rustdoc, with warnings denied
   ci      check, then test
   arm     build the ARM images and say how large they are
+  image   build the image for the emulator alone; the last line is its path
   mutants change the safety envelope in every way that cargo-mutants knows; its tests have to notice
   a2l     write firmware/hitch.a2l, the description of parameters and measurements for tuning tools
   setup   find or install the ARM toolchain and the emulator
@@ -54,6 +55,11 @@ fn run(arguments: &[String]) -> Result<()> {
         "check" => check::run(way),
         "ci" => check::run(way).and_then(|()| test::run(way)),
         "arm" => image::build_all(setup::toolchain(way)?).map(drop),
+        "image" => {
+            let image = image::build_emulated(setup::toolchain(way)?)?;
+            println!("{}", image.display());
+            Ok(())
+        }
         "mutants" => mutants::run(),
         "a2l" => a2l::write(),
         "setup" => setup::run(way),

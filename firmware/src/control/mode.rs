@@ -69,6 +69,12 @@ impl Fault {
         Self::Overrun,
     ];
 
+    /// The fault with a code; 0 is none.
+    #[must_use]
+    pub fn from_code(code: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|fault| *fault as u8 == code)
+    }
+
     /// Name as it appears in text outputs.
     #[must_use]
     pub const fn name(self) -> &'static str {

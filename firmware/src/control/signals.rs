@@ -118,6 +118,12 @@ impl State {
         Self::Teaching,
     ];
 
+    /// The state with a code.
+    #[must_use]
+    pub fn from_code(code: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|state| *state as u8 == code)
+    }
+
     /// Name as it appears in text outputs.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -8,17 +8,17 @@ use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64Mcg;
 
 /// One sigma of the angle sensor, degree.
-const ANGLE_NOISE_DEG: f64 = 0.05;
+pub const ANGLE_NOISE_DEG: f64 = 0.05;
 /// One sigma of the cylinder pressure sensor, bar.
-const CYLINDER_NOISE_BAR: f64 = 0.10;
+pub const CYLINDER_NOISE_BAR: f64 = 0.10;
 /// One sigma of the pump pressure sensor, bar.
-const PUMP_NOISE_BAR: f64 = 0.15;
+pub const PUMP_NOISE_BAR: f64 = 0.15;
 /// Step of a 12-bit converter over the 0.5 to 4.5 V (of 5 V) that are 110 degrees, degree.
 const ANGLE_STEP_DEG: f64 = 110.0 / (0.8 * 4096.0);
 /// Step of the same converter over 250 bar, bar.
 const PRESSURE_STEP_BAR: f64 = 250.0 / (0.8 * 4096.0);
 /// One sigma of a measured coil current, A.
-const CURRENT_NOISE_A: f64 = 0.003;
+pub const CURRENT_NOISE_A: f64 = 0.003;
 /// Step of the same converter over 5 A, A.
 const CURRENT_STEP_A: f64 = 5.0 / 4096.0;
 /// Supply of a running tractor, V.

@@ -10,7 +10,9 @@ mod scenario;
 
 pub use coil::Coil;
 pub use ideal_ramp::IdealRamp;
-pub use instruments::Instruments;
+pub use instruments::{
+    ANGLE_NOISE_DEG, CURRENT_NOISE_A, CYLINDER_NOISE_BAR, Instruments, PUMP_NOISE_BAR, SUPPLY_V,
+};
 pub use loop_::{ClosedLoop, Sample};
 pub use metrics::{MoveResult, Summary};
 pub use moves::{Course, LoopRun, MoveTrace, courses, figures, run};

@@ -101,7 +101,11 @@ pub fn calibration(path: Option<&PathBuf>) -> Result<ValidCalibration, Error> {
     }
 }
 
-fn load_kg(text: &str) -> Result<f64, String> {
+/// A load from the command line.
+///
+/// # Errors
+/// If it is none.
+pub fn load_kg(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(load_kg) if (0.0..=2000.0).contains(&load_kg) => Ok(load_kg),
         _ => Err("it has to be a number from 0 to 2000".to_owned()),

@@ -4,6 +4,7 @@ pub mod calibrate;
 pub mod compare;
 pub mod controller;
 pub mod diagnose;
+pub mod ecu;
 pub mod effects;
 pub mod explain;
 pub mod loop_;

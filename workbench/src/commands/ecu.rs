@@ -1,0 +1,252 @@
+//! `hitch ecu`: the ECU on the bench, live.
+use std::io::{self, BufRead};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::mpsc::{self, Receiver, TryRecvError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use hitch_firmware::can::Frame;
+use hitch_model::Model;
+
+use super::loop_::{calibration, load_kg};
+use crate::can_door::CanDoor;
+use crate::ecu::{
+    Bench, Bus, CutFlash, EcuMachine, Emulator, FLASH_BYTES, MachineError, OnHost, Order, QEMU,
+    delivered, find_image,
+};
+use crate::error::Error;
+use crate::status_line::StatusLine;
+
+/// Where the hitch is at the start, degree.
+const START_DEG: f64 = 90.0;
+/// When the operator picks the hitch up, ms: after the first claim of an address.
+const PICK_UP_MS: u64 = 500;
+/// Behind by more than this, time is given up: the machine is too slow, or was asleep.
+const MOST_BEHIND: Duration = Duration::from_millis(200);
+const MILLISECOND: Duration = Duration::from_millis(1);
+
+/// Arguments of `hitch ecu`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: hitch ecu --can 127.0.0.1:7701 --load 200\n\n\
+    The real firmware image runs on an emulated Cortex-M4 with the plant attached, in lock step and in real time. The\n\
+    operator picks the hitch up after half a second; afterwards standard input is the operator, a line an order:\n\
+    lever DEG, up, down, stop, quick on|off, hold on|off, lock on|off, service on|off, limit DEG, dial PERCENT, power, quit.\n\
+    With --can, the bus is open to slcan clients: python-can with interface slcan and channel socket://HOST:PORT.\n\
+    Writing to the calibration by XCP needs `service on`.")]
+pub struct Args {
+    /// Offer the CAN bus as slcan on this TCP port
+    #[arg(long, value_name = "HOST:PORT")]
+    can: Option<String>,
+    /// The plant: nominal, dynamic, or the name of a model file
+    #[arg(long, value_name = "MODEL", default_value = "dynamic")]
+    model: String,
+    /// Load at the hitch, kg
+    #[arg(long, value_name = "KG", default_value = "150", allow_negative_numbers = true, value_parser = load_kg)]
+    load: f64,
+    /// The calibration that the ECU was delivered with; without it, the nominal one
+    #[arg(long, value_name = "C.toml")]
+    calibration: Option<PathBuf>,
+    /// Keep the ECU's flash in this file, with whatever is taught and tuned
+    #[arg(long, value_name = "FILE")]
+    flash: Option<PathBuf>,
+    /// End after this many seconds
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    seconds: Option<f64>,
+    /// The emulated ECU's image; without it, the one that the sources make
+    #[arg(long, value_name = "FILE", conflicts_with = "host")]
+    image: Option<PathBuf>,
+    /// Run the same application here instead of on the emulated processor
+    #[arg(long)]
+    host: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If something that it needs is wrong or missing, or the emulator ends.
+pub fn run(args: &Args) -> Result<(), Error> {
+    let model = Model::named(&args.model)?;
+    let flash = flash(args)?;
+    let door = args.can.as_deref().map(open_door).transpose()?;
+    let mut session = Session::new(&model, args, door);
+    if args.host {
+        let cells = CutFlash::holding(flash);
+        let result = session.run(&mut OnHost::start(cells.clone()));
+        keep(args.flash.as_deref(), &cells.bytes())?;
+        return result;
+    }
+    require_emulator()?;
+    let image = find_image(args.image.as_deref())?;
+    let folder = tempfile::tempdir().map_err(failed)?;
+    let file = folder.path().join("flash");
+    std::fs::write(&file, flash).map_err(failed)?;
+    let mut machine = Emulator::start(&image, folder.path()).map_err(failed)?;
+    let result = session.run(&mut machine);
+    drop(machine);
+    keep(
+        args.flash.as_deref(),
+        &std::fs::read(&file).map_err(failed)?,
+    )?;
+    result
+}
+
+fn failed(error: impl std::fmt::Display) -> Error {
+    Error::Failed(error.to_string())
+}
+
+/// What the ECU's flash holds at the start.
+fn flash(args: &Args) -> Result<Vec<u8>, Error> {
+    let delivered = delivered(&calibration(args.calibration.as_ref())?);
+    let Some(path) = args.flash.as_deref().filter(|path| path.exists()) else {
+        return Ok(delivered);
+    };
+    match std::fs::read(path) {
+        Ok(bytes) if bytes.len() == FLASH_BYTES => Ok(bytes),
+        Ok(bytes) => Err(Error::Usage(format!(
+            "{}: is no flash of an ECU ({} bytes instead of {FLASH_BYTES}); name one that `hitch ecu --flash` has written, or a new file",
+            path.display(),
+            bytes.len()
+        ))),
+        Err(error) => Err(Error::Usage(format!(
+            "{}: cannot be read: {error}",
+            path.display()
+        ))),
+    }
+}
+
+fn keep(path: Option<&Path>, flash: &[u8]) -> Result<(), Error> {
+    path.map_or(Ok(()), |path| crate::output::write_file(path, flash))
+}
+
+fn open_door(address: &str) -> Result<CanDoor, Error> {
+    CanDoor::open(address).map_err(|error| {
+        Error::Usage(format!(
+            "--can {address}: can't be opened: {error}; name an address of this machine and a free port, as in 127.0.0.1:7701"
+        ))
+    })
+}
+
+/// Says what to do if there is no emulator.
+fn require_emulator() -> Result<(), Error> {
+    let found = Command::new(QEMU)
+        .arg("--version")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status();
+    match found {
+        Ok(status) if status.success() => Ok(()),
+        _ => Err(Error::Usage(format!(
+            "{QEMU} is missing: install QEMU for ARM (Debian: apt-get install qemu-system-arm; macOS: brew install qemu), \
+             or take --host, which runs the same application without an emulator"
+        ))),
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.0..=86_400.0).contains(&seconds) => Ok(seconds),
+        _ => Err("it has to be a number from 0 to 86400".to_owned()),
+    }
+}
+
+/// Orders from standard input, as they come.
+fn orders() -> Receiver<String> {
+    let (sender, receiver) = mpsc::channel();
+    thread::spawn(move || {
+        for line in io::stdin().lock().lines().map_while(Result::ok) {
+            if sender.send(line).is_err() {
+                return;
+            }
+        }
+    });
+    receiver
+}
+
+/// The bench, who is at it, and for how long.
+struct Session<'m> {
+    bench: Bench<'m>,
+    bus: Option<Bus>,
+    status: StatusLine,
+    last_ms: u64,
+}
+
+impl<'m> Session<'m> {
+    fn new(model: &'m Model, args: &Args, door: Option<CanDoor>) -> Self {
+        /// Oil temperature of the rig's data, C.
+        const OIL_TEMPERATURE_C: f64 = 40.0;
+        if let Some(address) = door.as_ref().and_then(|door| door.address().ok()) {
+            eprintln!("CAN is open: slcan on {address}");
+        }
+        Self {
+            bench: Bench::new(model, args.load, OIL_TEMPERATURE_C, START_DEG, 1),
+            bus: door.map(Bus::behind),
+            status: StatusLine::start(),
+            last_ms: args
+                .seconds
+                .map_or(u64::MAX, |seconds| (seconds * 1e3) as u64),
+        }
+    }
+
+    /// Runs in real time until the time is over or the operator has had enough.
+    fn run(&mut self, machine: &mut impl EcuMachine) -> Result<(), Error> {
+        let orders = orders();
+        let mut said: Vec<Frame> = Vec::new();
+        let mut due = Instant::now();
+        for time_ms in 0..self.last_ms {
+            if time_ms == PICK_UP_MS {
+                self.bench.operator.obey(Order::Lever(START_DEG));
+            }
+            if !self.take_orders(&orders, machine)? {
+                break;
+            }
+            let heard = self.bus.as_mut().map(Bus::heard).unwrap_or_default();
+            said.clear();
+            let moment = self.bench.tick(machine, &heard, &mut said);
+            let moment = moment.map_err(|error: MachineError| failed(error))?;
+            let clients = self.bus.as_mut().map(|bus| {
+                bus.tell(&said);
+                bus.connected()
+            });
+            self.status.show(&moment, clients).map_err(Error::Stdout)?;
+            due = wait_until(due + MILLISECOND);
+        }
+        Ok(())
+    }
+
+    /// Does what the operator was asked to; false if that is to end it.
+    fn take_orders(
+        &mut self,
+        orders: &Receiver<String>,
+        machine: &mut impl EcuMachine,
+    ) -> Result<bool, Error> {
+        loop {
+            let line = match orders.try_recv() {
+                Ok(line) => line,
+                Err(TryRecvError::Empty | TryRecvError::Disconnected) => return Ok(true),
+            };
+            match line.parse::<Order>() {
+                _ if line.trim().is_empty() => {}
+                Ok(Order::Quit) => return Ok(false),
+                Ok(Order::Power) => machine.power_cycle().map_err(failed)?,
+                Ok(order) => self.bench.operator.obey(order),
+                // A slip of the tongue is no reason to end.
+                Err(what) => self.status.say(&what),
+            }
+        }
+    }
+}
+
+/// Waits until `due`; the time from which the next wait counts.
+fn wait_until(due: Instant) -> Instant {
+    let now = Instant::now();
+    match due.checked_duration_since(now) {
+        Some(left) => {
+            thread::sleep(left);
+            due
+        }
+        None if now - due > MOST_BEHIND => now,
+        None => due,
+    }
+}

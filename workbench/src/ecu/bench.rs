@@ -1,0 +1,146 @@
+//! The hitch that the ECU sits on: plant, coils, drivers, sensors and operator.
+
+use hitch_firmware::can::Frame;
+use hitch_firmware::ecu::link::Reply;
+use hitch_firmware::ecu::{Contacts, PWM_STEPS};
+use hitch_model::Model;
+use hitch_model::plant::{Currents, HitchRig, Plant, Rig};
+
+use super::converters::{Converters, Signals};
+use super::machine::{EcuMachine, MachineError};
+use super::operator::Operator;
+use crate::closed_loop::{Coil, SUPPLY_V};
+
+/// A millisecond, s.
+const STEP_S: f64 = 1e-3;
+
+/// A millisecond as it truly was.
+#[derive(Debug, Clone, Copy)]
+pub struct Moment {
+    /// Time since the plant was set up, ms.
+    pub time_ms: u64,
+    /// What there was to be measured.
+    pub signals: Signals,
+    /// What the ECU was told.
+    pub contacts: Contacts,
+    /// What it answered.
+    pub reply: Reply,
+}
+
+/// The bench.
+pub struct Bench<'m> {
+    plant: Plant<'m>,
+    converters: Converters,
+    lift_coil: Coil,
+    lower_coil: Coil,
+    currents: Currents,
+    time_ms: u64,
+    /// The operator, who may be told what to do between milliseconds.
+    pub operator: Operator,
+}
+
+impl<'m> Bench<'m> {
+    /// A hitch at rest at `start_angle_deg`, the lever a little below it; `seed` settles the noise.
+    pub fn new(
+        model: &'m Model,
+        load_kg: f64,
+        oil_temperature_c: f64,
+        start_angle_deg: f64,
+        seed: u64,
+    ) -> Self {
+        let rig = Rig::Hitch(HitchRig {
+            load_kg,
+            start_angle_rad: start_angle_deg.to_radians(),
+        });
+        Self {
+            plant: Plant::new(model, rig, oil_temperature_c, Currents::default()),
+            converters: Converters::new(seed),
+            lift_coil: Coil::of_the_rig(),
+            lower_coil: Coil::of_the_rig(),
+            currents: Currents::default(),
+            time_ms: 0,
+            operator: Operator::with_lever_at(start_angle_deg - 5.0),
+        }
+    }
+
+    /// Rocker angle, degree.
+    pub fn angle_deg(&self) -> f64 {
+        self.plant.rocker_angle_rad().to_degrees()
+    }
+
+    /// One millisecond of hitch and ECU.
+    ///
+    /// # Errors
+    /// If the machine is gone.
+    pub fn tick(
+        &mut self,
+        machine: &mut impl EcuMachine,
+        heard: &[Frame],
+        said: &mut Vec<Frame>,
+    ) -> Result<Moment, MachineError> {
+        self.tick_with(machine, heard, said, |_| {})
+    }
+
+    /// One millisecond in which `tamper` changes what the ECU is told: faults of wires and sensors.
+    ///
+    /// # Errors
+    /// If the machine is gone.
+    pub fn tick_with(
+        &mut self,
+        machine: &mut impl EcuMachine,
+        heard: &[Frame],
+        said: &mut Vec<Frame>,
+        tamper: impl FnOnce(&mut Contacts),
+    ) -> Result<Moment, MachineError> {
+        self.operator.tick();
+        let signals = self.signals();
+        let mut contacts = Contacts {
+            samples: self.converters.convert(&signals),
+            panel: self.operator.panel,
+            clock_us: (self.time_ms * 1_000) as u32,
+        };
+        tamper(&mut contacts);
+        let reply = machine.tick(&contacts, heard, said)?;
+        self.move_on(&reply);
+        Ok(Moment {
+            time_ms: self.time_ms,
+            signals,
+            contacts,
+            reply,
+        })
+    }
+
+    /// One millisecond without an ECU: the coils have no current.
+    pub fn tick_without_power(&mut self) {
+        self.move_on(&Reply::default());
+    }
+
+    fn signals(&self) -> Signals {
+        let truth = self.plant.reading();
+        Signals {
+            rocker_angle_deg: truth.rocker_angle_deg,
+            lever_deg: self.operator.lever_deg,
+            upper_limit_deg: self.operator.upper_limit_deg,
+            lowering_dial: self.operator.lowering_dial,
+            lift_current_a: self.currents.lift_a,
+            lower_current_a: self.currents.lower_a,
+            supply_v: SUPPLY_V,
+            cylinder_pressure_bar: truth.cylinder_pressure_bar,
+            pump_pressure_bar: truth.pump_pressure_bar,
+        }
+    }
+
+    fn move_on(&mut self, reply: &Reply) {
+        // Without the enable line the drivers pass nothing.
+        let share = |compare: u16| match reply.enable {
+            true => f64::from(compare) / f64::from(PWM_STEPS),
+            false => 0.0,
+        };
+        self.currents = Currents {
+            lift_a: self.lift_coil.step(share(reply.lift), SUPPLY_V),
+            lower_a: self.lower_coil.step(share(reply.lower), SUPPLY_V),
+        };
+        self.plant.step(self.currents, STEP_S);
+        self.time_ms += 1;
+    }
+}

@@ -1,0 +1,127 @@
+//! From quantities to the converters' codes, with the noise that sensors and wires add.
+
+use hitch_firmware::ecu::{AdcCode, Samples};
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+
+use crate::closed_loop::{ANGLE_NOISE_DEG, CURRENT_NOISE_A, CYLINDER_NOISE_BAR, PUMP_NOISE_BAR};
+
+/// Codes of twelve bits.
+const CODES: f64 = 4096.0;
+/// One sigma of the lever's and the dials' noise: a code.
+const POTENTIOMETER_NOISE: f64 = 1.0 / CODES;
+
+/// What there is to be measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Signals {
+    /// Rocker angle, degree.
+    pub rocker_angle_deg: f64,
+    /// Lever on the scale of the rocker angle, degree.
+    pub lever_deg: f64,
+    /// Upper-limit dial on the scale of the rocker angle, degree.
+    pub upper_limit_deg: f64,
+    /// Lowering-rate dial, 0 to 1.
+    pub lowering_dial: f64,
+    /// Current in the lift coil, A.
+    pub lift_current_a: f64,
+    /// Current in the lowering coil, A.
+    pub lower_current_a: f64,
+    /// Supply, V.
+    pub supply_v: f64,
+    /// Cylinder pressure, bar.
+    pub cylinder_pressure_bar: f64,
+    /// Pump pressure, bar.
+    pub pump_pressure_bar: f64,
+}
+
+/// Sensors, wires and converters; the same noise for the same seed.
+#[derive(Debug)]
+pub struct Converters {
+    random: Pcg64Mcg,
+}
+
+impl Converters {
+    /// Converters whose noise is settled by `seed`.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            random: Pcg64Mcg::seed_from_u64(seed),
+        }
+    }
+
+    /// The codes of a millisecond.
+    pub fn convert(&mut self, signals: &Signals) -> Samples {
+        let mut noisy = |value: f64, sigma: f64| {
+            let noise: f64 = StandardNormal.sample(&mut self.random);
+            value + sigma * noise
+        };
+        // Half a volt to four and a half, of five: 35 to 145 degrees, nothing to 250 bar, shut to open.
+        let ratiometric = |share: f64| code(0.1 + 0.8 * share);
+        let angle_deg = |angle_deg: f64| ratiometric((angle_deg - 35.0) / 110.0);
+        Samples {
+            rocker_angle: angle_deg(noisy(signals.rocker_angle_deg, ANGLE_NOISE_DEG)),
+            lever: angle_deg(noisy(signals.lever_deg, 110.0 * POTENTIOMETER_NOISE)),
+            upper_limit: angle_deg(noisy(signals.upper_limit_deg, 110.0 * POTENTIOMETER_NOISE)),
+            lowering_dial: ratiometric(noisy(signals.lowering_dial, POTENTIOMETER_NOISE)),
+            lift_current: code(noisy(signals.lift_current_a, CURRENT_NOISE_A) / 5.0),
+            lower_current: code(noisy(signals.lower_current_a, CURRENT_NOISE_A) / 5.0),
+            supply: code(signals.supply_v / 24.576),
+            cylinder_pressure: ratiometric(
+                noisy(signals.cylinder_pressure_bar, CYLINDER_NOISE_BAR) / 250.0,
+            ),
+            pump_pressure: ratiometric(noisy(signals.pump_pressure_bar, PUMP_NOISE_BAR) / 250.0),
+        }
+    }
+}
+
+/// The code of a share of full scale.
+fn code(share: f64) -> AdcCode {
+    AdcCode::new((share * CODES).round().clamp(0.0, CODES - 1.0) as u16)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_firmware_reads_what_there_was_to_be_measured() {
+        let signals = Signals {
+            rocker_angle_deg: 87.3,
+            lever_deg: 61.2,
+            upper_limit_deg: 130.0,
+            lowering_dial: 0.5,
+            lift_current_a: 1.7,
+            lower_current_a: 0.0,
+            supply_v: 13.8,
+            cylinder_pressure_bar: 43.0,
+            pump_pressure_bar: 154.0,
+        };
+        let mut converters = Converters::new(1);
+        let inputs: Vec<_> = (0..2_000)
+            .map(|_| converters.convert(&signals).inputs())
+            .collect();
+        let mean = |of: &dyn Fn(usize) -> i32| {
+            (0..inputs.len())
+                .map(|index| f64::from(of(index)))
+                .sum::<f64>()
+                / inputs.len() as f64
+        };
+        let close = |mean: f64, truth: f64, within: f64| {
+            assert!((mean - truth).abs() < within, "{mean} instead of {truth}");
+        };
+        close(mean(&|i| inputs[i].rocker_angle.unwrap().0), 87_300.0, 10.0);
+        close(mean(&|i| inputs[i].lever.unwrap().0), 61_200.0, 20.0);
+        close(mean(&|i| inputs[i].lift_current.unwrap().0), 1_700.0, 2.0);
+        close(mean(&|i| inputs[i].supply.unwrap().0), 13_800.0, 6.0);
+        close(
+            mean(&|i| inputs[i].cylinder_pressure.unwrap().0),
+            43_000.0,
+            20.0,
+        );
+        close(
+            mean(&|i| inputs[i].pump_pressure.unwrap().0),
+            154_000.0,
+            20.0,
+        );
+    }
+}

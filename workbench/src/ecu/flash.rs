@@ -1,0 +1,134 @@
+//! Flash for the ECU on this machine, and what is in it when the ECU is delivered.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use embedded_storage::nor_flash::{
+    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+};
+use hitch_firmware::control::ValidCalibration;
+use hitch_firmware::storage::CalibrationStore;
+
+/// Size of the emulated ECU's flash for calibrations.
+pub const FLASH_BYTES: usize = 8_192;
+const PAGE_BYTES: usize = 2_048;
+const WORD_BYTES: usize = 8;
+
+/// Flash in memory, whose power can be cut at any word. Clones share what they hold.
+#[derive(Debug, Clone)]
+pub struct CutFlash(Rc<RefCell<Cells>>);
+
+#[derive(Debug)]
+struct Cells {
+    bytes: Vec<u8>,
+    /// Words that can still be erased or programmed before the power is gone; for ever if there is no number.
+    words_left: Option<u64>,
+}
+
+/// The power is gone, or nothing like that can be done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CutFlashError;
+
+impl NorFlashError for CutFlashError {
+    fn kind(&self) -> NorFlashErrorKind {
+        NorFlashErrorKind::Other
+    }
+}
+
+impl CutFlash {
+    /// Flash with these contents.
+    pub fn holding(bytes: Vec<u8>) -> Self {
+        Self(Rc::new(RefCell::new(Cells {
+            bytes,
+            words_left: None,
+        })))
+    }
+
+    /// Erased flash.
+    pub fn blank() -> Self {
+        Self::holding(vec![u8::MAX; FLASH_BYTES])
+    }
+
+    /// What it holds.
+    pub fn bytes(&self) -> Vec<u8> {
+        self.0.borrow().bytes.clone()
+    }
+
+    /// Cuts the power after this many more words; `None`: not at all, or no longer.
+    pub fn cut_after(&self, words: Option<u64>) {
+        self.0.borrow_mut().words_left = words;
+    }
+
+    /// True if the power is gone.
+    pub fn is_cut(&self) -> bool {
+        self.0.borrow().words_left == Some(0)
+    }
+
+    fn each_word(
+        &self,
+        from: usize,
+        to: usize,
+        mut change: impl FnMut(usize, &mut [u8]),
+    ) -> Result<(), CutFlashError> {
+        let mut cells = self.0.borrow_mut();
+        for place in (from..to).step_by(WORD_BYTES) {
+            match &mut cells.words_left {
+                Some(0) => return Err(CutFlashError),
+                Some(left) => *left -= 1,
+                None => {}
+            }
+            let word = cells.bytes.get_mut(place..place + WORD_BYTES);
+            change(place, word.ok_or(CutFlashError)?);
+        }
+        Ok(())
+    }
+}
+
+impl ErrorType for CutFlash {
+    type Error = CutFlashError;
+}
+
+impl ReadNorFlash for CutFlash {
+    const READ_SIZE: usize = 1;
+
+    fn read(&mut self, offset: u32, target: &mut [u8]) -> Result<(), CutFlashError> {
+        let cells = self.0.borrow();
+        let source = cells
+            .bytes
+            .get(offset as usize..offset as usize + target.len());
+        target.copy_from_slice(source.ok_or(CutFlashError)?);
+        Ok(())
+    }
+
+    fn capacity(&self) -> usize {
+        self.0.borrow().bytes.len()
+    }
+}
+
+impl NorFlash for CutFlash {
+    const WRITE_SIZE: usize = WORD_BYTES;
+    const ERASE_SIZE: usize = PAGE_BYTES;
+
+    fn erase(&mut self, from: u32, to: u32) -> Result<(), CutFlashError> {
+        self.each_word(from as usize, to as usize, |_, word| word.fill(u8::MAX))
+    }
+
+    /// Bits only fall.
+    fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), CutFlashError> {
+        let first = offset as usize;
+        self.each_word(first, first + bytes.len(), |place, word| {
+            let new = &bytes[place - first..];
+            word.iter_mut().zip(new).for_each(|(old, new)| *old &= new);
+        })
+    }
+}
+
+/// The flash of an ECU that was delivered with `calibration`.
+pub fn delivered(calibration: &ValidCalibration) -> Vec<u8> {
+    let flash = CutFlash::blank();
+    let mut store = CalibrationStore::new(flash.clone());
+    store
+        .store(calibration)
+        .expect("flash without faults takes a calibration");
+    flash.bytes()
+}

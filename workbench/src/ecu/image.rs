@@ -1,0 +1,65 @@
+//! The emulated ECU's image: where it is, or how it comes about.
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use crate::error::Error;
+use crate::progress::Progress;
+
+/// Environment variable that names the image.
+pub const IMAGE_VARIABLE: &str = "HITCH_EMULATED_IMAGE";
+
+/// What helps if there is no image.
+const MEND: &str = "run hitch from a clone of its sources, which builds the image; or name one with --image; \
+    or take --host, which runs the same application without an emulator";
+
+/// The image: `given`, or the one that the environment names, or the one that the sources make.
+///
+/// # Errors
+/// If there is none, with what helps.
+pub fn find(given: Option<&Path>) -> Result<PathBuf, Error> {
+    let named = env::var_os(IMAGE_VARIABLE).map(PathBuf::from);
+    match given.map(Path::to_path_buf).or(named) {
+        Some(image) if image.is_file() => Ok(image),
+        Some(image) => Err(Error::Usage(format!(
+            "there is no image {}; leave it out and it is built, or take --host",
+            image.display()
+        ))),
+        None => build(),
+    }
+}
+
+/// Has the sources that this program was built from build the image.
+fn build() -> Result<PathBuf, Error> {
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    if !sources.join("xtask").is_dir() {
+        return Err(Error::Usage(format!(
+            "there is no image of the ECU: {MEND}"
+        )));
+    }
+    let progress = Progress::start("building the ECU's image");
+    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let built = Command::new(cargo)
+        .args(["xtask", "image"])
+        .current_dir(&sources)
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|error| Error::Usage(format!("cargo can't be started ({error}): {MEND}")))?;
+    drop(progress);
+    let text = String::from_utf8_lossy(&built.stdout);
+    match (built.status.success(), text.trim_end().lines().last()) {
+        (true, Some(path)) => Ok(PathBuf::from(path)),
+        _ => {
+            let reason = String::from_utf8_lossy(&built.stderr);
+            let reason = reason
+                .trim_end()
+                .lines()
+                .last()
+                .unwrap_or("it says nothing");
+            Err(Error::Usage(format!(
+                "`cargo xtask image` failed ({reason}): {MEND}"
+            )))
+        }
+    }
+}

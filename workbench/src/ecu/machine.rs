@@ -1,0 +1,82 @@
+//! What runs the application: the emulator, or this machine.
+
+use std::io;
+
+use embedded_storage::nor_flash::NorFlash;
+use hitch_firmware::can::Frame;
+use hitch_firmware::ecu::link::Reply;
+use hitch_firmware::ecu::{Contacts, Machine};
+
+/// Why a machine gives no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum MachineError {
+    /// The emulator has ended, and said why.
+    #[error("the emulated ECU has ended: {0}")]
+    Ended(String),
+    /// The emulator can't be reached.
+    #[error("the emulated ECU doesn't answer: {0}")]
+    Link(#[from] io::Error),
+}
+
+/// Something that runs the ECU's application, a millisecond at a time.
+pub trait EcuMachine {
+    /// One millisecond with the frames that were on the bus; what the ECU said is appended to `said`.
+    ///
+    /// # Errors
+    /// If the machine is gone.
+    fn tick(
+        &mut self,
+        contacts: &Contacts,
+        heard: &[Frame],
+        said: &mut Vec<Frame>,
+    ) -> Result<Reply, MachineError>;
+
+    /// Switches the power off and on.
+    ///
+    /// # Errors
+    /// If the machine is gone.
+    fn power_cycle(&mut self) -> Result<(), MachineError>;
+}
+
+/// Serial number of the ECU, as the emulated one has it.
+const SERIAL_NUMBER: u32 = 1;
+
+/// The application compiled for this machine.
+#[derive(Debug)]
+pub struct OnHost<F> {
+    flash: F,
+    machine: Machine<F>,
+}
+
+impl<F: NorFlash + Clone> OnHost<F> {
+    /// Powers it up. Clones of `flash` have to share what they hold.
+    pub fn start(flash: F) -> Self {
+        Self {
+            machine: Machine::start(flash.clone(), SERIAL_NUMBER),
+            flash,
+        }
+    }
+
+    /// The application.
+    pub const fn machine(&self) -> &Machine<F> {
+        &self.machine
+    }
+}
+
+impl<F: NorFlash + Clone> EcuMachine for OnHost<F> {
+    fn tick(
+        &mut self,
+        contacts: &Contacts,
+        heard: &[Frame],
+        said: &mut Vec<Frame>,
+    ) -> Result<Reply, MachineError> {
+        let reply = self.machine.tick(contacts, heard);
+        said.extend_from_slice(self.machine.said());
+        Ok(reply)
+    }
+
+    fn power_cycle(&mut self) -> Result<(), MachineError> {
+        self.machine = Machine::start(self.flash.clone(), SERIAL_NUMBER);
+        Ok(())
+    }
+}

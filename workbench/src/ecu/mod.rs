@@ -1,0 +1,19 @@
+//! The ECU on the bench: the firmware's application, emulated or here, with a plant, an operator and a bus around it.
+
+mod bench;
+mod bus;
+mod converters;
+mod emulator;
+mod flash;
+mod image;
+mod machine;
+mod operator;
+
+pub use bench::{Bench, Moment};
+pub use bus::Bus;
+pub use converters::Signals;
+pub use emulator::{Emulator, Mode, QEMU, command as emulator_command};
+pub use flash::{CutFlash, FLASH_BYTES, delivered};
+pub use image::{IMAGE_VARIABLE, find as find_image};
+pub use machine::{EcuMachine, MachineError, OnHost};
+pub use operator::{Operator, Order};

@@ -1,0 +1,139 @@
+//! The operator: lever, dials and switches, and the words by which they are moved.
+
+use std::str::FromStr;
+
+use hitch_firmware::ecu::{Contact, Panel};
+
+/// A hand moves the lever this fast, degree a second.
+const HAND_DEG_PER_S: f64 = 60.0;
+
+/// Something that an operator is asked to do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Order {
+    /// Moves the lever there, at a hand's speed.
+    Lever(f64),
+    /// Closes or opens a contact.
+    Contact(Contact, bool),
+    /// Lets go of both buttons outside.
+    ReleaseButtons,
+    /// Turns the upper-limit dial there.
+    UpperLimit(f64),
+    /// Turns the lowering-rate dial there, 0 to 1.
+    LoweringDial(f64),
+    /// Switches the power off and on.
+    Power,
+    /// Ends it.
+    Quit,
+}
+
+impl Order {
+    /// The words that are understood.
+    pub const WORDS: &'static str = "lever DEG, up, down, stop, quick on|off, hold on|off, lock on|off, \
+        service on|off, limit DEG, dial PERCENT, power, quit";
+}
+
+impl FromStr for Order {
+    type Err = String;
+
+    fn from_str(line: &str) -> Result<Self, String> {
+        let unknown = || format!("`{}` is none of: {}", line.trim(), Self::WORDS);
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let number = |text: &str, low: f64, high: f64| {
+            text.parse()
+                .ok()
+                .filter(|value| (low..=high).contains(value))
+                .ok_or_else(|| format!("`{text}` has to be a number from {low} to {high}"))
+        };
+        let switch = |text: &str| match text {
+            "on" => Ok(true),
+            "off" => Ok(false),
+            _ => Err(unknown()),
+        };
+        Ok(match *words.as_slice() {
+            ["lever", angle] => Self::Lever(number(angle, 35.0, 145.0)?),
+            ["limit", angle] => Self::UpperLimit(number(angle, 35.0, 145.0)?),
+            ["dial", percent] => Self::LoweringDial(number(percent, 0.0, 100.0)? / 100.0),
+            ["up"] => Self::Contact(Contact::Up, true),
+            ["down"] => Self::Contact(Contact::Down, true),
+            ["stop"] => Self::ReleaseButtons,
+            ["quick", position] => Self::Contact(Contact::QuickLift, switch(position)?),
+            ["hold", position] => Self::Contact(Contact::Hold, switch(position)?),
+            ["lock", position] => Self::Contact(Contact::FieldMode, !switch(position)?),
+            ["service", position] => Self::Contact(Contact::Service, switch(position)?),
+            ["power"] => Self::Power,
+            ["quit"] => Self::Quit,
+            _ => return Err(unknown()),
+        })
+    }
+}
+
+/// Where everything that an operator can move is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Operator {
+    /// Lever, degree on the scale of the rocker angle.
+    pub lever_deg: f64,
+    /// Where the lever is going, degree.
+    pub lever_target_deg: f64,
+    /// Upper-limit dial, degree.
+    pub upper_limit_deg: f64,
+    /// Lowering-rate dial, 0 to 1.
+    pub lowering_dial: f64,
+    /// Buttons and switches.
+    pub panel: Panel,
+}
+
+impl Operator {
+    /// An operator in the field with the lever at `lever_deg`, who lets the hitch do what it can.
+    pub const fn with_lever_at(lever_deg: f64) -> Self {
+        Self {
+            lever_deg,
+            lever_target_deg: lever_deg,
+            upper_limit_deg: 145.0,
+            lowering_dial: 1.0,
+            panel: Panel::FIELD,
+        }
+    }
+
+    /// Does what can be done with hands; power isn't among it.
+    pub fn obey(&mut self, order: Order) {
+        match order {
+            Order::Lever(angle_deg) => self.lever_target_deg = angle_deg,
+            Order::Contact(contact, closed) => self.panel = self.panel.with(contact, closed),
+            Order::ReleaseButtons => {
+                let up = self.panel.with(Contact::Up, false);
+                self.panel = up.with(Contact::Down, false);
+            }
+            Order::UpperLimit(angle_deg) => self.upper_limit_deg = angle_deg,
+            Order::LoweringDial(share) => self.lowering_dial = share,
+            Order::Power | Order::Quit => {}
+        }
+    }
+
+    /// A millisecond: the lever gets closer to where it is going.
+    pub fn tick(&mut self) {
+        let most_deg = HAND_DEG_PER_S * 1e-3;
+        let missing_deg = self.lever_target_deg - self.lever_deg;
+        self.lever_deg += missing_deg.clamp(-most_deg, most_deg);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn orders_are_words() {
+        assert_eq!("lever 80".parse(), Ok(Order::Lever(80.0)));
+        assert_eq!(
+            " lock  on ".parse(),
+            Ok(Order::Contact(Contact::FieldMode, false))
+        );
+        assert!(
+            "lever 300"
+                .parse::<Order>()
+                .unwrap_err()
+                .contains("35 to 145")
+        );
+        assert!("jump".parse::<Order>().unwrap_err().contains("lever DEG"));
+    }
+}
