@@ -149,7 +149,7 @@ impl Node {
     }
 
     fn hitch_status(&mut self, source: u8, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
-        let message = self.status_message(status);
+        let message = self.status_message(status, now_ms);
         let bytes = message.to_bytes();
         if let Some((last, sent_ms)) = self.last_status {
             let age_ms = since_ms(sent_ms, now_ms);
@@ -163,11 +163,11 @@ impl Node {
         Some(broadcast(Pgn::REAR_HITCH_STATUS, STATUS_PRIORITY, source).frame(bytes))
     }
 
-    fn status_message(&self, status: &HitchStatus) -> StatusMessage {
+    fn status_message(&self, status: &HitchStatus, now_ms: u32) -> StatusMessage {
         StatusMessage::new(
             status,
             self.remote.limit_status(status),
-            self.remote.exit_code(status),
+            self.remote.exit_code(status, now_ms),
         )
     }
 
@@ -189,7 +189,7 @@ impl Node {
         let request = self.requests.next(now_ms)?;
         let message = match request.group {
             Pgn::REAR_HITCH_STATUS => {
-                let bytes = self.status_message(status).to_bytes();
+                let bytes = self.status_message(status, now_ms).to_bytes();
                 return Some(broadcast(request.group, STATUS_PRIORITY, source).frame(bytes));
             }
             Pgn::DM1 => self.diagnostics.dm1(),

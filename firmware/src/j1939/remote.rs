@@ -9,8 +9,9 @@
 //!             silence: time-out        no longer permitted: operator override
 //! ```
 //!
-//! The reason why control was given back stays until the next one begins. Commands from anybody but the one that
-//! took control are not heard meanwhile.
+//! The reason why control was given back stays until the next one begins. A fault of the controller comes before it, and
+//! after two seconds a lock too: an implement has to see that its commands went missing, not that the hitch has been
+//! locked in consequence. Commands from anybody but the one that took control are not heard meanwhile.
 
 use super::hitch::{self, ExitCode, HitchCommand, HitchStatus, Limit, LimitStatus};
 use super::time::since_ms;
@@ -21,6 +22,9 @@ pub const TIMEOUT_MS: u32 = 300;
 /// "The same value" may differ by one bit of the message (0.4 %): the position trembles by that much between report
 /// and command. The lever has to come closer than ten times that.
 const SAME_VALUE: u8 = 1;
+
+/// For so long the reason comes before a lock, ms: twenty reports.
+const REASON_MS: u32 = 2_000;
 
 /// What the application is asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,6 +40,7 @@ pub enum Remote {
 enum State {
     Idle {
         reason: ExitCode,
+        since_ms: u32,
     },
     Active {
         source: u8,
@@ -57,6 +62,7 @@ impl Default for RemoteControl {
         Self {
             state: State::Idle {
                 reason: ExitCode::Clear,
+                since_ms: 0,
             },
             reported: hitch::raw_position(None),
         }
@@ -74,8 +80,8 @@ impl RemoteControl {
                     set_point,
                     heard_ms: now_ms,
                 },
-                HitchCommand::None => idle(ExitCode::Released),
-                HitchCommand::OutOfRange => idle(ExitCode::OutOfRange),
+                HitchCommand::None => idle(ExitCode::Released, now_ms),
+                HitchCommand::OutOfRange => idle(ExitCode::OutOfRange, now_ms),
             },
             State::Idle { .. } => match command {
                 HitchCommand::Position(set_point) if permitted && self.is_reported(set_point) => {
@@ -85,7 +91,7 @@ impl RemoteControl {
                         heard_ms: now_ms,
                     }
                 }
-                HitchCommand::OutOfRange if permitted => idle(ExitCode::OutOfRange),
+                HitchCommand::OutOfRange if permitted => idle(ExitCode::OutOfRange, now_ms),
                 _ => self.state,
             },
         };
@@ -97,9 +103,13 @@ impl RemoteControl {
             return;
         };
         if !status.remote_permitted {
-            self.state = idle(ExitCode::OperatorOverride);
+            let reason = match status.exit {
+                ExitCode::Clear => ExitCode::OperatorOverride,
+                other => other,
+            };
+            self.state = idle(reason, now_ms);
         } else if since_ms(heard_ms, now_ms) > TIMEOUT_MS {
-            self.state = idle(ExitCode::Timeout);
+            self.state = idle(ExitCode::Timeout, now_ms);
         }
     }
 
@@ -129,13 +139,21 @@ impl RemoteControl {
         }
     }
 
-    /// Reason as it is to be reported: the controller's own, else why the last one lost control.
+    /// Reason as it is to be reported.
     #[must_use]
-    pub fn exit_code(&self, status: &HitchStatus) -> ExitCode {
-        match self.state {
-            _ if status.exit != ExitCode::Clear => status.exit,
-            State::Idle { reason } => reason,
-            State::Active { .. } => ExitCode::Clear,
+    pub fn exit_code(&self, status: &HitchStatus, now_ms: u32) -> ExitCode {
+        let State::Idle {
+            reason,
+            since_ms: since,
+        } = self.state
+        else {
+            return status.exit;
+        };
+        let recent = reason != ExitCode::Clear && since_ms(since, now_ms) < REASON_MS;
+        match status.exit {
+            ExitCode::Clear => reason,
+            ExitCode::LockedOut if recent => reason,
+            other => other,
         }
     }
 
@@ -144,6 +162,9 @@ impl RemoteControl {
     }
 }
 
-const fn idle(reason: ExitCode) -> State {
-    State::Idle { reason }
+const fn idle(reason: ExitCode, now_ms: u32) -> State {
+    State::Idle {
+        reason,
+        since_ms: now_ms,
+    }
 }

@@ -152,6 +152,23 @@ fn silence_ends_it_after_300_ms_with_its_reason() {
 }
 
 #[test]
+fn the_lock_that_follows_doesnt_hide_the_reason_but_a_fault_does() {
+    let mut bus = remote_bus();
+    bus.run(300);
+    bus.status.exit = ExitCode::LockedOut;
+    bus.status.remote_permitted = false;
+    bus.run(1_900);
+    assert_eq!(last_status(&bus).exit, ExitCode::Timeout);
+    bus.run(200);
+    assert_eq!(last_status(&bus).exit, ExitCode::LockedOut, "in the end");
+    let mut bus = remote_bus();
+    bus.run(300);
+    bus.status.exit = ExitCode::FunctionFault;
+    bus.run(100);
+    assert_eq!(last_status(&bus).exit, ExitCode::FunctionFault);
+}
+
+#[test]
 fn all_ones_give_back_and_reserved_values_end_it() {
     let mut bus = remote_bus();
     commanded(&mut bus, HitchCommand::None, 100);
