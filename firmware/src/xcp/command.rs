@@ -35,6 +35,7 @@ pub(super) mod code {
     pub const SET_CAL_PAGE: u8 = 0xEB;
     pub const GET_CAL_PAGE: u8 = 0xEA;
     pub const GET_PAG_PROCESSOR_INFO: u8 = 0xE9;
+    pub const GET_SEGMENT_INFO: u8 = 0xE8;
     pub const GET_PAGE_INFO: u8 = 0xE7;
     pub const COPY_CAL_PAGE: u8 = 0xE4;
     pub const SET_DAQ_PTR: u8 = 0xE2;

@@ -129,6 +129,10 @@ impl Memory for EcuMemory<'_> {
         }
     }
 
+    fn segment(&self) -> (u32, u32) {
+        (CALIBRATION_BASE, CALIBRATION_BYTES as u32)
+    }
+
     fn text(&self, text: Text) -> Place {
         let (offset, length) = match text {
             Text::Identity => (0, IDENTITY_BYTES as u8),

@@ -60,6 +60,9 @@ pub trait Memory {
     /// If not all of it may be written, or a value is outside its range.
     fn write(&mut self, address: u32, bytes: &[u8]) -> Result<(), Refusal>;
 
+    /// The segment of the calibration: address and length.
+    fn segment(&self) -> (u32, u32);
+
     /// Where a text can be read.
     fn text(&self, text: Text) -> Place;
 

@@ -55,6 +55,26 @@ pub(super) fn info() -> Answer {
     response(&[SEGMENTS, 0])
 }
 
+/// GET_SEGMENT_INFO: where the segment is, and how many pages it has.
+pub(super) fn segment_info(rest: &[u8], memory: &impl Memory) -> Answer {
+    let [mode, segment, info, ..] = *rest else {
+        return Err(Refusal::Syntax);
+    };
+    if segment >= SEGMENTS {
+        return Err(Refusal::SegmentNotValid);
+    }
+    let (address, length) = memory.segment();
+    let basic = match (mode, info) {
+        (0, 0) => address,
+        (0, 1) => length,
+        // Nothing is extended, mapped, compressed or encrypted.
+        (1, _) => return response(&[PAGES, 0, 0, 0, 0]),
+        _ => return Err(Refusal::OutOfRange),
+    };
+    let [a, b, c, d] = basic.to_le_bytes();
+    response(&[0, 0, 0, a, b, c, d])
+}
+
 /// GET_PAGE_INFO: the controller and a tool reach both pages, whatever the other one does; only the working page is
 /// written, and only by a tool.
 pub(super) fn page_info(rest: &[u8]) -> Answer {

@@ -220,6 +220,7 @@ impl Slave {
             code::SET_CAL_PAGE => paging::set_page(rest, memory),
             code::GET_CAL_PAGE => paging::page(rest, memory),
             code::GET_PAG_PROCESSOR_INFO => paging::info(),
+            code::GET_SEGMENT_INFO => paging::segment_info(rest, memory),
             code::GET_PAGE_INFO => paging::page_info(rest),
             code::COPY_CAL_PAGE => paging::copy(rest, memory),
             code::GET_DAQ_EVENT_INFO => {

@@ -222,6 +222,34 @@ fn the_reference_page_is_what_is_stored_and_comes_back_when_asked() {
 }
 
 #[test]
+fn the_segment_and_its_pages_are_described() {
+    let mut desk = Desk::connected();
+    assert_eq!(desk.obeyed(&[0xE9]), [1, 0], "one segment");
+    assert_eq!(
+        desk.obeyed(&[0xE8, 1, 0, 0, 0]),
+        [2, 0, 0, 0, 0],
+        "two pages"
+    );
+    assert_eq!(
+        desk.obeyed(&[0xE8, 0, 0, 0, 0])[3..],
+        word_address(0).to_le_bytes()
+    );
+    let length = u32::try_from(4 * CALIBRATION_WORDS).unwrap();
+    assert_eq!(desk.obeyed(&[0xE8, 0, 0, 1, 0])[3..], length.to_le_bytes());
+    assert_eq!(
+        desk.obeyed(&[0xE7, 0, 0, 0])[0],
+        0x3F,
+        "the working page is written"
+    );
+    assert_eq!(
+        desk.obeyed(&[0xE7, 0, 0, 1])[0],
+        0x0F,
+        "the reference page is not"
+    );
+    assert_eq!(desk.ask(&[0xE8, 0, 1, 0, 0]), Err(0x28));
+}
+
+#[test]
 fn while_the_hitch_moves_pages_are_not_switched_under_it() {
     let mut desk = Desk::connected();
     desk.access = Access::Moving;

@@ -151,8 +151,8 @@ fn short_commands_and_unknown_ones_are_refused() {
     }
     assert_eq!(
         unknown,
-        253 - 32,
-        "beside CONNECT, DISCONNECT and GET_STATUS there are 32"
+        253 - 33,
+        "beside CONNECT, DISCONNECT and GET_STATUS there are 33"
     );
 }
 

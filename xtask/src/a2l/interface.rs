@@ -20,7 +20,7 @@ pub const PAGES: &str = "    \
 ";
 
 /// Commands that the slave knows beside those that every one has to.
-const OPTIONAL_COMMANDS: [&str; 30] = [
+const OPTIONAL_COMMANDS: [&str; 31] = [
     "GET_COMM_MODE_INFO",
     "GET_ID",
     "SET_REQUEST",
@@ -34,6 +34,7 @@ const OPTIONAL_COMMANDS: [&str; 30] = [
     "SET_CAL_PAGE",
     "GET_CAL_PAGE",
     "GET_PAG_PROCESSOR_INFO",
+    "GET_SEGMENT_INFO",
     "GET_PAGE_INFO",
     "COPY_CAL_PAGE",
     "SET_DAQ_PTR",
