@@ -153,7 +153,7 @@ impl Node {
         let bytes = message.to_bytes();
         if let Some((last, sent_ms)) = self.last_status {
             let age_ms = since_ms(sent_ms, now_ms);
-            let changed = bytes != last && age_ms >= STATUS_SPACING_MS;
+            let changed = differs(&bytes, &last) && age_ms >= STATUS_SPACING_MS;
             if !changed && age_ms < STATUS_PERIOD_MS {
                 return None;
             }
@@ -228,6 +228,12 @@ impl Node {
         }
         Some(broadcast(group, DIAGNOSTIC_PRIORITY, source).frame(bytes))
     }
+}
+
+/// True if a status says something new. A position that trembles between two values doesn't.
+fn differs(status: &[u8; 8], last: &[u8; 8]) -> bool {
+    let ([position, rest @ ..], [last_position, last_rest @ ..]) = (status, last);
+    rest != last_rest || position.abs_diff(*last_position) > 1
 }
 
 /// An acknowledgement; requests to everybody aren't acknowledged.

@@ -80,6 +80,16 @@ fn a_change_is_reported_within_20_ms_and_no_more_often() {
 }
 
 #[test]
+fn a_position_that_trembles_is_no_change() {
+    let mut bus = Bus::claimed(Variant::Iso11783);
+    for step in 0..2_000 {
+        bus.status.position = Some(PerMille(620 + 4 * (step % 2)));
+        bus.step();
+    }
+    assert_eq!(bus.take(Pgn::REAR_HITCH_STATUS).len(), 20);
+}
+
+#[test]
 fn remote_control_starts_from_the_reported_position_only() {
     let mut bus = Bus::claimed(Variant::Iso11783);
     bus.run(100);
