@@ -3,6 +3,7 @@
 pub mod emulator;
 pub mod hidden_effects;
 pub mod lab;
+pub mod live_ecu;
 pub mod program;
 pub mod recording;
 pub mod replay;

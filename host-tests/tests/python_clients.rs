@@ -1,0 +1,135 @@
+//! The ECU's bus, used by programs that other people wrote: python-can, cantools, can-j1939 and pyxcp.
+//!
+//! Each script runs against an ECU of its own: the firmware's application with plant and operator, its bus on a TCP port. Their packages are installed once, under the target folder; on a
+//! machine without Python or network these tests say so and are left out, except in continuous integration (`CI` is set).
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use hitch_firmware::crc32::CRC_32;
+use hitch_workbench::can_door::CanDoor;
+use hitch_workbench::ecu::{CutFlash, OnHost};
+use host_tests::live_ecu::{self, Operator};
+
+fn scripts() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("python")
+}
+
+/// Runs a command; what it said, if it failed.
+fn run(command: &mut Command) -> Result<String, String> {
+    let output = command
+        .output()
+        .map_err(|error| format!("{command:?}: {error}"))?;
+    let said =
+        [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+    let said = said.concat();
+    if output.status.success() {
+        Ok(said)
+    } else {
+        Err(format!("{command:?}: {}\n{said}", output.status))
+    }
+}
+
+/// The Python that has the packages, or why there is none.
+fn python() -> Result<&'static Path, &'static str> {
+    static PYTHON: OnceLock<Result<PathBuf, String>> = OnceLock::new();
+    let python = PYTHON.get_or_init(install);
+    python.as_deref().map_err(String::as_str)
+}
+
+/// Makes an environment with the packages, unless there is one with just these.
+fn install() -> Result<PathBuf, String> {
+    let requirements = scripts().join("requirements.txt");
+    let wanted = fs::read(&requirements).map_err(|error| error.to_string())?;
+    let name = format!("python-{:08x}", CRC_32.checksum(&wanted));
+    let environment = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let python = environment.join("bin").join("python");
+    let complete = environment.join("complete");
+    if !complete.exists() {
+        run(Command::new("python3")
+            .args(["-m", "venv", "--clear"])
+            .arg(&environment))?;
+        run(Command::new(&python)
+            .args([
+                "-m",
+                "pip",
+                "install",
+                "--quiet",
+                "--no-compile",
+                "--disable-pip-version-check",
+            ])
+            .arg("--requirement")
+            .arg(&requirements))?;
+        fs::write(&complete, "").map_err(|error| error.to_string())?;
+    }
+    Ok(python)
+}
+
+/// Runs a script against an ECU; what it said has to hold `expected`.
+fn client(script: &str, operator: Operator, expected: &[&str]) {
+    let python = match python() {
+        Ok(python) => python,
+        Err(reason) if std::env::var_os("CI").is_none() => {
+            eprintln!("left out, for there is no Python with the packages it needs: {reason}");
+            return;
+        }
+        Err(reason) => panic!("no Python with the packages it needs: {reason}"),
+    };
+    let door = CanDoor::open("127.0.0.1:0").unwrap();
+    let bus = door.address().unwrap().to_string();
+    let done = AtomicBool::new(false);
+    let said = std::thread::scope(|scope| {
+        // Its flash is blank, so it runs on the factory's calibration and says so.
+        scope.spawn(|| live_ecu::run(&mut OnHost::start(CutFlash::blank()), door, operator, &done));
+        let firmware = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware");
+        let mut command = Command::new(python);
+        let command = command.arg(scripts().join(script)).arg(&bus).arg(firmware);
+        // Log files and byte code don't belong among the sources.
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+        let command = command.current_dir(folder);
+        let said = run(command.env("PYTHONPYCACHEPREFIX", folder.join("python-cache")));
+        done.store(true, Ordering::Relaxed);
+        said
+    });
+    let said = said.unwrap_or_else(|reason| panic!("{reason}"));
+    println!("{said}");
+    for line in expected {
+        assert!(
+            said.contains(line),
+            "{script} didn't come to \"{line}\":\n{said}"
+        );
+    }
+}
+
+#[test]
+fn an_implement_reads_the_status_by_the_dbc_and_commands_the_hitch() {
+    let expected = ["status: ", "remote: at ", "remote: timed out"];
+    client("hitch_messages.py", Operator::Present, &expected);
+}
+
+#[test]
+fn another_node_takes_the_address_and_reads_trouble_codes() {
+    let expected = [
+        "DM1 by broadcast",
+        "address: 0x80 was lost, 0x81 claimed",
+        "request: refused",
+        "DM1 by connection",
+    ];
+    client("j1939_network.py", Operator::LeverUnplugged, &expected);
+}
+
+#[test]
+fn a_calibration_tool_finds_everything_by_the_a2l() {
+    let expected = [
+        "identity: ",
+        "parameters: ",
+        "pages: ",
+        "checksum: ",
+        "stored",
+        "measured: ",
+    ];
+    client("xcp_session.py", Operator::Away, &expected);
+}
