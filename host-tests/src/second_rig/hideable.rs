@@ -247,7 +247,8 @@ pub static HIDEABLE: [Hideable; 28] = [
         "N",
         (80.0, 700.0),
         |rig, size, shape| {
-            rig.friction.stribeck_n = size;
+            rig.friction.coulomb_n = size;
+            rig.friction.stribeck_n = size * shape.between(0.2, 0.8);
             rig.friction.stribeck_speed_m_s = shape.between(0.005, 0.02);
             rig.friction.gaussian = shape.structured();
         },

@@ -1,8 +1,8 @@
 //! `stribeck-friction`: breaking loose takes more force than sliding.
 //!
-//! `F = F_s [c + (1 - c) exp(-|v| / v_s)] tanh(v / 3 mm/s)`: static friction F_s falls to the sliding share c of it within a
-//! few millimetres a second (Simscape's cylinder friction; Jelali & Kroll 4.3). F_s is 1.2 to 1.6 times the sliding
-//! friction, v_s 5 to 20 mm/s; with c = 0 it is what comes on top of a Coulomb friction that is there already.
+//! `F = F_C [1 + (k - 1) exp(-|v| / v_s)] tanh(v / 3 mm/s)`: breaking loose takes k times the sliding friction F_C, which
+//! is reached within a few millimetres a second (Simscape's cylinder friction; Jelali & Kroll 4.3). k is 1.2 to 1.6, v_s 5
+//! to 20 mm/s.
 
 use super::Parameter;
 use super::described::Described;
@@ -15,7 +15,7 @@ use crate::plant::sites::{RunConditions, Sites};
 pub static STRIBECK_FRICTION: Described = Described {
     id: "stribeck-friction",
     title: "Stribeck friction at the piston",
-    equation: "F = force [sliding + (1 - sliding) exp(-|v| / speed)] tanh(v / 3 mm/s)",
+    equation: "F = force [1 + (breakaway - 1) exp(-|v| / speed)] tanh(v / 3 mm/s)",
     source: "Simscape cylinder friction; Jelali & Kroll 4.3; breakaway 20 to 60 % over Coulomb \
          friction, 5 to 20 mm/s",
     shows: "cylinder pressure at creeping speed: higher steps at every start and stop than at speed",
@@ -24,27 +24,27 @@ pub static STRIBECK_FRICTION: Described = Described {
             name: "force",
             unit: "N",
             key: "force_n",
-            meaning: "friction at the point of breaking loose",
+            meaning: "friction while sliding",
             null: 0.0,
-            typical: 300.0,
+            typical: 200.0,
             low: 0.0,
             high: 5000.0,
         },
         Parameter {
-            name: "sliding",
+            name: "breakaway",
             unit: "",
-            key: "sliding",
-            meaning: "share of it that is left while sliding",
-            null: 0.0,
-            typical: 0.3,
-            low: 0.0,
-            high: 0.9,
+            key: "breakaway",
+            meaning: "friction at the point of breaking loose over that",
+            null: 1.0,
+            typical: 1.6,
+            low: 1.0,
+            high: 20.0,
         },
         Parameter {
             name: "speed",
             unit: "mm/s",
             key: "speed_mm_s",
-            meaning: "speed over which the rest is lost",
+            meaning: "speed over which it falls to that",
             null: 0.0,
             typical: 10.0,
             low: 2.0,
@@ -58,9 +58,9 @@ pub static STRIBECK_FRICTION: Described = Described {
 };
 
 fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
-    let (force_n, sliding, speed_m_s) = (values[0], values[1], values[2] * 1e-3);
+    let (force_n, breakaway, speed_m_s) = (values[0], values[1], values[2] * 1e-3);
     sites.friction.push(Box::new(move |v_m_s, _| {
-        let left = sliding + (1.0 - sliding) * (-v_m_s.abs() / speed_m_s).exp();
-        force_n * left * (v_m_s / TRANSITION_SPEED_M_S).tanh()
+        let factor = 1.0 + (breakaway - 1.0) * (-v_m_s.abs() / speed_m_s).exp();
+        force_n * factor * (v_m_s / TRANSITION_SPEED_M_S).tanh()
     }));
 }

@@ -180,7 +180,7 @@ impl<'m> Plant<'m> {
             (Rig::Hitch(rig), Dynamics::Dynamic) => {
                 dynamic::longest_step_s(&self.forces(&rig), &self.circuit(), self.state)
             }
-            _ => steady::LONGEST_STEP_S,
+            _ => steady::longest_step_s(&self.sites),
         };
         // A hair of slack: 0.02 s read from a log as a difference must not become one piece more.
         let pieces = (dt_s / longest_s - 1e-6).ceil().max(1.0) as usize;
