@@ -253,7 +253,7 @@ fn every_flipped_bit_of_the_newer_copy_gives_the_older_one() {
     let (old, new) = (calibration(2_000), calibration(3_000));
     let flash = flash_with(&old, &new);
     let start = PAGE * PAGES / 2;
-    let bytes = 4 * record::record_words();
+    let bytes = 4 * record::RECORD_WORDS;
     for bit in 0..8 * bytes {
         let mut damaged = flash.clone();
         damaged.bytes[start + bit / 8] ^= 1 << (bit % 8);
@@ -385,7 +385,7 @@ fn storing_is_done_in_steps_of_a_page_or_a_chunk() {
     while store.step().unwrap() == Progress::Busy {
         steps += 1;
     }
-    let bytes = 4 * record::record_words();
+    let bytes = 4 * record::RECORD_WORDS;
     assert_eq!(steps, bytes.div_ceil(PAGE) + bytes.div_ceil(32));
     assert_eq!(store.step(), Ok(Progress::Idle));
 }

@@ -20,10 +20,10 @@ pub fn build_all(way: Way) -> Result<PathBuf> {
     let folder = folder(way);
     build(way, &["--lib"])?;
     build(way, &["--bin", "panic_proof", "--features", "emulated"]).context(
-        "if `the_controller_can_panic` is undefined above, a step of the controller can panic",
+        "if `the_controller_can_panic` is undefined above, a step of the controller or a millisecond of the application can panic",
     )?;
     println!(
-        "the controller can't panic; with its start-up code it takes {}",
+        "controller and application can't panic; with their start-up code they take {}",
         size::of(&folder.join("panic_proof"))?
     );
     for part in PARTS {

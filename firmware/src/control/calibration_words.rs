@@ -178,13 +178,18 @@ pub struct Item {
     pub count: u8,
 }
 
+/// Number of items in a block.
+pub const ITEM_COUNT: usize = TABLES.len() + SCALAR_COUNT;
+
 /// The items of a block in their order; version and checksum are none.
 pub fn items() -> impl Iterator<Item = Item> + Clone {
-    let scalars = (SCALARS_WORD..).zip(&SCALARS).map(|(first, scalar)| Item {
-        key: scalar.key,
-        first,
-        count: 1,
-    });
+    let scalars = (SCALARS_WORD..CALIBRATION_WORDS)
+        .zip(&SCALARS)
+        .map(|(first, scalar)| Item {
+            key: scalar.key,
+            first,
+            count: 1,
+        });
     TABLES.into_iter().chain(scalars)
 }
 

@@ -9,7 +9,7 @@
 //! Words are little-endian. Keys are those of [`calibration_words`](crate::control::calibration_words): they come from
 //! names, units and scales, so an entry is found whatever else has been added, removed or moved since.
 
-use crate::control::calibration_words::{CALIBRATION_WORDS, Item, items, word_range};
+use crate::control::calibration_words::{CALIBRATION_WORDS, ITEM_COUNT, Item, items, word_range};
 use crate::control::{Calibration, ValidCalibration};
 
 /// "HCAL".
@@ -45,17 +45,14 @@ impl Header {
     }
 }
 
-/// Number of words in a record of this firmware.
-#[must_use]
-pub fn record_words() -> usize {
-    let entries: usize = items().map(|item| 1 + usize::from(item.count)).sum();
-    HEADER_WORDS + entries + 1
-}
+/// Number of words in a record of this firmware: header, a head for each entry, all values, and the checksum. Version
+/// and checksum of the block aren't among the values.
+pub const RECORD_WORDS: usize = HEADER_WORDS + ITEM_COUNT + (CALIBRATION_WORDS - 2) + 1;
 
 /// The words of a record, without its checksum.
 pub fn words(calibration: &[i32; CALIBRATION_WORDS], sequence: u32) -> impl Iterator<Item = u32> {
     let [version, ..] = *calibration;
-    let length = u32::try_from(record_words()).unwrap_or(0);
+    let length = RECORD_WORDS as u32;
     let header = [MAGIC, sequence, length, version.cast_unsigned()];
     let entries = items().flat_map(move |item| {
         let head = (item.key << 8) | u32::from(item.count);
@@ -99,7 +96,7 @@ pub fn decode(mut entries: impl Iterator<Item = u32>) -> Option<(ValidCalibratio
             found = found.saturating_add(1);
         }
     }
-    let all = u16::try_from(items().count()).unwrap_or(u16::MAX);
+    let all = u16::try_from(ITEM_COUNT).unwrap_or(u16::MAX);
     let carried = Carried {
         defaulted: all.saturating_sub(found),
         unknown,
@@ -115,17 +112,17 @@ fn take_values(
     values: impl Iterator<Item = u32>,
 ) -> bool {
     let before = *block;
-    let mut taken = 0;
+    let mut taken = 0_u8;
     let mut good = true;
-    for (index, value) in (item.first..).zip(values) {
+    for (index, value) in (item.first..CALIBRATION_WORDS).zip(values) {
         let value = value.cast_signed();
         good &= word_range(index).is_some_and(|range| (range.min..=range.max).contains(&value));
         if let Some(word) = block.get_mut(index) {
             *word = value;
         }
-        taken += 1;
+        taken = taken.saturating_add(1);
     }
-    good &= taken == usize::from(item.count);
+    good &= taken == item.count;
     if !good {
         *block = before;
     }

@@ -9,7 +9,7 @@
 
 use embedded_storage::nor_flash::NorFlash;
 
-use super::record::{self, Carried, HEADER_WORDS, Header};
+use super::record::{self, Carried, HEADER_WORDS, Header, RECORD_WORDS};
 use crate::control::ValidCalibration;
 use crate::control::calibration_words::CALIBRATION_WORDS;
 use crate::crc32::CRC_32;
@@ -17,6 +17,8 @@ use crate::crc32::CRC_32;
 /// Bytes that are read or programmed at a time: a multiple of what any flash takes at once.
 const CHUNK: usize = 32;
 const CHUNK_WORDS: usize = CHUNK / 4;
+/// Bytes of a record of this firmware.
+const RECORD_BYTES: usize = 4 * RECORD_WORDS;
 
 /// One of the two copies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -159,12 +161,12 @@ impl<F: NorFlash> CalibrationStore<F> {
         if self.writing.is_some() {
             return Err(StoreError::Busy);
         }
-        if self.copy_bytes() < 4 * record::record_words() {
+        if self.copy_bytes() < RECORD_BYTES {
             return Err(StoreError::TooSmall);
         }
         let copies = self.copies().map_err(StoreError::Flash)?;
         let newest = newest_first(copies).next();
-        let copy = newest.map_or(0, |newest| 1 - newest.min(1));
+        let copy = usize::from(newest == Some(0));
         let sequence = match newest.and_then(|newest| copies.get(newest)) {
             Some(Copy::Good { sequence }) => sequence.wrapping_add(1),
             _ => 1,
@@ -213,25 +215,30 @@ impl<F: NorFlash> CalibrationStore<F> {
         let start = self.copy_start(writing.copy);
         match writing.job {
             Job::Erase { page } => {
-                let at = start + page * F::ERASE_SIZE;
-                let erased = self.flash.erase(address(at), address(at + F::ERASE_SIZE));
+                let done = page.saturating_mul(F::ERASE_SIZE);
+                let next = done.saturating_add(F::ERASE_SIZE);
+                let (from, to) = (start.saturating_add(done), start.saturating_add(next));
+                let erased = self.flash.erase(address(from), address(to));
                 erased.map_err(StoreError::Flash)?;
-                let next = page + 1;
-                let more = next * F::ERASE_SIZE < 4 * record::record_words();
+                let more = next < RECORD_BYTES;
                 Ok(Some(if more {
-                    Job::Erase { page: next }
+                    Job::Erase {
+                        page: page.saturating_add(1),
+                    }
                 } else {
                     Job::Program { chunk: 0 }
                 }))
             }
             Job::Program { chunk } => {
                 let bytes = chunk_bytes(writing, chunk);
-                let written = self.flash.write(address(start + chunk * CHUNK), &bytes);
-                written.map_err(StoreError::Flash)?;
-                let next = chunk + 1;
-                let more = next * CHUNK_WORDS < record::record_words();
+                let done = chunk.saturating_mul(CHUNK);
+                let at = address(start.saturating_add(done));
+                self.flash.write(at, &bytes).map_err(StoreError::Flash)?;
+                let more = done.saturating_add(CHUNK) < RECORD_BYTES;
                 Ok(Some(if more {
-                    Job::Program { chunk: next }
+                    Job::Program {
+                        chunk: chunk.saturating_add(1),
+                    }
                 } else {
                     Job::Verify
                 }))
@@ -302,16 +309,17 @@ impl<F: NorFlash> CalibrationStore<F> {
 
     /// Size of a copy: half of the flash, in whole pages.
     fn copy_bytes(&self) -> usize {
-        self.flash.capacity() / 2 / F::ERASE_SIZE * F::ERASE_SIZE
+        let half = self.flash.capacity() / 2;
+        half.saturating_sub(half % F::ERASE_SIZE)
     }
 
     fn copy_start(&self, copy: usize) -> usize {
-        copy * self.copy_bytes()
+        copy.saturating_mul(self.copy_bytes())
     }
 
     fn reader(&mut self, copy: usize) -> Reader<'_, F> {
         let at = self.copy_start(copy);
-        let end = at + self.copy_bytes();
+        let end = at.saturating_add(self.copy_bytes());
         Reader {
             flash: &mut self.flash,
             at,
@@ -344,7 +352,8 @@ impl<F: NorFlash> Reader<'_, F> {
     /// Words between header and checksum, if the record fits into the copy.
     fn entries(&self, header: &Header) -> Option<usize> {
         let words = usize::try_from(header.words).ok()?;
-        let room = (self.end - self.at + CHUNK) / 4;
+        // The first chunk has been read already.
+        let room = self.end.saturating_sub(self.at).saturating_add(CHUNK) / 4;
         let fits = words <= room;
         words.checked_sub(HEADER_WORDS + 1).filter(|_| fits)
     }
@@ -352,16 +361,17 @@ impl<F: NorFlash> Reader<'_, F> {
     /// The next word; an erased one beyond the end.
     fn word(&mut self) -> Result<u32, F::Error> {
         if self.next >= CHUNK_WORDS {
-            if self.at + CHUNK > self.end {
+            let next = self.at.saturating_add(CHUNK);
+            if next > self.end {
                 return Ok(u32::MAX);
             }
             self.flash.read(address(self.at), &mut self.chunk)?;
-            self.at += CHUNK;
+            self.at = next;
             self.next = 0;
         }
         let (words, _) = self.chunk.as_chunks::<4>();
         let word = words.get(self.next).copied().unwrap_or([u8::MAX; 4]);
-        self.next += 1;
+        self.next = self.next.saturating_add(1);
         Ok(u32::from_le_bytes(word))
     }
 }
@@ -398,8 +408,12 @@ fn chunk_bytes(writing: &Writing, chunk: usize) -> [u8; CHUNK] {
     let mut bytes = [u8::MAX; CHUNK];
     let all = record::words(&writing.words, writing.sequence).chain([writing.checksum]);
     let (targets, _) = bytes.as_chunks_mut::<4>();
-    for (target, word) in targets.iter_mut().zip(all.skip(chunk * CHUNK_WORDS)) {
-        *target = word.to_le_bytes();
+    let first = chunk.saturating_mul(CHUNK_WORDS);
+    for (index, word) in (0..RECORD_WORDS).zip(all) {
+        let place = index.checked_sub(first);
+        if let Some(target) = place.and_then(|place| targets.get_mut(place)) {
+            *target = word.to_le_bytes();
+        }
     }
     bytes
 }

@@ -319,7 +319,7 @@ impl Daq {
             }
             let time = now_us.to_le_bytes();
             let mut time = (list.mode & WITH_TIME != 0).then_some(time);
-            for (number, table) in (list.tables.first..).zip(list.tables.of(tables)) {
+            for (number, table) in (list.tables.first..=u8::MAX).zip(list.tables.of(tables)) {
                 let mut sample = packet(number, time.take().as_ref().map_or(&[], |time| time));
                 for entry in table.of(entries) {
                     append(&mut sample, entry, memory);
@@ -366,7 +366,8 @@ impl Daq {
         let tables = list.tables.of(&self.tables);
         for table in tables {
             let entries = table.of(&self.entries);
-            let bytes: usize = entries.iter().map(|entry| usize::from(entry.size)).sum();
+            let sizes = entries.iter().map(|entry| usize::from(entry.size));
+            let bytes = sizes.fold(0, usize::saturating_add);
             if bytes > room || entries.iter().any(|entry| entry.size == 0) {
                 return Err(Refusal::DaqConfiguration);
             }
@@ -394,7 +395,9 @@ fn append(sample: &mut Packet, entry: &Entry, memory: &impl Memory) {
     let mut value = [0; ROOM];
     if let Some(value) = value.get_mut(..usize::from(entry.size)) {
         let _ = memory.read(entry.address, value);
-        let _ = sample.extend_from_slice(value);
+        for byte in value {
+            let _ = sample.push(*byte);
+        }
     }
 }
 

@@ -3,8 +3,6 @@
 //! A tool writes word by word, so a page may be inconsistent for a while: a curve that doesn't rise, a lower limit
 //! above the upper. The controller gets a page only as a whole and only validated; until then it keeps what it had.
 
-use heapless::Vec;
-
 use super::error::Refusal;
 use super::memory::Page;
 use crate::control::calibration_words::{CALIBRATION_WORDS, WordRange, word_range};
@@ -29,18 +27,42 @@ const WORD_BYTES: usize = 4;
 const LONGEST_PIECE: usize = 7;
 
 /// The beginning of a word whose end hasn't come yet.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Fragment {
     word: usize,
-    bytes: Vec<u8, { WORD_BYTES - 1 }>,
+    bytes: [u8; WORD_BYTES - 1],
+    length: usize,
 }
 
 impl Fragment {
+    fn new(word: usize, beginning: &[u8]) -> Self {
+        let mut bytes = [0; WORD_BYTES - 1];
+        for (target, byte) in bytes.iter_mut().zip(beginning) {
+            *target = *byte;
+        }
+        Self {
+            word,
+            bytes,
+            length: beginning.len().min(WORD_BYTES - 1),
+        }
+    }
+
     /// Offset of the byte that is missing next.
     fn end(&self) -> usize {
         self.word
             .saturating_mul(WORD_BYTES)
-            .saturating_add(self.bytes.len())
+            .saturating_add(self.length)
+    }
+
+    /// What there is of the word, and `bytes` behind it, in `room`.
+    fn followed_by<'a>(&self, bytes: &[u8], room: &'a mut [u8]) -> Result<&'a [u8], Refusal> {
+        let length = self.length.saturating_add(bytes.len());
+        let room = room.get_mut(..length).ok_or(Refusal::OutOfRange)?;
+        let known = self.bytes.iter().take(self.length);
+        for (target, byte) in room.iter_mut().zip(known.chain(bytes)) {
+            *target = *byte;
+        }
+        Ok(room)
     }
 }
 
@@ -134,31 +156,24 @@ impl CalibrationPages {
             return Err(Refusal::WriteProtected);
         }
         let begun = core::mem::take(&mut self.fragment);
-        let mut piece: Vec<u8, { 3 + LONGEST_PIECE }> = Vec::new();
-        if !offset.is_multiple_of(WORD_BYTES) {
-            let goes_on = offset == begun.end();
-            piece = begun.bytes.into_iter().filter(|_| goes_on).collect();
-            if !goes_on {
-                return Err(Refusal::AccessDenied);
-            }
-        }
+        let begun = match offset.is_multiple_of(WORD_BYTES) {
+            true => Fragment::default(),
+            false if offset == begun.end() => begun,
+            false => return Err(Refusal::AccessDenied),
+        };
+        let mut piece = [0; WORD_BYTES - 1 + LONGEST_PIECE];
+        let piece = begun.followed_by(bytes, &mut piece)?;
         let first = offset / WORD_BYTES;
-        piece
-            .extend_from_slice(bytes)
-            .map_err(|_| Refusal::OutOfRange)?;
         let (words, rest) = piece.as_chunks::<WORD_BYTES>();
         let words = words.iter().map(|word| i32::from_le_bytes(*word));
-        let indexed = (first..).zip(words);
+        let indexed = (first..=usize::MAX).zip(words);
         for (index, value) in indexed.clone() {
             check(index, value, moving)?;
         }
         if !rest.is_empty() {
-            let index = first.saturating_add(piece.len() / WORD_BYTES);
-            check_place(index, moving)?;
-            self.fragment = Fragment {
-                word: index,
-                bytes: rest.iter().copied().collect(),
-            };
+            let word = first.saturating_add(piece.len() / WORD_BYTES);
+            check_place(word, moving)?;
+            self.fragment = Fragment::new(word, rest);
         }
         for (index, value) in indexed {
             self.set(index, value);
