@@ -5,7 +5,7 @@ import time
 import can
 import cantools
 
-import desk
+import shared
 
 PGN_STATUS = 0xFE45
 STATUS = "RearHitchStatus"
@@ -19,7 +19,7 @@ def pgn(message):
 class Implement:
     def __init__(self, address, dbc):
         self.database = cantools.database.load_file(dbc)
-        self.bus = desk.open_bus(address)
+        self.bus = shared.open_bus(address)
 
     def status(self, seconds=1.0):
         """The next status."""
@@ -53,7 +53,7 @@ class Implement:
             status = self.status()
             return status if until(status) else None
 
-        return desk.wait_for(step, what, seconds)
+        return shared.wait_for(step, what, seconds)
 
 
 def at_rest(implement):
@@ -75,12 +75,12 @@ def check_rhythm(implement):
 
 
 def main():
-    arguments = desk.arguments()
+    arguments = shared.arguments()
     implement = Implement(arguments.bus, f"{arguments.firmware}/hitch.dbc")
-    desk.wait_for(
+    shared.wait_for(
         lambda: implement.status()["RearHitchExitCode"] == "clear", "hitch that the operator has picked up"
     )
-    status = desk.wait_for(lambda: at_rest(implement), "hitch at rest")
+    status = shared.wait_for(lambda: at_rest(implement), "hitch at rest")
     check_rhythm(implement)
     here = status["RearHitchPosition"]
     assert status["RearHitchLimitStatus"] == "operator limited"
@@ -99,7 +99,7 @@ def main():
         print(f"remote: at {target} %")
 
     # Silence ends it; the reason is told.
-    wait = desk.wait_for(
+    wait = shared.wait_for(
         lambda: (now := implement.status())["RearHitchExitCode"] == "timeout" and now, "time-out", 2.0
     )
     assert wait["RearHitchLimitStatus"] == "operator limited"

@@ -5,7 +5,7 @@ import time
 
 import j1939
 
-import desk
+import shared
 
 PGN_STATUS = 0xFE45
 PGN_DM1 = 0xFECA
@@ -16,7 +16,7 @@ LEVER = (520192, 31)
 
 
 def main():
-    arguments = desk.arguments()
+    arguments = shared.arguments()
     ecu = j1939.ElectronicControlUnit()
     ecu.connect(interface="slcan", channel=f"socket://{arguments.bus}")
 
@@ -31,10 +31,10 @@ def main():
             return None
         return message[2] if message[:2] == (pgn, source) else None
 
-    desk.wait_for(lambda: next_of(PGN_STATUS, desk.ECU), "hitch at 0x80")
+    shared.wait_for(lambda: next_of(PGN_STATUS, shared.ECU), "hitch at 0x80")
 
     # DM1 with two codes comes as a broadcast in packets, which can-j1939 puts together.
-    codes = desk.wait_for(lambda: next_of(PGN_DM1, desk.ECU), "DM1")
+    codes = shared.wait_for(lambda: next_of(PGN_DM1, shared.ECU), "DM1")
     assert len(codes) == 10, codes.hex()
     found = {decoded(codes[at : at + 4]) for at in (2, 6)}
     assert found == {SUPPLIED, LEVER}, found
@@ -52,31 +52,31 @@ def main():
         manufacturer_code=0,
         identity_number=1,
     )
-    other = j1939.ControllerApplication(name, desk.ECU)
+    other = j1939.ControllerApplication(name, shared.ECU)
     ecu.add_ca(controller_application=other)
     other.start()
-    desk.wait_for(lambda: other.state == j1939.ControllerApplication.State.NORMAL, "address for the other")
-    assert other.device_address == desk.ECU
-    desk.wait_for(lambda: next_of(PGN_STATUS, desk.ECU + 1), "hitch at 0x81")
+    shared.wait_for(lambda: other.state == j1939.ControllerApplication.State.NORMAL, "address for the other")
+    assert other.device_address == shared.ECU
+    shared.wait_for(lambda: next_of(PGN_STATUS, shared.ECU + 1), "hitch at 0x81")
     print("address: 0x80 was lost, 0x81 claimed")
 
     # Nobody uses an address twice.
     time.sleep(0.3)
     while not heard.empty():
         pgn, source, data = heard.get()
-        assert source != desk.ECU, f"{pgn:X} from the lost address: {data.hex()}"
+        assert source != shared.ECU, f"{pgn:X} from the lost address: {data.hex()}"
 
     # What the hitch doesn't know it refuses.
-    other.send_request(0, PGN_UNKNOWN, desk.ECU + 1)
-    refusal = desk.wait_for(lambda: next_of(PGN_ACKNOWLEDGEMENT, desk.ECU + 1), "refusal")
-    assert refusal == bytes([1, 255, 255, 255, desk.ECU, 0xE5, 0xFE, 0x00]), refusal.hex()
+    other.send_request(0, PGN_UNKNOWN, shared.ECU + 1)
+    refusal = shared.wait_for(lambda: next_of(PGN_ACKNOWLEDGEMENT, shared.ECU + 1), "refusal")
+    assert refusal == bytes([1, 255, 255, 255, shared.ECU, 0xE5, 0xFE, 0x00]), refusal.hex()
     print("request: refused what isn't known")
 
     # DM1 for one node alone comes with its consent (RTS, CTS), and is the same.
     own = queue.Queue()
     other.subscribe(lambda priority, pgn, source, timestamp, data: own.put((pgn, bytes(data))))
-    other.send_request(0, PGN_DM1, desk.ECU + 1)
-    again = desk.wait_for(lambda: message_of(own, PGN_DM1), "DM1 for one")
+    other.send_request(0, PGN_DM1, shared.ECU + 1)
+    again = shared.wait_for(lambda: message_of(own, PGN_DM1), "DM1 for one")
     assert {decoded(again[at : at + 4]) for at in (2, 6)} == found
     print("DM1 by connection")
 

@@ -10,7 +10,7 @@ from pyxcp.config import create_application_from_config, set_application
 from pyxcp.daq_stim import DaqList, DaqOnlinePolicy
 from pyxcp.master import Master
 
-import desk
+import shared
 
 TOOL = 0xF9
 EXTENDED = 1 << 31
@@ -60,8 +60,8 @@ def open_master(address, policy):
                     "interface": "slcan",
                     "channel": f"socket://{address}",
                     "bitrate": 250_000,
-                    "can_id_master": 0x18EF00F9 | desk.ECU << 8 | EXTENDED,
-                    "can_id_slave": 0x18EF0000 | TOOL << 8 | desk.ECU | EXTENDED,
+                    "can_id_master": 0x18EF00F9 | shared.ECU << 8 | EXTENDED,
+                    "can_id_slave": 0x18EF0000 | TOOL << 8 | shared.ECU | EXTENDED,
                     "max_dlc_required": False,
                 }
             },
@@ -141,7 +141,7 @@ def check_storing(master, description):
     """What is stored is on the reference page."""
     address, *_ = description.parameters["position.lift_speed"]
     master.setRequest(1, 0)
-    desk.wait_for(lambda: not master.getStatus().sessionStatus.storeCalRequest, "end of storing")
+    shared.wait_for(lambda: not master.getStatus().sessionStatus.storeCalRequest, "end of storing")
     master.setCalPage(FOR_TOOL, 0, REFERENCE)
     stored = read(master, address)
     master.setCalPage(FOR_TOOL, 0, WORKING)
@@ -172,7 +172,7 @@ def check_measuring(master, samples, description):
 
 
 def main():
-    arguments = desk.arguments()
+    arguments = shared.arguments()
     description = Description(f"{arguments.firmware}/hitch.a2l")
 
     def measured(*names):

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use hitch_firmware::crc32::CRC_32;
 use hitch_workbench::can_door::CanDoor;
-use hitch_workbench::ecu::{CutFlash, OnHost};
+use hitch_workbench::ecu::{CutFlash, EcuMachine, Emulator, FLASH_BYTES, OnHost, find_image};
 use host_tests::live_ecu::{self, Operator};
 
 fn scripts() -> PathBuf {
@@ -68,8 +68,13 @@ fn install() -> Result<PathBuf, String> {
     Ok(python)
 }
 
-/// Runs a script against an ECU; what it said has to hold `expected`.
-fn client(script: &str, operator: Operator, expected: &[&str]) {
+/// Runs a script against the ECU that `start` gives; what it said has to hold `expected`.
+fn client<M: EcuMachine>(
+    script: &str,
+    start: impl FnOnce() -> M + Send,
+    operator: Operator,
+    expected: &[&str],
+) {
     let python = match python() {
         Ok(python) => python,
         Err(reason) if std::env::var_os("CI").is_none() => {
@@ -82,8 +87,7 @@ fn client(script: &str, operator: Operator, expected: &[&str]) {
     let bus = door.address().unwrap().to_string();
     let done = AtomicBool::new(false);
     let said = std::thread::scope(|scope| {
-        // Its flash is blank, so it runs on the factory's calibration and says so.
-        scope.spawn(|| live_ecu::run(&mut OnHost::start(CutFlash::blank()), door, operator, &done));
+        scope.spawn(|| live_ecu::run(&mut start(), door, operator, &done));
         let firmware = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware");
         let mut command = Command::new(python);
         let command = command.arg(scripts().join(script)).arg(&bus).arg(firmware);
@@ -104,10 +108,24 @@ fn client(script: &str, operator: Operator, expected: &[&str]) {
     }
 }
 
+/// The application on this machine. Its flash is blank, so it runs on the factory's calibration and says so.
+fn here() -> OnHost<CutFlash> {
+    OnHost::start(CutFlash::blank())
+}
+
+const SESSION: [&str; 6] = [
+    "identity: ",
+    "parameters: ",
+    "pages: ",
+    "checksum: ",
+    "stored",
+    "measured: ",
+];
+
 #[test]
 fn an_implement_reads_the_status_by_the_dbc_and_commands_the_hitch() {
     let expected = ["status: ", "remote: at ", "remote: timed out"];
-    client("hitch_messages.py", Operator::Present, &expected);
+    client("hitch_messages.py", here, Operator::Present, &expected);
 }
 
 #[test]
@@ -118,18 +136,27 @@ fn another_node_takes_the_address_and_reads_trouble_codes() {
         "request: refused",
         "DM1 by connection",
     ];
-    client("j1939_network.py", Operator::LeverUnplugged, &expected);
+    client(
+        "j1939_network.py",
+        here,
+        Operator::LeverUnplugged,
+        &expected,
+    );
 }
 
 #[test]
 fn a_calibration_tool_finds_everything_by_the_a2l() {
-    let expected = [
-        "identity: ",
-        "parameters: ",
-        "pages: ",
-        "checksum: ",
-        "stored",
-        "measured: ",
-    ];
-    client("xcp_session.py", Operator::Away, &expected);
+    client("xcp_session.py", here, Operator::Away, &SESSION);
+}
+
+#[test]
+#[ignore = "needs the ARM image: run by `cargo xtask test`"]
+fn the_emulated_ecu_is_tuned_like_the_one_here() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("flash"), vec![u8::MAX; FLASH_BYTES]).unwrap();
+    let emulated = || {
+        let image = find_image(None).unwrap();
+        Emulator::start(&image, folder.path()).unwrap()
+    };
+    client("xcp_session.py", emulated, Operator::Away, &SESSION);
 }

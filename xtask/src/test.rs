@@ -39,7 +39,14 @@ pub fn run(way: Option<Way>) -> Result<()> {
     let image = image::build_all(way)?;
 
     let host = run_group(&mut cargo_test(&["--workspace"]))?;
-    let mut on_target = cargo_test(&["--package", "host-tests", "--test", "emulated"]);
+    let mut on_target = cargo_test(&[
+        "--package",
+        "host-tests",
+        "--test",
+        "emulated",
+        "--test",
+        "python_clients",
+    ]);
     on_target
         .args(["--", "--ignored", "--nocapture"])
         .env(IMAGE_VARIABLE, &image);
