@@ -141,6 +141,11 @@ impl Calibration {
     /// The calibration of an untaught machine, sealed.
     #[must_use]
     pub fn nominal() -> Self {
+        Self::unsealed_nominal().sealed()
+    }
+
+    /// The same without a checksum, to be filled with something else.
+    pub(super) fn unsealed_nominal() -> Self {
         Self {
             version: CALIBRATION_VERSION,
             lift: nominal::LIFT,
@@ -160,7 +165,6 @@ impl Calibration {
             safety: SafetyParameters::NOMINAL,
             checksum: 0,
         }
-        .sealed()
     }
 
     /// The same block with the checksum that belongs to it.
@@ -187,6 +191,20 @@ impl Calibration {
                 computed,
             });
         }
+        self.checked()
+    }
+
+    /// Seals the block, if everything but the seal is right: the checksum is reckoned only once.
+    ///
+    /// # Errors
+    /// The first thing that is wrong.
+    pub fn seal(mut self) -> Result<ValidCalibration, CalibrationError> {
+        self.version = CALIBRATION_VERSION;
+        self.sealed().checked()
+    }
+
+    /// Checks what is in a block that is sealed.
+    fn checked(self) -> Result<ValidCalibration, CalibrationError> {
         self.check_parameters()?;
         check_valve("lift", &self.lift)?;
         check_valve("lower", &self.lower)?;

@@ -302,7 +302,7 @@ impl Calibration {
     /// The block of words; nothing of it is checked.
     #[must_use]
     pub fn from_words(words: &[i32; CALIBRATION_WORDS]) -> Self {
-        let mut calibration = Self::nominal();
+        let mut calibration = Self::unsealed_nominal();
         let mut sources = words.iter();
         calibration.for_each_word(&mut |word| {
             if let Some(source) = sources.next() {

@@ -100,8 +100,7 @@ impl CalibrationPages {
         if self.applied != Applied::Pending {
             return None;
         }
-        let calibration = Calibration::from_words(self.page(self.controller_page)).sealed();
-        let checked = calibration.validate();
+        let checked = Calibration::from_words(self.page(self.controller_page)).seal();
         self.applied = match checked {
             Ok(_) => Applied::InUse,
             Err(_) => Applied::Inconsistent,
@@ -120,7 +119,7 @@ impl CalibrationPages {
     /// # Errors
     /// If it is inconsistent.
     pub fn to_store(&self) -> Result<ValidCalibration, CalibrationError> {
-        Calibration::from_words(&self.working).sealed().validate()
+        Calibration::from_words(&self.working).seal()
     }
 
     /// `stored` is in flash now: the reference page is it.
