@@ -1,5 +1,7 @@
 //! Tests across the crates; see `tests/`. Here is what several of them need.
 
+pub mod ecu_day;
+pub mod ecu_tool;
 pub mod emulator;
 pub mod hidden_effects;
 pub mod lab;

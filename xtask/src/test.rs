@@ -12,6 +12,9 @@ use crate::{image, process, setup, workspace};
 /// Names the image for the tests that run it.
 const IMAGE_VARIABLE: &str = "HITCH_EMULATED_IMAGE";
 
+/// Tests that need the image.
+const ON_TARGET: [&str; 3] = ["emulated", "emulated_ecu", "python_clients"];
+
 /// How many tests ended how.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Counts {
@@ -39,15 +42,9 @@ pub fn run(way: Option<Way>) -> Result<()> {
     let image = image::build_all(way)?;
 
     let host = run_group(&mut cargo_test(&["--workspace"]))?;
-    let mut on_target = cargo_test(&[
-        "--package",
-        "host-tests",
-        "--test",
-        "emulated",
-        "--test",
-        "python_clients",
-    ]);
+    let mut on_target = cargo_test(&["--package", "host-tests"]);
     on_target
+        .args(ON_TARGET.into_iter().flat_map(|name| ["--test", name]))
         .args(["--", "--ignored", "--nocapture"])
         .env(IMAGE_VARIABLE, &image);
     let target = run_group(&mut on_target)?;

@@ -12,7 +12,7 @@ use crate::xcp::{CalibrationPages, Slave};
 pub enum Storing {
     /// Nothing is being stored.
     Idle,
-    /// Flash was erased or programmed; the processor may have stood still meanwhile.
+    /// Flash was read through, erased or programmed, which takes its time; many a processor stands still meanwhile.
     Busy,
 }
 
@@ -94,6 +94,7 @@ impl<F: NorFlash> Service<F> {
         }
         if wanted {
             self.begin(slave, at_rest);
+            return Storing::Busy;
         }
         Storing::Idle
     }

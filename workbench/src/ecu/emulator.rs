@@ -3,6 +3,8 @@
 use std::io::{BufReader, Read, Write};
 use std::path::Path;
 use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
+use std::thread;
+use std::time::Duration;
 
 use hitch_firmware::can::Frame;
 use hitch_firmware::ecu::Contacts;
@@ -74,9 +76,26 @@ impl Emulator {
         })
     }
 
-    /// Cuts the power: the emulator is killed wherever it is, and what it was about to do is not done.
-    pub fn cut_power(mut self) {
-        let _ = self.child.kill();
+    /// Cuts the power this long after the beginning of a millisecond: the emulator is killed wherever it is then.
+    ///
+    /// # Errors
+    /// If the machine is gone already.
+    pub fn cut_power(mut self, contacts: &Contacts, after: Duration) -> Result<(), MachineError> {
+        self.ask(contacts, &[]);
+        self.requests.write_all(&self.request)?;
+        thread::sleep(after);
+        Ok(self.child.kill()?)
+    }
+
+    fn ask(&mut self, contacts: &Contacts, heard: &[Frame]) {
+        let heard = &heard[..heard.len().min(MOST_FRAMES)];
+        let request = Request::Tick {
+            contacts: *contacts,
+            frames: heard.len(),
+        };
+        self.request.clear();
+        self.request.extend(request.to_bytes());
+        self.request.extend(heard.iter().flat_map(frame_to_bytes));
     }
 
     fn exchange(&mut self, said: &mut Vec<Frame>) -> std::io::Result<Reply> {
@@ -108,14 +127,7 @@ impl EcuMachine for Emulator {
         heard: &[Frame],
         said: &mut Vec<Frame>,
     ) -> Result<Reply, MachineError> {
-        let heard = &heard[..heard.len().min(MOST_FRAMES)];
-        let request = Request::Tick {
-            contacts: *contacts,
-            frames: heard.len(),
-        };
-        self.request.clear();
-        self.request.extend(request.to_bytes());
-        self.request.extend(heard.iter().flat_map(frame_to_bytes));
+        self.ask(contacts, heard);
         self.exchange(said).map_err(|_| self.last_words())
     }
 

@@ -45,7 +45,10 @@ fn power_up(
         let heard = hear(link, frames)?;
         let (reply, ticks) = stopwatch.ticks_of(|| tick(&mut machine, &contacts, &heard));
         done.ticks += 1;
-        done.longest = done.longest.max(ticks);
+        match reply.enable {
+            true => done.longest_working = done.longest_working.max(ticks),
+            false => done.longest = done.longest.max(ticks),
+        }
         link.write(&reply.to_bytes())?;
         for frame in machine.said() {
             link.write(&frame_to_bytes(frame))?;

@@ -45,9 +45,10 @@ fn main() -> ! {
     match run() {
         Ok(done) => {
             say(format_args!(
-                "steps={}\nlongest_ticks={}\nstack_bytes={}\n",
+                "steps={}\nlongest_ticks={}\nlongest_working_ticks={}\nstack_bytes={}\n",
                 done.ticks,
                 done.longest,
+                done.longest_working,
                 stack::high_water_mark()
             ));
             debug::exit(EXIT_SUCCESS);
@@ -76,6 +77,8 @@ struct Done {
     ticks: u32,
     /// The longest of them, in ticks of the stopwatch.
     longest: u32,
+    /// The longest of those with a coil on, if that is told apart.
+    longest_working: u32,
 }
 
 fn say(text: Arguments<'_>) {

@@ -1,0 +1,138 @@
+//! The whole application on the emulated ECU does exactly what it does here, and takes no more memory than there is.
+//!
+//! These tests need QEMU and an image for ARM, which `cargo test` alone has not: `cargo xtask test` provides both and
+//! runs them.
+
+use std::time::{Duration, Instant};
+
+use hitch_firmware::control::ValidCalibration;
+use hitch_firmware::ecu::link::{FRAME_BYTES, REPLY_BYTES, Reply};
+use hitch_firmware::storage::{CalibrationStore, Source};
+use hitch_model::Model;
+use hitch_workbench::ecu::{Bench, CutFlash, Emulator, Mode, delivered};
+
+use host_tests::{ecu_day, ecu_tool, emulator};
+
+const SEED: u64 = 20_260_101;
+/// `HITCH_EMULATED_MINUTES` makes it longer or shorter.
+const MINUTES: u64 = 60;
+/// RAM of the ECU that the application may take, its stack included.
+const MOST_RAM_BYTES: u64 = 32 * 1024;
+
+#[test]
+#[ignore = "needs the ARM image: run by `cargo xtask test`"]
+fn an_hour_of_work_with_faults_is_byte_identical() {
+    let minutes = std::env::var("HITCH_EMULATED_MINUTES").map_or(MINUTES, |minutes| {
+        minutes.parse().expect("a number of minutes")
+    });
+    let flash = delivered(&ValidCalibration::nominal());
+    let started = Instant::now();
+    let day = ecu_day::live(SEED, minutes * 60_000, flash.clone()).unwrap();
+    let here_s = started.elapsed().as_secs_f64();
+    println!(
+        "seed {SEED}, {minutes} minutes: coils on for {:.0} s, {} frames said; states {:?}, faults {:?}",
+        day.moving_ms as f64 * 1e-3,
+        day.frames,
+        day.states,
+        day.faults
+    );
+    assert!(
+        day.moving_ms > minutes * 2_000,
+        "an hour without work proves nothing"
+    );
+    assert!(
+        day.flash != flash,
+        "nothing was ever stored: an hour without tuning proves nothing"
+    );
+
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("flash"), &flash).unwrap();
+    let started = Instant::now();
+    let image = emulator::image().unwrap();
+    let console = emulator::boot(&image, folder.path(), Mode::Ecu, &day.requests).unwrap();
+    let there_s = started.elapsed().as_secs_f64();
+    let ram_bytes = emulator::said(&console.text, "stack_bytes").unwrap();
+    let instructions = |key| emulator::said(&console.text, key).unwrap() * 5 / 8;
+    let working = instructions("longest_working_ticks");
+    println!(
+        "{here_s:.1} s here, {there_s:.1} s there; instructions a millisecond, at most: {working} with a coil on, {} at rest; \
+         {ram_bytes} bytes of RAM",
+        instructions("longest_ticks")
+    );
+    if let Some(millisecond) = first_difference(&day.replies, &console.outputs) {
+        panic!("the target does not do what the host does from millisecond {millisecond} on");
+    }
+    let there = std::fs::read(folder.path().join("flash")).unwrap();
+    assert!(
+        there == day.flash,
+        "the flash differs at the end of the day"
+    );
+    assert!(ram_bytes <= MOST_RAM_BYTES, "{ram_bytes} bytes of RAM");
+}
+
+/// The first millisecond whose reply or frames differ.
+fn first_difference(here: &[u8], there: &[u8]) -> Option<usize> {
+    let (mut at, mut millisecond) = (0, 0);
+    while at < here.len().max(there.len()) {
+        let head = here.get(at..at + REPLY_BYTES)?.first_chunk()?;
+        let end = at + REPLY_BYTES + usize::from(Reply::from_bytes(head).frames) * FRAME_BYTES;
+        if here.get(at..end) != there.get(at..end) {
+            return Some(millisecond);
+        }
+        at = end;
+        millisecond += 1;
+    }
+    None
+}
+
+#[test]
+#[ignore = "needs the ARM image: run by `cargo xtask test`"]
+fn a_killed_emulator_finds_its_calibration_again_and_stays_locked() {
+    const KILLS: i32 = 12;
+    /// Storing takes 46 milliseconds, one erased page or programmed chunk each.
+    const LATEST_MS: u32 = 55;
+    let model = Model::named("nominal").unwrap();
+    let image = emulator::image().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("flash");
+    let nominal = ValidCalibration::nominal();
+    std::fs::write(&file, delivered(&nominal)).unwrap();
+    let word = ecu_tool::word("position", "approach_gain").unwrap();
+    let mut random = fastrand::Rng::with_seed(3);
+    let (mut present, mut changed) = (nominal.position.approach_gain.0, 0);
+    for kill in 0..KILLS {
+        let mut machine = Emulator::start(&image, folder.path()).unwrap();
+        let mut bench = Bench::new(&model, 200.0, 40.0, 90.0, kill as u64);
+        let mut last = None;
+        for _ in 0..200 {
+            let moment = bench.tick(&mut machine, &[], &mut Vec::new()).unwrap();
+            assert!(
+                !moment.reply.enable,
+                "kill {kill}: a coil is on after the restart"
+            );
+            last = Some(moment.contacts);
+        }
+        let wanted = 20 + kill;
+        ecu_tool::begin_service(&mut bench, &mut machine).unwrap();
+        ecu_tool::change(&mut bench, &mut machine, word, wanted).unwrap();
+        ecu_tool::store(&mut bench, &mut machine).unwrap();
+        for _ in 0..random.u32(0..LATEST_MS) {
+            bench.tick(&mut machine, &[], &mut Vec::new()).unwrap();
+        }
+        let after = Duration::from_micros(random.u64(0..200));
+        machine.cut_power(&last.unwrap(), after).unwrap();
+
+        let flash = CutFlash::holding(std::fs::read(&file).unwrap());
+        let loaded = CalibrationStore::new(flash).load().unwrap();
+        let gain = loaded.calibration.position.approach_gain.0;
+        assert!(
+            matches!(loaded.source, Source::Stored { .. }) && [present, wanted].contains(&gain),
+            "kill {kill}: {gain} from {:?}",
+            loaded.source
+        );
+        changed += i32::from(gain == wanted);
+        present = gain;
+    }
+    println!("{KILLS} kills while storing; {changed} came after the end");
+    assert!(changed < KILLS, "no kill came in time");
+}
