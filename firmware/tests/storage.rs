@@ -439,3 +439,18 @@ fn flash_that_is_too_small_is_refused() {
     });
     assert_eq!(store.store(&calibration(2_000)), Err(StoreError::TooSmall));
 }
+
+#[test]
+fn an_entry_that_is_cut_off_gets_its_default() {
+    let mut words = record_of(&calibration(2_000));
+    words.pop();
+    words[2] = u32::try_from(words.len() + 1).unwrap();
+    let (calibration, source) = loaded(&flash_with_record(&words));
+    let nominal = Calibration::nominal().safety;
+    assert_eq!(calibration.safety, nominal);
+    let carried = Carried {
+        defaulted: 1,
+        unknown: 0,
+    };
+    assert!(matches!(source, Source::Stored { carried: found, .. } if found == carried));
+}

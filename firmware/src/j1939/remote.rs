@@ -157,8 +157,9 @@ impl RemoteControl {
         }
     }
 
+    /// A position that isn't known is reported as 254, which is further from any command than a bit.
     fn is_reported(&self, set_point: u8) -> bool {
-        set_point.abs_diff(self.reported) <= SAME_VALUE && self.reported <= 250
+        set_point.abs_diff(self.reported) <= SAME_VALUE
     }
 }
 

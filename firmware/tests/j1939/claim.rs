@@ -1,7 +1,7 @@
 //! Claiming an address: who wins, who moves, who is silent.
 
-use crate::bus::{Bus, OURS, name};
-use hitch_firmware::j1939::{Name, NameFields, Node, Pgn, Settings, Variant};
+use crate::bus::{Bus, OURS, Sent, name};
+use hitch_firmware::j1939::{Name, NameFields, Node, Pgn, Settings, Trouble, Variant};
 
 /// Wins against ours.
 fn better() -> Name {
@@ -188,4 +188,38 @@ fn a_node_that_babbles_claims_isnt_joined() {
     }
     let answers = bus.take(Pgn::ADDRESS_CLAIMED).len();
     assert!((100..=200).contains(&answers), "{answers} in a second");
+}
+
+#[test]
+fn contenders_dont_prolong_the_silence() {
+    let mut bus = Bus::new(Variant::Iso11783);
+    for _ in 0..252 {
+        bus.hear_claim(OURS, worse());
+        bus.step();
+    }
+    assert_eq!(bus.node.address(), Some(OURS));
+}
+
+#[test]
+fn what_was_begun_under_an_address_ends_with_it() {
+    let mut bus = Bus::claimed(Variant::Iso11783);
+    let troubles = [Trouble::SupplyLow, Trouble::LeverMissing];
+    troubles
+        .iter()
+        .for_each(|&trouble| bus.status.troubles.insert(trouble));
+    bus.step();
+    bus.ask(Pgn(0xFEE5), OURS);
+    bus.hear_claim(OURS, better());
+    bus.sent.clear();
+    bus.run(300);
+    let packet = |sent: &Sent| sent.id.pgn == Pgn::TRANSPORT_DATA;
+    assert!(
+        !bus.sent.iter().any(packet),
+        "of a message that was announced before"
+    );
+    let refused = |sent: &Sent| sent.id.pgn == Pgn::ACKNOWLEDGEMENT;
+    assert!(
+        !bus.sent.iter().any(refused),
+        "who asked, asked another address"
+    );
 }

@@ -426,3 +426,57 @@ fn requests_that_are_too_short_are_none() {
             .all(|sent| sent.id.pgn == Pgn::REAR_HITCH_STATUS)
     );
 }
+
+#[test]
+fn what_is_back_is_no_longer_previous() {
+    let mut bus = Bus::claimed(Variant::Iso11783);
+    for set in [
+        troubles(&[Trouble::SupplyHigh]),
+        Troubles::NONE,
+        troubles(&[Trouble::SupplyHigh]),
+    ] {
+        bus.status.troubles = set;
+        bus.run(10);
+    }
+    bus.sent.clear();
+    bus.ask(Pgn::DM2, OURS);
+    bus.run(10);
+    assert_eq!(bus.take(Pgn::DM2)[0].data()[2..6], [0; 4]);
+    bus.ask(Pgn::DM1, OURS);
+    bus.run(10);
+    assert_eq!(
+        bus.take(Pgn::DM1)[0].data()[2..6],
+        [168, 0, 3, 2],
+        "for the second time"
+    );
+}
+
+#[test]
+fn a_request_that_comes_twice_is_answered_once() {
+    let mut bus = Bus::claimed(Variant::Iso11783);
+    for _ in 0..20 {
+        bus.ask(Pgn::DM2, OURS);
+    }
+    bus.ask(Pgn::DM1, OURS);
+    bus.run(100);
+    let count = |pgn| bus.sent.iter().filter(|sent| sent.id.pgn == pgn).count();
+    assert_eq!((count(Pgn::DM2), count(Pgn::DM1)), (1, 1));
+}
+
+#[test]
+fn others_have_no_say_in_a_connection() {
+    let mut bus = bus_with_history();
+    bus.ask(Pgn::DM2, OURS);
+    bus.run(5);
+    let [a, b, c] = Pgn::DM2.to_bytes();
+    for control in [[17, 3, 1], [255, 1, 0xFF], [19, 0, 0]] {
+        let [first, second, third] = control;
+        let bytes = [first, second, third, 0xFF, 0xFF, a, b, c];
+        bus.hear(Pgn::TRANSPORT_CONNECTION, OURS, 0x30, &bytes);
+    }
+    bus.run(50);
+    assert_eq!(packets(&mut bus), [0; 0]);
+    management(&mut bus, [17, 1, 1, 0xFF, 0xFF]);
+    bus.run(50);
+    assert_eq!(packets(&mut bus), [1]);
+}

@@ -251,3 +251,14 @@ fn duplicated_and_malformed_commands_change_nothing() {
     }
     assert_eq!(bus.node.remote(), Remote::Position(PerMille(620)));
 }
+
+#[test]
+fn a_node_without_an_address_commands_nothing() {
+    let mut bus = Bus::claimed(Variant::Iso11783);
+    bus.run(100);
+    for source in [0xFE, 0xFF] {
+        let command = HitchCommand::Position(HERE).to_bytes();
+        bus.hear(Pgn::HITCH_COMMANDS, 0xFF, source, &command);
+        assert_eq!(bus.node.remote(), Remote::Idle, "{source:X}");
+    }
+}

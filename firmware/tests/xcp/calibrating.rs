@@ -294,3 +294,30 @@ fn what_was_taught_replaces_the_working_page() {
     assert_eq!(desk.read(scalar("position", "lift_speed")), Ok(77_000));
     assert!(desk.pages.take_change().is_some());
 }
+
+#[test]
+fn the_beginning_of_a_word_is_refused_where_the_word_would_be() {
+    let mut desk = Desk::connected();
+    desk.access = Access::Moving;
+    desk.set_address(scalar("safety", "decay_time"));
+    assert_eq!(desk.ask(&[0xF0, 2, 30, 0]), Err(ACCESS_DENIED));
+    desk.set_address(word_address(0));
+    assert_eq!(desk.ask(&[0xF0, 2, 30, 0]), Err(WRITE_PROTECTED));
+}
+
+#[test]
+fn a_controller_on_the_reference_page_gets_what_was_stored() {
+    let mut desk = Desk::connected();
+    desk.obeyed(&[0xEB, 1, 0, 1]);
+    assert!(desk.pages.take_change().is_some());
+    desk.write(scalar("position", "lift_speed"), 77_000)
+        .unwrap();
+    assert!(
+        desk.pages.take_change().is_none(),
+        "that was on the working page"
+    );
+    let stored = desk.pages.to_store().unwrap();
+    desk.pages.stored(&stored);
+    let taken = desk.pages.take_change().unwrap().unwrap();
+    assert_eq!(taken.position.lift_speed, MicrometrePerSecond(77_000));
+}
