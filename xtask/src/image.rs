@@ -5,8 +5,9 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 
+use crate::budget::{self, Entry};
 use crate::toolchain::{TARGET, Way};
-use crate::{process, size};
+use crate::{process, programming, size};
 
 /// The profile that images are built with: optimised, and arithmetic that overflows is caught.
 const PROFILE: &str = "firmware";
@@ -26,17 +27,29 @@ pub fn build_all(way: Way) -> Result<PathBuf> {
         "controller and application can't panic; with their start-up code they take {}",
         size::of(&folder.join("panic_proof"))?
     );
-    for part in PARTS {
-        build(way, &["--bin", "ecu", "--features", part])?;
-        // All parts build into the same place; each image is kept under its own name.
-        let image = folder.join(format!("ecu-{part}"));
-        fs::copy(folder.join("ecu"), &image)
-            .with_context(|| format!("can't write {}", image.display()))?;
-        println!("{} takes {}", image.display(), size::of(&image)?);
-    }
+    budget::check(&build_boards(way)?)?;
     let image = build_emulated(way)?;
     println!("the emulated image takes {}", size::of(&image)?);
     Ok(image)
+}
+
+/// Builds an image for each part, as ELF, as plain bytes and as Intel HEX; what they take.
+pub fn build_boards(way: Way) -> Result<Vec<Entry>> {
+    let folder = folder(way);
+    let mut entries = Vec::new();
+    for part in PARTS {
+        build(way, &["--bin", "ecu", "--features", part])?;
+        // All parts build into the same place; each image is kept under its own name.
+        let name = format!("ecu-{part}");
+        let image = folder.join(&name);
+        fs::copy(folder.join("ecu"), &image)
+            .with_context(|| format!("can't write {}", image.display()))?;
+        programming::write(&image)?;
+        let size = size::of(&image)?;
+        println!("{} takes {size}", image.display());
+        entries.push(Entry::new(name, size));
+    }
+    Ok(entries)
 }
 
 /// Builds the image for the emulator; its path.

@@ -1,10 +1,12 @@
 //! Project tasks that need more than cargo.
 
 mod a2l;
+mod budget;
 mod check;
 mod image;
 mod mutants;
 mod process;
+mod programming;
 mod setup;
 mod size;
 mod test;
@@ -23,7 +25,8 @@ usage: cargo xtask <task> [--arm rustup|debian]
   test    set up what is missing, build the ARM images, run every test, say how many passed
   check   formatting, clippy and rustdoc, with warnings denied
   ci      check, then test
-  arm     build the ARM images and say how large they are
+  arm     build the ARM images, say how large they are, and hold them to their budgets
+  sizes   write down how large the ECU's images are, in firmware/sizes.txt
   image   build the image for the emulator alone; the last line is its path
   mutants change the safety envelope in every way that cargo-mutants knows; its tests have to notice
   a2l     write firmware/hitch.a2l, the description of parameters and measurements for tuning tools
@@ -55,6 +58,7 @@ fn run(arguments: &[String]) -> Result<()> {
         "check" => check::run(way),
         "ci" => check::run(way).and_then(|()| test::run(way)),
         "arm" => image::build_all(setup::toolchain(way)?).map(drop),
+        "sizes" => budget::write(&image::build_boards(setup::toolchain(way)?)?),
         "image" => {
             let image = image::build_emulated(setup::toolchain(way)?)?;
             println!("{}", image.display());

@@ -53,9 +53,15 @@ pub fn mul_div(a: i32, b: i32, c: Divisor) -> i32 {
 /// The ECU divides 32 bits in one instruction and 64 in a hundred. Short numbers are the rule, and for
 /// them the former will do.
 fn quotient(dividend: u64, divisor: NonZeroU32) -> u64 {
-    if let Ok(short) = u32::try_from(dividend) {
-        return u64::from(short / divisor);
+    match u32::try_from(dividend) {
+        Ok(short) => u64::from(short / divisor),
+        Err(_) => long_quotient(dividend, divisor),
     }
+}
+
+/// The same for a long dividend; kept in one place, for it is long itself.
+#[inline(never)]
+fn long_quotient(dividend: u64, divisor: NonZeroU32) -> u64 {
     match NonZeroU16::try_from(divisor) {
         Ok(short) => quotient_by_digits(dividend, NonZeroU32::from(short)),
         Err(_) => dividend / NonZeroU64::from(divisor),

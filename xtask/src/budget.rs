@@ -1,0 +1,145 @@
+//! What the ECU's images may take, and what they took when somebody last looked.
+//!
+//! `firmware/sizes.txt` holds a line an image. An image that is over its budget, or that has moved away from its line,
+//! ends the task; `cargo xtask sizes` writes the lines anew, and the change shows in review.
+
+use std::fs;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail, ensure};
+
+use crate::size::Size;
+use crate::workspace;
+
+/// Flash that an image may take.
+const FLASH_BYTES: u64 = 64 * 1024;
+/// RAM that it may take; the stack's part of it is measured by `emulated_ecu`, on the same application.
+const RAM_BYTES: u64 = 32 * 1024;
+/// Growth that isn't worth a line in a review, per mille.
+const GROWTH_PER_MILLE: u64 = 20;
+/// The newer of the two compilers makes images that are smaller by 46.
+const SHRINKAGE_PER_MILLE: u64 = 80;
+
+const HEADING: &str = "\
+# Bytes that the ECU's images take: flash, and RAM without the stack. Written by `cargo xtask sizes`.
+";
+
+/// An image and what it takes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    name: String,
+    flash: u64,
+    ram: u64,
+}
+
+impl Entry {
+    /// The entry of an image.
+    pub fn new(name: impl Into<String>, size: Size) -> Self {
+        Self {
+            name: name.into(),
+            flash: size.text + size.data,
+            ram: size.data + size.bss,
+        }
+    }
+
+    fn line(&self) -> String {
+        format!("{} flash {} ram {}\n", self.name, self.flash, self.ram)
+    }
+
+    fn parse(line: &str) -> Option<Self> {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [name, "flash", flash, "ram", ram] = words[..] else {
+            return None;
+        };
+        Some(Self {
+            name: name.to_owned(),
+            flash: flash.parse().ok()?,
+            ram: ram.parse().ok()?,
+        })
+    }
+}
+
+fn path() -> PathBuf {
+    workspace::root().join("firmware/sizes.txt")
+}
+
+/// Writes down what the images take.
+pub fn write(entries: &[Entry]) -> Result<()> {
+    let lines: String = entries.iter().map(Entry::line).collect();
+    let path = path();
+    fs::write(&path, format!("{HEADING}{lines}"))
+        .with_context(|| format!("can't write {}", path.display()))
+}
+
+/// Holds the images to their budgets and to what was written down.
+pub fn check(entries: &[Entry]) -> Result<()> {
+    let path = path();
+    let text = fs::read_to_string(&path).with_context(|| {
+        format!(
+            "can't read {}: `cargo xtask sizes` writes it",
+            path.display()
+        )
+    })?;
+    let golden: Vec<Entry> = text.lines().filter_map(Entry::parse).collect();
+    entries.iter().try_for_each(|entry| judge(entry, &golden))
+}
+
+fn judge(entry: &Entry, golden: &[Entry]) -> Result<()> {
+    let name = &entry.name;
+    for (what, takes, may) in [
+        ("flash", entry.flash, FLASH_BYTES),
+        ("RAM", entry.ram, RAM_BYTES),
+    ] {
+        ensure!(
+            takes <= may,
+            "{name} takes {takes} bytes of {what}, and may take {may}"
+        );
+    }
+    let Some(known) = golden.iter().find(|known| known.name == *name) else {
+        bail!("firmware/sizes.txt knows no {name}: run `cargo xtask sizes`");
+    };
+    for (what, takes, took) in [
+        ("flash", entry.flash, known.flash),
+        ("RAM", entry.ram, known.ram),
+    ] {
+        let tolerated = match takes > took {
+            true => GROWTH_PER_MILLE,
+            false => SHRINKAGE_PER_MILLE,
+        };
+        ensure!(
+            takes.abs_diff(took) * 1_000 <= took * tolerated,
+            "{name} takes {takes} bytes of {what} and took {took}; if that is meant, run `cargo xtask sizes`"
+        );
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entry(flash: u64) -> Entry {
+        Entry {
+            name: "ecu".to_owned(),
+            flash,
+            ram: 1_088,
+        }
+    }
+
+    #[test]
+    fn a_line_goes_round() {
+        let entry = entry(60_000);
+        assert_eq!(Entry::parse(&entry.line()), Some(entry));
+        assert_eq!(Entry::parse(HEADING), None);
+    }
+
+    #[test]
+    fn an_image_over_its_budget_or_away_from_its_line_is_refused() {
+        assert!(judge(&entry(60_000), &[entry(59_000)]).is_ok());
+        let moved = judge(&entry(60_000), &[entry(50_000)]).unwrap_err();
+        assert!(moved.to_string().contains("cargo xtask sizes"), "{moved}");
+        let over = judge(&entry(65_537), &[entry(65_537)]).unwrap_err();
+        assert!(over.to_string().contains("65536"), "{over}");
+        assert!(judge(&entry(60_000), &[]).is_err(), "a new image");
+    }
+}
