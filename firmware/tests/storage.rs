@@ -7,7 +7,7 @@ use hitch_firmware::control::calibration::CALIBRATION_VERSION;
 use hitch_firmware::control::calibration_words::{CALIBRATION_WORDS, items};
 use hitch_firmware::control::units::MicrometrePerSecond;
 use hitch_firmware::control::{Calibration, ValidCalibration};
-use hitch_firmware::crc32::CRC_32;
+use hitch_firmware::crc32::Crc32;
 use hitch_firmware::storage::record::{self, Carried};
 use hitch_firmware::storage::{CalibrationStore, Copy, Progress, Source, StoreError};
 
@@ -124,11 +124,11 @@ fn bytes_changed() -> usize {
 /// A record in the first copy of blank flash.
 fn flash_with_record(words: &[u32]) -> Flash {
     let mut flash = Flash::blank();
-    let mut digest = CRC_32.digest();
+    let mut digest = Crc32::default();
     words
         .iter()
         .for_each(|word| digest.update(&word.to_le_bytes()));
-    let all = words.iter().copied().chain([digest.finalize()]);
+    let all = words.iter().copied().chain([digest.value()]);
     let bytes: Vec<u8> = all.flat_map(u32::to_le_bytes).collect();
     flash.bytes[..bytes.len()].copy_from_slice(&bytes);
     flash

@@ -9,7 +9,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hitch_firmware::crc32::CRC_32;
+use hitch_firmware::crc32::Crc32;
 use hitch_workbench::can_door::CanDoor;
 use hitch_workbench::ecu::{CutFlash, EcuMachine, Emulator, FLASH_BYTES, OnHost, find_image};
 use host_tests::live_ecu::{self, Operator};
@@ -44,7 +44,7 @@ fn python() -> Result<&'static Path, &'static str> {
 fn install() -> Result<PathBuf, String> {
     let requirements = scripts().join("requirements.txt");
     let wanted = fs::read(&requirements).map_err(|error| error.to_string())?;
-    let name = format!("python-{:08x}", CRC_32.checksum(&wanted));
+    let name = format!("python-{:08x}", Crc32::of(&wanted));
     let environment = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let python = environment.join("bin").join("python");
     let complete = environment.join("complete");

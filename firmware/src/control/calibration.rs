@@ -15,7 +15,7 @@ use super::nominal;
 use super::parameter::{OutOfRange, ParameterGroup};
 use super::units::{MicroLitrePerSecond, MilliAmp};
 use super::valve_map::{VALVE_POINTS, ValveTable};
-use crate::crc32::CRC_32;
+use crate::crc32::Crc32;
 
 /// Layout of the block that this firmware reads.
 pub const CALIBRATION_VERSION: u32 = 2;
@@ -313,7 +313,7 @@ impl Calibration {
     }
 
     fn computed_checksum(&self) -> u32 {
-        let mut digest = CRC_32.digest();
+        let mut digest = Crc32::default();
         let mut words_left = CALIBRATION_BYTES / 4 - 1;
         self.clone().for_each_word(&mut |word| {
             if words_left > 0 {
@@ -321,7 +321,7 @@ impl Calibration {
                 digest.update(&word.to_le_bytes());
             }
         });
-        digest.finalize()
+        digest.value()
     }
 
     /// Visits every word in the order of the memory image. One copy of this code serves all visitors: it is long.

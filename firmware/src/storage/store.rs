@@ -12,7 +12,7 @@ use embedded_storage::nor_flash::NorFlash;
 use super::record::{self, Carried, HEADER_WORDS, Header, RECORD_WORDS};
 use crate::control::ValidCalibration;
 use crate::control::calibration_words::CALIBRATION_WORDS;
-use crate::crc32::CRC_32;
+use crate::crc32::Crc32;
 
 /// Bytes that are read or programmed at a time: a multiple of what any flash takes at once.
 const CHUNK: usize = 32;
@@ -265,14 +265,14 @@ impl<F: NorFlash> CalibrationStore<F> {
         let Some(rest) = reader.entries(&header) else {
             return Ok(Copy::Damaged);
         };
-        let mut digest = CRC_32.digest();
+        let mut digest = Crc32::default();
         first
             .iter()
             .for_each(|word| digest.update(&word.to_le_bytes()));
         for _ in 0..rest {
             digest.update(&reader.word()?.to_le_bytes());
         }
-        Ok(if reader.word()? == digest.finalize() {
+        Ok(if reader.word()? == digest.value() {
             Copy::Good {
                 sequence: header.sequence,
             }
@@ -398,9 +398,9 @@ fn newest_first(copies: [Copy; 2]) -> impl Iterator<Item = usize> {
 }
 
 fn checksum(words: impl Iterator<Item = u32>) -> u32 {
-    let mut digest = CRC_32.digest();
+    let mut digest = Crc32::default();
     words.for_each(|word| digest.update(&word.to_le_bytes()));
-    digest.finalize()
+    digest.value()
 }
 
 /// A chunk of the record, the last one filled up with what erased flash holds.

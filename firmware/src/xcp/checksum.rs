@@ -1,13 +1,11 @@
 //! The checksum of a stretch of memory, a piece at a time: all of the calibration at once would take too long for one
 //! step.
 
-use core::fmt;
-
 use super::command::identifier;
 use super::error::Refusal;
 use super::memory::Memory;
 use super::packet::{Packet, packet};
-use crate::crc32::CRC_32;
+use crate::crc32::Crc32;
 
 /// Bytes that are read at a time.
 const PIECE: usize = 64;
@@ -17,19 +15,11 @@ pub(super) const LONGEST: u32 = 0x4000;
 const METHOD: u8 = 0x09;
 
 /// A checksum under way.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) struct Checksum {
     address: u32,
     left: u32,
-    digest: crc::Digest<'static, u32>,
-}
-
-impl fmt::Debug for Checksum {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Checksum")
-            .field("left", &self.left)
-            .finish_non_exhaustive()
-    }
+    sum: Crc32,
 }
 
 impl Checksum {
@@ -38,7 +28,7 @@ impl Checksum {
         Self {
             address,
             left: length,
-            digest: CRC_32.digest(),
+            sum: Crc32::default(),
         }
     }
 
@@ -50,14 +40,14 @@ impl Checksum {
         if let Err(refusal) = memory.read(self.address, piece) {
             return Some(packet(identifier::ERROR, &[refusal as u8]));
         }
-        self.digest.update(piece);
+        self.sum.update(piece);
         let read = u32::try_from(piece.len()).unwrap_or(0);
         self.address = self.address.wrapping_add(read);
         self.left = self.left.saturating_sub(read);
         if self.left > 0 {
             return None;
         }
-        let [a, b, c, d] = self.digest.clone().finalize().to_le_bytes();
+        let [a, b, c, d] = self.sum.value().to_le_bytes();
         Some(packet(identifier::RESPONSE, &[METHOD, 0, 0, a, b, c, d]))
     }
 }

@@ -2,7 +2,7 @@
 
 use hitch_firmware::can::Frame;
 use hitch_firmware::control::{Calibration, calibration_words::CALIBRATION_WORDS};
-use hitch_firmware::crc32::CRC_32;
+use hitch_firmware::crc32::Crc32;
 use hitch_firmware::j1939::{Id, Pgn};
 use hitch_firmware::xcp::map::{CALIBRATION_BASE, IDENTITY, IDENTITY_BASE};
 use hitch_firmware::xcp::{Access, Event, TOOL_ADDRESS};
@@ -94,7 +94,7 @@ fn the_checksum_of_the_calibration_comes_in_bounded_pieces() {
         }
     };
     assert_eq!(steps, block.len().div_ceil(64));
-    let checksum = CRC_32.checksum(&block).to_le_bytes();
+    let checksum = Crc32::of(&block).to_le_bytes();
     assert_eq!(answer, [&[0xFF, 9, 0, 0], &checksum[..]].concat());
     desk.send(&[0xF3, 0, 0, 0, 0, 0, 1, 0]);
     assert_eq!(
