@@ -3,7 +3,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use host_tests::program::run;
+use host_tests::program::{hitch, run};
 use tempfile::TempDir;
 
 const MANIFEST: &str = r#"format = 1
@@ -384,4 +384,30 @@ fn bad_command_lines_are_refused() {
     for (arguments, expected) in cases {
         refused(dir.path(), arguments, expected);
     }
+}
+
+#[test]
+fn an_ecu_without_what_it_needs() {
+    let dir = folder();
+    let folder = dir.path();
+    refused(folder, &["ecu", "--load", "-5"], "0 to 2000");
+    refused(folder, &["ecu", "--model", "no.toml"], "no.toml");
+    refused(folder, &["ecu", "--can", "nowhere"], "127.0.0.1:7701");
+    refused(folder, &["ecu", "--flash", "log.csv"], "no flash of an ECU");
+    refused(folder, &["ecu", "--image", "no-image"], "--host");
+}
+
+#[test]
+fn an_ecu_without_an_emulator_says_what_to_install() {
+    let dir = folder();
+    let output = hitch()
+        .args(["ecu", "--seconds", "0"])
+        .current_dir(dir.path())
+        .env("PATH", dir.path())
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("apt-get install qemu-system-arm"), "{said}");
+    assert!(said.contains("--host"), "{said}");
 }

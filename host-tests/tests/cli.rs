@@ -326,3 +326,25 @@ fn a_reader_that_has_seen_enough_is_no_fault() {
     );
     assert!(output.status.success());
 }
+
+#[test]
+fn the_ecu_picks_the_hitch_up_and_says_so() {
+    let dir = TempDir::new().unwrap();
+    let output = run(
+        dir.path(),
+        &["ecu", "--host", "--seconds", "1.2", "--flash", "flash.bin"],
+    );
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{said}");
+    let states: Vec<&str> = said
+        .lines()
+        .filter_map(|line| line.split_whitespace().last())
+        .collect();
+    assert_eq!(states.first(), Some(&"locked"), "{said}");
+    assert_eq!(states.last(), Some(&"holding"), "{said}");
+    assert_eq!(
+        fs::metadata(dir.path().join("flash.bin")).unwrap().len(),
+        8_192,
+        "the flash is kept"
+    );
+}

@@ -54,6 +54,7 @@ fn main() -> ! {
         coils: board.coils,
         can: board.can,
     };
+    watchdog.kick_at_start();
     let mut ecu = Ecu::start(board.flash, board::serial_number());
     watchdog.kick_at_start();
     let mut logged = Logged::default();

@@ -27,13 +27,14 @@ impl Watchdog {
         IWDG.kr().write(|w| w.set_key(Key::RESET));
     }
 
-    /// Starts its time anew while the ECU starts, when no millisecond can be whole yet.
+    /// Starts its time anew between the parts of the start, when no millisecond can be whole yet: oscillator and clocks take 3 ms,
+    /// reading the calibration takes 2.
     pub fn kick_at_start(&mut self) {
         IWDG.kr().write(|w| w.set_key(Key::RESET));
     }
 }
 
-/// Runs `work` that halts the processor for up to `4 s`, such as erasing flash that the program runs from. The coils have
+/// Runs `work` that halts the processor for up to 4 s, such as erasing flash that the program runs from. The coils have
 /// to be cut.
 pub fn with_patience<R>(work: impl FnOnce() -> R) -> R {
     // 4 096 * 64 / 47 kHz = 5.6 s at the fastest.
