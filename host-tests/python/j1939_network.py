@@ -1,6 +1,7 @@
 """can-j1939 as another node: takes the hitch's address, reads its trouble codes, and asks for what there isn't."""
 
 import queue
+import re
 import time
 
 import j1939
@@ -10,6 +11,7 @@ import shared
 PGN_STATUS = 0xFE45
 PGN_DM1 = 0xFECA
 PGN_ACKNOWLEDGEMENT = 0xE800
+PGN_SOFTWARE = 0xFEDA
 PGN_UNKNOWN = 0xFEE5
 SUPPLIED = (520198, 13)
 LEVER = (520192, 31)
@@ -79,6 +81,14 @@ def main():
     again = shared.wait_for(lambda: message_of(own, PGN_DM1), "DM1 for one")
     assert {decoded(again[at : at + 4]) for at in (2, 6)} == found
     print("DM1 by connection")
+
+    # The software is the one that the description of its parameters belongs to.
+    other.send_request(0, PGN_SOFTWARE, shared.ECU + 1)
+    software = shared.wait_for(lambda: message_of(own, PGN_SOFTWARE), "identification")
+    with open(f"{arguments.firmware}/hitch.a2l", encoding="utf-8") as description:
+        identity = re.search(r'EPK "(.*?)"', description.read()).group(1)
+    assert software == b"\x01" + identity.encode() + b"*", software
+    print(f"software: {identity}")
 
     other.stop()
     ecu.disconnect()

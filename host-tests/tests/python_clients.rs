@@ -135,6 +135,7 @@ fn another_node_takes_the_address_and_reads_trouble_codes() {
         "address: 0x80 was lost, 0x81 claimed",
         "request: refused",
         "DM1 by connection",
+        "software: ",
     ];
     client(
         "j1939_network.py",

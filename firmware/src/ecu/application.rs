@@ -15,6 +15,7 @@ use crate::can::Frame;
 use crate::control::{Controller, Inputs, Outputs, State};
 use crate::j1939::{NameFields, Node, PREFERRED_ADDRESS, Remote, Settings, TroubleFinder, Variant};
 use crate::storage::CalibrationStore;
+use crate::xcp::map::IDENTITY;
 use crate::xcp::measurements::{EcuState, Measurements};
 use crate::xcp::{Access, EcuMemory, Event, Slave};
 
@@ -56,6 +57,7 @@ impl<F: NorFlash> Ecu<F> {
             name: NameFields::rear_hitch(serial_number).into(),
             preferred_address: PREFERRED_ADDRESS,
             variant: Variant::J1939,
+            software: &IDENTITY,
         };
         Self {
             service: Service::new(store, &calibration, troubles),

@@ -1,7 +1,7 @@
 //! The hitch as a node on the bus: what it hears, and what it says when.
 
 use super::claim::AddressClaim;
-use super::diagnostics::{Diagnostics, Message, Variant};
+use super::diagnostics::{Diagnostics, LONGEST_MESSAGE, Message, Variant};
 use super::hitch::{HitchCommand, HitchStatus, StatusMessage};
 use super::id::{GLOBAL, Id, NULL, Pgn};
 use super::name::Name;
@@ -15,6 +15,8 @@ use crate::can::Frame;
 const STATUS_PERIOD_MS: u32 = 100;
 /// A status that has changed comes no closer to the last one than this, ms: a moving hitch changes it all the time.
 const STATUS_SPACING_MS: u32 = 20;
+/// Characters of the software's identification at most.
+const LONGEST_IDENTIFICATION: usize = 40;
 /// Priority of the rear hitch status.
 const STATUS_PRIORITY: u8 = 3;
 /// Priority of diagnostic messages.
@@ -32,6 +34,8 @@ pub struct Settings {
     pub preferred_address: u8,
     /// How trouble codes are reported.
     pub variant: Variant,
+    /// What answers a request for the software's identification, at most 40 characters and no `*`.
+    pub software: &'static [u8],
 }
 
 /// The node.
@@ -41,6 +45,7 @@ pub struct Node {
     remote: RemoteControl,
     remote_permitted: bool,
     diagnostics: Diagnostics,
+    software: &'static [u8],
     requests: Requests,
     transport: Transport,
     /// Somebody wants to send us a long message.
@@ -57,6 +62,7 @@ impl Node {
             remote: RemoteControl::default(),
             remote_permitted: false,
             diagnostics: Diagnostics::new(settings.variant),
+            software: settings.software,
             requests: Requests::default(),
             transport: Transport::default(),
             unwanted: None,
@@ -194,6 +200,7 @@ impl Node {
             }
             Pgn::DM1 => self.diagnostics.dm1(),
             Pgn::DM2 => self.diagnostics.dm2(),
+            Pgn::SOFTWARE_IDENTIFICATION => identification(self.software),
             Pgn::DM3 => {
                 self.diagnostics.clear_previous();
                 return acknowledged(Control::Positive, &request, source);
@@ -228,6 +235,14 @@ impl Node {
         }
         Some(broadcast(group, DIAGNOSTIC_PRIORITY, source).frame(bytes))
     }
+}
+
+/// Software identification: one field, ended by a `*`.
+fn identification(software: &[u8]) -> Message {
+    const FIELDS: u8 = 1;
+    let text = software.iter().take(LONGEST_IDENTIFICATION).copied();
+    let message = core::iter::once(FIELDS).chain(text).chain([b'*']);
+    message.take(LONGEST_MESSAGE).collect()
 }
 
 /// True if a status says something new. A position that trembles between two values doesn't.

@@ -104,6 +104,11 @@ impl Daq {
         *self = Self::default();
     }
 
+    /// How many lists there are.
+    pub fn lists(&self) -> u8 {
+        length(&self.lists)
+    }
+
     /// True while anything is measured.
     pub fn is_running(&self) -> bool {
         self.lists

@@ -38,7 +38,7 @@ pub(super) fn obey(
         }
         code::GET_DAQ_PROCESSOR_INFO => {
             let events = Event::ALL.len() as u8;
-            response(&[PROPERTIES, 0, 0, events, 0, 0, 0])
+            response(&[PROPERTIES, daq.lists(), 0, events, 0, 0, 0])
         }
         code::GET_DAQ_RESOLUTION_INFO => response(&[1, 7, 1, 0, TIME_MODE, 1, 0]),
         code::READ_DAQ => {

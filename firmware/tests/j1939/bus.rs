@@ -40,6 +40,7 @@ impl Bus {
             name: name(1),
             preferred_address: OURS,
             variant,
+            software: b"hitch 1",
         };
         Self {
             node: Node::new(settings),

@@ -122,6 +122,7 @@ fn a_node_that_isnt_self_configurable_gives_up_at_once() {
         name: fields.into(),
         preferred_address: OURS,
         variant: Variant::Iso11783,
+        software: b"",
     });
     bus.run(300);
     bus.sent.clear();
@@ -144,6 +145,7 @@ fn losers_wait_differently_long() {
             name: fields.into(),
             preferred_address: OURS,
             variant: Variant::Iso11783,
+            software: b"",
         });
         bus.run(300);
         bus.sent.clear();

@@ -480,3 +480,12 @@ fn others_have_no_say_in_a_connection() {
     bus.run(50);
     assert_eq!(packets(&mut bus), [1]);
 }
+
+#[test]
+fn the_software_says_what_it_is() {
+    let mut bus = Bus::claimed(Variant::Iso11783);
+    bus.ask(Pgn::SOFTWARE_IDENTIFICATION, 0xFF);
+    bus.run(200);
+    let text = reassembled(&bus.sent, Pgn::SOFTWARE_IDENTIFICATION);
+    assert_eq!(text, b"\x01hitch 1*");
+}

@@ -292,6 +292,8 @@ fn clock_and_events_are_described() {
     desk.now_us = 0x0A0B_0C0D;
     assert_eq!(desk.obeyed(&[0xDC]), [0, 0, 0, 0x0D, 0x0C, 0x0B, 0x0A]);
     assert_eq!(desk.obeyed(&[0xDA]), [0x93, 0, 0, 3, 0, 0, 0]);
+    desk.obeyed(&[0xD5, 0, 3, 0]);
+    assert_eq!(desk.obeyed(&[0xDA])[1], 3, "lists");
     assert_eq!(desk.obeyed(&[0xD9]), [1, 7, 1, 0, 0x34, 1, 0]);
     for (number, name) in (0..).zip(["1 ms", "10 ms", "100 ms"]) {
         let info = desk.obeyed(&[0xD7, 0, number, 0]);
