@@ -97,9 +97,13 @@ impl Slave {
         Self::default()
     }
 
-    /// Our address on the bus, `None` while there is none: then nothing is said.
-    pub const fn set_address(&mut self, address: Option<u8>) {
-        self.address = address;
+    /// Our address on the bus, `None` while there is none: then nothing is said. A connection ends with the address
+    /// that it was made to.
+    pub fn set_address(&mut self, address: Option<u8>) {
+        if address != self.address {
+            self.disconnect();
+            self.address = address;
+        }
     }
 
     /// True while a tool is connected.

@@ -63,6 +63,15 @@ fn only_the_tool_is_heard_and_only_at_our_address() {
 }
 
 #[test]
+fn a_connection_ends_with_the_address() {
+    let mut desk = Desk::connected();
+    desk.slave.set_address(Some(ECU));
+    assert!(desk.slave.is_connected(), "the same again is no change");
+    desk.slave.set_address(Some(0x81));
+    assert!(!desk.slave.is_connected());
+}
+
+#[test]
 fn the_description_file_is_named_and_agrees() {
     let mut desk = Desk::connected();
     let length = desk.obeyed(&[0xFA, 1])[3];

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use hitch_firmware::control::safety::Trip;
 use hitch_firmware::control::{Fault, State};
 use hitch_firmware::xcp::measurements::MeasurementInfo;
+use hitch_firmware::xcp::pages::Applied;
 
 /// How raw values are shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,6 +47,9 @@ pub fn of_measurement(conversions: &mut Vec<Conversion>, info: &MeasurementInfo)
             .collect(),
         "fault" => none_and(Fault::ALL.map(|fault| (fault as u8, fault.name().to_owned()))),
         "trip" => none_and(Trip::ALL.map(|trip| (trip as u8, format!("{trip:?}")))),
+        "calibration_state" => [Applied::InUse, Applied::Pending, Applied::Inconsistent]
+            .map(|applied| (applied as u8, format!("{applied:?}")))
+            .to_vec(),
         _ => return scaled(conversions, info.suffix, info.counts_per_unit),
     };
     add(
