@@ -210,6 +210,10 @@ impl Node {
         let destination = if request.global { GLOBAL } else { request.from };
         if self.transport.has_room(destination) {
             self.send(request.group, &message, destination, source, now_ms)
+        } else if request.global {
+            // Nobody can be told to ask again, so it waits for the end of the broadcast that is under way.
+            self.requests.push(request);
+            None
         } else {
             acknowledged(Control::CannotRespond, &request, source)
         }

@@ -489,3 +489,20 @@ fn the_software_says_what_it_is() {
     let text = reassembled(&bus.sent, Pgn::SOFTWARE_IDENTIFICATION);
     assert_eq!(text, b"\x01hitch 1*");
 }
+
+#[test]
+fn who_asks_everybody_gets_the_answer_after_the_broadcast_under_way() {
+    let mut bus = bus_with_history();
+    bus.status.troubles = troubles(&[Trouble::SupplyLow, Trouble::LeverHigh]);
+    bus.run(20);
+    assert_eq!(bus.take(Pgn::TRANSPORT_CONNECTION).len(), 1, "DM1 begins");
+    bus.ask(Pgn::DM2, 0xFF);
+    bus.run(2_500);
+    let group = |sent: &Sent| Pgn::from_bytes(*sent.data()[5..].first_chunk().unwrap());
+    let begun = bus.take(Pgn::TRANSPORT_CONNECTION);
+    assert_eq!(group(&begun[0]), Pgn::DM2);
+    assert!(
+        begun.iter().skip(1).all(|sent| group(sent) == Pgn::DM1),
+        "once"
+    );
+}
