@@ -12,14 +12,17 @@
 //! current_path   coil current -> spool            hydraulics   spools and pressure -> flows
 //! linkage        travel -> angle, height          mechanics    forces and motion
 //! test_stand     one run, sample by sample        instruments  noise, gaps, rounding
+//! driven_hitch   a hitch whose currents are told a millisecond at a time, for closing a loop around it
 //! on_order       runs that a design of experiments asks for
 //! campaign_writer  the campaign in memory or in a folder
 //! ```
 
+pub mod angle_sensor;
 pub mod campaign_writer;
 pub mod current_path;
 pub mod data_sheet;
 pub mod draw;
+pub mod driven_hitch;
 pub mod hideable;
 pub mod hydraulics;
 pub mod instruments;

@@ -1,0 +1,78 @@
+//! Drives the controller with the calibration of an untaught machine on drawn hitches, and tabulates the motion.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+use hitch_firmware::control::{Calibration, ValidCalibration};
+use host_tests::drawn_hitches::draw::{Drawn, draw};
+use host_tests::drawn_hitches::figures::{table, worst};
+use host_tests::drawn_hitches::session::{MoveFigures, drive};
+use rayon::prelude::*;
+
+/// Arguments.
+#[derive(Parser)]
+struct Arguments {
+    /// How many machines
+    #[arg(long, default_value_t = 60)]
+    machines: u64,
+    /// The first machine's seed
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// How many moves each, in one go from power-up
+    #[arg(long, default_value_t = 6)]
+    moves: usize,
+    /// How many of the worst are shown by each figure
+    #[arg(long, default_value_t = 5)]
+    worst: usize,
+    /// A calibration; without it, the one of an untaught machine
+    #[arg(long)]
+    calibration: Option<PathBuf>,
+    /// Another value in it, as in `hitch loop --set`
+    #[arg(long, value_name = "GROUP.NAME=VALUE")]
+    set: Vec<String>,
+}
+
+fn main() -> anyhow::Result<()> {
+    let arguments = Arguments::parse();
+    let calibration = calibration(&arguments)?;
+    let machines: Vec<Drawn> = (arguments.seed..arguments.seed + arguments.machines)
+        .map(|seed| draw(seed, arguments.moves))
+        .collect();
+    let moves: Vec<MoveFigures> = machines
+        .par_iter()
+        .flat_map_iter(|drawn| drive(drawn, &calibration))
+        .collect();
+    let print = |title: &str, chosen: fn(&MoveFigures) -> bool| {
+        let group: Vec<&MoveFigures> = moves.iter().filter(|moved| chosen(moved)).collect();
+        if !group.is_empty() {
+            println!("{}", table(title, &group));
+        }
+    };
+    print("all", |_| true);
+    print("textbook machines", |moved| !moved.structured);
+    print("structured machines", |moved| moved.structured);
+    print("first after power-up", |moved| moved.index == 0);
+    print("later", |moved| moved.index > 0);
+    print("lifting", |moved| moved.to_deg > moved.from_deg);
+    print("lowering", |moved| moved.to_deg < moved.from_deg);
+    print("up to 5 degrees", |moved| {
+        (moved.to_deg - moved.from_deg).abs() < 5.0
+    });
+    println!("{}", worst(&moves, &machines, arguments.worst));
+    Ok(())
+}
+
+fn calibration(arguments: &Arguments) -> anyhow::Result<ValidCalibration> {
+    let mut calibration = match &arguments.calibration {
+        Some(path) => (*hitch_workbench::calibration_file::read(path)?).clone(),
+        None => Calibration::nominal(),
+    };
+    for setting in &arguments.set {
+        hitch_workbench::calibration_file::set(&mut calibration, setting)
+            .map_err(anyhow::Error::msg)?;
+    }
+    calibration
+        .sealed()
+        .validate()
+        .map_err(|error| anyhow::anyhow!("{error:?}"))
+}

@@ -1,0 +1,120 @@
+//! From a seed to a machine: every unit of a series, on a cold morning or a hot afternoon, with what happens to hang on it.
+
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64;
+
+use crate::second_rig::driven_hitch::Conditions;
+use crate::second_rig::hideable::{Fidelity, HIDEABLE, Shape};
+use crate::second_rig::physics::{Physics, SpoolMotion, Stiction};
+
+/// Furthest that a threshold is off the data sheet, A.
+const MOST_SHIFT_A: f64 = 0.1;
+/// Lowest and highest angle that is asked for, degree.
+const RANGE_DEG: (f64, f64) = (47.0, 133.0);
+/// Shortest and longest move, degree.
+const MOVE_DEG: (f64, f64) = (2.0, 80.0);
+
+/// Sensors of a machine, as an ECU reads them.
+#[derive(Debug, Clone, Copy)]
+pub struct Readings {
+    /// One sigma of the angle, degree.
+    pub angle_noise_deg: f64,
+    /// Last digit of the angle, degree.
+    pub angle_digit_deg: f64,
+    /// Whether there are pressure sensors.
+    pub pressures: bool,
+}
+
+/// A machine and what is asked of it.
+#[derive(Debug, Clone)]
+pub struct Drawn {
+    /// What it was drawn from.
+    pub seed: u64,
+    /// Whether its effects have more structure than textbooks give them.
+    pub structured: bool,
+    /// Its physics beyond the data sheet.
+    pub physics: Physics,
+    /// Load, oil and lag.
+    pub conditions: Conditions,
+    /// Its sensors.
+    pub readings: Readings,
+    /// Where it rests first, and where the lever is moved to then, degree.
+    pub angles_deg: Vec<f64>,
+}
+
+/// The machine of a seed with as many moves.
+#[must_use]
+pub fn draw(seed: u64, moves: usize) -> Drawn {
+    let mut random = Pcg64::seed_from_u64(seed);
+    let structured = random.random::<bool>();
+    let mut physics = Physics {
+        lift_shift_a: random.random_range(-MOST_SHIFT_A..MOST_SHIFT_A),
+        lower_shift_a: random.random_range(-MOST_SHIFT_A..MOST_SHIFT_A),
+        ..Physics::default()
+    };
+    let fidelity = match structured {
+        true => Fidelity::Structured,
+        false => Fidelity::Faithful,
+    };
+    let sizes = [
+        ("solenoid-hysteresis", random.random_range(0.05..0.2)),
+        ("coulomb-friction", random.random_range(100.0..500.0)),
+        ("entrained-air", random.random_range(0.002..0.02)),
+        ("pin-friction", random.random_range(0.005..0.05)),
+        ("oil-viscosity", random.random_range(5.0..60.0)),
+        ("return-line-loss", random.random_range(0.1..2.0)),
+        ("compensator-droop", random.random_range(0.001..0.005)),
+    ];
+    for (id, size) in sizes {
+        let hideable = HIDEABLE.iter().find(|hideable| hideable.id == id);
+        let hide = hideable
+            .unwrap_or_else(|| panic!("the second rig has no {id}"))
+            .hide;
+        let random = &mut random;
+        hide(&mut physics, size, &mut Shape { fidelity, random });
+    }
+    physics.sensors.angle_lag_s = random.random_range(0.0..0.01);
+    if structured {
+        physics.spool = SpoolMotion::Swinging {
+            frequency_rad_s: random.random_range(150.0..400.0),
+            damping: random.random_range(0.7..1.0),
+            dead_time_s: random.random_range(0.0..0.005),
+        };
+        physics.stiction = random.random::<bool>().then(|| Stiction {
+            band_a: random.random_range(0.01..0.04),
+            jump_a: 0.01,
+            follows: true,
+        });
+    }
+    Drawn {
+        seed,
+        structured,
+        physics,
+        conditions: Conditions {
+            load_kg: random.random_range(50.0..250.0),
+            oil_temperature_c: random.random_range(10.0..70.0),
+            spool_lag_s: random.random_range(0.020..0.045),
+        },
+        readings: Readings {
+            angle_noise_deg: random.random_range(0.01..0.05),
+            angle_digit_deg: random.random_range(0.01..0.05),
+            pressures: random.random::<bool>(),
+        },
+        angles_deg: angles_deg(moves, &mut random),
+    }
+}
+
+/// Rests far enough from the ends, and apart by a move of evenly drawn logarithm.
+fn angles_deg(moves: usize, random: &mut Pcg64) -> Vec<f64> {
+    let (low, high) = RANGE_DEG;
+    let mut angles = vec![random.random_range(low..high)];
+    while angles.len() <= moves {
+        let here = angles[angles.len() - 1];
+        let way = MOVE_DEG.0 * (MOVE_DEG.1 / MOVE_DEG.0).powf(random.random::<f64>());
+        let way = if random.random::<bool>() { way } else { -way };
+        if (low..=high).contains(&(here + way)) {
+            angles.push(here + way);
+        }
+    }
+    angles
+}
