@@ -722,7 +722,25 @@ fn a_sensor_is_known_to_tremble_after_so_many_steps() {
             known_after = known_after.or(Some(steps));
         }
     }
-    assert_eq!(known_after, Some(110));
+    assert_eq!(known_after, Some(60));
+}
+
+#[test]
+fn a_sensor_coarser_than_its_noise_may_stand_still() {
+    // Trembles wherever it rests near a step of the converter: every other sample is like the last one.
+    let mut rig = Rig::armed();
+    for step in 0..20_000 {
+        rig.step_with(Order::Rest, |inputs| {
+            inputs.rocker_angle = Some(MilliDegree(90_000 + step / 2 % 2 * 50));
+        });
+    }
+    // ... and not between two steps.
+    for _ in 0..20_000 {
+        rig.step_with(Order::Rest, |inputs| {
+            inputs.rocker_angle = Some(MilliDegree(90_100));
+        });
+    }
+    assert_eq!(rig.envelope.tripped(), None);
 }
 
 #[test]

@@ -10,9 +10,15 @@ use super::CoilCurrents;
 const SPAN: usize = 16;
 /// From the difference between the ends of [`SPAN`] samples to a second: 1000 / 15, half a percent too large.
 const TO_SPEED: i32 = 67;
-/// A sensor trembles if this many more of its steps at rest went to and fro than went on, and is sure to at most this.
+/// A sensor trembles if its steps at rest have gone to and fro for so many points, and is sure to at most this.
 const TREMBLES: i32 = 100;
 const MOST_TREMBLE: i32 = 1_000;
+/// Points of a step to and fro, of a step onwards, and of a sample like the last one. Of white noise two steps in three go
+/// to and fro; with these points the sum grows only where fewer than one sample in four is like the last one: where
+/// noise is larger than the converter's step. A sensor with less of it may stand still in the middle of a step.
+const TO_AND_FRO: i32 = 2;
+const ONWARDS: i32 = -2;
+const STANDING: i32 = -2;
 /// The noise measure averages over this many samples.
 const NOISE_SAMPLES: i32 = 32;
 
@@ -51,7 +57,7 @@ pub struct AngleWatch {
     speed_before: MilliDegreePerSecond,
     /// The current at that time.
     current_before: MilliAmp,
-    /// How much a resting sensor trembles: steps to and fro count up, steps onwards down.
+    /// Points that a resting sensor has for trembling.
     tremble: i32,
     /// Mean magnitude of the second difference, times [`NOISE_SAMPLES`].
     noise_sum: i32,
@@ -152,7 +158,10 @@ impl AngleWatch {
             Ordering::Equal => self.same_for = self.same_for.next(),
             way => {
                 if passed == CoilCurrents::OFF {
-                    let change = if way == self.way { -1 } else { 1 };
+                    let moved = if way == self.way { ONWARDS } else { TO_AND_FRO };
+                    // Standing is counted once it is over: a sensor that never moves again is what is looked for.
+                    let stood = self.same_for.0.saturating_mul(STANDING);
+                    let change = moved.saturating_add(stood);
                     self.tremble = self.tremble.saturating_add(change).clamp(0, MOST_TREMBLE);
                 }
                 self.way = way;
