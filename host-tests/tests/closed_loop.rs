@@ -101,7 +101,8 @@ fn a_shifted_threshold_makes_the_nominal_calibration_worse_and_calibrating_bring
             .collect();
         ratios.iter().sum::<f64>() / ratios.len() as f64
     };
-    let right = driven(&Model::dynamic(), &nominal(), Scenario::Fine);
+    let unshifted = Model::dynamic();
+    let right = driven(&unshifted, &calibrated(&unshifted), Scenario::Fine);
     let wrong = driven(&shifted, &nominal(), Scenario::Fine);
     let again = driven(&shifted, &calibrated(&shifted), Scenario::Fine);
     let (right, wrong, back) = (lowering(&right), lowering(&wrong), lowering(&again));

@@ -55,10 +55,24 @@ pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, 
         // A quasi-static model knows nothing of the lag; then the default stays.
         hydraulics.spool_lag = Millisecond((constants.spool_time_constant_s * 1e3).round() as i32);
     }
+    // What was identified of coil and spool; a model without it says nothing about it.
+    if let Some(lag_s) = found(model, "spool-lag") {
+        let further = Millisecond((lag_s * 1e3).round() as i32);
+        hydraulics.spool_lag = hydraulics.spool_lag + further;
+    }
+    if let Some(width_a) = found(model, "solenoid-hysteresis") {
+        hydraulics.hysteresis = MilliAmp((width_a * 1e3).round() as i32);
+    }
     calibration
         .sealed()
         .validate()
         .map_err(CalibrateError::Refused)
+}
+
+/// First value of an effect that the model has.
+fn found(model: &Model, id: &str) -> Option<f64> {
+    let added = model.effects.iter().find(|added| added.effect.id() == id)?;
+    added.values.first().copied()
 }
 
 /// A controller for `model`, straight from power-up.

@@ -10,6 +10,7 @@ use super::operator::{ButtonGuard, EngineWatch, Float, QuickLift, lowering_limit
 use super::position::{PositionControl, Reason};
 use super::rate::RateControl;
 use super::rest::RestPosition;
+use super::run_on::RunOn;
 use super::safety::{CoilCurrents, Envelope, Limits};
 use super::saturation::SaturationWatch;
 use super::sensors::{Sensed, Sensors};
@@ -50,6 +51,7 @@ pub struct Controller {
     envelope: Envelope,
     regulation: Regulation,
     rest: RestPosition,
+    run_on: Option<(Direction, RunOn)>,
     scale: DropScale,
     teach: Teach,
     /// Fastest speed that the valve in use can give.
@@ -89,6 +91,7 @@ impl Controller {
             envelope: Envelope::default(),
             regulation,
             rest: RestPosition::default(),
+            run_on: None,
             scale,
             teach: Teach::default(),
             available: MicrometrePerSecond::ZERO,
@@ -131,16 +134,11 @@ impl Controller {
         if let Some(trip) = self.envelope.objection() {
             self.fail(trip.fault());
         }
-        let hydraulics = &self.calibration.hydraulics;
-        let present = self.load.present_drop(hydraulics);
-        let scale = DropScale::new(hydraulics.reference_drop, present);
-        let map = valve_map(&self.calibration, scale);
-        self.motion.drive(
-            currents,
-            self.slack.is_taken(),
-            &map,
-            &self.calibration.hydraulics,
-        );
+        let map = valve_map(&self.calibration, self.scale);
+        // A button's speed falls with the linkage and stays: what the map gets wrong there does as well.
+        let slowing = self.slack.is_taken() && matches!(self.mode, Mode::Position);
+        self.motion
+            .drive(currents, slowing, &map, &self.calibration.hydraulics);
         let duties = self
             .regulation
             .drive(currents, inputs, &self.calibration.current);
@@ -190,16 +188,9 @@ impl Controller {
         let measured = calibration.linkage.travel(sensed.angle);
         self.motion
             .update(measured, self.phase.is_moving(), &calibration.motion);
-        let lowering = matches!(
-            self.phase,
-            Phase::Moving {
-                direction: Direction::Lower,
-                ..
-            }
-        );
         self.load.update(
             sensed.cylinder_pressure,
-            lowering,
+            self.phase,
             &self.motion,
             &calibration.hydraulics,
         );
@@ -284,6 +275,9 @@ impl Controller {
         let changed = self
             .position
             .follow(lever, highest, moving, &calibration.position);
+        if changed && moving {
+            self.run_on = None;
+        }
         if changed && !moving {
             self.sink.new_set_point();
             self.saturation.forget();
@@ -293,7 +287,8 @@ impl Controller {
             self.target = (set_point, calibration.linkage.travel(set_point));
         }
         let target = self.target.1;
-        let resting = !moving
+        // While the valves close the hitch may fly past the set point: that is no arrival.
+        let resting = matches!(self.phase, Phase::Holding)
             && self
                 .position
                 .reason_to_move(target, self.rest.position(), &calibration.position)
@@ -341,10 +336,17 @@ impl Controller {
         );
         if next.is_moving() && !self.phase.is_moving() {
             self.motion.forget_bias();
+            self.run_on = match next {
+                Phase::Moving { direction, .. } if matches!(self.mode, Mode::Position) => {
+                    Some((direction, RunOn::default()))
+                }
+                _ => None,
+            };
             if matches!(self.mode, Mode::Position) && self.position.start() == Reason::Drift {
                 self.sink.correct(&calibration.hold)?;
             }
         }
+        self.watch_run_on(next);
         self.phase = next;
         let follows_lever = matches!(self.mode, Mode::Position);
         if next.is_moving() && follows_lever && self.position.has_arrived() {
@@ -352,6 +354,32 @@ impl Controller {
             self.sink.correcting(speed, &self.calibration.hold)?;
         }
         Ok(())
+    }
+
+    /// Learns from the end of a move that went undisturbed to its set point.
+    fn watch_run_on(&mut self, next: Phase) {
+        let Some((direction, mut run_on)) = self.run_on else {
+            return;
+        };
+        let calibration = &self.calibration;
+        match next {
+            Phase::Moving { speed, .. } => {
+                run_on.step(
+                    speed,
+                    calibration.position.creep_speed,
+                    self.slack.is_taken(),
+                );
+                self.run_on = Some((direction, run_on));
+            }
+            Phase::Settling { .. } => {}
+            Phase::Holding => {
+                let beyond = direction.sign((self.motion.position() - self.target.1).0);
+                let further = run_on.lag_error(Micrometre(beyond));
+                self.motion
+                    .correct_lag(direction, further, &calibration.motion);
+                self.run_on = None;
+            }
+        }
     }
 
     /// Cuts the coil when flow is demanded and nothing moves.
@@ -395,7 +423,11 @@ impl Controller {
             return MicrometrePerSecond::ZERO;
         };
         let excess = MicrometrePerSecond(direction.sign(self.motion.bias().0));
-        let wanted = (speed - excess).limited(MicrometrePerSecond(1), self.available);
+        let trim = match self.mode {
+            Mode::Jog => self.rate.trim(),
+            _ => MicrometrePerSecond::ZERO,
+        };
+        let wanted = (speed - excess - trim).limited(MicrometrePerSecond(1), self.available);
         MicrometrePerSecond(direction.sign(wanted.0))
     }
 
@@ -450,9 +482,9 @@ impl Controller {
             trip: self.envelope.tripped(),
             target: self.position.set_point(angle),
             travel: self.motion.position(),
-            speed: self.motion.speed(),
             demanded_speed: self.phase.speed(),
             demanded_flow: self.demanded_flow,
+            speed: self.motion.speed(),
             drop: self.load.drop(),
             lift_duty: duties.lift,
             lower_duty: duties.lower,

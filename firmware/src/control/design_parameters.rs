@@ -17,9 +17,9 @@ parameter_group! {
         /// Piston area: turns piston speed into flow. 76 mm bore.
         piston_area: SquareMillimetre = 4537, 500..=50_000;
         /// Time constant of solenoid and spool: what flows on after the coil has been told to stop.
-        spool_lag: Millisecond = 45, 0..=500;
+        spool_lag: Millisecond = 40, 0..=500;
         /// Hysteresis of coil and spool: how much further the current has to fall than it rose for the same flow. 2 % of the range, half of what valves have with dither: believing too much of it is worse than too little.
-        hysteresis: MilliAmp = 65, 0..=1_000;
+        hysteresis: MilliAmp = 80, 0..=1_000;
         /// Pressure drop at which the lowering table was measured.
         reference_drop: MilliBar = 15_000, 1_000..=250_000;
         /// Drop taken for lowering until a sensor or a lowering move tells better: a 150 kg load holds near it.
@@ -105,7 +105,13 @@ parameter_group! {
     /// The motion estimator.
     MotionParameters, "motion" {
         /// Time constant of the position estimate: averages the angle noise to a sixth, and stays below the load's own frequency.
-        position_time: Millisecond = 18, 1..=500;
+        position_time: Millisecond = 30, 1..=500;
+        /// The same while lowering, where load and oil make the map more wrong than the swing does.
+        lowering_time: Millisecond = 17, 1..=500;
+        /// How far the hitch trails a lift that sets in without any lag of the spool: the load swings back on its oil.
+        load_trail: Microsecond = 3_500, 0..=100_000;
+        /// Furthest that a machine's spools may be slower or faster than the calibration says.
+        lag_limit: Millisecond = 35, 0..=200;
         /// Largest error of the valve map that the estimator may blame on it: 0.25 A of threshold at 15 bar is 34 mm/s.
         bias_limit: MicrometrePerSecond = 80_000, 0..=500_000;
     }
@@ -127,7 +133,7 @@ parameter_group! {
         /// Speed per remaining distance at the end of the approach: 7 Hz, below the frequency at which a load swings on its oil.
         approach_gain: PerSecond = 46, 1..=200;
         /// Slowest approach: cutting the coil at this speed swings the pressure of 250 kg by 6 bar, less than a normal edge.
-        creep_speed: MicrometrePerSecond = 6_400, 0..=100_000;
+        creep_speed: MicrometrePerSecond = 8_000, 0..=100_000;
         /// Fastest lifting: beyond the valve's saturation, so it doesn't limit.
         lift_speed: MicrometrePerSecond = 150_000, 1_000..=1_000_000;
         /// Fastest lowering: 250 kg through the fully open valve; lower it for slow implements.
@@ -152,6 +158,10 @@ parameter_group! {
         rate_limit: MilliDegreePerSecond = 15_000, 100..=200_000;
         /// Ramp of the rocker speed: full speed in half a second, with room for second thoughts.
         rate_slope: MilliDegreePerSecond = 30_000, 1_000..=1_000_000;
+        /// Time of the integral on what is left of the speed's error: slower than estimate and spool together.
+        trim_time: Millisecond = 250, 20..=10_000;
+        /// Most that it takes off or adds: what 0.1 A are on the steep part of the lowering valve's curve.
+        trim_limit: MicrometrePerSecond = 14_000, 0..=200_000;
     }
 }
 

@@ -6,58 +6,70 @@
 //! [`HydraulicParameters::drop_learning`]. The load stays on the hitch between moves, so the estimate does.
 
 use super::design_parameters::HydraulicParameters;
-use super::fixed::{Divisor, mul_div};
+use super::fixed::{Divisor, mul_div, mul_shift_16};
 use super::motion::Motion;
 use super::units::{MicrometrePerSecond, MilliBar};
+use super::valve_logic::{Direction, Phase};
 
 /// Sinking slower than this (of the map's 280 mm/s) says more about the threshold than about the load.
 const TELLING_SPEED: MicrometrePerSecond = MicrometrePerSecond(25_000);
 
+/// Largest factor that sinking may teach, and its inverse the smallest.
+const MOST_FACTOR: i32 = 10;
+
+/// The learnt factor's one.
+const ONE: i32 = 1 << 16;
+
 /// Pressure drop over the lowering valve.
 #[derive(Clone, Copy, Debug)]
 pub struct LoadEstimate {
-    /// In microbars, so that slow learning isn't rounded away.
+    /// What a sensor says at rest, or the calibration assumes; in microbars, so that slow changes aren't rounded away.
+    resting_microbar: i32,
+    /// What sinking has taught to multiply that by, in units of 2^-16: the load, and how thin the oil is.
+    factor: i32,
+    /// The product.
     microbar: i32,
-    /// The sensor's last sample.
-    sensor: Option<MilliBar>,
+    /// Whether the sensor has been seen.
+    has_sensor: bool,
 }
 
 impl LoadEstimate {
     /// Starts at the calibration's assumption.
     #[must_use]
     pub fn new(hydraulics: &HydraulicParameters) -> Self {
+        let assumed = hydraulics.assumed_drop.0.saturating_mul(1000);
         Self {
-            microbar: hydraulics.assumed_drop.0.saturating_mul(1000),
-            sensor: None,
+            resting_microbar: assumed,
+            factor: ONE,
+            microbar: assumed,
+            has_sensor: false,
         }
     }
 
-    /// One step: follows the sensor if there is one, else learns from `motion` while it is lowering.
+    /// One step: at rest follows the sensor if there is one, while lowering learns from `motion`.
     pub fn update(
         &mut self,
         sensor: Option<MilliBar>,
-        lowering: bool,
+        phase: Phase,
         motion: &Motion,
         hydraulics: &HydraulicParameters,
     ) {
-        match (sensor, self.sensor) {
-            (Some(pressure), None) => self.microbar = pressure.0.saturating_mul(1000),
-            (Some(pressure), Some(_)) => self.follow(pressure, hydraulics),
-            (None, _) if lowering => self.learn(motion, hydraulics),
-            (None, _) => {}
+        match (phase, sensor) {
+            (
+                Phase::Moving {
+                    direction: Direction::Lower,
+                    ..
+                },
+                _,
+            ) => self.learn(motion, hydraulics),
+            (Phase::Holding, Some(pressure)) => self.follow(pressure, hydraulics),
+            _ => return,
         }
-        self.sensor = sensor;
         let low = hydraulics.smallest_drop.0.saturating_mul(1000);
         let high = hydraulics.largest_drop.0.saturating_mul(1000);
-        self.microbar = self.microbar.max(low).min(high);
-    }
-
-    /// The drop at this moment, for telling what flows: the load's inertia can treble the pressure within the
-    /// time in which [`Self::drop`] follows.
-    #[must_use]
-    pub fn present_drop(&self, hydraulics: &HydraulicParameters) -> MilliBar {
-        let drop = self.sensor.unwrap_or_else(|| self.drop());
-        drop.limited(hydraulics.smallest_drop, hydraulics.largest_drop)
+        self.microbar = mul_shift_16(self.resting_microbar, self.factor)
+            .max(low)
+            .min(high);
     }
 
     /// The drop that the lowering map should use.
@@ -68,12 +80,14 @@ impl LoadEstimate {
 
     /// Low-passes the sensor.
     fn follow(&mut self, pressure: MilliBar, hydraulics: &HydraulicParameters) {
-        let error = pressure
-            .0
-            .saturating_mul(1000)
-            .saturating_sub(self.microbar);
+        let pressure = pressure.0.saturating_mul(1000);
+        if !self.has_sensor {
+            self.has_sensor = true;
+            self.resting_microbar = pressure;
+        }
+        let error = pressure.saturating_sub(self.resting_microbar);
         let step = hydraulics.pressure_filter.divisor().divide(error);
-        self.microbar = self.microbar.saturating_add(step);
+        self.resting_microbar = self.resting_microbar.saturating_add(step);
     }
 
     fn learn(&mut self, motion: &Motion, hydraulics: &HydraulicParameters) {
@@ -82,12 +96,16 @@ impl LoadEstimate {
             return;
         }
         let excess = (-motion.bias()).limited(-model, model);
+        // Speeds in steps of 64 um/s: the ECU divides 32 bits and not 64.
         let twice = mul_div(
-            self.microbar,
-            excess.0.saturating_mul(2),
-            Divisor::at_least_one(model.0),
+            self.factor,
+            excess.0 / 32,
+            Divisor::at_least_one(model.0 / 64),
         );
         let step = hydraulics.drop_learning.divisor().divide(twice);
-        self.microbar = self.microbar.saturating_add(step);
+        self.factor = self
+            .factor
+            .saturating_add(step)
+            .clamp(ONE / MOST_FACTOR, ONE * MOST_FACTOR);
     }
 }

@@ -9,16 +9,22 @@
 //! ```
 //!
 //! `b` is what the map gets wrong (a shifted threshold, an unknown load); it is only learnt while the
-//! valves are meant to move something. Position is kept in nanometres: a speed in um/s is then just
+//! valves are meant to move something. A load that sinks follows its valve by [`super::free_fall`]. How slow the spools of
+//! this machine are is learnt from how lifts set in ([`super::trail`]) and how moves end ([`super::run_on`]), and kept
+//! from move to move. Position is kept in nanometres: a speed in um/s is then just
 //! the way of one millisecond.
 
 use super::closing::ClosingCurve;
 use super::design_parameters::{HydraulicParameters, MotionParameters};
 use super::fixed::Divisor;
+use super::free_fall::{next_speed, run_out};
 use super::safety::CoilCurrents;
+use super::trail::Trail;
 use super::units::{
-    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliAmp, SquareMillimetre,
+    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp, Millisecond,
+    SquareMillimetre,
 };
+use super::valve_logic::Direction;
 use super::valve_map::ValveMap;
 
 /// How both valves close.
@@ -37,7 +43,19 @@ pub struct Motion {
     position_nm: i32,
     bias_sum_nm: i32,
     bias: MicrometrePerSecond,
+    /// What the valves give now.
     model_speed: MicrometrePerSecond,
+    /// The part of it that goes down.
+    sinking: MicrometrePerSecond,
+    /// What their openings give in the long run.
+    opening_speed: MicrometrePerSecond,
+    /// A move is coming to its end.
+    slowing: bool,
+    trail: Trail,
+    /// How much slower than the calibration says the spools of lift and lowering valve are.
+    slower: [Microsecond; 2],
+    /// The same in steps.
+    slower_steps: [Millisecond; 2],
     lift_spool: Spool,
     lower_spool: Spool,
     /// Currents that the spools have followed to, lift and lowering.
@@ -52,11 +70,18 @@ impl Motion {
             self.started = true;
             self.position_nm = measured_nm;
         }
-        let position_time = parameters.position_time.divisor();
+        if learn && self.sinking == MicrometrePerSecond::ZERO {
+            self.learn_lag(measured, parameters);
+        }
+        let time = match self.sinking > MicrometrePerSecond::ZERO {
+            true => parameters.lowering_time,
+            false => parameters.position_time,
+        };
+        let position_time = time.divisor();
         self.position_nm = self.position_nm.saturating_add(self.speed().0);
         let error = measured_nm.saturating_sub(self.position_nm);
         self.position_nm = self.position_nm.saturating_add(position_time.divide(error));
-        let bias_time = bias_divisor(parameters);
+        let bias_time = bias_divisor(time);
         if learn {
             let limit = parameters.bias_limit.scaled(bias_time.1, Divisor::ONE).0;
             self.bias_sum_nm = self
@@ -72,6 +97,51 @@ impl Motion {
         self.bias = MicrometrePerSecond(bias_time.0.divide(self.bias_sum_nm));
     }
 
+    /// A lift that sets in tells how slow this machine's spools are.
+    fn learn_lag(&mut self, measured: Micrometre, parameters: &MotionParameters) {
+        let found = self.trail.step(measured, self.model_speed, self.slowing);
+        if let Some(further) = found {
+            let further = further - parameters.load_trail;
+            let [lift, lower] = &mut self.slower;
+            *lift = *lift + further;
+            // Both valves are alike, until the lowering valve has told more of its own.
+            if *lower == Microsecond::ZERO {
+                *lower = *lift;
+            }
+            self.limit_lag(parameters);
+        }
+    }
+
+    /// The spool of one valve has turned out to be slower by so much.
+    pub fn correct_lag(
+        &mut self,
+        direction: Direction,
+        further: Microsecond,
+        parameters: &MotionParameters,
+    ) {
+        let [lift, lower] = &mut self.slower;
+        let slower = match direction {
+            Direction::Lift => lift,
+            Direction::Lower => lower,
+        };
+        *slower = *slower + further;
+        self.limit_lag(parameters);
+    }
+
+    fn limit_lag(&mut self, parameters: &MotionParameters) {
+        let limit = Microsecond(parameters.lag_limit.0.saturating_mul(1000));
+        self.slower = self.slower.map(|slower| slower.limited(-limit, limit));
+        self.slower_steps = self
+            .slower
+            .map(|slower| Millisecond(Divisor::THOUSAND.divide(slower.0)));
+    }
+
+    /// Lags of this machine's spools, lift and lowering.
+    fn lags(&self, hydraulics: &HydraulicParameters) -> [Millisecond; 2] {
+        self.slower_steps
+            .map(|slower| (hydraulics.spool_lag + slower).max(Millisecond::ZERO))
+    }
+
     /// Takes in the currents that have just been sent to the coils; `slowing`: a move is coming to its end.
     pub fn drive(
         &mut self,
@@ -80,17 +150,22 @@ impl Motion {
         map: &ValveMap<'_>,
         hydraulics: &HydraulicParameters,
     ) {
-        let lag = hydraulics.spool_lag.divisor();
+        let [lift_lag, lower_lag] = self.lags(hydraulics).map(Millisecond::divisor);
         let lift = self
             .lift_spool
-            .follow(currents.lift, hydraulics.hysteresis, lag);
+            .follow(currents.lift, hydraulics.hysteresis, lift_lag);
         let lower = self
             .lower_spool
-            .follow(currents.lower, hydraulics.hysteresis, lag);
+            .follow(currents.lower, hydraulics.hysteresis, lower_lag);
         let up = map.lift.flow(lift);
         let down = map.scale.to_present(map.lower.flow(lower));
         let before = self.model_speed;
-        self.model_speed = piston_speed(up - down, hydraulics.piston_area);
+        let area = hydraulics.piston_area;
+        let settled = piston_speed(down, area);
+        self.sinking = next_speed(self.sinking, settled);
+        self.opening_speed = piston_speed(up, area) - settled;
+        self.model_speed = piston_speed(up, area) - self.sinking;
+        self.slowing = slowing;
         if slowing {
             self.shrink_bias(before);
         }
@@ -111,6 +186,7 @@ impl Motion {
 
     /// Forgets what the map got wrong: the next move may go the other way.
     pub fn forget_bias(&mut self) {
+        self.trail = Trail::from(self.position_nm);
         self.bias_sum_nm = 0;
         self.bias = MicrometrePerSecond::ZERO;
     }
@@ -142,11 +218,22 @@ impl Motion {
     /// Where the piston comes to rest if the demanded speed is zero from now on.
     ///
     /// With a first-order spool, `v' = (u - v) / T`, the point `P = x + T v` moves with exactly the
-    /// demanded speed: `P' = v + T v' = u`. Control of `P` needs no allowance for the lag.
+    /// demanded speed: `P' = v + T v' = u`. Control of `P` needs no allowance for the lag. A load that sinks runs out by
+    /// what its inertia adds ([`run_out`]).
     #[must_use]
     pub fn resting_point(&self, hydraulics: &HydraulicParameters) -> Micrometre {
-        let over_run = Micrometre(self.speed().0).scaled(hydraulics.spool_lag.0, Divisor::THOUSAND);
-        self.position() + over_run
+        self.position() + self.over_run(hydraulics) - run_out(self.sinking)
+    }
+
+    /// What the spool's lag adds to the way.
+    fn over_run(&self, hydraulics: &HydraulicParameters) -> Micrometre {
+        let speed = self.opening_speed + self.bias;
+        let [lift, lower] = self.lags(hydraulics);
+        let lag = match self.opening_speed < MicrometrePerSecond::ZERO {
+            true => lower,
+            false => lift,
+        };
+        Micrometre(speed.0).scaled(lag.0, Divisor::THOUSAND)
     }
 
     /// Where the piston comes to rest if the coil is cut now.
@@ -154,13 +241,13 @@ impl Motion {
     /// The spool then makes for zero current, not for its threshold, and is shut sooner; see [`ClosingCurve`].
     #[must_use]
     pub fn cut_point(&self, closing: &Closing, hydraulics: &HydraulicParameters) -> Micrometre {
-        let full = self.resting_point(hydraulics) - self.position();
         let [lift, lower] = self.spools;
         let share = match self.model_speed < MicrometrePerSecond::ZERO {
             true => closing.lower.share(lower),
             false => closing.lift.share(lift),
         };
-        self.position() + full.scaled(share, Divisor::THOUSAND)
+        self.position() + self.over_run(hydraulics).scaled(share, Divisor::THOUSAND)
+            - run_out(self.sinking)
     }
 }
 
@@ -198,8 +285,8 @@ impl Slack {
 }
 
 /// `4 T^2` as divisor and as number: from the sum of position errors to the bias.
-fn bias_divisor(parameters: &MotionParameters) -> (Divisor, i32) {
-    let time = parameters.position_time.0.max(1);
+fn bias_divisor(time: Millisecond) -> (Divisor, i32) {
+    let time = time.0.max(1);
     let product = time.saturating_mul(time).saturating_mul(4);
     (Divisor::at_least_one(product), product)
 }

@@ -2,9 +2,11 @@
 //!
 //! The asked rate is ramped, turned into piston speed by the linkage, and slowed down before the ends of
 //! travel with the same profile as position control. The motion estimate's bias corrects what the
-//! valve map gets wrong, so the speed doesn't depend on the load.
+//! valve map gets wrong, so the speed doesn't depend on the load. Where a valve's hysteresis leaves a rest of
+//! error, as on the kink of a curve, a slow integral takes it away once the ramp is over.
 
 use super::calibration::Calibration;
+use super::design_parameters::RateParameters;
 use super::fixed::Divisor;
 use super::motion::Motion;
 use super::position::approach_speed;
@@ -16,6 +18,8 @@ use super::valve_logic::{Demand, Direction};
 pub struct RateControl {
     /// Ramped rate in millionths of a degree a second, so that slow ramps aren't rounded away.
     rate_micro: i32,
+    /// Piston speed along the way that the valve has to be asked for less, in nanometres a second.
+    trim_nm_per_s: i32,
 }
 
 impl RateControl {
@@ -41,16 +45,37 @@ impl RateControl {
         let rate = MilliDegreePerSecond(Divisor::THOUSAND.divide(self.rate_micro));
         let direction = Direction::of(rate.0);
         let wanted = calibration.linkage.piston_speed(angle, rate).magnitude();
+        let allowed = speed_before_limit(direction, upper_limit, motion, calibration);
+        if self.rate_micro == goal && wanted < allowed {
+            self.integrate(
+                MicrometrePerSecond(direction.sign(motion.speed().0)) - wanted,
+                parameters,
+            );
+        }
         Demand {
             direction,
-            speed: wanted.min(speed_before_limit(
-                direction,
-                upper_limit,
-                motion,
-                calibration,
-            )),
+            speed: wanted.min(allowed),
             acceleration: calibration.position.lift_acceleration,
         }
+    }
+
+    fn integrate(&mut self, excess: MicrometrePerSecond, parameters: &RateParameters) {
+        let limit = parameters.trim_limit.0.saturating_mul(1000);
+        let step = parameters
+            .trim_time
+            .divisor()
+            .divide(excess.0.saturating_mul(1000));
+        self.trim_nm_per_s = self
+            .trim_nm_per_s
+            .saturating_add(step)
+            .max(limit.saturating_neg())
+            .min(limit);
+    }
+
+    /// Piston speed along the way that the valve has to be asked for less.
+    #[must_use]
+    pub fn trim(&self) -> MicrometrePerSecond {
+        MicrometrePerSecond(Divisor::THOUSAND.divide(self.trim_nm_per_s))
     }
 }
 
