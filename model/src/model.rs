@@ -96,6 +96,19 @@ impl Model {
         }
     }
 
+    /// The same model with stiff oil and no inertia.
+    #[must_use]
+    pub fn quasi_static(&self) -> Self {
+        let constants = Constants {
+            dynamics: Dynamics::Steady,
+            ..(*self.constants).clone()
+        };
+        Self {
+            constants: Arc::new(constants),
+            ..self.clone()
+        }
+    }
+
     /// The same model with other terms of a user's own.
     #[must_use]
     pub fn with_terms(&self, terms: Vec<&'static TermEffect>) -> Self {

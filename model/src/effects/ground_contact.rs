@@ -47,7 +47,7 @@ pub static GROUND_CONTACT: Described = Described {
         Channel::RockerAngle,
     ],
     needs: None,
-    erratic: true,
+    erratic: false,
     attach,
 };
 

@@ -36,4 +36,5 @@ pub static LOAD_INERTIA: Described = Described {
 
 fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
     sites.inertia_share += values[0];
+    sites.sudden = true;
 }

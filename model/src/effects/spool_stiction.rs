@@ -49,6 +49,7 @@ pub static SPOOL_STICTION: Described = Described {
 };
 
 fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+    sites.sudden = true;
     sites.currents.push(Box::new(StickSlip {
         band_a: values[0],
         jump_a: values[0] * values[1],

@@ -7,7 +7,7 @@ use super::evidence::{detectability, log_odds, variance_inflation};
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate_weighted, refine, sketch};
 use super::frame::Frame;
-use super::jacobian::{Jacobian, huber_residuals, square_sum};
+use super::jacobian::{Jacobian, SlowColumns, huber, huber_residuals, square_sum};
 use super::starts::{has_valleys, starts};
 use crate::effects::{AddedEffect, Effect, Parameter};
 use crate::model::Model;
@@ -93,12 +93,24 @@ pub fn try_effects(
     effects: &[&'static dyn Effect],
     progress: &(dyn Fn(&str) + Sync),
 ) -> Vec<Candidate> {
-    let sketches = sketches(
+    let base_residuals = huber(base.residuals.clone());
+    let slow = SlowColumns::new(
         experiment,
         model,
-        base,
-        screened(experiment, model, base, effects),
+        &base.weights,
+        &base.estimate,
+        &base_residuals,
     );
+    let jacobian = Jacobian::with_slow_columns(
+        experiment,
+        model,
+        &base.weights,
+        &base.estimate,
+        &base_residuals,
+        &slow,
+    );
+    let screened = screened(experiment, model, base, &jacobian, effects);
+    let sketches = sketches(experiment, model, base, screened);
     let best = sketches.first().map_or(base.cost, |first| first.cost);
     let hopeless = limit(base.cost, best, HOPELESS);
     let mut candidates: Vec<Candidate> = sketches
@@ -114,7 +126,7 @@ pub fn try_effects(
             } else {
                 let weights = base.weights.clone();
                 let fit = evaluate_weighted(experiment, model, sketch.estimate, weights);
-                weigh(experiment, model, base, sketch.effect, fit)
+                weigh_by(experiment, model, base, sketch.effect, fit, &slow)
             };
             progress(candidate.effect.id());
             candidate
@@ -181,13 +193,13 @@ fn screened(
     experiment: &Experiment,
     model: &Model,
     base: &Fit,
+    jacobian: &Jacobian,
     effects: &[&'static dyn Effect],
 ) -> Vec<Screened> {
-    let jacobian = Jacobian::new(experiment, model, &base.weights, &base.estimate);
     let mut screened: Vec<Screened> = effects
         .par_iter()
         .map(|&effect| {
-            let (predicted, starts) = starts(experiment, model, base, &jacobian, effect);
+            let (predicted, starts) = starts(experiment, model, base, jacobian, effect);
             Screened {
                 effect,
                 predicted,
@@ -288,8 +300,30 @@ pub fn weigh(
     effect: &'static dyn Effect,
     fit: Fit,
 ) -> Candidate {
+    let residuals = huber(fit.residuals.clone());
+    let slow = SlowColumns::new(experiment, model, &fit.weights, &fit.estimate, &residuals);
+    weigh_by(experiment, model, base, effect, fit, &slow)
+}
+
+/// [`weigh`] with the columns of clocks and loads from a point nearby.
+fn weigh_by(
+    experiment: &Experiment,
+    model: &Model,
+    base: &Fit,
+    effect: &'static dyn Effect,
+    fit: Fit,
+    slow: &SlowColumns,
+) -> Candidate {
     let index = fit.estimate.effects.len() - 1;
-    let jacobian = Jacobian::new(experiment, model, &fit.weights, &fit.estimate);
+    let residuals = huber(fit.residuals.clone());
+    let jacobian = Jacobian::with_slow_columns(
+        experiment,
+        model,
+        &fit.weights,
+        &fit.estimate,
+        &residuals,
+        slow,
+    );
     let compared = fit.weights.count() as f64;
     let variance = (square_sum(&fit.residuals) / compared).max(1.0);
     let signatures: Vec<Signature> = (0..effect.parameters().len())

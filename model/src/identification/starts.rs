@@ -26,8 +26,8 @@ const SAME_VALLEY: f64 = 0.08;
 /// Most promises of secants that are put to the test at a time.
 const MOST_PROMISES: usize = 4;
 
-/// A promise is broken if less than this share of it is there.
-const BROKEN: f64 = 0.1;
+/// A change of cost that is no more than this is none.
+const NOTHING: f64 = 1.0;
 
 /// Error from which an erratic effect is looked for in fine steps.
 const SCANNED: f64 = 1.15;
@@ -130,11 +130,13 @@ impl Search<'_> {
         for _ in 0..MOST_PROMISES {
             ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
             match ranked.first_mut() {
-                Some(first) => match first.promised_from {
-                    Some(end) => *first = self.kept(first, end),
-                    None => return,
-                },
-                None => return,
+                Some(first) if self.base.cost - first.cost > WORTH_A_FIT => {
+                    match first.promised_from {
+                        Some(end) => *first = self.kept(first, end),
+                        None => return,
+                    }
+                }
+                _ => return,
             }
         }
         ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -145,12 +147,11 @@ impl Search<'_> {
     fn kept(&self, promise: &Start, end: f64) -> Start {
         let size = promise.last();
         let start = self.simulated(size.clone()).1;
-        let (gain, promised) = (self.base.cost - start.cost, self.base.cost - promise.cost);
-        if end <= 1.0 || gain > BROKEN * promised {
+        if end <= 1.0 || (self.base.cost - start.cost).abs() > NOTHING {
             return start;
         }
-        let cost_at = |share: f64| self.simulated(scaled(&size, share)).1;
-        golden_section(cost_at, 1.0, end).unwrap_or(start)
+        let start_at = |share: f64| self.simulated(scaled(&size, share)).1;
+        golden_section(start_at, 1.0, end)
     }
 
     /// The best start's effect if it explains enough to be worth a closer look.
@@ -173,20 +174,22 @@ impl Search<'_> {
 }
 
 /// The best of some starts between two sizes: a golden section search.
-fn golden_section(start_at: impl Fn(f64) -> Start, mut low: f64, mut high: f64) -> Option<Start> {
+fn golden_section(start_at: impl Fn(f64) -> Start, mut low: f64, mut high: f64) -> Start {
     let inner = 0.5 * (5f64.sqrt() - 1.0);
-    let mut tried: Vec<Start> = Vec::new();
+    let between = |from: f64, to: f64| from + inner * (to - from);
+    let (mut left, mut right) = (start_at(between(high, low)), start_at(between(low, high)));
     for _ in 0..SECTIONS {
-        let [left, right] = [high - inner * (high - low), low + inner * (high - low)];
-        let [at_left, at_right] = [left, right].map(&start_at);
-        if at_left.cost < at_right.cost {
-            high = right;
+        if left.cost < right.cost {
+            high = between(low, high);
+            right = left;
+            left = start_at(between(high, low));
         } else {
-            low = left;
+            low = between(high, low);
+            left = right;
+            right = start_at(between(low, high));
         }
-        tried.extend([at_left, at_right]);
     }
-    tried.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost))
+    if left.cost < right.cost { left } else { right }
 }
 
 /// An effect at a multiple of its size.

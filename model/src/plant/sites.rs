@@ -134,6 +134,8 @@ pub struct Sites {
     pub weight_factor: Vec<Law>,
     /// Inertia that comes on top of the model's own, as a share of load and dead weight.
     pub inertia_share: f64,
+    /// Whether something jumps or is accelerated, which the quasi-static plant's long steps would smear.
+    pub sudden: bool,
     /// Ground under the hitch.
     pub ground: Option<Ground>,
     /// Instruments, in order.
@@ -161,6 +163,7 @@ impl Default for Sites {
             friction: Vec::new(),
             weight_factor: Vec::new(),
             inertia_share: 0.0,
+            sudden: false,
             ground: None,
             sensors: Vec::new(),
             terms: Vec::new(),

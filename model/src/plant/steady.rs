@@ -15,9 +15,9 @@ use crate::expression::Place;
 /// Longest step, s: half a sample of a 50 Hz log.
 const LONGEST_STEP_S: f64 = 0.01;
 
-/// The same with inertia, s: the pressure goes with the change of speed over the last step, not with that of the last
-/// half sample.
-const LONGEST_STEP_WITH_INERTIA_S: f64 = 0.002;
+/// The same where something is sudden, s: a spool that jumps, or a pressure that goes with the change of speed over the
+/// last step.
+const LONGEST_SUDDEN_STEP_S: f64 = 0.002;
 
 /// Speed beyond all others by which terms of a user's own could move the piston, m/s.
 const FASTEST_M_S: f64 = 0.5;
@@ -25,10 +25,10 @@ const FASTEST_M_S: f64 = 0.5;
 /// Longest step, s, with what the effects attach.
 #[must_use]
 pub fn longest_step_s(sites: &Sites) -> f64 {
-    if sites.inertia_share == 0.0 {
-        LONGEST_STEP_S
+    if sites.sudden {
+        LONGEST_SUDDEN_STEP_S
     } else {
-        LONGEST_STEP_WITH_INERTIA_S
+        LONGEST_STEP_S
     }
 }
 
