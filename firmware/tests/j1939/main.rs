@@ -6,3 +6,4 @@ mod diagnostics;
 mod flood;
 mod messages;
 mod remote;
+mod transport;
