@@ -22,7 +22,7 @@ pub static LIFT: FlowScale = FlowScale {
     id: "lift-flow-scale",
     title: "Scaled flow of the lift valve",
     shows: "lifting at every current alike in proportion: flow and speed; the same as another margin of the \
-            compensator or another discharge coefficient",
+            compensator, another discharge coefficient or a stiffer spring of the check valve",
 };
 
 /// Flow scale of the lowering valve.
