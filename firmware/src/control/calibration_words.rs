@@ -119,7 +119,7 @@ const fn linkage_range(word: usize) -> (i32, i32) {
 }
 
 fn scalar_range(index: usize) -> Option<WordRange> {
-    SCALARS.get(index).map(|scalar| scalar.range)
+    SCALARS.get(index).map(Scalar::range)
 }
 
 /// The first scalar of a block that is outside its range, with the name of its group.
@@ -131,7 +131,7 @@ pub(super) fn scalar_out_of_range(calibration: &Calibration) -> Option<(&'static
         if tables_left > 0 {
             tables_left -= 1;
         } else if let Some((index, scalar)) = scalars.next()
-            && !(scalar.range.min..=scalar.range.max).contains(word)
+            && !(scalar.min..=scalar.max).contains(word)
         {
             outside = outside.or(Some((index, *word)));
         }
@@ -186,7 +186,7 @@ pub fn items() -> impl Iterator<Item = Item> + Clone {
     let scalars = (SCALARS_WORD..CALIBRATION_WORDS)
         .zip(&SCALARS)
         .map(|(first, scalar)| Item {
-            key: scalar.key,
+            key: scalar.key(),
             first,
             count: 1,
         });
@@ -214,8 +214,27 @@ const TABLES: [Item; 3] = [
 /// What the ECU itself needs of a scalar: names and reasons stay out of its flash.
 #[derive(Clone, Copy)]
 struct Scalar {
-    key: u32,
-    range: WordRange,
+    /// Above the 24 bits of the key, one that says whether it may be changed while the hitch moves: a byte of its own
+    /// would take three more.
+    key_and_live: u32,
+    min: i32,
+    max: i32,
+}
+
+impl Scalar {
+    const LIVE: u32 = 1 << 24;
+
+    const fn key(&self) -> u32 {
+        self.key_and_live & (Self::LIVE - 1)
+    }
+
+    const fn range(&self) -> WordRange {
+        WordRange {
+            min: self.min,
+            max: self.max,
+            live: self.key_and_live & Self::LIVE != 0,
+        }
+    }
 }
 
 const SCALAR_COUNT: usize = CALIBRATION_WORDS - SCALARS_WORD - 1;
@@ -224,12 +243,9 @@ static SCALARS: [Scalar; SCALAR_COUNT] = scalars();
 
 const fn scalars() -> [Scalar; SCALAR_COUNT] {
     let nothing = Scalar {
-        key: 0,
-        range: WordRange {
-            min: 0,
-            max: 0,
-            live: false,
-        },
+        key_and_live: 0,
+        min: 0,
+        max: 0,
     };
     let mut all = [nothing; SCALAR_COUNT];
     let (mut next, mut of_group) = (0, 0);
@@ -238,18 +254,16 @@ const fn scalars() -> [Scalar; SCALAR_COUNT] {
         let mut index = 0;
         while index < group.parameters.len() {
             let parameter = group.parameters[index];
+            let key = key(
+                group.name,
+                parameter.name,
+                parameter.suffix,
+                parameter.counts_per_unit,
+            );
             all[next] = Scalar {
-                key: key(
-                    group.name,
-                    parameter.name,
-                    parameter.suffix,
-                    parameter.counts_per_unit,
-                ),
-                range: WordRange {
-                    min: parameter.min,
-                    max: parameter.max,
-                    live: group.live,
-                },
+                key_and_live: if group.live { key | Scalar::LIVE } else { key },
+                min: parameter.min,
+                max: parameter.max,
             };
             next += 1;
             index += 1;
@@ -279,7 +293,7 @@ pub(crate) const fn hash() -> u32 {
     let all = scalars();
     let mut index = 0;
     while index < all.len() {
-        hash = fnv::number(hash, all[index].key.cast_signed());
+        hash = fnv::number(hash, all[index].key().cast_signed());
         index += 1;
     }
     hash
