@@ -2,8 +2,8 @@
 use clap::{Parser, Subcommand};
 
 use crate::commands::{
-    add, calibrate, compare, controller, diagnose, ecu, effects, explain, loop_, main_job, paper,
-    simulate, tune,
+    add, calibrate, compare, controller, diagnose, ecu, effects, explain, flash_calibration, loop_,
+    main_job, paper, record, simulate, tune,
 };
 use crate::error::Error;
 use crate::output;
@@ -50,6 +50,10 @@ pub enum Command {
     Controller(controller::Args),
     /// The real firmware image on an emulated Cortex-M4, plant attached, CAN on a TCP port
     Ecu(ecu::Args),
+    /// A calibration into a running ECU, stored and read back
+    FlashCalibration(flash_calibration::Args),
+    /// A campaign from a running ECU
+    Record(record::Args),
     /// Tunes position and rate control against the plant over loads and valve spread
     Tune(tune::Args),
     /// Turns an identified model into the firmware's calibration: valve map, thresholds, limits
@@ -73,6 +77,8 @@ impl Command {
             Self::Loop(args) => loop_::run(args),
             Self::Controller(args) => controller::run(args),
             Self::Ecu(args) => ecu::run(args),
+            Self::FlashCalibration(args) => flash_calibration::run(args),
+            Self::Record(args) => record::run(args),
             Self::Tune(args) => tune::run(args),
             Self::Calibrate(args) => calibrate::run(args),
         }

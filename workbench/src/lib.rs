@@ -23,3 +23,4 @@ pub mod status_line;
 pub mod text;
 pub mod tuning;
 pub mod valve_survey;
+pub mod xcp_tool;

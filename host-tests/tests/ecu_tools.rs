@@ -1,0 +1,119 @@
+//! From the ECU to a campaign and from a calibration to the ECU, by the programs that a user has.
+
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Child, ChildStdin, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use hitch_firmware::storage::CalibrationStore;
+use hitch_model::campaign::Campaign;
+use hitch_workbench::ecu::CutFlash;
+use host_tests::program::{hitch, run};
+
+/// A running ECU, which ends with the test.
+struct LiveEcu {
+    child: Child,
+    orders: ChildStdin,
+    /// HOST:PORT of its bus.
+    bus: String,
+}
+
+impl LiveEcu {
+    fn start(folder: &Path) -> Self {
+        let mut child = hitch()
+            .args(["ecu", "--host", "--can", "127.0.0.1:0", "--seconds", "60"])
+            .args(["--flash", "flash.bin"])
+            .current_dir(folder)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        let said = child.stderr.take().unwrap();
+        BufReader::new(said).read_line(&mut line).unwrap();
+        let bus = line.split_whitespace().last().unwrap().to_owned();
+        Self {
+            orders: child.stdin.take().unwrap(),
+            child,
+            bus,
+        }
+    }
+
+    fn order(&mut self, order: &str) {
+        writeln!(self.orders, "{order}").unwrap();
+    }
+
+    /// Ends it as an operator does, so that it keeps its flash.
+    fn quit(&mut self) {
+        self.order("quit");
+        assert!(self.child.wait().unwrap().success());
+    }
+}
+
+impl Drop for LiveEcu {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn said(output: &std::process::Output) -> String {
+    let text = [output.stdout.clone(), output.stderr.clone()].concat();
+    String::from_utf8(text).unwrap()
+}
+
+#[test]
+fn a_campaign_is_recorded_and_a_calibration_comes_back_from_flash() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path();
+    std::fs::write(
+        folder.join("c.toml"),
+        "format = 1\n[position]\napproach_gain_per_s = 33\n",
+    )
+    .unwrap();
+    let mut ecu = LiveEcu::start(folder);
+    let bus = ecu.bus.clone();
+    // Picked up after half a second, and then at rest.
+    sleep(Duration::from_millis(1_200));
+    let recorder = hitch()
+        .args(["record", "--can", &bus, "--out", "c", "--load", "150"])
+        .args(["--temperature", "40", "--seconds", "3"])
+        .current_dir(folder)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    sleep(Duration::from_millis(800));
+    ecu.order("lever 105");
+    let recorded = recorder.wait_with_output().unwrap();
+    assert!(recorded.status.success(), "{}", said(&recorded));
+    let campaign = Campaign::load(&folder.join("c")).unwrap();
+    assert_eq!(campaign.runs.len(), 1);
+    let log = std::fs::read_to_string(folder.join("c/run_01.csv")).unwrap();
+    let angles_deg: Vec<f64> = log
+        .lines()
+        .skip(1)
+        .map(|row| row.rsplit(',').next().unwrap().parse().unwrap())
+        .collect();
+    assert!(angles_deg.len() >= 145, "{} samples", angles_deg.len());
+    assert!((angles_deg[0] - 90.0).abs() < 0.5, "{}", angles_deg[0]);
+    let last_deg = angles_deg[angles_deg.len() - 1];
+    assert!((last_deg - 105.0).abs() < 0.5, "{last_deg}");
+
+    let write = ["flash-calibration", "c.toml", "--can", &bus];
+    let refused = run(folder, &write);
+    assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
+    assert!(said(&refused).contains("service on"), "{}", said(&refused));
+    ecu.order("service on");
+    ecu.order("lock on");
+    sleep(Duration::from_millis(100));
+    let written = run(folder, &write);
+    assert!(written.status.success(), "{}", said(&written));
+    assert!(said(&written).contains("1 of "), "{}", said(&written));
+    ecu.quit();
+    let flash = CutFlash::holding(std::fs::read(folder.join("flash.bin")).unwrap());
+    let stored = CalibrationStore::new(flash).load().unwrap().calibration;
+    assert_eq!(stored.position.approach_gain.0, 33);
+}

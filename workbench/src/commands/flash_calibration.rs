@@ -1,0 +1,66 @@
+//! `hitch flash-calibration`: a calibration into a running ECU, over XCP.
+use std::path::PathBuf;
+
+use crate::calibration_file;
+use crate::error::Error;
+use crate::output;
+use crate::progress::Progress;
+use crate::xcp_tool::{Session, SlcanClient, ToolError, write_calibration};
+
+/// Arguments of `hitch flash-calibration`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example: hitch flash-calibration calibration.toml --can 127.0.0.1:7701\n\n\
+    The hitch has to be locked (`lock on`) and the service switch closed (`service on`). Only what differs is written; then the\n\
+    ECU stores it, and everything is read back from what is stored."
+)]
+pub struct Args {
+    /// The calibration, as `hitch calibrate` and `hitch tune` write it
+    #[arg(value_name = "C.toml")]
+    calibration: PathBuf,
+    /// The ECU's bus: an slcan adapter on TCP, such as `hitch ecu --can`
+    #[arg(long, value_name = "HOST:PORT")]
+    can: String,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the calibration is wrong, or the ECU can't be reached or refuses.
+pub fn run(args: &Args) -> Result<(), Error> {
+    let calibration = calibration_file::read(&args.calibration)?;
+    let progress = Progress::start("writing the calibration");
+    let mut session = connect(&args.can)?;
+    let written = write_calibration(&mut session, &calibration).map_err(tool_error)?;
+    session.close().map_err(tool_error)?;
+    drop(progress);
+    output::print(&format!(
+        "{} of {} numbers changed; stored and read back.\n",
+        written.changed, written.words
+    ))
+}
+
+/// A session with the ECU behind an address.
+///
+/// # Errors
+/// If there is none.
+pub fn connect(address: &str) -> Result<Session, Error> {
+    let client = SlcanClient::connect(address).map_err(|error| {
+        Error::Usage(format!(
+            "--can {address}: nobody is there: {error}; start `hitch ecu --can {address}` or name an slcan adapter"
+        ))
+    })?;
+    Session::open(client).map_err(tool_error)
+}
+
+/// What the user has to mend is bad input; the rest is a failure.
+pub fn tool_error(error: ToolError) -> Error {
+    match error {
+        ToolError::Locked
+        | ToolError::NotAtRest
+        | ToolError::OutOfRange(_)
+        | ToolError::NoHitch
+        | ToolError::OtherEcu(_) => Error::Usage(error.to_string()),
+        other => Error::Failed(other.to_string()),
+    }
+}

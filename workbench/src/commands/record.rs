@@ -1,0 +1,115 @@
+//! `hitch record`: a campaign from a running ECU, over XCP.
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::flash_calibration::{connect, tool_error};
+use super::loop_::load_kg;
+use crate::error::Error;
+use crate::output;
+use crate::progress::Progress;
+use crate::xcp_tool::{CHANNELS, PERIOD_MS, Row, record};
+
+/// Arguments of `hitch record`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example: hitch record --can 127.0.0.1:7701 --load 150 --temperature 40 --seconds 30 --out campaign\n\n\
+    Records currents, pressures and rocker angle at 50 Hz. The hitch has to be at rest at the beginning. A campaign that exists\n\
+    gets one more run, so that several loads make one; `hitch explain` reads it."
+)]
+pub struct Args {
+    /// The ECU's bus: an slcan adapter on TCP, such as `hitch ecu --can`
+    #[arg(long, value_name = "HOST:PORT")]
+    can: String,
+    /// The campaign's folder
+    #[arg(long, value_name = "CAMPAIGN")]
+    out: PathBuf,
+    /// Load at the hitch, kg
+    #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = load_kg)]
+    load: f64,
+    /// Oil temperature, C
+    #[arg(long, value_name = "C", allow_negative_numbers = true, value_parser = temperature_c)]
+    temperature: f64,
+    /// How long, s
+    #[arg(long, value_name = "S", default_value = "30", value_parser = seconds)]
+    seconds: f64,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the ECU can't be reached, or the campaign can't be written.
+pub fn run(args: &Args) -> Result<(), Error> {
+    let manifest = args.out.join("campaign.toml");
+    let so_far = so_far(args, &manifest)?;
+    let progress = Progress::start("recording");
+    let mut session = connect(&args.can)?;
+    let rows = record(&mut session, args.seconds, |time_s| {
+        progress.say(format!("recording: {time_s:.1} s"));
+    })
+    .map_err(tool_error)?;
+    session.close().map_err(tool_error)?;
+    drop(progress);
+    fs::create_dir_all(&args.out).map_err(|source| Error::Write {
+        path: args.out.clone(),
+        source,
+    })?;
+    let file = free_name(&args.out);
+    output::write_file(&args.out.join(&file), log(&rows).as_bytes())?;
+    let run = format!(
+        "\n[[run]]\nfile = \"{file}\"\nbench = \"hitch\"\nload_kg = {}\noil_temperature_c = {:?}\n",
+        args.load, args.temperature
+    );
+    output::write_file(&manifest, (so_far + &run).as_bytes())?;
+    output::print(&format!(
+        "{} samples of {file} in {}\n",
+        rows.len(),
+        args.out.display()
+    ))
+}
+
+/// The campaign's manifest as it is, or the head of a new one.
+fn so_far(args: &Args, manifest: &Path) -> Result<String, Error> {
+    if manifest.exists() {
+        return fs::read_to_string(manifest).map_err(|error| {
+            Error::Usage(format!("{}: cannot be read: {error}", manifest.display()))
+        });
+    }
+    let name = args.out.file_name().unwrap_or(args.out.as_os_str());
+    let name = name.to_string_lossy().replace(['"', '\\'], "");
+    Ok(format!(
+        "format = 1\nname = \"{name}\"\ndescription = \"Recorded from the ECU over XCP\"\nsample_rate_hz = {}\n",
+        1_000 / PERIOD_MS
+    ))
+}
+
+fn free_name(folder: &Path) -> String {
+    let names = (1..).map(|number| format!("run_{number:02}.csv"));
+    let mut free = names.filter(|name| !folder.join(name).exists());
+    free.next().unwrap_or_default()
+}
+
+fn log(rows: &[Row]) -> String {
+    let names: Vec<&str> = CHANNELS.iter().map(|(column, _)| *column).collect();
+    let mut text = format!("time_s,{}\n", names.join(","));
+    for (time_s, values) in rows {
+        let values: Vec<String> = values.iter().map(|value| format!("{value:.3}")).collect();
+        // Writing to a string can't fail.
+        let _ = writeln!(text, "{time_s:.3},{}", values.join(","));
+    }
+    text
+}
+
+fn temperature_c(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(temperature_c) if (-40.0..=120.0).contains(&temperature_c) => Ok(temperature_c),
+        _ => Err("it has to be a number from -40 to 120".to_owned()),
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.1..=3_600.0).contains(&seconds) => Ok(seconds),
+        _ => Err("it has to be a number from 0.1 to 3600".to_owned()),
+    }
+}

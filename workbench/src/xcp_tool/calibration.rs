@@ -1,0 +1,88 @@
+//! Writing a calibration into the ECU, and reading back what it has stored.
+
+use std::time::{Duration, Instant};
+
+use hitch_firmware::control::ValidCalibration;
+use hitch_firmware::control::calibration_words::word_range;
+use hitch_firmware::xcp::map::CALIBRATION_BASE;
+
+use super::session::{Session, ToolError};
+
+const WORD_BYTES: usize = 4;
+/// Events: stored, and not stored.
+const STORED: u8 = 0x03;
+/// Erasing flash takes seconds on some parts.
+const STORES_WITHIN: Duration = Duration::from_secs(15);
+
+/// What was done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Written {
+    /// Numbers that a calibration has.
+    pub words: usize,
+    /// Numbers that differed.
+    pub changed: usize,
+}
+
+/// Writes what differs, has it stored, and reads everything back from what is stored.
+///
+/// # Errors
+/// If the ECU refuses, or holds something else afterwards.
+pub fn write_calibration(
+    session: &mut Session,
+    calibration: &ValidCalibration,
+) -> Result<Written, ToolError> {
+    let wanted: Vec<(usize, i32)> = calibration
+        .to_words()
+        .into_iter()
+        .enumerate()
+        // Version and checksum belong to the block.
+        .filter(|(index, _)| word_range(*index).is_some())
+        .collect();
+    let present = words(session)?;
+    let differing = wanted
+        .iter()
+        .filter(|(index, value)| present.get(*index) != Some(value));
+    let mut changed = 0;
+    for &(index, value) in differing {
+        write_word(session, index, value)?;
+        changed += 1;
+    }
+    session.command(&[0xF9, 0x01, 0, 0])?;
+    match session.event(Instant::now() + STORES_WITHIN)? {
+        Some(STORED) => {}
+        _ => return Err(ToolError::NotStored),
+    }
+    // The reference page is what is in flash.
+    session.command(&[0xEB, 0x02, 0, 1])?;
+    let stored = words(session)?;
+    session.command(&[0xEB, 0x02, 0, 0])?;
+    let same = wanted
+        .iter()
+        .all(|(index, value)| stored.get(*index) == Some(value));
+    match same {
+        true => Ok(Written {
+            words: wanted.len(),
+            changed,
+        }),
+        false => Err(ToolError::NotStored),
+    }
+}
+
+fn write_word(session: &mut Session, index: usize, value: i32) -> Result<(), ToolError> {
+    session.set_address(CALIBRATION_BASE + (WORD_BYTES * index) as u32)?;
+    let [a, b, c, d] = value.to_le_bytes();
+    match session.command(&[0xF0, WORD_BYTES as u8, a, b, c, d]) {
+        Err(ToolError::Refused(0x22)) => Err(ToolError::OutOfRange(index)),
+        other => other.map(drop),
+    }
+}
+
+/// The words of the page that tools see.
+fn words(session: &mut Session) -> Result<Vec<i32>, ToolError> {
+    let bytes = session.read(
+        CALIBRATION_BASE,
+        hitch_firmware::control::calibration::CALIBRATION_BYTES,
+    )?;
+    let (words, _) = bytes.as_chunks::<WORD_BYTES>();
+    Ok(words.iter().map(|word| i32::from_le_bytes(*word)).collect())
+}

@@ -1,0 +1,192 @@
+//! A session with the ECU: commands and their answers.
+
+use std::io;
+use std::time::{Duration, Instant};
+
+use hitch_firmware::can::Frame;
+use hitch_firmware::j1939::{Id, Pgn};
+use hitch_firmware::xcp::map::{IDENTITY, IDENTITY_BASE};
+
+use super::slcan_client::SlcanClient;
+
+/// The address of an off-board tool.
+const TOOL_ADDRESS: u8 = 249;
+const PRIORITY: u8 = 6;
+/// An ECU reports its hitch ten times a second, once it has its address.
+const APPEARS_WITHIN: Duration = Duration::from_secs(2);
+const ANSWERS_WITHIN: Duration = Duration::from_millis(500);
+
+/// First bytes of what the ECU says.
+const RESPONSE: u8 = 0xFF;
+const ERROR: u8 = 0xFE;
+const EVENT: u8 = 0xFD;
+
+/// What went wrong, and how to mend it.
+#[derive(Debug, thiserror::Error)]
+pub enum ToolError {
+    /// The adapter is gone, or was never there.
+    #[error("the bus can't be reached: {0}; is `hitch ecu --can` or an slcan adapter there?")]
+    Bus(#[from] io::Error),
+    /// No hitch on the bus.
+    #[error("no hitch reports itself on the bus within 2 s; is the ECU running?")]
+    NoHitch,
+    /// The ECU has other tables than this program.
+    #[error(
+        "the ECU is `{0}`, and this program knows another one; build both from the same sources"
+    )]
+    OtherEcu(String),
+    /// No answer.
+    #[error("the ECU doesn't answer; is another tool connected?")]
+    Silent,
+    /// Tuning isn't enabled.
+    #[error("the ECU lets nobody change it; close the service switch (`service on`)")]
+    Locked,
+    /// The hitch isn't at rest.
+    #[error("that can't be changed just now; lock the hitch first (`lock on`)")]
+    NotAtRest,
+    /// A number is out of its range.
+    #[error("the ECU refuses word {0} of the calibration: it is out of its range")]
+    OutOfRange(usize),
+    /// Anything else.
+    #[error("the ECU refuses a command with code {0:#04x}")]
+    Refused(u8),
+    /// It wasn't stored, or not what was written.
+    #[error("the ECU could not store the calibration; what it had before still counts")]
+    NotStored,
+}
+
+/// The session.
+#[derive(Debug)]
+pub struct Session {
+    client: SlcanClient,
+    ecu: u8,
+}
+
+impl Session {
+    /// Waits for a hitch on the bus, connects, and makes sure that it is one this program knows.
+    ///
+    /// # Errors
+    /// If there is none, or another one.
+    pub fn open(mut client: SlcanClient) -> Result<Self, ToolError> {
+        let ecu = find(&mut client)?;
+        let mut session = Self { client, ecu };
+        session.command(&[0xFF, 0])?;
+        let identity = session.read(IDENTITY_BASE, IDENTITY.len())?;
+        match identity == IDENTITY {
+            true => Ok(session),
+            false => Err(ToolError::OtherEcu(
+                String::from_utf8_lossy(&identity).into_owned(),
+            )),
+        }
+    }
+
+    /// Sends a command and waits for its answer, without the first byte.
+    ///
+    /// # Errors
+    /// If it is refused or not answered.
+    pub fn command(&mut self, command: &[u8]) -> Result<Vec<u8>, ToolError> {
+        let id = Id {
+            priority: PRIORITY,
+            pgn: Pgn::PROPRIETARY_A,
+            destination: self.ecu,
+            source: TOOL_ADDRESS,
+        };
+        let frame = Frame::data_frame(id.pack().into(), command).ok_or(ToolError::Silent)?;
+        self.client.send(&frame)?;
+        let deadline = Instant::now() + ANSWERS_WITHIN;
+        loop {
+            let packet = self.packet(deadline)?.ok_or(ToolError::Silent)?;
+            match packet.split_first() {
+                Some((&RESPONSE, answer)) => return Ok(answer.to_vec()),
+                Some((&ERROR, code)) => return Err(refusal(code.first().copied().unwrap_or(0))),
+                // Samples and events aren't what is waited for.
+                _ => {}
+            }
+        }
+    }
+
+    /// The next event's number; `None` if none has come by `deadline`.
+    ///
+    /// # Errors
+    /// If the bus is gone.
+    pub fn event(&mut self, deadline: Instant) -> Result<Option<u8>, ToolError> {
+        while let Some(packet) = self.packet(deadline)? {
+            if let [EVENT, number, ..] = packet[..] {
+                return Ok(Some(number));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The next packet from the ECU; `None` if none has come by `deadline`.
+    ///
+    /// # Errors
+    /// If the bus is gone.
+    pub fn packet(&mut self, deadline: Instant) -> Result<Option<Vec<u8>>, ToolError> {
+        while let Some(frame) = self.client.receive(deadline)? {
+            let id = frame.extended_data_id().map(Id::unpack);
+            let ours = id.is_some_and(|id| {
+                id.pgn == Pgn::PROPRIETARY_A
+                    && id.source == self.ecu
+                    && id.destination == TOOL_ADDRESS
+            });
+            if ours {
+                return Ok(Some(frame.data().to_vec()));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Reads `count` bytes.
+    ///
+    /// # Errors
+    /// If there are none.
+    pub fn read(&mut self, address: u32, count: usize) -> Result<Vec<u8>, ToolError> {
+        const MOST: usize = 7;
+        let mut bytes = Vec::new();
+        for (piece, at) in (0..count).step_by(MOST).zip((address..).step_by(MOST)) {
+            let [a, b, c, d] = at.to_le_bytes();
+            let length = (count - piece).min(MOST);
+            let answer = self.command(&[0xF4, length as u8, 0, 0, a, b, c, d])?;
+            bytes.extend(answer.into_iter().take(length));
+        }
+        Ok(bytes)
+    }
+
+    /// Sets the address from which on is written.
+    ///
+    /// # Errors
+    /// If the ECU refuses.
+    pub fn set_address(&mut self, address: u32) -> Result<(), ToolError> {
+        let [a, b, c, d] = address.to_le_bytes();
+        self.command(&[0xF6, 0, 0, 0, a, b, c, d]).map(drop)
+    }
+
+    /// Ends the session.
+    ///
+    /// # Errors
+    /// If the ECU doesn't answer.
+    pub fn close(mut self) -> Result<(), ToolError> {
+        self.command(&[0xFE]).map(drop)
+    }
+}
+
+fn refusal(code: u8) -> ToolError {
+    match code {
+        0x24 => ToolError::NotAtRest,
+        0x25 => ToolError::Locked,
+        code => ToolError::Refused(code),
+    }
+}
+
+/// The address of the hitch that reports itself.
+fn find(client: &mut SlcanClient) -> Result<u8, ToolError> {
+    let deadline = Instant::now() + APPEARS_WITHIN;
+    while let Some(frame) = client.receive(deadline)? {
+        let id = frame.extended_data_id().map(Id::unpack);
+        if let Some(id) = id.filter(|id| id.pgn == Pgn::REAR_HITCH_STATUS) {
+            return Ok(id.source);
+        }
+    }
+    Err(ToolError::NoHitch)
+}
