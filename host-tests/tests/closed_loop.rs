@@ -1,6 +1,6 @@
 //! The controller in closed loop with the dynamic plant, and what a wrong and a right calibration do to it.
 
-use hitch_firmware::control::units::PerMille;
+use hitch_firmware::control::units::{MicrometrePerSecond, PerMille};
 use hitch_firmware::control::{Calibration, ValidCalibration};
 use hitch_model::Model;
 use hitch_model::effects::{AddedEffect, find};
@@ -127,9 +127,9 @@ fn a_leaking_lowering_valve_is_corrected_and_then_reported() {
 }
 
 /// Time from the lever's drop to the bottom until the hitch is within half a degree of it, s.
-fn full_lowering_s(load_kg: f64, dial: Option<PerMille>) -> f64 {
+fn full_lowering_s(calibration: &ValidCalibration, load_kg: f64, dial: Option<PerMille>) -> f64 {
     let model = Model::dynamic();
-    let mut closed_loop = ClosedLoop::new(&model, &nominal(), load_kg, 40.0, 135.0, 11);
+    let mut closed_loop = ClosedLoop::new(&model, calibration, load_kg, 40.0, 135.0, 11);
     closed_loop.pick_up();
     let steps = (0..60_000).position(|_| {
         let sample = closed_loop.step_with(44.6, |inputs| inputs.lowering_dial = dial, |_, _| {});
@@ -142,7 +142,7 @@ fn full_lowering_s(load_kg: f64, dial: Option<PerMille>) -> f64 {
 fn full_lowering_takes_two_seconds_with_the_dial_as_delivered() {
     for load_kg in [50.0, 150.0, 250.0] {
         let [middle_s, open_s] =
-            [500, 1_000].map(|dial| full_lowering_s(load_kg, Some(PerMille(dial))));
+            [500, 1_000].map(|dial| full_lowering_s(&nominal(), load_kg, Some(PerMille(dial))));
         println!(
             "{load_kg} kg: full lowering takes {middle_s:.2} s in the middle, {open_s:.2} s with the dial open"
         );
@@ -153,9 +153,20 @@ fn full_lowering_takes_two_seconds_with_the_dial_as_delivered() {
         assert!(open_s < middle_s, "{load_kg} kg: the dial does nothing");
         assert_eq!(
             open_s,
-            full_lowering_s(load_kg, None),
+            full_lowering_s(&nominal(), load_kg, None),
             "no dial is an open one"
         );
+    }
+}
+
+#[test]
+fn a_machine_without_a_dial_can_be_kept_to_two_seconds() {
+    let mut calibration = (*nominal()).clone();
+    calibration.position.lower_speed = MicrometrePerSecond(75_000);
+    let calibration = calibration.sealed().validate().unwrap();
+    for load_kg in [50.0, 250.0] {
+        let full_s = full_lowering_s(&calibration, load_kg, None);
+        assert!((2.0..=2.6).contains(&full_s), "{load_kg} kg: {full_s} s");
     }
 }
 

@@ -136,7 +136,7 @@ parameter_group! {
         creep_speed: MicrometrePerSecond = 8_000, 0..=100_000;
         /// Fastest lifting: beyond the valve's saturation, so it doesn't limit.
         lift_speed: MicrometrePerSecond = 150_000, 1_000..=1_000_000;
-        /// Fastest lowering: 250 kg through the fully open valve; lower it for slow implements.
+        /// Fastest lowering, and the only limit of a machine without a dial: 250 kg through the fully open valve. That full lowering takes 2 s is asked of a dial as delivered; a machine that has none and shall keep to it gets 75 mm/s here.
         lower_speed: MicrometrePerSecond = 300_000, 1_000..=1_000_000;
         /// Acceleration when lifting: full speed in 40 ms, which the lag of the spool rounds to the edge of a normal manoeuvre.
         lift_acceleration: MillimetrePerSecondSquared = 3_800, 50..=20_000;
