@@ -193,11 +193,6 @@ fn twins_come_apart() {
             &RISING_LIFTS[..],
         ),
         (
-            ["solenoid-hysteresis", "spool-stiction"],
-            ALL,
-            &RISING_LIFTS,
-        ),
-        (
             ["compensator-droop", "lift-flow-scale"],
             NO_PUMP_SENSOR,
             &STEPS,

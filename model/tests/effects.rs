@@ -93,9 +93,14 @@ fn a_null_value_gives_the_model_without_the_effect_bit_for_bit() {
 }
 
 /// The null value is a limit, not a switch: a millionth of a typical size changes next to nothing. The steady plant takes
-/// finer steps for what is sudden, and 2 mbar is what its ordinary steps leave.
+/// finer steps for what is sudden: what its ordinary steps leave, a third of an instrument's noise at most, is borne with.
 #[test]
 fn next_to_its_null_value_an_effect_is_next_to_nothing() {
+    const LEFT: [(Channel, f64); 3] = [
+        (Channel::CylinderPressure, 3e-3),
+        (Channel::Flow, 3e-3),
+        (Channel::RockerAngle, 0.017),
+    ];
     for model in starting_points() {
         let without = runs(&model);
         for effect in CATALOGUE {
@@ -105,13 +110,9 @@ fn next_to_its_null_value_an_effect_is_next_to_nothing() {
                 *effect,
                 size.null + 1e-6 * (size.typical - size.null),
             );
-            for channel in [
-                Channel::CylinderPressure,
-                Channel::Flow,
-                Channel::RockerAngle,
-            ] {
+            for (channel, left) in LEFT {
                 let change = difference(&runs(&small), &without, channel);
-                assert!(change < 3e-3, "{}: {change} in {channel:?}", effect.id());
+                assert!(change < left, "{}: {change} in {channel:?}", effect.id());
             }
         }
     }
