@@ -9,6 +9,9 @@ use crate::campaign::Channel;
 
 use crate::plant::sites::{RunConditions, Sites};
 
+/// Longest step that follows the pressure of an accelerated load, s.
+const STEP_S: f64 = 0.005;
+
 /// Inertia of load and linkage.
 pub static LOAD_INERTIA: Described = Described {
     id: "load-inertia",
@@ -36,5 +39,5 @@ pub static LOAD_INERTIA: Described = Described {
 
 fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
     sites.inertia_share += values[0];
-    sites.sudden = true;
+    sites.longest_step_s = sites.longest_step_s.min(STEP_S);
 }

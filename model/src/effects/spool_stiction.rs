@@ -11,6 +11,9 @@ use crate::campaign::Channel;
 use crate::plant::sites::{CurrentStage, Currents, Valve};
 use crate::plant::sites::{RunConditions, Sites};
 
+/// Longest step that follows a jump, s.
+const STEP_S: f64 = 0.004;
+
 /// Stiction of the spools.
 pub static SPOOL_STICTION: Described = Described {
     id: "spool-stiction",
@@ -49,7 +52,7 @@ pub static SPOOL_STICTION: Described = Described {
 };
 
 fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
-    sites.sudden = true;
+    sites.longest_step_s = sites.longest_step_s.min(STEP_S);
     sites.currents.push(Box::new(StickSlip {
         band_a: values[0],
         jump_a: values[0] * values[1],

@@ -47,6 +47,11 @@ const ALIKE_DEG: f64 = 37.0;
 /// Most effects that are added.
 const MOST_STEPS: usize = 5;
 
+/// What this many effects leave at more than this error, a further one does not explain either: it is no campaign of
+/// this plant.
+const LOST_STEPS: usize = 2;
+const LOST: f64 = 4.0;
+
 /// Most candidates of one round that are tried on held-out runs.
 const MOST_TRIED: usize = 3;
 
@@ -202,7 +207,8 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
     let mut present_held_out = f64::NAN;
     let mut steps: Vec<Step> = Vec::new();
     for _ in 0..MOST_ROUNDS {
-        if !enough(&before) || steps.len() == MOST_STEPS {
+        let lost = steps.len() >= LOST_STEPS && present.error() > LOST;
+        if !enough(&before) || steps.len() == MOST_STEPS || lost {
             break;
         }
         let diagnosis = diagnose(experiment, model, present.clone(), progress);

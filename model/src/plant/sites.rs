@@ -134,8 +134,9 @@ pub struct Sites {
     pub weight_factor: Vec<Law>,
     /// Inertia that comes on top of the model's own, as a share of load and dead weight.
     pub inertia_share: f64,
-    /// Whether something jumps or is accelerated, which the quasi-static plant's long steps would smear.
-    pub sudden: bool,
+    /// Longest step, s, that follows what is sudden: a spool that jumps, or a pressure that goes with the change of speed
+    /// over the last step; the quasi-static plant only.
+    pub longest_step_s: f64,
     /// Ground under the hitch.
     pub ground: Option<Ground>,
     /// Instruments, in order.
@@ -163,7 +164,7 @@ impl Default for Sites {
             friction: Vec::new(),
             weight_factor: Vec::new(),
             inertia_share: 0.0,
-            sudden: false,
+            longest_step_s: f64::INFINITY,
             ground: None,
             sensors: Vec::new(),
             terms: Vec::new(),

@@ -15,21 +15,13 @@ use crate::expression::Place;
 /// Longest step, s: half a sample of a 50 Hz log.
 const LONGEST_STEP_S: f64 = 0.01;
 
-/// The same where something is sudden, s: a spool that jumps, or a pressure that goes with the change of speed over the
-/// last step.
-const LONGEST_SUDDEN_STEP_S: f64 = 0.002;
-
 /// Speed beyond all others by which terms of a user's own could move the piston, m/s.
 const FASTEST_M_S: f64 = 0.5;
 
 /// Longest step, s, with what the effects attach.
 #[must_use]
 pub fn longest_step_s(sites: &Sites) -> f64 {
-    if sites.sudden {
-        LONGEST_SUDDEN_STEP_S
-    } else {
-        LONGEST_STEP_S
-    }
+    LONGEST_STEP_S.min(sites.longest_step_s)
 }
 
 /// What the balances give at one instant.
