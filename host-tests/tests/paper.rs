@@ -48,7 +48,8 @@ fn the_largest_orifice_area_is_the_paper_s() {
 #[test]
 fn table_5_is_found_by_the_identification() {
     let table = &nominal()["table_5"];
-    assert_eq!(table["verdict"], "explained");
+    // Whether the lift orifice is smaller or the check valve's spring stiffer no flow test can tell.
+    assert_eq!(table["verdict"], "ambiguous");
     let effects = table["effects"].as_array().unwrap();
     let mut found: Vec<&str> = effects
         .iter()

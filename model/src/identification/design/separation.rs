@@ -250,11 +250,13 @@ impl Normal {
 /// Sample rate of a campaign, Hz: that of its first run.
 fn rate_hz(experiment: &Experiment) -> f64 {
     const USUAL_HZ: f64 = 50.0;
+    /// No logger of a hitch is slower or faster; a log may still say so.
+    const LOGGERS_HZ: (f64, f64) = (1.0, 1000.0);
     let time_s = experiment.runs.first().map(|run| &run.drive.time_s);
     time_s
         .and_then(|time_s| Some((time_s.len(), time_s.first()?, time_s.last()?)))
         .filter(|(_, first, last)| last > first)
         .map_or(USUAL_HZ, |(samples, first, last)| {
-            (samples - 1) as f64 / (last - first)
+            ((samples - 1) as f64 / (last - first)).clamp(LOGGERS_HZ.0, LOGGERS_HZ.1)
         })
 }
