@@ -93,22 +93,8 @@ pub fn try_effects(
     effects: &[&'static dyn Effect],
     progress: &(dyn Fn(&str) + Sync),
 ) -> Vec<Candidate> {
-    let base_residuals = huber(base.residuals.clone());
-    let slow = SlowColumns::new(
-        experiment,
-        model,
-        &base.weights,
-        &base.estimate,
-        &base_residuals,
-    );
-    let jacobian = Jacobian::with_slow_columns(
-        experiment,
-        model,
-        &base.weights,
-        &base.estimate,
-        &base_residuals,
-        &slow,
-    );
+    let slow = slow_columns(experiment, model, base);
+    let jacobian = jacobian_by(experiment, model, base, &slow);
     let screened = screened(experiment, model, base, &jacobian, effects);
     let sketches = sketches(experiment, model, base, screened);
     let best = sketches.first().map_or(base.cost, |first| first.cost);
@@ -300,9 +286,21 @@ pub fn weigh(
     effect: &'static dyn Effect,
     fit: Fit,
 ) -> Candidate {
-    let residuals = huber(fit.residuals.clone());
-    let slow = SlowColumns::new(experiment, model, &fit.weights, &fit.estimate, &residuals);
+    let slow = slow_columns(experiment, model, &fit);
     weigh_by(experiment, model, base, effect, fit, &slow)
+}
+
+/// Columns of clocks and loads at a fit, whose residuals are known.
+fn slow_columns(experiment: &Experiment, model: &Model, fit: &Fit) -> SlowColumns {
+    let residuals = huber(fit.residuals.clone());
+    SlowColumns::new(experiment, model, &fit.weights, &fit.estimate, &residuals)
+}
+
+/// Sensitivities at a fit, whose residuals are known, with the columns of clocks and loads from there or nearby.
+fn jacobian_by(experiment: &Experiment, model: &Model, fit: &Fit, slow: &SlowColumns) -> Jacobian {
+    let residuals = huber(fit.residuals.clone());
+    let (weights, estimate) = (&fit.weights, &fit.estimate);
+    Jacobian::with_slow_columns(experiment, model, weights, estimate, &residuals, slow)
 }
 
 /// [`weigh`] with the columns of clocks and loads from a point nearby.
@@ -315,15 +313,7 @@ fn weigh_by(
     slow: &SlowColumns,
 ) -> Candidate {
     let index = fit.estimate.effects.len() - 1;
-    let residuals = huber(fit.residuals.clone());
-    let jacobian = Jacobian::with_slow_columns(
-        experiment,
-        model,
-        &fit.weights,
-        &fit.estimate,
-        &residuals,
-        slow,
-    );
+    let jacobian = jacobian_by(experiment, model, &fit, slow);
     let compared = fit.weights.count() as f64;
     let variance = (square_sum(&fit.residuals) / compared).max(1.0);
     let signatures: Vec<Signature> = (0..effect.parameters().len())

@@ -232,11 +232,7 @@ fn sizes(experiment: &Experiment, effect: &'static dyn Effect) -> Vec<AddedEffec
     };
     sizes
         .iter()
-        .map(|s| {
-            let mut added = AddedEffect::typical(effect);
-            added.values[0] = size.null + s * (size.typical - size.null);
-            added
-        })
+        .map(|&s| scaled(&AddedEffect::typical(effect), s))
         .filter(|added| (size.low..=size.high).contains(&added.values[0]))
         .collect()
 }
@@ -246,11 +242,7 @@ fn neighbours(at: &AddedEffect) -> Vec<AddedEffect> {
     let size = &at.effect.parameters()[0];
     NEXT_SIZES
         .iter()
-        .map(|s| {
-            let mut added = at.clone();
-            added.values[0] = size.null + s * (at.values[0] - size.null);
-            added
-        })
+        .map(|&s| scaled(at, s))
         .filter(|added| (size.low..=size.high).contains(&added.values[0]))
         .collect()
 }

@@ -157,11 +157,11 @@ impl<'m> Plant<'m> {
             reading: Reading::default(),
             signals: rest::signals_of_run(rig, oil_temperature_c),
         };
-        plant.state = plant.state_at_rest();
         if let Rig::Hitch(rig) = rig {
-            let lowest_m = plant.forces(&rig).lowest_m();
-            plant.lowest_m = lowest_m.min(plant.state.piston_m);
+            plant.lowest_m = plant.forces(&rig).lowest_m();
         }
+        plant.state = plant.state_at_rest();
+        plant.lowest_m = plant.lowest_m.min(plant.state.piston_m);
         plant.remember();
         plant.shift(effective.lift_a, effective.lower_a);
         plant.refresh();

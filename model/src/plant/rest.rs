@@ -15,12 +15,11 @@ impl Plant<'_> {
             },
             Rig::Hitch(rig) => {
                 let shown_m = self.piston_at_rest_m(&rig);
-                let lowest_m = self.forces(&rig).lowest_m();
                 let piston_m = match self.model.constants().dynamics {
                     // A hitch that is seen below the ground's height stands in a hollow.
                     Dynamics::Steady => shown_m,
                     // With inertia the ground would throw it out of there.
-                    Dynamics::Dynamic => shown_m.max(lowest_m),
+                    Dynamics::Dynamic => shown_m.max(self.lowest_m),
                 };
                 self.held_at(&rig, piston_m)
             }
