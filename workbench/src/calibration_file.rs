@@ -54,6 +54,7 @@ macro_rules! with_groups {
         $visit(&mut $calibration.saturation $(, $argument)*)?;
         $visit(&mut $calibration.teach $(, $argument)*)?;
         $visit(&mut $calibration.current $(, $argument)*)?;
+        $visit(&mut $calibration.bus $(, $argument)*)?;
         $visit(&mut $calibration.safety $(, $argument)*)?;
     };
 }

@@ -6,9 +6,9 @@
 use super::calibration_words;
 use super::calibration_words::CALIBRATION_WORDS;
 use super::design_parameters::{
-    CurrentParameters, HoldParameters, HydraulicParameters, LockParameters, MotionParameters,
-    OperatorParameters, PositionParameters, RateParameters, SafetyParameters, SaturationParameters,
-    SensorParameters, TeachParameters,
+    BusParameters, CurrentParameters, HoldParameters, HydraulicParameters, LockParameters,
+    MotionParameters, OperatorParameters, PositionParameters, RateParameters, SafetyParameters,
+    SaturationParameters, SensorParameters, TeachParameters,
 };
 use super::linkage::{LINKAGE_POINTS, LinkageTable};
 use super::nominal;
@@ -58,6 +58,8 @@ pub struct Calibration {
     pub teach: TeachParameters,
     /// Regulation of the coils' currents.
     pub current: CurrentParameters,
+    /// What is sent on the bus.
+    pub bus: BusParameters,
     /// Safety envelope.
     pub safety: SafetyParameters,
     /// CRC-32 (ISO-HDLC) over everything before it, words in little-endian order.
@@ -162,6 +164,7 @@ impl Calibration {
             saturation: SaturationParameters::NOMINAL,
             teach: TeachParameters::NOMINAL,
             current: CurrentParameters::NOMINAL,
+            bus: BusParameters::NOMINAL,
             safety: SafetyParameters::NOMINAL,
             checksum: 0,
         }
@@ -347,6 +350,7 @@ impl Calibration {
         self.saturation.visit(visit);
         self.teach.visit(visit);
         self.current.visit(visit);
+        self.bus.visit(visit);
         self.safety.visit(visit);
         visit_unsigned(&mut self.checksum, visit);
     }

@@ -2,9 +2,9 @@
 
 use super::calibration::{CALIBRATION_BYTES, CURRENT_LIMIT, Calibration, FLOW_LIMIT};
 use super::design_parameters::{
-    CurrentParameters, HoldParameters, HydraulicParameters, LockParameters, MotionParameters,
-    OperatorParameters, PositionParameters, RateParameters, SafetyParameters, SaturationParameters,
-    SensorParameters, TeachParameters,
+    BusParameters, CurrentParameters, HoldParameters, HydraulicParameters, LockParameters,
+    MotionParameters, OperatorParameters, PositionParameters, RateParameters, SafetyParameters,
+    SaturationParameters, SensorParameters, TeachParameters,
 };
 use super::linkage::LINKAGE_POINTS;
 use super::parameter::{OutOfRange, ParameterGroup, ParameterInfo};
@@ -52,7 +52,7 @@ const LIVE: bool = true;
 const AT_REST: bool = false;
 
 /// The groups in the order of the block.
-pub const GROUPS: [Group; 12] = [
+pub const GROUPS: [Group; 13] = [
     group::<HydraulicParameters>(AT_REST),
     group::<SensorParameters>(AT_REST),
     group::<LockParameters>(AT_REST),
@@ -64,6 +64,7 @@ pub const GROUPS: [Group; 12] = [
     group::<SaturationParameters>(AT_REST),
     group::<TeachParameters>(AT_REST),
     group::<CurrentParameters>(AT_REST),
+    group::<BusParameters>(LIVE),
     group::<SafetyParameters>(AT_REST),
 ];
 

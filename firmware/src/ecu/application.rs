@@ -13,7 +13,10 @@ use super::service::{self, Service, Storing};
 use super::status::status;
 use crate::can::Frame;
 use crate::control::{Controller, Inputs, Outputs, State};
-use crate::j1939::{NameFields, Node, PREFERRED_ADDRESS, Remote, Settings, TroubleFinder, Variant};
+use crate::j1939::{
+    MeasuredBroadcast, NameFields, Node, PREFERRED_ADDRESS, Remote, Settings, TroubleFinder,
+    Variant,
+};
 use crate::storage::CalibrationStore;
 use crate::xcp::map::IDENTITY;
 use crate::xcp::measurements::{EcuState, Measurements};
@@ -35,6 +38,7 @@ pub struct Ecu<F> {
     arbiter: Arbiter,
     service: Service<F>,
     node: Node,
+    measured: MeasuredBroadcast,
     trouble_finder: TroubleFinder,
     slave: Slave,
     measurements: Measurements,
@@ -64,6 +68,7 @@ impl<F: NorFlash> Ecu<F> {
             controller: Controller::new(calibration),
             arbiter: Arbiter::default(),
             node: Node::new(settings),
+            measured: MeasuredBroadcast::default(),
             trouble_finder: TroubleFinder::default(),
             slave: Slave::new(),
             measurements: Measurements::default(),
@@ -203,6 +208,7 @@ impl<F: NorFlash> Ecu<F> {
             };
             self.push(frame);
         }
+        self.tell_loggers();
         while self.outbox.len() < OUTBOX
             && let Some(frame) = self.slave.poll()
         {
@@ -213,6 +219,20 @@ impl<F: NorFlash> Ecu<F> {
         {
             self.outbox.pop_front();
         }
+    }
+
+    /// Sends what was measured, if that is due and the node has an address to send it from.
+    fn tell_loggers(&mut self) {
+        let Some(source) = self.node.address() else {
+            return;
+        };
+        let period = self.controller.calibration().bus.measured_period;
+        let now_ms = self.pace.now_ms();
+        let frames = self.measured.poll(source, now_ms, period, &self.inputs);
+        frames
+            .into_iter()
+            .flatten()
+            .for_each(|frame| self.push(frame));
     }
 
     fn push(&mut self, frame: Frame) {

@@ -163,6 +163,7 @@ fn apply(calibration: ValidCalibration, controller: &mut Controller) {
     let same_machine = Calibration {
         position: calibration.position,
         rate: calibration.rate,
+        bus: calibration.bus,
         checksum: calibration.checksum,
         ..(**controller.calibration()).clone()
     };

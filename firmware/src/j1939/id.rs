@@ -34,6 +34,10 @@ impl Pgn {
     pub const REAR_HITCH_STATUS: Self = Self(0xFE45);
     /// Hitch and PTO commands.
     pub const HITCH_COMMANDS: Self = Self(0xFE42);
+    /// Proprietary B: currents and rocker angle.
+    pub const HITCH_MOTION: Self = Self(0xFF45);
+    /// Proprietary B: pressures and supply.
+    pub const HITCH_PRESSURES: Self = Self(0xFF46);
     /// Active trouble codes.
     pub const DM1: Self = Self(0xFECA);
     /// Previously active trouble codes.

@@ -4,6 +4,7 @@ mod bus;
 mod claim;
 mod diagnostics;
 mod flood;
+mod measured;
 mod messages;
 mod remote;
 mod transport;
