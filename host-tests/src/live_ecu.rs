@@ -16,8 +16,28 @@ pub enum Operator {
     Away,
     /// Moves the lever through the hitch once and then leaves it alone.
     Present,
+    /// The same, and then moves it up and down.
+    Working,
     /// Has pulled the lever's plug.
     LeverUnplugged,
+}
+
+impl Operator {
+    /// Where the lever is moved to just now, if it is.
+    fn moves_lever(self, time_ms: u32) -> Option<f64> {
+        let picks_up = matches!(self, Self::Present | Self::Working) && time_ms == PICK_UP_MS;
+        if picks_up {
+            return Some(START_DEG + 5.0);
+        }
+        let works =
+            self == Self::Working && time_ms > PICK_UP_MS && time_ms.is_multiple_of(WORK_MS);
+        let is_up = (time_ms / WORK_MS).is_multiple_of(2);
+        works.then_some(if is_up {
+            START_DEG
+        } else {
+            START_DEG + WORK_DEG
+        })
+    }
 }
 
 const START_DEG: f64 = 90.0;
@@ -26,6 +46,9 @@ const OIL_TEMPERATURE_C: f64 = 40.0;
 const SEED: u64 = 1;
 /// When the operator picks the hitch up, ms.
 const PICK_UP_MS: u32 = 1_000;
+/// How often a working one moves the lever, ms, and how far.
+const WORK_MS: u32 = 3_000;
+const WORK_DEG: f64 = 10.0;
 /// Behind by more than this, time is given up: the machine has other things to do.
 const MOST_BEHIND: Duration = Duration::from_millis(200);
 
@@ -39,8 +62,8 @@ pub fn run(machine: &mut impl EcuMachine, door: CanDoor, operator: Operator, sto
     let mut due = Instant::now();
     let mut time_ms = 0_u32;
     while !stop.load(Ordering::Relaxed) {
-        if operator == Operator::Present && time_ms == PICK_UP_MS {
-            bench.operator.obey(Order::Lever(START_DEG + 5.0));
+        if let Some(lever_deg) = operator.moves_lever(time_ms) {
+            bench.operator.obey(Order::Lever(lever_deg));
         }
         said.clear();
         let tamper = |contacts: &mut Contacts| {

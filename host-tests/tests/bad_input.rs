@@ -95,6 +95,21 @@ fn every_reader_of_campaigns_refuses_a_bad_one() {
 }
 
 #[test]
+fn every_reader_of_campaigns_refuses_a_bad_log_of_a_bus() {
+    let dir = folder();
+    write(
+        &dir,
+        "c/campaign.toml",
+        MANIFEST.replace("lift.csv", "bus.asc"),
+    );
+    write(&dir, "c/bus.asc", " 0.5 1 18FF4580x Rx d 2 0A\n");
+    for arguments in READERS {
+        let cut = "c/bus.asc:1:27: the line ends before its last byte; delete the line";
+        refused(dir.path(), arguments, cut);
+    }
+}
+
+#[test]
 fn bad_logs_are_refused_by_line_and_column() {
     let log = log();
     let cases = [

@@ -10,6 +10,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hitch_firmware::crc32::Crc32;
+use hitch_model::campaign::{Campaign, Channel, Run};
 use hitch_workbench::can_door::CanDoor;
 use hitch_workbench::ecu::{CutFlash, EcuMachine, Emulator, FLASH_BYTES, OnHost, find_image};
 use host_tests::live_ecu::{self, Operator};
@@ -126,6 +127,46 @@ const SESSION: [&str; 6] = [
 fn an_implement_reads_the_status_by_the_dbc_and_commands_the_hitch() {
     let expected = ["status: ", "remote: at ", "remote: timed out"];
     client("hitch_messages.py", here, Operator::Present, &expected);
+}
+
+#[test]
+fn logs_of_the_bus_are_runs() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bus-logs");
+    fs::create_dir_all(&folder).unwrap();
+    let expected = ["logged: "];
+    client("log_bus.py", here, Operator::Working, &expected);
+    if python().is_err() {
+        return;
+    }
+    let manifest = "format = 1\n[[run]]\nfile = \"run.log\"\nbench = \"hitch\"\nload_kg = 150\n\
+         [[run]]\nfile = \"run.asc\"\nbench = \"hitch\"\nload_kg = 150\n";
+    fs::write(folder.join("campaign.toml"), manifest).unwrap();
+    let campaign = Campaign::load(&folder).unwrap_or_else(|error| panic!("{error}"));
+    let [candump, asc] = &campaign.runs[..] else {
+        panic!("two runs");
+    };
+    for run in [candump, asc] {
+        // By the ECU's clock, not one sample is missing, whatever the logger's computer did meanwhile.
+        let even = run
+            .time_s
+            .windows(2)
+            .all(|two| (two[1] - two[0] - 0.02).abs() < 1e-6);
+        assert!(even && run.time_s.len() > 100, "{:?}", run.time_s);
+        let angle_deg = run.channel(Channel::RockerAngle).unwrap();
+        let ends_deg = angle_deg
+            .iter()
+            .fold([f64::MAX, f64::MIN], |[low, high], now| {
+                [low.min(*now), high.max(*now)]
+            });
+        let moved_deg = ends_deg[1] - ends_deg[0];
+        assert!((9.0..11.0).contains(&moved_deg), "{moved_deg}");
+        let flowed = |current_a: &[f64]| current_a.iter().any(|now| *now > 1.2);
+        assert!(flowed(&run.lift_current_a) || flowed(&run.lower_current_a));
+        assert!(run.channel(Channel::CylinderPressure).is_some());
+        assert!(run.channel(Channel::PumpPressure).is_some());
+    }
+    let angle = |run: &Run| run.channel(Channel::RockerAngle).map(<[f64]>::to_vec);
+    assert!(candump.lift_current_a == asc.lift_current_a && angle(candump) == angle(asc));
 }
 
 #[test]

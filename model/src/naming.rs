@@ -31,7 +31,7 @@ pub fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
     let given = given.to_lowercase();
     known
         .iter()
-        .map(|name| (strsim::jaro_winkler(&given, name), *name))
+        .map(|name| (strsim::jaro_winkler(&given, &name.to_lowercase()), *name))
         .filter(|(similarity, _)| *similarity >= SIMILAR_ENOUGH)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, name)| name)

@@ -1,6 +1,7 @@
 //! `campaign.toml`: which runs there are, and what is known of them.
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 
+use super::bus_log::BusSettings;
 use super::{Bench, Campaign, CampaignError, Channel, Noise, Run, run_log};
 use crate::input_error::{InputError, quote};
 use crate::source_file::SourceFile;
@@ -32,6 +33,7 @@ pub fn load(dir: &Path) -> Result<Campaign, CampaignError> {
         "description",
         "sample_rate_hz",
         "noise",
+        "can",
         "run",
     ])?;
     let noise = noise(&top)?;
@@ -40,7 +42,7 @@ pub fn load(dir: &Path) -> Result<Campaign, CampaignError> {
         .text("name")?
         .map_or_else(|| folder_name(dir), str::to_owned);
     let description = top.text("description")?.unwrap_or_default().to_owned();
-    let runs = runs(dir, &top)?;
+    let runs = runs(dir, &top, &BusSettings::read(dir, &top)?)?;
     let sample_rate_hz = declared_rate_hz.unwrap_or_else(|| logged_rate_hz(&runs));
     Ok(Campaign {
         name,
@@ -51,8 +53,8 @@ pub fn load(dir: &Path) -> Result<Campaign, CampaignError> {
     })
 }
 
-fn manifest_path(dir: &Path) -> Result<std::path::PathBuf, CampaignError> {
-    let mend = "a campaign is a folder with campaign.toml and a CSV file per run";
+fn manifest_path(dir: &Path) -> Result<PathBuf, CampaignError> {
+    let mend = "a campaign is a folder with campaign.toml and a log per run";
     if !dir.exists() {
         return Err(InputError::of_file(dir, "no such folder", mend));
     }
@@ -102,42 +104,52 @@ fn noise(top: &TomlTable<'_>) -> Result<Noise, CampaignError> {
     Ok(noise)
 }
 
-fn runs(dir: &Path, top: &TomlTable<'_>) -> Result<Vec<Run>, CampaignError> {
+fn runs(dir: &Path, top: &TomlTable<'_>, bus: &BusSettings) -> Result<Vec<Run>, CampaignError> {
     let tables = top.tables("run")?;
     if tables.is_empty() {
         return Err(top.error_at(
             "run",
             "there is no run",
-            "add a [[run]] block for every CSV file",
+            "add a [[run]] block for every log",
         ));
     }
     let mut runs: Vec<Run> = Vec::with_capacity(tables.len());
     for table in &tables {
-        let file = file_name(table)?;
+        let file = file_name(table, "file")?;
         if runs.iter().any(|run| run.file == file) {
             let what = format!("{} is listed twice", quote(file));
             return Err(table.error_at("file", what, "delete one of the two [[run]] blocks"));
         }
         let (bench, oil_temperature_c) = conditions(table)?;
-        let path = dir.join(file);
-        if !path.exists() {
-            let what = format!("the folder holds no file {}", quote(file));
-            return Err(table.error_at(
-                "file",
-                what,
-                "correct the name, or delete this [[run]] block",
-            ));
-        }
-        let run = run_log::read(&path, file, bench, oil_temperature_c)?;
+        let path = file_in(dir, table, "file")?;
+        let run = run_log::read(&path, file, bench, oil_temperature_c, bus)?;
         run_log::check_usable(&path, &run)?;
         runs.push(run);
     }
     Ok(runs)
 }
 
-/// The log's name: a plain path below the campaign's folder.
-fn file_name<'t>(table: &'t TomlTable<'_>) -> Result<&'t str, CampaignError> {
-    let file = table.required_text("file")?;
+/// The path of the file that `key` names.
+///
+/// # Errors
+/// If it isn't in the campaign's folder.
+pub fn file_in(dir: &Path, table: &TomlTable<'_>, key: &str) -> Result<PathBuf, CampaignError> {
+    let file = file_name(table, key)?;
+    let path = dir.join(file);
+    if path.exists() {
+        return Ok(path);
+    }
+    let what = format!("the folder holds no file {}", quote(file));
+    let mend = match key {
+        "file" => "correct the name, or delete this [[run]] block",
+        _ => "correct the name, or delete the line",
+    };
+    Err(table.error_at(key, what, mend))
+}
+
+/// A file's name: a plain path below the campaign's folder.
+fn file_name<'t>(table: &'t TomlTable<'_>, key: &str) -> Result<&'t str, CampaignError> {
+    let file = table.required_text(key)?;
     let inside = Path::new(file)
         .components()
         .all(|part| matches!(part, Component::Normal(_)));
@@ -150,9 +162,9 @@ fn file_name<'t>(table: &'t TomlTable<'_>) -> Result<&'t str, CampaignError> {
         quote(file)
     );
     Err(table.error_at(
-        "file",
+        key,
         what,
-        "put the log beside campaign.toml and give its name only",
+        "put it beside campaign.toml and give its name only",
     ))
 }
 

@@ -1,16 +1,20 @@
-//! Measurements: a campaign is a folder with `campaign.toml` and one CSV log a run.
+//! Measurements: a campaign is a folder with `campaign.toml` and one log a run.
 //!
 //! ```text
 //! campaign.toml        format, name, noise of the instruments, and a [[run]] block a log
-//! lift_1.5A_050kg.csv  time_s, lift_current_a, lower_current_a and what was measured
+//! lift_1.5A_050kg.csv  time_s, lift_current_a, lower_current_a and what was measured; or
+//! monday.log, .asc      what candump or a tool of Vector's has heard on the ECU's bus, see [`bus_log`]
 //! ```
 //!
 //! Reading checks everything that can be checked without a model, so that nothing behind it has to: every number is
 //! finite and plausible, time rises strictly, the currents have no gaps, and every run has something to compare with.
+mod bus_log;
 mod channel;
+mod csv_log;
 mod dropout;
 mod manifest;
 mod run_log;
+mod table;
 
 use std::path::Path;
 
@@ -108,13 +112,15 @@ impl Run {
     /// Fewest samples that make a run.
     pub const FEWEST_SAMPLES: usize = 10;
 
-    /// Reads a log by itself, without a campaign around it; it may hold currents only.
+    /// Reads a log by itself, without a campaign around it; it may hold currents only. If it is that of a bus, it has to
+    /// be the bus of the project's own ECU.
     ///
     /// # Errors
     /// Whatever is wrong first, by file, line and column.
     pub fn read(path: &Path, bench: Bench, oil_temperature_c: f64) -> Result<Self, CampaignError> {
         let file = path.file_name().unwrap_or_default().to_string_lossy();
-        run_log::read(path, &file, bench, oil_temperature_c)
+        let bus = bus_log::BusSettings::default();
+        run_log::read(path, &file, bench, oil_temperature_c, &bus)
     }
 
     /// Samples of a channel, in its unit, NaN at a dropout; `None` if it was not measured.

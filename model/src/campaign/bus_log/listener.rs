@@ -1,0 +1,227 @@
+//! Takes the signals that are wanted out of the frames of a log.
+use super::clock::Clock;
+use super::description::Match;
+use super::frame::{Frame, Id};
+use super::series::Series;
+use super::signal::Signal;
+use crate::campaign::CampaignError;
+use crate::campaign::table::Column;
+use crate::input_error::quote;
+use crate::source_file::SourceFile;
+
+/// A column and the signal that it is taken from.
+#[derive(Debug, Clone)]
+pub struct Sampled {
+    /// The column.
+    pub column: &'static Column,
+    /// The signal, in the column's unit.
+    pub signal: Signal,
+}
+
+/// A message that is listened to.
+#[derive(Debug, Clone)]
+pub struct Message {
+    /// Its name in the description.
+    pub name: String,
+    /// Which frames it is.
+    pub matching: Match,
+    /// What is taken of it; at least one.
+    pub signals: Vec<Sampled>,
+    /// When it was sampled, s, and after how many seconds that goes round.
+    pub clock: Option<(Signal, f64)>,
+    /// The node whose clock that is.
+    pub node: String,
+}
+
+/// Who has sent a message.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Sender {
+    channel: String,
+    address: Option<u8>,
+}
+
+/// A message, who sends it, and what was heard of it.
+#[derive(Debug)]
+struct Heard<'s> {
+    message: &'s Message,
+    sender: Option<Sender>,
+    series: Vec<Series>,
+}
+
+/// The listener.
+#[derive(Debug)]
+pub struct Listener<'s> {
+    channel: Option<&'s str>,
+    address: Option<u8>,
+    heard: Vec<Heard<'s>>,
+    clocks: Vec<(&'s str, Clock)>,
+    /// Time of the first frame of the log, s.
+    first_s: Option<f64>,
+}
+
+impl<'s> Listener<'s> {
+    /// Somebody who hears these messages, from this channel and address if they are named.
+    pub fn new(messages: &'s [Message], channel: Option<&'s str>, address: Option<u8>) -> Self {
+        let heard = messages.iter().map(|message| Heard {
+            message,
+            sender: None,
+            series: vec![Series::default(); message.signals.len()],
+        });
+        Self {
+            channel,
+            address,
+            heard: heard.collect(),
+            clocks: Vec::new(),
+            first_s: None,
+        }
+    }
+
+    /// Takes a frame; times count from the first one of the log.
+    ///
+    /// # Errors
+    /// If the frame can't be what it should be, or two nodes send the same message.
+    pub fn take(&mut self, source: &SourceFile, frame: &Frame<'_>) -> Result<(), CampaignError> {
+        let logged_s = frame.time_s - *self.first_s.get_or_insert(frame.time_s);
+        let sender = Sender {
+            channel: frame.channel.to_owned(),
+            address: None,
+        };
+        if self.channel.is_some_and(|channel| channel != frame.channel) {
+            return Ok(());
+        }
+        for heard in &mut self.heard {
+            let Some(address) = heard.message.matching.sender(frame.id) else {
+                continue;
+            };
+            if address.is_some() && self.address.is_some() && address != self.address {
+                continue;
+            }
+            let sender = Sender {
+                address,
+                ..sender.clone()
+            };
+            heard
+                .is_from(sender)
+                .map_err(|(what, mend)| source.error_at(frame.byte, what, mend))?;
+            let time_s = sampled_s(&mut self.clocks, heard.message, frame, logged_s);
+            let time_s = time_s.map_err(|(what, mend)| source.error_at(frame.byte, what, mend))?;
+            heard.sample(source, frame, time_s)?;
+        }
+        Ok(())
+    }
+
+    /// What was heard for each column.
+    pub fn series(&self) -> impl Iterator<Item = (&'static Column, &Series)> {
+        self.heard.iter().flat_map(|heard| {
+            let columns = heard.message.signals.iter().map(|sampled| sampled.column);
+            columns.zip(&heard.series)
+        })
+    }
+}
+
+/// When a frame was sampled, by the clock of its sender if it tells, else when it was logged.
+fn sampled_s<'s>(
+    clocks: &mut Vec<(&'s str, Clock)>,
+    message: &'s Message,
+    frame: &Frame<'_>,
+    logged_s: f64,
+) -> Result<f64, (String, String)> {
+    let Some((clock, period_s)) = &message.clock else {
+        return Ok(logged_s);
+    };
+    let shown_s = value(clock, frame)?.filter(|shown_s| shown_s.is_finite());
+    let Some(shown_s) = shown_s else {
+        return Ok(logged_s);
+    };
+    let known = clocks.iter().position(|(node, _)| *node == message.node);
+    let index = known.unwrap_or_else(|| {
+        clocks.push((&message.node, Clock::default()));
+        clocks.len() - 1
+    });
+    clocks[index]
+        .1
+        .time_s(logged_s, shown_s, *period_s)
+        .ok_or_else(|| {
+            (
+                format!(
+                    "{} jumps: its node was switched off, or frames are missing",
+                    clock.name
+                ),
+                "cut the log here and make two runs of it".to_owned(),
+            )
+        })
+}
+
+fn value(signal: &Signal, frame: &Frame<'_>) -> Result<Option<f64>, (String, String)> {
+    signal.value(frame.data).map_err(|_| {
+        let what = format!(
+            "the frame has {} bytes, too few for {}",
+            frame.data.len(),
+            signal.name
+        );
+        (what, "this is another message: correct the dbc".to_owned())
+    })
+}
+
+impl Heard<'_> {
+    /// Two nodes that send one message are two machines.
+    fn is_from(&mut self, sender: Sender) -> Result<(), (String, String)> {
+        let known = self.sender.get_or_insert_with(|| sender.clone());
+        if *known == sender {
+            return Ok(());
+        }
+        let name = &self.message.name;
+        Err(if known.channel == sender.channel {
+            let [one, other] = [&*known, &sender].map(|sender| sender.address.unwrap_or_default());
+            (
+                format!("{name} comes from addresses {one} and {other}"),
+                format!("write source = {one} under [can] in campaign.toml"),
+            )
+        } else {
+            let [one, other] = [&*known, &sender].map(|sender| quote(&sender.channel));
+            (
+                format!("{name} comes on {one} and on {other}"),
+                format!("write channel = {one} under [can] in campaign.toml"),
+            )
+        })
+    }
+
+    fn sample(
+        &mut self,
+        source: &SourceFile,
+        frame: &Frame<'_>,
+        time_s: f64,
+    ) -> Result<(), CampaignError> {
+        for (sampled, series) in self.message.signals.iter().zip(&mut self.series) {
+            let fault = |(what, mend): (String, String)| source.error_at(frame.byte, what, mend);
+            let Some(value) = value(&sampled.signal, frame).map_err(fault)? else {
+                continue;
+            };
+            let column = sampled.column;
+            if !value.is_nan() && !column.range.contains(&value) {
+                let what = format!(
+                    "{value} of {} cannot be {}",
+                    sampled.signal.name, column.name
+                );
+                let (low, high) = (column.range.start(), column.range.end());
+                let mend = format!("it may be {low} to {high}: check scale and unit in the dbc");
+                return Err(fault((what, mend)));
+            }
+            series.push(time_s, value, frame.byte);
+        }
+        Ok(())
+    }
+}
+
+impl Match {
+    /// The address of the sender if the identifier is that of the message; J1939 alone has addresses.
+    fn sender(self, id: Id) -> Option<Option<u8>> {
+        match (self, id) {
+            (Self::Identifier(known), id) => (known == id).then_some(None),
+            (Self::Group(known), Id::Extended(raw)) => {
+                (super::description::group(raw) == known).then_some(Some(raw.to_le_bytes()[0]))
+            }
+            (Self::Group(_), Id::Standard(_)) => None,
+        }
+    }
+}
