@@ -3,7 +3,7 @@
 //! ```text
 //! campaign.toml        format, name, noise of the instruments, and a [[run]] block a log
 //! lift_1.5A_050kg.csv  time_s, lift_current_a, lower_current_a and what was measured; or
-//! monday.log, .asc      what candump or a tool of Vector's has heard on the ECU's bus, see [`bus_log`]
+//! monday.log, .asc      what candump or a tool of Vector's has heard on the ECU's bus
 //! ```
 //!
 //! Reading checks everything that can be checked without a model, so that nothing behind it has to: every number is
