@@ -14,6 +14,7 @@ use hitch_model::campaign::{Campaign, Channel, Run};
 use hitch_workbench::can_door::CanDoor;
 use hitch_workbench::ecu::{CutFlash, EcuMachine, Emulator, FLASH_BYTES, OnHost, find_image};
 use host_tests::live_ecu::{self, Operator};
+use host_tests::program::hitch;
 
 fn scripts() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("python")
@@ -69,6 +70,18 @@ fn install() -> Result<PathBuf, String> {
     Ok(python)
 }
 
+/// The same, or nothing on a machine where that may be.
+fn installed_python() -> Option<&'static Path> {
+    match python() {
+        Ok(python) => Some(python),
+        Err(reason) if std::env::var_os("CI").is_none() => {
+            eprintln!("left out, for there is no Python with the packages it needs: {reason}");
+            None
+        }
+        Err(reason) => panic!("no Python with the packages it needs: {reason}"),
+    }
+}
+
 /// Runs a script against the ECU that `start` gives; what it said has to hold `expected`.
 fn client<M: EcuMachine>(
     script: &str,
@@ -76,13 +89,8 @@ fn client<M: EcuMachine>(
     operator: Operator,
     expected: &[&str],
 ) {
-    let python = match python() {
-        Ok(python) => python,
-        Err(reason) if std::env::var_os("CI").is_none() => {
-            eprintln!("left out, for there is no Python with the packages it needs: {reason}");
-            return;
-        }
-        Err(reason) => panic!("no Python with the packages it needs: {reason}"),
+    let Some(python) = installed_python() else {
+        return;
     };
     let door = CanDoor::open("127.0.0.1:0").unwrap();
     let bus = door.address().unwrap().to_string();
@@ -135,7 +143,7 @@ fn logs_of_the_bus_are_runs() {
     fs::create_dir_all(&folder).unwrap();
     let expected = ["logged: "];
     client("log_bus.py", here, Operator::Working, &expected);
-    if python().is_err() {
+    if installed_python().is_none() {
         return;
     }
     let manifest = "format = 1\n[[run]]\nfile = \"run.log\"\nbench = \"hitch\"\nload_kg = 150\n\
@@ -167,6 +175,23 @@ fn logs_of_the_bus_are_runs() {
     }
     let angle = |run: &Run| run.channel(Channel::RockerAngle).map(<[f64]>::to_vec);
     assert!(candump.lift_current_a == asc.lift_current_a && angle(candump) == angle(asc));
+}
+
+/// The example of the README, with an ECU of its own.
+#[test]
+fn a_gain_is_tuned_while_the_hitch_moves() {
+    let Some(python) = installed_python() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/tune_live.py");
+    let mut command = Command::new(python);
+    let command = command.arg(example).arg(hitch().get_program());
+    let said = run(command.arg("--host").current_dir(folder.path()));
+    let said = said.unwrap_or_else(|reason| panic!("{reason}"));
+    println!("{said}");
+    assert_eq!(said.matches("within 0.5 deg after").count(), 3, "{said}");
+    assert!(folder.path().join("tuning.svg").exists());
 }
 
 #[test]
