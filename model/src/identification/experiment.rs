@@ -205,19 +205,24 @@ impl ReadyRun {
     }
 }
 
-/// Samples at the start of a flow-bench run before the port has its declared pressure.
+/// Samples at the start of a flow-bench run before the port has the pressure that it then keeps: by the gauge, which
+/// need not agree with the declared one.
 fn settling_samples(run: &Run) -> usize {
-    let Bench::Flow { port_pressure_bar } = run.bench else {
+    if !matches!(run.bench, Bench::Flow { .. }) {
         return 0;
-    };
+    }
     let Some(pressure) = run.channel(Channel::CylinderPressure) else {
         return 0;
     };
-    let tolerance_bar = (PORT_TOLERANCE * port_pressure_bar).max(1.0);
+    let finite = pressure.iter().copied().filter(|bar| bar.is_finite());
+    let Some(kept_bar) = median(finite.collect()) else {
+        return 0;
+    };
+    let tolerance_bar = (PORT_TOLERANCE * kept_bar).max(1.0);
     let settled = pressure
         .iter()
-        .position(|bar| (bar - port_pressure_bar).abs() <= tolerance_bar);
-    // A bench that never gets there is a fault to be shown, not to be hidden.
+        .position(|bar| (bar - kept_bar).abs() <= tolerance_bar);
+    // A bench that takes longer has a fault, which is to be shown, not hidden.
     settled
         .filter(|&samples| samples <= run.time_s.len() / 4)
         .unwrap_or(0)
