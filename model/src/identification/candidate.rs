@@ -8,7 +8,7 @@ use super::experiment::Experiment;
 use super::fit::{Fit, evaluate_weighted, refine, sketch};
 use super::frame::Frame;
 use super::jacobian::{Jacobian, SlowColumns, huber, huber_residuals, square_sum};
-use super::starts::{has_valleys, starts};
+use super::starts::{starts, valleys};
 use crate::effects::{AddedEffect, Effect, Parameter};
 use crate::model::Model;
 
@@ -247,7 +247,7 @@ fn sketch_starts(
     // Where there are valleys the starts have been looked for one by one; a coarse fit would lead away from them.
     let valleys = starts.iter().any(|start| {
         let last = start.effects.last();
-        last.is_some_and(|added| has_valleys(experiment, added.effect))
+        last.is_some_and(|added| valleys(experiment, added.effect).is_some())
     });
     let mut best = (base.cost, base.estimate.clone());
     for start in starts.into_iter().take(if far { STARTS } else { 1 }) {

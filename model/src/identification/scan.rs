@@ -1,8 +1,9 @@
-//! A fine search for the size of an effect that jumps or bounces, on the run that tells most of it.
+//! A fine search for the size of an effect whose cost has many valleys, on the run that tells most of it.
 //!
 //! A spool that sticks on a ramp jumps once a band: with a band that is a fiftieth off, the twentieth jump comes at
-//! the wrong time, and the fit is worse than without the effect. No secant leads there. But one ramp is enough to see
-//! it, and a second of computing goes through a thousand of them.
+//! the wrong time, and the fit is worse than without the effect. A pressure that rings ten times before it has died
+//! away is out of step with the model's as soon as the stiffness is a tenth off. No secant leads there. But one run is
+//! enough to see it, and a second of computing goes through hundreds of sizes.
 
 use rayon::prelude::*;
 
@@ -12,20 +13,48 @@ use super::jacobian::{huber, residuals, square_sum};
 use crate::effects::{AddedEffect, Parameter};
 use crate::model::Model;
 
-/// Smallest and largest size, in typical sizes, and the ratio from one to the next.
-const SMALLEST: f64 = 0.12;
-const LARGEST: f64 = 4.0;
-const FINER: f64 = 1.008;
+/// What is looked through, and how finely.
+pub(super) struct Grid {
+    /// Smallest and largest size, in typical sizes.
+    sizes: [f64; 2],
+    /// Ratio from one size to the next.
+    finer: f64,
+    /// Values of a shape from one end of its range to the other.
+    shapes: usize,
+    /// How far two sizes of a shape are apart at least, as a share of the size.
+    apart: f64,
+    /// How many are kept after a closer look.
+    best: usize,
+    /// The closer looks at them: how far to either side, as a share of the size and of the range of a shape.
+    closer: &'static [(f64, f64)],
+    /// Whether it is seen without the ringing of the pressure, at a tenth of the time.
+    quasi_static: bool,
+}
 
-/// Values of a shape from one end of its range to the other.
-const SHAPES: usize = 3;
+/// For jumps and bounces.
+pub(super) const JUMPS: Grid = Grid {
+    sizes: [0.12, 4.0],
+    finer: 1.008,
+    shapes: 3,
+    apart: 0.03,
+    best: 2,
+    closer: &[(0.01, 0.25), (0.002, 0.05), (0.000_4, 0.01)],
+    quasi_static: true,
+};
 
-/// How many of the best are looked at more closely, and how far apart they are at least, as a share of the size.
-const BEST: usize = 2;
-const APART: f64 = 0.03;
+/// For ringing: a valley reaches a seventh of the size to either side, and descending from there needs no closer look.
+pub(super) const RINGING: Grid = Grid {
+    sizes: [0.1, 8.0],
+    finer: 1.06,
+    shapes: 5,
+    apart: 0.1,
+    best: 4,
+    closer: &[],
+    quasi_static: false,
+};
 
-/// The closer looks: how far to either side, as a share of the size and of the range of a shape.
-const CLOSER: [(f64, f64); 3] = [(0.01, 0.25), (0.002, 0.05), (0.000_4, 0.01)];
+/// Sizes of each shape that are looked at more closely.
+const PER_SHAPE: usize = 2;
 
 /// Values of a closer look to either side.
 const TO_EITHER_SIDE: i32 = 5;
@@ -36,13 +65,17 @@ pub(super) fn scan(
     model: &Model,
     base: &Fit,
     hint: &AddedEffect,
+    grid: &Grid,
 ) -> Vec<AddedEffect> {
     let Some(run) = telling_run(experiment, model, base, hint) else {
         return Vec::new();
     };
     let ready = &experiment.runs[run];
-    // Jumps and bounces are seen without the ringing, at a tenth of the time.
-    let model = &model.quasi_static();
+    let model = &if grid.quasi_static {
+        model.quasi_static()
+    } else {
+        model.clone()
+    };
     let cost = |added: &AddedEffect| -> f64 {
         let mut effects = base.estimate.effects.clone();
         effects.push(added.clone());
@@ -59,25 +92,30 @@ pub(super) fn scan(
         tried.sort_by(|a, b| a.0.total_cmp(&b.0));
         tried
     };
-    let mut best: Vec<AddedEffect> = Vec::new();
-    for (_, added) in ranked(coarse(hint)) {
-        let apart = |other: &AddedEffect| {
+    let mut best: Vec<(f64, AddedEffect)> = Vec::new();
+    for (cost, added) in ranked(coarse(hint, grid)) {
+        let alike = |(_, other): &&(f64, AddedEffect)| added.values[1..] == other.values[1..];
+        let apart = |(_, other): &(f64, AddedEffect)| {
             let (a, b) = (added.values[0], other.values[0]);
-            (a - b).abs() > APART * a.abs().max(b.abs())
+            (a - b).abs() > grid.apart * a.abs().max(b.abs())
         };
-        if best.len() < BEST && best.iter().all(apart) {
-            best.push(added);
+        if best.iter().filter(alike).count() < PER_SHAPE && best.iter().filter(alike).all(apart) {
+            best.push((cost, added));
         }
     }
-    let closer = |added: AddedEffect| {
-        CLOSER.iter().fold(added, |best, reach| {
-            ranked(around(&best, *reach)).swap_remove(0).1
-        })
-    };
-    best.into_iter().map(closer).collect()
+    for reach in grid.closer {
+        best = best
+            .into_iter()
+            .map(|(_, added)| ranked(around(&added, *reach)).swap_remove(0))
+            .collect();
+        best.sort_by(|a, b| a.0.total_cmp(&b.0));
+        best.truncate(grid.best);
+    }
+    best.truncate(grid.best);
+    best.into_iter().map(|(_, added)| added).collect()
 }
 
-/// The run whose residuals the effect changes most.
+/// The run whose residuals the effect changes most, for its length.
 fn telling_run(
     experiment: &Experiment,
     model: &Model,
@@ -89,25 +127,27 @@ fn telling_run(
     let changed = residuals(experiment, model, &base.weights, &with);
     let change = |&run: &usize| -> f64 {
         let both = changed[run].iter().zip(&base.residuals[run]);
-        both.map(|(with, without)| (with - without).powi(2)).sum()
+        let sum: f64 = both.map(|(with, without)| (with - without).powi(2)).sum();
+        sum / experiment.runs[run].regimes.len().max(1) as f64
     };
     (0..experiment.runs.len()).max_by(|a, b| change(a).total_cmp(&change(b)))
 }
 
 /// Every size with every shape.
-fn coarse(hint: &AddedEffect) -> Vec<AddedEffect> {
+fn coarse(hint: &AddedEffect, grid: &Grid) -> Vec<AddedEffect> {
     let size = &hint.effect.parameters()[0];
-    let steps = ((LARGEST / SMALLEST).ln() / FINER.ln()) as i32;
+    let [smallest, largest] = grid.sizes;
+    let steps = ((largest / smallest).ln() / grid.finer.ln()) as i32;
     let mut sizes: Vec<f64> = (0..=steps)
-        .map(|step| size.null + SMALLEST * FINER.powi(step) * (size.typical - size.null))
+        .map(|step| size.null + smallest * grid.finer.powi(step) * (size.typical - size.null))
         .filter(|value| (size.low..=size.high).contains(value))
         .collect();
-    grid(hint, |index, range| {
+    combinations(hint, |index, range| {
         if index == 0 {
             return std::mem::take(&mut sizes);
         }
-        let share = |k: usize| k as f64 / (SHAPES - 1) as f64;
-        (0..SHAPES)
+        let share = |k: usize| k as f64 / (grid.shapes - 1) as f64;
+        (0..grid.shapes)
             .map(|k| range.low + share(k) * (range.high - range.low))
             .collect()
     })
@@ -115,7 +155,7 @@ fn coarse(hint: &AddedEffect) -> Vec<AddedEffect> {
 
 /// Sizes and shapes around others.
 fn around(at: &AddedEffect, (size_reach, shape_reach): (f64, f64)) -> Vec<AddedEffect> {
-    grid(at, |index, range| {
+    combinations(at, |index, range| {
         let reach = if index == 0 {
             size_reach * (at.values[0] - range.null)
         } else {
@@ -131,7 +171,7 @@ fn around(at: &AddedEffect, (size_reach, shape_reach): (f64, f64)) -> Vec<AddedE
 }
 
 /// All combinations of the values of an effect's parameters.
-fn grid(
+fn combinations(
     of: &AddedEffect,
     mut values: impl FnMut(usize, &Parameter) -> Vec<f64>,
 ) -> Vec<AddedEffect> {

@@ -6,19 +6,13 @@ use super::experiment::Experiment;
 use super::fit::Fit;
 use super::frame::Frame;
 use super::jacobian::{Jacobian, huber_residuals};
-use super::scan::scan;
+use super::scan::{Grid, JUMPS, RINGING, scan};
 use crate::campaign::Channel;
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
 /// Sizes of the secants, in typical sizes: derivatives at zero miss a play or a gap, one size misses what saturates.
 const SIZES: [f64; 3] = [0.1, 1.0, 4.0];
-
-/// The same where the cost has many valleys and a secant is no guide from one to the next.
-const DENSE_SIZES: [f64; 7] = [0.1, 0.3, 0.6, 1.0, 2.0, 4.0, 8.0];
-
-/// Sizes that are tried next to the best of those, in its own size: a valley may be a tenth wide.
-const NEXT_SIZES: [f64; 6] = [0.7, 0.8, 0.9, 1.12, 1.25, 1.4];
 
 /// Sizes that differ by less than this share of the larger are one start.
 const SAME_VALLEY: f64 = 0.08;
@@ -29,7 +23,7 @@ const MOST_PROMISES: usize = 4;
 /// A change of cost that is no more than this is none.
 const NOTHING: f64 = 1.0;
 
-/// Error from which an erratic effect is looked for in fine steps.
+/// Error from which an effect whose cost has many valleys is looked for in fine steps.
 const SCANNED: f64 = 1.15;
 
 /// Sections of a search between a promise and the end of its secant.
@@ -53,22 +47,17 @@ pub(super) fn starts(
         base,
         frame: Frame::new(jacobian, &base.estimate, 0..0),
     };
-    let mut ranked = search.rank(sizes(experiment, effect));
-    if effect.erratic()
+    let mut ranked = search.rank(sizes(effect));
+    if let Some(grid) = valleys(experiment, effect)
         && base.error() > SCANNED
         && let Some(first) = ranked.first()
     {
-        ranked.extend(search.rank(scan(experiment, model, base, &first.last())));
+        ranked.extend(search.rank(scan(experiment, model, base, &first.last(), grid)));
         search.sort(&mut ranked);
     }
     if let Some(best) = search.promising(&ranked) {
-        ranked.extend(search.rank(shapes(&best)));
+        ranked.extend(search.rank(with_extreme_shapes(&best)));
         search.sort(&mut ranked);
-        if has_valleys(experiment, effect) {
-            let best = ranked[0].last();
-            ranked.extend(search.rank(neighbours(&best)));
-            search.sort(&mut ranked);
-        }
     }
     let predicted = ranked.first().map_or(base.cost, |first| first.cost);
     let mut starts: Vec<Estimate> = Vec::new();
@@ -216,33 +205,23 @@ fn with(estimate: &Estimate, added: AddedEffect) -> Estimate {
     with
 }
 
-/// Whether an effect's cost has many valleys: the phase of a ringing pressure makes them, and what jumps or bounces.
-pub(super) fn has_valleys(experiment: &Experiment, effect: &dyn Effect) -> bool {
+/// How to look through an effect's cost if that has many valleys: the phase of a ringing pressure makes them, and what
+/// jumps or bounces.
+pub(super) fn valleys(experiment: &Experiment, effect: &dyn Effect) -> Option<&'static Grid> {
     let rings = experiment.ringing && effect.channels() == [Channel::CylinderPressure];
-    rings || effect.erratic()
+    if effect.erratic() {
+        Some(&JUMPS)
+    } else {
+        rings.then_some(&RINGING)
+    }
 }
 
 /// An effect at the sizes of the secants.
-fn sizes(experiment: &Experiment, effect: &'static dyn Effect) -> Vec<AddedEffect> {
+fn sizes(effect: &'static dyn Effect) -> Vec<AddedEffect> {
     let size = &effect.parameters()[0];
-    let sizes = if has_valleys(experiment, effect) {
-        &DENSE_SIZES[..]
-    } else {
-        &SIZES
-    };
-    sizes
+    SIZES
         .iter()
         .map(|&s| scaled(&AddedEffect::typical(effect), s))
-        .filter(|added| (size.low..=size.high).contains(&added.values[0]))
-        .collect()
-}
-
-/// An effect at sizes next to the one it has.
-fn neighbours(at: &AddedEffect) -> Vec<AddedEffect> {
-    let size = &at.effect.parameters()[0];
-    NEXT_SIZES
-        .iter()
-        .map(|&s| scaled(at, s))
         .filter(|added| (size.low..=size.high).contains(&added.values[0]))
         .collect()
 }
@@ -259,7 +238,7 @@ fn reach(added: &AddedEffect) -> (f64, f64) {
 }
 
 /// An effect with each parameter of its shape at either end of its range in turn; none without a shape.
-fn shapes(at: &AddedEffect) -> Vec<AddedEffect> {
+pub(super) fn with_extreme_shapes(at: &AddedEffect) -> Vec<AddedEffect> {
     let parameters = at.effect.parameters().iter().enumerate().skip(1);
     parameters
         .flat_map(|(index, range)| {
