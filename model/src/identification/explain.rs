@@ -14,10 +14,11 @@ use super::design::{Alternative, NextExperiment, Pair, Place, Rival, next_experi
 use super::estimate::Estimate;
 use super::evidence::shares;
 use super::experiment::Experiment;
-use super::fit::{Fit, evaluate, fit, refine};
+use super::fit::{Fit, evaluate, evaluate_weighted, fit, refine};
 use super::holdout::held_out_error;
 use super::jacobian::square_sum;
 use super::regime::Regime;
+use super::starts::with_extreme_shapes;
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
@@ -413,7 +414,14 @@ fn alternatives(
     let variance = (square_sum(&whole.residuals) / whole.weights.count() as f64).max(1.0);
     let alike: Vec<&'static dyn Effect> = absent(model, &whole.estimate)
         .into_par_iter()
-        .filter(|effect| place.angle_deg(&AddedEffect::typical(*effect)) < ALIKE_DEG)
+        .filter(|effect| {
+            let typical = AddedEffect::typical(*effect);
+            let extreme = with_extreme_shapes(&typical);
+            [typical]
+                .iter()
+                .chain(&extreme)
+                .any(|form| place.angle_deg(form) < ALIKE_DEG)
+        })
         .collect();
     if alike.is_empty() {
         return Vec::new();
@@ -424,11 +432,33 @@ fn alternatives(
         .into_iter()
         .filter(|swapped| {
             let worse = (swapped.fit.cost - whole.cost) / (variance * inflation);
-            let shapes = swapped.effect.parameters().len() as f64 - own_parameters as f64;
-            worse + shapes * swapped.effective_samples().ln() < TOLD_APART
+            // Fewer parameters are a merit; more are no fault as long as the shape that they make is needed.
+            let spared = own_parameters.saturating_sub(swapped.effect.parameters().len()) as f64;
+            worse - spared * swapped.effective_samples().ln() < TOLD_APART
+        })
+        .filter(|swapped| {
+            let plain_cost = with_plain_shape(experiment, model, swapped);
+            (plain_cost - swapped.fit.cost) / (variance * inflation) >= TOLD_APART
         })
         .filter_map(|swapped| Alternative::new(experiment, model, whole, swapped.fit))
         .collect()
+}
+
+/// Cost of a candidate without the shape of its own, infinite if it has none: a friction that is fitted without its
+/// breakaway peak is not another explanation than the plain friction that it is then.
+fn with_plain_shape(experiment: &Experiment, model: &Model, candidate: &Candidate) -> f64 {
+    let mut plain = candidate.fit.estimate.clone();
+    let Some(last) = plain.effects.last_mut() else {
+        return f64::INFINITY;
+    };
+    let parameters = last.effect.parameters();
+    if parameters.len() == 1 {
+        return f64::INFINITY;
+    }
+    for (value, parameter) in last.values.iter_mut().zip(parameters).skip(1) {
+        *value = parameter.null;
+    }
+    evaluate_weighted(experiment, model, plain, candidate.fit.weights.clone()).cost
 }
 
 fn verdict(
