@@ -10,6 +10,7 @@ use super::jacobian::{
     Jacobian, SlowColumns, huber, huber_residuals, load_steps, residuals, square_sum,
 };
 use super::residual::Weights;
+use super::synchronise::synchronised;
 use crate::model::Model;
 
 /// Coarse weights of the channels (pump pressure, cylinder pressure, flow, angle): ringing pressures make valleys
@@ -172,9 +173,11 @@ pub fn sketch(
 #[must_use]
 pub fn refine(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
     let weights = Weights::new(experiment, model, &start);
+    let start = synchronised(experiment, model, &weights, start);
     let estimate = descend(experiment, model, &weights, start, FINE_ITERATIONS);
     // The weights belong to the values: once more with those of the values found.
     let weights = Weights::new(experiment, model, &estimate);
+    let estimate = synchronised(experiment, model, &weights, estimate);
     let estimate = descend(experiment, model, &weights, estimate, FINE_ITERATIONS);
     evaluate_weighted(experiment, model, estimate, weights)
 }

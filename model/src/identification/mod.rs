@@ -20,4 +20,5 @@ pub mod residual;
 mod scan;
 mod starts;
 pub mod suggestion;
+mod synchronise;
 pub mod whereabouts;

@@ -1,0 +1,82 @@
+//! The clocks of channels that ring.
+//!
+//! A pressure that rings fits nearly as well a whole period too late, and a descent from a wrong stiffness or a wrong
+//! friction ends there: no gradient leads back. Moving a channel of a trace costs nothing, so all offsets are tried.
+
+use rayon::prelude::*;
+
+use super::clocks::{Clocks, OFFSET_PRIOR_S};
+use super::estimate::Estimate;
+use super::experiment::Experiment;
+use super::jacobian::{huber, square_sum};
+use super::residual::Weights;
+use crate::model::Model;
+
+/// Farthest offset that is tried, s: a little more than the sample that a channel may be out of step.
+const FARTHEST_S: f64 = 0.024;
+
+/// From one offset to the next, s: a tenth of the fastest period that a sample of 20 ms still shows.
+const STEP_S: f64 = 0.004;
+
+/// The estimate with the clocks that fit best as everything else is; on a campaign that does not ring as it is.
+pub(super) fn synchronised(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    estimate: Estimate,
+) -> Estimate {
+    if !experiment.ringing {
+        return estimate;
+    }
+    let steps = (FARTHEST_S / STEP_S).round() as i32;
+    let tried: Vec<Clocks> = (-steps..=steps)
+        .map(|step| Clocks {
+            offsets_s: [f64::from(step) * STEP_S; 4],
+        })
+        .chain([estimate.clocks])
+        .collect();
+    let costs = costs(experiment, model, weights, &estimate, &tried);
+    let mut better = estimate;
+    for channel in 0..4 {
+        let best =
+            (0..tried.len()).min_by(|&a, &b| costs[a][channel].total_cmp(&costs[b][channel]));
+        if let Some(best) = best {
+            better.clocks.offsets_s[channel] = tried[best].offsets_s[channel];
+        }
+    }
+    better
+}
+
+/// Cost of each channel under each of some clocks, with the clocks' prior.
+fn costs(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    estimate: &Estimate,
+    tried: &[Clocks],
+) -> Vec<[f64; 4]> {
+    let model = model.with_effects(estimate.effects.clone());
+    let of_runs: Vec<Vec<[f64; 4]>> = experiment
+        .runs
+        .par_iter()
+        .enumerate()
+        .map(|(index, run)| {
+            let in_step = run.simulate_in_step(&model, estimate.nuisances[index], 0.0);
+            let cost = |clocks: &Clocks| {
+                let mut trace = in_step.clone();
+                clocks.stamp(&run.drive.time_s, &mut trace);
+                let whitened = huber(vec![weights.runs[index].whiten(run, &trace)]).swap_remove(0);
+                let of = |channel: usize| &whitened[channel * run.len()..(channel + 1) * run.len()];
+                std::array::from_fn(|channel| square_sum(&[of(channel).to_vec()]))
+            };
+            tried.iter().map(cost).collect()
+        })
+        .collect();
+    let total = |(at, clocks): (usize, &Clocks)| {
+        std::array::from_fn(|channel| {
+            let prior = (clocks.offsets_s[channel] / OFFSET_PRIOR_S).powi(2);
+            prior + of_runs.iter().map(|run| run[at][channel]).sum::<f64>()
+        })
+    };
+    tried.iter().enumerate().map(total).collect()
+}
