@@ -2,7 +2,8 @@
 
 use super::calibration::ValidCalibration;
 use super::closing::ClosingCurve;
-use super::current::{Duties, Regulation};
+use super::current::Regulation;
+use super::learning::Learning;
 use super::load::LoadEstimate;
 use super::mode::{Fault, Mode};
 use super::motion::{Closing, Motion, Slack, flow, piston_speed};
@@ -10,11 +11,10 @@ use super::operator::{ButtonGuard, EngineWatch, Float, QuickLift, lowering_limit
 use super::position::{PositionControl, Reason};
 use super::rate::RateControl;
 use super::rest::RestPosition;
-use super::run_on::RunOn;
 use super::safety::{CoilCurrents, Envelope, Limits};
 use super::saturation::SaturationWatch;
 use super::sensors::{Sensed, Sensors};
-use super::signals::{Inputs, Outputs, State};
+use super::signals::{Inputs, Outputs};
 use super::sink::SinkWatch;
 use super::teach::{Taught, Teach, TeachError};
 use super::units::{
@@ -23,6 +23,8 @@ use super::units::{
 };
 use super::valve_logic::{Demand, Direction, Phase};
 use super::valve_map::{DropScale, ValveMap};
+
+mod report;
 
 /// A hitch that stalls this close to a limit of its travel has arrived: an end stop, or a misplaced limit.
 const END_ZONE: MilliDegree = MilliDegree(2_000);
@@ -51,8 +53,8 @@ pub struct Controller {
     envelope: Envelope,
     regulation: Regulation,
     rest: RestPosition,
-    run_on: Option<(Direction, RunOn)>,
     scale: DropScale,
+    learning: Learning,
     teach: Teach,
     /// Fastest speed that the valve in use can give.
     available: MicrometrePerSecond,
@@ -91,8 +93,8 @@ impl Controller {
             envelope: Envelope::default(),
             regulation,
             rest: RestPosition::default(),
-            run_on: None,
             scale,
+            learning: Learning::default(),
             teach: Teach::default(),
             available: MicrometrePerSecond::ZERO,
             demanded_flow: MicroLitrePerSecond::ZERO,
@@ -106,9 +108,14 @@ impl Controller {
     }
 
     /// Takes another calibration of the same machine: one whose ramps, gains or limits differ. The hitch may be moving,
-    /// and goes on from where it is.
+    /// and goes on from where it is. What was learnt of the valves' curves goes with the curves.
     pub fn recalibrate(&mut self, calibration: ValidCalibration) {
         self.closing = closing(&calibration);
+        if (&calibration.lift, &calibration.lower)
+            != (&self.calibration.lift, &self.calibration.lower)
+        {
+            self.learning.forget_curves();
+        }
         self.calibration = calibration;
     }
 
@@ -137,8 +144,12 @@ impl Controller {
         let map = valve_map(&self.calibration, self.scale);
         // A button's speed falls with the linkage and stays: what the map gets wrong there does as well.
         let slowing = self.slack.is_taken() && matches!(self.mode, Mode::Position);
-        self.motion
-            .drive(currents, slowing, &map, &self.calibration.hydraulics);
+        self.motion.drive(
+            self.learning.offsets().on_curve(currents),
+            slowing,
+            &map,
+            &self.calibration.hydraulics,
+        );
         let duties = self
             .regulation
             .drive(currents, inputs, &self.calibration.current);
@@ -198,6 +209,17 @@ impl Controller {
         self.rest
             .update(self.motion.position(), self.phase, &calibration.hold);
         self.sink.tick(&calibration.hold);
+        self.learn();
+    }
+
+    /// Learns from where the hitch is on its way from rest to rest.
+    fn learn(&mut self) {
+        let Some(course) = self.learning.follow(self.phase, &self.motion) else {
+            return;
+        };
+        let area = self.calibration.hydraulics.piston_area;
+        let told = course.told(self.rest.position(), self.scale, area);
+        self.learning.learn(&told);
     }
 
     /// Mode transitions that don't depend on the lever.
@@ -276,7 +298,7 @@ impl Controller {
             .position
             .follow(lever, highest, moving, &calibration.position);
         if changed && moving {
-            self.run_on = None;
+            self.learning.divert();
         }
         if changed && !moving {
             self.sink.new_set_point();
@@ -336,17 +358,9 @@ impl Controller {
         );
         if next.is_moving() && !self.phase.is_moving() {
             self.motion.forget_bias();
-            self.run_on = match next {
-                Phase::Moving { direction, .. } if matches!(self.mode, Mode::Position) => {
-                    Some((direction, RunOn::default()))
-                }
-                _ => None,
-            };
-            if matches!(self.mode, Mode::Position) && self.position.start() == Reason::Drift {
-                self.sink.correct(&calibration.hold)?;
-            }
+            self.begin(next)?;
         }
-        self.watch_run_on(next);
+        self.learn_from_end(next);
         self.phase = next;
         let follows_lever = matches!(self.mode, Mode::Position);
         if next.is_moving() && follows_lever && self.position.has_arrived() {
@@ -356,29 +370,34 @@ impl Controller {
         Ok(())
     }
 
-    /// Learns from the end of a move that went undisturbed to its set point.
-    fn watch_run_on(&mut self, next: Phase) {
-        let Some((direction, mut run_on)) = self.run_on else {
-            return;
+    /// A move begins: counts it if nobody asked for it. Only moves to a set point teach; what makes a hitch leave its place
+    /// (a leak, a sensor that drifts) has a part in its corrections.
+    fn begin(&mut self, next: Phase) -> Result<(), Fault> {
+        self.learning.obstruct();
+        let Phase::Moving { direction, .. } = next else {
+            return Ok(());
         };
-        let calibration = &self.calibration;
-        match next {
-            Phase::Moving { speed, .. } => {
-                run_on.step(
-                    speed,
-                    calibration.position.creep_speed,
-                    self.slack.is_taken(),
-                );
-                self.run_on = Some((direction, run_on));
-            }
-            Phase::Settling { .. } => {}
-            Phase::Holding => {
-                let beyond = direction.sign((self.motion.position() - self.target.1).0);
-                let further = run_on.lag_error(Micrometre(beyond));
-                self.motion
-                    .correct_lag(direction, further, &calibration.motion);
-                self.run_on = None;
-            }
+        if !matches!(self.mode, Mode::Position) {
+            return Ok(());
+        }
+        match self.position.start() {
+            Reason::SetPoint => self.learning.begin(direction, self.rest.position()),
+            Reason::Drift => self.sink.correct(&self.calibration.hold)?,
+        }
+        Ok(())
+    }
+
+    /// Learns from the end of a move that went undisturbed to its set point.
+    fn learn_from_end(&mut self, next: Phase) {
+        let found = self.learning.approach(
+            next,
+            self.calibration.position.creep_speed,
+            self.slack.is_taken(),
+            self.target.1 - self.motion.position(),
+        );
+        if let Some((direction, further)) = found {
+            self.motion
+                .correct_lag(direction, further, &self.calibration.motion);
         }
     }
 
@@ -396,6 +415,7 @@ impl Controller {
             return Ok(());
         }
         self.phase = phase.cut();
+        self.learning.obstruct();
         let at_end = match phase.speed() > MicrometrePerSecond::ZERO {
             true => sensed.angle >= calibration.position.upper_limit - END_ZONE,
             false => sensed.angle <= calibration.position.lower_limit + END_ZONE,
@@ -427,6 +447,11 @@ impl Controller {
             Mode::Jog => self.rate.trim(),
             _ => MicrometrePerSecond::ZERO,
         };
+        // Full demand is a fully open valve, whatever it gives; from there on the correction comes in with the ramp.
+        let excess = match excess > MicrometrePerSecond::ZERO {
+            true => excess.min((self.available - speed).max(MicrometrePerSecond::ZERO)),
+            false => excess,
+        };
         let wanted = (speed - excess - trim).limited(MicrometrePerSecond(1), self.available);
         MicrometrePerSecond(direction.sign(wanted.0))
     }
@@ -440,54 +465,15 @@ impl Controller {
             self.calibration.hydraulics.hysteresis,
         );
         let map = valve_map(&self.calibration, self.scale);
+        let offsets = self.learning.offsets();
+        // No flow is no current, whatever the valve.
+        let with = |current: MilliAmp, offset: MilliAmp| match current > MilliAmp::ZERO {
+            true => (current - slack + offset).max(MilliAmp::ZERO),
+            false => MilliAmp::ZERO,
+        };
         CoilCurrents {
-            lift: (map.lift_current(flow) - slack).max(MilliAmp::ZERO),
-            lower: (map.lower_current(-flow) - slack).max(MilliAmp::ZERO),
-        }
-    }
-
-    fn state(&self) -> State {
-        match (&self.mode, self.phase) {
-            (Mode::Fault { .. }, _) => State::Fault,
-            (Mode::Locked(_), _) => State::Locked,
-            (Mode::TransportLock, _) => State::TransportLock,
-            (Mode::Teach, _) => State::Teaching,
-            (
-                _,
-                Phase::Moving {
-                    direction: Direction::Lift,
-                    ..
-                },
-            ) => State::Lifting,
-            (
-                _,
-                Phase::Moving {
-                    direction: Direction::Lower,
-                    ..
-                },
-            ) => State::Lowering,
-            _ if self.float.is_floating() => State::Floating,
-            _ if self.saturation.rests() => State::Stalled,
-            (_, Phase::Settling { .. }) => State::Settling,
-            (_, Phase::Holding) => State::Holding,
-        }
-    }
-
-    fn outputs(&self, currents: CoilCurrents, duties: Duties, angle: MilliDegree) -> Outputs {
-        Outputs {
-            lift_current: currents.lift,
-            lower_current: currents.lower,
-            state: self.state(),
-            fault: self.mode.fault(),
-            trip: self.envelope.tripped(),
-            target: self.position.set_point(angle),
-            travel: self.motion.position(),
-            demanded_speed: self.phase.speed(),
-            demanded_flow: self.demanded_flow,
-            speed: self.motion.speed(),
-            drop: self.load.drop(),
-            lift_duty: duties.lift,
-            lower_duty: duties.lower,
+            lift: with(map.lift_current(flow), offsets.lift()),
+            lower: with(map.lower_current(-flow), offsets.lower()),
         }
     }
 }

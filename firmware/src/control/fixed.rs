@@ -48,6 +48,13 @@ pub fn mul_div(a: i32, b: i32, c: Divisor) -> i32 {
     )
 }
 
+/// [`mul_div`] for what is reckoned once a move or once a calibration: a call takes longer and less flash than its body.
+#[must_use]
+#[inline(never)]
+pub fn mul_div_seldom(a: i32, b: i32, c: Divisor) -> i32 {
+    mul_div(a, b, c)
+}
+
 /// `dividend / divisor`.
 ///
 /// The ECU divides 32 bits in one instruction and 64 in a hundred. Short numbers are the rule, and for

@@ -58,6 +58,8 @@ pub struct Motion {
     slower_steps: [Millisecond; 2],
     lift_spool: Spool,
     lower_spool: Spool,
+    /// How much the flow through the valve that is open changes for each ampere, at the drop of its table.
+    slope: MicroLitrePerSecond,
     /// Currents that the spools have followed to, lift and lowering.
     spools: [MilliAmp; 2],
 }
@@ -157,8 +159,9 @@ impl Motion {
         let lower = self
             .lower_spool
             .follow(currents.lower, hydraulics.hysteresis, lower_lag);
-        let up = map.lift.flow(lift);
-        let down = map.scale.to_present(map.lower.flow(lower));
+        let (up, lift_slope) = map.lift.flow_and_slope(lift);
+        let (down, lower_slope) = map.lower.flow_and_slope(lower);
+        let down = map.scale.to_present(down);
         let before = self.model_speed;
         let area = hydraulics.piston_area;
         let settled = piston_speed(down, area);
@@ -170,6 +173,10 @@ impl Motion {
             self.shrink_bias(before);
         }
         self.spools = [lift, lower];
+        self.slope = match down > MicroLitrePerSecond::ZERO {
+            true => lower_slope,
+            false => lift_slope,
+        };
     }
 
     /// What the map gets wrong is mostly a share of the flow (load, viscosity), so it shrinks with the flow; waiting
@@ -207,6 +214,12 @@ impl Motion {
     #[must_use]
     pub fn model_speed(&self) -> MicrometrePerSecond {
         self.model_speed
+    }
+
+    /// How much the flow through the valve that is open changes for each ampere, at the drop of its table.
+    #[must_use]
+    pub fn slope(&self) -> MicroLitrePerSecond {
+        self.slope
     }
 
     /// What the valve map gets wrong at present.

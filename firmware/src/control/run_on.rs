@@ -4,7 +4,7 @@
 //! long had a faster one, and slowed down too early. Either way the lag was wrong by about the distance over the speed from
 //! which the hitch was slowed down. Half of that is learnt, so that noise and odd moves average out.
 
-use super::fixed::{Divisor, mul_div};
+use super::fixed::{Divisor, mul_div_seldom};
 use super::units::{Micrometre, MicrometrePerSecond, Microsecond};
 
 /// A move slower than this says nothing: it is all threshold.
@@ -46,7 +46,7 @@ impl RunOn {
         };
         // Half of um over um/s, in us.
         let fastest = Divisor::at_least_one(self.fastest.0);
-        Microsecond(mul_div(further.0, 500_000, fastest)).limited(-MOST, MOST)
+        Microsecond(mul_div_seldom(further.0, 500_000, fastest)).limited(-MOST, MOST)
     }
 }
 

@@ -10,7 +10,7 @@
 //! The flow of a compensated lift is known to a few per cent, which spoils that only slowly: the sums end early. A load
 //! that is lowered trails its valve by inertia more than by the spool's lag and tells nothing.
 
-use super::fixed::{Divisor, mul_div};
+use super::fixed::{Divisor, mul_div_seldom};
 use super::units::{Micrometre, MicrometrePerSecond, Microsecond};
 
 /// Sum of squares, mm2/s2, from which a lift has told enough: 40 ms at full speed.
@@ -65,7 +65,7 @@ impl Trail {
         self.told = slowing || self.speed_squared >= COMPLETE;
         (self.told && self.speed_squared >= ENOUGH).then(|| {
             let squared = Divisor::at_least_one(self.speed_squared);
-            Microsecond(mul_div(self.speed_behind, 1000, squared))
+            Microsecond(mul_div_seldom(self.speed_behind, 1000, squared))
         })
     }
 }

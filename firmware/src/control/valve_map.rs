@@ -11,7 +11,7 @@
 //!   pressure drop (turbulent orifice, `Q = Cd A sqrt(2 dp / rho)`), so a flow is brought to the
 //!   drop at which the table was measured: `Q_ref = Q sqrt(dp_ref / dp)`.
 
-use super::fixed::{interpolate, mul_shift_16, square_root_of_ratio_16};
+use super::fixed::{Breakpoint, Divisor, interpolate, mul_shift_16, square_root_of_ratio_16};
 use super::units::{MicroLitrePerSecond, MilliAmp, MilliBar, MillimetrePerSecondSquared};
 
 /// Room for breakpoints in a valve table.
@@ -65,6 +65,7 @@ impl ValveTable {
 
     /// Current that lets `flow` through (at the table's own pressure drop).
     #[must_use]
+    #[inline(never)]
     pub fn current(&self, flow: MicroLitrePerSecond) -> MilliAmp {
         if flow <= MicroLitrePerSecond::ZERO {
             return MilliAmp::ZERO;
@@ -76,26 +77,59 @@ impl ValveTable {
     /// Flow that `current` lets through (at the table's own pressure drop).
     #[must_use]
     pub fn flow(&self, current: MilliAmp) -> MicroLitrePerSecond {
-        if current <= self.threshold() {
-            return MicroLitrePerSecond::ZERO;
-        }
-        MicroLitrePerSecond(self.look_up(current.0, |point| (point.current.0, point.flow.0)))
+        self.flow_and_slope(current).0
+    }
+
+    /// The same flow, and its slope: how much more an ampere more would let through.
+    #[must_use]
+    #[inline(never)]
+    pub fn flow_and_slope(&self, current: MilliAmp) -> (MicroLitrePerSecond, MicroLitrePerSecond) {
+        let x = current.0;
+        let Some((left, right)) = self.piece(x, by_current) else {
+            let flow = self.end(x, by_current);
+            return (MicroLitrePerSecond(flow), MicroLitrePerSecond::ZERO);
+        };
+        let run = Divisor::at_least_one(right.0.saturating_sub(left.0));
+        let rise = right.1.saturating_sub(left.1);
+        (
+            MicroLitrePerSecond(interpolate(left, right, x)),
+            MicroLitrePerSecond(run.divide(rise.saturating_mul(1000))),
+        )
     }
 
     /// Interpolates along the axis that `axes` puts first; beyond the ends the end values hold.
-    fn look_up(&self, x: i32, axes: impl Fn(&ValvePoint) -> (i32, i32)) -> i32 {
-        let points = self.used();
-        let above = points.partition_point(|point| axes(point).0 < x);
-        let left = above
-            .checked_sub(1)
-            .and_then(|at| points.get(at))
-            .map(&axes);
-        match (left, points.get(above).map(&axes)) {
-            (Some(left), Some(right)) => interpolate(left, right, x),
-            (Some(end), None) | (None, Some(end)) => end.1,
-            (None, None) => 0,
+    fn look_up(&self, x: i32, axes: impl Fn(&ValvePoint) -> Breakpoint) -> i32 {
+        match self.piece(x, &axes) {
+            Some((left, right)) => interpolate(left, right, x),
+            None => self.end(x, axes),
         }
     }
+
+    /// The value at the end that `x` is beyond.
+    fn end(&self, x: i32, axes: impl Fn(&ValvePoint) -> Breakpoint) -> i32 {
+        let (first, last) = (self.used().first(), self.used().last());
+        let end = match first.map(&axes) {
+            Some(first) if x <= first.0 => Some(first),
+            _ => last.map(&axes),
+        };
+        end.map_or(0, |end| end.1)
+    }
+
+    /// The piece of the curve that `x` is in, if it is in one.
+    fn piece(
+        &self,
+        x: i32,
+        axes: impl Fn(&ValvePoint) -> Breakpoint,
+    ) -> Option<(Breakpoint, Breakpoint)> {
+        let points = self.used();
+        let above = points.partition_point(|point| axes(point).0 < x);
+        let left = points.get(above.checked_sub(1)?)?;
+        Some((axes(left), axes(points.get(above)?)))
+    }
+}
+
+fn by_current(point: &ValvePoint) -> Breakpoint {
+    (point.current.0, point.flow.0)
 }
 
 /// `sqrt(dp_ref / dp)` of the lowering valve at its present pressure drop.

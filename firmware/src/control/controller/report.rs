@@ -1,0 +1,62 @@
+//! What a controller says of itself.
+
+use super::super::current::Duties;
+use super::super::mode::Mode;
+use super::super::safety::CoilCurrents;
+use super::super::signals::{Outputs, State};
+use super::super::units::MilliDegree;
+use super::super::valve_logic::{Direction, Phase};
+use super::Controller;
+
+impl Controller {
+    fn state(&self) -> State {
+        match (&self.mode, self.phase) {
+            (Mode::Fault { .. }, _) => State::Fault,
+            (Mode::Locked(_), _) => State::Locked,
+            (Mode::TransportLock, _) => State::TransportLock,
+            (Mode::Teach, _) => State::Teaching,
+            (
+                _,
+                Phase::Moving {
+                    direction: Direction::Lift,
+                    ..
+                },
+            ) => State::Lifting,
+            (
+                _,
+                Phase::Moving {
+                    direction: Direction::Lower,
+                    ..
+                },
+            ) => State::Lowering,
+            _ if self.float.is_floating() => State::Floating,
+            _ if self.saturation.rests() => State::Stalled,
+            (_, Phase::Settling { .. }) => State::Settling,
+            (_, Phase::Holding) => State::Holding,
+        }
+    }
+
+    /// The outputs of a step that ends with these currents and duties.
+    pub(super) fn outputs(
+        &self,
+        currents: CoilCurrents,
+        duties: Duties,
+        angle: MilliDegree,
+    ) -> Outputs {
+        Outputs {
+            lift_current: currents.lift,
+            lower_current: currents.lower,
+            state: self.state(),
+            fault: self.mode.fault(),
+            trip: self.envelope.tripped(),
+            target: self.position.set_point(angle),
+            travel: self.motion.position(),
+            demanded_speed: self.phase.speed(),
+            demanded_flow: self.demanded_flow,
+            speed: self.motion.speed(),
+            drop: self.load.drop(),
+            lift_duty: duties.lift,
+            lower_duty: duties.lower,
+        }
+    }
+}

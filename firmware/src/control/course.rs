@@ -1,0 +1,85 @@
+//! How far a whole move went, from rest to rest, and how far the valve's curve says that it should have gone.
+//!
+//! A curve that lies `d` further right gives less flow all the way; a spool that is slower delays the flow, but loses none
+//! of it. So at rest the hitch is behind by what the curve is off, whatever the lag:
+//!
+//! ```text
+//! expected way - measured way = d * sensitivity        sensitivity = integral of dv/dI over the move
+//! ```
+
+use super::fixed::Divisor;
+use super::motion::Motion;
+use super::units::{MicroLitrePerSecond, Micrometre, Millisecond, SquareMillimetre};
+use super::valve_logic::{Direction, Phase};
+use super::valve_map::DropScale;
+
+/// How long a hitch has to hold until its place is read: its load has swung out, and a leak hasn't carried it far.
+const REST: Millisecond = Millisecond(500);
+
+/// A move under way, or just over.
+#[derive(Clone, Copy, Debug)]
+pub struct Course {
+    direction: Direction,
+    from: Micrometre,
+    expected_nm: i32,
+    /// The sensitivity as a volume at the drop of the valve's table, nl for each ampere.
+    sensitivity_nl: i32,
+    held: Millisecond,
+}
+
+/// What a move told.
+#[derive(Clone, Copy, Debug)]
+pub struct Told {
+    /// Which valve made it.
+    pub direction: Direction,
+    /// Way that the valve's curve says, along the move.
+    pub expected: Micrometre,
+    /// ... and what is missing from it.
+    pub missing: Micrometre,
+    /// What would be missing for each ampere that the curve is off.
+    pub sensitivity: Micrometre,
+}
+
+impl Course {
+    /// A move begins at `from`, where the hitch rested.
+    #[must_use]
+    pub fn begin(direction: Direction, from: Micrometre) -> Self {
+        Self {
+            direction,
+            from,
+            expected_nm: 0,
+            sensitivity_nl: 0,
+            held: Millisecond::ZERO,
+        }
+    }
+
+    /// One step; true once the hitch has rested for long enough.
+    pub fn step(&mut self, phase: Phase, motion: &Motion) -> bool {
+        self.expected_nm = self.expected_nm.saturating_add(motion.model_speed().0);
+        self.sensitivity_nl = self.sensitivity_nl.saturating_add(motion.slope().0);
+        if phase == Phase::Holding {
+            self.held = self.held.next();
+        }
+        self.held >= REST
+    }
+
+    /// What a move told that ended at `rest`, through a valve with this `scale` and into a cylinder of this `area`.
+    #[must_use]
+    #[inline(never)]
+    pub fn told(&self, rest: Micrometre, scale: DropScale, area: SquareMillimetre) -> Told {
+        let along = |way: i32| Micrometre(self.direction.sign(way));
+        let volume = MicroLitrePerSecond(self.sensitivity_nl);
+        let volume = match self.direction {
+            Direction::Lift => volume,
+            Direction::Lower => scale.to_present(volume),
+        };
+        let expected = along(Divisor::THOUSAND.divide(self.expected_nm));
+        Told {
+            direction: self.direction,
+            expected,
+            missing: expected - along((rest - self.from).0),
+            // nl over mm2 are um.
+            sensitivity: Micrometre(Divisor::at_least_one(area.0).divide(volume.0)),
+        }
+    }
+}

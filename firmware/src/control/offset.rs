@@ -1,0 +1,180 @@
+//! How far this machine's valves are off their curves, told from how far its moves go ([`super::course`]).
+//!
+//! Valves of one kind differ by 0.1 A in where they open, and hysteresis adds half of its width. What else shortens a way
+//! (oil, load, a compensator that droops) goes with the way itself, and the sensor's noise is there in any case, so it is a
+//! short move that tells. How much of the difference is believed is the share that the present doubt can make of it (a
+//! Kalman filter of one state):
+//!
+//! ```text
+//! a = doubt * sensitivity     share = a^2 / (a^2 + noise^2 + (error of the flow * way)^2)     doubt^2 *= 1 - share
+//! ```
+//!
+//! An offset changes only at rest, is bounded, and is forgotten with the supply. A difference that is larger than all of
+//! this can make is no offset: something stood in the way.
+
+use super::course::Told;
+use super::fixed::{Divisor, mul_div_seldom, square_root};
+use super::safety::CoilCurrents;
+use super::units::{Micrometre, MilliAmp};
+use super::valve_logic::Direction;
+
+/// Furthest that a valve may be off: one that is further off has to be taught.
+const MOST: MilliAmp = MilliAmp(160);
+/// Doubt before anything was learnt: spread of thresholds, and half of the hysteresis.
+const FIRST_DOUBT: MilliAmp = MilliAmp(70);
+/// Doubt that stays: coils get warm, and hysteresis hides as much.
+const LEAST_DOUBT: MilliAmp = MilliAmp(20);
+/// One sigma of what a way is off by whatever its length: the averaged sensor, play of pins, how the valve fell shut.
+const NOISE: Micrometre = Micrometre(300);
+/// One sigma of the error of the flow when lifting, in thousandths: it is compensated ...
+const LIFT_ERROR: i32 = 25;
+/// ... and when lowering, where load and oil are known badly.
+const LOWER_ERROR: i32 = 100;
+/// A difference of so many sigmas is no offset.
+const BELIEVABLE: i32 = 3;
+
+/// Offsets of both valves.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Offsets {
+    lift: Belief,
+    lower: Belief,
+}
+
+/// An offset and how sure it is.
+#[derive(Clone, Copy, Debug)]
+struct Belief {
+    offset: MilliAmp,
+    doubt: MilliAmp,
+}
+
+impl Default for Belief {
+    fn default() -> Self {
+        Self {
+            offset: MilliAmp::ZERO,
+            doubt: FIRST_DOUBT,
+        }
+    }
+}
+
+impl Offsets {
+    /// How much more current the lift valve takes than its curve says.
+    #[must_use]
+    pub const fn lift(&self) -> MilliAmp {
+        self.lift.offset
+    }
+
+    /// How much more current the lowering valve takes than its curve says.
+    #[must_use]
+    pub const fn lower(&self) -> MilliAmp {
+        self.lower.offset
+    }
+
+    /// The currents at which the curves give what these valves give under `currents`.
+    #[must_use]
+    pub fn on_curve(&self, currents: CoilCurrents) -> CoilCurrents {
+        CoilCurrents {
+            lift: currents.lift - self.lift.offset,
+            lower: currents.lower - self.lower.offset,
+        }
+    }
+
+    /// Takes in what a move told.
+    pub fn learn(&mut self, told: &Told) {
+        match told.direction {
+            Direction::Lift => self.lift.learn(told, LIFT_ERROR),
+            Direction::Lower => self.lower.learn(told, LOWER_ERROR),
+        }
+    }
+}
+
+impl Belief {
+    #[inline(never)]
+    fn learn(&mut self, told: &Told, flow_error: i32) {
+        let sensitivity = told.sensitivity.0;
+        let of_doubt = mul_div_seldom(sensitivity, self.doubt.0, Divisor::THOUSAND);
+        let of_flow = mul_div_seldom(told.expected.0, flow_error, Divisor::THOUSAND);
+        let of_rest = hypotenuse(of_flow, NOISE.0);
+        let spread = hypotenuse(of_doubt, of_rest);
+        if sensitivity <= 0 || told.missing.magnitude().0 / BELIEVABLE > spread {
+            return;
+        }
+        let all = Divisor::at_least_one(spread);
+        // The share is the square of this, both in thousandths.
+        let part = mul_div_seldom(of_doubt, 1000, all);
+        let share = mul_div_seldom(part, part, Divisor::THOUSAND);
+        // um * 1/1000 over um/A is mA.
+        let further = mul_div_seldom(told.missing.0, share, Divisor::at_least_one(sensitivity));
+        self.offset = (self.offset + MilliAmp(further)).limited(-MOST, MOST);
+        self.doubt = MilliAmp(mul_div_seldom(self.doubt.0, of_rest, all)).max(LEAST_DOUBT);
+    }
+}
+
+/// Root of the sum of squares.
+fn hypotenuse(a: i32, b: i32) -> i32 {
+    square_root(square(a).saturating_add(square(b)))
+}
+
+fn square(value: i32) -> u64 {
+    let magnitude = u64::from(value.unsigned_abs());
+    magnitude.saturating_mul(magnitude)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A lift of `way` um by the curve whose valve is `off_ma` off, and whose flow is wrong by `error`.
+    fn lift(way: i32, off_ma: i32, error: f64) -> Told {
+        // The rig's lift valve, half of the way on its slope.
+        let sensitivity = way / 2;
+        let missing = f64::from(off_ma) * 1e-3 * f64::from(sensitivity) + error * f64::from(way);
+        Told {
+            direction: Direction::Lift,
+            expected: Micrometre(way),
+            missing: Micrometre(missing as i32),
+            sensitivity: Micrometre(sensitivity),
+        }
+    }
+
+    #[test]
+    fn a_few_short_moves_tell_how_far_a_valve_is_off() {
+        for off_ma in [-100, -40, 0, 40, 100] {
+            let mut offsets = Offsets::default();
+            for _ in 0..6 {
+                let left_ma = off_ma - offsets.lift().0;
+                offsets.learn(&lift(12_000, left_ma, 0.0));
+            }
+            let error_ma = (offsets.lift().0 - off_ma).abs();
+            assert!(error_ma <= LEAST_DOUBT.0, "{off_ma} mA: {error_ma} off");
+            assert_eq!(offsets.lower(), MilliAmp::ZERO);
+        }
+    }
+
+    #[test]
+    fn an_error_of_the_flow_over_a_long_way_is_hardly_blamed_on_the_threshold() {
+        let mut offsets = Offsets::default();
+        offsets.learn(&lift(100_000, 0, 0.025));
+        // Blamed altogether it would be 50 mA.
+        assert!(offsets.lift().0 < 35, "{:?}", offsets.lift());
+    }
+
+    #[test]
+    fn an_obstacle_and_extremes_teach_nothing_that_is_not_bounded() {
+        let mut offsets = Offsets::default();
+        offsets.learn(&Told {
+            missing: Micrometre(12_000),
+            ..lift(12_000, 0, 0.0)
+        });
+        assert_eq!(offsets.lift(), MilliAmp::ZERO, "stood in the way");
+        for missing in [i32::MIN, -900, 900, i32::MAX] {
+            for sensitivity in [i32::MIN, 0, 1, 6_000, i32::MAX] {
+                offsets.learn(&Told {
+                    missing: Micrometre(missing),
+                    sensitivity: Micrometre(sensitivity),
+                    ..lift(i32::MAX, 0, 0.0)
+                });
+                assert!(offsets.lift().magnitude() <= MOST);
+            }
+        }
+    }
+}
