@@ -105,13 +105,15 @@ fn explain_tells_what_scripts_read() {
         error < 1.1,
         "the written model explains the campaign: {error}"
     );
-    assert_self_contained(&fs::read_to_string(dir.path().join("r.html")).unwrap());
+    let report = fs::read_to_string(dir.path().join("r.html")).unwrap();
+    assert_self_contained(&report);
+    assert!(report.contains("lower-threshold-shift"));
 }
 
 /// A report may point nowhere: it has to open offline.
 fn assert_self_contained(html: &str) {
     assert!(html.starts_with("<!DOCTYPE html>") && html.ends_with("</html>"));
-    assert!(html.contains("<svg") && html.contains("lower-threshold-shift"));
+    assert!(html.contains("<svg"));
     for reference in ["http:", "https:", " src=", " href=", "@import", "url("] {
         assert!(!html.contains(reference), "{reference}");
     }
@@ -347,4 +349,34 @@ fn the_ecu_picks_the_hitch_up_and_says_so() {
         8_192,
         "the flash is kept"
     );
+}
+
+#[test]
+fn the_report_of_the_loop_shows_the_worst_cases_steps_and_what_was_set() {
+    let dir = tempfile::tempdir().unwrap();
+    let arguments = [
+        "loop",
+        "--scenario",
+        "quick",
+        "--set",
+        "position.approach_gain=40",
+        "--report",
+        "l.html",
+    ];
+    let output = run(dir.path(), &arguments);
+    assert!(output.status.success(), "{output:?}");
+    let html = fs::read_to_string(dir.path().join("l.html")).unwrap();
+    assert_self_contained(&html);
+    for part in [
+        "position.approach_gain=40",
+        "Where it is worst",
+        "250 kg 40 °C",
+        "Steps over load",
+        "Steps over oil temperature",
+        "Pressures of pump and cylinder",
+    ] {
+        assert!(html.contains(part), "no {part:?}");
+    }
+    // Two spans, up and down: one chart each over load, three for each of twelve moves.
+    assert_eq!(html.matches("<figure>").count(), 4 + 3 * 12);
 }

@@ -36,7 +36,7 @@ pub struct Args {
     load: Option<f64>,
     #[command(flatten)]
     json: JsonArg,
-    /// Write a report with the course of every move to this file
+    /// Write a report to this file: worst cases, step responses over load and oil temperature, courses of moves
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
 }
@@ -63,7 +63,17 @@ pub fn run(args: &Args) -> Result<(), Error> {
         .ok_or_else(|| Error::Usage("the scenario has no moves".to_owned()))?;
     drop(progress);
     if let Some(path) = &args.report {
-        output::write_file(path, loop_page::page(&model, &driven).as_bytes())?;
+        let source = args
+            .calibration
+            .as_ref()
+            .map(|path| path.display().to_string());
+        let page = loop_page::page(&loop_page::Shown {
+            model: &model,
+            calibration: source.as_deref().unwrap_or("nominal"),
+            settings: &args.set,
+            run: &driven,
+        });
+        output::write_file(path, page.as_bytes())?;
     }
     let document = Document {
         moves: &driven.results,

@@ -4,7 +4,7 @@ use std::fmt;
 use hitch_model::campaign::Channel;
 
 use super::{Cell, Comparison, Grouping};
-use crate::report::heat_table::HeatTable;
+use crate::report::heat_table::{HeatTable, Shade};
 use crate::text::Table;
 
 /// So many of the worst cells are named.
@@ -78,6 +78,7 @@ impl Comparison {
             corner: by.title().to_owned(),
             columns,
             rows,
+            shade: Shade::Sigmas,
         }
     }
 

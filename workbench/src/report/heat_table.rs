@@ -1,7 +1,33 @@
-//! A table of errors in sigma, coloured by size: one looks for the dark cells.
+//! A table of figures coloured by size: one looks for the dark cells.
 use maud::{Markup, html};
 
-/// Errors by row (regime) and column (channel).
+/// How a figure is coloured.
+#[derive(Debug, Clone, Copy, Default)]
+pub enum Shade {
+    /// An error in sigma: white at one (noise), orange at ten and beyond.
+    #[default]
+    Sigmas,
+    /// A figure that is held to a bar: white at its best, yellow at the bar, orange as far beyond.
+    Bar {
+        /// As good as it can be.
+        best: f64,
+        /// What it is held to.
+        bar: f64,
+    },
+}
+
+impl Shade {
+    /// From 0 (white) over a half (yellow) to 1 (orange).
+    fn heat(self, value: f64) -> f64 {
+        let heat = match self {
+            Self::Sigmas => (value.max(1e-9).log10() - 0.04) / 0.96,
+            Self::Bar { best, bar } => 0.5 * (value - best) / (bar - best),
+        };
+        heat.clamp(0.0, 1.0)
+    }
+}
+
+/// Figures by row and column.
 #[derive(Debug, Clone, Default)]
 pub struct HeatTable {
     /// Name of the rows' column.
@@ -10,6 +36,8 @@ pub struct HeatTable {
     pub columns: Vec<String>,
     /// Name of each row and its cells; `None` where nothing was measured.
     pub rows: Vec<(String, Vec<Option<f64>>)>,
+    /// How they are coloured.
+    pub shade: Shade,
 }
 
 impl HeatTable {
@@ -22,27 +50,26 @@ impl HeatTable {
             } }
             tbody { @for (name, cells) in &self.rows { tr {
                 th scope="row" { (name) }
-                @for cell in cells { (heat_cell(*cell)) }
+                @for cell in cells { (heat_cell(*cell, self.shade)) }
             } } }
         } } }
     }
 }
 
-fn heat_cell(value: Option<f64>) -> Markup {
+fn heat_cell(value: Option<f64>, shade: Shade) -> Markup {
     match value.filter(|value| value.is_finite()) {
         None => html! { td.none { "–" } },
         Some(value) => {
-            html! { td style=(format!("background:{}", colour(value))) { (number(value)) } }
+            html! { td style=(format!("background:{}", colour(shade.heat(value)))) { (number(value)) } }
         }
     }
 }
 
-/// White at one sigma (noise), orange at ten and beyond; light enough for dark text throughout.
-fn colour(sigmas: f64) -> String {
+/// Light enough for dark text throughout.
+fn colour(heat: f64) -> String {
     const WHITE: [f64; 3] = [255.0, 255.0, 255.0];
     const YELLOW: [f64; 3] = [255.0, 236.0, 170.0];
     const ORANGE: [f64; 3] = [247.0, 160.0, 90.0];
-    let heat = ((sigmas.max(1e-9).log10() - 0.04) / 0.96).clamp(0.0, 1.0);
     let (from, to, share) = if heat < 0.5 {
         (WHITE, YELLOW, heat * 2.0)
     } else {
@@ -71,10 +98,23 @@ mod tests {
 
     #[test]
     fn noise_is_white_and_errors_are_not() {
+        let colour = |sigmas| colour(Shade::Sigmas.heat(sigmas));
         assert_eq!(colour(0.9), "#ffffff");
         assert_eq!(colour(1.0), "#ffffff");
         assert_eq!(colour(10.0), colour(1e6));
         assert_ne!(colour(3.0), "#ffffff");
+    }
+
+    #[test]
+    fn a_bar_is_half_way() {
+        let shade = Shade::Bar {
+            best: 1.0,
+            bar: 1.4,
+        };
+        let heats = [0.9, 1.0, 1.4, 1.8, 9.0].map(|ratio| shade.heat(ratio));
+        for (heat, expected) in heats.into_iter().zip([0.0, 0.0, 0.5, 1.0, 1.0]) {
+            assert!((heat - expected).abs() < 1e-9, "{heats:?}");
+        }
     }
 
     #[test]

@@ -1,83 +1,68 @@
-//! The report of `hitch loop`: figures, and the course of every move.
+//! The report of `hitch loop`: what was driven, where it is worst, how steps look, and the course of moves.
+mod course;
+mod steps;
+mod worst;
+
 use hitch_model::Model;
 use maud::{Markup, html};
 
-use super::chart::{Chart, Line, Stroke, legend};
 use super::page;
-use crate::closed_loop::{LoopRun, MoveResult, MoveTrace, Sample};
-use crate::commands::loop_::{HEADER, name, row, summed_up};
+use crate::closed_loop::{LoopRun, MoveResult};
+use crate::commands::loop_::{HEADER, row, summed_up};
 
-/// What is shown after arrival, s.
-const AFTER_S: f64 = 0.6;
+/// A run with what it was driven with.
+#[derive(Debug, Clone, Copy)]
+pub struct Shown<'a> {
+    /// The plant.
+    pub model: &'a Model,
+    /// Where the calibration came from.
+    pub calibration: &'a str,
+    /// What the command line changed in it, as `group.key=value`.
+    pub settings: &'a [String],
+    /// The moves.
+    pub run: &'a LoopRun,
+}
 
 /// The whole page.
 #[must_use]
-pub fn page(model: &Model, run: &LoopRun) -> String {
-    page::page("Closed loop", &sections(model, run))
+pub fn page(shown: &Shown) -> String {
+    page::page("Closed loop", &sections(shown))
 }
 
-/// The page's content, for pages that hold more.
-#[must_use]
-pub fn sections(model: &Model, run: &LoopRun) -> Markup {
+fn sections(shown: &Shown) -> Markup {
+    let run = shown.run;
     let rows: Vec<Vec<String>> = run
         .results
         .iter()
         .map(|result| row(result).to_vec())
         .collect();
     html! {
-        h1 { "Closed loop on " (model.name) }
-        p { (summed_up(&run.summary)) }
+        h1 { "Closed loop on " (shown.model.name) }
+        p { "Calibration: " (shown.calibration)
+            @if shown.settings.is_empty() { "." } @else {
+                ", with "
+                @for (i, setting) in shown.settings.iter().enumerate() {
+                    @if i > 0 { ", " } code { (setting) }
+                }
+                "."
+            }
+        }
+        p.lead { (summed_up(&run.summary)) }
+        (worst::section(&run.results))
+        (steps::section(run))
+        (course::section(run))
+        h2 { "Figures of every move" }
         (page::table(&HEADER, &rows))
-        h2 { "Every move" }
-        (legend(&[(Stroke::Measured, "set point, lift coil"), (Stroke::After, "hitch, lowering coil")]))
-        @for (result, trace) in run.results.iter().zip(&run.traces) { (course(result, trace)) }
     }
 }
 
-/// Angle, currents and pressure of one move.
-fn course(result: &MoveResult, trace: &MoveTrace) -> Markup {
-    let end_s = result.time_s + AFTER_S;
-    let shown: Vec<&Sample> = trace
-        .samples
-        .iter()
-        .filter(|sample| sample.time_s <= end_s)
-        .collect();
-    let column = |value: fn(&Sample) -> f64| {
-        shown
-            .iter()
-            .map(|sample| value(sample))
-            .collect::<Vec<f64>>()
-    };
-    let time = column(|sample| sample.time_s);
-    let (lever, angle) = (
-        column(|sample| sample.lever_deg),
-        column(|sample| sample.angle_deg),
-    );
-    let lift = column(|sample| f64::from(sample.outputs.lift_current.0) * 1e-3);
-    let lower = column(|sample| f64::from(sample.outputs.lower_current.0) * 1e-3);
-    let pressure = column(|sample| sample.cylinder_pressure_bar);
-    let chart = |caption: &str, y_title, lines: &[(&'static str, Stroke, &[f64])]| {
-        let lines = lines
-            .iter()
-            .map(|&(name, stroke, y)| Line {
-                name,
-                stroke,
-                x: &time,
-                y,
-            })
-            .collect();
-        Chart {
-            caption: caption.to_owned(),
-            x_title: "time, s",
-            y_title,
-            lines,
+/// Values of a quantity in the order in which they first occur.
+fn occurring<T: PartialEq>(results: &[MoveResult], of: impl Fn(&MoveResult) -> T) -> Vec<T> {
+    let mut values = Vec::new();
+    for value in results.iter().map(of) {
+        if !values.contains(&value) {
+            values.push(value);
         }
-        .figure()
-    };
-    html! {
-        h3 { (name(result)) " degrees, " (format!("{:.0}", result.load_kg)) " kg" }
-        (chart("Rocker angle", "angle, deg", &[("set point", Stroke::Measured, &lever), ("hitch", Stroke::After, &angle)]))
-        (chart("Coil currents", "current, A", &[("lift", Stroke::Measured, &lift), ("lower", Stroke::After, &lower)]))
-        (chart("Cylinder pressure", "pressure, bar", &[("cylinder", Stroke::After, &pressure)]))
     }
+    values
 }

@@ -1,0 +1,86 @@
+//! A map of the worst cases: each figure over the move, and over load and oil temperature.
+use maud::{Markup, html};
+
+use super::occurring;
+use crate::closed_loop::MoveResult;
+use crate::report::heat_table::{HeatTable, Shade};
+
+/// A figure of a move and how it is coloured.
+struct Figure {
+    name: &'static str,
+    of: fn(&MoveResult) -> f64,
+    /// White: as good as can be.
+    best: f64,
+    /// Yellow: what motion at the limit is held to; orange is as far beyond.
+    bar: f64,
+}
+
+const FIGURES: [Figure; 4] = [
+    Figure {
+        name: "Time over the shortest that the plant allows",
+        of: |result| result.ratio,
+        best: 1.0,
+        bar: 1.4,
+    },
+    Figure {
+        name: "Overshoot, deg",
+        of: |result| result.overshoot_deg,
+        best: 0.0,
+        bar: 0.3,
+    },
+    Figure {
+        name: "Final error, deg",
+        of: |result| result.final_error_deg,
+        best: 0.0,
+        bar: 0.3,
+    },
+    Figure {
+        name: "Pressure swing over that of the ideal manoeuvre",
+        of: |result| result.pressure_swing_ratio,
+        best: 0.5,
+        bar: 1.5,
+    },
+];
+
+/// The section.
+pub fn section(results: &[MoveResult]) -> Markup {
+    html! {
+        h2 { "Where it is worst" }
+        p { "White is as good as can be, yellow is what moves are held to, orange is as far beyond. \
+             Rows are moves, in degrees; columns are load and oil temperature." }
+        @for figure in &FIGURES {
+            h3 { (figure.name) }
+            (table(results, figure).table())
+        }
+    }
+}
+
+fn table(results: &[MoveResult], figure: &Figure) -> HeatTable {
+    let way = |result: &MoveResult| (result.from_deg, result.to_deg);
+    let place = |result: &MoveResult| (result.load_kg, result.oil_temperature_c);
+    let places = occurring(results, place);
+    let cell = |way_of_row: (f64, f64), place_of_column: (f64, f64)| {
+        let here =
+            |result: &&MoveResult| way(result) == way_of_row && place(result) == place_of_column;
+        results.iter().filter(here).map(figure.of).reduce(f64::max)
+    };
+    HeatTable {
+        corner: "move".to_owned(),
+        columns: places
+            .iter()
+            .map(|(load_kg, oil_c)| format!("{load_kg:.0} kg {oil_c:.0} °C"))
+            .collect(),
+        rows: occurring(results, way)
+            .into_iter()
+            .map(|row| {
+                let name = format!("{:.1} to {:.1}", row.0, row.1);
+                let cells = places.iter().map(|&place| cell(row, place)).collect();
+                (name, cells)
+            })
+            .collect(),
+        shade: Shade::Bar {
+            best: figure.best,
+            bar: figure.bar,
+        },
+    }
+}
