@@ -174,16 +174,27 @@ pub struct Outputs {
 }
 
 /// Size of the image of [`Inputs`].
-pub const INPUT_BYTES: usize = 56;
+pub const INPUT_BYTES: usize = 4 + 4 * INPUT_FIELDS;
+/// Numbers in it, behind the word that says which of them are there.
+const INPUT_FIELDS: usize = 13;
 /// Size of the image of [`Outputs`].
 pub const OUTPUT_BYTES: usize = 44;
 
 impl Inputs {
-    /// A word of validity bits (bit 0: lever, and on in the order of the fields) and switches (bit 16:
-    /// transport lock, and on), then the values.
+    /// The first word of the image: a bit for each field that is there, and the switches from bit 16 on.
     #[must_use]
-    pub fn to_bytes(&self) -> [u8; INPUT_BYTES] {
-        let fields = [
+    pub fn valid_and_switches(&self) -> u32 {
+        let fields = self.fields();
+        let valid = fields
+            .iter()
+            .rev()
+            .fold(0, |bits, field| (bits << 1) | u32::from(field.is_some()));
+        valid | self.switches.to_bits()
+    }
+
+    /// The numbers in the order of the image.
+    fn fields(&self) -> [Option<i32>; INPUT_FIELDS] {
+        [
             self.lever.map(|value| value.0),
             self.jog.map(|value| value.0),
             self.rocker_angle.map(|value| value.0),
@@ -197,14 +208,16 @@ impl Inputs {
             self.lift_current.map(|value| value.0),
             self.lower_current.map(|value| value.0),
             self.step_time.map(|value| value.0),
-        ];
+        ]
+    }
+
+    /// A word of validity bits (bit 0: lever, and on in the order of the fields) and switches (bit 16:
+    /// transport lock, and on), then the values.
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; INPUT_BYTES] {
         let mut writer = Writer::new([0; INPUT_BYTES]);
-        let valid = fields
-            .iter()
-            .rev()
-            .fold(0, |bits, field| (bits << 1) | u32::from(field.is_some()));
-        writer.put((valid | self.switches.to_bits()).to_le_bytes());
-        fields
+        writer.put(self.valid_and_switches().to_le_bytes());
+        self.fields()
             .into_iter()
             .for_each(|field| writer.put(field.unwrap_or(0).to_le_bytes()));
         writer.bytes

@@ -118,12 +118,6 @@ impl Measurements {
     }
 }
 
-/// The word of validity bits and switches, as in the image of [`Inputs`].
-fn valid_and_switches(inputs: &Inputs) -> i32 {
-    let [a, b, c, d, ..] = inputs.to_bytes();
-    i32::from_le_bytes([a, b, c, d])
-}
-
 measurements! {
     inputs, outputs, ecu;
     /// State of the controller.
@@ -133,7 +127,7 @@ measurements! {
     /// Row of the safety envelope that tripped, 0 for none.
     trip: U8, "", 1, 0..=255 = outputs.trip.map_or(0, |trip| i32::from(trip as u8));
     /// Bits 0 to 12: which inputs are there; from bit 16 on: switches.
-    valid: U32, "", 1, 0..=2_147_483_647 = valid_and_switches(inputs);
+    valid: U32, "", 1, 0..=2_147_483_647 = inputs.valid_and_switches().cast_signed();
     /// Lever on the scale of the rocker angle.
     lever: I32, "deg", 1_000, -360_000..=360_000 = inputs.lever.map_or(0, |value| value.0);
     /// Rocker-arm angle.
