@@ -5,6 +5,8 @@ use crate::control::design_parameters::PositionParameters;
 use crate::control::{Fault, Inputs, Outputs, State};
 use crate::j1939::{ExitCode, HitchStatus, Limit, Troubles};
 
+/// As long as the hitch is further from its set point, valves and ramps decide how fast it moves: 2 degrees.
+const UNDER_WAY_MDEG: i32 = 2_000;
 /// A set point this close to a limit of the travel is at it: 0.1 degree.
 const AT_LIMIT_MDEG: i32 = 100;
 
@@ -23,18 +25,25 @@ pub fn status(
             .rocker_angle
             .map(|angle| arbiter::position(angle, limits)),
         in_work: None,
-        limit: limit(outputs, limits),
+        limit: limit(inputs, outputs, limits),
         exit,
         remote_permitted: exit == ExitCode::Clear && !inputs.switches.hold && !taken_back,
         troubles,
     }
 }
 
-fn limit(outputs: &Outputs, limits: &PositionParameters) -> Limit {
+fn limit(inputs: &Inputs, outputs: &Outputs, limits: &PositionParameters) -> Limit {
+    let to_go = inputs
+        .rocker_angle
+        .map_or(0, |angle| (outputs.target - angle).magnitude().0);
+    let is_under_way = to_go > UNDER_WAY_MDEG;
     let below_top = (limits.upper_limit - outputs.target).0;
     let above_bottom = (outputs.target - limits.lower_limit).0;
     match outputs.trip.is_some_and(|trip| trip.is_final()) {
         true => Limit::NonRecoverable,
+        // A set point further on makes a hitch that is under way no faster.
+        false if is_under_way && outputs.state == State::Lifting => Limit::High,
+        false if is_under_way && outputs.state == State::Lowering => Limit::Low,
         false if below_top <= AT_LIMIT_MDEG => Limit::High,
         false if above_bottom <= AT_LIMIT_MDEG => Limit::Low,
         false => Limit::None,

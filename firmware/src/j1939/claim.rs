@@ -114,6 +114,21 @@ impl AddressClaim {
         }
     }
 
+    /// Somebody commands us to take an address. One that is taken, or none at all, is not worth losing ours.
+    pub fn commanded(&mut self, address: u8, now_ms: u32) {
+        let is_new = address < NULL && self.claimed_or_claiming() != Some(address);
+        if is_new && !self.is_taken(address) {
+            self.address = address;
+            self.begin(now_ms);
+        }
+    }
+
+    /// Our NAME.
+    #[must_use]
+    pub const fn name(&self) -> Name {
+        self.name
+    }
+
     /// Somebody else sends from our address: our claim reminds them, now and then.
     pub fn address_violated(&mut self, now_ms: u32) {
         let reminded = self

@@ -34,6 +34,14 @@ impl Pgn {
     pub const REAR_HITCH_STATUS: Self = Self(0xFE45);
     /// Hitch and PTO commands.
     pub const HITCH_COMMANDS: Self = Self(0xFE42);
+    /// Request for a group to be repeated.
+    pub const REPETITION_RATE: Self = Self(0xCC00);
+    /// Heartbeat.
+    pub const HEARTBEAT: Self = Self(0xF0E4);
+    /// Which facilities of the tractor an implement needs.
+    pub const REQUIRED_FACILITIES: Self = Self(0xFE08);
+    /// Which ones there are.
+    pub const TRACTOR_FACILITIES: Self = Self(0xFE09);
     /// Proprietary B: currents and rocker angle.
     pub const HITCH_MOTION: Self = Self(0xFF45);
     /// Proprietary B: pressures and supply.

@@ -10,11 +10,13 @@
 
 pub mod claim;
 pub mod diagnostics;
+pub mod heartbeat;
 pub mod hitch;
 mod id;
 pub mod measured;
 mod name;
 mod node;
+pub mod reception;
 pub mod remote;
 pub mod request;
 mod time;

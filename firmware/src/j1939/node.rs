@@ -2,24 +2,30 @@
 
 use super::claim::AddressClaim;
 use super::diagnostics::{Diagnostics, LONGEST_MESSAGE, Message, Variant};
-use super::hitch::{HitchCommand, HitchStatus, StatusMessage};
+use super::heartbeat::{self, Heartbeat, Monitor};
+use super::hitch::{FACILITIES, HitchCommand, HitchStatus, StatusMessage};
 use super::id::{GLOBAL, Id, NULL, Pgn};
 use super::name::Name;
+use super::reception::Reception;
 use super::remote::{Remote, RemoteControl};
 use super::request::{Control, Request, Requests, acknowledgement};
 use super::time::since_ms;
-use super::transport::{self, Transport};
+use super::transport::Transport;
 use crate::can::Frame;
 
 /// The rear hitch status is repeated this often, ms.
 const STATUS_PERIOD_MS: u32 = 100;
 /// A status that has changed comes no closer to the last one than this, ms: a moving hitch changes it all the time.
 const STATUS_SPACING_MS: u32 = 20;
+/// Nobody is asked for a heartbeat more often than this, ms.
+const ASKING_SPACING_MS: u32 = 1_000;
 /// Characters of the software's identification at most.
 const LONGEST_IDENTIFICATION: usize = 40;
 /// Priority of the rear hitch status.
 const STATUS_PRIORITY: u8 = 3;
-/// Priority of diagnostic messages.
+/// Priority of the heartbeat.
+const HEARTBEAT_PRIORITY: u8 = 3;
+/// Priority of diagnostic messages and of whatever else has no hurry.
 const DIAGNOSTIC_PRIORITY: u8 = 6;
 
 /// The address that a node asks for first unless told otherwise: the first that self-configurable nodes may take.
@@ -48,8 +54,14 @@ pub struct Node {
     software: &'static [u8],
     requests: Requests,
     transport: Transport,
-    /// Somebody wants to send us a long message.
-    unwanted: Option<(Pgn, u8)>,
+    reception: Reception,
+    heartbeat: Heartbeat,
+    /// The heartbeat of an implement.
+    monitor: Option<Monitor>,
+    /// Who is to be asked for a heartbeat.
+    unwatched: Option<u8>,
+    /// When somebody was asked last.
+    asked_ms: Option<u32>,
     last_status: Option<([u8; 8], u32)>,
 }
 
@@ -65,7 +77,11 @@ impl Node {
             software: settings.software,
             requests: Requests::default(),
             transport: Transport::default(),
-            unwanted: None,
+            reception: Reception::default(),
+            heartbeat: Heartbeat::default(),
+            monitor: None,
+            unwatched: None,
+            asked_ms: None,
             last_status: None,
         }
     }
@@ -91,6 +107,8 @@ impl Node {
             if let Some(request) = Request::from_message(&id, frame.data()) {
                 self.requested(request, id.destination, now_ms);
             }
+        } else if let (Pgn::HEARTBEAT, &[number]) = (id.pgn, frame.data()) {
+            self.monitor = Monitor::heard(self.monitor, id.source, number, now_ms);
         } else if let Some(bytes) = frame.eight() {
             self.receive_eight(&id, bytes, now_ms);
         }
@@ -108,20 +126,58 @@ impl Node {
             return self.claim.address_violated(now_ms);
         }
         let for_us = Some(id.destination) == self.address();
+        let for_all = id.destination == GLOBAL;
         match id.pgn {
             Pgn::HITCH_COMMANDS => {
-                let command = HitchCommand::from_bytes(bytes);
-                let permitted = self.remote_permitted;
-                self.remote.command(command, id.source, permitted, now_ms);
+                self.commanded(HitchCommand::from_bytes(bytes), id.source, now_ms);
             }
-            Pgn::TRANSPORT_CONNECTION
-                if for_us && self.transport.receive(bytes, id.source, now_ms) =>
-            {
-                let [.., a, b, c] = *bytes;
-                self.unwanted = Some((Pgn::from_bytes([a, b, c]), id.source));
+            Pgn::TRANSPORT_CONNECTION if for_us || for_all => {
+                self.reception.manage(bytes, id.source, for_all, now_ms);
+                if for_us {
+                    self.transport.receive(bytes, id.source, now_ms);
+                }
             }
+            Pgn::TRANSPORT_DATA if for_us || for_all => {
+                let message = self.reception.packet(bytes, id.source, for_all, now_ms);
+                // Nothing else is received: a NAME and the address that it has to take.
+                if let Some([name @ .., address]) =
+                    message.and_then(|bytes| bytes.into_array::<9>().ok())
+                    && Name::from_bytes(name) == self.claim.name()
+                {
+                    self.claim.commanded(address, now_ms);
+                }
+            }
+            Pgn::REPETITION_RATE if for_us || for_all => {
+                let [a, b, c, ..] = *bytes;
+                if Pgn::from_bytes([a, b, c]) == Pgn::HEARTBEAT {
+                    self.heartbeat.asked();
+                }
+            }
+            Pgn::REQUIRED_FACILITIES if self.address().is_some() => self.requests.push(Request {
+                group: Pgn::TRACTOR_FACILITIES,
+                from: id.source,
+                global: true,
+            }),
             _ => {}
         }
+    }
+
+    /// An implement commands the hitch. Who begins to is asked for a heartbeat, and so is one whose heartbeat is broken.
+    fn commanded(&mut self, command: HitchCommand, source: u8, now_ms: u32) {
+        let condemned = self.is_condemned(source, now_ms);
+        let before = self.remote.owner();
+        let permitted = self.remote_permitted && !condemned;
+        self.remote.command(command, source, permitted, now_ms);
+        let begins = before.is_none() && self.remote.owner().is_some();
+        if begins || condemned {
+            self.unwatched = Some(source);
+        }
+    }
+
+    /// True if the heartbeat of a node says that it doesn't think any more.
+    fn is_condemned(&self, node: u8, now_ms: u32) -> bool {
+        self.monitor
+            .is_some_and(|monitor| monitor.condemns(node, now_ms))
     }
 
     fn requested(&mut self, request: Request, destination: u8, now_ms: u32) {
@@ -136,21 +192,27 @@ impl Node {
     /// The next frame that is due. Called once a millisecond or more, until it gives none.
     pub fn poll(&mut self, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
         self.remote_permitted = status.remote_permitted;
-        self.remote.update(status, now_ms);
+        let owner = self.remote.owner();
+        let condemned = owner.is_some_and(|owner| self.is_condemned(owner, now_ms));
+        self.remote.update(status, condemned, now_ms);
         self.diagnostics.update(status.troubles);
         let claim = self.claim.poll(now_ms);
         let Some(source) = self.claim.address() else {
             // What was begun under an address ends with it.
             self.transport.reset();
             self.requests.clear();
-            self.unwanted = None;
+            self.reception = Reception::default();
+            self.heartbeat = Heartbeat::default();
+            self.unwatched = None;
             return claim;
         };
         claim
             .or_else(|| self.hitch_status(source, now_ms, status))
+            .or_else(|| self.beat(source, now_ms))
             .or_else(|| self.transport.poll(source, now_ms))
             .or_else(|| self.periodic_dm1(source, now_ms))
-            .or_else(|| self.refuse(source))
+            .or_else(|| self.reception.poll(source, now_ms))
+            .or_else(|| self.ask_for_heartbeat(source, now_ms))
             .or_else(|| self.answer(source, now_ms, status))
     }
 
@@ -186,9 +248,27 @@ impl Node {
         self.send(Pgn::DM1, &message, GLOBAL, source, now_ms)
     }
 
-    fn refuse(&mut self, source: u8) -> Option<Frame> {
-        let (group, destination) = self.unwanted.take()?;
-        Some(transport::refusal(group, destination, source))
+    fn beat(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
+        let number = self.heartbeat.poll(now_ms)?;
+        let id = broadcast(Pgn::HEARTBEAT, HEARTBEAT_PRIORITY, source).pack();
+        Frame::data_frame(id.into(), &[number])
+    }
+
+    fn ask_for_heartbeat(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
+        let spaced = self
+            .asked_ms
+            .is_none_or(|asked| since_ms(asked, now_ms) >= ASKING_SPACING_MS);
+        let destination = self.unwatched.filter(|_| spaced)?;
+        self.unwatched = None;
+        self.asked_ms = Some(now_ms);
+        let [a, b, c] = Pgn::HEARTBEAT.to_bytes();
+        let id = Id {
+            priority: DIAGNOSTIC_PRIORITY,
+            pgn: Pgn::REPETITION_RATE,
+            destination,
+            source,
+        };
+        Some(id.frame([a, b, c, heartbeat::PERIOD_MS as u8, 0, 0xFF, 0xFF, 0xFF]))
     }
 
     fn answer(&mut self, source: u8, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
@@ -197,6 +277,11 @@ impl Node {
             Pgn::REAR_HITCH_STATUS => {
                 let bytes = self.status_message(status, now_ms).to_bytes();
                 return Some(broadcast(request.group, STATUS_PRIORITY, source).frame(bytes));
+            }
+            Pgn::TRACTOR_FACILITIES => {
+                return Some(
+                    broadcast(request.group, DIAGNOSTIC_PRIORITY, source).frame(FACILITIES),
+                );
             }
             Pgn::DM1 => self.diagnostics.dm1(),
             Pgn::DM2 => self.diagnostics.dm2(),

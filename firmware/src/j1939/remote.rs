@@ -7,6 +7,7 @@
 //!  +------+ <---------------------------------------- +--------+ <-+ of the same source
 //!             all ones: released       reserved value: out of range
 //!             silence: time-out        no longer permitted: operator override
+//!             bad heartbeat: time-out
 //! ```
 //!
 //! The reason why control was given back stays until the next one begins. A fault of the controller comes before it, and
@@ -97,8 +98,9 @@ impl RemoteControl {
         };
     }
 
-    /// Lets time pass and takes in what the controller says of the hitch.
-    pub fn update(&mut self, status: &HitchStatus, now_ms: u32) {
+    /// Lets time pass and takes in what the controller says of the hitch. `condemned`: the heartbeat of who has the hitch
+    /// says that it doesn't think any more.
+    pub fn update(&mut self, status: &HitchStatus, condemned: bool, now_ms: u32) {
         let State::Active { heard_ms, .. } = self.state else {
             return;
         };
@@ -108,8 +110,17 @@ impl RemoteControl {
                 other => other,
             };
             self.state = idle(reason, now_ms);
-        } else if since_ms(heard_ms, now_ms) > TIMEOUT_MS {
+        } else if condemned || since_ms(heard_ms, now_ms) > TIMEOUT_MS {
             self.state = idle(ExitCode::Timeout, now_ms);
+        }
+    }
+
+    /// Who has the hitch.
+    #[must_use]
+    pub const fn owner(&self) -> Option<u8> {
+        match self.state {
+            State::Active { source, .. } => Some(source),
+            State::Idle { .. } => None,
         }
     }
 

@@ -6,7 +6,7 @@
 //!                     CTS (0): wait              no answer in time: abort
 //! ```
 //!
-//! One of each can be under way. Nothing long is received: who asks to send to us is told that there is no room.
+//! One of each can be under way. What is received is [`super::reception`]'s.
 
 use heapless::Vec;
 
@@ -26,13 +26,13 @@ const HOLD_MS: u32 = 1_050;
 /// Priority of all of it.
 const PRIORITY: u8 = 7;
 /// Bytes in a packet.
-const PACKET: usize = 7;
+pub(super) const PACKET: usize = 7;
 
-const RTS: u8 = 16;
-const CTS: u8 = 17;
-const END_OF_MESSAGE: u8 = 19;
-const BAM: u8 = 32;
-const ABORT: u8 = 255;
+pub(super) const RTS: u8 = 16;
+pub(super) const CTS: u8 = 17;
+pub(super) const END_OF_MESSAGE: u8 = 19;
+pub(super) const BAM: u8 = 32;
+pub(super) const ABORT: u8 = 255;
 
 /// Why a connection is given up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -156,22 +156,20 @@ impl Transport {
         }
     }
 
-    /// Takes a message of connection management to us. True if its sender wants to send us something, which has to be
-    /// refused.
-    pub fn receive(&mut self, bytes: &[u8; 8], source: u8, now_ms: u32) -> bool {
+    /// Takes a message of connection management to us.
+    pub fn receive(&mut self, bytes: &[u8; 8], source: u8, now_ms: u32) {
         let [control, first, second, _, _, group @ ..] = *bytes;
-        let Some(connection) = &mut self.connection else {
-            return control == RTS;
+        let group = Pgn::from_bytes(group);
+        let connection = self.connection.as_mut();
+        let ours = |of: &&mut Connection| of.partner == source && of.message.group == group;
+        let Some(connection) = connection.filter(ours) else {
+            return;
         };
-        let ours =
-            connection.partner == source && connection.message.group == Pgn::from_bytes(group);
         match control {
-            RTS => return true,
-            CTS if ours => connection.clear_to_send(first, second, now_ms),
-            END_OF_MESSAGE | ABORT if ours => self.connection = None,
+            CTS => connection.clear_to_send(first, second, now_ms),
+            END_OF_MESSAGE | ABORT => self.connection = None,
             _ => {}
         }
-        false
     }
 
     /// The next frame that is due.
@@ -275,18 +273,13 @@ impl Connection {
     }
 }
 
-/// The refusal of a message that another node wants to send us.
-#[must_use]
-pub fn refusal(group: Pgn, destination: u8, source: u8) -> Frame {
-    connection_frame(abort(Reason::Resources, group), destination, source)
-}
-
-const fn abort(reason: Reason, group: Pgn) -> [u8; 8] {
+/// A connection is given up, or not even begun.
+pub(super) const fn abort(reason: Reason, group: Pgn) -> [u8; 8] {
     let [a, b, c] = group.to_bytes();
     [ABORT, reason as u8, 0xFF, 0xFF, 0xFF, a, b, c]
 }
 
-fn connection_frame(bytes: [u8; 8], destination: u8, source: u8) -> Frame {
+pub(super) fn connection_frame(bytes: [u8; 8], destination: u8, source: u8) -> Frame {
     frame(Pgn::TRANSPORT_CONNECTION, bytes, destination, source)
 }
 

@@ -163,26 +163,6 @@ fn a_second_long_message_has_to_wait_and_is_told_so() {
 }
 
 #[test]
-fn long_messages_to_us_are_refused() {
-    let mut bus = Bus::claimed(Variant::Iso11783);
-    let request = [16, 20, 0, 3, 0xFF, 0x00, 0xEF, 0];
-    bus.hear(Pgn::TRANSPORT_CONNECTION, OURS, OTHER, &request);
-    bus.run(5);
-    let refusal = bus.take(Pgn::TRANSPORT_CONNECTION);
-    assert_eq!(refusal[0].data(), [255, 2, 0xFF, 0xFF, 0xFF, 0x00, 0xEF, 0]);
-    assert_eq!(refusal[0].id.destination, OTHER);
-    // A broadcast is for whom it concerns.
-    bus.hear(
-        Pgn::TRANSPORT_CONNECTION,
-        0xFF,
-        OTHER,
-        &[32, 20, 0, 3, 0xFF, 0, 0xEF, 0],
-    );
-    bus.run(5);
-    assert!(bus.take(Pgn::TRANSPORT_CONNECTION).is_empty());
-}
-
-#[test]
 fn others_have_no_say_in_a_connection() {
     let mut bus = bus_with_history();
     bus.ask(Pgn::DM2, OURS);

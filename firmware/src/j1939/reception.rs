@@ -1,0 +1,157 @@
+//! Receiving more than eight bytes: broadcasts, and what is for this node alone (SAE J1939-21, ISO 11783-3).
+//!
+//! ```text
+//!          BAM, or RTS: say CTS        packets 1, 2, ... in order          the last one; after RTS: say "end of message"
+//!  +------+ -----------------> +-----------+ --+   +-----------+ ----------> the message
+//!  | Idle |                    | Receiving | <-+   | Receiving |
+//!  +------+ <----------------- +-----------+       +-----------+
+//!             750 ms of silence, an abort, or another packet than the next; after RTS: say so
+//! ```
+//!
+//! One message at a time is received, and only groups that a hitch makes something of: a commanded address. Who asks to
+//! send another one is told that there is no room; other broadcasts are for others.
+
+use heapless::Vec;
+
+use super::id::Pgn;
+use super::time::since_ms;
+use super::transport::{
+    ABORT, BAM, CTS, END_OF_MESSAGE, PACKET, RTS, Reason, abort, connection_frame,
+};
+use crate::can::Frame;
+
+/// Bytes of the longest message that is received: a commanded address, which is the only one.
+const LONGEST: usize = 9;
+/// How long the next packet may take (T1), ms.
+const SILENCE_MS: u32 = 750;
+
+/// A message that was received.
+pub type Received = Vec<u8, LONGEST>;
+
+/// A message under way.
+#[derive(Clone, Debug)]
+struct Session {
+    from: u8,
+    is_broadcast: bool,
+    group: Pgn,
+    length: usize,
+    bytes: Received,
+    /// Number of the next packet, counted from 1.
+    next: u8,
+    heard_ms: u32,
+}
+
+impl Session {
+    /// The message that is announced, if it is one that is received.
+    fn announced(bytes: &[u8; 8], from: u8, now_ms: u32) -> Option<Self> {
+        let [control, low, high, packets, _, group @ ..] = *bytes;
+        let length = usize::from(u16::from_le_bytes([low, high]));
+        let fits = usize::from(packets) == length.div_ceil(PACKET) && length == LONGEST;
+        let group = Pgn::from_bytes(group);
+        (fits && group == Pgn::COMMANDED_ADDRESS).then_some(Self {
+            from,
+            is_broadcast: control == BAM,
+            group,
+            length,
+            bytes: Received::new(),
+            next: 1,
+            heard_ms: now_ms,
+        })
+    }
+}
+
+/// The receiver.
+#[derive(Clone, Debug, Default)]
+pub struct Reception {
+    session: Option<Session>,
+    /// What is to be said to whom.
+    reply: Option<([u8; 8], u8)>,
+}
+
+impl Reception {
+    /// Takes a message of connection management, to everybody (`is_broadcast`) or to this node.
+    pub fn manage(&mut self, bytes: &[u8; 8], from: u8, is_broadcast: bool, now_ms: u32) {
+        let [control, .., a, b, c] = *bytes;
+        let group = Pgn::from_bytes([a, b, c]);
+        match (control, is_broadcast) {
+            (BAM, true) if self.session.is_none() => {
+                self.session = Session::announced(bytes, from, now_ms);
+            }
+            (RTS, false) => self.asked(bytes, from, group, now_ms),
+            (ABORT, false) if self.is_of(from, false) => self.session = None,
+            _ => {}
+        }
+    }
+
+    /// Somebody wants to send us a message. Who asks again begins again.
+    fn asked(&mut self, bytes: &[u8; 8], from: u8, group: Pgn, now_ms: u32) {
+        let is_free = self.session.is_none() || self.is_of(from, false);
+        let session = Session::announced(bytes, from, now_ms).filter(|_| is_free);
+        let [_, _, _, packets, _, a, b, c] = *bytes;
+        let reply = match session {
+            Some(_) => {
+                self.session = session;
+                [CTS, packets, 1, 0xFF, 0xFF, a, b, c]
+            }
+            None => abort(Reason::Resources, group),
+        };
+        self.reply = Some((reply, from));
+    }
+
+    /// Takes a packet; the message if it was the last one.
+    pub fn packet(
+        &mut self,
+        bytes: &[u8; 8],
+        from: u8,
+        is_broadcast: bool,
+        now_ms: u32,
+    ) -> Option<Received> {
+        if !self.is_of(from, is_broadcast) {
+            return None;
+        }
+        let session = self.session.as_mut()?;
+        let [number, data @ ..] = *bytes;
+        if number != session.next {
+            self.give_up(Reason::BadSequence);
+            return None;
+        }
+        session.next = number.saturating_add(1);
+        session.heard_ms = now_ms;
+        let missing = session.length.saturating_sub(session.bytes.len());
+        session.bytes.extend(data.into_iter().take(missing));
+        if session.bytes.len() < session.length {
+            return None;
+        }
+        let session = self.session.take()?;
+        if !session.is_broadcast {
+            let [low, high, ..] = session.length.to_le_bytes();
+            let [a, b, c] = session.group.to_bytes();
+            self.reply = Some(([END_OF_MESSAGE, low, high, number, 0xFF, a, b, c], from));
+        }
+        Some(session.bytes)
+    }
+
+    /// What is to be said; lets time pass.
+    pub fn poll(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
+        let silent = |session: &Session| since_ms(session.heard_ms, now_ms) > SILENCE_MS;
+        if self.session.as_ref().is_some_and(silent) {
+            self.give_up(Reason::Timeout);
+        }
+        let (bytes, destination) = self.reply.take()?;
+        Some(connection_frame(bytes, destination, source))
+    }
+
+    fn is_of(&self, from: u8, is_broadcast: bool) -> bool {
+        let session = self.session.as_ref();
+        session.is_some_and(|session| session.from == from && session.is_broadcast == is_broadcast)
+    }
+
+    /// Ends what is under way; a sender who waits for us is told why.
+    fn give_up(&mut self, reason: Reason) {
+        if let Some(session) = self.session.take()
+            && !session.is_broadcast
+        {
+            self.reply = Some((abort(reason, session.group), session.from));
+        }
+    }
+}
