@@ -5,6 +5,7 @@
 
 mod clock;
 mod coils;
+mod converters;
 mod flash;
 mod inbox;
 mod pins;
@@ -25,8 +26,9 @@ compile_error!("an image is for one part: choose the feature `stm32f405` or `stm
 
 pub use clock::Clock;
 pub use coils::{Coils, cut};
+pub use converters::Converters;
 pub use flash::CalibrationFlash;
-pub use part::{Can, Converters};
+pub use part::Can;
 pub use reset::reset_cause;
 pub use serial_number::serial_number;
 pub use switches::SwitchInputs;

@@ -1,69 +1,45 @@
-//! Three converters, each with an injected sequence that TIM1 starts.
-//!
-//! The coils' currents come first in theirs: they are what has to be sampled in the middle of a pulse.
+//! Which channels the signals are on the STM32F405, and how its converters are set up and asked.
 
-use hitch_firmware::ecu::{AdcCode, Samples};
 use stm32_metapac::adc::Adc;
 use stm32_metapac::adc::vals::{Exten, SampleTime};
 use stm32_metapac::adccommon::vals::Adcpre;
-use stm32_metapac::{ADC1, ADC2, ADC3, ADC123_COMMON, GPIOA, GPIOB, GPIOC};
+use stm32_metapac::{ADC123_COMMON, GPIOA, GPIOB, GPIOC};
 
 use crate::board::pins;
 
 /// TIM1_TRGO (RM0090, table of `JEXTSEL`).
 const TIM1_TRGO: u8 = 1;
 /// Lift current PA2, angle PA0, upper-limit dial PA3, supply PB0.
-const FIRST: [u8; 4] = [2, 0, 3, 8];
+pub const FIRST: [u8; 4] = [2, 0, 3, 8];
 /// Lowering current PC0, lever PA1, lowering dial PC1, cylinder pressure PC2.
-const SECOND: [u8; 4] = [10, 1, 11, 12];
+pub const SECOND: [u8; 4] = [10, 1, 11, 12];
 /// Pump pressure PC3.
-const THIRD: [u8; 1] = [13];
+pub const THIRD: [u8; 1] = [13];
 
-/// The converters.
-pub struct Converters(());
-
-impl Converters {
-    /// Switches them on and lets them wait for the timer.
-    pub fn start() -> Self {
-        for pin in 0..=3 {
-            pins::analog(GPIOA, pin);
-            pins::analog(GPIOC, pin);
-        }
-        pins::analog(GPIOB, 0);
-        // 84 MHz / 4 = 21 MHz, of 36 MHz allowed.
-        ADC123_COMMON.ccr().modify(|w| w.set_adcpre(Adcpre::DIV4));
-        start_sequence(ADC1, &FIRST);
-        start_sequence(ADC2, &SECOND);
-        start_sequence(ADC3, &THIRD);
-        Self(())
+/// Makes the pins analogue and sets the converters' clock.
+pub fn start_pins_and_clocks() {
+    for pin in 0..=3 {
+        pins::analog(GPIOA, pin);
+        pins::analog(GPIOC, pin);
     }
+    pins::analog(GPIOB, 0);
+    // 84 MHz / 4 = 21 MHz, of 36 MHz allowed.
+    ADC123_COMMON.ccr().modify(|w| w.set_adcpre(Adcpre::DIV4));
+}
 
-    /// The samples of a millisecond, once they are all there.
-    pub fn take(&mut self) -> Option<Samples> {
-        if ![ADC1, ADC2, ADC3].iter().all(|adc| adc.sr().read().jeoc()) {
-            return None;
-        }
-        for adc in [ADC1, ADC2, ADC3] {
-            // Writing zero clears; the other flags don't mind.
-            adc.sr().modify(|w| w.set_jeoc(false));
-        }
-        let code = |adc: Adc, index: usize| AdcCode::new(adc.jdr(index).read().jdata());
-        Some(Samples {
-            lift_current: code(ADC1, 0),
-            rocker_angle: code(ADC1, 1),
-            upper_limit: code(ADC1, 2),
-            supply: code(ADC1, 3),
-            lower_current: code(ADC2, 0),
-            lever: code(ADC2, 1),
-            lowering_dial: code(ADC2, 2),
-            cylinder_pressure: code(ADC2, 3),
-            pump_pressure: code(ADC3, 0),
-        })
-    }
+/// True once a sequence has run.
+pub fn is_done(adc: Adc) -> bool {
+    adc.sr().read().jeoc()
+}
+
+/// Makes ready for the next one.
+pub fn clear(adc: Adc) {
+    // Writing zero clears; the other flags don't mind.
+    adc.sr().modify(|w| w.set_jeoc(false));
 }
 
 /// Four channels take 4 * (84 + 12) / 21 MHz = 18 us.
-fn start_sequence(adc: Adc, channels: &[u8]) {
+pub fn start_sequence(adc: Adc, channels: &[u8]) {
     for &channel in channels {
         let channel = usize::from(channel);
         match channel.checked_sub(10) {

@@ -1,11 +1,10 @@
 //! STM32F405RG: clocks, brown-out level, and where its converters find their signals.
 
 mod can;
-mod converters;
+pub mod converters;
 pub mod flash;
 
 pub use can::Can;
-pub use converters::Converters;
 
 use stm32_metapac::flash::vals::Latency;
 use stm32_metapac::rcc::vals::{Pllm, Plln, Pllp, Pllq, Pllsrc, Ppre, Sw};

@@ -1,75 +1,51 @@
-//! Three converters, each with an injected sequence that TIM1 starts.
-//!
-//! The coils' currents come first in theirs: they are what has to be sampled in the middle of a pulse.
+//! Which channels the signals are on the STM32G474, and how its converters are set up and asked.
 
-use hitch_firmware::ecu::{AdcCode, Samples};
 use stm32_metapac::adc::Adc;
 use stm32_metapac::adc::vals::{Adcaldif, Exten, SampleTime};
 use stm32_metapac::adccommon::vals::Ckmode;
-use stm32_metapac::{ADC1, ADC2, ADC3, ADC12_COMMON, ADC345_COMMON, GPIOA, GPIOB, GPIOC};
+use stm32_metapac::{ADC12_COMMON, ADC345_COMMON, GPIOA, GPIOB, GPIOC};
 
 use crate::board::pins;
 
 /// TIM1_TRGO for ADC1 and 2 and for ADC3 (RM0440, tables of `JEXTSEL`).
 const TIM1_TRGO: u8 = 0;
 /// Lift current PA2, angle PA0, upper-limit dial PA3, supply PB0.
-const FIRST: [u8; 4] = [3, 1, 4, 15];
+pub const FIRST: [u8; 4] = [3, 1, 4, 15];
 /// Lowering current PC0, lever PA1, lowering dial PC1, cylinder pressure PC2.
-const SECOND: [u8; 4] = [6, 2, 7, 8];
+pub const SECOND: [u8; 4] = [6, 2, 7, 8];
 /// Pump pressure PB1.
-const THIRD: [u8; 1] = [1];
+pub const THIRD: [u8; 1] = [1];
 
-/// The converters.
-pub struct Converters(());
-
-impl Converters {
-    /// Switches them on and lets them wait for the timer.
-    pub fn start() -> Self {
-        for pin in 0..=3 {
-            pins::analog(GPIOA, pin);
-        }
-        for pin in 0..=2 {
-            pins::analog(GPIOC, pin);
-        }
-        for pin in 0..=1 {
-            pins::analog(GPIOB, pin);
-        }
-        // 168 MHz / 4 = 42 MHz, of 60 MHz allowed.
-        for common in [ADC12_COMMON, ADC345_COMMON] {
-            common.ccr().modify(|w| w.set_ckmode(Ckmode::SYNC_DIV4));
-        }
-        start_sequence(ADC1, &FIRST);
-        start_sequence(ADC2, &SECOND);
-        start_sequence(ADC3, &THIRD);
-        Self(())
+/// Makes the pins analogue and sets the converters' clock.
+pub fn start_pins_and_clocks() {
+    for pin in 0..=3 {
+        pins::analog(GPIOA, pin);
     }
-
-    /// The samples of a millisecond, once they are all there.
-    pub fn take(&mut self) -> Option<Samples> {
-        if ![ADC1, ADC2, ADC3].iter().all(|adc| adc.isr().read().jeos()) {
-            return None;
-        }
-        for adc in [ADC1, ADC2, ADC3] {
-            // Writing one clears.
-            adc.isr().write(|w| w.set_jeos(true));
-        }
-        let code = |adc: Adc, index: usize| AdcCode::new(adc.jdr(index).read().jdata());
-        Some(Samples {
-            lift_current: code(ADC1, 0),
-            rocker_angle: code(ADC1, 1),
-            upper_limit: code(ADC1, 2),
-            supply: code(ADC1, 3),
-            lower_current: code(ADC2, 0),
-            lever: code(ADC2, 1),
-            lowering_dial: code(ADC2, 2),
-            cylinder_pressure: code(ADC2, 3),
-            pump_pressure: code(ADC3, 0),
-        })
+    for pin in 0..=2 {
+        pins::analog(GPIOC, pin);
+    }
+    for pin in 0..=1 {
+        pins::analog(GPIOB, pin);
+    }
+    // 168 MHz / 4 = 42 MHz, of 60 MHz allowed.
+    for common in [ADC12_COMMON, ADC345_COMMON] {
+        common.ccr().modify(|w| w.set_ckmode(Ckmode::SYNC_DIV4));
     }
 }
 
+/// True once a sequence has run.
+pub fn is_done(adc: Adc) -> bool {
+    adc.isr().read().jeos()
+}
+
+/// Makes ready for the next one.
+pub fn clear(adc: Adc) {
+    // Writing one clears.
+    adc.isr().write(|w| w.set_jeos(true));
+}
+
 /// Four channels take 4 * (92.5 + 12.5) / 42 MHz = 10 us.
-fn start_sequence(adc: Adc, channels: &[u8]) {
+pub fn start_sequence(adc: Adc, channels: &[u8]) {
     wake_and_calibrate(adc);
     for &channel in channels {
         let channel = usize::from(channel);
