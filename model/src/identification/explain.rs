@@ -14,11 +14,12 @@ use super::design::{Alternative, NextExperiment, Pair, Place, Rival, next_experi
 use super::estimate::Estimate;
 use super::evidence::shares;
 use super::experiment::Experiment;
-use super::fit::{Fit, evaluate, evaluate_weighted, fit, refine};
+use super::fit::{Fit, evaluate, fit, refine};
 use super::holdout::held_out_error;
 use super::jacobian::square_sum;
 use super::regime::Regime;
 use super::starts::with_extreme_shapes;
+use super::unseen::{Unseen, unseen};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
@@ -27,7 +28,7 @@ pub const BELIEVED: f64 = 11.0;
 
 /// Smallest detectability that is believed, sigmas. Channels a few milliseconds out of step, a logger's rounding and
 /// the plant's discretisation make signatures of up to 0.05 on steady and 0.09 on ringing campaigns with nothing hidden.
-const VISIBLE: f64 = 0.1;
+pub(super) const VISIBLE: f64 = 0.1;
 
 /// What more it needs for each parameter of a shape that it brings.
 const BELIEVED_PER_SHAPE: f64 = 3.0;
@@ -44,6 +45,10 @@ const FEWEST_SAMPLES: usize = 50;
 
 /// Angle between two signatures under which the one is worth a fit in place of the other, degree.
 const ALIKE_DEG: f64 = 37.0;
+
+/// Angle up to which an effect without the shape of its own is the named one: a friction without its breakaway peak is
+/// plain friction, and no other explanation.
+const SAME_DEG: f64 = 2.0;
 
 /// Most effects that are added.
 const MOST_STEPS: usize = 5;
@@ -132,6 +137,8 @@ pub struct Explanation {
     pub rest: Attribution,
     /// What to measure next if the campaign cannot decide, or not between two effects.
     pub next_experiment: Option<NextExperiment>,
+    /// Effects that the campaign would not show; empty if what it does show is not explained.
+    pub unseen: Vec<Unseen>,
 }
 
 /// A campaign and a model with every effect of the catalogue tried once.
@@ -182,7 +189,7 @@ pub fn diagnose(
 }
 
 /// Effects that the plant can have and the estimate has not.
-fn absent(model: &Model, estimate: &Estimate) -> Vec<&'static dyn Effect> {
+pub(super) fn absent(model: &Model, estimate: &Estimate) -> Vec<&'static dyn Effect> {
     let dynamics = model.constants().dynamics;
     model
         .catalogue()
@@ -371,6 +378,10 @@ fn finish(
         Verdict::NotEnoughData => missing.map(NextExperiment::missing),
         _ => None,
     };
+    let unseen = match verdict {
+        Verdict::Unexplained => Vec::new(),
+        _ => unseen(experiment, model, &after),
+    };
     Explanation {
         before,
         after,
@@ -379,6 +390,7 @@ fn finish(
         cells,
         rest,
         next_experiment,
+        unseen,
     }
 }
 
@@ -432,33 +444,28 @@ fn alternatives(
         .into_iter()
         .filter(|swapped| {
             let worse = (swapped.fit.cost - whole.cost) / (variance * inflation);
-            // Fewer parameters are a merit; more are no fault as long as the shape that they make is needed.
+            // Fewer parameters are a merit; more are no fault: what is likelier and what can be told apart are two things.
             let spared = own_parameters.saturating_sub(swapped.effect.parameters().len()) as f64;
             worse - spared * swapped.effective_samples().ln() < TOLD_APART
         })
         .filter(|swapped| {
-            let plain_cost = with_plain_shape(experiment, model, swapped);
-            (plain_cost - swapped.fit.cost) / (variance * inflation) >= TOLD_APART
+            let plain = plain(swapped);
+            plain.is_none_or(|plain| place.angle_deg(&plain) > SAME_DEG)
         })
         .filter_map(|swapped| Alternative::new(experiment, model, whole, swapped.fit))
         .collect()
 }
 
-/// Cost of a candidate without the shape of its own, infinite if it has none: a friction that is fitted without its
-/// breakaway peak is not another explanation than the plain friction that it is then.
-fn with_plain_shape(experiment: &Experiment, model: &Model, candidate: &Candidate) -> f64 {
-    let mut plain = candidate.fit.estimate.clone();
-    let Some(last) = plain.effects.last_mut() else {
-        return f64::INFINITY;
-    };
-    let parameters = last.effect.parameters();
-    if parameters.len() == 1 {
-        return f64::INFINITY;
+/// A candidate's effect without the shape of its own, `None` if it has none.
+fn plain(candidate: &Candidate) -> Option<AddedEffect> {
+    let mut plain = candidate.fit.estimate.effects.last()?.clone();
+    let parameters = plain.effect.parameters();
+    for (value, parameter) in plain.values.iter_mut().zip(parameters).skip(1) {
+        if (parameter.low..=parameter.high).contains(&parameter.null) {
+            *value = parameter.null;
+        }
     }
-    for (value, parameter) in last.values.iter_mut().zip(parameters).skip(1) {
-        *value = parameter.null;
-    }
-    evaluate_weighted(experiment, model, plain, candidate.fit.weights.clone()).cost
+    (parameters.len() > 1).then_some(plain)
 }
 
 fn verdict(

@@ -21,4 +21,5 @@ mod scan;
 mod starts;
 pub mod suggestion;
 mod synchronise;
+pub mod unseen;
 pub mod whereabouts;

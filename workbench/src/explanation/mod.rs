@@ -25,6 +25,8 @@ pub struct Explanation {
     pub steps: Vec<Step>,
     /// What stays unexplained.
     pub unexplained: Unexplained,
+    /// What would not have been seen at its typical size, the faintest first; empty if something stays unexplained.
+    pub not_visible: Vec<NotVisible>,
     /// The experiment that would tell most, if one is needed.
     #[serde(flatten)]
     pub next: Next,
@@ -96,6 +98,19 @@ pub struct Alternative {
     pub angle_deg: f64,
     /// Error with it instead, in sigma.
     pub error_after: f64,
+}
+
+/// An effect that this campaign would not show.
+#[derive(Debug, Clone, Serialize)]
+pub struct NotVisible {
+    /// Id of the effect.
+    pub effect: &'static str,
+    /// Root mean square of its signature at its typical size that nothing else can take on, in sigma.
+    pub detectability: f64,
+    /// Channels that it shows in and the campaign lacks.
+    pub missing_channels: Vec<&'static str>,
+    /// What it would show in.
+    pub shows: &'static str,
 }
 
 /// An effect that could be missing.

@@ -6,9 +6,10 @@ use hitch_model::identification::design;
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain;
 use hitch_model::identification::fit::Fit;
+use hitch_model::identification::unseen::Unseen;
 use serde_json::{Map, Value, json};
 
-use super::{Alternative, Explanation, Head, Parameter, Step, Unexplained};
+use super::{Alternative, Explanation, Head, NotVisible, Parameter, Step, Unexplained};
 
 impl Explanation {
     /// What is shown of an explanation of a campaign that began with a model.
@@ -31,6 +32,7 @@ impl Explanation {
                 suggested_term: None,
                 suggested: None,
             },
+            not_visible: found.unseen.iter().map(not_visible).collect(),
             next: found.next_experiment.clone().into(),
         }
     }
@@ -52,6 +54,15 @@ fn step(step: &explain::Step) -> Step {
         alternatives: step.indistinguishable.iter().map(alternative).collect(),
         detectability: step.detectability,
         parameters: parameters(step.effect, &step.values, &step.intervals),
+    }
+}
+
+fn not_visible(unseen: &Unseen) -> NotVisible {
+    NotVisible {
+        effect: unseen.effect.id(),
+        detectability: unseen.detectability,
+        missing_channels: unseen.missing.iter().map(|channel| channel.key()).collect(),
+        shows: unseen.effect.shows(),
     }
 }
 

@@ -2,7 +2,8 @@
 use std::fmt;
 
 use super::{
-    Alternative, Diagnosis, Explanation, Head, Next, Parameter, Step, Suggested, Unexplained,
+    Alternative, Diagnosis, Explanation, Head, Next, NotVisible, Parameter, Step, Suggested,
+    Unexplained,
 };
 use crate::text::{Table, wrapped};
 
@@ -26,7 +27,24 @@ impl fmt::Display for Explanation {
                 WIDTH
             )
         )?;
-        write!(f, "{}{}", self.unexplained, self.next)
+        write!(f, "{}{}", self.unexplained, self.next)?;
+        if !self.not_visible.is_empty() {
+            let line = format!("{}:", self.blind_spots());
+            writeln!(f, "{}", wrapped(&line, WIDTH))?;
+        }
+        self.not_visible
+            .iter()
+            .try_for_each(|effect| write!(f, "  {effect}"))
+    }
+}
+
+impl fmt::Display for NotVisible {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.effect, self.shows)?;
+        if !self.missing_channels.is_empty() {
+            write!(f, "; no run has {}", self.missing_channels.join(", "))?;
+        }
+        writeln!(f)
     }
 }
 
@@ -55,6 +73,11 @@ impl fmt::Display for Alternative {
 }
 
 impl Explanation {
+    /// What the list of effects that are not visible means, a sentence without its colon.
+    pub fn blind_spots(&self) -> &'static str {
+        "Of these the campaign says nothing, it would not show them at their typical size"
+    }
+
     /// What the verdict means, in a sentence.
     pub fn meaning(&self) -> &'static str {
         match (self.head.verdict, self.steps.is_empty()) {

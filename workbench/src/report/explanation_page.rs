@@ -75,6 +75,10 @@ fn verdict(shown: &Explanation) -> Markup {
         @if let Some(next) = &shown.next.next_experiment {
             p { strong { "Next experiment: " } (next) "." }
         }
+        @if !shown.not_visible.is_empty() {
+            p { (shown.blind_spots()) ":" }
+            ul { @for effect in &shown.not_visible { li { (effect) } } }
+        }
     }
 }
 

@@ -1,0 +1,70 @@
+//! What a campaign could not show if it were there.
+//!
+//! "Nothing missing" only holds for what would have been seen. A pump that slips shows where the demand exceeds what
+//! it delivers, a relief valve at a stop: duty cycles have neither, and then a clean answer says nothing of them.
+
+use rayon::prelude::*;
+
+use super::evidence::detectability;
+use super::experiment::Experiment;
+use super::explain::{VISIBLE, absent};
+use super::fit::Fit;
+use super::frame::Frame;
+use super::jacobian::{Jacobian, huber, huber_residuals};
+use crate::campaign::Channel;
+use crate::effects::{AddedEffect, Effect};
+use crate::model::Model;
+
+/// An effect of typical size that a campaign would not show.
+#[derive(Debug, Clone)]
+pub struct Unseen {
+    /// Which effect.
+    pub effect: &'static dyn Effect,
+    /// Root mean square of what it would change and nothing that is free could imitate, in sigmas.
+    pub detectability: f64,
+    /// Channels that it shows in and the campaign does not have.
+    pub missing: Vec<Channel>,
+}
+
+/// Effects, at their typical size, that a campaign would not show beside what a fit has; the faintest first.
+#[must_use]
+pub fn unseen(experiment: &Experiment, model: &Model, fit: &Fit) -> Vec<Unseen> {
+    let base = huber(fit.residuals.clone());
+    let (weights, estimate) = (&fit.weights, &fit.estimate);
+    let jacobian = Jacobian::new(experiment, model, weights, estimate);
+    let frame = Frame::new(&jacobian, estimate, 0..0);
+    let mut unseen: Vec<Unseen> = absent(model, estimate)
+        .into_par_iter()
+        .map(|effect| {
+            let mut with = estimate.clone();
+            with.effects.push(AddedEffect::typical(effect));
+            let with = huber_residuals(experiment, model, weights, &with);
+            let change = base.iter().zip(with).map(|(base, with)| {
+                let both = base.iter().zip(with);
+                both.map(|(base, with)| base - with).collect()
+            });
+            let (left, price) = frame.project_at_a_price(change.collect());
+            Unseen {
+                effect,
+                detectability: detectability(&left, price, weights.count()),
+                missing: missing(experiment, effect),
+            }
+        })
+        .filter(|unseen| unseen.detectability < VISIBLE)
+        .collect();
+    unseen.sort_by(|a, b| a.detectability.total_cmp(&b.detectability));
+    unseen
+}
+
+/// Channels that an effect shows in and no run has.
+fn missing(experiment: &Experiment, effect: &dyn Effect) -> Vec<Channel> {
+    let unmeasured = |channel: &Channel| {
+        let measured = |channel: &Channel| {
+            let mut runs = experiment.runs.iter();
+            runs.any(|run| run.measured[channel.index()].is_some())
+        };
+        !measured(channel)
+    };
+    let channels = effect.channels().iter().copied();
+    channels.filter(unmeasured).collect()
+}
