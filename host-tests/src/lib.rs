@@ -5,6 +5,7 @@ pub mod ecu_day;
 pub mod ecu_tool;
 pub mod emulator;
 pub mod hidden_effects;
+pub mod instruction_counts;
 pub mod lab;
 pub mod live_ecu;
 pub mod program;

@@ -6,7 +6,8 @@
 use std::sync::LazyLock;
 
 use hitch_workbench::ecu::Mode;
-use host_tests::emulator::{self, EmulatedRun};
+use host_tests::emulator::{self, EmulatedRun, instructions};
+use host_tests::instruction_counts;
 use host_tests::replay;
 use host_tests::trace::{self, Trace};
 
@@ -77,6 +78,26 @@ fn a_step_fits_the_ecu() {
         *worst <= MOST_INSTRUCTIONS,
         "step {step} takes {worst} instructions, more than {MOST_INSTRUCTIONS}"
     );
+}
+
+#[test]
+#[ignore = "needs the ARM image: run by `cargo xtask test`"]
+fn a_step_and_its_parts_take_what_is_written_down() {
+    let (_, run) = &*RECORDED;
+    let count = run.instructions.len() as u64;
+    let folder = tempfile::tempdir().unwrap();
+    let parts = emulator::boot(&emulator::image().unwrap(), folder.path(), Mode::Parts, &[]);
+    let said = parts.unwrap().text;
+    let part = |name| instructions(emulator::said(&said, name).unwrap());
+    let counts = [
+        ("step-mean", run.instructions.iter().sum::<u64>() / count),
+        ("step-worst", *run.instructions.iter().max().unwrap()),
+        ("lift-map-worst", part("lift_map")),
+        ("lower-map-worst", part("lower_map")),
+        ("drop-scale-worst", part("drop_scale")),
+        ("regulation-of-both-coils-worst", part("regulation")),
+    ];
+    instruction_counts::check(&counts).unwrap();
 }
 
 #[test]

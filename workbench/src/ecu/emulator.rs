@@ -24,6 +24,8 @@ pub enum Mode {
     Steps,
     /// Be the ECU; its flash is the file `flash` in the emulator's folder.
     Ecu,
+    /// Measure what the parts of a step take.
+    Parts,
 }
 
 /// The command that boots `image` in `folder`; what it reads and writes is the caller's to choose.
@@ -31,6 +33,7 @@ pub fn command(image: &Path, folder: &Path, mode: Mode) -> Command {
     let told = match mode {
         Mode::Steps => "enable=on,target=native,arg=steps",
         Mode::Ecu => "enable=on,target=native,arg=ecu",
+        Mode::Parts => "enable=on,target=native,arg=parts",
     };
     let mut command = Command::new(QEMU);
     command

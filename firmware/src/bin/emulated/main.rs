@@ -1,7 +1,8 @@
 //! The firmware on an emulated Cortex-M4 (QEMU `mps2-an386`).
 //!
 //! Told `ecu` by the emulator (`-semihosting-config arg=ecu`), it is the ECU: the application in lock step with whoever
-//! is at the emulator's standard input and output. Otherwise it steps the controller alone. At the end of the input it says
+//! is at the emulator's standard input and output. Told `parts`, it measures what the parts of a step take. Otherwise it
+//! steps the controller alone. At the end of the input it says
 //! on the console what it did and how much stack that took, and ends the emulator with a status.
 
 #![no_std]
@@ -12,6 +13,7 @@ mod command_line;
 mod flash_file;
 mod host_file;
 mod link;
+mod parts;
 mod stack;
 mod steps;
 mod stopwatch;
@@ -62,8 +64,11 @@ fn main() -> ! {
 }
 
 fn run() -> Result<Done, Failure> {
-    let mut link = Link::open()?;
     let stopwatch = Stopwatch::start();
+    if command_line::is(b"parts") {
+        return parts::run(&stopwatch).map(|()| Done::default());
+    }
+    let mut link = Link::open()?;
     match command_line::is(b"ecu") {
         true => application::run(&mut link, &stopwatch),
         false => steps::run(&mut link, &stopwatch),
