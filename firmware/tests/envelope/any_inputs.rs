@@ -148,3 +148,50 @@ fn whatever_happens_no_current_passes_that_must_not() {
         "coils on in {on} steps: too few to say anything"
     );
 }
+
+#[test]
+fn whatever_went_before_a_command_that_stops_coming_cuts_at_once_and_trips_in_time() {
+    const SEQUENCES: u64 = 4_000;
+    let (mut from_lift, mut from_lower, mut from_rest) = (0, 0, 0);
+    for seed in 1..=SEQUENCES {
+        let mut random = Random(seed.wrapping_mul(0x2545_F491_4F6C_DD1D));
+        // Half of them begin at full speed, the others anywhere.
+        let mut rig = match random.below(4) {
+            0 => Rig::moving(LIFT),
+            1 => Rig::moving(LOWER),
+            _ => Rig::armed(),
+        };
+        let mut inputs = rig.inputs();
+        let mut command = Some(rig.passed);
+        for _ in 0..random.below(300) {
+            random_inputs(&mut random, &mut inputs);
+            if random.below(8) == 0 {
+                command = random.command();
+            }
+            rig.passed = rig.envelope.pass(command, &inputs, LIMITS);
+        }
+        let counter = match rig.passed {
+            CoilCurrents::OFF => &mut from_rest,
+            CoilCurrents { lift, .. } if lift > MilliAmp(0) => &mut from_lift,
+            _ => &mut from_lower,
+        };
+        *counter += 1;
+        for step in 1..=SAFETY.command_age.0 {
+            random_inputs(&mut random, &mut inputs);
+            let passed = rig.envelope.pass(None, &inputs, LIMITS);
+            assert_eq!(passed, CoilCurrents::OFF, "seed {seed}, step {step}");
+        }
+        assert!(rig.envelope.tripped().is_some(), "seed {seed}: not in time");
+        for _ in 0..50 {
+            random_inputs(&mut random, &mut inputs);
+            let passed = rig.envelope.pass(random.command(), &inputs, LIMITS);
+            assert_eq!(
+                passed,
+                CoilCurrents::OFF,
+                "seed {seed}: came back by itself"
+            );
+        }
+    }
+    println!("from lifting {from_lift}, lowering {from_lower}, both coils off {from_rest}");
+    assert!(from_lift > 100 && from_lower > 100 && from_rest > 100);
+}
