@@ -3,10 +3,10 @@
 use hitch_firmware::control::units::Duty;
 use hitch_firmware::control::{Controller, Inputs, Outputs, ValidCalibration};
 use hitch_model::Model;
-use hitch_model::plant::{Currents, HitchRig, Plant, Rig};
+use hitch_model::plant::Currents;
 
-use super::coil::Coil;
-use super::instruments::{Instruments, SUPPLY_V};
+use super::driven_plant::DrivenPlant;
+use super::instruments::Instruments;
 
 /// The controller's step, s.
 pub const STEP_S: f64 = 1e-3;
@@ -32,12 +32,9 @@ pub struct Sample {
 
 /// Plant, coils, instruments and controller.
 pub struct ClosedLoop<'m> {
-    plant: Plant<'m>,
+    plant: DrivenPlant<'m>,
     instruments: Instruments,
     controller: Controller,
-    lift_coil: Coil,
-    lower_coil: Coil,
-    currents: Currents,
     steps: u64,
 }
 
@@ -52,17 +49,10 @@ impl<'m> ClosedLoop<'m> {
         start_angle_deg: f64,
         seed: u64,
     ) -> Self {
-        let rig = Rig::Hitch(HitchRig {
-            load_kg,
-            start_angle_rad: start_angle_deg.to_radians(),
-        });
         Self {
-            plant: Plant::new(model, rig, oil_temperature_c, Currents::default()),
+            plant: DrivenPlant::at_rest(model, load_kg, oil_temperature_c, start_angle_deg),
             instruments: Instruments::new(seed, oil_temperature_c),
             controller: Controller::new(calibration.clone()),
-            lift_coil: Coil::of_the_rig(),
-            lower_coil: Coil::of_the_rig(),
-            currents: Currents::default(),
             steps: 0,
         }
     }
@@ -81,24 +71,22 @@ impl<'m> ClosedLoop<'m> {
         wire: impl FnOnce(&Outputs, &mut Currents),
     ) -> Sample {
         let truth = self.plant.reading();
-        let mut inputs = self.instruments.read(&truth, self.currents, lever_deg);
+        let mut inputs = self
+            .instruments
+            .read(&truth, self.plant.currents(), lever_deg);
         tell(&mut inputs);
         let outputs = self.controller.step(&inputs);
         let sample = Sample {
             time_s: self.steps as f64 * STEP_S,
             lever_deg,
-            angle_deg: self.plant.rocker_angle_rad().to_degrees(),
+            angle_deg: self.plant.angle_deg(),
             cylinder_pressure_bar: truth.cylinder_pressure_bar,
             pump_pressure_bar: truth.pump_pressure_bar,
             inputs,
             outputs,
         };
-        self.currents = Currents {
-            lift_a: self.lift_coil.step(share(outputs.lift_duty), SUPPLY_V),
-            lower_a: self.lower_coil.step(share(outputs.lower_duty), SUPPLY_V),
-        };
-        wire(&outputs, &mut self.currents);
-        self.plant.step(self.currents, STEP_S);
+        let shares = [outputs.lift_duty, outputs.lower_duty].map(share);
+        self.plant.step(shares, |currents| wire(&outputs, currents));
         self.steps += 1;
         sample
     }
@@ -112,7 +100,7 @@ impl<'m> ClosedLoop<'m> {
     /// Picks the hitch up with the lever, as an operator does after power-up, and leaves both at rest.
     pub fn pick_up(&mut self) {
         const AWAY_DEG: f64 = 2.0;
-        let here_deg = self.plant.rocker_angle_rad().to_degrees();
+        let here_deg = self.plant.angle_deg();
         for _ in 0..100 {
             self.step(here_deg - AWAY_DEG);
         }

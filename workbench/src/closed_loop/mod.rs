@@ -1,6 +1,7 @@
 //! The firmware's controller in closed loop with a plant: what a hitch with this calibration would do.
 
 mod coil;
+mod driven_plant;
 mod ideal_ramp;
 mod instruments;
 mod loop_;
@@ -9,6 +10,7 @@ mod moves;
 mod scenario;
 
 pub use coil::Coil;
+pub use driven_plant::DrivenPlant;
 pub use ideal_ramp::IdealRamp;
 pub use instruments::{
     ANGLE_NOISE_DEG, CURRENT_NOISE_A, CYLINDER_NOISE_BAR, Instruments, PUMP_NOISE_BAR, SUPPLY_V,

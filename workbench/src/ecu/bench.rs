@@ -4,15 +4,11 @@ use hitch_firmware::can::Frame;
 use hitch_firmware::ecu::link::Reply;
 use hitch_firmware::ecu::{Contacts, PWM_STEPS};
 use hitch_model::Model;
-use hitch_model::plant::{Currents, HitchRig, Plant, Rig};
 
 use super::converters::{Converters, Signals};
 use super::machine::{EcuMachine, MachineError};
 use super::operator::Operator;
-use crate::closed_loop::{Coil, SUPPLY_V};
-
-/// A millisecond, s.
-const STEP_S: f64 = 1e-3;
+use crate::closed_loop::{DrivenPlant, SUPPLY_V};
 
 /// A millisecond as it truly was.
 #[derive(Debug, Clone, Copy)]
@@ -29,11 +25,8 @@ pub struct Moment {
 
 /// The bench.
 pub struct Bench<'m> {
-    plant: Plant<'m>,
+    plant: DrivenPlant<'m>,
     converters: Converters,
-    lift_coil: Coil,
-    lower_coil: Coil,
-    currents: Currents,
     time_ms: u64,
     /// The operator, who may be told what to do between milliseconds.
     pub operator: Operator,
@@ -48,16 +41,9 @@ impl<'m> Bench<'m> {
         start_angle_deg: f64,
         seed: u64,
     ) -> Self {
-        let rig = Rig::Hitch(HitchRig {
-            load_kg,
-            start_angle_rad: start_angle_deg.to_radians(),
-        });
         Self {
-            plant: Plant::new(model, rig, oil_temperature_c, Currents::default()),
+            plant: DrivenPlant::at_rest(model, load_kg, oil_temperature_c, start_angle_deg),
             converters: Converters::new(seed),
-            lift_coil: Coil::of_the_rig(),
-            lower_coil: Coil::of_the_rig(),
-            currents: Currents::default(),
             time_ms: 0,
             operator: Operator::with_lever_at(start_angle_deg - 5.0),
         }
@@ -65,7 +51,7 @@ impl<'m> Bench<'m> {
 
     /// Rocker angle, degree.
     pub fn angle_deg(&self) -> f64 {
-        self.plant.rocker_angle_rad().to_degrees()
+        self.plant.angle_deg()
     }
 
     /// One millisecond of hitch and ECU.
@@ -116,14 +102,14 @@ impl<'m> Bench<'m> {
     }
 
     fn signals(&self) -> Signals {
-        let truth = self.plant.reading();
+        let (truth, currents) = (self.plant.reading(), self.plant.currents());
         Signals {
             rocker_angle_deg: truth.rocker_angle_deg,
             lever_deg: self.operator.lever_deg,
             upper_limit_deg: self.operator.upper_limit_deg,
             lowering_dial: self.operator.lowering_dial,
-            lift_current_a: self.currents.lift_a,
-            lower_current_a: self.currents.lower_a,
+            lift_current_a: currents.lift_a,
+            lower_current_a: currents.lower_a,
             supply_v: SUPPLY_V,
             cylinder_pressure_bar: truth.cylinder_pressure_bar,
             pump_pressure_bar: truth.pump_pressure_bar,
@@ -136,11 +122,8 @@ impl<'m> Bench<'m> {
             true => f64::from(compare) / f64::from(PWM_STEPS),
             false => 0.0,
         };
-        self.currents = Currents {
-            lift_a: self.lift_coil.step(share(reply.lift), SUPPLY_V),
-            lower_a: self.lower_coil.step(share(reply.lower), SUPPLY_V),
-        };
-        self.plant.step(self.currents, STEP_S);
+        self.plant
+            .step([reply.lift, reply.lower].map(share), |_| {});
         self.time_ms += 1;
     }
 }

@@ -1,0 +1,86 @@
+//! A plant behind its two coils: what a driver's duty does to a hitch.
+
+use hitch_model::Model;
+use hitch_model::plant::{Currents, HitchRig, Plant, Reading, Rig};
+
+use super::coil::Coil;
+use super::instruments::SUPPLY_V;
+use super::loop_::STEP_S;
+
+/// The two coils of a hitch.
+#[derive(Debug, Clone, Copy)]
+struct CoilPair {
+    lift: Coil,
+    lower: Coil,
+}
+
+impl CoilPair {
+    /// Both cold and without current.
+    fn of_the_rig() -> Self {
+        Self {
+            lift: Coil::of_the_rig(),
+            lower: Coil::of_the_rig(),
+        }
+    }
+
+    /// One millisecond with these shares of the supply; the mean currents.
+    fn step(&mut self, [lift, lower]: [f64; 2]) -> Currents {
+        Currents {
+            lift_a: self.lift.step(lift, SUPPLY_V),
+            lower_a: self.lower.step(lower, SUPPLY_V),
+        }
+    }
+}
+
+/// Plant and coils.
+pub struct DrivenPlant<'m> {
+    plant: Plant<'m>,
+    coils: CoilPair,
+    currents: Currents,
+}
+
+impl<'m> DrivenPlant<'m> {
+    /// A hitch at rest at `start_angle_deg` without current.
+    #[must_use]
+    pub fn at_rest(
+        model: &'m Model,
+        load_kg: f64,
+        oil_temperature_c: f64,
+        start_angle_deg: f64,
+    ) -> Self {
+        let rig = Rig::Hitch(HitchRig {
+            load_kg,
+            start_angle_rad: start_angle_deg.to_radians(),
+        });
+        Self {
+            plant: Plant::new(model, rig, oil_temperature_c, Currents::default()),
+            coils: CoilPair::of_the_rig(),
+            currents: Currents::default(),
+        }
+    }
+
+    /// One millisecond with shares of the supply on lift and lowering coil; `wire` changes what the coils get.
+    pub fn step(&mut self, shares: [f64; 2], wire: impl FnOnce(&mut Currents)) {
+        self.currents = self.coils.step(shares);
+        wire(&mut self.currents);
+        self.plant.step(self.currents, STEP_S);
+    }
+
+    /// Currents in the coils.
+    #[must_use]
+    pub const fn currents(&self) -> Currents {
+        self.currents
+    }
+
+    /// What there is to be measured.
+    #[must_use]
+    pub fn reading(&self) -> Reading {
+        self.plant.reading()
+    }
+
+    /// Rocker angle, degree.
+    #[must_use]
+    pub fn angle_deg(&self) -> f64 {
+        self.plant.rocker_angle_rad().to_degrees()
+    }
+}
