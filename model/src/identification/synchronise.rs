@@ -37,11 +37,13 @@ pub(super) fn synchronised(
         .collect();
     let costs = costs(experiment, model, weights, &estimate, &tried);
     let mut better = estimate;
-    for channel in 0..4 {
-        let best =
-            (0..tried.len()).min_by(|&a, &b| costs[a][channel].total_cmp(&costs[b][channel]));
-        if let Some(best) = best {
-            better.clocks.offsets_s[channel] = tried[best].offsets_s[channel];
+    for (channel, offset_s) in better.clocks.offsets_s.iter_mut().enumerate() {
+        let best = costs
+            .iter()
+            .zip(&tried)
+            .min_by(|a, b| a.0[channel].total_cmp(&b.0[channel]));
+        if let Some((_, clocks)) = best {
+            *offset_s = clocks.offsets_s[channel];
         }
     }
     better
