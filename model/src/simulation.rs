@@ -9,6 +9,8 @@ use crate::plant::{Currents, Plant, Rig};
 pub struct Trace {
     /// One value a sample for each channel.
     pub channels: [Vec<f64>; 4],
+    /// The rocker angle itself, degree, whatever its sensor shows; not a number on a flow bench.
+    pub true_angle_deg: Vec<f64>,
 }
 
 impl Trace {
@@ -20,7 +22,7 @@ impl Trace {
 
     /// Keeps some of the samples, given in rising order.
     pub fn keep(&mut self, samples: &[usize]) {
-        for channel in &mut self.channels {
+        for channel in self.channels.iter_mut().chain([&mut self.true_angle_deg]) {
             for (to, &from) in samples.iter().enumerate() {
                 channel[to] = channel[from];
             }
@@ -42,6 +44,7 @@ pub fn simulate(
 ) -> Trace {
     let mut trace = Trace {
         channels: std::array::from_fn(|_| Vec::with_capacity(time_s.len())),
+        true_angle_deg: Vec::with_capacity(time_s.len()),
     };
     let Some(first) = currents.first() else {
         return trace;
@@ -52,6 +55,9 @@ pub fn simulate(
             plant.step(*currents, time_s[sample] - time_s[sample - 1]);
         }
         let reading = plant.reading();
+        trace
+            .true_angle_deg
+            .push(plant.rocker_angle_rad().to_degrees());
         for channel in Channel::ALL {
             trace.channels[channel.index()].push(reading.channel(channel));
         }

@@ -258,7 +258,7 @@ fn pump_edges(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
 }
 
 /// Samples at which the hitch stands against a stop, measured or simulated: pressure and flow there hang on the stop's
-/// stiffness and on how hard it was met.
+/// stiffness and on how hard it was met. What a simulated sensor shows, that may read wrong, does not matter.
 fn at_a_stop(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
     let (low_rad, high_rad) = model.linkage().swing_rad();
     let stops_deg = [low_rad.to_degrees(), high_rad.to_degrees()];
@@ -271,7 +271,7 @@ fn at_a_stop(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
     let mut left_s = f64::NEG_INFINITY;
     (0..run.len())
         .map(|sample| {
-            let simulated = |trace: &&Trace| touches(trace.channel(Channel::RockerAngle)[sample]);
+            let simulated = |trace: &&Trace| touches(trace.true_angle_deg[sample]);
             if measured.is_some_and(|angle_deg| touches(angle_deg[sample]))
                 || traces.iter().any(simulated)
             {
