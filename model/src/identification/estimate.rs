@@ -134,6 +134,14 @@ impl Estimate {
         self.nuisances[run].load = sigmas.clamp(-FARTHEST, FARTHEST) * LOAD_PRIOR;
     }
 
+    /// The same without one of the effects, by its index.
+    #[must_use]
+    pub fn without(&self, effect: usize) -> Self {
+        let mut lighter = self.clone();
+        lighter.effects.remove(effect);
+        lighter
+    }
+
     /// Cost of the priors: squared distance in prior sigmas.
     #[must_use]
     pub fn prior_cost(&self) -> f64 {

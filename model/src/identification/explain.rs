@@ -5,22 +5,19 @@
 //! every addition each earlier effect has to be needed still. At the end each named effect is tried against those
 //! whose signature is nearly its own: what fits as well is said to be indistinguishable.
 
-use rayon::prelude::*;
-
 use super::adequacy::{Cell, adequate, cells};
 use super::attribution::{Attribution, attribute};
 use super::candidate::{Candidate, mutual_odds, try_effects, weigh};
-use super::design::{Alternative, NextExperiment, Pair, Place, Rival, next_experiment};
+use super::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
 use super::estimate::Estimate;
 use super::evidence::shares;
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate, fit, refine};
 use super::holdout::held_out_error;
-use super::jacobian::square_sum;
 use super::regime::Regime;
-use super::starts::with_extreme_shapes;
+use super::twins::twins;
 use super::unseen::{Unseen, unseen};
-use crate::effects::{AddedEffect, Effect};
+use crate::effects::Effect;
 use crate::model::Model;
 
 /// Likelihood ratio that an effect needs: chi-squared with one degree of freedom at 5 % over some fifty tries.
@@ -37,18 +34,8 @@ const BELIEVED_PER_SHAPE: f64 = 3.0;
 /// already, and what a faint signature explains of it may as well be the instruments' own.
 const VISIBLE_IN_NOISE: f64 = 0.15;
 
-/// Likelihood ratio by which an alternative has to be worse to be told apart.
-pub const TOLD_APART: f64 = 10.0;
-
 /// Fewest compared samples that anything is concluded from.
 const FEWEST_SAMPLES: usize = 50;
-
-/// Angle between two signatures under which the one is worth a fit in place of the other, degree.
-const ALIKE_DEG: f64 = 37.0;
-
-/// Angle up to which an effect without the shape of its own is the named one: a friction without its breakaway peak is
-/// plain friction, and no other explanation.
-const SAME_DEG: f64 = 2.0;
 
 /// Most effects that are added.
 const MOST_STEPS: usize = 5;
@@ -309,7 +296,7 @@ fn drop_needless(
     steps: &mut Vec<Step>,
 ) -> Option<Fit> {
     for index in 0..steps.len().saturating_sub(1) {
-        let without = refine(experiment, model, without(&present.estimate, given + index));
+        let without = refine(experiment, model, present.estimate.without(given + index));
         let whole = with_last(experiment, model, present, given + index);
         let weighed = weigh(experiment, model, &without, steps[index].effect, whole);
         if weighed.likelihood_ratio < believed(steps[index].effect) {
@@ -318,12 +305,6 @@ fn drop_needless(
         }
     }
     None
-}
-
-fn without(estimate: &Estimate, effect: usize) -> Estimate {
-    let mut lighter = estimate.clone();
-    lighter.effects.remove(effect);
-    lighter
 }
 
 /// The same fit with one effect moved to the end of the list.
@@ -346,7 +327,7 @@ fn finish(
     for (index, step) in steps.iter_mut().enumerate() {
         let effect = given + index;
         let whole = with_last(experiment, model, &after, effect);
-        let base = evaluate(experiment, model, without(&after.estimate, effect));
+        let base = evaluate(experiment, model, after.estimate.without(effect));
         let weighed = weigh(experiment, model, &base, step.effect, whole.clone());
         if weighed.detectability < VISIBLE {
             faint = Some(index);
@@ -356,13 +337,13 @@ fn finish(
         step.values = weighed.values().to_vec();
         step.intervals = weighed.intervals;
         step.detectability = weighed.detectability;
-        step.indistinguishable = alternatives(experiment, model, &whole, weighed.inflation);
+        step.indistinguishable = twins(experiment, model, &whole, weighed.inflation);
         step.confidence = there / (1 + step.indistinguishable.len()) as f64;
     }
     if let Some(index) = faint {
         // A later step has taken over what this one stood for.
         steps.remove(index);
-        let lighter = refine(experiment, model, without(&after.estimate, given + index));
+        let lighter = refine(experiment, model, after.estimate.without(given + index));
         return finish(experiment, model, before, lighter, steps);
     }
     let cells = cells(experiment, &after);
@@ -409,63 +390,6 @@ fn pairs<'a>(after: &'a Fit, steps: &'a [Step]) -> Vec<Pair<'a>> {
         })
     };
     steps.iter().flat_map(of_step).collect()
-}
-
-/// Effects that fit as well in place of the last one.
-fn alternatives(
-    experiment: &Experiment,
-    model: &Model,
-    whole: &Fit,
-    inflation: f64,
-) -> Vec<Alternative> {
-    let last = whole.estimate.effects.len() - 1;
-    let Some(place) = Place::new(experiment, model, whole) else {
-        return Vec::new();
-    };
-    let base_estimate = without(&whole.estimate, last);
-    let variance = (square_sum(&whole.residuals) / whole.weights.count() as f64).max(1.0);
-    let alike: Vec<&'static dyn Effect> = absent(model, &whole.estimate)
-        .into_par_iter()
-        .filter(|effect| {
-            let typical = AddedEffect::typical(*effect);
-            let extreme = with_extreme_shapes(&typical);
-            [typical]
-                .iter()
-                .chain(&extreme)
-                .any(|form| place.angle_deg(form) < ALIKE_DEG)
-        })
-        .collect();
-    if alike.is_empty() {
-        return Vec::new();
-    }
-    let own_parameters = whole.estimate.effects[last].values.len();
-    let base = refine(experiment, model, base_estimate);
-    try_effects(experiment, model, &base, &alike, &|_| {})
-        .into_iter()
-        .filter(|swapped| {
-            let worse = (swapped.fit.cost - whole.cost) / (variance * inflation);
-            // Fewer parameters are a merit; more are no fault: what is likelier and what can be told apart are two things.
-            let spared = own_parameters.saturating_sub(swapped.effect.parameters().len()) as f64;
-            worse - spared * swapped.effective_samples().ln() < TOLD_APART
-        })
-        .filter(|swapped| {
-            let plain = plain(swapped);
-            plain.is_none_or(|plain| place.angle_deg(&plain) > SAME_DEG)
-        })
-        .filter_map(|swapped| Alternative::new(experiment, model, whole, swapped.fit))
-        .collect()
-}
-
-/// A candidate's effect without the shape of its own, `None` if it has none.
-fn plain(candidate: &Candidate) -> Option<AddedEffect> {
-    let mut plain = candidate.fit.estimate.effects.last()?.clone();
-    let parameters = plain.effect.parameters();
-    for (value, parameter) in plain.values.iter_mut().zip(parameters).skip(1) {
-        if (parameter.low..=parameter.high).contains(&parameter.null) {
-            *value = parameter.null;
-        }
-    }
-    (parameters.len() > 1).then_some(plain)
 }
 
 fn verdict(

@@ -21,5 +21,6 @@ mod scan;
 mod starts;
 pub mod suggestion;
 mod synchronise;
+pub mod twins;
 pub mod unseen;
 pub mod whereabouts;

@@ -4,8 +4,9 @@ use hitch_model::identification::adequacy::{adequate, cells};
 use hitch_model::identification::candidate;
 use hitch_model::identification::design::{NextExperiment, Pair, Rival, next_experiment};
 use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{self, BELIEVED, TOLD_APART, Verdict};
+use hitch_model::identification::explain::{self, BELIEVED, Verdict};
 use hitch_model::identification::fit::Fit;
+use hitch_model::identification::twins::TOLD_APART;
 
 use super::of_explanation::{channels, parameters};
 use super::{Candidate, Diagnosis, Head};

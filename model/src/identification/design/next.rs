@@ -5,7 +5,7 @@ use std::fmt;
 use rayon::prelude::*;
 
 use super::super::experiment::Experiment;
-use super::super::explain::TOLD_APART;
+use super::super::twins::TOLD_APART;
 use super::manoeuvre::MANOEUVRES;
 use super::plan::Manoeuvre;
 use super::sensor::telling_instrument;
