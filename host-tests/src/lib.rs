@@ -12,5 +12,6 @@ pub mod program;
 pub mod recording;
 pub mod replay;
 pub mod second_rig;
+pub mod simulated_lab;
 pub mod teaching;
 pub mod trace;

@@ -5,31 +5,18 @@
 //! every effect by a hundred campaigns.
 
 use hitch_model::Model;
-use hitch_model::campaign::{Bench, Campaign, Channel, Noise, Run};
 use hitch_model::effects::{AddedEffect, CATALOGUE, Effect};
 use hitch_model::identification::candidate::try_effects;
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::fit_base;
 use hitch_model::model::Dynamics;
-use hitch_model::plant::{Currents, HitchRig, Rig};
-use hitch_model::simulation::simulate;
-use hitch_model::units::pa_from_bar;
-use host_tests::second_rig::instruments::{CHANNEL_SIGMA, Instruments};
-use host_tests::second_rig::manoeuvres::{Manoeuvre, Plan, Stand, runs};
-use host_tests::second_rig::test_stand::SAMPLE_RATE_HZ;
+use host_tests::simulated_lab::campaign;
 use rand::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 /// Seeds of an effect if the environment does not say otherwise.
 const FEW_SEEDS: u64 = 3;
-
-/// Steps of the truth from one sample to the next.
-const FINER: usize = 5;
-
-/// Relative error of a weighed load.
-const LOAD_SIGMA: f64 = 0.005;
 
 /// Standard deviations by which an estimate may miss, were its interval a normal distribution's.
 const WIDTH: f64 = 1.96;
@@ -114,77 +101,5 @@ fn starting_point(effect: &dyn Effect) -> Model {
     match effect.needs() {
         Some(Dynamics::Dynamic) => Model::dynamic(),
         _ => Model::nominal(),
-    }
-}
-
-fn campaign(rig: &Model, random: &mut Pcg64) -> Campaign {
-    let instruments = Instruments::good();
-    let manoeuvres = runs(Plan::Lab, random);
-    let noise = Some(instruments.current_sigma_a);
-    Campaign {
-        name: "simulated".to_owned(),
-        description: String::new(),
-        sample_rate_hz: SAMPLE_RATE_HZ,
-        noise: Noise {
-            lift_current_a: noise,
-            lower_current_a: noise,
-            channels: CHANNEL_SIGMA.map(Some),
-            oil_temperature_c: None,
-        },
-        runs: manoeuvres
-            .iter()
-            .map(|manoeuvre| log(rig, manoeuvre, &instruments, random))
-            .collect(),
-    }
-}
-
-fn log(rig: &Model, manoeuvre: &Manoeuvre, instruments: &Instruments, random: &mut Pcg64) -> Run {
-    let samples = (manoeuvre.duration_s * SAMPLE_RATE_HZ).round() as usize;
-    let fine_s: Vec<f64> = (0..=samples * FINER)
-        .map(|step| step as f64 / (SAMPLE_RATE_HZ * FINER as f64))
-        .collect();
-    let currents: Vec<Currents> = fine_s
-        .iter()
-        .map(|&time_s| Currents {
-            lift_a: manoeuvre.lift.at(time_s),
-            lower_a: manoeuvre.lower.at(time_s),
-        })
-        .collect();
-    let error: f64 = StandardNormal.sample(random);
-    let (bench, stand) = match manoeuvre.stand {
-        Stand::Hitch { load_kg, start_deg } => {
-            let hitch = HitchRig {
-                load_kg: load_kg * (1.0 + LOAD_SIGMA * error),
-                start_angle_rad: start_deg.to_radians(),
-            };
-            (Bench::Hitch { load_kg }, Rig::Hitch(hitch))
-        }
-        Stand::Flow { port_bar } => {
-            let port_pressure_pa = pa_from_bar(port_bar);
-            let bench = Bench::Flow {
-                port_pressure_bar: port_bar,
-            };
-            (bench, Rig::Flow { port_pressure_pa })
-        }
-    };
-    let trace = simulate(rig, stand, manoeuvre.oil_temperature_c, &fine_s, &currents);
-    let readings: Vec<[f64; 4]> = (0..=samples)
-        .map(|sample| Channel::ALL.map(|channel| trace.channel(channel)[sample * FINER]))
-        .collect();
-    let logged = |current: fn(&Currents) -> f64, random: &mut Pcg64| {
-        let truth: Vec<f64> = currents.iter().step_by(FINER).map(current).collect();
-        instruments.log_current(&truth, random)
-    };
-    Run {
-        file: manoeuvre.file.clone(),
-        bench,
-        oil_temperature_c: manoeuvre.oil_temperature_c,
-        time_s: fine_s.iter().copied().step_by(FINER).collect(),
-        lift_current_a: logged(|currents| currents.lift_a, random),
-        lower_current_a: logged(|currents| currents.lower_a, random),
-        channels: std::array::from_fn(|channel| {
-            instruments.log_channel(channel, &readings, random)
-        }),
-        oil_temperature_log_c: None,
     }
 }

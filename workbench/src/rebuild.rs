@@ -85,6 +85,11 @@ impl Rebuild {
                 2,
             );
             row(
+                "tracking error, median, deg",
+                |summary| summary.tracking_error_median_deg,
+                2,
+            );
+            row(
                 "overshoot at most, deg",
                 |summary| summary.overshoot_max_deg,
                 2,

@@ -40,10 +40,11 @@ const FEWEST_SAMPLES: usize = 50;
 /// Most effects that are added.
 const MOST_STEPS: usize = 5;
 
-/// What this many effects leave at more than this error, a further one does not explain either: it is no campaign of
-/// this plant.
+/// What so many effects leave at more than this error, and the last of them at more than this share of what it found, no
+/// further one explains either: it is no campaign of this plant.
 const LOST_STEPS: usize = 2;
 const LOST: f64 = 4.0;
+const LITTLE_HELP: f64 = 0.8;
 
 /// Most candidates of one round that are tried on held-out runs.
 const MOST_TRIED: usize = 3;
@@ -202,7 +203,11 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
     let mut present_held_out = f64::NAN;
     let mut steps: Vec<Step> = Vec::new();
     for _ in 0..MOST_ROUNDS {
-        let lost = steps.len() >= LOST_STEPS && present.error() > LOST;
+        let lost = steps.len() >= LOST_STEPS
+            && present.error() > LOST
+            && steps
+                .last()
+                .is_some_and(|last| last.error_after > LITTLE_HELP * last.error_before);
         if !enough(&before) || steps.len() == MOST_STEPS || lost {
             break;
         }

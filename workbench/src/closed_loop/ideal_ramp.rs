@@ -21,13 +21,15 @@ const SWING_S: f64 = 1.0;
 const LONGEST_S: f64 = 20.0;
 
 /// Figures of the ideal manoeuvre for one move.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct IdealRamp {
     /// Until the angle first comes within half a degree of the set point, s. How the hitch swings afterwards is not
     /// counted, so that this is a bound: a gentler manoeuvre may rest sooner, but none arrives sooner.
     pub time_s: f64,
     /// Peak-to-peak cylinder pressure, bar.
     pub pressure_swing_bar: f64,
+    /// Angle of each step until then, degree.
+    pub angles_deg: Vec<f64>,
 }
 
 impl IdealRamp {
@@ -133,6 +135,7 @@ impl Track {
         IdealRamp {
             time_s: (arrived + 1) as f64 * STEP_S,
             pressure_swing_bar: swing_bar(self.0.iter().map(|&(_, bar)| bar)),
+            angles_deg: self.0.iter().take(arrived).map(|&(deg, _)| deg).collect(),
         }
     }
 }

@@ -26,6 +26,9 @@ pub struct MoveResult {
     pub shortest_s: f64,
     /// `time_s / shortest_s`.
     pub ratio: f64,
+    /// Root mean square of the distance from the angle that the shortest manoeuvre has at the same time, until both have
+    /// arrived, degree.
+    pub tracking_error_deg: f64,
     /// Furthest beyond the set point, degree.
     pub overshoot_deg: f64,
     /// Distance from the set point at the end of the run, degree.
@@ -45,6 +48,8 @@ pub struct Summary {
     pub ratio_median: f64,
     /// Time ratio that 95 % of the moves stay below.
     pub ratio_p95: f64,
+    /// Median of the tracking errors, degree.
+    pub tracking_error_median_deg: f64,
     /// Largest overshoot, degree.
     pub overshoot_max_deg: f64,
     /// Largest final error, degree.
@@ -77,6 +82,7 @@ pub fn judge(order: &Move, samples: &[Sample], ideal: &IdealRamp) -> MoveResult 
         time_s,
         shortest_s: ideal.time_s,
         ratio: time_s / ideal.time_s,
+        tracking_error_deg: tracking_error_deg(order, &samples[..arrived], ideal),
         overshoot_deg: samples.iter().map(beyond).fold(0.0, f64::max),
         final_error_deg: samples.last().map_or(f64::NAN, |last| beyond(last).abs()),
         active_after_s: minute.iter().filter(on).count() as f64 * STEP_S,
@@ -87,6 +93,23 @@ pub fn judge(order: &Move, samples: &[Sample], ideal: &IdealRamp) -> MoveResult 
         pressure_swing_ratio: swing_bar(samples.iter().map(|sample| sample.cylinder_pressure_bar))
             / ideal.pressure_swing_bar,
     }
+}
+
+/// Root mean square of the distance from the ideal manoeuvre, which stays on the set point once it is there.
+fn tracking_error_deg(order: &Move, samples: &[Sample], ideal: &IdealRamp) -> f64 {
+    let wanted_deg = ideal
+        .angles_deg
+        .iter()
+        .copied()
+        .chain(std::iter::repeat(order.to_deg));
+    let driven_deg = samples
+        .iter()
+        .map(|sample| sample.angle_deg)
+        .chain(std::iter::repeat(order.to_deg));
+    let steps = samples.len().max(ideal.angles_deg.len()).max(1);
+    let both = wanted_deg.zip(driven_deg).take(steps);
+    let sum: f64 = both.map(|(wanted, driven)| (wanted - driven).powi(2)).sum();
+    (sum / steps as f64).sqrt()
 }
 
 /// Peak to peak, bar.
@@ -105,12 +128,17 @@ impl Summary {
     /// Sums up; `None` without moves.
     #[must_use]
     pub fn of(moves: &[MoveResult]) -> Option<Self> {
-        let mut ratios: Vec<f64> = moves.iter().map(|result| result.ratio).collect();
-        ratios.sort_by(f64::total_cmp);
+        let sorted = |figure: fn(&MoveResult) -> f64| {
+            let mut figures: Vec<f64> = moves.iter().map(figure).collect();
+            figures.sort_by(f64::total_cmp);
+            figures
+        };
+        let ratios = sorted(|result| result.ratio);
         let largest = |figure: fn(&MoveResult) -> f64| moves.iter().map(figure).fold(0.0, f64::max);
         Some(Self {
             ratio_median: quantile(&ratios, 0.5)?,
             ratio_p95: quantile(&ratios, 0.95)?,
+            tracking_error_median_deg: quantile(&sorted(|result| result.tracking_error_deg), 0.5)?,
             overshoot_max_deg: largest(|result| result.overshoot_deg),
             final_error_max_deg: largest(|result| result.final_error_deg),
             active_after_max_s: largest(|result| result.active_after_s),

@@ -38,7 +38,7 @@ pub struct LoopRun {
 }
 
 /// A move, and the shortest manoeuvre that does it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Course {
     order: Move,
     ideal: IdealRamp,

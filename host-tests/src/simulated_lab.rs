@@ -1,0 +1,94 @@
+//! A lab campaign that the project's own plant is measured in: every parameter of its effects means what the catalogue
+//! says. The currents run on between samples, loads are weighed wrong, instruments are noisy and have digits.
+
+use hitch_model::Model;
+use hitch_model::campaign::{Bench, Campaign, Channel, Noise, Run};
+use hitch_model::plant::{Currents, HitchRig, Rig};
+use hitch_model::simulation::simulate;
+use hitch_model::units::pa_from_bar;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64;
+
+use crate::second_rig::instruments::{CHANNEL_SIGMA, Instruments};
+use crate::second_rig::manoeuvres::{Manoeuvre, Plan, Stand, runs};
+use crate::second_rig::test_stand::SAMPLE_RATE_HZ;
+
+/// Steps of the truth from one sample to the next.
+const FINER: usize = 5;
+
+/// Relative error of a weighed load.
+const LOAD_SIGMA: f64 = 0.005;
+
+/// The second rig's plan of a lab campaign, driven on `rig`.
+#[must_use]
+pub fn campaign(rig: &Model, random: &mut Pcg64) -> Campaign {
+    let instruments = Instruments::good();
+    let manoeuvres = runs(Plan::Lab, random);
+    let noise = Some(instruments.current_sigma_a);
+    Campaign {
+        name: "simulated".to_owned(),
+        description: String::new(),
+        sample_rate_hz: SAMPLE_RATE_HZ,
+        noise: Noise {
+            lift_current_a: noise,
+            lower_current_a: noise,
+            channels: CHANNEL_SIGMA.map(Some),
+            oil_temperature_c: None,
+        },
+        runs: manoeuvres
+            .iter()
+            .map(|manoeuvre| log(rig, manoeuvre, &instruments, random))
+            .collect(),
+    }
+}
+
+fn log(rig: &Model, manoeuvre: &Manoeuvre, instruments: &Instruments, random: &mut Pcg64) -> Run {
+    let samples = (manoeuvre.duration_s * SAMPLE_RATE_HZ).round() as usize;
+    let fine_s: Vec<f64> = (0..=samples * FINER)
+        .map(|step| step as f64 / (SAMPLE_RATE_HZ * FINER as f64))
+        .collect();
+    let currents: Vec<Currents> = fine_s
+        .iter()
+        .map(|&time_s| Currents {
+            lift_a: manoeuvre.lift.at(time_s),
+            lower_a: manoeuvre.lower.at(time_s),
+        })
+        .collect();
+    let error: f64 = StandardNormal.sample(random);
+    let (bench, stand) = match manoeuvre.stand {
+        Stand::Hitch { load_kg, start_deg } => {
+            let hitch = HitchRig {
+                load_kg: load_kg * (1.0 + LOAD_SIGMA * error),
+                start_angle_rad: start_deg.to_radians(),
+            };
+            (Bench::Hitch { load_kg }, Rig::Hitch(hitch))
+        }
+        Stand::Flow { port_bar } => {
+            let port_pressure_pa = pa_from_bar(port_bar);
+            let bench = Bench::Flow {
+                port_pressure_bar: port_bar,
+            };
+            (bench, Rig::Flow { port_pressure_pa })
+        }
+    };
+    let trace = simulate(rig, stand, manoeuvre.oil_temperature_c, &fine_s, &currents);
+    let readings: Vec<[f64; 4]> = (0..=samples)
+        .map(|sample| Channel::ALL.map(|channel| trace.channel(channel)[sample * FINER]))
+        .collect();
+    let logged = |current: fn(&Currents) -> f64, random: &mut Pcg64| {
+        let truth: Vec<f64> = currents.iter().step_by(FINER).map(current).collect();
+        instruments.log_current(&truth, random)
+    };
+    Run {
+        file: manoeuvre.file.clone(),
+        bench,
+        oil_temperature_c: manoeuvre.oil_temperature_c,
+        time_s: fine_s.iter().copied().step_by(FINER).collect(),
+        lift_current_a: logged(|currents| currents.lift_a, random),
+        lower_current_a: logged(|currents| currents.lower_a, random),
+        channels: std::array::from_fn(|channel| {
+            instruments.log_channel(channel, &readings, random)
+        }),
+        oil_temperature_log_c: None,
+    }
+}
