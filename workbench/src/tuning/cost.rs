@@ -38,6 +38,7 @@ mod tests {
         time_s: 0.5,
         shortest_s: 0.45,
         ratio: 1.1,
+        tracking_error_deg: 0.0,
         overshoot_deg: 0.1,
         final_error_deg: 0.1,
         active_after_s: 0.0,
