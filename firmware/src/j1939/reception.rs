@@ -118,7 +118,10 @@ impl Reception {
         session.next = number.saturating_add(1);
         session.heard_ms = now_ms;
         let missing = session.length.saturating_sub(session.bytes.len());
-        session.bytes.extend(data.into_iter().take(missing));
+        for byte in data.into_iter().take(missing) {
+            // A length that does not fit was refused; `extend` would panic here, which the linker cannot know.
+            let _ = session.bytes.push(byte);
+        }
         if session.bytes.len() < session.length {
             return None;
         }
