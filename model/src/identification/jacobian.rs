@@ -121,6 +121,14 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
+/// What residuals `a` have more than `b`, run by run.
+#[must_use]
+pub fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let runs = a.iter().zip(b);
+    runs.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect())
+        .collect()
+}
+
 /// Takes `share` times `part` from `column`.
 pub fn subtract(column: &mut [f64], share: f64, part: &[f64]) {
     for (value, part) in column.iter_mut().zip(part) {

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::clocks::{Clocks, OFFSET_PRIOR_S};
 use super::estimate::Estimate;
 use super::experiment::Experiment;
-use super::jacobian::{huber, square_sum};
+use super::jacobian::{dot, huber};
 use super::residual::Weights;
 use crate::model::Model;
 
@@ -69,7 +69,7 @@ fn costs(
                 clocks.stamp(&run.drive.time_s, &mut trace);
                 let whitened = huber(vec![weights.runs[index].whiten(run, &trace)]).swap_remove(0);
                 let of = |channel: usize| &whitened[channel * run.len()..(channel + 1) * run.len()];
-                std::array::from_fn(|channel| square_sum(&[of(channel).to_vec()]))
+                std::array::from_fn(|channel| dot(of(channel), of(channel)))
             };
             tried.iter().map(cost).collect()
         })

@@ -10,7 +10,7 @@ use super::experiment::Experiment;
 use super::explain::{VISIBLE, absent};
 use super::fit::Fit;
 use super::frame::Frame;
-use super::jacobian::{Jacobian, huber, huber_residuals};
+use super::jacobian::{Jacobian, difference, huber, huber_residuals};
 use crate::campaign::Channel;
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
@@ -39,11 +39,7 @@ pub fn unseen(experiment: &Experiment, model: &Model, fit: &Fit) -> Vec<Unseen> 
             let mut with = estimate.clone();
             with.effects.push(AddedEffect::typical(effect));
             let with = huber_residuals(experiment, model, weights, &with);
-            let change = base.iter().zip(with).map(|(base, with)| {
-                let both = base.iter().zip(with);
-                both.map(|(base, with)| base - with).collect()
-            });
-            let (left, price) = frame.project_at_a_price(change.collect());
+            let (left, price) = frame.project_at_a_price(difference(&base, &with));
             Unseen {
                 effect,
                 detectability: detectability(&left, price, weights.count()),

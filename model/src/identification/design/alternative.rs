@@ -4,7 +4,7 @@ use super::super::estimate::Shared;
 use super::super::experiment::Experiment;
 use super::super::fit::Fit;
 use super::super::frame::Frame;
-use super::super::jacobian::{Jacobian, dot, residuals};
+use super::super::jacobian::{Jacobian, difference, dot, residuals};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
@@ -117,12 +117,6 @@ fn without(mut jacobian: Jacobian, effect: usize) -> Jacobian {
     let mut index = 0;
     jacobian.shared.retain(|_| retain(&mut index));
     jacobian
-}
-
-fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let runs = a.iter().zip(b);
-    runs.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect())
-        .collect()
 }
 
 /// Angle between two signatures, degree; a right one if either is nothing.
