@@ -12,7 +12,9 @@ use hitch_model::identification::evidence::variance_inflation;
 use hitch_model::identification::experiment::{Experiment, Nuisance};
 use hitch_model::identification::explain::{Verdict, explain};
 use hitch_model::identification::noise::from_second_differences;
+use hitch_model::identification::traces::CurrentShift;
 use hitch_model::plant::Currents;
+use hitch_model::simulation::Trace;
 
 /// Standard normal numbers (Box & Muller).
 fn normal(rng: &mut Rng) -> f64 {
@@ -25,6 +27,44 @@ fn shipped(name: &str) -> Campaign {
         .join("campaigns")
         .join(name);
     Campaign::load(&folder).expect("a shipped campaign")
+}
+
+/// A trace that was kept is the one that would be made anew, and never another model's.
+#[test]
+fn kept_traces_are_those_of_their_model() {
+    let campaign = shipped("clean-dynamic");
+    let friction = AddedEffect::typical(find("coulomb-friction").expect("an effect"));
+    let off = AddedEffect::null(friction.effect);
+    let nominal = Model::nominal();
+    let mut twice = nominal.clone();
+    twice.effects = vec![friction.clone(), friction.clone()];
+    let models = [
+        nominal.clone(),
+        nominal.with_effects(vec![friction]),
+        nominal.with_effects(vec![off]),
+        twice,
+        Model::dynamic(),
+    ];
+    let experiment = Experiment::new(&campaign, &nominal);
+    let loads = [-0.01, 0.0, 0.01].map(|load| Nuisance { load });
+    let shifts = [(0.0, 0.0), (0.005, 0.0), (0.0, 1.0)];
+    let shifts = shifts.map(|(later_s, spreads)| CurrentShift { later_s, spreads });
+    for run in &experiment.runs[..6] {
+        // Twice, so that the second time most are kept.
+        for _ in 0..2 {
+            for model in &models {
+                for (&load, &shift) in loads.iter().zip(&shifts) {
+                    let kept = run.trace(model, load, shift);
+                    let anew = run.simulated(model, load, shift);
+                    let bits = |trace: &Trace| -> Vec<u64> {
+                        let channels = trace.channels.iter().flatten();
+                        channels.map(|value| value.to_bits()).collect()
+                    };
+                    assert!(bits(&kept) == bits(&anew), "{} of {}", run.file, model.name);
+                }
+            }
+        }
+    }
 }
 
 #[test]
@@ -114,7 +154,7 @@ fn ringing_campaign(hidden: &AddedEffect, seed: u64) -> Campaign {
         let nuisance = Nuisance {
             load: 0.003 * normal(&mut rng),
         };
-        let trace = ready.simulate(&rig, nuisance, &Clocks::default(), 0.0);
+        let trace = ready.simulate(&rig, nuisance, &Clocks::default());
         for channel in Channel::ALL {
             if let Some(measured) = &mut run.channels[channel.index()] {
                 let sigma = experiment.noise[channel.index()];

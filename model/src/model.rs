@@ -81,6 +81,12 @@ impl Model {
         &self.constants
     }
 
+    /// The constants, to be held on to.
+    #[must_use]
+    pub fn shared_constants(&self) -> &Arc<Constants> {
+        &self.constants
+    }
+
     /// The linkage.
     #[must_use]
     pub fn linkage(&self) -> &Arc<Linkage> {

@@ -14,6 +14,7 @@ use hitch_model::effects::{self, AddedEffect};
 use hitch_model::identification::clocks::Clocks;
 use hitch_model::identification::experiment::{Experiment, Nuisance, ReadyRun};
 use hitch_model::identification::explain::explain;
+use hitch_model::identification::traces::CurrentShift;
 use hitch_workbench::demonstration;
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
@@ -38,7 +39,7 @@ fn measured_on_a_dynamic_rig() -> Campaign {
     let experiment = Experiment::new(&campaign, &rig);
     let mut random = Pcg64::seed_from_u64(1);
     for (run, ready) in campaign.runs.iter_mut().zip(&experiment.runs) {
-        let trace = ready.simulate(&rig, Nuisance::default(), &Clocks::default(), 0.0);
+        let trace = ready.simulate(&rig, Nuisance::default(), &Clocks::default());
         for channel in Channel::ALL {
             let sigma = experiment.noise[channel.index()];
             if let Some(values) = &mut run.channels[channel.index()] {
@@ -71,12 +72,8 @@ fn simulate_runs(criterion: &mut Criterion) {
             group.bench_function(&model.name, |bencher| {
                 bencher.iter(|| {
                     for run in &runs {
-                        black_box(run.simulate(
-                            &model,
-                            Nuisance::default(),
-                            &Clocks::default(),
-                            0.0,
-                        ));
+                        let shift = CurrentShift::default();
+                        black_box(run.simulated(&model, Nuisance::default(), shift));
                     }
                 });
             });

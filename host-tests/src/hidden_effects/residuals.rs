@@ -37,7 +37,7 @@ impl<'a> Comparison<'a> {
     pub fn traces(&self, effects: &[AddedEffect]) -> Vec<Trace> {
         let model = self.model.with_effects(effects.to_vec());
         let runs = self.experiment.runs.iter();
-        runs.map(|run| run.simulate(&model, Nuisance::default(), &Clocks::default(), 0.0))
+        runs.map(|run| run.simulate(&model, Nuisance::default(), &Clocks::default()))
             .collect()
     }
 

@@ -1,9 +1,12 @@
 //! A campaign made ready for comparing and fitting: cleaned currents, instrument noise, regimes, masks.
 
+use std::sync::Arc;
+
 use super::clocks::Clocks;
 use super::conditioning::Drive;
 use super::noise::from_second_differences;
 use super::regime::{Regime, regimes};
+use super::traces::{CurrentShift, Traces};
 use crate::campaign::{Bench, Campaign, Channel, Run};
 use crate::model::{Dynamics, Model};
 use crate::plant::{Currents, HitchRig, Rig};
@@ -51,6 +54,7 @@ pub struct ReadyRun {
     pub start_angle_deg: f64,
     /// Samples left out because a flow bench had not reached its pressure yet.
     pub settling_samples: usize,
+    traces: Traces,
 }
 
 /// A campaign, ready.
@@ -122,6 +126,7 @@ impl ReadyRun {
             }
         }
         let regimes = regimes(model, &drive, run.channel(Channel::RockerAngle));
+        let traces = Traces::new(run.time_s.len());
         Self {
             file: run.file.clone(),
             bench: run.bench,
@@ -131,6 +136,7 @@ impl ReadyRun {
             measured,
             regimes,
             settling_samples,
+            traces,
         }
     }
 
@@ -166,41 +172,44 @@ impl ReadyRun {
         }
     }
 
-    /// Simulates the run as clocks with these errors would have logged it, with its currents moved by `spreads` of their
-    /// sigmas.
+    /// The run simulated with every channel in step, driven by its cleaned currents as far as they are off by `shift`.
     #[must_use]
-    pub fn simulate(
-        &self,
-        model: &Model,
-        nuisance: Nuisance,
-        clocks: &Clocks,
-        spreads: f64,
-    ) -> Trace {
-        let currents = self.drive.shifted(0.0, spreads);
-        self.simulate_under(model, nuisance, &currents, clocks)
+    pub fn trace(&self, model: &Model, nuisance: Nuisance, shift: CurrentShift) -> Arc<Trace> {
+        // A flow bench has no load that could be off.
+        let nuisance = if self.on_hitch() {
+            nuisance
+        } else {
+            Nuisance::default()
+        };
+        let simulated = || self.simulated(model, nuisance, shift);
+        self.traces.trace(model, nuisance, shift, simulated)
     }
 
-    /// [`ReadyRun::simulate`] with every channel in step.
+    /// [`ReadyRun::trace`] made anew, even if it is kept.
     #[must_use]
-    pub fn simulate_in_step(&self, model: &Model, nuisance: Nuisance, spreads: f64) -> Trace {
-        self.simulate(model, nuisance, &Clocks::default(), spreads)
-    }
-
-    /// Simulates the run under other currents, A, at the points of [`Drive::course_s`].
-    #[must_use]
-    pub fn simulate_under(
-        &self,
-        model: &Model,
-        nuisance: Nuisance,
-        currents: &[Currents],
-        clocks: &Clocks,
-    ) -> Trace {
-        let time_s = &self.drive.time_s;
+    pub fn simulated(&self, model: &Model, nuisance: Nuisance, shift: CurrentShift) -> Trace {
+        let currents = self.drive.shifted(shift.later_s, shift.spreads);
         let rig = self.rig(nuisance);
         let course_s = self.drive.course_s();
-        let mut trace = simulate(model, rig, self.oil_temperature_c, course_s, currents);
+        let mut trace = simulate(model, rig, self.oil_temperature_c, course_s, &currents);
         trace.keep(self.drive.samples());
-        clocks.stamp(time_s, &mut trace);
+        trace
+    }
+
+    /// The run simulated as clocks with these errors would have logged it.
+    #[must_use]
+    pub fn simulate(&self, model: &Model, nuisance: Nuisance, clocks: &Clocks) -> Trace {
+        self.stamped(
+            &self.trace(model, nuisance, CurrentShift::default()),
+            clocks,
+        )
+    }
+
+    /// A trace as clocks with these errors would have logged it.
+    #[must_use]
+    pub fn stamped(&self, in_step: &Trace, clocks: &Clocks) -> Trace {
+        let mut trace = in_step.clone();
+        clocks.stamp(&self.drive.time_s, &mut trace);
         trace
     }
 }

@@ -12,6 +12,7 @@ use super::clocks::OFFSET_PRIOR_S;
 use super::estimate::{Estimate, Shared};
 use super::experiment::Experiment;
 use super::residual::Weights;
+use super::traces::CurrentShift;
 use crate::campaign::Channel;
 use crate::model::Model;
 
@@ -68,7 +69,7 @@ pub fn residuals(
         .into_par_iter()
         .map(|index| {
             let run = &experiment.runs[index];
-            let trace = run.simulate(&model, estimate.nuisances[index], &estimate.clocks, 0.0);
+            let trace = run.simulate(&model, estimate.nuisances[index], &estimate.clocks);
             weights.runs[index].whiten(run, &trace)
         })
         .collect()
@@ -217,9 +218,8 @@ fn offset_columns(
         .map(|index| {
             let run = &experiment.runs[index];
             let (time_s, clocks) = (&run.drive.time_s, estimate.clocks);
-            let plain = run.simulate_in_step(&model, estimate.nuisances[index], 0.0);
-            let mut stamped = plain.clone();
-            clocks.stamp(time_s, &mut stamped);
+            let plain = run.trace(&model, estimate.nuisances[index], CurrentShift::default());
+            let stamped = run.stamped(&plain, &clocks);
             let base = huber(vec![weights.runs[index].whiten(run, &stamped)]);
             std::array::from_fn(|channel| {
                 if channel == Channel::PumpPressure.index() && !experiment.ringing {

@@ -21,6 +21,7 @@ mod scan;
 mod starts;
 pub mod suggestion;
 mod synchronise;
+pub mod traces;
 pub mod twins;
 pub mod unseen;
 pub mod whereabouts;

@@ -14,6 +14,7 @@ use rayon::prelude::*;
 
 use super::estimate::Estimate;
 use super::experiment::{Experiment, ReadyRun};
+use super::traces::CurrentShift;
 use crate::campaign::Channel;
 use crate::model::Model;
 use crate::plant::Currents;
@@ -112,15 +113,14 @@ impl RunWeights {
         let run = &experiment.runs[index];
         let nuisance = estimate.nuisances[index];
         let clocks = &estimate.clocks;
-        let [mut below, mut above] =
-            [-1.0, 1.0].map(|spreads| run.simulate_in_step(model, nuisance, spreads));
+        let trace = |later_s: f64, spreads: f64| {
+            run.trace(model, nuisance, CurrentShift { later_s, spreads })
+        };
+        let [below, above] = [-1.0, 1.0].map(|spreads| trace(0.0, spreads));
         let edges = pump_edges(run, model, [&below, &above]);
-        clocks.stamp(&run.drive.time_s, &mut below);
-        clocks.stamp(&run.drive.time_s, &mut above);
-        let [early, late] = [-TIMING_S, TIMING_S].map(|shift_s| {
-            let currents = run.drive.shifted(shift_s, 0.0);
-            run.simulate_under(model, nuisance, &currents, clocks)
-        });
+        let [below, above] = [below, above].map(|trace| run.stamped(&trace, clocks));
+        let [early, late] =
+            [-TIMING_S, TIMING_S].map(|later_s| run.stamped(&trace(later_s, 0.0), clocks));
         let mut weights = Self {
             scale: vec![0.0; 4 * run.len()],
             gain: vec![0.0; run.len()],

@@ -81,7 +81,7 @@ pub(super) fn scan(
         effects.push(added.clone());
         let model = model.with_effects(effects);
         let (nuisance, clocks) = (base.estimate.nuisances[run], &base.estimate.clocks);
-        let trace = ready.simulate(&model, nuisance, clocks, 0.0);
+        let trace = ready.simulate(&model, nuisance, clocks);
         square_sum(&huber(vec![base.weights.runs[run].whiten(ready, &trace)]))
     };
     let ranked = |grid: Vec<AddedEffect>| {

@@ -10,6 +10,7 @@ use super::estimate::Estimate;
 use super::experiment::Experiment;
 use super::jacobian::{dot, huber};
 use super::residual::Weights;
+use super::traces::CurrentShift;
 use crate::model::Model;
 
 /// Farthest offset that is tried, s: a little more than the sample that a channel may be out of step.
@@ -63,10 +64,9 @@ fn costs(
         .par_iter()
         .enumerate()
         .map(|(index, run)| {
-            let in_step = run.simulate_in_step(&model, estimate.nuisances[index], 0.0);
+            let in_step = run.trace(&model, estimate.nuisances[index], CurrentShift::default());
             let cost = |clocks: &Clocks| {
-                let mut trace = in_step.clone();
-                clocks.stamp(&run.drive.time_s, &mut trace);
+                let trace = run.stamped(&in_step, clocks);
                 let whitened = huber(vec![weights.runs[index].whiten(run, &trace)]).swap_remove(0);
                 let of = |channel: usize| &whitened[channel * run.len()..(channel + 1) * run.len()];
                 std::array::from_fn(|channel| dot(of(channel), of(channel)))

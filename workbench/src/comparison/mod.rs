@@ -152,7 +152,7 @@ impl Evaluated {
     pub fn simulated(&self, model: &Model, run: usize) -> Trace {
         let nuisance = self.fit.estimate.nuisances[run];
         let model = model.with_effects(self.fit.estimate.effects.clone());
-        self.experiment.runs[run].simulate(&model, nuisance, &self.fit.estimate.clocks, 0.0)
+        self.experiment.runs[run].simulate(&model, nuisance, &self.fit.estimate.clocks)
     }
 }
 
