@@ -2,13 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::estimate::{Estimate, Shared};
+use super::estimate::Shared;
 use super::evidence::{detectability, log_odds, variance_inflation};
 use super::experiment::Experiment;
-use super::fit::{Fit, evaluate_weighted, refine, sketch};
+use super::explain::{BELIEVED, VISIBLE};
+use super::fit::{Fit, evaluate_weighted, refine};
 use super::frame::Frame;
 use super::jacobian::{Jacobian, SlowColumns, huber, huber_residuals, square_sum};
-use super::starts::{starts, valleys};
+use super::shortlist::{Shortlist, Sketch, limit};
 use crate::effects::{AddedEffect, Effect, Parameter};
 use crate::model::Model;
 
@@ -17,28 +18,13 @@ const SYSTEMATIC_A: f64 = 0.000_7;
 const SYSTEMATIC_S: f64 = 0.001;
 const SYSTEMATIC_SHARE: f64 = 0.005;
 
-/// How many starts of an effect are sketched while the model is far from the data: there are valleys to fall into.
-pub(super) const STARTS: usize = 2;
+/// An effect is fitted in full if its sketch is the best, or leaves at most this share of what the best sketch explains
+/// unexplained.
+const HOPELESS: f64 = 0.15;
 
-/// Error from which a model counts as far from the data.
-const FAR: f64 = 1.3;
-
-/// A sketch that leaves less than this share of the cost needs no second start.
-const ARRIVED: f64 = 0.3;
-
-/// An effect is sketched if its screened cost is among the first so many,
-const ALWAYS_SKETCHED: usize = 4;
-/// or leaves at most this share of what the best screened one explains unexplained.
-const DOUBTFUL: f64 = 0.6;
-
-/// An effect is fitted in full if its sketch is among the first so many,
-const ALWAYS_FITTED: usize = 2;
-/// or leaves at most this share of what the best sketch explains unexplained,
-const HOPELESS: f64 = 0.3;
-/// or is within this cost of the best,
-const HOPELESS_COST: f64 = 60.0;
-/// provided that the sketch explains more than this cost: half of what belief asks for.
-pub(super) const WORTH_A_FIT: f64 = 5.0;
+/// Falls of the cost that are worth a sketch and a fit, as shares of the least one that would be believed.
+const WORTH_A_SKETCH: f64 = 0.06;
+const WORTH_A_FIT: f64 = 0.25;
 
 /// An effect fitted beside everything that was free already.
 #[derive(Debug, Clone)]
@@ -95,18 +81,26 @@ pub fn try_effects(
 ) -> Vec<Candidate> {
     let slow = slow_columns(experiment, model, base);
     let jacobian = jacobian_by(experiment, model, base, &slow);
-    let screened = screened(experiment, model, base, &jacobian, effects);
-    let sketches = sketches(experiment, model, base, screened);
+    // An effect that is barely visible explains this much.
+    let believed = BELIEVED.max(base.weights.count() as f64 * VISIBLE.powi(2));
+    let shortlist = Shortlist {
+        experiment,
+        model,
+        base,
+        jacobian: &jacobian,
+        worthwhile: WORTH_A_SKETCH * believed,
+    };
+    let sketches = shortlist.sketches(effects);
     let best = sketches.first().map_or(base.cost, |first| first.cost);
     let hopeless = limit(base.cost, best, HOPELESS);
     let mut candidates: Vec<Candidate> = sketches
         .into_par_iter()
         .enumerate()
         .map(|(rank, sketch)| {
-            let promising = rank < ALWAYS_FITTED || sketch.cost < hopeless;
+            let promising = rank == 0 || sketch.cost < hopeless;
             let candidate = if sketch.is_absent() {
                 absent(base, sketch)
-            } else if promising && base.cost - sketch.cost > WORTH_A_FIT {
+            } else if promising && base.cost - sketch.cost > WORTH_A_FIT * believed {
                 let fit = refine(experiment, model, sketch.estimate);
                 weigh(experiment, model, base, sketch.effect, fit)
             } else {
@@ -148,118 +142,6 @@ pub fn mutual_odds(
         let ratio = (base_cost - candidate.fit.cost) / (variance * inflation);
         log_odds(ratio, candidate.effect.parameters().len(), effective)
     })
-}
-
-/// An effect after the screen: what it might leave, and where to start from; at least one start.
-struct Screened {
-    effect: &'static dyn Effect,
-    predicted: f64,
-    starts: Vec<Estimate>,
-}
-
-/// An effect roughly fitted.
-struct Sketch {
-    effect: &'static dyn Effect,
-    cost: f64,
-    estimate: Estimate,
-}
-
-impl Sketch {
-    /// Whether the screen found nothing of the effect.
-    fn is_absent(&self) -> bool {
-        self.estimate
-            .effects
-            .last()
-            .is_none_or(AddedEffect::is_null)
-    }
-}
-
-/// Screens effects by finite secants, the most promising first.
-fn screened(
-    experiment: &Experiment,
-    model: &Model,
-    base: &Fit,
-    jacobian: &Jacobian,
-    effects: &[&'static dyn Effect],
-) -> Vec<Screened> {
-    let mut screened: Vec<Screened> = effects
-        .par_iter()
-        .map(|&effect| {
-            let (predicted, starts) = starts(experiment, model, base, jacobian, effect);
-            Screened {
-                effect,
-                predicted,
-                starts,
-            }
-        })
-        .collect();
-    screened.sort_by(|a, b| a.predicted.total_cmp(&b.predicted));
-    screened
-}
-
-/// Sketches the screened effects that have a chance, the best first.
-fn sketches(
-    experiment: &Experiment,
-    model: &Model,
-    base: &Fit,
-    screened: Vec<Screened>,
-) -> Vec<Sketch> {
-    let best = screened.first().map_or(base.cost, |first| first.predicted);
-    let hopeless = limit(base.cost, best, DOUBTFUL);
-    let mut sketches: Vec<Sketch> = screened
-        .into_par_iter()
-        .enumerate()
-        .map(|(rank, mut screened)| {
-            let promising = rank < ALWAYS_SKETCHED || screened.predicted < hopeless;
-            let (cost, estimate) = if base.cost - screened.predicted <= WORTH_A_FIT {
-                let mut without = base.estimate.clone();
-                without.effects.push(AddedEffect::null(screened.effect));
-                (base.cost, without)
-            } else if promising {
-                sketch_starts(experiment, model, base, screened.starts)
-            } else {
-                (screened.predicted, screened.starts.swap_remove(0))
-            };
-            Sketch {
-                effect: screened.effect,
-                cost,
-                estimate,
-            }
-        })
-        .collect();
-    sketches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    sketches
-}
-
-/// Cost above which an effect is given up, when the best of its kind leaves `best` of `base`.
-fn limit(base: f64, best: f64, share: f64) -> f64 {
-    best + (share * (base - best)).max(HOPELESS_COST)
-}
-
-/// Sketches from one start, and from the next where the first leads nowhere; returns the best cost and estimate.
-fn sketch_starts(
-    experiment: &Experiment,
-    model: &Model,
-    base: &Fit,
-    starts: Vec<Estimate>,
-) -> (f64, Estimate) {
-    let far = base.error() > FAR;
-    // Where there are valleys the starts have been looked for one by one; a coarse fit would lead away from them.
-    let valleys = starts.iter().any(|start| {
-        let last = start.effects.last();
-        last.is_some_and(|added| valleys(experiment, added.effect).is_some())
-    });
-    let mut best = (base.cost, base.estimate.clone());
-    for start in starts.into_iter().take(if far { STARTS } else { 1 }) {
-        let found = sketch(experiment, model, &base.weights, start, far && !valleys);
-        if best.1.effects.len() < found.1.effects.len() || found.0 < best.0 {
-            best = found;
-        }
-        if best.0 < ARRIVED * base.cost {
-            break;
-        }
-    }
-    best
 }
 
 /// The candidate of an effect that the screen found nothing of.

@@ -18,6 +18,7 @@ pub mod noise;
 pub mod regime;
 pub mod residual;
 mod scan;
+mod shortlist;
 mod starts;
 pub mod suggestion;
 mod synchronise;

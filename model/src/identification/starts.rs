@@ -1,12 +1,12 @@
 //! Where the fit of an effect starts: its size and shape looked for along secants.
 
-use super::candidate::{STARTS, WORTH_A_FIT};
 use super::estimate::Estimate;
 use super::experiment::Experiment;
 use super::fit::Fit;
 use super::frame::Frame;
-use super::jacobian::{Jacobian, huber_residuals};
+use super::jacobian::huber_residuals;
 use super::scan::{Grid, JUMPS, RINGING, scan};
+use super::shortlist::{STARTS, Shortlist};
 use crate::campaign::Channel;
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
@@ -23,50 +23,45 @@ const MOST_PROMISES: usize = 4;
 /// A change of cost that is no more than this is none.
 const NOTHING: f64 = 1.0;
 
-/// Error from which an effect whose cost has many valleys is looked for in fine steps.
-const SCANNED: f64 = 1.15;
-
 /// Sections of a search between a promise and the end of its secant.
 const SECTIONS: usize = 6;
 
 /// How far a secant is trusted, in its own size.
 const REACH: f64 = 8.0;
 
-/// The most promising sizes, those at which the least cost is left once all else has adapted, with the least such cost;
-/// at least one.
-pub(super) fn starts(
-    experiment: &Experiment,
-    model: &Model,
-    base: &Fit,
-    jacobian: &Jacobian,
+/// Where the fit of an effect may start.
+pub(super) struct Starts {
+    pub effect: &'static dyn Effect,
+    /// Least cost that is left once all else has adapted.
+    pub cost: f64,
+    /// The most promising sizes, at least one, the best first.
+    pub estimates: Vec<Estimate>,
+    /// Whether each lies in a valley of its own that was found in fine steps.
+    pub looked_through: bool,
+}
+
+/// Starts of an effect that a few secants lead to.
+pub(super) fn starts(shortlist: &Shortlist, effect: &'static dyn Effect) -> Starts {
+    let search = Search::new(shortlist);
+    let ranked = search.rank(sizes(effect));
+    search.starts(effect, ranked, false)
+}
+
+/// Starts of an effect in the valleys that fine steps find.
+pub(super) fn looked_through(
+    shortlist: &Shortlist,
     effect: &'static dyn Effect,
-) -> (f64, Vec<Estimate>) {
-    let search = Search {
-        experiment,
-        model,
-        base,
-        frame: Frame::new(jacobian, &base.estimate, 0..0),
-    };
+    grid: &Grid,
+) -> Starts {
+    let search = Search::new(shortlist);
     let mut ranked = search.rank(sizes(effect));
-    if let Some(grid) = valleys(experiment, effect)
-        && base.error() > SCANNED
-        && let Some(first) = ranked.first()
-    {
-        ranked.extend(search.rank(scan(experiment, model, base, &first.last(), grid)));
+    if let Some(first) = ranked.first() {
+        let hint = first.last();
+        let (experiment, model, base) = (search.experiment, search.model, search.base);
+        ranked.extend(search.rank(scan(experiment, model, base, &hint, grid)));
         search.sort(&mut ranked);
     }
-    if let Some(best) = search.promising(&ranked) {
-        ranked.extend(search.rank(with_extreme_shapes(&best)));
-        search.sort(&mut ranked);
-    }
-    let predicted = ranked.first().map_or(base.cost, |first| first.cost);
-    let mut starts: Vec<Estimate> = Vec::new();
-    for start in ranked {
-        if starts.len() < STARTS && starts.iter().all(|other| apart(other, &start.estimate)) {
-            starts.push(start.estimate);
-        }
-    }
-    (predicted, starts)
+    search.starts(effect, ranked, true)
 }
 
 /// A start and the cost that it leaves once all else has adapted.
@@ -91,9 +86,47 @@ struct Search<'a> {
     model: &'a Model,
     base: &'a Fit,
     frame: Frame<'a>,
+    worthwhile: f64,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    fn new(shortlist: &Shortlist<'a>) -> Self {
+        Self {
+            experiment: shortlist.experiment,
+            model: shortlist.model,
+            base: shortlist.base,
+            frame: Frame::new(shortlist.jacobian, &shortlist.base.estimate, 0..0),
+            worthwhile: shortlist.worthwhile,
+        }
+    }
+
+    /// The best of ranked starts, after a look at the extreme shapes of the best one.
+    fn starts(
+        &self,
+        effect: &'static dyn Effect,
+        mut ranked: Vec<Start>,
+        looked_through: bool,
+    ) -> Starts {
+        if let Some(best) = self.promising(&ranked) {
+            ranked.extend(self.rank(with_extreme_shapes(&best)));
+            self.sort(&mut ranked);
+        }
+        let cost = ranked.first().map_or(self.base.cost, |first| first.cost);
+        let mut estimates: Vec<Estimate> = Vec::new();
+        for start in ranked {
+            let known = |other: &Estimate| !apart(other, &start.estimate);
+            if estimates.len() < STARTS && !estimates.iter().any(known) {
+                estimates.push(start.estimate);
+            }
+        }
+        Starts {
+            effect,
+            cost,
+            estimates,
+            looked_through,
+        }
+    }
+
     /// Of every secant its end and the best point along it: the one is sure, the other may be far better. Best first.
     fn rank(&self, added: Vec<AddedEffect>) -> Vec<Start> {
         let mut ranked: Vec<Start> = added
@@ -119,7 +152,7 @@ impl Search<'_> {
         for _ in 0..MOST_PROMISES {
             ranked.sort_by(|a, b| a.cost.total_cmp(&b.cost));
             match ranked.first_mut() {
-                Some(first) if self.base.cost - first.cost > WORTH_A_FIT => {
+                Some(first) if self.base.cost - first.cost > self.worthwhile => {
                     match first.promised_from {
                         Some(end) => *first = self.kept(first, end),
                         None => return,
@@ -146,7 +179,7 @@ impl Search<'_> {
     /// The best start's effect if it explains enough to be worth a closer look.
     fn promising(&self, ranked: &[Start]) -> Option<AddedEffect> {
         let first = ranked.first()?;
-        (self.base.cost - first.cost > WORTH_A_FIT).then(|| first.last())
+        (self.base.cost - first.cost > self.worthwhile).then(|| first.last())
     }
 
     /// What an added effect leaves, and that as a start.
