@@ -160,7 +160,9 @@ fn the_catalogue_is_in_order() {
     for (index, effect) in CATALOGUE.iter().enumerate() {
         let id = effect.id();
         assert!(
-            CATALOGUE[..index].iter().all(|other| other.id() != id),
+            CATALOGUE[..index]
+                .iter()
+                .all(|other| (other.id(), other.form()) != (id, effect.form())),
             "{id} twice"
         );
         assert!(

@@ -2,7 +2,7 @@
 use std::fs;
 
 use hitch_model::Model;
-use hitch_model::effects::{AddedEffect, CATALOGUE, TermEffect};
+use hitch_model::effects::{AddedEffect, CATALOGUE, TermEffect, full_name};
 use hitch_model::expression::{ParameterDefinition, Place, TermDefinition};
 use proptest::prelude::*;
 use tempfile::TempDir;
@@ -48,22 +48,26 @@ fn term() -> &'static TermEffect {
 #[test]
 fn every_model_comes_back_bit_for_bit() {
     let with_term = Model::dynamic().with_terms(vec![term()]);
-    let effects = with_term.catalogue().into_iter();
-    let effects = effects.map(AddedEffect::typical).collect();
+    let catalogue = || with_term.catalogue().into_iter();
+    let usual = catalogue().filter(|effect| effect.form().is_none());
+    let usual = usual.map(AddedEffect::typical).collect();
+    let other_forms = catalogue().filter(|effect| effect.form().is_some());
+    let other_forms = other_forms.map(AddedEffect::typical).collect();
     for model in [
         Model::nominal(),
         Model::dynamic(),
-        with_term.with_effects(effects),
+        with_term.with_effects(usual),
+        with_term.with_effects(other_forms),
     ] {
         let back = read(model.to_toml().as_bytes()).unwrap();
         assert_eq!(back.constants(), model.constants());
         assert_eq!(back.name, model.name);
         assert_eq!(back.to_toml(), model.to_toml());
-        let values = |model: &Model| -> Vec<(&str, Vec<f64>)> {
+        let values = |model: &Model| -> Vec<(String, Vec<f64>)> {
             model
                 .effects
                 .iter()
-                .map(|added| (added.effect.id(), added.values.clone()))
+                .map(|added| (full_name(added.effect), added.values.clone()))
                 .collect()
         };
         assert_eq!(values(&back), values(&model));
@@ -177,6 +181,14 @@ fn faults_have_a_line_and_a_column() {
             "m.toml:7:6: lower-threshold-shift is there twice",
         ),
         (effect("shift_a = 0.2"), "m.toml:3:1: [[effect]] has no id"),
+        (
+            effect("id = \"oil-viscosity\"\nform = \"tanh\"\ncritical_flow_number = 100.0"),
+            "m.toml:5:8: oil-viscosity has no form \"tanh\"; leave the line out, or write one of: flow-number",
+        ),
+        (
+            effect("id = \"lower-threshold-shift\"\nform = \"best\"\nshift_a = 0.2"),
+            "m.toml:5:8: lower-threshold-shift has no form \"best\"; leave the line out",
+        ),
     ];
     for (fault, expected) in cases {
         let expected = expected.replace("[the top level]", "the top level");

@@ -13,6 +13,7 @@ use crate::plant::sites::{RunConditions, Sites};
 /// Gain error of the rocker angle sensor.
 pub static ANGLE_SENSOR_GAIN: Described = Described {
     id: "angle-sensor-gain",
+    form: None,
     title: "Gain error of the rocker angle sensor",
     equation: "y = (1 + gain) angle",
     source: "hall angle sensors, +-0.5 to 1 % of full scale; a ratiometric sensor on a wrong supply \

@@ -17,6 +17,7 @@ const RATED_LPM: f64 = 40.0;
 /// Pressure loss of the check valve.
 pub static CHECK_VALVE_LOSS: Described = Described {
     id: "check-valve-loss",
+    form: None,
     title: "Pressure loss of the check valve",
     equation: "dp_orifice = p_P - p_C - 2.5 bar - loss [steady + (1 - steady) (Q / 40 l/min)^2]; Q = \
          Q_table(I) sqrt(dp_orifice / 1.5 bar)",

@@ -13,6 +13,7 @@ use crate::plant::sites::{RunConditions, Sites};
 /// Droop of the pressure compensator.
 pub static COMPENSATOR_DROOP: Described = Described {
     id: "compensator-droop",
+    form: None,
     title: "Droop of the pressure compensator",
     equation: "p_P - p_C = 4 bar - slope p_C; Q = Q_table(I) sqrt((p_P - p_C - 2.5 bar) / 1.5 bar)",
     source: "spool force balance of a three-way compensator; up to 0.02 bar/bar either way",

@@ -8,6 +8,7 @@ use crate::plant::sites::{RunConditions, Sites};
 /// An effect of the catalogue; every field is what the method of [`Effect`] of that name gives.
 pub struct Described {
     pub(super) id: &'static str,
+    pub(super) form: Option<&'static str>,
     pub(super) title: &'static str,
     pub(super) equation: &'static str,
     pub(super) source: &'static str,
@@ -22,6 +23,10 @@ pub struct Described {
 impl Effect for Described {
     fn id(&self) -> &'static str {
         self.id
+    }
+
+    fn form(&self) -> Option<&'static str> {
+        self.form
     }
 
     fn title(&self) -> &'static str {

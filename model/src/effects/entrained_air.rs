@@ -18,6 +18,7 @@ const LOWEST_PA: f64 = 2e4;
 /// Entrained air in the oil.
 pub static ENTRAINED_AIR: Described = Described {
     id: "entrained-air",
+    form: None,
     title: "Entrained air in the oil",
     equation: "E = E_l [1 + a (pa/(pa+p))^(1/n)] / [1 + a pa^(1/n) E_l / (n (pa+p)^((n+1)/n))], a = \
          share / (1 - share)",

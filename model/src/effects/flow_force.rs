@@ -13,6 +13,7 @@ use crate::plant::sites::{RunConditions, Sites};
 /// Flow force on the lowering spool.
 pub static FLOW_FORCE: Described = Described {
     id: "flow-force",
+    form: None,
     title: "Flow force on the lowering spool",
     equation: "Q = Q_table(I) sqrt(dp/dp_ref) (1 + s) / (1 + s dp/dp_ref), dp_ref = 15 bar",
     source: "Merritt 5.2: F = 2 Cd Cv A dp cos 69 deg; springs of 8 to 20 N/mm give 0.12 to 0.30 at \

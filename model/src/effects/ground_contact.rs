@@ -15,6 +15,7 @@ const DAMPING_S_M: f64 = 1.5;
 /// Contact with the ground.
 pub static GROUND_CONTACT: Described = Described {
     id: "ground-contact",
+    form: None,
     title: "Contact with the ground",
     equation: "F = stiffness (h_ground - h), upwards; h_ground = lowest point of the stroke + height",
     source: "Bekker with exponent one; floor 1e6 to 1e7 N/m, soil 5e4 to 5e5 N/m",

@@ -13,6 +13,7 @@ use crate::units::pa_from_bar;
 /// Compliance of hoses.
 pub static HOSE_COMPLIANCE: Described = Described {
     id: "hose-compliance",
+    form: None,
     title: "Compliance of hoses",
     equation: "dp/dt = (sum Q - A v) / (V/E + C)",
     source: "two-wire hose, 0.25 l at 0.4 to 0.8e9 Pa: 0.03 to 0.06 cm3/bar",

@@ -15,6 +15,7 @@ use crate::plant::sites::{RunConditions, Sites};
 /// Arm of the load behind the hitch point.
 pub static LOAD_ARM: Described = Described {
     id: "load-arm",
+    form: None,
     title: "Arm of the load behind the hitch point",
     equation: "F = F_weight (1 + share [even + (1 - |even|) (2 x / stroke - 1)])",
     source: "virtual work with a pitching mast; overhang 0.61 m (OECD frame), pitch 5 to 12 degrees: \

@@ -15,6 +15,7 @@ const STEP_S: f64 = 0.005;
 /// Inertia of load and linkage.
 pub static LOAD_INERTIA: Described = Described {
     id: "load-inertia",
+    form: None,
     title: "Inertia of load and linkage",
     equation: "p A = F_weight + share M(x) dv/dt, M = m (dh/dx)^2 + 20 kg",
     source: "Lagrange's equation of the linkage; rocker and arms of 0.3 to 0.8 kg m2 add 30 to 80 kg \

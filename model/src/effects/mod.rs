@@ -12,6 +12,9 @@
 //!    it acts, add one to [`Sites`] and call it from the component concerned.
 //! 4. One `mod` and one line in [`CATALOGUE`].
 //!
+//! Where the literature has two equations for one effect, each is an effect of its own with the same id and a `form`;
+//! the usual one has none. A search tries all and keeps the better, as `oil_viscosity.rs` and `spool_stiction.rs` show.
+//!
 //! Nothing else: plant, model files, identification, reports and `hitch effects` go through the catalogue, and so do the
 //! generic tests of `tests/effects.rs`: the null value changes not a bit, next to it the effect is next to nothing, a
 //! typical size shows in the channels named. A term that is to be tried without recompiling goes into a model file
@@ -60,10 +63,12 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &flow_scale::LIFT,
     &flow_scale::LOWERING,
     &solenoid_hysteresis::SolenoidHysteresis,
-    &spool_stiction::SPOOL_STICTION,
+    &spool_stiction::STICKING,
+    &spool_stiction::FOLLOWING,
     &spool_lag::SPOOL_LAG,
     &flow_force::FLOW_FORCE,
-    &oil_viscosity::OIL_VISCOSITY,
+    &oil_viscosity::SERIES,
+    &oil_viscosity::FLOW_NUMBER,
     &compensator_droop::COMPENSATOR_DROOP,
     &check_valve_loss::CHECK_VALVE_LOSS,
     &pump_leakage::PUMP_LEAKAGE,
@@ -123,6 +128,10 @@ impl Parameter {
 pub trait Effect: Sync {
     /// Its name in files, commands and reports.
     fn id(&self) -> &'static str;
+    /// Which of several equations it is where one effect is known in more than one form; `None` for the usual one.
+    fn form(&self) -> Option<&'static str> {
+        None
+    }
     /// Its name in words.
     fn title(&self) -> &'static str;
     /// Its equation, as text.
@@ -154,7 +163,16 @@ impl std::fmt::Debug for dyn Effect {
     }
 }
 
-/// Looks an effect up by its id.
+/// The name of an effect with its form, as commands take it: `id`, or `id/form`.
+#[must_use]
+pub fn full_name(effect: &dyn Effect) -> String {
+    let id = effect.id();
+    effect
+        .form()
+        .map_or_else(|| id.to_owned(), |form| format!("{id}/{form}"))
+}
+
+/// Looks an effect up by its id, in its usual form.
 #[must_use]
 pub fn find(id: &str) -> Option<&'static dyn Effect> {
     CATALOGUE.iter().copied().find(|effect| effect.id() == id)

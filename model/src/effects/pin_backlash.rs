@@ -15,6 +15,7 @@ use std::sync::Arc;
 /// Backlash between piston and angle sensor.
 pub static PIN_BACKLASH: Described = Described {
     id: "pin-backlash",
+    form: None,
     title: "Backlash between piston and angle sensor",
     equation: "w = clamp(w_before, x - width/2, x + width/2); angle = angle(w)",
     source: "worn pins and sensor lever, 0.5 to 2 mm at the piston",

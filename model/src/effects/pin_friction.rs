@@ -13,6 +13,7 @@ use crate::plant::sites::{RunConditions, Sites};
 /// Friction in the pins of the linkage.
 pub static PIN_FRICTION: Described = Described {
     id: "pin-friction",
+    form: None,
     title: "Friction in the pins of the linkage",
     equation: "F = share F_weight tanh(v / 3 mm/s)",
     source: "sum of mu r |F_pin| |dphi/dx| over the pins; 3 to 8 % of the weight's force",

@@ -13,6 +13,7 @@ use crate::plant::sites::{RunConditions, Sites};
 /// Offset of the cylinder pressure sensor.
 pub static PRESSURE_SENSOR_OFFSET: Described = Described {
     id: "pressure-sensor-offset",
+    form: None,
     title: "Offset of the cylinder pressure sensor",
     equation: "y = p_C + offset",
     source: "data sheets of mobile pressure sensors, 0.25 to 1 % of full scale",

@@ -13,6 +13,7 @@ use crate::units::{m3_s_from_lpm, pa_from_bar};
 /// Slip of the pump.
 pub static PUMP_LEAKAGE: Described = Described {
     id: "pump-leakage",
+    form: None,
     title: "Slip of the pump",
     equation: "Q_pump = 48 l/min - slip p_P",
     source: "Wilson's slip flow, Merritt 4.2: efficiency 0.88 at 150 bar is 0.044 l/min/bar",

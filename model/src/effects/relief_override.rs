@@ -15,6 +15,7 @@ use crate::units::pa_from_bar;
 /// Override of the relief valve.
 pub static RELIEF_OVERRIDE: Described = Described {
     id: "relief-override",
+    form: None,
     title: "Override of the relief valve",
     equation: "p_P = 154 bar + override (Q_relief / 48 l/min - 1 + above)",
     source: "Merritt 5.6; 10 to 25 bar over the range of a direct-acting valve, Hopsan's example 15 \

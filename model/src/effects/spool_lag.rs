@@ -16,6 +16,7 @@ use crate::plant::sites::{RunConditions, Sites};
 /// Lag of the spools.
 pub static SPOOL_LAG: Described = Described {
     id: "spool-lag",
+    form: None,
     title: "Lag of the spools",
     equation: "(1 - share) lag w1' + w1 = I; share lag w' + w = w1; Q = Q_table(w)",
     source: "second-order spool, Merritt ch. 6; data sheets of proportional valves: 40 to 100 ms to \

@@ -14,6 +14,7 @@ use crate::plant::sites::{RunConditions, Sites};
 /// Stribeck friction at the piston.
 pub static STRIBECK_FRICTION: Described = Described {
     id: "stribeck-friction",
+    form: None,
     title: "Stribeck friction at the piston",
     equation: "F = force [1 + (breakaway - 1) exp(-|v| / speed)] tanh(v / 3 mm/s)",
     source: "Simscape cylinder friction; Jelali & Kroll 4.3; breakaway 20 to 60 % over Coulomb \

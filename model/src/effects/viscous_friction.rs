@@ -12,6 +12,7 @@ use crate::plant::sites::{RunConditions, Sites};
 /// Viscous friction at the piston.
 pub static VISCOUS_FRICTION: Described = Described {
     id: "viscous-friction",
+    form: None,
     title: "Viscous friction at the piston",
     equation: "F = coefficient v",
     source: "Jelali & Kroll 4.3; 500 to 5000 N s/m for seals of a 76 mm cylinder, 3 to 5 times that \

@@ -1,5 +1,7 @@
 //! One effect of the catalogue tried on a model: started from finite secants, fitted, weighed.
 
+use std::collections::HashSet;
+
 use rayon::prelude::*;
 
 use super::estimate::Shared;
@@ -113,7 +115,16 @@ pub fn try_effects(
         })
         .collect();
     rank(base, &mut candidates);
+    better_forms(candidates)
+}
+
+/// Of an effect with several forms the likelier one.
+fn better_forms(ranked: Vec<Candidate>) -> Vec<Candidate> {
+    let mut named = HashSet::new();
+    let candidates = ranked.into_iter();
     candidates
+        .filter(|candidate| named.insert(candidate.effect.id()))
+        .collect()
 }
 
 /// Sorts candidates by their odds against each other, the best first.

@@ -35,6 +35,7 @@ pub fn unseen(experiment: &Experiment, model: &Model, fit: &Fit) -> Vec<Unseen> 
     let frame = Frame::new(&jacobian, estimate, 0..0);
     let mut unseen: Vec<Unseen> = absent(model, estimate)
         .into_par_iter()
+        .filter(|effect| effect.form().is_none())
         .map(|effect| {
             let mut with = estimate.clone();
             with.effects.push(AddedEffect::typical(effect));

@@ -157,7 +157,7 @@ fn added_effects(
             return Err(table.error_at("id", what, "delete one of the two [[effect]] blocks"));
         }
         let parameters = effect.parameters();
-        let known: Vec<&str> = ["id"]
+        let known: Vec<&str> = ["id", "form"]
             .into_iter()
             .chain(parameters.iter().map(|parameter| parameter.key))
             .collect();
@@ -178,14 +178,27 @@ fn effect_of(
     catalogue: &[&'static dyn Effect],
 ) -> Result<&'static dyn Effect, InputError> {
     let id = table.required_text("id")?;
-    let found = catalogue.iter().find(|effect| effect.id() == id);
-    found.copied().ok_or_else(|| {
+    let forms: Vec<&'static dyn Effect> = catalogue
+        .iter()
+        .copied()
+        .filter(|effect| effect.id() == id)
+        .collect();
+    if forms.is_empty() {
         let known: Vec<&str> = catalogue.iter().map(|effect| effect.id()).collect();
-        table.error_at(
-            "id",
-            format!("effect {} is not known", quote(id)),
-            offer_names(id, &known),
-        )
+        let what = format!("effect {} is not known", quote(id));
+        return Err(table.error_at("id", what, offer_names(id, &known)));
+    }
+    let form = table.text("form")?;
+    let found = forms.iter().find(|effect| effect.form() == form);
+    found.copied().ok_or_else(|| {
+        let known: Vec<&str> = forms.iter().filter_map(|effect| effect.form()).collect();
+        let what = format!("{id} has no form {}", quote(form.unwrap_or_default()));
+        let help = if known.is_empty() {
+            "leave the line out".to_owned()
+        } else {
+            format!("leave the line out, or write one of: {}", known.join(", "))
+        };
+        table.error_at("form", what, help)
     })
 }
 

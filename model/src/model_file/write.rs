@@ -51,6 +51,9 @@ fn list(values: &[f64], unit: f64) -> String {
 
 fn write_effect(text: &mut String, added: &AddedEffect) {
     let _ = write!(text, "\n[[effect]]\nid = \"{}\"\n", added.effect.id());
+    if let Some(form) = added.effect.form() {
+        let _ = writeln!(text, "form = \"{form}\"");
+    }
     for (parameter, value) in added.effect.parameters().iter().zip(&added.values) {
         let _ = writeln!(text, "{} = {}", parameter.key, decimal(*value, 1.0));
     }

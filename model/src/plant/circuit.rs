@@ -1,25 +1,68 @@
 //! The hydraulic circuit at one instant: which flows and which pump pressure go with a cylinder pressure.
 
-use super::MechanicalState;
 use super::moment::Moment;
 use super::sites::Sites;
+use super::{MechanicalState, OrificeValve};
 use crate::expression::Place;
 use crate::model::Constants;
 
-/// How far the two valves are open, as their flow at the reference drop, m3/s.
+/// How far a valve is open.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Opening {
+    /// Flow at the reference drop, m3/s.
+    pub flow_m3_s: f64,
+    /// How far its current is beyond the threshold, A; zero where no flow turns laminar.
+    pub beyond_threshold_a: f64,
+}
+
+impl Opening {
+    /// Whether the valve is shut.
+    #[must_use]
+    pub fn shut(&self) -> bool {
+        self.flow_m3_s <= 0.0
+    }
+
+    /// The opening at a share of the way to another.
+    fn towards(self, to: Self, share: f64) -> Self {
+        let between = |from: f64, to: f64| from + (to - from) * share;
+        Self {
+            flow_m3_s: between(self.flow_m3_s, to.flow_m3_s),
+            beyond_threshold_a: between(self.beyond_threshold_a, to.beyond_threshold_a),
+        }
+    }
+
+    /// The same opening with its flow multiplied.
+    fn scaled(self, factor: f64) -> Self {
+        Self {
+            flow_m3_s: self.flow_m3_s * factor,
+            ..self
+        }
+    }
+}
+
+/// How far the two valves are open.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Openings {
     /// Lift valve.
-    pub lift_m3_s: f64,
+    pub lift: Opening,
     /// Lowering valve.
-    pub lower_m3_s: f64,
+    pub lower: Opening,
 }
 
 impl Openings {
     /// Whether both valves are shut.
     #[must_use]
     pub fn shut(&self) -> bool {
-        self.lift_m3_s <= 0.0 && self.lower_m3_s <= 0.0
+        self.lift.shut() && self.lower.shut()
+    }
+
+    /// The openings at a share of the way to others.
+    #[must_use]
+    pub fn towards(self, to: Self, share: f64) -> Self {
+        Self {
+            lift: self.lift.towards(to.lift, share),
+            lower: self.lower.towards(to.lower, share),
+        }
     }
 }
 
@@ -67,22 +110,40 @@ impl Circuit<'_> {
     /// Opens the valves as far as effective currents, A, tell.
     #[must_use]
     pub fn openings(&self, lift_a: f64, lower_a: f64) -> Openings {
+        let opening = |valve: &OrificeValve, current_a: f64, factor: f64| Opening {
+            flow_m3_s: valve.curve.flow_m3_s(current_a) * factor,
+            beyond_threshold_a: match self.sites.flow_number_1_a_sqrt_pa {
+                Some(_) => (current_a - valve.curve.threshold_a()).max(0.0),
+                None => 0.0,
+            },
+        };
+        let Constants {
+            lift_valve,
+            lower_valve,
+            ..
+        } = self.constants;
         Openings {
-            lift_m3_s: self.constants.lift_valve.curve.flow_m3_s(lift_a)
-                * self.sites.lift_flow_factor,
-            lower_m3_s: self.constants.lower_valve.curve.flow_m3_s(lower_a)
-                * self.sites.lower_flow_factor,
+            lift: opening(lift_valve, lift_a, self.sites.lift_flow_factor),
+            lower: opening(lower_valve, lower_a, self.sites.lower_flow_factor),
         }
+    }
+
+    /// Discharge of a valve's gap over that of a wide one: `tanh` of its flow number (McCloy & Martin).
+    fn discharge(&self, opening: Opening, drop_pa: f64) -> f64 {
+        let Some(flow_number) = self.sites.flow_number_1_a_sqrt_pa else {
+            return 1.0;
+        };
+        (flow_number * opening.beyond_threshold_a * drop_pa.max(0.0).sqrt()).tanh()
     }
 
     /// Solves the circuit with the piston and the oil under it in a state.
     #[must_use]
     pub fn solve(&self, openings: Openings, state: &MechanicalState) -> Flows {
-        let (lift_m3_s, pump_pressure_pa) = self.lift(openings.lift_m3_s, state);
+        let (lift_m3_s, pump_pressure_pa) = self.lift(openings.lift, state);
         let leakage_m3_s = self.sites.leakage_m3_s(state.pressure_pa);
         Flows {
             lift_m3_s,
-            lower_m3_s: self.lower_m3_s(openings.lower_m3_s, state),
+            lower_m3_s: self.lower_m3_s(openings.lower, state),
             leakage_m3_s: leakage_m3_s + self.moment.term(Place::Leakage, state, |_| ()),
             pump_pressure_pa,
         }
@@ -97,26 +158,26 @@ impl Circuit<'_> {
             + self.moment.term(Place::CompensatorMargin, state, |_| ())
     }
 
-    /// What terms of a user's own leave of the lift valve's opening, m3/s.
-    fn lift_opening_m3_s(&self, opening_m3_s: f64, state: &MechanicalState) -> f64 {
+    /// What terms of a user's own leave of the lift valve's opening.
+    fn lift_opening(&self, opening: Opening, state: &MechanicalState) -> Opening {
         if self.sites.terms.is_empty() {
-            return opening_m3_s;
+            return opening;
         }
         let term = self.moment.term(Place::LiftFlowFactor, state, |signals| {
-            signals.lift_flow_m3_s = opening_m3_s;
+            signals.lift_flow_m3_s = opening.flow_m3_s;
         });
-        opening_m3_s * (1.0 + term).clamp(0.0, GREATEST_FACTOR)
+        opening.scaled((1.0 + term).clamp(0.0, GREATEST_FACTOR))
     }
 
-    /// What terms of a user's own leave of the lowering valve's opening, m3/s.
-    fn lower_opening_m3_s(&self, opening_m3_s: f64, state: &MechanicalState) -> f64 {
+    /// What terms of a user's own leave of the lowering valve's opening.
+    fn lower_opening(&self, opening: Opening, state: &MechanicalState) -> Opening {
         if self.sites.terms.is_empty() {
-            return opening_m3_s;
+            return opening;
         }
         let term = self.moment.term(Place::LowerFlowFactor, state, |signals| {
-            signals.lower_flow_m3_s = self.lower_valve_m3_s(opening_m3_s, state.pressure_pa);
+            signals.lower_flow_m3_s = self.lower_valve_m3_s(opening, state.pressure_pa);
         });
-        opening_m3_s * (1.0 + term).clamp(0.0, GREATEST_FACTOR)
+        opening.scaled((1.0 + term).clamp(0.0, GREATEST_FACTOR))
     }
 
     /// Pressure behind the lowering valve, Pa, at a flow through it, m3/s.
@@ -136,8 +197,10 @@ impl Circuit<'_> {
     }
 
     /// Flow through lift valve and check valve, m3/s, over the drop that the cracking pressure leaves, Pa.
-    fn lift_valve_m3_s(&self, opening_m3_s: f64, drop_pa: f64) -> f64 {
-        let flow_m3_s = self.constants.lift_valve.flow_m3_s(opening_m3_s, drop_pa);
+    fn lift_valve_m3_s(&self, opening: Opening, drop_pa: f64) -> f64 {
+        let lift_valve = &self.constants.lift_valve;
+        let flow_m3_s =
+            lift_valve.flow_m3_s(opening.flow_m3_s, drop_pa) * self.discharge(opening, drop_pa);
         let loss = self.sites.check_valve_loss_pa_s2_m6;
         if loss == 0.0 || flow_m3_s == 0.0 {
             return flow_m3_s;
@@ -147,16 +210,16 @@ impl Circuit<'_> {
     }
 
     /// Lift flow, m3/s, and pump pressure, Pa.
-    fn lift(&self, opening_m3_s: f64, state: &MechanicalState) -> (f64, f64) {
+    fn lift(&self, opening: Opening, state: &MechanicalState) -> (f64, f64) {
         let constants = self.constants;
         let cylinder_pressure_pa = state.pressure_pa;
-        if opening_m3_s <= 0.0 {
+        if opening.shut() {
             return (0.0, constants.compensator.idle_pressure_pa());
         }
-        let opening_m3_s = self.lift_opening_m3_s(opening_m3_s, state);
+        let opening = self.lift_opening(opening, state);
         let flow_at = |pump_pressure_pa: f64| {
             let drop_pa = self.lift_drop_pa(pump_pressure_pa, cylinder_pressure_pa);
-            self.lift_valve_m3_s(opening_m3_s, drop_pa)
+            self.lift_valve_m3_s(opening, drop_pa)
         };
         let wanted_pa = self.relieved_pa(self.lifting_pressure_pa(state), &flow_at);
         let pumped_m3_s = |pump_pressure_pa: f64| {
@@ -168,7 +231,8 @@ impl Circuit<'_> {
         }
         // The compensator is shut and still short of its margin: the pump's whole flow sets the drop (equation 5).
         let drop_pa = self.lift_drop_pa(wanted_pa, cylinder_pressure_pa);
-        let short_pa = if self.sites.pump_slip.is_empty() {
+        let turbulent = self.sites.flow_number_1_a_sqrt_pa.is_none();
+        let short_pa = if self.sites.pump_slip.is_empty() && turbulent {
             let ratio = pumped_m3_s(wanted_pa) / flow_m3_s;
             drop_pa * (1.0 - ratio * ratio)
         } else {
@@ -199,32 +263,34 @@ impl Circuit<'_> {
     }
 
     /// Flow through the lowering valve, m3/s, over a drop, Pa.
-    fn lower_valve_m3_s(&self, opening_m3_s: f64, drop_pa: f64) -> f64 {
-        let flow_m3_s = self.constants.lower_valve.flow_m3_s(opening_m3_s, drop_pa);
-        flow_m3_s * self.sites.lower_drop_factor(drop_pa)
+    fn lower_valve_m3_s(&self, opening: Opening, drop_pa: f64) -> f64 {
+        let lower_valve = &self.constants.lower_valve;
+        let flow_m3_s = lower_valve.flow_m3_s(opening.flow_m3_s, drop_pa);
+        flow_m3_s * self.sites.lower_drop_factor(drop_pa) * self.discharge(opening, drop_pa)
     }
 
     /// Lowering flow, m3/s: the valve's drop is what the return line leaves.
-    fn lower_m3_s(&self, opening_m3_s: f64, state: &MechanicalState) -> f64 {
-        if opening_m3_s <= 0.0 {
+    fn lower_m3_s(&self, opening: Opening, state: &MechanicalState) -> f64 {
+        if opening.shut() {
             return 0.0;
         }
-        let opening_m3_s = self.lower_opening_m3_s(opening_m3_s, state);
-        let free_m3_s = self.lower_valve_m3_s(opening_m3_s, state.pressure_pa);
+        let opening = self.lower_opening(opening, state);
+        let free_m3_s = self.lower_valve_m3_s(opening, state.pressure_pa);
         let terms = self.sites.has_term(Place::ReturnPressure);
         let loss = self.sites.return_loss_pa_s2_m6;
         if (loss == 0.0 && !terms) || free_m3_s == 0.0 {
             return free_m3_s;
         }
         let square_root_law = self.constants.lower_valve.transition_drop_pa == 0.0
-            && self.sites.lower_drop_factor.is_empty();
+            && self.sites.lower_drop_factor.is_empty()
+            && self.sites.flow_number_1_a_sqrt_pa.is_none();
         if square_root_law && !terms {
             // Two orifices in a row, Q = k sqrt(p - a Q2).
             return free_m3_s / (1.0 + loss * free_m3_s * free_m3_s / state.pressure_pa).sqrt();
         }
         let passed_m3_s = |flow_m3_s: f64| {
             let drop_pa = state.pressure_pa - self.return_pressure_pa(flow_m3_s, state);
-            self.lower_valve_m3_s(opening_m3_s, drop_pa)
+            self.lower_valve_m3_s(opening, drop_pa)
         };
         // Root of f(Q) = Q - valve(p - p_T(Q)): it rises in Q, and lies between no flow and the free flow, or above
         // that where a term draws oil off.

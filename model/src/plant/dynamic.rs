@@ -178,7 +178,7 @@ pub fn step(
 ) -> MechanicalState {
     let rate = [openings[0], openings[2]]
         .into_iter()
-        .filter(|o| o.lift_m3_s > 0.0 || o.lower_m3_s > 0.0)
+        .filter(|openings| !openings.shut())
         .map(|o| settling_rate(circuit, o, state))
         .fold(0.0, f64::max);
     let pieces = (rate * dt_s / STABLE).ceil().clamp(1.0, 64.0) as usize;
@@ -202,10 +202,7 @@ fn between(openings: [Openings; 3], share: f64) -> Openings {
     } else {
         (openings[1], openings[2], 2.0 * share - 1.0)
     };
-    Openings {
-        lift_m3_s: from.lift_m3_s + (to.lift_m3_s - from.lift_m3_s) * part,
-        lower_m3_s: from.lower_m3_s + (to.lower_m3_s - from.lower_m3_s) * part,
-    }
+    from.towards(to, part)
 }
 
 fn runge_kutta(

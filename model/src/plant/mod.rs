@@ -383,7 +383,9 @@ impl<'m> Plant<'m> {
 /// added first. A spool that sticks behind a solenoid with hysteresis is not the same the other way round.
 fn in_the_order_of_the_machine(effects: &[AddedEffect]) -> Vec<&AddedEffect> {
     let place = |added: &&AddedEffect| {
-        let found = CATALOGUE.iter().position(|e| e.id() == added.effect.id());
+        let found = CATALOGUE
+            .iter()
+            .position(|effect| effect.id() == added.effect.id());
         found.unwrap_or(CATALOGUE.len())
     };
     let mut ordered: Vec<&AddedEffect> = effects.iter().collect();

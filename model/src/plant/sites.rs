@@ -110,6 +110,9 @@ pub struct Sites {
     pub lower_flow_factor: f64,
     /// Factors on the lowering valve's flow, from its pressure drop, Pa.
     pub lower_drop_factor: Vec<Law>,
+    /// What the flow through either valve turns laminar with: twice its flow number over the critical one is this times
+    /// the current beyond the threshold, A, and the root of the drop, Pa. None if it stays turbulent.
+    pub flow_number_1_a_sqrt_pa: Option<f64>,
     /// Added to the compensator's margin, Pa, from the cylinder pressure, Pa.
     pub margin: Vec<Law>,
     /// Added to the check valve's cracking pressure, Pa.
@@ -152,6 +155,7 @@ impl Default for Sites {
             lift_flow_factor: 1.0,
             lower_flow_factor: 1.0,
             lower_drop_factor: Vec::new(),
+            flow_number_1_a_sqrt_pa: None,
             margin: Vec::new(),
             cracking_extra_pa: 0.0,
             check_valve_loss_pa_s2_m6: 0.0,

@@ -4,7 +4,7 @@ mod formulas;
 use std::fmt::Write as _;
 
 use hitch_model::Model;
-use hitch_model::effects::Effect;
+use hitch_model::effects::{Effect, full_name};
 use hitch_model::naming::offer_names;
 
 use crate::error::Error;
@@ -48,9 +48,13 @@ pub fn run(args: &Args) -> Result<(), Error> {
 /// If there is none; the nearest name is offered.
 pub fn find(model: &Model, id: &str) -> Result<&'static dyn Effect, Error> {
     let catalogue = model.catalogue();
-    let found = catalogue.iter().copied().find(|effect| effect.id() == id);
+    let found = catalogue
+        .iter()
+        .copied()
+        .find(|effect| full_name(*effect) == id);
     found.ok_or_else(|| {
-        let known: Vec<&str> = catalogue.iter().map(|effect| effect.id()).collect();
+        let names: Vec<String> = catalogue.iter().map(|effect| full_name(*effect)).collect();
+        let known: Vec<&str> = names.iter().map(String::as_str).collect();
         Error::Usage(format!(
             "effect {id:?} is not known; {}",
             offer_names(id, &known)
@@ -63,8 +67,8 @@ fn list(model: &Model) -> String {
     for effect in model.catalogue() {
         let _ = writeln!(
             text,
-            "{:<24} {}\n{:24} {}",
-            effect.id(),
+            "{:<26} {}\n{:26} {}",
+            full_name(effect),
             effect.title(),
             "",
             effect.equation()
@@ -78,7 +82,7 @@ fn list(model: &Model) -> String {
 fn card(effect: &dyn Effect) -> String {
     let mut text = format!(
         "{}: {}\n\n  {}\n\n",
-        effect.id(),
+        full_name(effect),
         effect.title(),
         effect.equation()
     );
@@ -122,6 +126,9 @@ fn card(effect: &dyn Effect) -> String {
         "\nIn a model file:\n\n  [[effect]]\n  id = \"{}\"",
         effect.id()
     );
+    if let Some(form) = effect.form() {
+        let _ = writeln!(text, "  form = \"{form}\"");
+    }
     for parameter in effect.parameters() {
         let _ = writeln!(text, "  {} = {}", parameter.key, parameter.typical);
     }
@@ -149,7 +156,7 @@ mod tests {
                 text,
             };
             let model = Model::from_source(&source).unwrap();
-            assert_eq!(model.effects[0].effect.id(), effect.id());
+            assert_eq!(full_name(model.effects[0].effect), full_name(*effect));
         }
     }
 

@@ -69,6 +69,8 @@ pub struct Head {
 pub struct Step {
     /// Id of the effect.
     pub effect: &'static str,
+    /// Which of its equations, if it has several and this is not the usual one.
+    pub form: Option<&'static str>,
     /// Error before it was added, in sigma.
     pub error_before: f64,
     /// Error after it was added, in sigma.
@@ -87,6 +89,27 @@ pub struct Step {
     pub detectability: f64,
     /// Its parameters.
     pub parameters: Vec<Parameter>,
+}
+
+impl Step {
+    /// The effect with its form.
+    #[must_use]
+    pub fn name(&self) -> String {
+        with_form(self.effect, self.form)
+    }
+}
+
+impl Candidate {
+    /// The effect with its form.
+    #[must_use]
+    pub fn name(&self) -> String {
+        with_form(self.effect, self.form)
+    }
+}
+
+/// An effect's id, with its form in brackets if it has one.
+fn with_form(id: &str, form: Option<&str>) -> String {
+    form.map_or_else(|| id.to_owned(), |form| format!("{id} ({form})"))
 }
 
 /// An effect that explains the campaign as well in place of another.
@@ -118,6 +141,8 @@ pub struct NotVisible {
 pub struct Candidate {
     /// Id of the effect.
     pub effect: &'static str,
+    /// Which of its equations, if it has several and this is not the usual one.
+    pub form: Option<&'static str>,
     /// Share of the squared error above the noise that it would explain, 0 to 1.
     pub explains: f64,
     /// Error with it, in sigma.

@@ -81,6 +81,7 @@ fn shown(
 ) -> Candidate {
     Candidate {
         effect: candidate.effect.id(),
+        form: candidate.effect.form(),
         explains: explained(&found.base, &candidate.fit),
         error_after: candidate.fit.error(),
         confidence,

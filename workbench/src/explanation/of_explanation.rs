@@ -41,6 +41,7 @@ impl Explanation {
 fn step(step: &explain::Step) -> Step {
     Step {
         effect: step.effect.id(),
+        form: step.effect.form(),
         error_before: step.error_before,
         error_after: step.error_after,
         held_out_before: step.held_out_before,

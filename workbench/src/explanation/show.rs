@@ -114,7 +114,7 @@ impl fmt::Display for Diagnosis {
         ]);
         for candidate in &self.candidates {
             table.row([
-                candidate.effect.to_owned(),
+                candidate.name(),
                 format!("{:.1} %", 100.0 * candidate.explains),
                 format!("{:.2}", candidate.error_after),
                 format!("{:.2}", candidate.confidence),
@@ -177,7 +177,7 @@ impl fmt::Display for Head {
 impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let values: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
-        writeln!(f, "{}: {}", self.effect, values.join(", "))?;
+        writeln!(f, "{}: {}", self.name(), values.join(", "))?;
         writeln!(
             f,
             "     error {:.2} -> {:.2}, on held-out runs {:.2} -> {:.2}; confidence {:.2}, detectability {:.2}",

@@ -88,7 +88,7 @@ fn stairs(shown: &Explanation) -> Vec<staircase::Step> {
         error: shown.head.error_before,
     };
     let added = shown.steps.iter().map(|step| staircase::Step {
-        name: format!("+ {}", step.effect),
+        name: format!("+ {}", step.name()),
         error: step.error_after,
     });
     [first].into_iter().chain(added).collect()
@@ -99,7 +99,7 @@ fn steps(steps: &[Step]) -> Markup {
         let parameters: Vec<String> = step.parameters.iter().map(ToString::to_string).collect();
         let twins: Vec<String> = step.alternatives.iter().map(ToString::to_string).collect();
         vec![
-            step.effect.to_owned(),
+            step.name(),
             parameters.join("; "),
             format!("{:.2} → {:.2}", step.error_before, step.error_after),
             format!("{:.2} → {:.2}", step.held_out_before, step.held_out_after),
