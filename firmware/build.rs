@@ -11,6 +11,8 @@ fn main() {
     // The linker runs in the workspace's root, so that `link.x` finds `memory.x` there.
     println!("cargo:rustc-link-arg-bins=-Tlink.x");
     println!("cargo:rustc-link-arg-bins=--nmagic");
+    // `cargo xtask arm` reads from them which functions have their address taken, and so can be called by it.
+    println!("cargo:rustc-link-arg-bins=--emit-relocs");
     println!("cargo:rustc-link-arg-bin=ecu=-Tdefmt.x");
     if env::var_os("CARGO_FEATURE_STM32G474").is_some() {
         println!("cargo:rustc-link-arg-bin=ecu=--defsym=_stm32g474=1");

@@ -40,6 +40,13 @@ pub fn image() -> Result<PathBuf> {
     Ok(path)
 }
 
+/// Bytes of stack that the image needs at most, as `cargo xtask` finds them in its instructions.
+pub fn stack_bound() -> Result<u64> {
+    const VARIABLE: &str = "HITCH_STACK_BOUND";
+    let bound = env::var(VARIABLE).ok().and_then(|bytes| bytes.parse().ok());
+    bound.with_context(|| format!("{VARIABLE} is no number: run `cargo xtask test`, which sets it"))
+}
+
 /// Boots the image, lets it step through `inputs`, and collects what it wrote.
 pub fn run(image: &Path, inputs: &[[u8; INPUT_BYTES]]) -> Result<EmulatedRun> {
     let folder = tempfile::tempdir()?;

@@ -68,6 +68,11 @@ fn an_hour_of_work_with_faults_is_byte_identical() {
         "the flash differs at the end of the day"
     );
     assert!(ram_bytes <= MOST_RAM_BYTES, "{ram_bytes} bytes of RAM");
+    let bound = emulator::stack_bound().unwrap();
+    assert!(
+        ram_bytes <= bound,
+        "{ram_bytes} bytes of stack were used, and {bound} were said to do"
+    );
 }
 
 /// The first millisecond whose reply or frames differ.

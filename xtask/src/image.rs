@@ -1,11 +1,12 @@
 //! Building the images for ARM.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
 use crate::budget::{self, Entry};
+use crate::stack::{self, Bound};
 use crate::toolchain::{TARGET, Way};
 use crate::{process, programming, size};
 
@@ -15,9 +16,16 @@ const PROFILE: &str = "firmware";
 /// Parts that there is a board for, by the features that choose them.
 pub const PARTS: [&str; 2] = ["stm32f405", "stm32g474"];
 
-/// Builds the control layer as the ECU takes it, proves that it can't panic, builds the images for the boards and the one
-/// for the emulator, whose path is returned.
-pub fn build_all(way: Way) -> Result<PathBuf> {
+/// The image for the emulator.
+pub struct Emulated {
+    /// Where it is.
+    pub path: PathBuf,
+    /// How deep its stack can get.
+    pub stack: Bound,
+}
+
+/// Builds the control layer as the ECU takes it, proves that it can't panic, builds all images and holds them to their budgets.
+pub fn build_all(way: Way) -> Result<Emulated> {
     let folder = folder(way);
     build(way, &["--lib"])?;
     build(way, &["--bin", "panic_proof", "--features", "emulated"]).context(
@@ -27,29 +35,65 @@ pub fn build_all(way: Way) -> Result<PathBuf> {
         "controller and application can't panic; with their start-up code they take {}",
         size::of(&folder.join("panic_proof"))?
     );
-    budget::check(&build_boards(way)?)?;
-    let image = build_emulated(way)?;
-    println!("the emulated image takes {}", size::of(&image)?);
-    Ok(image)
+    let (images, emulated) = build_images(way)?;
+    let entries: Vec<Entry> = images.iter().map(|image| image.entry.clone()).collect();
+    budget::check(&entries)?;
+    Ok(emulated)
 }
 
-/// Builds an image for each part, as ELF, as plain bytes and as Intel HEX; what they take.
-pub fn build_boards(way: Way) -> Result<Vec<Entry>> {
+/// Builds the images; what they take.
+pub fn sizes(way: Way) -> Result<Vec<Entry>> {
+    let (images, _) = build_images(way)?;
+    Ok(images.into_iter().map(|image| image.entry).collect())
+}
+
+/// Builds the images and shows how deep their stacks can get, and by which calls.
+pub fn show_stacks(way: Way) -> Result<()> {
+    let (images, _) = build_images(way)?;
+    for image in images {
+        println!("\n{}\n{}", image.entry.name(), image.stack);
+    }
+    Ok(())
+}
+
+/// An image that was built.
+struct Image {
+    entry: Entry,
+    stack: Bound,
+}
+
+impl Image {
+    fn measured(name: String, path: &Path) -> Result<Self> {
+        let (size, stack) = (size::of(path)?, stack::of(path)?);
+        println!(
+            "{} takes {size}, and at most {} B of stack",
+            path.display(),
+            stack.bytes()
+        );
+        let entry = Entry::new(name, size, stack.bytes());
+        Ok(Self { entry, stack })
+    }
+}
+
+/// Builds an image for each part, as ELF, as plain bytes and as Intel HEX, and the one for the emulator.
+fn build_images(way: Way) -> Result<(Vec<Image>, Emulated)> {
     let folder = folder(way);
-    let mut entries = Vec::new();
+    let mut images = Vec::new();
     for part in PARTS {
         build(way, &["--bin", "ecu", "--features", part])?;
         // All parts build into the same place; each image is kept under its own name.
         let name = format!("ecu-{part}");
-        let image = folder.join(&name);
-        fs::copy(folder.join("ecu"), &image)
-            .with_context(|| format!("can't write {}", image.display()))?;
-        programming::write(&image)?;
-        let size = size::of(&image)?;
-        println!("{} takes {size}", image.display());
-        entries.push(Entry::new(name, size));
+        let path = folder.join(&name);
+        fs::copy(folder.join("ecu"), &path)
+            .with_context(|| format!("can't write {}", path.display()))?;
+        programming::write(&path)?;
+        images.push(Image::measured(name, &path)?);
     }
-    Ok(entries)
+    let path = build_emulated(way)?;
+    let image = Image::measured(budget::EMULATED.to_owned(), &path)?;
+    let stack = image.stack.clone();
+    images.push(image);
+    Ok((images, Emulated { path, stack }))
 }
 
 /// Builds the image for the emulator; its path.

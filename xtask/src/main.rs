@@ -9,6 +9,7 @@ mod process;
 mod programming;
 mod setup;
 mod size;
+mod stack;
 mod test;
 mod toolchain;
 mod workspace;
@@ -26,7 +27,8 @@ usage: cargo xtask <task> [--arm rustup|debian]
   check   formatting, clippy and rustdoc, with warnings denied
   ci      check, then test
   arm     build the ARM images, say how large they are, and hold them to their budgets
-  sizes   write down how large the ECU's images are, in firmware/sizes.txt
+  sizes   write down how large the images are and how deep their stacks get, in firmware/sizes.txt
+  stack   show the calls that make the images' stacks deepest
   image   build the image for the emulator alone; the last line is its path
   mutants change the safety envelope in every way that cargo-mutants knows; its tests have to notice
   a2l     write firmware/hitch.a2l, the description of parameters and measurements for tuning tools
@@ -58,12 +60,13 @@ fn run(arguments: &[String]) -> Result<()> {
         "check" => check::run(way),
         "ci" => check::run(way).and_then(|()| test::run(way)),
         "arm" => image::build_all(setup::toolchain(way)?).map(drop),
-        "sizes" => budget::write(&image::build_boards(setup::toolchain(way)?)?),
+        "sizes" => budget::write(&image::sizes(setup::toolchain(way)?)?),
         "image" => {
             let image = image::build_emulated(setup::toolchain(way)?)?;
             println!("{}", image.display());
             Ok(())
         }
+        "stack" => image::show_stacks(setup::toolchain(way)?),
         "mutants" => mutants::run(),
         "a2l" => a2l::write(),
         "setup" => setup::run(way),

@@ -12,6 +12,9 @@ use crate::{image, process, setup, workspace};
 /// Names the image for the tests that run it.
 const IMAGE_VARIABLE: &str = "HITCH_EMULATED_IMAGE";
 
+/// Tells them how deep its stack can get, in bytes.
+const STACK_VARIABLE: &str = "HITCH_STACK_BOUND";
+
 /// Tests that need the image.
 const ON_TARGET: [&str; 3] = ["emulated", "emulated_ecu", "python_clients"];
 
@@ -46,7 +49,8 @@ pub fn run(way: Option<Way>) -> Result<()> {
     on_target
         .args(ON_TARGET.into_iter().flat_map(|name| ["--test", name]))
         .args(["--", "--ignored", "--nocapture"])
-        .env(IMAGE_VARIABLE, &image);
+        .env(IMAGE_VARIABLE, &image.path)
+        .env(STACK_VARIABLE, image.stack.bytes().to_string());
     let target = run_group(&mut on_target)?;
 
     summarise(&host, &target)

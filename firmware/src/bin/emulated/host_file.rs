@@ -1,9 +1,10 @@
 //! Files and pipes of the machine that runs the emulator, by semihosting.
 
 use core::ffi::CStr;
-use core::fmt;
 
 use cortex_m_semihosting::{nr, syscall};
+
+use crate::console::Word;
 
 /// What went wrong with a file of the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,15 +17,19 @@ pub enum HostFileError {
     Access,
 }
 
-impl fmt::Display for HostFileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Open(name) => write!(f, "can't open the host's `{name}`"),
-            Self::Truncated => f.write_str("the input ends inside a record"),
-            Self::Access => f.write_str(
-                "can't read or write on the host: is its disk full, or the reader gone?",
-            ),
-        }
+impl HostFileError {
+    /// What went wrong, in words.
+    pub const fn words(self) -> [Word<'static>; 3] {
+        let [before, name, after] = match self {
+            Self::Open(name) => ["can't open the host's `", name, "`\n"],
+            Self::Truncated => ["the input ends inside a record", "", "\n"],
+            Self::Access => [
+                "can't read or write on the host: ",
+                "is its disk full, or the reader gone?",
+                "\n",
+            ],
+        };
+        [Word::Text(before), Word::Text(name), Word::Text(after)]
     }
 }
 
@@ -89,11 +94,5 @@ impl HostFile {
             0 => Ok(()),
             _ => Err(HostFileError::Access),
         }
-    }
-}
-
-impl fmt::Write for HostFile {
-    fn write_str(&mut self, text: &str) -> fmt::Result {
-        self.write_all(text.as_bytes()).map_err(|_| fmt::Error)
     }
 }

@@ -34,20 +34,25 @@ impl Link {
 
     /// The next record; `None` at the end.
     pub fn read<const N: usize>(&mut self) -> Result<Option<[u8; N]>, HostFileError> {
-        while self.end - self.next < N {
+        loop {
+            let waiting = self.heard.get(self.next..self.end).unwrap_or_default();
+            if let Some(record) = waiting.first_chunk().copied() {
+                self.next += N;
+                return Ok(Some(record));
+            }
+            let begun = waiting.len();
             self.flush()?;
-            self.heard.copy_within(self.next..self.end, 0);
-            self.end -= self.next;
-            self.next = 0;
-            match self.input.read(&mut self.heard[self.end..]) {
-                0 if self.end == 0 => return Ok(None),
+            if begun > 0 {
+                self.heard.rotate_left(self.next.min(BUFFER_BYTES));
+            }
+            (self.next, self.end) = (0, begun);
+            let room = self.heard.get_mut(begun..).unwrap_or_default();
+            match self.input.read(room) {
+                0 if begun == 0 => return Ok(None),
                 0 => return Err(HostFileError::Truncated),
                 more => self.end += more,
             }
         }
-        let record = self.heard[self.next..].first_chunk().copied();
-        self.next += N;
-        Ok(record)
     }
 
     /// Says `bytes`, now or before the next wait for the host.

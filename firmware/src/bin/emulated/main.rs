@@ -10,6 +10,7 @@
 
 mod application;
 mod command_line;
+mod console;
 mod flash_file;
 mod host_file;
 mod link;
@@ -18,7 +19,6 @@ mod stack;
 mod steps;
 mod stopwatch;
 
-use core::fmt::{Arguments, Write};
 use core::hint::spin_loop;
 use core::panic::PanicInfo;
 
@@ -26,14 +26,22 @@ use cortex_m_rt::{ExceptionFrame, entry, exception};
 use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 
 use hitch_firmware::control::CalibrationError;
-use host_file::{HostFile, HostFileError};
+
+use console::{Word, say};
+use host_file::HostFileError;
 use link::Link;
 use stopwatch::Stopwatch;
 
 /// Why the image ends early.
 enum Failure {
     HostFile(HostFileError),
-    Calibration(CalibrationError),
+    Calibration,
+}
+
+impl From<CalibrationError> for Failure {
+    fn from(_: CalibrationError) -> Self {
+        Self::Calibration
+    }
 }
 
 impl From<HostFileError> for Failure {
@@ -46,19 +54,21 @@ impl From<HostFileError> for Failure {
 fn main() -> ! {
     match run() {
         Ok(done) => {
-            say(format_args!(
-                "steps={}\nlongest_ticks={}\nlongest_working_ticks={}\nstack_bytes={}\n",
-                done.ticks,
-                done.longest,
-                done.longest_working,
-                stack::high_water_mark()
-            ));
+            say(&[
+                Word::Text("steps="),
+                Word::Number(done.ticks),
+                Word::Text("\nlongest_ticks="),
+                Word::Number(done.longest),
+                Word::Text("\nlongest_working_ticks="),
+                Word::Number(done.longest_working),
+                Word::Text("\nstack_bytes="),
+                Word::Number(stack::high_water_mark()),
+                Word::Text("\n"),
+            ]);
             debug::exit(EXIT_SUCCESS);
         }
-        Err(Failure::HostFile(error)) => fail(format_args!("{error}\n")),
-        Err(Failure::Calibration(error)) => fail(format_args!(
-            "the nominal calibration is refused: {error:?}\n"
-        )),
+        Err(Failure::HostFile(error)) => fail(&error.words()),
+        Err(Failure::Calibration) => fail(&[Word::Text("the nominal calibration is refused\n")]),
     }
     halt()
 }
@@ -86,15 +96,8 @@ struct Done {
     longest_working: u32,
 }
 
-fn say(text: Arguments<'_>) {
-    if let Ok(mut console) = HostFile::console() {
-        // Nobody is left to tell if the console itself fails.
-        let _ = console.write_fmt(text);
-    }
-}
-
-fn fail(text: Arguments<'_>) {
-    say(text);
+fn fail(words: &[Word<'_>]) {
+    say(words);
     debug::exit(EXIT_FAILURE);
 }
 
@@ -106,12 +109,29 @@ fn halt() -> ! {
 
 #[panic_handler]
 fn on_panic(info: &PanicInfo<'_>) -> ! {
-    fail(format_args!("{info}\n"));
+    let (file, line) = info
+        .location()
+        .map_or(("?", 0), |place| (place.file(), place.line()));
+    fail(&[
+        Word::Text("panicked at "),
+        Word::Text(file),
+        Word::Text(":"),
+        Word::Number(line),
+        Word::Text(": "),
+        Word::Text(info.message().as_str().unwrap_or("no fixed text")),
+        Word::Text("\n"),
+    ]);
     halt()
 }
 
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    fail(format_args!("hard fault: {frame:?}\n"));
+    fail(&[
+        Word::Text("hard fault at address "),
+        Word::Number(frame.pc()),
+        Word::Text(", called from "),
+        Word::Number(frame.lr()),
+        Word::Text("\n"),
+    ]);
     halt()
 }

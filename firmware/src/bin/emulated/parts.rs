@@ -8,8 +8,9 @@ use hitch_firmware::control::units::{MicroLitrePerSecond, MilliAmp, MilliBar, Mi
 use hitch_firmware::control::valve_map::{DropScale, ValveMap};
 use hitch_firmware::control::{Calibration, Inputs};
 
+use crate::Failure;
+use crate::console::{Word, say};
 use crate::stopwatch::Stopwatch;
-use crate::{Failure, say};
 
 /// From no flow to beyond saturation, ul/s.
 const FLOWS: core::ops::RangeInclusive<i32> = 0..=1_000_000;
@@ -18,9 +19,7 @@ const FLOW_STEP: usize = 997;
 /// Says the most ticks that each part took. Not merged into its caller, whose stack it would take for good.
 #[inline(never)]
 pub fn run(stopwatch: &Stopwatch) -> Result<(), Failure> {
-    let calibration = Calibration::nominal()
-        .validate()
-        .map_err(Failure::Calibration)?;
+    let calibration = Calibration::nominal().validate()?;
     let reference = calibration.hydraulics.reference_drop;
     let (mut lift, mut lower, mut scale) = (0, 0, 0);
     for flow in FLOWS.step_by(FLOW_STEP) {
@@ -57,8 +56,13 @@ pub fn run(stopwatch: &Stopwatch) -> Result<(), Failure> {
         });
         both_coils = ticks.max(both_coils);
     }
-    say(format_args!(
-        "lift_map={lift}\nlower_map={lower}\ndrop_scale={scale}\nregulation={both_coils}\n"
-    ));
+    for (name, ticks) in [
+        ("lift_map=", lift),
+        ("lower_map=", lower),
+        ("drop_scale=", scale),
+        ("regulation=", both_coils),
+    ] {
+        say(&[Word::Text(name), Word::Number(ticks), Word::Text("\n")]);
+    }
     Ok(())
 }

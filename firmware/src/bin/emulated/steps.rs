@@ -14,9 +14,7 @@ use crate::{Done, Failure};
 /// Steps until the input ends.
 #[inline(never)]
 pub fn run(link: &mut Link, stopwatch: &Stopwatch) -> Result<Done, Failure> {
-    let calibration = Calibration::nominal()
-        .validate()
-        .map_err(Failure::Calibration)?;
+    let calibration = Calibration::nominal().validate()?;
     let mut controller = Controller::new(calibration);
     let mut done = Done::default();
     while let Some(record) = link.read::<INPUT_BYTES>()? {
