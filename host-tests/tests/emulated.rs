@@ -94,8 +94,18 @@ fn a_step_and_its_parts_take_what_is_written_down() {
         ("step-worst", *run.instructions.iter().max().unwrap()),
         ("lift-map-worst", part("lift_map")),
         ("lower-map-worst", part("lower_map")),
-        ("drop-scale-worst", part("drop_scale")),
-        ("regulation-of-both-coils-worst", part("regulation")),
+        (
+            "lower-map-of-flow-and-drop-worst",
+            part("lower_map_of_flow_and_drop"),
+        ),
+        (
+            "regulation-of-one-coil-worst",
+            part("regulation_of_one_coil"),
+        ),
+        (
+            "regulation-of-both-coils-worst",
+            part("regulation_of_both_coils"),
+        ),
     ];
     instruction_counts::check(&counts).unwrap();
 }

@@ -3,6 +3,7 @@
 use super::calibration::ValidCalibration;
 use super::closing::ClosingCurve;
 use super::current::Regulation;
+use super::drop_scale::DropScale;
 use super::learning::Learning;
 use super::load::LoadEstimate;
 use super::mode::{Fault, Mode};
@@ -22,7 +23,7 @@ use super::units::{
     MilliDegreePerSecond,
 };
 use super::valve_logic::{Demand, Direction, Phase};
-use super::valve_map::{DropScale, ValveMap};
+use super::valve_map::ValveCurves;
 
 mod report;
 
@@ -53,6 +54,7 @@ pub struct Controller {
     envelope: Envelope,
     regulation: Regulation,
     rest: RestPosition,
+    curves: ValveCurves,
     scale: DropScale,
     learning: Learning,
     teach: Teach,
@@ -68,7 +70,8 @@ impl Controller {
     #[inline(never)]
     pub fn new(calibration: ValidCalibration) -> Self {
         let load = LoadEstimate::new(&calibration.hydraulics);
-        let scale = DropScale::new(calibration.hydraulics.reference_drop, load.drop());
+        let curves = ValveCurves::of(&calibration);
+        let scale = curves.scale(load.drop());
         let closing = closing(&calibration);
         let origin = calibration.linkage.travel(MilliDegree::ZERO);
         let regulation = Regulation::new(&calibration.current);
@@ -93,6 +96,7 @@ impl Controller {
             envelope: Envelope::default(),
             regulation,
             rest: RestPosition::default(),
+            curves,
             scale,
             learning: Learning::default(),
             teach: Teach::default(),
@@ -111,10 +115,14 @@ impl Controller {
     /// and goes on from where it is. What was learnt of the valves' curves goes with the curves.
     pub fn recalibrate(&mut self, calibration: ValidCalibration) {
         self.closing = closing(&calibration);
+        let measured_at = |calibration: &ValidCalibration| calibration.hydraulics.reference_drop;
         if (&calibration.lift, &calibration.lower)
             != (&self.calibration.lift, &self.calibration.lower)
         {
             self.learning.forget_curves();
+            self.curves = ValveCurves::of(&calibration);
+        } else if measured_at(&calibration) != measured_at(&self.calibration) {
+            self.curves = ValveCurves::of(&calibration);
         }
         self.calibration = calibration;
     }
@@ -141,14 +149,13 @@ impl Controller {
         if let Some(trip) = self.envelope.objection() {
             self.fail(trip.fault());
         }
-        let map = valve_map(&self.calibration, self.scale);
         // A button's speed falls with the linkage and stays: what the map gets wrong there does as well.
         let slowing = self.slack.is_taken() && matches!(self.mode, Mode::Position);
         self.motion.drive(
             self.learning.offsets().on_curve(currents),
             slowing,
-            &map,
-            &self.calibration.hydraulics,
+            self.scale,
+            &self.calibration,
         );
         let duties = self
             .regulation
@@ -205,7 +212,7 @@ impl Controller {
             &self.motion,
             &calibration.hydraulics,
         );
-        self.scale = DropScale::new(calibration.hydraulics.reference_drop, self.load.drop());
+        self.scale = self.curves.scale(self.load.drop());
         self.rest
             .update(self.motion.position(), self.phase, &calibration.hold);
         self.sink.tick(&calibration.hold);
@@ -429,7 +436,7 @@ impl Controller {
 
     /// Fastest speed that the valve of a direction can give now.
     fn available(&self, direction: Direction) -> MicrometrePerSecond {
-        let map = valve_map(&self.calibration, self.scale);
+        let map = self.curves.at(self.scale);
         let flow = match direction {
             Direction::Lift => map.lift_saturation(),
             Direction::Lower => map.lower_saturation(),
@@ -464,7 +471,7 @@ impl Controller {
             self.phase.speed().magnitude(),
             self.calibration.hydraulics.hysteresis,
         );
-        let map = valve_map(&self.calibration, self.scale);
+        let map = self.curves.at(self.scale);
         let offsets = self.learning.offsets();
         // No flow is no current, whatever the valve.
         let with = |current: MilliAmp, offset: MilliAmp| match current > MilliAmp::ZERO {
@@ -483,13 +490,5 @@ fn closing(calibration: &ValidCalibration) -> Closing {
     Closing {
         lift: ClosingCurve::of(&calibration.lift, hysteresis),
         lower: ClosingCurve::of(&calibration.lower, hysteresis),
-    }
-}
-
-fn valve_map(calibration: &ValidCalibration, scale: DropScale) -> ValveMap<'_> {
-    ValveMap {
-        lift: &calibration.lift,
-        lower: &calibration.lower,
-        scale,
     }
 }

@@ -7,11 +7,11 @@
 //! expected way - measured way = d * sensitivity        sensitivity = integral of dv/dI over the move
 //! ```
 
+use super::drop_scale::DropScale;
 use super::fixed::Divisor;
 use super::motion::Motion;
 use super::units::{MicroLitrePerSecond, Micrometre, Millisecond, SquareMillimetre};
 use super::valve_logic::{Direction, Phase};
-use super::valve_map::DropScale;
 
 /// How long a hitch has to hold until its place is read: its load has swung out, and a leak hasn't carried it far.
 const REST: Millisecond = Millisecond(500);

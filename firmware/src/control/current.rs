@@ -8,7 +8,8 @@
 //! The first term is what the coil needs at rest; with a good estimate of its resistance the others are only busy when
 //! the current changes. The estimate follows what the integral has to add while the current is steady: resistance
 //! changes with temperature, which is slow. A milliohm times a milliampere is a microvolt, so none of this
-//! needs a division but the last line.
+//! needs a division but the last line. What is multiplied is limited to what the compiler can see to fit a word: a
+//! product that may have to saturate takes eight times as long.
 //!
 //! Without a measured current the first term alone remains.
 
@@ -20,6 +21,15 @@ use super::units::{Duty, MilliAmp, MilliOhm, MilliVolt, Millisecond};
 
 /// Highest supply that is reckoned with: with the diode's drop, a hundred times its microvolts still fit.
 const MOST_SUPPLY: MilliVolt = MilliVolt(19_000);
+/// Highest drop over the diode.
+const MOST_DROP: MilliVolt = MilliVolt(2_000);
+/// Largest current, and largest difference of two.
+const MOST_CURRENT: MilliAmp = MilliAmp(8_191);
+/// Largest resistance, and largest gain from current to voltage.
+const MOST_RESISTANCE: MilliOhm = MilliOhm(65_535);
+/// Bits behind the point of the resistance that is learnt, in milliohms: a milliohm a second is one of these a millisecond, but
+/// for 2 %.
+const RESISTANCE_BITS: u32 = 10;
 /// Lowest: below it nothing is regulated anyway.
 const LEAST_SUPPLY: MilliVolt = MilliVolt(1_000);
 /// A request that moves less than this is steady.
@@ -46,7 +56,7 @@ pub struct Regulation {
 impl Regulation {
     /// Coils of nominal resistance, without current.
     #[must_use]
-    pub fn new(parameters: &CurrentParameters) -> Self {
+    pub const fn new(parameters: &CurrentParameters) -> Self {
         let regulator = Regulator::new(parameters);
         Self {
             lift: regulator,
@@ -92,28 +102,36 @@ impl Regulation {
     }
 }
 
+/// Microvolts over a resistance or by a gain.
+fn microvolts(resistance: MilliOhm, current: MilliAmp) -> i32 {
+    let resistance = resistance.limited(MilliOhm::ZERO, MOST_RESISTANCE);
+    let current = current.limited(-MOST_CURRENT, MOST_CURRENT);
+    resistance.0.saturating_mul(current.0)
+}
+
 /// Regulates one coil.
 #[derive(Clone, Copy, Debug)]
 struct Regulator {
     integral_uv: i32,
-    resistance_uohm: i32,
+    /// Resistance in 2^-10 milliohms.
+    resistance: i32,
     /// The request when it last changed, and how long ago.
     steady: MilliAmp,
     steady_for: Millisecond,
 }
 
 impl Regulator {
-    fn new(parameters: &CurrentParameters) -> Self {
+    const fn new(parameters: &CurrentParameters) -> Self {
         Self {
             integral_uv: 0,
-            resistance_uohm: parameters.nominal_resistance.0.saturating_mul(1000),
+            resistance: finely(parameters.nominal_resistance),
             steady: MilliAmp::ZERO,
             steady_for: Millisecond::ZERO,
         }
     }
 
-    fn resistance(&self) -> MilliOhm {
-        MilliOhm(Divisor::THOUSAND.divide(self.resistance_uohm))
+    const fn resistance(&self) -> MilliOhm {
+        MilliOhm(self.resistance >> RESISTANCE_BITS)
     }
 
     fn drive(
@@ -129,23 +147,24 @@ impl Regulator {
             self.steady = MilliAmp::ZERO;
             return Duty::ZERO;
         }
-        let most_uv = supply.0.saturating_mul(1000);
-        let rest_uv = self.resistance().0.saturating_mul(asked.0);
+        let rest_uv = microvolts(self.resistance(), asked);
         let voltage_uv = match measured {
             Some(measured) => {
                 let error = asked + dither - measured;
-                self.regulated(rest_uv, error, most_uv, parameters)
+                let most_uv = supply.0.saturating_mul(1000);
+                let voltage_uv = self.regulated(rest_uv, error, most_uv, parameters);
+                self.learn(asked, parameters);
+                voltage_uv
             }
             None => rest_uv,
         };
-        if measured.is_some() {
-            self.learn(asked, parameters);
-        }
-        let drop = parameters.freewheel_drop;
-        let over_drop_uv = voltage_uv.saturating_add(drop.0.saturating_mul(1000));
-        let whole = supply + drop;
-        let share_uv = over_drop_uv.max(0).min(whole.0.saturating_mul(1000));
-        Duty(Divisor::at_least_one(whole.0).divide(share_uv.saturating_mul(100)))
+        let drop = parameters
+            .freewheel_drop
+            .limited(MilliVolt::ZERO, MOST_DROP);
+        share(
+            voltage_uv.saturating_add(drop.0.saturating_mul(1000)),
+            supply + drop,
+        )
     }
 
     /// The voltage with its proportional and integral parts; the integral stops where the supply ends.
@@ -156,11 +175,10 @@ impl Regulator {
         most_uv: i32,
         parameters: &CurrentParameters,
     ) -> i32 {
-        let proportional_uv = parameters.proportional.0.saturating_mul(error.0);
-        let change_uv = parameters.integral.0.saturating_mul(error.0);
+        let change_uv = microvolts(parameters.integral, error);
         let integral_uv = self.integral_uv.saturating_add(change_uv);
         let voltage_uv = rest_uv
-            .saturating_add(proportional_uv)
+            .saturating_add(microvolts(parameters.proportional, error))
             .saturating_add(integral_uv);
         let outwards = (voltage_uv > most_uv && change_uv > 0) || (voltage_uv < 0 && change_uv < 0);
         if !outwards {
@@ -179,17 +197,27 @@ impl Regulator {
         if self.steady_for < parameters.settling_time {
             return;
         }
-        // A milliohm a second is a microohm a millisecond.
-        let change = self
-            .integral_uv
-            .signum()
-            .saturating_mul(parameters.adaptation.0);
-        let low = parameters.lowest_resistance.0.saturating_mul(1000);
-        let high = parameters.highest_resistance.0.saturating_mul(1000);
-        self.resistance_uohm = self
-            .resistance_uohm
+        let change = match self.integral_uv {
+            ..0 => parameters.adaptation.0.saturating_neg(),
+            0 => 0,
+            1.. => parameters.adaptation.0,
+        };
+        self.resistance = self
+            .resistance
             .saturating_add(change)
-            .max(low)
-            .min(high);
+            .max(finely(parameters.lowest_resistance))
+            .min(finely(parameters.highest_resistance));
     }
+}
+
+/// A resistance as it is learnt.
+const fn finely(resistance: MilliOhm) -> i32 {
+    resistance.0 << RESISTANCE_BITS
+}
+
+/// The share of a voltage that makes another, which it is limited to.
+fn share(part_uv: i32, whole: MilliVolt) -> Duty {
+    let whole = whole.limited(LEAST_SUPPLY, MOST_SUPPLY + MOST_DROP).0;
+    let part_uv = part_uv.max(0).min(whole.saturating_mul(1000));
+    Duty(Divisor::at_least_one(whole).divide(part_uv.saturating_mul(100)))
 }

@@ -92,25 +92,6 @@ pub fn mul_shift_16(a: i32, b: i32) -> i32 {
     with_sign(product.saturating_add(1 << 15) >> 16, (a < 0) != (b < 0))
 }
 
-/// `sqrt(a / b)` in units of 2^-16, for ratios below 2^15; arguments are limited to 1 .. 2^19 - 1.
-///
-/// The quotient is divided out in digits of 13 bits, the most that a remainder below 2^19 leaves room for in a
-/// 32-bit division; one 64-bit division costs more than the three together.
-#[must_use]
-pub fn square_root_of_ratio_16(a: i32, b: i32) -> i32 {
-    const LARGEST: i32 = (1 << 19) - 1;
-    let limited = |value: i32| value.clamp(1, LARGEST).unsigned_abs();
-    let (mut rest, divisor) = (limited(a), Divisor::at_least_one(b.min(LARGEST)).0);
-    let mut digit = |bits: u32| {
-        let shifted = rest << bits;
-        rest = shifted % divisor;
-        u64::from(shifted / divisor)
-    };
-    let whole = digit(0);
-    let fraction = (digit(13) << 19) | (digit(13) << 6) | digit(6);
-    square_root((whole << 32) | fraction)
-}
-
 fn with_sign(magnitude: u64, negative: bool) -> i32 {
     let value = i32::try_from(magnitude).unwrap_or(i32::MAX);
     if negative {
@@ -247,20 +228,6 @@ mod tests {
                 found <= exact && found >= exact * (1.0 - 1.0 / 32_768.0) - 1.0,
                 "sqrt({value}): {found}, not {exact}"
             );
-        }
-    }
-
-    #[test]
-    fn roots_of_ratios_are_good_to_fifteen_bits() {
-        for a in [1, 2, 1_000, 15_000, 15_001, 250_000, 524_287] {
-            for b in (1..524_288).step_by(997) {
-                let exact = (f64::from(a) / f64::from(b)).sqrt() * 65_536.0;
-                let found = f64::from(square_root_of_ratio_16(a, b));
-                assert!(
-                    (found - exact).abs() <= 1.0 + exact / 32_768.0,
-                    "sqrt({a} / {b}): {found}, not {exact}"
-                );
-            }
         }
     }
 

@@ -14,8 +14,10 @@
 //! from move to move. Position is kept in nanometres: a speed in um/s is then just
 //! the way of one millisecond.
 
+use super::calibration::Calibration;
 use super::closing::ClosingCurve;
 use super::design_parameters::{HydraulicParameters, MotionParameters};
+use super::drop_scale::DropScale;
 use super::fixed::Divisor;
 use super::free_fall::{next_speed, run_out};
 use super::safety::CoilCurrents;
@@ -25,7 +27,6 @@ use super::units::{
     SquareMillimetre,
 };
 use super::valve_logic::Direction;
-use super::valve_map::ValveMap;
 
 /// How both valves close.
 #[derive(Clone, Copy, Debug)]
@@ -149,9 +150,10 @@ impl Motion {
         &mut self,
         currents: CoilCurrents,
         slowing: bool,
-        map: &ValveMap<'_>,
-        hydraulics: &HydraulicParameters,
+        scale: DropScale,
+        calibration: &Calibration,
     ) {
+        let hydraulics = &calibration.hydraulics;
         let [lift_lag, lower_lag] = self.lags(hydraulics).map(Millisecond::divisor);
         let lift = self
             .lift_spool
@@ -159,9 +161,9 @@ impl Motion {
         let lower = self
             .lower_spool
             .follow(currents.lower, hydraulics.hysteresis, lower_lag);
-        let (up, lift_slope) = map.lift.flow_and_slope(lift);
-        let (down, lower_slope) = map.lower.flow_and_slope(lower);
-        let down = map.scale.to_present(down);
+        let (up, lift_slope) = calibration.lift.flow_and_slope(lift);
+        let (down, lower_slope) = calibration.lower.flow_and_slope(lower);
+        let down = scale.to_present(down);
         let before = self.model_speed;
         let area = hydraulics.piston_area;
         let settled = piston_speed(down, area);

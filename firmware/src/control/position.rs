@@ -14,13 +14,13 @@
 
 use super::calibration::Calibration;
 use super::design_parameters::PositionParameters;
+use super::drop_scale::DropScale;
 use super::fixed::{Divisor, mul_div, square_root};
 use super::motion::{Closing, Motion};
 use super::units::{
     Micrometre, MicrometrePerSecond, MilliDegree, MillimetrePerSecondSquared, PerSecond,
 };
 use super::valve_logic::{Demand, Direction, Phase};
-use super::valve_map::DropScale;
 
 /// Follows the lever.
 #[derive(Clone, Copy, Debug, Default)]

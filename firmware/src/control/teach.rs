@@ -15,13 +15,14 @@
 
 use super::calibration::Calibration;
 use super::design_parameters::TeachParameters;
+use super::drop_scale::DropScale;
 use super::fixed::Divisor;
 use super::linkage::LinkageTable;
 use super::motion::piston_speed;
 use super::safety::CoilCurrents;
 use super::units::{Micrometre, MilliAmp, MilliDegree, Millisecond};
 use super::valve_logic::Direction;
-use super::valve_map::{DropScale, ValveTable};
+use super::valve_map::ValveTable;
 
 /// Ramps a valve.
 pub const REPEATS: usize = 3;

@@ -3,7 +3,7 @@
 //! Ranges of a hitch fit with room to spare (travel 158 000 um, flow 2 000 000 ul/s, pressure
 //! 250 000 mbar), and the arithmetic saturates, so an absurd input gives an absurd but bounded number
 //! instead of a wrapped sign. A millampere is 19 ul/s .. 37 ul/s of flow per step of the coil current:
-//! finer than the 2 mA to which the inverse valve map is held.
+//! finer than the milliampere to which the inverse valve map is held.
 
 use super::fixed::{Divisor, mul_div};
 
