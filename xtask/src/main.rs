@@ -3,6 +3,7 @@
 mod a2l;
 mod budget;
 mod check;
+mod coverage;
 mod image;
 mod mutants;
 mod process;
@@ -25,11 +26,12 @@ usage: cargo xtask <task> [--arm rustup|debian]
 
   test    set up what is missing, build the ARM images, run every test, say how many passed
   check   formatting, clippy and rustdoc, with warnings denied
-  ci      check, then test
+  ci      check, coverage, then test
   arm     build the ARM images, say how large they are, and hold them to their budgets
   sizes   write down how large the images are and how deep their stacks get, in firmware/sizes.txt
   stack   show the calls that make the images' stacks deepest
   image   build the image for the emulator alone; the last line is its path
+  coverage run the safety envelope's tests; each piece of its code has to be reached
   mutants change the safety envelope in every way that cargo-mutants knows; its tests have to notice
   a2l     write firmware/hitch.a2l, the description of parameters and measurements for tuning tools
   setup   find or install the ARM toolchain and the emulator
@@ -39,6 +41,9 @@ usage: cargo xtask <task> [--arm rustup|debian]
           debian   the packages rustc-web, cargo-web and rust-web-src";
 
 fn main() -> ExitCode {
+    if let Some(code) = coverage::compile() {
+        return code;
+    }
     match run(&std::env::args().skip(1).collect::<Vec<_>>()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -58,7 +63,9 @@ fn run(arguments: &[String]) -> Result<()> {
     match task.as_str() {
         "test" => test::run(way),
         "check" => check::run(way),
-        "ci" => check::run(way).and_then(|()| test::run(way)),
+        "ci" => check::run(way)
+            .and_then(|()| coverage::run())
+            .and_then(|()| test::run(way)),
         "arm" => image::build_all(setup::toolchain(way)?).map(drop),
         "sizes" => budget::write(&image::sizes(setup::toolchain(way)?)?),
         "image" => {
@@ -67,6 +74,7 @@ fn run(arguments: &[String]) -> Result<()> {
             Ok(())
         }
         "stack" => image::show_stacks(setup::toolchain(way)?),
+        "coverage" => coverage::run(),
         "mutants" => mutants::run(),
         "a2l" => a2l::write(),
         "setup" => setup::run(way),

@@ -186,9 +186,7 @@ impl AngleWatch {
             self.samples = [angle; SPAN];
         }
         self.newest = self.newest.wrapping_add(1) % SPAN;
-        if let Some(slot) = self.samples.get_mut(self.newest) {
-            *slot = angle;
-        }
+        self.samples[self.newest] = angle;
         self.filled = true;
     }
 

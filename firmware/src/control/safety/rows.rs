@@ -147,8 +147,9 @@ impl Debounce {
 
     /// Counts one row; what it stands for if it has been holding for its time.
     fn count(&mut self, row: u32, holds: bool, parameters: &SafetyParameters) -> Option<Trip> {
-        let index = usize::try_from(row).unwrap_or(ROWS);
-        let (count, &trip) = self.counts.get_mut(index).zip(Trip::ALL.get(index))?;
+        // There are no more rows than these.
+        let index = row as usize % ROWS;
+        let (count, trip) = (&mut self.counts[index], Trip::ALL[index]);
         let most = trip.time(parameters).0.max(1).saturating_mul(2);
         *count = match holds {
             true => count.saturating_add(2).min(most),

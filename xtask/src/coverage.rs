@@ -1,0 +1,146 @@
+//! Coverage of the safety envelope: its own tests have to reach each piece of its code, and so each of its lines.
+//!
+//! A piece is what lies between two branches, so a line with a condition in it has several.
+
+use std::collections::BTreeSet;
+use std::env;
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+
+use anyhow::{Context, Result, bail, ensure};
+use llvm_profparser::{CoverageMapping, merge_profiles};
+
+use crate::{process, workspace};
+
+/// What has to be covered, from the workspace's root.
+const COVERED: &str = "firmware/src/control/safety";
+/// Tells this program that cargo has started it in the compiler's place.
+const COUNTING: &str = "HITCH_COUNTING_RUSTC";
+
+/// Runs the envelope's tests with counters in the code, and looks for pieces that none of them has reached.
+pub fn run() -> Result<()> {
+    let folder = workspace::target().join("coverage");
+    // Counters of earlier runs belong to other programs.
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).with_context(|| format!("can't make {}", folder.display()))?;
+    let tests = ["--package", "hitch-firmware", "--test", "envelope"];
+    let test = build(&tests)?;
+    let counters = folder.join("envelope.profraw");
+    process::run(
+        Command::new(&test)
+            .arg("--quiet")
+            .env("LLVM_PROFILE_FILE", &counters),
+    )?;
+    judge(&regions(&test, &counters)?)
+}
+
+/// Compiles a test with counters; the program.
+fn build(tests: &[&str]) -> Result<PathBuf> {
+    let mut command = process::command(workspace::cargo(), &["test", "--locked", "--no-run"]);
+    command.args(tests).arg("--message-format=json");
+    // Only the workspace's own crates get counters, so what they depend on isn't compiled again.
+    let this = env::current_exe().context("where is this program?")?;
+    command
+        .env("RUSTC_WORKSPACE_WRAPPER", this)
+        .env(COUNTING, "1");
+    process::announce(&command);
+    let output = command.stderr(Stdio::inherit()).output()?;
+    ensure!(
+        output.status.success(),
+        "the tests don't compile; see above"
+    );
+    let messages = String::from_utf8_lossy(&output.stdout);
+    // Of all that cargo reports only the test has a program.
+    let program = messages.lines().find_map(|line| {
+        let (_, rest) = line.split_once("\"executable\":\"")?;
+        Some(PathBuf::from(rest.split_once('"')?.0))
+    });
+    program.context("cargo names no test program")
+}
+
+/// If cargo has started this program in the compiler's place: compiles with counters.
+pub fn compile() -> Option<ExitCode> {
+    env::var_os(COUNTING)?;
+    let mut arguments = env::args_os().skip(1);
+    let compiler: OsString = arguments.next()?;
+    let status = Command::new(compiler)
+        .args(arguments)
+        .args(["-C", "instrument-coverage"])
+        .status();
+    Some(match status {
+        Ok(status) if status.success() => ExitCode::SUCCESS,
+        _ => ExitCode::FAILURE,
+    })
+}
+
+/// A piece of code without a branch in it, by its file from the workspace's root, and how often it was reached.
+struct Region {
+    file: PathBuf,
+    first_line: usize,
+    first_column: usize,
+    last_line: usize,
+    hits: usize,
+}
+
+/// The regions of the covered files.
+fn regions(test: &Path, counters: &Path) -> Result<Vec<Region>> {
+    let profile = merge_profiles(&[counters]).context("can't read the counters")?;
+    let objects = [test.to_owned()];
+    let mapping = CoverageMapping::new(&objects, &profile, true)?;
+    let report = mapping.generate_report()?;
+    let root = workspace::root();
+    let mut regions = Vec::new();
+    for (path, result) in &report.files {
+        let file = path.strip_prefix(&root).unwrap_or(path);
+        if file.starts_with(COVERED) {
+            regions.extend(result.hits.iter().map(|(place, hits)| Region {
+                file: file.to_owned(),
+                first_line: place.line_start,
+                first_column: place.column_start,
+                last_line: place.line_end,
+                hits: *hits,
+            }));
+        }
+    }
+    Ok(regions)
+}
+
+fn judge(regions: &[Region]) -> Result<()> {
+    let missed: Vec<&Region> = regions.iter().filter(|region| region.hits == 0).collect();
+    for region in &missed {
+        println!(
+            "{}:{}:{} is never reached",
+            region.file.display(),
+            region.first_line,
+            region.first_column
+        );
+    }
+    let files: BTreeSet<&Path> = regions.iter().map(|region| region.file.as_path()).collect();
+    let lines: BTreeSet<(&Path, usize)> = regions
+        .iter()
+        .flat_map(|region| {
+            (region.first_line..=region.last_line).map(|line| (region.file.as_path(), line))
+        })
+        .collect();
+    println!(
+        "the safety envelope: {} of {} pieces of code on {} lines of {} files are reached by its tests",
+        regions.len() - missed.len(),
+        regions.len(),
+        lines.len(),
+        files.len()
+    );
+    let sources = fs::read_dir(workspace::root().join(COVERED))?.count();
+    if files.len() != sources {
+        bail!(
+            "{COVERED} has {sources} files, of which {} were looked at",
+            files.len()
+        );
+    }
+    ensure!(
+        missed.is_empty(),
+        "the envelope's tests leave code out; see above"
+    );
+    Ok(())
+}
