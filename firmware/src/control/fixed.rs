@@ -27,12 +27,19 @@ impl Divisor {
         }
     }
 
+    /// `a / self`, rounded down.
+    #[must_use]
+    pub fn quotient(self, a: u32) -> u32 {
+        a / self.0
+    }
+
     /// `a / self`, rounded to nearest with halves away from zero.
     #[must_use]
     pub fn divide(self, a: i32) -> i32 {
         let half = self.0.get() / 2;
-        let magnitude = a.unsigned_abs().saturating_add(half) / self.0;
-        with_sign(u64::from(magnitude), a < 0)
+        // A magnitude is 2^31 at most, and half a divisor below 2^30.
+        let magnitude = a.unsigned_abs().wrapping_add(half) / self.0;
+        opposite_if(magnitude.cast_signed(), a >> 31)
     }
 }
 
@@ -43,7 +50,7 @@ pub fn mul_div(a: i32, b: i32, c: Divisor) -> i32 {
     let half = u64::from(c.0.get() / 2);
     // The product is below 2^62, so adding half a divisor can't overflow.
     with_sign(
-        quotient(product.saturating_add(half), c.0),
+        quotient(product.wrapping_add(half), c.0),
         (a < 0) != (b < 0),
     )
 }
@@ -89,16 +96,17 @@ fn quotient_by_digits(dividend: u64, one_digit: NonZeroU32) -> u64 {
 #[must_use]
 pub fn mul_shift_16(a: i32, b: i32) -> i32 {
     let product = u64::from(a.unsigned_abs()) * u64::from(b.unsigned_abs());
-    with_sign(product.saturating_add(1 << 15) >> 16, (a < 0) != (b < 0))
+    with_sign(product.wrapping_add(1 << 15) >> 16, (a < 0) != (b < 0))
 }
 
 fn with_sign(magnitude: u64, negative: bool) -> i32 {
     let value = i32::try_from(magnitude).unwrap_or(i32::MAX);
-    if negative {
-        value.saturating_neg()
-    } else {
-        value
-    }
+    opposite_if(value, -i32::from(negative))
+}
+
+/// The opposite of `value` if `sign` is all ones, `value` if it is zero: a number's complement plus one is its opposite.
+const fn opposite_if(value: i32, sign: i32) -> i32 {
+    (value ^ sign).wrapping_sub(sign)
 }
 
 /// `sqrt(value)` from its leading 31 or 32 bits: at most 2^-15 of it too small.
@@ -146,6 +154,8 @@ mod tests {
             ],
             [1, 2, -1, -2]
         );
+        assert_eq!(Divisor::ONE.divide(i32::MIN), i32::MIN);
+        assert_eq!(Divisor::at_least_one(i32::MAX).divide(i32::MAX), 1);
         let two = Divisor::at_least_one(2);
         assert_eq!([two.divide(3), two.divide(-3)], [2, -2]);
     }

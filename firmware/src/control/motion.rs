@@ -316,6 +316,10 @@ pub fn flow(speed: MicrometrePerSecond, area: SquareMillimetre) -> MicroLitrePer
 /// Piston speed that a flow gives.
 #[must_use]
 pub fn piston_speed(flow: MicroLitrePerSecond, area: SquareMillimetre) -> MicrometrePerSecond {
+    // One of the valves always is shut.
+    if flow == MicroLitrePerSecond::ZERO {
+        return MicrometrePerSecond::ZERO;
+    }
     MicrometrePerSecond(flow.0).scaled(1000, Divisor::at_least_one(area.0))
 }
 

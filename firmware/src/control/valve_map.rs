@@ -13,12 +13,15 @@
 
 use super::calibration::Calibration;
 use super::drop_scale::{DropReference, DropScale};
-use super::fixed::{Breakpoint, Divisor, interpolate};
+use super::fixed::Divisor;
 use super::inverse_curve::InverseCurve;
 use super::units::{MicroLitrePerSecond, MilliAmp, MilliBar};
 
 /// Room for breakpoints in a valve table.
 pub const VALVE_POINTS: usize = 32;
+
+/// Bits behind the point of a slope of the curve in ul/s/mA: with the largest flow they fill a word.
+const SLOPE_BITS: u32 = 8;
 
 /// A breakpoint of a valve table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -76,36 +79,31 @@ impl ValveTable {
     #[must_use]
     #[inline(never)]
     pub fn flow_and_slope(&self, current: MilliAmp) -> (MicroLitrePerSecond, MicroLitrePerSecond) {
+        if current <= self.threshold() {
+            return (MicroLitrePerSecond::ZERO, MicroLitrePerSecond::ZERO);
+        }
         let Some((left, right)) = self.piece(current) else {
-            return (self.end(current), MicroLitrePerSecond::ZERO);
+            return (self.saturation(), MicroLitrePerSecond::ZERO);
         };
-        let run = Divisor::at_least_one(right.0.saturating_sub(left.0));
-        let rise = right.1.saturating_sub(left.1);
+        let run = Divisor::at_least_one((right.current - left.current).0);
+        let slope = run.quotient((right.flow - left.flow).0.cast_unsigned() << SLOPE_BITS);
+        let along = (current - left.current).0.cast_unsigned();
+        // Not above the rise, since it is rounded down: it fits.
+        let rise = along.wrapping_mul(slope) >> SLOPE_BITS;
+        let by_ampere = u64::from(slope).wrapping_mul(1000) >> SLOPE_BITS;
         (
-            MicroLitrePerSecond(interpolate(left, right, current.0)),
-            MicroLitrePerSecond(run.divide(rise.saturating_mul(1000))),
+            left.flow + MicroLitrePerSecond(rise.cast_signed()),
+            MicroLitrePerSecond(i32::try_from(by_ampere).unwrap_or(i32::MAX)),
         )
     }
 
-    /// The flow at the end of the curve that `current` is beyond.
-    fn end(&self, current: MilliAmp) -> MicroLitrePerSecond {
-        match current <= self.threshold() {
-            true => MicroLitrePerSecond::ZERO,
-            false => self.saturation(),
-        }
-    }
-
     /// The piece of the curve that `current` is in, if it is in one.
-    fn piece(&self, current: MilliAmp) -> Option<(Breakpoint, Breakpoint)> {
+    fn piece(&self, current: MilliAmp) -> Option<(&ValvePoint, &ValvePoint)> {
         let points = self.used();
         let above = points.partition_point(|point| point.current < current);
         let left = points.get(above.checked_sub(1)?)?;
-        Some((by_current(left), by_current(points.get(above)?)))
+        Some((left, points.get(above)?))
     }
-}
-
-fn by_current(point: &ValvePoint) -> Breakpoint {
-    (point.current.0, point.flow.0)
 }
 
 /// What the inverse maps need of a calibration, worked out once.

@@ -9,22 +9,38 @@ use super::hardware::{Contacts, Hardware};
 use super::link::{MOST_FRAMES, Reply};
 use crate::can::Frame;
 
+/// Watches a millisecond from inside.
+pub trait Probe {
+    /// The samples are there.
+    fn sampled(&mut self);
+    /// The controller's step is done, and its pulses go to the drivers.
+    fn driven(&mut self);
+}
+
+/// Nobody watches.
+impl Probe for () {
+    fn sampled(&mut self) {}
+    fn driven(&mut self) {}
+}
+
 /// The ECU with wires that end in requests and replies.
 #[derive(Debug)]
-pub struct Machine<F> {
+pub struct Machine<F, P = ()> {
     ecu: Ecu<F>,
-    wires: Wires,
+    wires: Wires<P>,
 }
 
 #[derive(Debug, Default)]
-struct Wires {
+struct Wires<P> {
+    probe: P,
     drive: Drive,
     heard: Deque<Frame, MOST_FRAMES>,
     said: Vec<Frame, MOST_FRAMES>,
 }
 
-impl Hardware for Wires {
+impl<P: Probe> Hardware for Wires<P> {
     fn drive(&mut self, drive: Drive) {
+        self.probe.driven();
         self.drive = drive;
     }
 
@@ -41,7 +57,7 @@ impl Hardware for Wires {
     }
 }
 
-impl<F: NorFlash> Machine<F> {
+impl<F: NorFlash, P: Probe + Default> Machine<F, P> {
     /// The ECU as it is after power-up.
     #[must_use]
     #[inline(never)]
@@ -59,6 +75,7 @@ impl<F: NorFlash> Machine<F> {
             // The last tick has emptied the queue, so there is room.
             let _ = self.wires.heard.push_back(*frame);
         }
+        self.wires.probe.sampled();
         let kicked = self.ecu.tick(contacts, &mut self.wires).is_some();
         let (drive, outputs) = (self.wires.drive, self.ecu.outputs());
         let milliampere = |value: i32| i16::try_from(value).unwrap_or(i16::MAX);
@@ -81,6 +98,12 @@ impl<F: NorFlash> Machine<F> {
     #[must_use]
     pub fn said(&self) -> &[Frame] {
         &self.wires.said
+    }
+
+    /// Who watches.
+    #[must_use]
+    pub const fn probe(&self) -> &P {
+        &self.wires.probe
     }
 
     /// The application.

@@ -27,5 +27,5 @@ pub use converter::{AdcCode, Samples, WireFault};
 pub use drive::{Compare, Drive, PWM_STEPS};
 pub use flow::{FlowMonitor, Kick, Task};
 pub use hardware::{Contacts, Hardware};
-pub use machine::Machine;
+pub use machine::{Machine, Probe};
 pub use panel::{Contact, Panel};

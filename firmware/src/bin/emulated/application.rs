@@ -4,11 +4,11 @@ use hitch_firmware::can::Frame;
 use hitch_firmware::ecu::link::{
     FRAME_BYTES, MOST_FRAMES, REQUEST_BYTES, Reply, Request, frame_from_bytes, frame_to_bytes,
 };
-use hitch_firmware::ecu::{Contacts, Machine};
+use hitch_firmware::ecu::{Contacts, Machine, Probe};
 
 use crate::flash_file::FlashFile;
 use crate::link::Link;
-use crate::stopwatch::Stopwatch;
+use crate::stopwatch::{self, Stopwatch};
 use crate::{Done, Failure};
 
 /// Serial number of the emulated part.
@@ -20,6 +20,29 @@ pub fn run(link: &mut Link, stopwatch: &Stopwatch) -> Result<Done, Failure> {
     let mut done = Done::default();
     while power_up(flash, link, stopwatch, &mut done)? == End::PowerCut {}
     Ok(done)
+}
+
+/// The timer when the samples were there, and when their pulses went to the drivers; it counts down.
+#[derive(Default)]
+struct Control {
+    sampled: u32,
+    driven: u32,
+}
+
+impl Control {
+    const fn ticks(&self) -> u32 {
+        self.sampled.wrapping_sub(self.driven)
+    }
+}
+
+impl Probe for Control {
+    fn sampled(&mut self) {
+        self.sampled = stopwatch::now();
+    }
+
+    fn driven(&mut self) {
+        self.driven = stopwatch::now();
+    }
 }
 
 /// Why a machine came to its end.
@@ -37,13 +60,14 @@ fn power_up(
     stopwatch: &Stopwatch,
     done: &mut Done,
 ) -> Result<End, Failure> {
-    let mut machine = Machine::start(flash, SERIAL_NUMBER);
+    let mut machine: Machine<FlashFile, Control> = Machine::start(flash, SERIAL_NUMBER);
     while let Some(record) = link.read::<REQUEST_BYTES>()? {
         let Request::Tick { contacts, frames } = Request::from_bytes(&record) else {
             return Ok(End::PowerCut);
         };
         let heard = hear(link, frames)?;
         let (reply, ticks) = stopwatch.ticks_of(|| tick(&mut machine, &contacts, &heard));
+        done.longest_control = done.longest_control.max(machine.probe().ticks());
         done.ticks += 1;
         match reply.enable {
             true => done.longest_working = done.longest_working.max(ticks),
@@ -59,7 +83,7 @@ fn power_up(
 
 /// The millisecond as the ECU's loop calls it: not merged into the loop around it.
 #[inline(never)]
-fn tick(machine: &mut Machine<FlashFile>, contacts: &Contacts, heard: &[Frame]) -> Reply {
+fn tick(machine: &mut Machine<FlashFile, Control>, contacts: &Contacts, heard: &[Frame]) -> Reply {
     machine.tick(contacts, heard)
 }
 

@@ -61,6 +61,8 @@ fn main() -> ! {
                 Word::Number(done.longest),
                 Word::Text("\nlongest_working_ticks="),
                 Word::Number(done.longest_working),
+                Word::Text("\nlongest_control_ticks="),
+                Word::Number(done.longest_control),
                 Word::Text("\nstack_bytes="),
                 Word::Number(stack::high_water_mark()),
                 Word::Text("\n"),
@@ -94,6 +96,8 @@ struct Done {
     longest: u32,
     /// The longest of those with a coil on, if that is told apart.
     longest_working: u32,
+    /// The longest way from the sampled codes to the pulses, the controller's step in it.
+    longest_control: u32,
 }
 
 fn fail(words: &[Word<'_>]) {

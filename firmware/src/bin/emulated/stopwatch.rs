@@ -42,7 +42,8 @@ impl Stopwatch {
     }
 }
 
-fn now() -> u32 {
+/// The timer.
+pub fn now() -> u32 {
     // SAFETY: reading the timer's value has no side effect.
     unsafe { read_volatile(VALUE) }
 }
