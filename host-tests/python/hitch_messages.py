@@ -74,6 +74,34 @@ def check_rhythm(implement):
     print(f"status: {count} in 2 s")
 
 
+def received(implement, name, seconds=1.0):
+    """The next message of that name from the hitch, decoded."""
+    wanted = implement.database.get_message_by_name(name)
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        message = implement.bus.recv(0.2)
+        if message is not None and message.arbitration_id == wanted.frame_id:
+            return wanted.decode(message.data)
+    raise AssertionError(f"no {name}")
+
+
+def check_partnership(implement):
+    """What there is to be had is said, and who asks for the heartbeat gets it ten times a second."""
+
+    def send(name, **signals):
+        message = implement.database.get_message_by_name(name)
+        data = message.encode(signals, scaling=True, strict=False)
+        implement.bus.send(can.Message(arbitration_id=message.frame_id, data=data, is_extended_id=True))
+
+    send("RequiredFacilities", RearInWork=0, RearPosition=1, RearDraft=0, RearLimitStatus=1, RearCommand=1)
+    facilities = received(implement, "TractorFacilities")
+    assert facilities == dict(RearInWork=0, RearPosition=1, RearDraft=0, RearLimitStatus=1, RearCommand=1), facilities
+    send("RepetitionRequest", RepeatedGroup=0xF0E4, RepetitionPeriod=0.1, Reserved=0xFFFFFF)
+    numbers = [received(implement, "Heartbeat")["HeartbeatNumber"] for _ in range(4)]
+    assert numbers == [251, 0, 1, 2], numbers
+    print(f"facilities and heartbeat: {numbers}")
+
+
 def main():
     arguments = shared.arguments()
     implement = Implement(arguments.bus, f"{arguments.firmware}/hitch.dbc")
@@ -82,6 +110,7 @@ def main():
     )
     status = shared.wait_for(lambda: at_rest(implement), "hitch at rest")
     check_rhythm(implement)
+    check_partnership(implement)
     here = status["RearHitchPosition"]
     assert status["RearHitchLimitStatus"] == "operator limited"
     assert status["RearDraft"] == 335350 and status["RearHitchInWork"] == "not available"
