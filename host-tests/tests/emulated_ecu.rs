@@ -19,6 +19,8 @@ const MINUTES: u64 = 60;
 /// Instructions from the converters' codes to the drivers' pulses, whatever happens: 4 % of a millisecond at 168 MHz and
 /// two clocks an instruction.
 const MOST_INSTRUCTIONS: u64 = 3_000;
+/// Instructions of a whole millisecond in which nothing is stored: what fits at 168 MHz and two clocks an instruction.
+const MOST_OF_MILLISECOND: u64 = 84_000;
 /// RAM of the ECU that the application may take, its stack included.
 const MOST_RAM_BYTES: u64 = 32 * 1024;
 
@@ -57,11 +59,11 @@ fn an_hour_of_work_with_faults_is_byte_identical() {
     let ram_bytes = emulator::said(&console.text, "stack_bytes").unwrap();
     let instructions = |key| emulator::said(&console.text, key).unwrap() * 5 / 8;
     let control = instructions("longest_control_ticks");
+    let [working, resting] = ["longest_working_ticks", "longest_ticks"].map(instructions);
     println!(
-        "{here_s:.1} s here, {there_s:.1} s there; instructions, at most: {control} from samples to pulses, a millisecond {} with \
-         a coil on and {} at rest; {ram_bytes} bytes of RAM",
-        instructions("longest_working_ticks"),
-        instructions("longest_ticks")
+        "{here_s:.1} s here, {there_s:.1} s there; instructions, at most: {control} from samples to pulses, a millisecond \
+         {working} with a coil on, {resting} at rest and {} while storing; {ram_bytes} bytes of RAM",
+        instructions("longest_storing_ticks")
     );
     if let Some(millisecond) = first_difference(&day.replies, &console.outputs) {
         panic!("the target does not do what the host does from millisecond {millisecond} on");
@@ -74,6 +76,11 @@ fn an_hour_of_work_with_faults_is_byte_identical() {
     assert!(
         (1..=MOST_INSTRUCTIONS).contains(&control),
         "{control} instructions from samples to pulses, more than {MOST_INSTRUCTIONS}"
+    );
+    assert!(
+        working.max(resting) <= MOST_OF_MILLISECOND,
+        "{} instructions in a millisecond have no room in it",
+        working.max(resting)
     );
     assert!(ram_bytes <= MOST_RAM_BYTES, "{ram_bytes} bytes of RAM");
     let bound = emulator::stack_bound().unwrap();

@@ -94,6 +94,12 @@ impl<F: NorFlash> Ecu<F> {
         self.flow.end()
     }
 
+    /// Whether a calibration is being stored, with both coils off and locked: milliseconds take as long as flash does then.
+    #[must_use]
+    pub const fn is_storing(&self) -> bool {
+        self.service.is_storing()
+    }
+
     /// What the controller was told in the last millisecond.
     #[must_use]
     pub const fn inputs(&self) -> &Inputs {

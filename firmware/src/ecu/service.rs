@@ -27,6 +27,8 @@ pub struct Service<F> {
     tool_waits: bool,
     /// What teaching found has been looked at.
     taught_seen: bool,
+    /// It waits to be stored.
+    taught_waits: bool,
     troubles: Troubles,
 }
 
@@ -58,6 +60,7 @@ impl<F: NorFlash> Service<F> {
             storing: false,
             tool_waits: false,
             taught_seen: false,
+            taught_waits: false,
             troubles,
         }
     }
@@ -84,15 +87,21 @@ impl<F: NorFlash> Service<F> {
         if self.storing {
             return self.store_on(slave);
         }
-        let mut wanted = at_rest && self.take_taught(controller);
-        if let Some(Ok(calibration)) = self.pages.take_change() {
-            apply(calibration, controller);
+        let mut wanted = at_rest && (self.take_taught(controller) || self.taught_waits);
+        if let Some(change) = self.pages.take_change() {
+            if let Ok(calibration) = change {
+                apply(calibration, controller);
+            }
+            // Checking a calibration takes half a millisecond: whoever wants to store it waits for the next one.
+            self.taught_waits = wanted;
+            return Storing::Idle;
         }
         if slave.take_store_request() {
             self.tool_waits = true;
             wanted = true;
         }
         if wanted {
+            self.taught_waits = false;
             self.begin(slave, at_rest);
             return Storing::Busy;
         }

@@ -61,6 +61,7 @@ fn power_up(
     done: &mut Done,
 ) -> Result<End, Failure> {
     let mut machine: Machine<FlashFile, Control> = Machine::start(flash, SERIAL_NUMBER);
+    let mut was_storing = false;
     while let Some(record) = link.read::<REQUEST_BYTES>()? {
         let Request::Tick { contacts, frames } = Request::from_bytes(&record) else {
             return Ok(End::PowerCut);
@@ -69,9 +70,12 @@ fn power_up(
         let (reply, ticks) = stopwatch.ticks_of(|| tick(&mut machine, &contacts, &heard));
         done.longest_control = done.longest_control.max(machine.probe().ticks());
         done.ticks += 1;
-        match reply.enable {
-            true => done.longest_working = done.longest_working.max(ticks),
-            false => done.longest = done.longest.max(ticks),
+        let storing = was_storing || machine.ecu().is_storing();
+        was_storing = machine.ecu().is_storing();
+        match (reply.enable, storing) {
+            (true, _) => done.longest_working = done.longest_working.max(ticks),
+            (false, false) => done.longest = done.longest.max(ticks),
+            (false, true) => done.longest_storing = done.longest_storing.max(ticks),
         }
         link.write(&reply.to_bytes())?;
         for frame in machine.said() {

@@ -61,6 +61,8 @@ fn main() -> ! {
                 Word::Number(done.longest),
                 Word::Text("\nlongest_working_ticks="),
                 Word::Number(done.longest_working),
+                Word::Text("\nlongest_storing_ticks="),
+                Word::Number(done.longest_storing),
                 Word::Text("\nlongest_control_ticks="),
                 Word::Number(done.longest_control),
                 Word::Text("\nstack_bytes="),
@@ -92,10 +94,12 @@ fn run() -> Result<Done, Failure> {
 struct Done {
     /// Steps or milliseconds.
     ticks: u32,
-    /// The longest of them, in ticks of the stopwatch.
+    /// The longest of them, in ticks of the stopwatch; those below are left out if they are told apart.
     longest: u32,
-    /// The longest of those with a coil on, if that is told apart.
+    /// The longest of those with a coil on.
     longest_working: u32,
+    /// The longest of those in which a calibration is stored.
+    longest_storing: u32,
     /// The longest way from the sampled codes to the pulses, the controller's step in it.
     longest_control: u32,
 }
