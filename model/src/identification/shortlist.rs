@@ -23,9 +23,11 @@ const ARRIVED: f64 = 0.3;
 const EXPLAINED: f64 = 1.15;
 
 /// An effect is sketched if its screened cost leaves at most this share of what the best screened one explains
-/// unexplained,
+/// unexplained, unless so many are better: where no effect explains much, all explain nearly as much as the best.
 const DOUBTFUL: f64 = 0.6;
-/// and where those do not explain all, if it is among the first so many.
+const MOST_SKETCHED: usize = 8;
+
+/// Where those do not explain all, it is sketched if it is among the first so many.
 const ALWAYS_SKETCHED: usize = 4;
 
 /// Two costs that differ by no more than this may change places in a fit.
@@ -71,17 +73,17 @@ impl Shortlist<'_> {
         let screened = self.screened(effects);
         let best = screened.first().map_or(self.base.cost, |first| first.cost);
         let doubtful = limit(self.base.cost, best, DOUBTFUL);
-        let (promising, others): (Vec<Starts>, Vec<Starts>) = screened
-            .into_iter()
-            .partition(|starts| starts.cost < doubtful);
-        let rest = ALWAYS_SKETCHED.saturating_sub(promising.len());
-        let mut sketches = self.sketched(promising);
-        if self.explained(&sketches) {
-            sketches.extend(others.into_iter().map(|starts| self.unsketched(starts)));
-        } else {
-            let mut others = others.into_iter();
+        let promising = screened.partition_point(|starts| starts.cost < doubtful);
+        let promising = promising.min(MOST_SKETCHED);
+        let mut others = screened.into_iter();
+        let mut sketches = self.sketched(others.by_ref().take(promising).collect());
+        let explained = self.explained(&sketches);
+        if !explained {
+            let rest = ALWAYS_SKETCHED.saturating_sub(promising);
             sketches.extend(self.sketched(others.by_ref().take(rest).collect()));
-            sketches.extend(others.map(|starts| self.unsketched(starts)));
+        }
+        sketches.extend(others.map(|starts| self.unsketched(starts)));
+        if !explained {
             self.look_through(&mut sketches);
         }
         sort(&mut sketches);
