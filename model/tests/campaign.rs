@@ -114,6 +114,70 @@ fn an_empty_cell_is_a_dropout() {
     );
 }
 
+/// Two runs of 0.38 s in one log, with a pause of 5 s between them; it begins at 100 s.
+fn long_log() -> String {
+    let row = |i: usize| {
+        let pause_s = if i < 20 { 0.0 } else { 5.0 };
+        format!("{:.2},1.5,0,90\n", 100.0 + i as f64 * 0.02 + pause_s)
+    };
+    let rows: String = (0..40).map(row).collect();
+    format!("time_s,lift_current_a,lower_current_a,rocker_angle_deg\n{rows}")
+}
+
+fn two_runs(first: &str, second: &str) -> String {
+    let run = |times: &str| {
+        format!("[[run]]\nfile = \"lift.csv\"\n{times}\nbench = \"hitch\"\nload_kg = 50\n")
+    };
+    format!("format = 1\n{}{}", run(first), run(second))
+}
+
+#[test]
+fn a_long_log_is_cut_into_runs() {
+    let manifest = two_runs("to_s = 0.38", "from_s = 5.4");
+    let dir = folder(manifest.as_bytes(), long_log().as_bytes());
+    let campaign = Campaign::load(dir.path()).unwrap();
+    let names: Vec<&str> = campaign.runs.iter().map(|run| run.file.as_str()).collect();
+    assert_eq!(names, ["lift.csv 0 to 0.38 s", "lift.csv from 5.4 s"]);
+    let ends: Vec<(usize, f64, f64)> = campaign
+        .runs
+        .iter()
+        .map(|run| {
+            (
+                run.time_s.len(),
+                run.time_s[0],
+                run.time_s[run.time_s.len() - 1],
+            )
+        })
+        .collect();
+    assert_eq!(ends, [(20, 100.0, 100.38), (20, 105.4, 105.78)]);
+}
+
+#[test]
+fn parts_of_a_log_that_make_no_runs_are_refused() {
+    let long_log = long_log();
+    for (first, second, fault_begins) in [
+        (
+            "to_s = 2",
+            "from_s = 1",
+            "campaign.toml:8:8: \"lift.csv\" is listed twice",
+        ),
+        (
+            "from_s = 2\nto_s = 1",
+            "",
+            "campaign.toml:5:8: the run would end at 1 s",
+        ),
+        (
+            "to_s = 0.1",
+            "from_s = 5.4",
+            "lift.csv: holds 6 samples in the time of the run",
+        ),
+        ("to_s = 5.5", "from_s = 5.58", "lift.csv:22:1: time jumps"),
+    ] {
+        let said = fault(&two_runs(first, second), &long_log);
+        assert!(said.starts_with(fault_begins), "{first}, {second}: {said}");
+    }
+}
+
 #[test]
 fn faults_of_logs_have_a_line_and_a_column() {
     let log = log();

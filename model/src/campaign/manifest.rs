@@ -2,6 +2,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use super::bus_log::BusSettings;
+use super::cut::Cut;
 use super::{Bench, Campaign, CampaignError, Channel, Noise, Run, run_log};
 use crate::input_error::{InputError, quote};
 use crate::source_file::SourceFile;
@@ -114,15 +115,20 @@ fn runs(dir: &Path, top: &TomlTable<'_>, bus: &BusSettings) -> Result<Vec<Run>, 
         ));
     }
     let mut runs: Vec<Run> = Vec::with_capacity(tables.len());
+    let mut parts: Vec<(&str, Cut)> = Vec::with_capacity(tables.len());
     for table in &tables {
         let file = file_name(table, "file")?;
-        if runs.iter().any(|run| run.file == file) {
+        let cut = Cut::read(table)?;
+        let mut others = parts.iter();
+        if others.any(|(other, part)| *other == file && part.overlaps(cut)) {
             let what = format!("{} is listed twice", quote(file));
-            return Err(table.error_at("file", what, "delete one of the two [[run]] blocks"));
+            let mend = "delete one of the two [[run]] blocks, or give them times (from_s, to_s) that don't overlap";
+            return Err(table.error_at("file", what, mend));
         }
+        parts.push((file, cut));
         let (bench, oil_temperature_c) = conditions(table)?;
         let path = file_in(dir, table, "file")?;
-        let run = run_log::read(&path, file, bench, oil_temperature_c, bus)?;
+        let run = run_log::read(&path, file, cut, bench, oil_temperature_c, bus)?;
         run_log::check_usable(&path, &run)?;
         runs.push(run);
     }
@@ -169,13 +175,14 @@ fn file_name<'t>(table: &'t TomlTable<'_>, key: &str) -> Result<&'t str, Campaig
 }
 
 fn conditions(table: &TomlTable<'_>) -> Result<(Bench, f64), CampaignError> {
-    table.only(&[
+    let others = [
         "file",
         "bench",
         "load_kg",
         "port_pressure_bar",
         "oil_temperature_c",
-    ])?;
+    ];
+    table.only(&[&others[..], &Cut::KEYS[..]].concat())?;
     let bench = match table.required_text("bench")? {
         "hitch" => {
             belongs_elsewhere(table, "port_pressure_bar", "flow")?;

@@ -11,6 +11,7 @@
 mod bus_log;
 mod channel;
 mod csv_log;
+mod cut;
 mod dropout;
 mod manifest;
 mod run_log;
@@ -72,7 +73,7 @@ pub enum Bench {
 /// One log: what drove the valves, and what was measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// File name within the campaign's folder.
+    /// File name within the campaign's folder, with its times if the run is a part of it.
     pub file: String,
     /// What the valve block was bolted to.
     pub bench: Bench,
@@ -120,7 +121,7 @@ impl Run {
     pub fn read(path: &Path, bench: Bench, oil_temperature_c: f64) -> Result<Self, CampaignError> {
         let file = path.file_name().unwrap_or_default().to_string_lossy();
         let bus = bus_log::BusSettings::default();
-        run_log::read(path, &file, bench, oil_temperature_c, &bus)
+        run_log::read(path, &file, cut::Cut::NONE, bench, oil_temperature_c, &bus)
     }
 
     /// Samples of a channel, in its unit, NaN at a dropout; `None` if it was not measured.

@@ -2,15 +2,17 @@
 use std::path::Path;
 
 use super::bus_log::{self, BusSettings, Format};
+use super::cut::Cut;
 use super::table::{LIFT, LOWER, OIL_TEMPERATURE, TIME};
 use super::{Bench, CampaignError, Channel, Run, csv_log};
 use crate::input_error::InputError;
 use crate::source_file::SourceFile;
 
-/// Reads one log; it may hold currents only. `bus` says what is taken if it is that of a bus.
+/// Reads a part of one log; it may hold currents only. `bus` says what is taken if it is that of a bus.
 pub fn read(
     path: &Path,
     file: &str,
+    cut: Cut,
     bench: Bench,
     oil_temperature_c: f64,
     bus: &BusSettings,
@@ -20,6 +22,7 @@ pub fn read(
         Some(format) => bus_log::read(&source, format, bus)?,
         None => csv_log::read(&source)?,
     };
+    let table = table.cut(cut)?;
     let time_s = table.required(TIME)?;
     table.check_time(time_s)?;
     let lift_current_a = table.current(LIFT, time_s)?;
@@ -29,7 +32,7 @@ pub fn read(
         table.measured(channel.key()).filter(|_| measurable)
     });
     Ok(Run {
-        file: file.to_owned(),
+        file: cut.name(file),
         bench,
         oil_temperature_c,
         time_s: time_s.to_vec(),

@@ -1,6 +1,7 @@
 //! The numbers of a log by column, wherever they came from.
 use std::ops::RangeInclusive;
 
+use super::cut::Cut;
 use super::{CampaignError, Channel, Run, dropout};
 use crate::input_error::{InputError, Place};
 use crate::source_file::SourceFile;
@@ -95,6 +96,36 @@ impl<'a> Table<'a> {
                 cells,
             }),
         }
+    }
+
+    /// The rows of a part.
+    ///
+    /// # Errors
+    /// If there are too few for a run.
+    pub fn cut(mut self, cut: Cut) -> Result<Self, CampaignError> {
+        let times_s = self.column(TIME).unwrap_or_default();
+        let first_s = times_s.first().copied().unwrap_or_default();
+        let stays: Vec<bool> = times_s
+            .iter()
+            .map(|time_s| cut.contains(time_s - first_s))
+            .collect();
+        if cut == Cut::NONE || stays.is_empty() {
+            return Ok(self);
+        }
+        let kept = stays.iter().filter(|stays| **stays).count();
+        if kept < Run::FEWEST_SAMPLES {
+            let what = format!("holds {kept} samples in the time of the run");
+            let mend = format!(
+                "a run needs at least {}; from_s and to_s are seconds after the first sample",
+                Run::FEWEST_SAMPLES
+            );
+            return Err(self.source.error(what, mend));
+        }
+        for (_, values) in &mut self.columns {
+            retain(values, &stays);
+        }
+        retain(&mut self.rows, &stays);
+        Ok(self)
     }
 
     fn column(&self, name: &str) -> Option<&[f64]> {
@@ -199,6 +230,11 @@ impl<'a> Table<'a> {
             Cells::OneALine => self.source.error_at(row_byte, what, mend),
         }
     }
+}
+
+fn retain<T>(values: &mut Vec<T>, stays: &[bool]) {
+    let mut stays = stays.iter();
+    values.retain(|_| stays.next() == Some(&true));
 }
 
 /// A fault of cell `index` of a row with commas.
