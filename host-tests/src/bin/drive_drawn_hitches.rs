@@ -1,12 +1,13 @@
 //! Drives the controller with the calibration of an untaught machine on drawn hitches, and tabulates the motion.
 
+use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Parser;
 use hitch_firmware::control::{Calibration, ValidCalibration};
 use host_tests::drawn_hitches::draw::{Drawn, draw};
 use host_tests::drawn_hitches::figures::{table, worst};
-use host_tests::drawn_hitches::session::{MoveFigures, drive};
+use host_tests::drawn_hitches::session::{MoveFigures, drive, drive_watched};
 use rayon::prelude::*;
 
 /// Arguments.
@@ -27,6 +28,9 @@ struct Arguments {
     /// A calibration; without it, the one of an untaught machine
     #[arg(long)]
     calibration: Option<PathBuf>,
+    /// Write every millisecond of the first machine as CSV, instead of any table
+    #[arg(long, value_name = "TRACE.csv")]
+    trace: Option<PathBuf>,
     /// Another value in it, as in `hitch loop --set`
     #[arg(long, value_name = "GROUP.NAME=VALUE")]
     set: Vec<String>,
@@ -38,6 +42,9 @@ fn main() -> anyhow::Result<()> {
     let machines: Vec<Drawn> = (arguments.seed..arguments.seed + arguments.machines)
         .map(|seed| draw(seed, arguments.moves))
         .collect();
+    if let Some(path) = &arguments.trace {
+        return Ok(std::fs::write(path, trace(&machines[0], &calibration))?);
+    }
     let moves: Vec<MoveFigures> = machines
         .par_iter()
         .flat_map_iter(|drawn| drive(drawn, &calibration))
@@ -60,6 +67,27 @@ fn main() -> anyhow::Result<()> {
     });
     println!("{}", worst(&moves, &machines, arguments.worst));
     Ok(())
+}
+
+/// A line a millisecond: what the hitch did, and what the controller thought and asked for.
+fn trace(drawn: &Drawn, calibration: &ValidCalibration) -> String {
+    let mut text = "time_s,lever_deg,rocker_deg,cylinder_bar,lift_a,lower_a,estimated_mm,estimated_mm_s,demanded_mm_s\n"
+        .to_owned();
+    let mut step = 0;
+    drive_watched(drawn, calibration, |lever_deg, instant| {
+        let [lift_a, lower_a] = instant.currents_a;
+        let [estimated_mm_s, demanded_mm_s] = instant.speeds_mm_s;
+        let _ = writeln!(
+            text,
+            "{:.3},{lever_deg:.3},{:.4},{:.3},{lift_a:.3},{lower_a:.3},{:.4},{estimated_mm_s:.2},{demanded_mm_s:.2}",
+            f64::from(step) * 1e-3,
+            instant.rocker_deg,
+            instant.cylinder_bar,
+            instant.estimated_mm,
+        );
+        step += 1;
+    });
+    text
 }
 
 fn calibration(arguments: &Arguments) -> anyhow::Result<ValidCalibration> {

@@ -60,6 +60,10 @@ pub struct Instant {
     pub cylinder_bar: f64,
     /// Coil currents, A.
     pub currents_a: [f64; 2],
+    /// Piston travel as the controller estimates it, mm.
+    pub estimated_mm: f64,
+    /// Piston speed as the controller estimates it, and as it asks the valves for it, mm/s; up is positive.
+    pub speeds_mm_s: [f64; 2],
     /// The controller's fault, and what tripped the envelope if it was that.
     pub fault: Option<(Fault, Option<Trip>)>,
 }
@@ -95,6 +99,9 @@ impl<'a> Session<'a> {
             rocker_deg: self.hitch.rocker_deg(),
             cylinder_bar: self.hitch.cylinder_bar(),
             currents_a: [outputs.lift_current, outputs.lower_current].map(ampere),
+            estimated_mm: f64::from(outputs.travel.0) * 1e-3,
+            speeds_mm_s: [outputs.speed, outputs.demanded_speed]
+                .map(|speed| f64::from(speed.0) * 1e-3),
             fault: outputs.fault.map(|fault| (fault, outputs.trip)),
         };
         self.hitch.step(instant.currents_a);
@@ -138,6 +145,15 @@ impl<'a> Session<'a> {
 /// Every move of a machine.
 #[must_use]
 pub fn drive(drawn: &Drawn, calibration: &ValidCalibration) -> Vec<MoveFigures> {
+    drive_watched(drawn, calibration, |_, _| ())
+}
+
+/// The same; `watch` sees every millisecond of the moves, with the lever's angle, degree.
+pub fn drive_watched(
+    drawn: &Drawn,
+    calibration: &ValidCalibration,
+    mut watch: impl FnMut(f64, &Instant),
+) -> Vec<MoveFigures> {
     let mut session = Session::new(drawn, calibration);
     session.pick_up();
     let last = drawn.angles_deg.len() - 2;
@@ -149,6 +165,7 @@ pub fn drive(drawn: &Drawn, calibration: &ValidCalibration) -> Vec<MoveFigures> 
             let after_s = if index == last { MINUTE_S } else { WATCHED_S };
             let steps = ((3.0 * shortest.time_s + after_s) * 1e3) as usize;
             let instants: Vec<Instant> = (0..steps).map(|_| session.step(to_deg)).collect();
+            instants.iter().for_each(|instant| watch(to_deg, instant));
             let figures = judge(from_deg, to_deg, &instants, shortest);
             MoveFigures {
                 seed: drawn.seed,
