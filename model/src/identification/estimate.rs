@@ -100,6 +100,13 @@ impl Estimate {
         }
     }
 
+    /// Whether a shared parameter stands at an end of its range.
+    #[must_use]
+    pub fn is_at_an_end(&self, shared: Shared) -> bool {
+        let (value, (low, high)) = (self.get(shared), self.range(shared));
+        value <= low || value >= high
+    }
+
     /// Sets a shared parameter, within its range.
     pub fn set(&mut self, shared: Shared, value: f64) {
         let (low, high) = self.range(shared);

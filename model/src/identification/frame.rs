@@ -19,7 +19,8 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// All shared parameters of the Jacobian but the columns `left_out`.
+    /// All shared parameters of the Jacobian but the columns `left_out`, and but those that stand at an end of their
+    /// range: a clock that cannot move on absorbs nothing.
     #[must_use]
     pub fn new(jacobian: &'a Jacobian, estimate: &Estimate, left_out: Range<usize>) -> Self {
         let (mut matrix, right) = jacobian.reduced(estimate);
@@ -28,6 +29,7 @@ impl<'a> Frame<'a> {
         }
         let kept: Vec<usize> = (0..jacobian.shared.len())
             .filter(|column| !left_out.contains(column))
+            .filter(|&column| !estimate.is_at_an_end(jacobian.shared[column]))
             .collect();
         let normal = matrix.select_rows(&kept).select_columns(&kept).cholesky();
         let mut frame = Self {
