@@ -13,12 +13,14 @@ const TO_SPEED: i32 = 67;
 /// A sensor trembles if its steps at rest have gone to and fro for so many points, and is sure to at most this.
 const TREMBLES: i32 = 100;
 const MOST_TREMBLE: i32 = 1_000;
-/// Points of a step to and fro, of a step onwards, and of a sample like the last one. Of white noise two steps in three go
-/// to and fro; with these points the sum grows only where fewer than one sample in four is like the last one: where
-/// noise is larger than the converter's step. A sensor with less of it may stand still in the middle of a step.
-const TO_AND_FRO: i32 = 2;
+/// Points of a step to and fro by more than the converter's digit, of a step onwards, and of a sample like the last one.
+/// With these points the sum grows only where white noise has a sigma of more than a digit. A sensor with less of it may
+/// tremble where it is near a step of the converter, between one digit and the next, and stand still half a digit on.
+const TO_AND_FRO: i32 = 4;
 const ONWARDS: i32 = -2;
 const STANDING: i32 = -2;
+/// The digit is the smallest of the latest steps: what is known of it grows by a sixteenth a step.
+const FORGETS: i32 = 16;
 /// The noise measure averages over this many samples.
 const NOISE_SAMPLES: i32 = 32;
 
@@ -57,6 +59,8 @@ pub struct AngleWatch {
     speed_before: MilliDegreePerSecond,
     /// The current at that time.
     current_before: MilliAmp,
+    /// The smallest of the latest steps: the converter's digit.
+    digit: MilliDegree,
     /// Points that a resting sensor has for trembling.
     tremble: i32,
     /// Mean magnitude of the second difference, times [`NOISE_SAMPLES`].
@@ -90,6 +94,7 @@ impl Default for AngleWatch {
             same_for: Millisecond::ZERO,
             speed_before: MilliDegreePerSecond::ZERO,
             current_before: MilliAmp::ZERO,
+            digit: MilliDegree::ZERO,
             tremble: 0,
             noise_sum: 0,
             stroke: None,
@@ -158,13 +163,19 @@ impl AngleWatch {
             Ordering::Equal => self.same_for = self.same_for.next(),
             way => {
                 if passed == CoilCurrents::OFF {
-                    let moved = if way == self.way { ONWARDS } else { TO_AND_FRO };
+                    let moved = match way == self.way {
+                        true => ONWARDS,
+                        false if self.spans_digits(step) => TO_AND_FRO,
+                        false => 0,
+                    };
                     // Standing is counted once it is over: a sensor that never moves again is what is looked for.
                     let stood = self.same_for.0.saturating_mul(STANDING);
                     let change = moved.saturating_add(stood);
                     self.tremble = self.tremble.saturating_add(change).clamp(0, MOST_TREMBLE);
                 }
                 self.way = way;
+                let grown = self.digit.0.saturating_add(self.digit.0 / FORGETS + 1);
+                self.digit = MilliDegree(grown).min(step.magnitude());
                 self.same_for = Millisecond::ZERO;
                 self.speed_before = self.speed();
                 self.current_before = passed.lift + passed.lower;
@@ -178,6 +189,11 @@ impl AngleWatch {
         self.noise_sum = self.noise_sum.saturating_add(bend).saturating_sub(mean);
         faults.noisy = mean > safety.noise_limit.0;
         faults.frozen = self.tremble >= TREMBLES && self.same_for >= safety.still_time;
+    }
+
+    /// Whether a step is larger than from one digit to the next.
+    fn spans_digits(&self, step: MilliDegree) -> bool {
+        step.magnitude().0.saturating_mul(2) > self.digit.0.saturating_mul(3)
     }
 
     /// Takes in a good sample.
