@@ -10,7 +10,7 @@ use super::experiment::Experiment;
 use super::explain::{BELIEVED, VISIBLE};
 use super::fit::{Fit, evaluate_weighted, refine};
 use super::frame::Frame;
-use super::jacobian::{Jacobian, SlowColumns, huber, huber_residuals, square_sum};
+use super::jacobian::{Jacobian, SlowColumns, difference, huber, huber_residuals, square_sum};
 use super::shortlist::{Shortlist, Sketch, limit};
 use crate::effects::{AddedEffect, Effect, Parameter};
 use crate::model::Model;
@@ -313,15 +313,7 @@ impl Seen {
         let mut without = fit.estimate.clone();
         without.effects[last] = AddedEffect::null(without.effects[last].effect);
         let without = huber_residuals(experiment, model, &fit.weights, &without);
-        let change = jacobian
-            .runs
-            .iter()
-            .zip(without)
-            .map(|(run, without)| {
-                let both = without.iter().zip(&run.residual);
-                both.map(|(without, with)| without - with).collect()
-            })
-            .collect();
+        let change = difference(&without, &huber(fit.residuals.clone()));
         let own = |shared: &Shared| matches!(shared, Shared::Effect(effect, _) if *effect == last);
         let columns = &jacobian.shared;
         let first = columns.iter().position(own).unwrap_or(0);

@@ -90,6 +90,12 @@ impl<'a> Frame<'a> {
         cost - pull.dot(&self.shares(&pull))
     }
 
+    /// [`Frame::cost_after`] of the frame's own residuals: what there is without anything changed.
+    #[must_use]
+    pub fn here(&self) -> f64 {
+        self.here
+    }
+
     /// How far to go from the frame's own residuals to `residuals` for the least [`Frame::cost_after`], within `low` to
     /// `high` times the way, and that cost: a parabola through both ends and the same way backwards.
     #[must_use]

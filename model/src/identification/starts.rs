@@ -169,7 +169,7 @@ impl<'a> Search<'a> {
     fn kept(&self, promise: &Start, end: f64) -> Start {
         let size = promise.last();
         let start = self.simulated(size.clone()).1;
-        if end <= 1.0 || (self.base.cost - start.cost).abs() > NOTHING {
+        if end <= 1.0 || (self.frame.here() - start.cost).abs() > NOTHING {
             return start;
         }
         let start_at = |share: f64| self.simulated(scaled(&size, share)).1;
