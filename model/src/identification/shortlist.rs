@@ -14,7 +14,7 @@ use crate::model::Model;
 pub(super) const STARTS: usize = 2;
 
 /// Error from which a model counts as far from the data.
-const FAR: f64 = 1.3;
+pub(super) const FAR: f64 = 1.3;
 
 /// A sketch that leaves less than this share of the cost needs no second start.
 const ARRIVED: f64 = 0.3;

@@ -6,7 +6,7 @@ use super::fit::Fit;
 use super::frame::Frame;
 use super::jacobian::huber_residuals;
 use super::scan::{Grid, JUMPS, RINGING, scan};
-use super::shortlist::{STARTS, Shortlist};
+use super::shortlist::{FAR, STARTS, Shortlist};
 use crate::campaign::Channel;
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
@@ -169,11 +169,18 @@ impl<'a> Search<'a> {
     fn kept(&self, promise: &Start, end: f64) -> Start {
         let size = promise.last();
         let start = self.simulated(size.clone()).1;
-        if end <= 1.0 || (self.frame.here() - start.cost).abs() > NOTHING {
+        if end <= 1.0 || !self.is_nothing(&start) {
             return start;
         }
         let start_at = |share: f64| self.simulated(scaled(&size, share)).1;
         golden_section(start_at, 1.0, end)
+    }
+
+    /// Whether a start is as good as none. Near the data, what is free may move on a little beside it; far from them the
+    /// frame promises more than it could keep.
+    fn is_nothing(&self, start: &Start) -> bool {
+        let near = |cost: f64| (cost - start.cost).abs() <= NOTHING;
+        near(self.base.cost) || (self.base.error() <= FAR && near(self.frame.here()))
     }
 
     /// The best start's effect if it explains enough to be worth a closer look.
