@@ -26,7 +26,7 @@ pub fn run() -> Result<()> {
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).with_context(|| format!("can't make {}", folder.display()))?;
     let tests = ["--package", "hitch-firmware", "--test", "envelope"];
-    let test = build(&tests)?;
+    let test = build(&tests, &folder)?;
     let counters = folder.join("envelope.profraw");
     process::run(
         Command::new(&test)
@@ -36,14 +36,15 @@ pub fn run() -> Result<()> {
     judge(&regions(&test, &counters)?)
 }
 
-/// Compiles a test with counters; the program.
-fn build(tests: &[&str]) -> Result<PathBuf> {
+/// Compiles a test with counters; the program. What a build script counts goes into `folder`, not beside the sources.
+fn build(tests: &[&str], folder: &Path) -> Result<PathBuf> {
     let mut command = process::command(workspace::cargo(), &["test", "--locked", "--no-run"]);
     command.args(tests).arg("--message-format=json");
     // Only the workspace's own crates get counters, so what they depend on isn't compiled again.
     let this = env::current_exe().context("where is this program?")?;
     command
         .env("RUSTC_WORKSPACE_WRAPPER", this)
+        .env("LLVM_PROFILE_FILE", folder.join("build.profraw"))
         .env(COUNTING, "1");
     process::announce(&command);
     let output = command.stderr(Stdio::inherit()).output()?;
