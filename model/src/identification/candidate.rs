@@ -89,7 +89,7 @@ pub fn try_effects(
         experiment,
         model,
         base,
-        jacobian: &jacobian,
+        frame: Frame::new(&jacobian, &base.estimate, 0..0),
         worthwhile: WORTH_A_SKETCH * believed,
     };
     let sketches = shortlist.sketches(effects);

@@ -54,7 +54,7 @@ pub struct Step {
 }
 
 /// Size from which a whitened residual counts no longer by its square but by its distance.
-const FAR: f64 = 10.0;
+const OUTLYING: f64 = 10.0;
 
 /// Whitened residuals of every run under an estimate.
 #[must_use]
@@ -78,13 +78,15 @@ pub fn residuals(
 /// Residuals as a fit sees them: their squares are Huber's losses.
 ///
 /// While an effect is missing a simulation may run against a stop that the hitch never reached, and a thousand sigmas
-/// of dead-head pressure would drown all else. Below `FAR` nothing changes.
+/// of dead-head pressure would drown all else. Below `OUTLYING` nothing changes.
 #[must_use]
 pub fn huber(mut residuals: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     for residual in residuals.iter_mut().flatten() {
         let size = residual.abs();
-        if size > FAR {
-            *residual = (2.0 * FAR * size - FAR * FAR).sqrt().copysign(*residual);
+        if size > OUTLYING {
+            *residual = (2.0 * OUTLYING * size - OUTLYING * OUTLYING)
+                .sqrt()
+                .copysign(*residual);
         }
     }
     residuals

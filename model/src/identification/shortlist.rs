@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use super::estimate::Estimate;
 use super::experiment::Experiment;
 use super::fit::{Fit, sketch};
-use super::jacobian::Jacobian;
-use super::starts::{Starts, looked_through, starts, valleys};
+use super::frame::Frame;
+use super::starts::{Starts, valleys};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
@@ -61,8 +61,8 @@ pub(super) struct Shortlist<'a> {
     pub experiment: &'a Experiment,
     pub model: &'a Model,
     pub base: &'a Fit,
-    /// Sensitivities at the base.
-    pub jacobian: &'a Jacobian,
+    /// What is free at the base, and adapts to an effect.
+    pub frame: Frame<'a>,
     /// Fall of the cost under which nothing is worth a sketch.
     pub worthwhile: f64,
 }
@@ -94,7 +94,7 @@ impl Shortlist<'_> {
     fn screened(&self, effects: &[&'static dyn Effect]) -> Vec<Starts> {
         let mut screened: Vec<Starts> = effects
             .par_iter()
-            .map(|&effect| starts(self, effect))
+            .map(|&effect| self.starts(effect))
             .collect();
         screened.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         screened
@@ -113,7 +113,7 @@ impl Shortlist<'_> {
             let Some(grid) = valleys(self.experiment, sketch.effect) else {
                 return;
             };
-            let found = self.sketch(looked_through(self, sketch.effect, grid));
+            let found = self.sketch(self.looked_through(sketch.effect, grid));
             if found.cost < sketch.cost {
                 *sketch = found;
             }

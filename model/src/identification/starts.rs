@@ -2,14 +2,11 @@
 
 use super::estimate::Estimate;
 use super::experiment::Experiment;
-use super::fit::Fit;
-use super::frame::Frame;
 use super::jacobian::huber_residuals;
 use super::scan::{Grid, JUMPS, RINGING, scan};
 use super::shortlist::{FAR, STARTS, Shortlist};
 use crate::campaign::Channel;
 use crate::effects::{AddedEffect, Effect};
-use crate::model::Model;
 
 /// Sizes of the secants, in typical sizes: derivatives at zero miss a play or a gap, one size misses what saturates.
 const SIZES: [f64; 3] = [0.1, 1.0, 4.0];
@@ -40,30 +37,6 @@ pub(super) struct Starts {
     pub looked_through: bool,
 }
 
-/// Starts of an effect that a few secants lead to.
-pub(super) fn starts(shortlist: &Shortlist, effect: &'static dyn Effect) -> Starts {
-    let search = Search::new(shortlist);
-    let ranked = search.rank(sizes(effect));
-    search.starts(effect, ranked, false)
-}
-
-/// Starts of an effect in the valleys that fine steps find.
-pub(super) fn looked_through(
-    shortlist: &Shortlist,
-    effect: &'static dyn Effect,
-    grid: &Grid,
-) -> Starts {
-    let search = Search::new(shortlist);
-    let mut ranked = search.rank(sizes(effect));
-    if let Some(first) = ranked.first() {
-        let hint = first.last();
-        let (experiment, model, base) = (search.experiment, search.model, search.base);
-        ranked.extend(search.rank(scan(experiment, model, base, &hint, grid)));
-        search.sort(&mut ranked);
-    }
-    search.starts(effect, ranked, true)
-}
-
 /// A start and the cost that it leaves once all else has adapted.
 struct Start {
     cost: f64,
@@ -80,28 +53,25 @@ impl Start {
     }
 }
 
-/// What starts are looked for on.
-struct Search<'a> {
-    experiment: &'a Experiment,
-    model: &'a Model,
-    base: &'a Fit,
-    frame: Frame<'a>,
-    worthwhile: f64,
-}
+impl Shortlist<'_> {
+    /// Starts of an effect that a few secants lead to.
+    pub(super) fn starts(&self, effect: &'static dyn Effect) -> Starts {
+        self.best_starts(effect, self.rank(sizes(effect)), false)
+    }
 
-impl<'a> Search<'a> {
-    fn new(shortlist: &Shortlist<'a>) -> Self {
-        Self {
-            experiment: shortlist.experiment,
-            model: shortlist.model,
-            base: shortlist.base,
-            frame: Frame::new(shortlist.jacobian, &shortlist.base.estimate, 0..0),
-            worthwhile: shortlist.worthwhile,
+    /// Starts of an effect in the valleys that fine steps find.
+    pub(super) fn looked_through(&self, effect: &'static dyn Effect, grid: &Grid) -> Starts {
+        let mut ranked = self.rank(sizes(effect));
+        if let Some(first) = ranked.first() {
+            let found = scan(self.experiment, self.model, self.base, &first.last(), grid);
+            ranked.extend(self.rank(found));
+            self.sort(&mut ranked);
         }
+        self.best_starts(effect, ranked, true)
     }
 
     /// The best of ranked starts, after a look at the extreme shapes of the best one.
-    fn starts(
+    fn best_starts(
         &self,
         effect: &'static dyn Effect,
         mut ranked: Vec<Start>,
