@@ -59,6 +59,10 @@ macro_rules! with_groups {
     };
 }
 
+// Below the macro, which it uses.
+mod setting;
+pub use setting::{Scalar, scalar, set, with_settings};
+
 /// Sections that are not groups of scalars.
 const TABLES: [&str; 3] = ["lift", "lower", "linkage"];
 
@@ -93,102 +97,6 @@ pub fn parse(source: &SourceFile) -> Result<ValidCalibration, InputError> {
         .sealed()
         .validate()
         .map_err(|error| refused(&file, error))
-}
-
-/// A setting as on a command line: `position.approach_gain=30`, the key with or without its unit.
-///
-/// # Errors
-/// In one line, if there is no such scalar or the value is no number in its range.
-pub fn set(calibration: &mut Calibration, setting: &str) -> Result<(), String> {
-    let parsed = setting.split_once('=').and_then(|(path, value)| {
-        let (group, key) = path.trim().split_once('.')?;
-        Some((group, key, value.trim()))
-    });
-    let Some((group, key, value)) = parsed else {
-        return Err(format!("{setting:?} is not like position.approach_gain=30"));
-    };
-    let Ok(value) = value.parse::<f64>() else {
-        return Err(format!("{value:?} in {setting:?} is not a number"));
-    };
-    let mut found = None;
-    let _ = set_in_groups(calibration, &mut |name, info, counts| {
-        if name == group && (info.name == key || self::key(info) == key) {
-            let raw = (value * f64::from(info.counts_per_unit)).round();
-            let in_range = (f64::from(info.min)..=f64::from(info.max)).contains(&raw);
-            if in_range {
-                *counts = raw as i32;
-            }
-            found = Some((*info, in_range));
-        }
-    });
-    match found {
-        Some((_, true)) => Ok(()),
-        Some((info, false)) => {
-            let counts = f64::from(info.counts_per_unit);
-            let (low, high) = (f64::from(info.min) / counts, f64::from(info.max) / counts);
-            Err(format!(
-                "{setting:?} is not in {low} to {high} {}",
-                info.suffix
-            ))
-        }
-        None => Err(format!(
-            "there is no {group}.{key}; a calibration file that `hitch calibrate` writes holds all there are"
-        )),
-    }
-}
-
-/// A scalar in engineering units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scalar {
-    /// Its value.
-    pub value: f64,
-    /// Smallest allowed value.
-    pub low: f64,
-    /// Largest allowed value.
-    pub high: f64,
-    /// Suffix of the unit.
-    pub suffix: &'static str,
-}
-
-/// The scalar `group.name`, if there is one.
-#[must_use]
-pub fn scalar(calibration: &Calibration, path: &str) -> Option<Scalar> {
-    let (group, name) = path.split_once('.')?;
-    let mut found = None;
-    let _ = set_in_groups(&mut calibration.clone(), &mut |of, info, counts| {
-        if of == group && info.name == name {
-            let unit = |raw: i32| f64::from(raw) / f64::from(info.counts_per_unit);
-            found = Some(Scalar {
-                value: unit(*counts),
-                low: unit(info.min),
-                high: unit(info.max),
-                suffix: info.suffix,
-            });
-        }
-    });
-    found
-}
-
-/// What [`set_in_groups`] calls: name of the group, the scalar, and its counts to read or change.
-type Visit<'v> = &'v mut dyn FnMut(&str, &ParameterInfo, &mut i32);
-
-/// Visits every scalar.
-fn set_in_groups(calibration: &mut Calibration, visit: Visit<'_>) -> Result<(), InputError> {
-    with_groups!(calibration, visit_group, visit);
-    Ok(())
-}
-
-#[allow(
-    clippy::unnecessary_wraps,
-    reason = "shares its signature with the visitors that can fail"
-)]
-fn visit_group<G: ParameterGroup>(group: &mut G, visit: Visit<'_>) -> Result<(), InputError> {
-    for (index, info) in G::INFO.iter().enumerate() {
-        let mut counts = group.get(index).unwrap_or(info.nominal);
-        visit(G::NAME, info, &mut counts);
-        group.set(index, counts);
-    }
-    Ok(())
 }
 
 /// The text of a calibration file with everything in it, each scalar with its reason.
@@ -355,8 +263,14 @@ fn read_linkage(file: &TomlTable<'_>, calibration: &mut Calibration) -> Result<(
 
 /// What the firmware has against a calibration, at the place in the file that it is about.
 fn refused(file: &TomlTable<'_>, error: CalibrationError) -> InputError {
+    let (section, what, mend) = objection(error);
+    file.error_at(section, what, mend)
+}
+
+/// What the firmware has against a calibration: the section that it is about, what is wrong, and how to mend it.
+fn objection(error: CalibrationError) -> (&'static str, String, &'static str) {
     use CalibrationError as E;
-    let (section, what, mend) = match error {
+    match error {
         E::ValvePoint { valve, index } => (
             valve,
             format!("point {} of [{valve}] is out of order", index + 1),
@@ -385,8 +299,7 @@ fn refused(file: &TomlTable<'_>, error: CalibrationError) -> InputError {
         E::Version { .. } | E::Checksum { .. } => {
             ("format", "the block is damaged".to_owned(), "write it anew")
         }
-    };
-    file.error_at(section, what, mend)
+    }
 }
 
 #[cfg(test)]
@@ -446,26 +359,6 @@ mod tests {
             count.starts_with("c.toml:4:12: 3 currents and 2 flows"),
             "{count}"
         );
-    }
-
-    #[test]
-    fn settings_reach_their_scalar_or_say_why_not() {
-        let mut calibration = Calibration::nominal();
-        set(&mut calibration, "position.approach_gain=31").unwrap();
-        set(&mut calibration, "hold.restart_band=0.5").unwrap_err();
-        set(&mut calibration, "position.restart_band_mm = 0.5").unwrap();
-        assert_eq!(calibration.position.approach_gain.0, 31);
-        assert_eq!(calibration.position.restart_band.0, 500);
-        for (bad, said) in [
-            ("kp=3", "is not like"),
-            ("position.kp=3", "there is no position.kp"),
-            ("position.approach_gain=x", "is not a number"),
-            ("position.approach_gain=1e9", "is not in 1 to 200 per_s"),
-            ("position.approach_gain=NaN", "is not in"),
-        ] {
-            let error = set(&mut calibration, bad).unwrap_err();
-            assert!(error.contains(said), "{bad}: {error}");
-        }
     }
 
     #[test]

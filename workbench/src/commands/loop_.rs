@@ -56,7 +56,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     args.json.check()?;
     output::check_writable(args.report.as_deref())?;
     let model = Model::named(&args.model)?;
-    let calibration = changed(calibration(args.calibration.as_ref())?, &args.set)?;
+    let calibration = changed(&calibration(args.calibration.as_ref())?, &args.set)?;
     let moves = args.scenario.moves(args.load);
     let progress = Progress::start(format!("driving {} moves", moves.len()));
     let driven = closed_loop::run(&model, &calibration, &moves)
@@ -84,16 +84,15 @@ pub fn run(args: &Args) -> Result<(), Error> {
 }
 
 /// The calibration with settings from the command line.
-fn changed(calibration: ValidCalibration, settings: &[String]) -> Result<ValidCalibration, Error> {
-    let mut changed = (*calibration).clone();
-    for setting in settings {
-        calibration_file::set(&mut changed, setting)
-            .map_err(|what| Error::Usage(format!("--set: {what}")))?;
-    }
-    changed
-        .sealed()
-        .validate()
-        .map_err(|error| Error::Usage(format!("--set: these values don't go together: {error:?}")))
+///
+/// # Errors
+/// If a setting is wrong.
+pub fn changed(
+    calibration: &ValidCalibration,
+    settings: &[String],
+) -> Result<ValidCalibration, Error> {
+    calibration_file::with_settings(calibration, settings)
+        .map_err(|what| Error::Usage(format!("--set: {what}")))
 }
 
 /// The calibration of a file, or the nominal one.

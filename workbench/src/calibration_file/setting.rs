@@ -1,0 +1,193 @@
+//! Single scalars of a calibration by name, as on a command line: `position.approach_gain=30`.
+
+use hitch_firmware::control::calibration::{Calibration, ValidCalibration};
+use hitch_firmware::control::parameter::{ParameterGroup, ParameterInfo};
+use hitch_model::input_error::{InputError, quote};
+use hitch_model::naming::offer_names;
+
+use super::{key, objection};
+
+/// A scalar in engineering units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scalar {
+    /// Its value.
+    pub value: f64,
+    /// Smallest allowed value.
+    pub low: f64,
+    /// Largest allowed value.
+    pub high: f64,
+    /// Suffix of the unit.
+    pub suffix: &'static str,
+}
+
+impl Scalar {
+    fn of(info: &ParameterInfo, counts: i32) -> Self {
+        let unit = |raw: i32| f64::from(raw) / f64::from(info.counts_per_unit);
+        Self {
+            value: unit(counts),
+            low: unit(info.min),
+            high: unit(info.max),
+            suffix: info.suffix,
+        }
+    }
+}
+
+/// The calibration with settings from the command line, validated again.
+///
+/// # Errors
+/// What is wrong with the first bad one, or with what they make together.
+pub fn with_settings(
+    calibration: &Calibration,
+    settings: &[String],
+) -> Result<ValidCalibration, String> {
+    let mut changed = calibration.clone();
+    for setting in settings {
+        set(&mut changed, setting)?;
+    }
+    changed.sealed().validate().map_err(|error| {
+        let (_, what, mend) = objection(error);
+        format!("{what}; {mend}")
+    })
+}
+
+/// Sets one scalar, named with or without its unit; its name without.
+///
+/// # Errors
+/// What is wrong with the setting.
+pub fn set(calibration: &mut Calibration, setting: &str) -> Result<String, String> {
+    let parsed = setting.split_once('=').and_then(|(path, value)| {
+        let (group, name) = path.trim().split_once('.')?;
+        Some((group, name, value.trim()))
+    });
+    let Some((group, name, value)) = parsed else {
+        let what = quote(setting);
+        return Err(format!("{what} is not like position.approach_gain=30"));
+    };
+    let Ok(value) = value.parse::<f64>() else {
+        let what = quote(value);
+        return Err(format!("{what} is not a number; {group}.{name} needs one"));
+    };
+    let mut found = None;
+    visit_scalars(calibration, &mut |of, info, counts| {
+        if of == group && (info.name == name || key(info) == name) {
+            let raw = (value * f64::from(info.counts_per_unit)).round();
+            let in_range = (f64::from(info.min)..=f64::from(info.max)).contains(&raw);
+            if in_range {
+                *counts = raw as i32;
+            }
+            found = Some((*info, in_range));
+        }
+    });
+    match found {
+        Some((info, true)) => Ok(format!("{group}.{}", info.name)),
+        Some((info, false)) => {
+            let Scalar { low, high, .. } = Scalar::of(&info, info.nominal);
+            let key = key(&info);
+            Err(format!(
+                "{group}.{key} = {value:?} is out of range; it may be {low} to {high}"
+            ))
+        }
+        None => Err(unknown(calibration, group, name)),
+    }
+}
+
+/// What to say of a name that there isn't: what comes near it.
+fn unknown(calibration: &mut Calibration, group: &str, name: &str) -> String {
+    let (mut groups, mut names) = (Vec::new(), Vec::new());
+    visit_scalars(calibration, &mut |of, info, _| {
+        if groups.last() != Some(&of) {
+            groups.push(of);
+        }
+        if of == group {
+            names.push(info.name);
+        }
+    });
+    let offer = match names.is_empty() {
+        true => offer_names(group, &groups),
+        false => offer_names(name, &names),
+    };
+    let what = quote(&format!("{group}.{name}"));
+    format!("there is no {what}; {offer}")
+}
+
+/// The scalar `group.name`, if there is one.
+#[must_use]
+pub fn scalar(calibration: &Calibration, path: &str) -> Option<Scalar> {
+    let (group, name) = path.split_once('.')?;
+    let mut found = None;
+    visit_scalars(&mut calibration.clone(), &mut |of, info, counts| {
+        if of == group && info.name == name {
+            found = Some(Scalar::of(info, *counts));
+        }
+    });
+    found
+}
+
+/// What [`visit_scalars`] calls: name of the group, the scalar, and its counts to read or change.
+type Visit<'v> = &'v mut dyn FnMut(&'static str, &ParameterInfo, &mut i32);
+
+/// Visits every scalar.
+fn visit_scalars(calibration: &mut Calibration, visit: Visit<'_>) {
+    // The visitors share their signature with those that can fail.
+    let _ = visit_groups(calibration, visit);
+}
+
+fn visit_groups(calibration: &mut Calibration, visit: Visit<'_>) -> Result<(), InputError> {
+    with_groups!(calibration, visit_group, visit);
+    Ok(())
+}
+
+#[allow(
+    clippy::unnecessary_wraps,
+    reason = "shares its signature with the visitors that can fail"
+)]
+fn visit_group<G: ParameterGroup>(group: &mut G, visit: Visit<'_>) -> Result<(), InputError> {
+    for (index, info) in G::INFO.iter().enumerate() {
+        let mut counts = group.get(index).unwrap_or(info.nominal);
+        visit(G::NAME, info, &mut counts);
+        group.set(index, counts);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_reach_their_scalar_or_say_why_not() {
+        let mut calibration = Calibration::nominal();
+        set(&mut calibration, "position.approach_gain=31").unwrap();
+        let name = set(&mut calibration, "position.restart_band_mm = 0.5").unwrap();
+        assert_eq!(name, "position.restart_band");
+        assert_eq!(calibration.position.approach_gain.0, 31);
+        assert_eq!(calibration.position.restart_band.0, 500);
+        for (bad, said) in [
+            ("kp=3", "is not like"),
+            (
+                "position.kp=3",
+                "there is no \"position.kp\"; known: lower_limit, ",
+            ),
+            ("position.aproach_gain=3", "did you mean approach_gain?"),
+            ("postion.approach_gain=3", "did you mean position?"),
+            ("position.approach_gain=x", "is not a number"),
+            (
+                "position.approach_gain=1e9",
+                "position.approach_gain_per_s = 1000000000.0 is out of range; it may be 1 to 200",
+            ),
+            ("position.approach_gain=NaN", "is out of range"),
+            ("position.approach_gain=1e300", "= 1e300 is out of range"),
+        ] {
+            let error = set(&mut calibration, bad).unwrap_err();
+            assert!(error.contains(said), "{bad}: {error}");
+        }
+    }
+
+    #[test]
+    fn settings_that_contradict_each_other_are_refused() {
+        let crossed = ["position.upper_limit=60", "position.lower_limit=120"].map(str::to_owned);
+        let error = with_settings(&Calibration::nominal(), &crossed).map(drop);
+        let said = "lower_limit of [position] is not below upper_limit; exchange them";
+        assert_eq!(error, Err(said.to_owned()));
+    }
+}
