@@ -73,3 +73,21 @@ fn a_value_set_by_hand_is_driven_and_a_wrong_one_is_refused_in_one_line() {
         );
     }
 }
+
+#[test]
+fn a_value_set_by_hand_is_left_alone_by_the_search() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments =
+        "tune --scenario quick --trials 20 --out tuned.toml --set position.creep_speed=9";
+    let output = run(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let tuned = std::fs::read_to_string(folder.path().join("tuned.toml")).unwrap();
+    let value = |key: &str| {
+        let line = tuned.lines().find(|line| line.starts_with(key));
+        line.unwrap().rsplit(' ').next().unwrap().to_owned()
+    };
+    assert_eq!(value("creep_speed"), "9.0");
+    let nominal = hitch_firmware::control::Calibration::nominal();
+    let searched = value("approach_gain").parse::<f64>().unwrap();
+    assert_ne!(searched, f64::from(nominal.position.approach_gain.0));
+}

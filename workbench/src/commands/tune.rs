@@ -7,6 +7,7 @@ use hitch_model::Model;
 use crate::calibrate::calibrate;
 use crate::calibration_file;
 use crate::closed_loop::Scenario;
+use crate::commands::loop_::changed;
 use crate::error::Error;
 use crate::output;
 use crate::progress::Progress;
@@ -18,7 +19,8 @@ use crate::tuning::{Judged, Trial, changes};
 #[command(
     after_help = "Example: hitch tune --model explained.toml --out tuned.toml\n\n\
     The valve map is the model's; what is searched are ramps, approach, cut-off and filters. Each candidate drives moves both\n\
-    ways at three loads, on the model and with thresholds 0.02 A off. By hand: hitch loop --set position.approach_gain=30"
+    ways at three loads, on the model and with thresholds 0.02 A off. A value that is given with --set stays. By hand: hitch\n\
+    loop --set position.approach_gain=30"
 )]
 pub struct Args {
     /// The plant: nominal, dynamic, or the name of a model file
@@ -30,6 +32,9 @@ pub struct Args {
     /// Calibration to start from; without it, the nominal one with the model's valve map
     #[arg(long, value_name = "C.toml")]
     calibration: Option<PathBuf>,
+    /// Sets a value of the calibration, as in position.approach_gain=30, and leaves it there; may be given several times
+    #[arg(long, value_name = "GROUP.KEY=VALUE")]
+    set: Vec<String>,
     /// How many candidates are tried
     #[arg(long, value_name = "COUNT", default_value_t = 400, value_parser = clap::value_parser!(u32).range(10..=100_000))]
     trials: u32,
@@ -50,16 +55,21 @@ pub fn run(args: &Args) -> Result<(), Error> {
         None => calibrate(&model, &Calibration::nominal())
             .map_err(|error| Error::Usage(format!("{}: {error}", args.model)))?,
     };
+    let base = changed(&base, &args.set)?;
+    let fixed: Vec<String> = args
+        .set
+        .iter()
+        .filter_map(|setting| calibration_file::set(&mut (*base).clone(), setting).ok())
+        .collect();
     let progress = Progress::start("finding the shortest manoeuvres");
     let trial = Trial::new(&model, &args.scenario.moves(None));
     let failed = || Error::Failed("the search found no valid calibration".to_owned());
     let before = trial.judge(&base).ok_or_else(failed)?;
+    drop(progress);
+    let progress = Progress::of(args.trials as usize, "trying candidates");
     let after = trial
-        .search(&base, args.trials as usize, |count, cost| {
-            progress.say(format!(
-                "candidate {count} of {}, best cost {cost:.3}",
-                args.trials
-            ));
+        .search(&base, &fixed, args.trials as usize, |count, cost| {
+            progress.reach(count, format!("best cost {cost:.3}"));
         })
         .ok_or_else(failed)?;
     drop(progress);

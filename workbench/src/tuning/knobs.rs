@@ -22,10 +22,17 @@ pub const KNOBS: [&str; 10] = [
 /// No value gets more than so many times larger or smaller: beyond that its reason no longer holds.
 const MOST_DOUBLINGS: f64 = 2.0;
 
-/// `base` with each value times two to the power of its coordinate; `None` if that isn't a valid calibration.
-pub fn with_values(base: &Calibration, point: &[f64]) -> Option<ValidCalibration> {
+/// The values that are searched, without those of `fixed`.
+#[must_use]
+pub fn without(fixed: &[String]) -> Vec<&'static str> {
+    let is_fixed = |knob: &str| fixed.iter().any(|name| name == knob);
+    KNOBS.into_iter().filter(|knob| !is_fixed(knob)).collect()
+}
+
+/// `base` with the value of each knob times two to the power of its coordinate; `None` if that isn't a valid calibration.
+pub fn with_values(base: &Calibration, knobs: &[&str], point: &[f64]) -> Option<ValidCalibration> {
     let mut calibration = base.clone();
-    for (key, doublings) in KNOBS.iter().zip(point) {
+    for (key, doublings) in knobs.iter().zip(point) {
         let found = scalar(base, key)?;
         let factor = doublings.clamp(-MOST_DOUBLINGS, MOST_DOUBLINGS).exp2();
         let value = (found.value * factor).clamp(found.low, found.high);

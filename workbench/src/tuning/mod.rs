@@ -13,7 +13,7 @@ use hitch_model::effects::{AddedEffect, find};
 
 use crate::closed_loop::{Course, Move, MoveResult, Summary, courses, figures};
 pub use cost::cost;
-use knobs::{KNOBS, with_values};
+use knobs::{with_values, without};
 
 /// What teaching leaves of a threshold's error, A.
 const SPREAD_A: f64 = 0.02;
@@ -78,17 +78,20 @@ impl Trial {
         })
     }
 
-    /// Searches from `base` with about `trials` candidates; `tell` hears of each: how many so far, and the best cost.
+    /// Searches from `base` with about `trials` candidates, leaving the values in `fixed` (as in `position.creep_speed`)
+    /// as they are there; `tell` hears of each: how many so far, and the best cost.
     #[must_use]
     pub fn search(
         &self,
         base: &Calibration,
+        fixed: &[String],
         trials: usize,
         tell: impl Fn(usize, f64) + Sync,
     ) -> Option<Judged> {
+        let knobs = without(fixed);
         let state = std::sync::Mutex::new((0, None::<Judged>));
         let objective = |point: &DVector<f64>| {
-            let judged = with_values(base, point.as_slice())
+            let judged = with_values(base, &knobs, point.as_slice())
                 .and_then(|calibration| self.judge(&calibration));
             let cost = judged.as_ref().map_or(f64::MAX, |judged| judged.cost);
             // Nothing panics while the lock is held.
@@ -102,8 +105,8 @@ impl Trial {
             cost
         };
         // The start is a candidate as well: nothing worse is ever returned.
-        objective(&DVector::zeros(KNOBS.len()));
-        let mut search = CMAESOptions::new(vec![0.0; KNOBS.len()], START_SIGMA)
+        objective(&DVector::zeros(knobs.len()));
+        let mut search = CMAESOptions::new(vec![0.0; knobs.len()], START_SIGMA)
             .max_function_evals(trials)
             .seed(1)
             .build(objective)
