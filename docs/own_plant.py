@@ -1,15 +1,15 @@
 """Closes the loop around the firmware's controller with a plant of one's own.
 
-usage: python3 own_plant.py PATH_TO_HITCH
+usage: python3 own_plant.py [PATH_TO_HITCH]     (without it, target/release/hitch)
 
-The plant is a toy: valves that are linear from a threshold on, a lag of 60 ms, and an angle straight from the flow.
-`hitch controller` answers each line (one a millisecond) with the coil currents it asks for.
+The plant is a toy: linear valves with a threshold, a lag of 60 ms, and an angle straight from the flow. `hitch controller`
+answers each line (one a millisecond) with the coil currents it asks for.
 """
 import subprocess, sys
 
-controller = subprocess.Popen([sys.argv[1], "controller"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-controller.stdin.write("time_s,lever_deg,rocker_angle_deg\n")
-controller.stdin.flush()
+hitch = (sys.argv[1:] or ["target/release/hitch"])[0]
+controller = subprocess.Popen([hitch, "controller"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+print("time_s,lever_deg,rocker_angle_deg", file=controller.stdin, flush=True)
 assert controller.stdout.readline() == "lift_current_a,lower_current_a,state\n"
 
 angle_deg, lift_a, lower_a, step = 90.0, 0.0, 0.0, 0
@@ -18,8 +18,7 @@ angle_deg, lift_a, lower_a, step = 90.0, 0.0, 0.0, 0
 def millisecond(lever_deg):
     """Tells the controller lever and angle, and moves the plant by what it asks for; returns the controller's state."""
     global angle_deg, lift_a, lower_a, step
-    controller.stdin.write(f"{step / 1000:.3f},{lever_deg},{angle_deg:.3f}\n")
-    controller.stdin.flush()
+    print(f"{step / 1000:.3f},{lever_deg},{angle_deg:.3f}", file=controller.stdin, flush=True)
     lift, lower, state = controller.stdout.readline().strip().split(",")
     lift_a += (float(lift) - lift_a) / 60
     lower_a += (float(lower) - lower_a) / 60

@@ -1,6 +1,6 @@
 """Tunes a gain over XCP while the hitch moves, and shows what that does to its moves.
 
-usage: python3 tune_live.py PATH_TO_HITCH [OPTION OF `hitch ecu`...]     (pip install pyxcp cantools "python-can[serial]")
+usage: python3 tune_live.py [PATH_TO_HITCH [OPTION OF `hitch ecu`...]]     (pip install pyxcp cantools "python-can[serial]")
 
 pyxcp writes the gain, at the address that hitch.a2l gives it; python-can and cantools watch the hitch by hitch.dbc. A picture
 of the moves is written to tuning.svg.
@@ -16,8 +16,9 @@ LOW_DEG, HIGH_DEG = 80.0, 105.0
 GAINS_PER_S = [46, 4, 46]
 MOVE_S = 2.0
 
+hitch, *options = sys.argv[1:] or ["target/release/hitch"]
 ecu = subprocess.Popen(
-    [sys.argv[1], "ecu", "--can", "127.0.0.1:0", *sys.argv[2:]],
+    [hitch, "ecu", "--can", "127.0.0.1:0", *options],
     stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
 )
 port = "socket://" + ecu.stderr.readline().split()[-1]

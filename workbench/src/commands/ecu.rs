@@ -109,7 +109,7 @@ fn flash(args: &Args) -> Result<Vec<u8>, Error> {
             bytes.len()
         ))),
         Err(error) => Err(Error::Usage(format!(
-            "{}: cannot be read: {error}",
+            "{}: cannot be read: {error}; name a file of its own",
             path.display()
         ))),
     }

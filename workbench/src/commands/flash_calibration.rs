@@ -1,4 +1,5 @@
 //! `hitch flash-calibration`: a calibration into a running ECU, over XCP.
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use crate::calibration_file;
@@ -46,9 +47,14 @@ pub fn run(args: &Args) -> Result<(), Error> {
 /// If there is none.
 pub fn connect(address: &str) -> Result<Session, Error> {
     let client = SlcanClient::connect(address).map_err(|error| {
-        Error::Usage(format!(
-            "--can {address}: nobody is there: {error}; start `hitch ecu --can {address}` or name an slcan adapter"
-        ))
+        Error::Usage(match error.kind() {
+            ErrorKind::InvalidInput => {
+                format!("--can {address}: {error}; name a host and a port, as in 127.0.0.1:7701")
+            }
+            _ => format!(
+                "--can {address}: nobody is there: {error}; start `hitch ecu --can {address}` or name an slcan adapter"
+            ),
+        })
     })?;
     Session::open(client).map_err(tool_error)
 }
