@@ -180,18 +180,17 @@ impl Course {
     }
 }
 
-/// Height of the jump between the sample before and this one, if the current is flat on either side of it, else zero.
+/// Height of a jump between the sample before and this one: what the rise has more than those before and after it.
 fn jump_before(current_a: &[f64], sample: usize) -> f64 {
     if sample < 2 || sample + 1 >= current_a.len() {
         return 0.0;
     }
-    let rise = |to: usize| (current_a[to] - current_a[to - 1]).abs();
-    let flat = 0.2 * rise(sample);
-    if rise(sample - 1) < flat && rise(sample + 1) < flat {
-        rise(sample)
-    } else {
-        0.0
-    }
+    let rise = |to: usize| current_a[to] - current_a[to - 1];
+    let (own, before, after) = (rise(sample), rise(sample - 1), rise(sample + 1));
+    let more_than = |other: f64| own.abs() - other * own.signum();
+    more_than(before)
+        .min(more_than(after))
+        .clamp(0.0, own.abs())
 }
 
 /// One cleaned current.
