@@ -16,8 +16,8 @@ const MOVES: [(u32, f64); 4] = [(1, 90.0), (3, 110.0), (6, 70.0), (10, 100.0)];
 const DURATION_S: u32 = 13;
 
 /// What candump logs while the operator works on a hitch whose lowering valve opens later than the nominal one.
-fn log(measured_period_ms: u32) -> String {
-    let model = dynamic_with(&[("lower-threshold-shift", &[HIDDEN_A])]);
+fn log(shift_a: f64, measured_period_ms: u32) -> String {
+    let model = dynamic_with(&[("lower-threshold-shift", &[shift_a])]);
     let mut calibration = Calibration::nominal();
     let setting = format!("bus.measured_period={measured_period_ms}");
     calibration_file::set(&mut calibration, &setting).unwrap();
@@ -43,8 +43,8 @@ fn log(measured_period_ms: u32) -> String {
     text
 }
 
-/// The size of the threshold's shift that `hitch explain` finds first, A, the number of effects, and the verdict.
-fn explained(measured_period_ms: u32) -> (f64, usize, String) {
+/// What `hitch explain` says of such a log.
+fn explained(shift_a: f64, measured_period_ms: u32) -> serde_json::Value {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path().join("c");
     fs::create_dir(&folder).unwrap();
@@ -52,7 +52,7 @@ fn explained(measured_period_ms: u32) -> (f64, usize, String) {
         "format = 1\n[[run]]\nfile = \"tractor.log\"\nbench = \"hitch\"\nload_kg = {LOAD_KG}\n"
     );
     fs::write(folder.join("campaign.toml"), manifest).unwrap();
-    fs::write(folder.join("tractor.log"), log(measured_period_ms)).unwrap();
+    fs::write(folder.join("tractor.log"), log(shift_a, measured_period_ms)).unwrap();
     let output = run(
         dir.path(),
         &["explain", "c", "--model", "dynamic", "--json", "-"],
@@ -60,27 +60,39 @@ fn explained(measured_period_ms: u32) -> (f64, usize, String) {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{said}");
     let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    let steps = found["steps"].as_array().unwrap();
     println!(
-        "every {measured_period_ms} ms: {:?}, error {} to {}, {}",
-        steps.iter().map(|step| &step["effect"]).collect::<Vec<_>>(),
-        found["error_before"],
-        found["error_after"],
+        "{shift_a} A, every {measured_period_ms} ms: {}",
         found["verdict"]
     );
-    assert_eq!(steps[0]["effect"], "lower-threshold-shift");
-    let shift_a = steps[0]["parameters"][0]["value"].as_f64().unwrap();
-    println!("shift {shift_a} A");
-    let verdict = found["verdict"].as_str().unwrap().to_owned();
-    (shift_a, steps.len(), verdict)
+    for step in found["steps"].as_array().unwrap() {
+        println!("  {} {}", step["effect"], step["parameters"]);
+    }
+    found
+}
+
+/// The size of the threshold's shift, which has to be named first, A.
+fn shift_a(found: &serde_json::Value) -> f64 {
+    let first = &found["steps"][0];
+    assert_eq!(first["effect"], "lower-threshold-shift");
+    first["parameters"][0]["value"].as_f64().unwrap()
 }
 
 #[test]
 fn a_log_of_the_bus_names_what_is_hidden_in_the_plant() {
-    let (shift_a, effects, verdict) = explained(5);
-    assert!((shift_a - HIDDEN_A).abs() < 0.004, "{shift_a} A");
-    assert_eq!((effects, verdict.as_str()), (1, "explained"));
+    let found = explained(HIDDEN_A, 5);
+    let close_by = (shift_a(&found) - HIDDEN_A).abs() < 0.004;
+    assert!(close_by && found["verdict"] == "explained");
+    assert_eq!(found["steps"].as_array().unwrap().len(), 1);
     // A coil is cut within a millisecond, of which samples every 20 ms know little; what is hidden still comes first.
-    let (shift_a, _, _) = explained(20);
-    assert!((shift_a - HIDDEN_A).abs() < 0.02, "{shift_a} A");
+    let found = explained(HIDDEN_A, 20);
+    assert!((shift_a(&found) - HIDDEN_A).abs() < 0.02);
+}
+
+#[test]
+fn a_log_of_the_bus_names_nothing_if_nothing_is_hidden() {
+    // Every sample of a current is a tenth of an ampere off with its dither: six effects were named for it.
+    for period_ms in [5, 10] {
+        let found = explained(0.0, period_ms);
+        assert_eq!(found["verdict"], "nothing-missing");
+    }
 }

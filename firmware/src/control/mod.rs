@@ -11,6 +11,7 @@
 
 pub mod calibration;
 pub mod calibration_words;
+pub mod charge;
 pub mod closing;
 pub mod controller;
 pub mod course;

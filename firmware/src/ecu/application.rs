@@ -12,6 +12,7 @@ use super::panel::Contact;
 use super::service::{self, Service, Storing};
 use super::status::status;
 use crate::can::Frame;
+use crate::control::charge::CoilCharge;
 use crate::control::{Controller, Inputs, Outputs, State};
 use crate::j1939::{
     MeasuredBroadcast, NameFields, Node, PREFERRED_ADDRESS, Remote, Settings, TroubleFinder,
@@ -42,6 +43,7 @@ pub struct Ecu<F> {
     trouble_finder: TroubleFinder,
     slave: Slave,
     measurements: Measurements,
+    charge: CoilCharge,
     outbox: Deque<Frame, OUTBOX>,
     pace: Pace,
     flow: FlowMonitor,
@@ -72,6 +74,7 @@ impl<F: NorFlash> Ecu<F> {
             trouble_finder: TroubleFinder::default(),
             slave: Slave::new(),
             measurements: Measurements::default(),
+            charge: CoilCharge::default(),
             outbox: Deque::new(),
             pace: Pace::default(),
             flow: FlowMonitor::default(),
@@ -148,12 +151,14 @@ impl<F: NorFlash> Ecu<F> {
     }
 
     fn measure(&mut self, frames_dropped: u16) {
+        self.charge = self.charge.after(&self.inputs);
         let state = EcuState {
             remote_set_point: match self.node.remote() {
                 Remote::Position(position) => position.0,
                 Remote::Idle => -1,
             },
             address: self.node.address().unwrap_or(NO_ADDRESS),
+            charge: self.charge,
             calibration_state: self.service.pages.applied() as u8,
             longest_step_us: self.pace.longest_us(),
             frames_dropped,
@@ -234,7 +239,9 @@ impl<F: NorFlash> Ecu<F> {
         };
         let period = self.controller.calibration().bus.measured_period;
         let now_ms = self.pace.now_ms();
-        let frames = self.measured.poll(source, now_ms, period, &self.inputs);
+        let frames = self
+            .measured
+            .poll(source, now_ms, period, &self.inputs, self.charge);
         frames
             .into_iter()
             .flatten()

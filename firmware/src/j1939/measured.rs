@@ -5,14 +5,16 @@
 //! | 65349, hitch motion | lift current | lowering current | rocker angle | time of the sample |
 //! | 65350, hitch pressures | cylinder pressure | pump pressure | supply | time of the sample |
 //!
-//! Little-endian, with the scales of `hitch.dbc`; 0xFFFF: not measured. Both groups are of the same sample and carry its
+//! The currents are their means since the last such group. Little-endian, with the scales of `hitch.dbc`; 0xFFFF: not measured. Both groups are of the same sample and carry its
 //! time, so whatever delays a frame on the bus or in a logger's adapter spoils no speed that is reckoned from it.
 
 use super::id::{GLOBAL, Id, Pgn};
 use super::time::since_ms;
 use crate::can::Frame;
 use crate::control::Inputs;
-use crate::control::units::Millisecond;
+use crate::control::charge::CoilCharge;
+use crate::control::fixed::Divisor;
+use crate::control::units::{MilliAmp, Millisecond};
 
 /// The time of a sample goes round after this many milliseconds: below the values that J1939 reserves.
 pub const TIME_WRAPS_MS: u32 = 64_000;
@@ -66,6 +68,7 @@ impl Scale {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MeasuredBroadcast {
     sent_ms: Option<u32>,
+    charge_then: CoilCharge,
 }
 
 impl MeasuredBroadcast {
@@ -76,23 +79,25 @@ impl MeasuredBroadcast {
         now_ms: u32,
         period: Millisecond,
         inputs: &Inputs,
+        charge: CoilCharge,
     ) -> Option<[Frame; 2]> {
         let period_ms = u32::try_from(period.0).ok().filter(|&period| period > 0)?;
-        let due = self
-            .sent_ms
-            .is_none_or(|sent| since_ms(sent, now_ms) >= period_ms);
-        due.then(|| {
-            self.sent_ms = Some(now_ms);
-            frames(source, now_ms, inputs)
-        })
+        let passed_ms = self.sent_ms.map_or(now_ms, |sent| since_ms(sent, now_ms));
+        if self.sent_ms.is_some() && passed_ms < period_ms {
+            return None;
+        }
+        let steps = Divisor::at_least_one(passed_ms.cast_signed());
+        let means = charge.mean_since(self.charge_then, steps);
+        (self.sent_ms, self.charge_then) = (Some(now_ms), charge);
+        Some(frames(source, now_ms, inputs, means))
     }
 }
 
-fn frames(source: u8, now_ms: u32, inputs: &Inputs) -> [Frame; 2] {
+fn frames(source: u8, now_ms: u32, inputs: &Inputs, [lift, lower]: [MilliAmp; 2]) -> [Frame; 2] {
     let time = u16::try_from(now_ms % TIME_WRAPS_MS).unwrap_or(NOT_AVAILABLE);
     let motion = [
-        CURRENT.raw(inputs.lift_current.map(|value| value.0)),
-        CURRENT.raw(inputs.lower_current.map(|value| value.0)),
+        CURRENT.raw(inputs.lift_current.map(|_| lift.0)),
+        CURRENT.raw(inputs.lower_current.map(|_| lower.0)),
         ANGLE.raw(inputs.rocker_angle.map(|value| value.0)),
         time,
     ];

@@ -1,5 +1,6 @@
 //! What can be measured: one table, from which the ECU fills its slots and the description file is made.
 
+use crate::control::charge::CoilCharge;
 use crate::control::{Inputs, Outputs};
 use crate::fnv;
 
@@ -44,6 +45,8 @@ pub struct EcuState {
     pub remote_set_point: i32,
     /// Our address on the bus; 254: none.
     pub address: u8,
+    /// Charge through the coils.
+    pub charge: CoilCharge,
     /// Why the working page isn't in use: 0 it is, else see [`super::pages::Applied`].
     pub calibration_state: u8,
     /// Longest step so far, us.
@@ -152,6 +155,10 @@ measurements! {
     lift_current_measured: I16, "a", 1_000, -32_000..=32_000 = inputs.lift_current.map_or(0, |value| value.0);
     /// Measured current of the lowering coil.
     lower_current_measured: I16, "a", 1_000, -32_000..=32_000 = inputs.lower_current.map_or(0, |value| value.0);
+    /// Charge through the lift coil, goes round; its rise over a time is the mean current, without dither.
+    lift_charge: I32, "uc", 1, -2_147_483_647..=2_147_483_647 = ecu.charge.0[0];
+    /// Charge through the lowering coil, likewise.
+    lower_charge: I32, "uc", 1, -2_147_483_647..=2_147_483_647 = ecu.charge.0[1];
     /// Share of the supply for the lift coil.
     lift_duty: I32, "percent", 1_000, 0..=100_000 = outputs.lift_duty.0;
     /// Share of the supply for the lowering coil.

@@ -2,6 +2,7 @@
 
 use hitch_firmware::can::Frame;
 use hitch_firmware::control::Inputs;
+use hitch_firmware::control::charge::CoilCharge;
 use hitch_firmware::control::units::{MilliAmp, MilliBar, MilliDegree, MilliVolt, Millisecond};
 use hitch_firmware::j1939::measured::TIME_WRAPS_MS;
 use hitch_firmware::j1939::{Id, MeasuredBroadcast, Pgn};
@@ -22,8 +23,14 @@ fn measured() -> Inputs {
 }
 
 fn at(now_ms: u32, inputs: &Inputs) -> [Frame; 2] {
-    let frames = MeasuredBroadcast::default().poll(SOURCE, now_ms, PERIOD, inputs);
-    frames.expect("the first one is due at once")
+    let mut broadcast = MeasuredBroadcast::default();
+    let mut charge = CoilCharge::default();
+    let mut frames = None;
+    for time_ms in now_ms - PERIOD.0.unsigned_abs()..=now_ms {
+        charge = charge.after(inputs);
+        frames = broadcast.poll(SOURCE, time_ms, PERIOD, inputs, charge);
+    }
+    frames.expect("one is due after a period")
 }
 
 #[test]
@@ -45,16 +52,38 @@ fn scales_are_those_of_the_description() {
 
 #[test]
 fn what_is_not_measured_or_does_not_fit_is_no_other_value() {
-    let [motion, pressures] = at(0, &Inputs::default());
-    assert_eq!(motion.data(), [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0]);
+    let [motion, pressures] = at(20, &Inputs::default());
+    assert_eq!(motion.data(), [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 20, 0]);
     assert_eq!(pressures.data(), motion.data());
     let absurd = Inputs {
-        lift_current: Some(MilliAmp(i32::MAX)),
-        lower_current: Some(MilliAmp(i32::MIN)),
+        lift_current: Some(MilliAmp(40_000)),
+        lower_current: Some(MilliAmp(-40_000)),
         ..Inputs::default()
     };
-    let [motion, _] = at(0, &absurd);
+    let [motion, _] = at(20, &absurd);
     assert_eq!(motion.data()[..4], [0xFF, 0xFA, 0, 0], "the ends");
+}
+
+#[test]
+fn a_current_is_its_mean_since_the_last_time() {
+    let mut broadcast = MeasuredBroadcast::default();
+    let mut charge = CoilCharge::default();
+    let mut said = Vec::new();
+    // With dither, and cut 5 ms before the third time.
+    for time_ms in 0..=40 {
+        let dither_ma = if time_ms % 8 < 4 { 100 } else { -100 };
+        let inputs = Inputs {
+            lift_current: Some(MilliAmp(if time_ms <= 35 { 1_500 + dither_ma } else { 0 })),
+            ..Inputs::default()
+        };
+        charge = charge.after(&inputs);
+        let frames = broadcast.poll(SOURCE, time_ms, PERIOD, &inputs, charge);
+        said.extend(frames.map(|[motion, _]| {
+            i32::from(u16::from_le_bytes([motion.data()[0], motion.data()[1]])) - 32_000
+        }));
+    }
+    // Of steps 1 to 20 the dither is up in 11; of the 15 that are left of the next 20, in 8.
+    assert_eq!(said, [1_600, 1_510, 1_130]);
 }
 
 #[test]
@@ -62,8 +91,8 @@ fn it_comes_as_often_as_the_calibration_says() {
     let times = |period: i32| {
         let mut broadcast = MeasuredBroadcast::default();
         // The counter goes round on the way.
-        let mut due =
-            |now_ms| broadcast.poll(SOURCE, now_ms, Millisecond(period), &Inputs::default());
+        let (inputs, charge) = (Inputs::default(), CoilCharge::default());
+        let mut due = |now_ms| broadcast.poll(SOURCE, now_ms, Millisecond(period), &inputs, charge);
         let ticks = (0..100_u32).map(|tick| tick.wrapping_sub(50));
         ticks.filter(|&now_ms| due(now_ms).is_some()).count()
     };

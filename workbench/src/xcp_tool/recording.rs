@@ -7,22 +7,39 @@ use hitch_firmware::xcp::measurements::{INFO, Width};
 
 use super::session::{Session, ToolError};
 
-/// Columns of a log, with the measurement of each. The dither is in the measured currents as a ripple that no spool follows;
-/// `explain` low-passes them.
-pub const CHANNELS: [(&str, &str); 5] = [
-    ("lift_current_a", "lift_current_measured"),
-    ("lower_current_a", "lower_current_measured"),
-    ("pump_pressure_bar", "pump_pressure"),
-    ("cylinder_pressure_bar", "cylinder_pressure"),
-    ("rocker_angle_deg", "rocker_angle"),
+/// Columns of a log, with the measurement of each.
+pub const CHANNELS: [(&str, Reading); 5] = [
+    ("lift_current_a", Reading::MeanOf("lift_charge")),
+    ("lower_current_a", Reading::MeanOf("lower_charge")),
+    ("pump_pressure_bar", Reading::Value("pump_pressure")),
+    ("cylinder_pressure_bar", Reading::Value("cylinder_pressure")),
+    ("rocker_angle_deg", Reading::Value("rocker_angle")),
 ];
-/// Sampled every other ten milliseconds: 50 Hz.
-pub const PERIOD_MS: u64 = 20;
+/// Time between two samples, ms.
+pub const PERIOD_MS: u64 = 10;
 const EVENT_EVERY_10_MS: u8 = 1;
-const PRESCALER: u8 = 2;
+const PRESCALER: u8 = 1;
+/// Bytes of a packet behind its number, and of the time in a sample's first one.
+const PAYLOAD_BYTES: u8 = 7;
+const TIME_BYTES: u8 = 4;
 /// A tick of the ECU's clock, s.
 const TICK_S: f64 = 1e-6;
 const SILENT_AFTER: Duration = Duration::from_secs(1);
+
+/// Longest time between two samples of a charge, ticks: its low word may have gone round in more.
+const LONGEST_TICKS: u32 = 15_000;
+/// Least that the low word of a charge is taken to have grown by: noise takes a little away where there is no current.
+const LEAST_GROWTH: u16 = 10_000;
+
+/// What a column has of a measurement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reading {
+    /// Its value.
+    Value(&'static str),
+    /// How fast it has grown since the last sample: of a charge the current, without its dither, and with it when it
+    /// was cut between two samples.
+    MeanOf(&'static str),
+}
 
 /// A row of a log: time, s, then the values of [`CHANNELS`].
 pub type Row = (f64, [f64; CHANNELS.len()]);
@@ -30,6 +47,7 @@ pub type Row = (f64, [f64; CHANNELS.len()]);
 /// One measurement: where it is, how long, and what a count of it is worth.
 #[derive(Clone, Copy)]
 struct Source {
+    reading: Reading,
     address: u32,
     bytes: u8,
     units_per_count: f64,
@@ -44,15 +62,16 @@ pub fn record(
     duration_s: f64,
     mut progress: impl FnMut(f64),
 ) -> Result<Vec<Row>, ToolError> {
-    let sources = CHANNELS.map(|(_, measurement)| source(measurement));
-    set_up(session, &sources)?;
+    let sources = CHANNELS.map(|(_, reading)| source(reading));
+    let tables = tables(&sources);
+    set_up(session, &tables)?;
     session.command(&[0xDE, 1, 0, 0])?;
     let mut rows: Vec<Row> = Vec::new();
     let mut sample = Sample::default();
     while rows.last().is_none_or(|(time_s, _)| *time_s < duration_s) {
         let packet = session.packet(Instant::now() + SILENT_AFTER)?;
         let packet = packet.ok_or(ToolError::Silent)?;
-        if let Some((time_s, values)) = sample.take(&packet, &sources) {
+        if let Some((time_s, values)) = sample.take(&packet, &tables) {
             rows.push((time_s, values));
             progress(time_s);
         }
@@ -61,36 +80,57 @@ pub fn record(
     Ok(rows)
 }
 
-fn source(measurement: &str) -> Source {
+fn source(reading: Reading) -> Source {
+    let (Reading::Value(measurement) | Reading::MeanOf(measurement)) = reading;
     let slot = INFO.iter().position(|info| info.name == measurement);
     let slot = slot.expect("the table of channels names measurements that there are");
     let info = &INFO[slot];
     Source {
+        reading,
         address: MEASUREMENT_BASE + slot as u32 * SLOT_BYTES,
-        bytes: match info.width {
-            Width::U8 => 1,
-            Width::U16 | Width::I16 => 2,
-            Width::U32 | Width::I32 => 4,
+        bytes: match (reading, info.width) {
+            (Reading::MeanOf(_), _) | (_, Width::U16 | Width::I16) => 2,
+            (_, Width::U8) => 1,
+            (_, Width::U32 | Width::I32) => 4,
         },
         units_per_count: 1.0 / f64::from(info.counts_per_unit),
     }
 }
 
-/// One list with a table for each measurement: whatever the sizes, each fits beside the time.
-fn set_up(session: &mut Session, sources: &[Source]) -> Result<(), ToolError> {
-    let tables = sources.len() as u8 + 1;
+/// The sources in as many tables, a packet each, as they need; the first one has the time as well.
+fn tables(sources: &[Source]) -> Vec<Vec<Source>> {
+    let mut tables: Vec<Vec<Source>> = Vec::new();
+    let mut room = 0;
+    for &source in sources {
+        if tables.is_empty() || source.bytes > room {
+            room = match tables.len() {
+                0 => PAYLOAD_BYTES - TIME_BYTES,
+                _ => PAYLOAD_BYTES,
+            };
+            tables.push(Vec::new());
+        }
+        room = room.saturating_sub(source.bytes);
+        if let Some(table) = tables.last_mut() {
+            table.push(source);
+        }
+    }
+    tables
+}
+
+fn set_up(session: &mut Session, tables: &[Vec<Source>]) -> Result<(), ToolError> {
+    let numbered = || (0u8..).zip(tables);
     session.command(&[0xD6])?;
     session.command(&[0xD5, 0, 1, 0])?;
-    session.command(&[0xD4, 0, 0, 0, tables])?;
-    for table in 0..tables {
-        session.command(&[0xD3, 0, 0, 0, table, 1])?;
+    session.command(&[0xD4, 0, 0, 0, tables.len() as u8])?;
+    for (number, table) in numbered() {
+        session.command(&[0xD3, 0, 0, 0, number, table.len() as u8])?;
     }
-    // The first table has the time, and room for two bytes more: a current, which is sampled again in its own.
-    let first = sources.first().into_iter();
-    for (table, source) in first.chain(sources).enumerate() {
-        session.command(&[0xE2, 0, 0, 0, table as u8, 0])?;
-        let [a, b, c, d] = source.address.to_le_bytes();
-        session.command(&[0xE1, 0xFF, source.bytes, 0, a, b, c, d])?;
+    for (number, table) in numbered() {
+        session.command(&[0xE2, 0, 0, 0, number, 0])?;
+        for source in table {
+            let [a, b, c, d] = source.address.to_le_bytes();
+            session.command(&[0xE1, 0xFF, source.bytes, 0, a, b, c, d])?;
+        }
     }
     let with_time = 0x10;
     session.command(&[0xE0, with_time, 0, 0, EVENT_EVERY_10_MS, 0, PRESCALER, 0])?;
@@ -100,41 +140,132 @@ fn set_up(session: &mut Session, sources: &[Source]) -> Result<(), ToolError> {
 /// A sample as it comes, packet by packet.
 #[derive(Default)]
 struct Sample {
-    /// Time of the last sample by the ECU's clock, which wraps, and since the first, s.
-    last_ticks: Option<u32>,
+    /// Time of this sample by the ECU's clock, which wraps.
+    ticks: u32,
+    /// When the last whole one was, and its counts.
+    last: Option<(u32, Vec<i32>)>,
+    /// Since the first whole one, s.
     time_s: f64,
-    values: [f64; CHANNELS.len()],
-    next: u8,
+    counts: Vec<i32>,
+    next: usize,
 }
 
 impl Sample {
-    fn take(&mut self, packet: &[u8], sources: &[Source]) -> Option<Row> {
-        let (&table, rest) = packet.split_first()?;
-        if table == 0 {
-            let ticks = u32::from_le_bytes(*rest.first_chunk()?);
-            let since = self.last_ticks.map_or(0, |last| ticks.wrapping_sub(last));
-            self.last_ticks = Some(ticks);
-            self.time_s += f64::from(since) * TICK_S;
-            self.next = 1;
-            return None;
+    fn take(&mut self, packet: &[u8], tables: &[Vec<Source>]) -> Option<Row> {
+        let (&number, mut rest) = packet.split_first()?;
+        let number = usize::from(number);
+        if number == 0 {
+            let (time, values) = rest.split_first_chunk()?;
+            self.ticks = u32::from_le_bytes(*time);
+            self.counts.clear();
+            self.next = 0;
+            rest = values;
         }
         // A table that was lost spoils its sample.
-        if table != self.next {
-            self.next = 0;
+        if number != self.next {
+            self.next = usize::MAX;
             return None;
         }
-        let index = usize::from(table) - 1;
-        let source = sources.get(index)?;
-        self.values[index] = counts(rest, source.bytes)? * source.units_per_count;
+        for source in tables.get(number)? {
+            let (value, others) = rest.split_at_checked(usize::from(source.bytes))?;
+            self.counts.push(counts(value));
+            rest = others;
+        }
         self.next += 1;
-        (index + 1 == sources.len()).then_some((self.time_s, self.values))
+        if self.next < tables.len() {
+            return None;
+        }
+        self.finish(tables)
+    }
+
+    /// The row of a whole sample; none of the first one, nor of one that comes so late that no mean is sure.
+    fn finish(&mut self, tables: &[Vec<Source>]) -> Option<Row> {
+        let counts = std::mem::take(&mut self.counts);
+        let (then, earlier) = self.last.replace((self.ticks, counts.clone()))?;
+        let ticks = self.ticks.wrapping_sub(then);
+        self.time_s += f64::from(ticks) * TICK_S;
+        if ticks > LONGEST_TICKS {
+            return None;
+        }
+        let sources = tables.iter().flatten();
+        let values: Vec<f64> = sources
+            .zip(counts.iter().zip(&earlier))
+            .map(|(source, (&now, &then))| match source.reading {
+                Reading::Value(_) => f64::from(now) * source.units_per_count,
+                // Microcoulombs in microseconds are amperes.
+                Reading::MeanOf(_) => f64::from(growth(then, now)) / f64::from(ticks.max(1)),
+            })
+            .collect();
+        Some((self.time_s, values.try_into().ok()?))
     }
 }
 
-fn counts(bytes: &[u8], length: u8) -> Option<f64> {
-    Some(match length {
-        1 => f64::from(*bytes.first()?),
-        2 => f64::from(i16::from_le_bytes(*bytes.first_chunk()?)),
-        _ => f64::from(i32::from_le_bytes(*bytes.first_chunk()?)),
-    })
+/// By how much the low word of a charge has grown.
+fn growth(then: i32, now: i32) -> i32 {
+    let [then, now] = [then, now].map(|count| count as u16);
+    let grown = now.wrapping_sub(then).wrapping_add(LEAST_GROWTH);
+    i32::from(grown) - i32::from(LEAST_GROWTH)
+}
+
+/// A signed number, little-endian; all that is recorded is signed.
+fn counts(bytes: &[u8]) -> i32 {
+    match *bytes {
+        [a, b] => i16::from_le_bytes([a, b]).into(),
+        [a, b, c, d] => i32::from_le_bytes([a, b, c, d]),
+        _ => bytes.first().copied().map_or(0, i32::from),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_charge_that_goes_round_or_loses_a_little_to_noise_still_gives_its_growth() {
+        for (then, grown) in [(0, 35_000), (60_000, 30_000), (65_535, 0), (3, -5)] {
+            assert_eq!(growth(then, then + grown), grown, "{then}");
+        }
+    }
+
+    /// Packets of a sample: time, then the charges, then the others.
+    fn packets(ticks: u32, charges: [u16; 2]) -> [Vec<u8>; 4] {
+        let [lift, lower] = charges.map(u16::to_le_bytes);
+        let milli = |value: i32| value.to_le_bytes().to_vec();
+        [
+            [&[0][..], &ticks.to_le_bytes(), &lift].concat(),
+            [&[1][..], &lower, &milli(20_000)].concat(),
+            [&[2][..], &milli(16_000)].concat(),
+            [&[3][..], &milli(90_000)].concat(),
+        ]
+    }
+
+    fn rows(packets: impl IntoIterator<Item = Vec<u8>>) -> Vec<Row> {
+        let tables = tables(&CHANNELS.map(|(_, reading)| source(reading)));
+        let mut sample = Sample::default();
+        let taken = packets.into_iter();
+        taken.filter_map(|p| sample.take(&p, &tables)).collect()
+    }
+
+    #[test]
+    fn rows_have_the_mean_currents_between_samples() {
+        let all = [
+            packets(u32::MAX - 4_999, [65_000, 10]),
+            packets(5_000, [14_464, 10]),
+            packets(15_000, [14_464, 10]),
+        ];
+        let rows = rows(all.into_iter().flatten());
+        assert_eq!(rows[0].1, [1.5, 0.0, 20.0, 16.0, 90.0]);
+        assert_eq!(rows[1].1[0], 0.0);
+        assert!((rows[1].0 - rows[0].0 - 0.01).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_sample_of_which_a_packet_was_lost_is_none_and_leaves_none_after_it() {
+        let mut all: Vec<Vec<u8>> = (0..5)
+            .flat_map(|k| packets(10_000 * k, [(15_000 * k) as u16, 0]))
+            .collect();
+        all.remove(4 * 2 + 1);
+        let times: Vec<f64> = rows(all).iter().map(|row| (row.0 * 1e3).round()).collect();
+        assert_eq!(times, [10.0, 40.0]);
+    }
 }

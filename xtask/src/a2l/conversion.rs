@@ -87,6 +87,7 @@ fn unit(suffix: &str) -> &'static str {
         "ul_per_s" => "ul/s",
         "a" => "A",
         "a_per_s" => "A/s",
+        "uc" => "uC",
         "bar" => "bar",
         "c" => "degC",
         "v" => "V",
