@@ -1,10 +1,7 @@
 //! How close motion comes to what the plant allows, on plants as they are met: typical hysteresis, friction, spool lag and
 //! air, thick oil in the cold, thresholds that are off by 0.1 A, taught by the firmware itself.
 
-use hitch_firmware::control::Inputs;
-use hitch_firmware::control::units::MilliDegreePerSecond;
-use hitch_model::Model;
-use hitch_workbench::closed_loop::{ClosedLoop, MoveResult, Scenario, Summary, run};
+use hitch_workbench::closed_loop::{MoveResult, Scenario, Summary, run};
 use host_tests::teaching::{taught_calibration, typical};
 
 const SHIFTS_A: [(f64, f64); 4] = [(0.1, 0.1), (-0.1, -0.1), (0.1, -0.1), (-0.1, 0.1)];
@@ -55,55 +52,4 @@ fn motion_is_close_to_what_the_plant_allows() {
     assert!(summary.final_error_max_deg <= 0.3, "{summary:?}");
     assert!(summary.pressure_swing_ratio_max <= 1.5, "{summary:?}");
     assert_eq!(summary.switched_on_after, 0, "{summary:?}");
-}
-
-/// Mean speed over a second once a button has been held for a second, degrees a second.
-fn jogged_deg_per_s(model: &Model, load_kg: f64, oil_temperature_c: f64, rate: i32) -> f64 {
-    let calibration = taught_calibration(model, 150.0).unwrap();
-    let start_deg = if rate > 0 { 75.0 } else { 105.0 };
-    let mut closed_loop = ClosedLoop::new(
-        model,
-        &calibration,
-        load_kg,
-        oil_temperature_c,
-        start_deg,
-        9,
-    );
-    closed_loop.step(60.0);
-    let mut at = |ms: usize| {
-        let jog = |inputs: &mut Inputs| inputs.jog = Some(MilliDegreePerSecond(rate * 1_000));
-        (0..ms)
-            .map(|_| closed_loop.step_with(60.0, jog, |_, _| {}).angle_deg)
-            .last()
-            .unwrap()
-    };
-    let before_deg = at(1_000);
-    at(1_000) - before_deg
-}
-
-#[test]
-fn the_button_has_its_speed_whatever_the_load() {
-    let model = typical(0.1, -0.1);
-    let mut errors = Vec::new();
-    for load_kg in [50.0, 150.0, 250.0] {
-        for oil_temperature_c in [10.0, 70.0] {
-            for rate in [-15, -10, 10, 15] {
-                let speed = jogged_deg_per_s(&model, load_kg, oil_temperature_c, rate);
-                let error = speed / f64::from(rate) - 1.0;
-                println!(
-                    "{load_kg} kg, {oil_temperature_c} C, {rate} deg/s: {speed:.2} ({:+.1} %)",
-                    error * 100.0
-                );
-                errors.push(error.abs());
-            }
-        }
-    }
-    errors.sort_by(f64::total_cmp);
-    let beyond = errors.iter().filter(|&&error| error > 0.05).count();
-    println!(
-        "{beyond} of {} beyond 5 %, at most {:.1} %",
-        errors.len(),
-        errors[errors.len() - 1] * 100.0
-    );
-    assert_eq!(beyond, 0, "{errors:?}");
 }
