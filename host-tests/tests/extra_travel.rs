@@ -263,43 +263,65 @@ fn a_stuck_driver_moves_a_resting_hitch_by_little() {
     }
 }
 
-/// A sensor that drifts away from a resting hitch: the controller brings the hitch back to where it seems to have
-/// been, a few times and a few degrees in all. One sensor can't tell that from a leak, and needn't.
-#[test]
-fn a_drifting_angle_is_followed_by_a_few_degrees_at_most() {
+/// What a sensor that drifts away from a resting hitch does to it.
+struct Drift {
+    /// What it was reported as, and when, s.
+    found: Option<(Fault, f64)>,
+    /// True way from where it rested, degree.
+    travel_deg: f64,
+}
+
+fn drift(rate_deg_per_s: f64, watched_s: u32) -> Drift {
     let model = Model::dynamic();
     let calibration = Calibration::nominal().validate().unwrap();
-    println!("drift, deg/s   reported as   after s   true travel, deg");
+    let mut closed_loop = ClosedLoop::new(&model, &calibration, 150.0, 40.0, 90.0, 3);
+    closed_loop.pick_up();
+    let mut drift = Drift {
+        found: None,
+        travel_deg: 0.0,
+    };
+    for ms in 0..watched_s * 1_000 {
+        let off = MilliDegree((rate_deg_per_s * f64::from(ms)) as i32);
+        let sample = closed_loop.step_with(
+            90.0,
+            |inputs| inputs.rocker_angle = inputs.rocker_angle.map(|angle| angle + off),
+            |_, _| {},
+        );
+        drift.travel_deg = drift.travel_deg.max((sample.angle_deg - 90.0).abs());
+        if let Some(fault) = sample.outputs.fault {
+            drift.found = Some((fault, f64::from(ms) * 1e-3));
+            break;
+        }
+    }
+    let found = match drift.found {
+        Some((fault, after_s)) => format!("{} after {after_s:.2} s", fault.name()),
+        None => format!("nothing in {watched_s} s"),
+    };
+    let travel_deg = drift.travel_deg;
+    println!("{rate_deg_per_s} deg/s: {found}; true travel {travel_deg:.2} deg");
+    drift
+}
+
+/// The controller brings the hitch back to where it seems to have been, a few times and a few degrees in all. One sensor
+/// can't tell a drift from a leak, and needn't.
+#[test]
+fn a_drifting_angle_is_followed_by_a_few_degrees_at_most() {
     for rate_deg_per_s in [
         -10.0, -1.0, -0.1, -0.01, -0.001, 0.001, 0.01, 0.1, 1.0, 10.0,
     ] {
-        let mut closed_loop = ClosedLoop::new(&model, &calibration, 150.0, 40.0, 90.0, 3);
-        closed_loop.pick_up();
-        let (mut travel_deg, mut found) = (0.0_f64, None);
-        for ms in 0..4_000_000 {
-            let drift = (rate_deg_per_s * f64::from(ms)) as i32;
-            let sample = closed_loop.step_with(
-                90.0,
-                |inputs| {
-                    inputs.rocker_angle =
-                        inputs.rocker_angle.map(|angle| angle + MilliDegree(drift))
-                },
-                |_, _| {},
-            );
-            travel_deg = travel_deg.max((sample.angle_deg - 90.0).abs());
-            if let Some(fault) = sample.outputs.fault {
-                found = Some((fault, f64::from(ms) * 1e-3));
-                break;
-            }
-        }
-        let (fault, after_s) = found.expect("found");
-        println!(
-            "{rate_deg_per_s:12} {:>13} {after_s:9.2} {travel_deg:18.2}",
-            fault.name()
-        );
-        assert!(
-            travel_deg <= 5.0,
-            "{rate_deg_per_s} deg/s: {travel_deg} deg"
-        );
+        let drift = drift(rate_deg_per_s, 4_000);
+        assert!(drift.found.is_some(), "{rate_deg_per_s} deg/s");
+        assert!(drift.travel_deg <= 5.0, "{rate_deg_per_s} deg/s");
     }
+}
+
+/// A correction is forgotten after ten minutes, and five within them are too many: a drift that asks for fewer is followed
+/// for as long as it lasts.
+#[test]
+fn the_slowest_drift_that_is_noticed() {
+    for rate_deg_per_s in [0.0008, -0.0008] {
+        let (_, after_s) = drift(rate_deg_per_s, 6_000).found.unwrap();
+        assert!(after_s <= 5_400.0, "{rate_deg_per_s} deg/s: {after_s} s");
+    }
+    assert_eq!(drift(0.0007, 6_000).found, None);
 }
