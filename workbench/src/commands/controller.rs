@@ -16,11 +16,11 @@ const HEADER: &str = "lift_current_a,lower_current_a,state";
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Example: my-plant | hitch controller --calibration calibration.toml\n\n\
-    Standard input is CSV: a header, then a line a millisecond. Columns: time_s, lever_deg, rocker_angle_deg and, where the\n\
-    plant has them, cylinder_pressure_bar, pump_pressure_bar, oil_temperature_c, supply_v; and, where there are such things,\n\
-    jog_deg_per_s, upper_limit_deg, lowering_dial_percent, engine_speed_rpm, measured_lift_current_a,\n\
-    measured_lower_current_a and the switches transport_lock, hold, quick_lift (0 is off). An empty cell is a sample that is\n\
-    missing. Each line is answered at once by one line of currents and state. Nothing moves until the lever has been moved\n\
+    Standard input is CSV: a header, then a line a millisecond. Columns: time_s, lever_deg, rocker_angle_deg and, where the \
+    plant has them, cylinder_pressure_bar, pump_pressure_bar, oil_temperature_c, supply_v; and, where there are such things, \
+    jog_deg_per_s, upper_limit_deg, lowering_dial_percent, engine_speed_rpm, measured_lift_current_a, \
+    measured_lower_current_a and the switches transport_lock, hold, quick_lift (0 is off). An empty cell is a sample that is \
+    missing. Each line is answered at once by one line of currents and state. Nothing moves until the lever has been moved \
     through the present angle."
 )]
 pub struct Args {

@@ -29,10 +29,10 @@ const MILLISECOND: Duration = Duration::from_millis(1);
 /// Arguments of `hitch ecu`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: hitch ecu --can 127.0.0.1:7701 --load 200\n\n\
-    The real firmware image runs on an emulated Cortex-M4 with the plant attached, in lock step and in real time. The\n\
-    operator picks the hitch up after half a second; afterwards standard input is the operator, a line an order:\n\
-    lever DEG, up, down, stop, quick on|off, hold on|off, lock on|off, service on|off, limit DEG, dial PERCENT, power, quit.\n\
-    With --can, the bus is open to slcan clients: python-can with interface slcan and channel socket://HOST:PORT.\n\
+    The real firmware image runs on an emulated Cortex-M4 with the plant attached, in lock step and in real time. The \
+    operator picks the hitch up after half a second; afterwards standard input is the operator, a line an order: \
+    lever DEG, up, down, stop, quick on|off, hold on|off, lock on|off, service on|off, limit DEG, dial PERCENT, power, quit. \
+    With --can, the bus is open to slcan clients: python-can with interface slcan and channel socket://HOST:PORT. \
     Writing to the calibration by XCP needs `service on`.")]
 pub struct Args {
     /// Offer the CAN bus as slcan on this TCP port

@@ -12,7 +12,7 @@ use crate::xcp_tool::{Session, SlcanClient, ToolError, write_calibration};
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Example: hitch flash-calibration calibration.toml --can 127.0.0.1:7701\n\n\
-    The hitch has to be locked (`lock on`) and the service switch closed (`service on`). Only what differs is written; then the\n\
+    The hitch has to be locked (`lock on`) and the service switch closed (`service on`). Only what differs is written; then the \
     ECU stores it, and everything is read back from what is stored."
 )]
 pub struct Args {

@@ -14,7 +14,7 @@ use crate::xcp_tool::{CHANNELS, PERIOD_MS, Row, record};
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Example: hitch record --can 127.0.0.1:7701 --load 150 --temperature 40 --seconds 30 --out campaign\n\n\
-    Records currents, pressures and rocker angle at 100 Hz. The hitch has to be at rest at the beginning. A campaign that exists\n\
+    Records currents, pressures and rocker angle at 100 Hz. The hitch has to be at rest at the beginning. A campaign that exists \
     gets one more run, so that several loads make one; `hitch explain` reads it."
 )]
 pub struct Args {

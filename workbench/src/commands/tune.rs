@@ -18,8 +18,8 @@ use crate::tuning::{Judged, Trial, changes};
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Example: hitch tune --model explained.toml --out tuned.toml\n\n\
-    The valve map is the model's; what is searched are ramps, approach, cut-off and filters. Each candidate drives moves both\n\
-    ways at three loads, on the model and with thresholds 0.02 A off. A value that is given with --set stays. By hand: hitch\n\
+    The valve map is the model's; what is searched are ramps, approach, cut-off and filters. Each candidate drives moves both \
+    ways at three loads, on the model and with thresholds 0.02 A off. A value that is given with --set stays. By hand: hitch \
     loop --set position.approach_gain=30"
 )]
 pub struct Args {
