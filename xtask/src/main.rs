@@ -26,13 +26,15 @@ usage: cargo xtask <task> [--arm rustup|debian]
 
   test    set up what is missing, build the ARM images, run every test, say how many passed
   check   formatting, clippy and rustdoc, with warnings denied
-  ci      check, coverage, then test
+  ci      check, coverage, mutants, then test
   arm     build the ARM images, say how large they are, and hold them to their budgets
   sizes   write down how large the images are and how deep their stacks get, in firmware/sizes.txt
   stack   show the calls that make the images' stacks deepest
   image   build the image for the emulator alone; the last line is its path
   coverage run the safety envelope's tests; each piece of its code has to be reached
-  mutants change the safety envelope in every way that cargo-mutants knows; its tests have to notice
+  mutants [--again]
+          change the safety envelope in every way that cargo-mutants knows; its tests have to notice. Only if its
+          code is not the one for which firmware/mutants.txt says that they do, or with --again
   a2l     write firmware/hitch.a2l, the description of parameters and measurements for tuning tools
   setup   find or install the ARM toolchain and the emulator
 
@@ -55,8 +57,10 @@ fn main() -> ExitCode {
 
 fn run(arguments: &[String]) -> Result<()> {
     let (task, options) = arguments.split_first().context(USAGE)?;
+    let again = task == "mutants" && options == ["--again"];
     let way = match options {
         [] => None,
+        _ if again => None,
         [flag, name] if flag == "--arm" => Some(name.parse::<Way>()?),
         _ => bail!("unknown options {options:?}\n{USAGE}"),
     };
@@ -65,6 +69,7 @@ fn run(arguments: &[String]) -> Result<()> {
         "check" => check::run(way),
         "ci" => check::run(way)
             .and_then(|()| coverage::run())
+            .and_then(|()| mutants::run(false))
             .and_then(|()| test::run(way)),
         "arm" => image::build_all(setup::toolchain(way)?).map(drop),
         "sizes" => budget::write(&image::sizes(setup::toolchain(way)?)?),
@@ -75,7 +80,7 @@ fn run(arguments: &[String]) -> Result<()> {
         }
         "stack" => image::show_stacks(setup::toolchain(way)?),
         "coverage" => coverage::run(),
-        "mutants" => mutants::run(),
+        "mutants" => mutants::run(again),
         "a2l" => a2l::write(),
         "setup" => setup::run(way),
         "help" | "--help" | "-h" => {

@@ -292,6 +292,31 @@ fn a_sensor_is_known_to_tremble_after_so_many_steps() {
     assert_eq!(known_after, Some(32));
 }
 
+#[test]
+fn steps_of_up_to_a_digit_and_a_half_are_no_tremble() {
+    let is_watched = |back: i32| {
+        let mut rig = Rig::armed();
+        rig.envelope = Envelope::default();
+        let mut at = |angle| {
+            rig.step_with(Order::Rest, |inputs| {
+                inputs.rocker_angle = Some(MilliDegree(angle))
+            });
+        };
+        // Onwards digit by digit, so that the digit is known; then a digit up, and further back.
+        let onwards = (0..100).map(|_| 40);
+        let to_and_fro = (0..200).flat_map(|_| [-back, 40]);
+        let mut angle = 90_000;
+        for step in onwards.chain(to_and_fro) {
+            angle += step;
+            at(angle);
+        }
+        (0..30).for_each(|_| at(angle + 500));
+        rig.envelope.tripped() == Some(Trip::AngleFrozen)
+    };
+    assert!(!is_watched(60));
+    assert!(is_watched(61));
+}
+
 /// White noise and a converter's digit of 0.047 degree, while the hitch sinks by three digits a minute: near a step of the
 /// converter the reading trembles, half a digit on it stands still. Nobody may take that for a fault; a sensor whose noise
 /// spans more than a digit never stands still for 20 ms, and is known to be frozen when it does.
