@@ -19,6 +19,9 @@ pub struct Estimate {
 /// A nuisance is never believed to be further off than this many prior sigmas.
 const FARTHEST: f64 = 5.0;
 
+/// What a load error loses when it is told in sigmas.
+const ROUNDING: f64 = 1e-9;
+
 /// A parameter that all runs share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shared {
@@ -134,6 +137,13 @@ impl Estimate {
     #[must_use]
     pub fn load(&self, run: usize) -> f64 {
         self.nuisances[run].load / LOAD_PRIOR
+    }
+
+    /// Whether a run's load error stands at an end of its range and a `pull` of the residuals on it, in costs a sigma, would move it out.
+    #[must_use]
+    pub fn load_would_leave(&self, run: usize, pull: f64) -> bool {
+        let load = self.load(run);
+        load.abs() >= FARTHEST - ROUNDING && (pull - load) * load > 0.0
     }
 
     /// Sets the load error of a run, in prior sigmas.

@@ -81,9 +81,9 @@ impl<'a> Frame<'a> {
     pub fn cost_after(&self, residuals: &[Vec<f64>]) -> f64 {
         let mut cost = 0.0;
         for (run, residual) in self.jacobian.runs.iter().zip(residuals) {
-            cost += dot(residual, residual);
+            cost += dot(residual, residual) + run.load_value * run.load_value;
             if let Some((_, square, load_pull)) = run.load_pull(residual) {
-                cost += run.load_value * run.load_value - load_pull * load_pull / square;
+                cost -= load_pull * load_pull / square;
             }
         }
         let pull = self.pull(residuals) + &self.priors;

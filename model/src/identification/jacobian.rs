@@ -29,7 +29,8 @@ pub struct RunJacobian {
     pub residual: Vec<f64>,
     /// A column for each shared parameter: change of the simulation, whitened.
     pub shared: Vec<Vec<f64>>,
-    /// Column of the load error; `None` on a flow bench.
+    /// Column of the load error; `None` on a flow bench, and where it stands at an end of its range and would leave it: what cannot
+    /// move on absorbs nothing.
     pub load: Option<Vec<f64>>,
     /// Present load error, in prior sigmas.
     pub load_value: f64,
@@ -328,9 +329,9 @@ impl Jacobian {
                     .map(|column| column[run].clone())
                     .chain(slow.clocks.iter().map(|clock| clock[run].clone()))
                     .collect(),
-                load: experiment.runs[run]
-                    .on_hitch()
-                    .then(|| slow.loads[run].clone()),
+                load: (experiment.runs[run].on_hitch()
+                    && !estimate.load_would_leave(run, dot(&slow.loads[run], &base[run])))
+                .then(|| slow.loads[run].clone()),
                 load_value: estimate.load(run),
             })
             .collect();
