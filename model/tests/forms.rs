@@ -112,3 +112,29 @@ fn a_narrow_gap_passes_less_when_the_oil_is_cold() {
         );
     }
 }
+
+/// The spool's balance by hand: with a force of 0.3 at 15 bar it travels 1.3 / (1 + 0.3 dp / 15 bar) of its way at another drop.
+#[test]
+fn a_flow_force_on_the_travel_reads_the_table_at_another_current() {
+    let time_s = [0.0, 0.02];
+    let nominal = Model::nominal();
+    let threshold_a = nominal.constants().lower_valve.curve.threshold_a();
+    let pushed = model("flow-force/travel", &[0.3]);
+    let flow_at = |model: &Model, port_bar: f64, lower_a: f64| {
+        let still = |_: f64| Currents {
+            lift_a: 0.0,
+            lower_a,
+        };
+        flow_lpm(model, port_bar, 40.0, &time_s, still)[1]
+    };
+    for (port_bar, lower_a) in [(5.0, 1.5), (15.0, 2.0), (60.0, 2.0), (60.0, 3.0)] {
+        let balance = 1.3 / (1.0 + 0.3 * port_bar / 15.0);
+        let read_at_a = threshold_a + (lower_a - threshold_a) * balance;
+        let wanted = flow_at(&nominal, port_bar, read_at_a);
+        let shown = flow_at(&pushed, port_bar, lower_a);
+        assert!(
+            (shown - wanted).abs() < 1e-6,
+            "{port_bar} bar: {shown}, not {wanted}"
+        );
+    }
+}

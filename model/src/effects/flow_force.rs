@@ -2,16 +2,18 @@
 //!
 //! Steady flow force `F = 0.43 w x dp` (Merritt 5.2) on a spool held by a spring k_s: `x = x_c / (1 + K dp)` with
 //! `K = 0.43 w / k_s`. The data sheet's curve holds at 15 bar, so the opening is `(1 + s) / (1 + s dp / 15 bar)` of it, `s`
-//! the ratio of flow force to spring force there. The lift valve's drop is held by the compensator: nothing to see.
+//! the ratio of flow force to spring force there. With the usual form the flow is that much of the table's, as if it grew with
+//! the opening all the way; with the other the spool travels that much of its way, and the table is read there: where the
+//! table is flat the force then shows in nothing. The lift valve's drop is held by the compensator: nothing to see.
 
 use super::Parameter;
 use super::described::Described;
 use crate::campaign::Channel;
 
-use crate::plant::sites::{RunConditions, Sites};
+use crate::plant::sites::{Law, RunConditions, Sites};
 
-/// Flow force on the lowering spool.
-pub static FLOW_FORCE: Described = Described {
+/// Flow force on the lowering spool, as a factor on the flow.
+pub static ON_FLOW: Described = Described {
     id: "flow-force",
     form: None,
     title: "Flow force on the lowering spool",
@@ -33,13 +35,29 @@ pub static FLOW_FORCE: Described = Described {
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
     erratic: false,
-    attach,
+    attach: attach_to_flow,
 };
 
-fn attach(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
+/// Flow force on the lowering spool, as a factor on its travel.
+pub static ON_TRAVEL: Described = Described {
+    form: Some("travel"),
+    title: "Flow force on the travel of the lowering spool",
+    equation: "Q = Q_table(I_0 + (I - I_0) (1 + s) / (1 + s dp/dp_ref)) sqrt(dp/dp_ref), dp_ref = 15 bar",
+    attach: attach_to_travel,
+    ..ON_FLOW
+};
+
+fn attach_to_flow(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
+    sites.lower_drop_factor.push(opening(values, conditions));
+}
+
+fn attach_to_travel(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
+    sites.lower_travel_factor.push(opening(values, conditions));
+}
+
+/// What the force leaves of the opening, from the drop, Pa.
+fn opening(values: &[f64], conditions: RunConditions<'_>) -> Law {
     let ratio = values[0];
     let reference_pa = conditions.constants.lower_valve.reference_drop_pa;
-    sites.lower_drop_factor.push(Box::new(move |drop_pa| {
-        (1.0 + ratio) / (1.0 + ratio * drop_pa.max(0.0) / reference_pa)
-    }));
+    Box::new(move |drop_pa| (1.0 + ratio) / (1.0 + ratio * drop_pa.max(0.0) / reference_pa))
 }

@@ -11,7 +11,7 @@ use crate::model::Constants;
 pub struct Opening {
     /// Flow at the reference drop, m3/s.
     pub flow_m3_s: f64,
-    /// How far its current is beyond the threshold, A; zero where no flow turns laminar.
+    /// How far its current is beyond the threshold, A; zero where nothing depends on it.
     pub beyond_threshold_a: f64,
 }
 
@@ -112,9 +112,9 @@ impl Circuit<'_> {
     pub fn openings(&self, lift_a: f64, lower_a: f64) -> Openings {
         let opening = |valve: &OrificeValve, current_a: f64, factor: f64| Opening {
             flow_m3_s: valve.curve.flow_m3_s(current_a) * factor,
-            beyond_threshold_a: match self.sites.flow_number_1_a_sqrt_pa {
-                Some(_) => (current_a - valve.curve.threshold_a()).max(0.0),
-                None => 0.0,
+            beyond_threshold_a: match self.depends_on_travel() {
+                true => (current_a - valve.curve.threshold_a()).max(0.0),
+                false => 0.0,
             },
         };
         let Constants {
@@ -125,6 +125,28 @@ impl Circuit<'_> {
         Openings {
             lift: opening(lift_valve, lift_a, self.sites.lift_flow_factor),
             lower: opening(lower_valve, lower_a, self.sites.lower_flow_factor),
+        }
+    }
+
+    fn depends_on_travel(&self) -> bool {
+        self.sites.flow_number_1_a_sqrt_pa.is_some() || !self.sites.lower_travel_factor.is_empty()
+    }
+
+    /// The lowering valve's opening with its spool as far as the oil lets it go over a drop, Pa.
+    fn travelled(&self, opening: Opening, drop_pa: f64) -> Opening {
+        if self.sites.lower_travel_factor.is_empty() {
+            return opening;
+        }
+        let curve = &self.constants.lower_valve.curve;
+        let flow_m3_s = |beyond_a: f64| curve.flow_m3_s(curve.threshold_a() + beyond_a);
+        let beyond_a = opening.beyond_threshold_a * self.sites.lower_travel_factor(drop_pa);
+        let free_m3_s = flow_m3_s(opening.beyond_threshold_a);
+        if free_m3_s <= 0.0 {
+            return opening;
+        }
+        Opening {
+            flow_m3_s: opening.flow_m3_s * flow_m3_s(beyond_a) / free_m3_s,
+            beyond_threshold_a: beyond_a,
         }
     }
 
@@ -265,6 +287,7 @@ impl Circuit<'_> {
     /// Flow through the lowering valve, m3/s, over a drop, Pa.
     fn lower_valve_m3_s(&self, opening: Opening, drop_pa: f64) -> f64 {
         let lower_valve = &self.constants.lower_valve;
+        let opening = self.travelled(opening, drop_pa);
         let flow_m3_s = lower_valve.flow_m3_s(opening.flow_m3_s, drop_pa);
         flow_m3_s * self.sites.lower_drop_factor(drop_pa) * self.discharge(opening, drop_pa)
     }
@@ -283,6 +306,7 @@ impl Circuit<'_> {
         }
         let square_root_law = self.constants.lower_valve.transition_drop_pa == 0.0
             && self.sites.lower_drop_factor.is_empty()
+            && self.sites.lower_travel_factor.is_empty()
             && self.sites.flow_number_1_a_sqrt_pa.is_none();
         if square_root_law && !terms {
             // Two orifices in a row, Q = k sqrt(p - a Q2).

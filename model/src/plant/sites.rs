@@ -110,6 +110,8 @@ pub struct Sites {
     pub lower_flow_factor: f64,
     /// Factors on the lowering valve's flow, from its pressure drop, Pa.
     pub lower_drop_factor: Vec<Law>,
+    /// Factors on how far the lowering spool is beyond where it opens, from the valve's pressure drop, Pa.
+    pub lower_travel_factor: Vec<Law>,
     /// What the flow through either valve turns laminar with: twice its flow number over the critical one is this times
     /// the current beyond the threshold, A, and the root of the drop, Pa. None if it stays turbulent.
     pub flow_number_1_a_sqrt_pa: Option<f64>,
@@ -155,6 +157,7 @@ impl Default for Sites {
             lift_flow_factor: 1.0,
             lower_flow_factor: 1.0,
             lower_drop_factor: Vec::new(),
+            lower_travel_factor: Vec::new(),
             flow_number_1_a_sqrt_pa: None,
             margin: Vec::new(),
             cracking_extra_pa: 0.0,
@@ -235,6 +238,12 @@ impl Sites {
     #[must_use]
     pub fn lower_drop_factor(&self, drop_pa: f64) -> f64 {
         product(&self.lower_drop_factor, drop_pa)
+    }
+
+    /// Factor on the lowering spool's travel beyond where it opens, at the valve's pressure drop, Pa.
+    #[must_use]
+    pub fn lower_travel_factor(&self, drop_pa: f64) -> f64 {
+        product(&self.lower_travel_factor, drop_pa)
     }
 
     /// What comes on top of the compensator's margin, Pa, at a cylinder pressure, Pa.
