@@ -19,6 +19,8 @@ struct Over {
     varies: fn(&MoveResult) -> f64,
     stays: fn(&MoveResult) -> f64,
     stays_unit: &'static str,
+    /// How to have more than one, in words and on the command line.
+    more: (&'static str, &'static str),
 }
 
 const OVER: [Over; 2] = [
@@ -28,6 +30,7 @@ const OVER: [Over; 2] = [
         varies: |result| result.load_kg,
         stays: |result| result.oil_temperature_c,
         stays_unit: "°C",
+        more: ("others are driven without ", "--load"),
     },
     Over {
         title: "Steps over oil temperature",
@@ -35,6 +38,7 @@ const OVER: [Over; 2] = [
         varies: |result| result.oil_temperature_c,
         stays: |result| result.load_kg,
         stays_unit: "kg",
+        more: ("others are driven with ", "--scenario limits"),
     },
 ];
 
@@ -59,7 +63,7 @@ fn overlaid(run: &LoopRun, over: &Over) -> Markup {
     html! {
         h2 { (over.title) }
         @if values.len() < 2 {
-            p { "All moves have " (names[0]) "; " code { "--scenario limits" } " drives more." }
+            p { "All moves have " (names[0]) "; " (over.more.0) code { (over.more.1) } "." }
         } @else {
             p { "At " (format!("{fixed:.0}")) " " (over.stays_unit) "." }
             (legend(&entries))
