@@ -1,7 +1,8 @@
 //! Searches gains, ramps and limits for the bars of motion: CMA-ES over a set of moves.
 //!
-//! Thresholds that are a little off belong to the plant, not to the tuning: each candidate is driven on the model itself
-//! and on two whose thresholds are shifted up and down by what teaching leaves.
+//! What a model says nothing of is there all the same: each candidate is driven on the model itself and on two neighbours
+//! whose thresholds are shifted up and down by what teaching leaves, and which have the hysteresis, friction, air and thick
+//! oil of valves and cylinders of this class where the model has none. Gains for a valve without hysteresis are useless on any other.
 
 mod cost;
 mod knobs;
@@ -17,6 +18,13 @@ use knobs::{with_values, without};
 
 /// What teaching leaves of a threshold's error, A.
 const SPREAD_A: f64 = 0.02;
+/// Effects that every machine has, with usual values.
+const USUAL: [(&str, &[f64]); 4] = [
+    ("solenoid-hysteresis", &[0.12]),
+    ("coulomb-friction", &[400.0]),
+    ("entrained-air", &[0.01, 1.2]),
+    ("oil-viscosity", &[0.2, 0.042]),
+];
 /// How long a candidate is watched after a move, s: long enough for every correction that follows at once.
 const AFTER_S: f64 = 1.5;
 /// Where the search starts, in halvings and doublings of each value: 0.3 is a fifth up or down.
@@ -53,8 +61,12 @@ impl Trial {
     /// Prepares `moves` on `model` and its neighbours.
     #[must_use]
     pub fn new(model: &Model, moves: &[Move]) -> Self {
-        let plants = [0.0, SPREAD_A, -SPREAD_A].map(|shift_a| {
-            let plant = shifted(model, shift_a);
+        let plants = [
+            model.clone(),
+            neighbour(model, SPREAD_A),
+            neighbour(model, -SPREAD_A),
+        ]
+        .map(|plant| {
             let courses = courses(&plant, moves);
             (plant, courses)
         });
@@ -123,17 +135,26 @@ pub fn changes(before: &Calibration, after: &Calibration) -> Vec<Change> {
     knobs::changes(before, after)
 }
 
-/// The model with both thresholds shifted.
-fn shifted(model: &Model, shift_a: f64) -> Model {
+/// The model with both thresholds shifted, and with the usual effects that it doesn't have.
+fn neighbour(model: &Model, shift_a: f64) -> Model {
     let mut effects = model.effects.clone();
     for id in ["lift-threshold-shift", "lower-threshold-shift"] {
         match effects.iter_mut().find(|added| added.effect.id() == id) {
             Some(added) => added.values.iter_mut().for_each(|value| *value += shift_a),
-            None => effects.extend(find(id).map(|effect| AddedEffect {
-                effect,
-                values: vec![shift_a],
-            })),
+            None => effects.extend(added(id, &[shift_a])),
+        }
+    }
+    for (id, values) in USUAL {
+        if !effects.iter().any(|added| added.effect.id() == id) {
+            effects.extend(added(id, values));
         }
     }
     model.clone().with_effects(effects)
+}
+
+fn added(id: &str, values: &[f64]) -> Option<AddedEffect> {
+    Some(AddedEffect {
+        effect: find(id)?,
+        values: values.to_vec(),
+    })
 }
