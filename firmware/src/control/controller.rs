@@ -48,6 +48,9 @@ pub struct Controller {
     /// Set point and its travel: looked up when it changes.
     target: (MilliDegree, Micrometre),
     load: LoadEstimate,
+    /// Steps take turns: one learns the lag and looks up what the valve can give, the next learns the load. All of it in one
+    /// would take too long.
+    turn: bool,
     phase: Phase,
     sink: SinkWatch,
     saturation: SaturationWatch,
@@ -90,6 +93,7 @@ impl Controller {
             slack: Slack::default(),
             target: (MilliDegree::ZERO, origin),
             load,
+            turn: false,
             phase: Phase::default(),
             sink: SinkWatch::default(),
             saturation: SaturationWatch::default(),
@@ -205,14 +209,22 @@ impl Controller {
         let calibration = &self.calibration;
         let measured = calibration.linkage.travel(sensed.angle);
         self.motion
-            .update(measured, self.phase.is_moving(), &calibration.motion);
-        self.load.update(
-            sensed.cylinder_pressure,
-            self.phase,
-            &self.motion,
-            &calibration.hydraulics,
-        );
-        self.scale = self.curves.scale(self.load.drop());
+            .update(measured, self.phase, &calibration.motion);
+        self.turn = !self.turn;
+        match self.turn {
+            true => self
+                .motion
+                .follow_trail(measured, self.phase, &calibration.motion),
+            false => {
+                self.load.update(
+                    sensed.cylinder_pressure,
+                    self.phase,
+                    &self.motion,
+                    &calibration.hydraulics,
+                );
+                self.scale = self.curves.scale(self.load.drop());
+            }
+        }
         self.rest
             .update(self.motion.position(), self.phase, &calibration.hold);
         self.sink.tick(&calibration.hold);
@@ -226,7 +238,8 @@ impl Controller {
         };
         let area = self.calibration.hydraulics.piston_area;
         let told = course.told(self.rest.position(), self.scale, area);
-        self.learning.learn(&told);
+        self.motion.learn_lag(&told, &self.calibration.motion);
+        self.learning.learn(told);
     }
 
     /// Mode transitions that don't depend on the lever.
@@ -304,9 +317,6 @@ impl Controller {
         let changed = self
             .position
             .follow(lever, highest, moving, &calibration.position);
-        if changed && moving {
-            self.learning.divert();
-        }
         if changed && !moving {
             self.sink.new_set_point();
             self.saturation.forget();
@@ -323,7 +333,9 @@ impl Controller {
                 .reason_to_move(target, self.rest.position(), &calibration.position)
                 .is_none();
         let operator = &calibration.operator;
-        if self.float.update(lever, sensed.angle, resting, operator) || resting {
+        let floats = self.float.update(lever, sensed.angle, resting, operator);
+        // Until the valves are shut nobody asks for a demand.
+        if floats || resting || matches!(self.phase, Phase::Settling { .. }) {
             return None;
         }
         let lower_speed = lowering_limit(inputs.lowering_dial, operator, &calibration.position);
@@ -351,14 +363,15 @@ impl Controller {
             Phase::Moving { direction, .. } => Some(direction),
             _ => demand.map(|demand| demand.direction),
         };
-        let available = direction.map_or(MicrometrePerSecond::ZERO, |direction| {
-            self.available(direction)
-        });
-        self.available = available;
+        if self.turn || !self.phase.is_moving() {
+            self.available = direction.map_or(MicrometrePerSecond::ZERO, |direction| {
+                self.available(direction)
+            });
+        }
         let still = self.motion.model_speed() == MicrometrePerSecond::ZERO;
         let next = self.phase.step(
             demand,
-            available,
+            self.available,
             still,
             &calibration.position,
             &calibration.hold,
@@ -367,7 +380,6 @@ impl Controller {
             self.motion.forget_bias();
             self.begin(next)?;
         }
-        self.learn_from_end(next);
         self.phase = next;
         let follows_lever = matches!(self.mode, Mode::Position);
         if next.is_moving() && follows_lever && self.position.has_arrived() {
@@ -392,20 +404,6 @@ impl Controller {
             Reason::Drift => self.sink.correct(&self.calibration.hold)?,
         }
         Ok(())
-    }
-
-    /// Learns from the end of a move that went undisturbed to its set point.
-    fn learn_from_end(&mut self, next: Phase) {
-        let found = self.learning.approach(
-            next,
-            self.calibration.position.creep_speed,
-            self.slack.is_taken(),
-            self.target.1 - self.motion.position(),
-        );
-        if let Some((direction, further)) = found {
-            self.motion
-                .correct_lag(direction, further, &self.calibration.motion);
-        }
     }
 
     /// Cuts the coil when flow is demanded and nothing moves.

@@ -108,8 +108,10 @@ parameter_group! {
         position_time: Millisecond = 30, 1..=500;
         /// The same while lowering, where load and oil make the map more wrong than the swing does.
         lowering_time: Millisecond = 17, 1..=500;
-        /// How far the hitch trails a lift that sets in without any lag of the spool: the load swings back on its oil.
-        load_trail: Microsecond = 3_500, 0..=100_000;
+        /// By how much a hitch trails its lift valve beyond the lag of its spool: its load has to be accelerated on its oil.
+        lift_trail: Microsecond = 7_500, 0..=100_000;
+        /// The same of the lowering valve: oil, friction and the load's own fall.
+        lowering_trail: Microsecond = 12_500, 0..=100_000;
         /// Furthest that a machine's spools may be slower or faster than the calibration says.
         lag_limit: Millisecond = 35, 0..=200;
         /// Largest error of the valve map that the estimator may blame on it: 0.25 A of threshold at 15 bar is 34 mm/s.
@@ -126,26 +128,26 @@ parameter_group! {
         upper_limit: MilliDegree = 135_400, -360_000..=360_000;
         /// A resting hitch follows the lever only when it moves by more than this: 0.2 % of the range, beyond lever noise.
         lever_deadband: MilliDegree = 200, 0..=5_000;
-        /// The coil is cut when that would bring the hitch this close: six steps at creep speed.
-        stop_band: Micrometre = 40, 0..=5_000;
+        /// The coil is cut when that would bring the hitch this close: 0.15 degree short, so that a load swings about a place with room beyond.
+        stop_band: Micrometre = 250, 0..=5_000;
         /// A resting hitch that is further off than this is corrected: 0.35 degree, inside the 0.5 degree that is asked for.
         restart_band: Micrometre = 600, 20..=10_000;
         /// Speed per remaining distance at the end of the approach: 7 Hz, below the frequency at which a load swings on its oil.
         approach_gain: PerSecond = 46, 1..=200;
-        /// Slowest approach: cutting the coil at this speed swings the pressure of 250 kg by 6 bar, less than a normal edge.
-        creep_speed: MicrometrePerSecond = 8_000, 0..=100_000;
+        /// Slowest approach: cutting the coil at this speed swings the pressure of 250 kg by 8 bar, less than a normal edge.
+        creep_speed: MicrometrePerSecond = 11_000, 0..=100_000;
         /// Fastest lifting: beyond the valve's saturation, so it doesn't limit.
         lift_speed: MicrometrePerSecond = 150_000, 1_000..=1_000_000;
         /// Fastest lowering, and the only limit of a machine without a dial: 250 kg through the fully open valve. That full lowering takes 2 s is asked of a dial as delivered; a machine that has none and shall keep to it gets 75 mm/s here.
         lower_speed: MicrometrePerSecond = 300_000, 1_000..=1_000_000;
         /// Acceleration when lifting: full speed in 40 ms, which the lag of the spool rounds to the edge of a normal manoeuvre.
         lift_acceleration: MillimetrePerSecondSquared = 3_800, 50..=20_000;
-        /// Deceleration when lifting: full speed in 160 ms; a gravity-loaded piston would bounce from 3 m/s2 on at light load, and the time lost against it is little.
-        lift_deceleration: MillimetrePerSecondSquared = 900, 50..=20_000;
+        /// Deceleration when lifting: full speed in 210 ms; a gravity-loaded piston would bounce from 3 m/s2 on at light load, and the time lost against it is little.
+        lift_deceleration: MillimetrePerSecondSquared = 700, 50..=20_000;
         /// Acceleration when lowering, at the reference drop; it goes with the speed that the load gives. 250 kg keep half of their pressure.
         lower_acceleration: MillimetrePerSecondSquared = 3_200, 50..=20_000;
         /// Deceleration when lowering, at the reference drop: what stops 250 kg adds half of their pressure, and thick oil still lets the estimate follow.
-        lower_deceleration: MillimetrePerSecondSquared = 950, 50..=20_000;
+        lower_deceleration: MillimetrePerSecondSquared = 800, 50..=20_000;
         /// Deceleration when a move is called off or reversed: twice the ramp, for the operator has changed their mind.
         abort_deceleration: MillimetrePerSecondSquared = 3_000, 50..=20_000;
     }

@@ -10,23 +10,22 @@
 //!
 //! `b` is what the map gets wrong (a shifted threshold, an unknown load); it is only learnt while the
 //! valves are meant to move something. A load that sinks follows its valve by [`super::free_fall`]. How slow the spools of
-//! this machine are is learnt from how lifts set in ([`super::trail`]) and how moves end ([`super::run_on`]), and kept
-//! from move to move. Position is kept in nanometres: a speed in um/s is then just
+//! this machine are is learnt from how far the hitch trails them ([`super::lag`]), and kept from move to move. Position is kept in nanometres: a speed in um/s is then just
 //! the way of one millisecond.
 
 use super::calibration::Calibration;
 use super::closing::ClosingCurve;
+use super::course::Told;
 use super::design_parameters::{HydraulicParameters, MotionParameters};
 use super::drop_scale::DropScale;
 use super::fixed::Divisor;
 use super::free_fall::{next_speed, run_out};
+use super::lag::{Eighths, Lag, Trail};
 use super::safety::CoilCurrents;
-use super::trail::Trail;
 use super::units::{
-    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp, Millisecond,
-    SquareMillimetre,
+    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliAmp, Millisecond, SquareMillimetre,
 };
-use super::valve_logic::Direction;
+use super::valve_logic::{Direction, Phase};
 
 /// How both valves close.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +41,7 @@ pub struct Closing {
 pub struct Motion {
     started: bool,
     position_nm: i32,
+    position: Micrometre,
     bias_sum_nm: i32,
     bias: MicrometrePerSecond,
     /// What the valves give now.
@@ -50,13 +50,11 @@ pub struct Motion {
     sinking: MicrometrePerSecond,
     /// What their openings give in the long run.
     opening_speed: MicrometrePerSecond,
-    /// A move is coming to its end.
-    slowing: bool,
     trail: Trail,
-    /// How much slower than the calibration says the spools of lift and lowering valve are.
-    slower: [Microsecond; 2],
-    /// The same in steps.
-    slower_steps: [Millisecond; 2],
+    /// Lags of lift and lowering valve.
+    lags: [Lag; 2],
+    /// How much slower than that the valve in use is, by what this move has told so far.
+    further: Eighths,
     lift_spool: Spool,
     lower_spool: Spool,
     /// How much the flow through the valve that is open changes for each ampere, at the drop of its table.
@@ -66,15 +64,12 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Takes in one measurement. `learn`: the valves are meant to be moving the hitch.
-    pub fn update(&mut self, measured: Micrometre, learn: bool, parameters: &MotionParameters) {
+    /// Takes in one measurement; what the map gets wrong is learnt while the valves are meant to be moving the hitch.
+    pub fn update(&mut self, measured: Micrometre, phase: Phase, parameters: &MotionParameters) {
         let measured_nm = measured.0.saturating_mul(1000);
         if !self.started {
             self.started = true;
             self.position_nm = measured_nm;
-        }
-        if learn && self.sinking == MicrometrePerSecond::ZERO {
-            self.learn_lag(measured, parameters);
         }
         let time = match self.sinking > MicrometrePerSecond::ZERO {
             true => parameters.lowering_time,
@@ -84,9 +79,10 @@ impl Motion {
         self.position_nm = self.position_nm.saturating_add(self.speed().0);
         let error = measured_nm.saturating_sub(self.position_nm);
         self.position_nm = self.position_nm.saturating_add(position_time.divide(error));
+        self.position = Micrometre(Divisor::THOUSAND.divide(self.position_nm));
         let bias_time = bias_divisor(time);
-        if learn {
-            let limit = parameters.bias_limit.scaled(bias_time.1, Divisor::ONE).0;
+        if phase.is_moving() {
+            let limit = parameters.bias_limit.0.saturating_mul(bias_time.1);
             self.bias_sum_nm = self
                 .bias_sum_nm
                 .saturating_add(error)
@@ -100,49 +96,43 @@ impl Motion {
         self.bias = MicrometrePerSecond(bias_time.0.divide(self.bias_sum_nm));
     }
 
-    /// A lift that sets in tells how slow this machine's spools are.
-    fn learn_lag(&mut self, measured: Micrometre, parameters: &MotionParameters) {
-        let found = self.trail.step(measured, self.model_speed, self.slowing);
-        if let Some(further) = found {
-            let further = further - parameters.load_trail;
-            let [lift, lower] = &mut self.slower;
-            *lift = *lift + further;
-            // Both valves are alike, until the lowering valve has told more of its own.
-            if *lower == Microsecond::ZERO {
-                *lower = *lift;
-            }
-            self.limit_lag(parameters);
-        }
-    }
-
-    /// The spool of one valve has turned out to be slower by so much.
-    pub fn correct_lag(
+    /// How far the hitch trails its valve tells how slow its spool is: every other step of a move.
+    pub fn follow_trail(
         &mut self,
-        direction: Direction,
-        further: Microsecond,
+        measured: Micrometre,
+        phase: Phase,
         parameters: &MotionParameters,
     ) {
-        let [lift, lower] = &mut self.slower;
-        let slower = match direction {
-            Direction::Lift => lift,
-            Direction::Lower => lower,
+        if phase == Phase::Holding {
+            return;
+        }
+        let [lift, lower] = self.lags;
+        let (usual, lag) = match self.sinking > MicrometrePerSecond::ZERO {
+            true => (parameters.lowering_trail, lower),
+            false => (parameters.lift_trail, lift),
         };
-        *slower = *slower + further;
-        self.limit_lag(parameters);
+        let measured_nm = measured.0.saturating_mul(1000);
+        self.trail.step(measured_nm, self.model_speed, usual.into());
+        self.further = self.trail.further(lag, parameters.lag_limit.into());
     }
 
-    fn limit_lag(&mut self, parameters: &MotionParameters) {
-        let limit = Microsecond(parameters.lag_limit.0.saturating_mul(1000));
-        self.slower = self.slower.map(|slower| slower.limited(-limit, limit));
-        self.slower_steps = self
-            .slower
-            .map(|slower| Millisecond(Divisor::THOUSAND.divide(slower.0)));
+    /// Takes in the end of a move that nothing else had a part in.
+    pub fn learn_lag(&mut self, told: &Told, parameters: &MotionParameters) {
+        self.trail.end(told);
+        let [lift, lower] = &mut self.lags;
+        let (lag, other) = match told.direction {
+            Direction::Lift => (lift, lower),
+            Direction::Lower => (lower, lift),
+        };
+        lag.learn(&self.trail, parameters.lag_limit.into());
+        other.assume(*lag);
+        self.further = Eighths::default();
     }
 
-    /// Lags of this machine's spools, lift and lowering.
-    fn lags(&self, hydraulics: &HydraulicParameters) -> [Millisecond; 2] {
-        self.slower_steps
-            .map(|slower| (hydraulics.spool_lag + slower).max(Millisecond::ZERO))
+    /// What has been learnt of the lags of this machine's spools, lift and lowering.
+    fn lags(&self, hydraulics: &HydraulicParameters) -> [Eighths; 2] {
+        let known = Eighths::from(hydraulics.spool_lag);
+        self.lags.map(|lag| known + lag.further())
     }
 
     /// Takes in the currents that have just been sent to the coils; `slowing`: a move is coming to its end.
@@ -154,7 +144,7 @@ impl Motion {
         calibration: &Calibration,
     ) {
         let hydraulics = &calibration.hydraulics;
-        let [lift_lag, lower_lag] = self.lags(hydraulics).map(Millisecond::divisor);
+        let [lift_lag, lower_lag] = self.lags(hydraulics).map(Eighths::divisor);
         let lift = self
             .lift_spool
             .follow(currents.lift, hydraulics.hysteresis, lift_lag);
@@ -170,7 +160,6 @@ impl Motion {
         self.sinking = next_speed(self.sinking, settled);
         self.opening_speed = piston_speed(up, area) - settled;
         self.model_speed = piston_speed(up, area) - self.sinking;
-        self.slowing = slowing;
         if slowing {
             self.shrink_bias(before);
         }
@@ -196,6 +185,7 @@ impl Motion {
     /// Forgets what the map got wrong: the next move may go the other way.
     pub fn forget_bias(&mut self) {
         self.trail = Trail::from(self.position_nm);
+        self.further = Eighths::default();
         self.bias_sum_nm = 0;
         self.bias = MicrometrePerSecond::ZERO;
     }
@@ -203,7 +193,7 @@ impl Motion {
     /// Piston travel.
     #[must_use]
     pub fn position(&self) -> Micrometre {
-        Micrometre(Divisor::THOUSAND.divide(self.position_nm))
+        self.position
     }
 
     /// Piston speed.
@@ -230,39 +220,59 @@ impl Motion {
         self.bias
     }
 
-    /// Where the piston comes to rest if the demanded speed is zero from now on.
-    ///
-    /// With a first-order spool, `v' = (u - v) / T`, the point `P = x + T v` moves with exactly the
-    /// demanded speed: `P' = v + T v' = u`. Control of `P` needs no allowance for the lag. A load that sinks runs out by
-    /// what its inertia adds ([`run_out`]).
+    /// How far the piston still goes.
     #[must_use]
-    pub fn resting_point(&self, hydraulics: &HydraulicParameters) -> Micrometre {
-        self.position() + self.over_run(hydraulics) - run_out(self.sinking)
-    }
-
-    /// What the spool's lag adds to the way.
-    fn over_run(&self, hydraulics: &HydraulicParameters) -> Micrometre {
+    pub fn run_on(&self, hydraulics: &HydraulicParameters) -> RunOn {
         let speed = self.opening_speed + self.bias;
         let [lift, lower] = self.lags(hydraulics);
         let lag = match self.opening_speed < MicrometrePerSecond::ZERO {
             true => lower,
             false => lift,
         };
-        Micrometre(speed.0).scaled(lag.0, Divisor::THOUSAND)
+        let lag = (lag + self.further).max(Eighths(0));
+        RunOn {
+            from: self.position() - run_out(self.sinking),
+            of_spool: Micrometre(speed.0).scaled(lag.0, Eighths::IN_SECOND),
+        }
     }
 
-    /// Where the piston comes to rest if the coil is cut now.
+    /// Share of the spool's part that is left of it if the coil is cut now, in thousandths.
     ///
     /// The spool then makes for zero current, not for its threshold, and is shut sooner; see [`ClosingCurve`].
     #[must_use]
-    pub fn cut_point(&self, closing: &Closing, hydraulics: &HydraulicParameters) -> Micrometre {
+    pub fn share_of_cut(&self, closing: &Closing) -> i32 {
         let [lift, lower] = self.spools;
-        let share = match self.model_speed < MicrometrePerSecond::ZERO {
+        match self.model_speed < MicrometrePerSecond::ZERO {
             true => closing.lower.share(lower),
             false => closing.lift.share(lift),
-        };
-        self.position() + self.over_run(hydraulics).scaled(share, Divisor::THOUSAND)
-            - run_out(self.sinking)
+        }
+    }
+}
+
+/// How far the piston still goes from where it is.
+#[derive(Clone, Copy, Debug)]
+pub struct RunOn {
+    /// Where it would stop if its valve were shut at once: a load that sinks runs out by what its inertia adds
+    /// ([`run_out`]).
+    from: Micrometre,
+    /// What the spool's lag adds to the way.
+    of_spool: Micrometre,
+}
+
+impl RunOn {
+    /// Where the piston comes to rest if the demanded speed is zero from now on.
+    ///
+    /// With a first-order spool, `v' = (u - v) / T`, the point `P = x + T v` moves with exactly the
+    /// demanded speed: `P' = v + T v' = u`. Control of `P` needs no allowance for the lag.
+    #[must_use]
+    pub fn resting_point(&self) -> Micrometre {
+        self.from + self.of_spool
+    }
+
+    /// Where the piston comes to rest if the coil is cut now, with [`Motion::share_of_cut`].
+    #[must_use]
+    pub fn cut_point(&self, share: i32) -> Micrometre {
+        self.from + self.of_spool.scaled(share, Divisor::THOUSAND)
     }
 }
 
@@ -302,7 +312,8 @@ impl Slack {
 /// `4 T^2` as divisor and as number: from the sum of position errors to the bias.
 fn bias_divisor(time: Millisecond) -> (Divisor, i32) {
     let time = time.0.max(1);
-    let product = time.saturating_mul(time).saturating_mul(4);
+    // Half a second at most.
+    let product = time.wrapping_mul(time).wrapping_mul(4);
     (Divisor::at_least_one(product), product)
 }
 
@@ -332,6 +343,11 @@ struct Spool {
 
 impl Spool {
     fn follow(&mut self, coil: MilliAmp, hysteresis: MilliAmp, lag: Divisor) -> MilliAmp {
+        /// A spool whose coil is off rests from here on: half of what opens any valve.
+        const RESTING_MICROAMPERE: i32 = 300_000;
+        if coil == MilliAmp::ZERO && self.microampere < RESTING_MICROAMPERE {
+            return MilliAmp::ZERO;
+        }
         self.play = self.play.limited(coil, coil + hysteresis);
         let goal = self.play.0.saturating_mul(1000);
         let error = goal.saturating_sub(self.microampere);

@@ -91,32 +91,38 @@ impl Belief {
     #[inline(never)]
     fn learn(&mut self, told: &Told, flow_error: i32) {
         let sensitivity = told.sensitivity.0;
-        let of_doubt = mul_div_seldom(sensitivity, self.doubt.0, Divisor::THOUSAND);
-        let of_flow = mul_div_seldom(told.expected.0, flow_error, Divisor::THOUSAND);
-        let of_rest = hypotenuse(of_flow, NOISE.0);
-        let spread = hypotenuse(of_doubt, of_rest);
-        if sensitivity <= 0 || told.missing.magnitude().0 / BELIEVABLE > spread {
+        let of_doubt = square(mul_div_seldom(sensitivity, self.doubt.0, Divisor::THOUSAND));
+        let of_flow = square(mul_div_seldom(
+            told.expected.0,
+            flow_error,
+            Divisor::THOUSAND,
+        ));
+        let all = of_doubt
+            .saturating_add(of_flow)
+            .saturating_add(square(NOISE.0));
+        if sensitivity <= 0 || square(told.missing.0 / BELIEVABLE) > all {
             return;
         }
-        let all = Divisor::at_least_one(spread);
-        // The share is the square of this, both in thousandths.
-        let part = mul_div_seldom(of_doubt, 1000, all);
-        let share = mul_div_seldom(part, part, Divisor::THOUSAND);
+        // In thousandths; all is 90 of them at least.
+        let share = of_doubt.checked_div(all / 1000).unwrap_or(0).min(1000);
+        let share = share.cast_signed();
         // um * 1/1000 over um/A is mA.
         let further = mul_div_seldom(told.missing.0, share, Divisor::at_least_one(sensitivity));
         self.offset = (self.offset + MilliAmp(further)).limited(-MOST, MOST);
-        self.doubt = MilliAmp(mul_div_seldom(self.doubt.0, of_rest, all)).max(LEAST_DOUBT);
+        let left = u64::from(1000_u32.saturating_sub(share.cast_unsigned())).saturating_mul(1000);
+        self.doubt = MilliAmp(mul_div_seldom(
+            self.doubt.0,
+            square_root(left),
+            Divisor::THOUSAND,
+        ))
+        .max(LEAST_DOUBT);
     }
 }
 
-/// Root of the sum of squares.
-fn hypotenuse(a: i32, b: i32) -> i32 {
-    square_root(square(a).saturating_add(square(b)))
-}
-
-fn square(value: i32) -> u64 {
-    let magnitude = u64::from(value.unsigned_abs());
-    magnitude.saturating_mul(magnitude)
+/// Square of a distance in um; three of them fit. Further off than this is no offset anyway.
+fn square(value: i32) -> u32 {
+    const FAR: u32 = 30_000;
+    value.unsigned_abs().min(FAR).pow(2)
 }
 
 #[cfg(test)]

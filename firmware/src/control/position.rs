@@ -1,6 +1,6 @@
 //! Position control: from the distance that remains to the piston speed that is right now.
 //!
-//! The controlled point is where the hitch would come to rest ([`Motion::resting_point`]); it moves with
+//! The controlled point is where the hitch would come to rest ([`RunOn::resting_point`]); it moves with
 //! exactly the demanded speed, so any speed profile that falls to zero with the distance `r` arrives
 //! without overshoot. This one decelerates at a constant `a`, and for the last bit in proportion:
 //!
@@ -10,13 +10,13 @@
 //! ```
 //!
 //! It never asks for less than a creep speed: the end of the approach is then a cut of the coil, at the
-//! moment from which the closing spool carries the hitch onto the set point ([`Motion::cut_point`]).
+//! moment from which the closing spool carries the hitch onto the set point ([`RunOn::cut_point`]).
 
 use super::calibration::Calibration;
 use super::design_parameters::PositionParameters;
 use super::drop_scale::DropScale;
 use super::fixed::{Divisor, mul_div, square_root};
-use super::motion::{Closing, Motion};
+use super::motion::{Closing, Motion, RunOn};
 use super::units::{
     Micrometre, MicrometrePerSecond, MilliDegree, MillimetrePerSecondSquared, PerSecond,
 };
@@ -150,10 +150,11 @@ impl PositionControl {
             ),
         };
         let ahead_of = |point: Micrometre| Micrometre(direction.sign((target - point).0));
-        let remaining = ahead_of(motion.resting_point(&calibration.hydraulics));
+        let run_on: RunOn = motion.run_on(&calibration.hydraulics);
+        let remaining = ahead_of(run_on.resting_point());
         // A cut carries less far than a ramp to zero, so it needn't be looked at before that would do.
         let cut = remaining <= parameters.stop_band
-            && ahead_of(motion.cut_point(closing, &calibration.hydraulics)) <= parameters.stop_band;
+            && ahead_of(run_on.cut_point(motion.share_of_cut(closing))) <= parameters.stop_band;
         let approach = approach_speed(remaining, deceleration, parameters.approach_gain);
         let speed = match cut {
             true => MicrometrePerSecond::ZERO,

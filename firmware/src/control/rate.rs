@@ -92,7 +92,7 @@ fn speed_before_limit(
         Direction::Lower => (position.lower_limit, position.lower_deceleration),
     };
     let remaining =
-        calibration.linkage.travel(limit) - motion.resting_point(&calibration.hydraulics);
+        calibration.linkage.travel(limit) - motion.run_on(&calibration.hydraulics).resting_point();
     let ahead = Micrometre(direction.sign(remaining.0));
     if ahead <= position.stop_band {
         MicrometrePerSecond::ZERO
