@@ -49,6 +49,10 @@ const LITTLE_HELP: f64 = 0.8;
 /// Most candidates of one round that are tried on held-out runs.
 const MOST_TRIED: usize = 3;
 
+/// Likelihood ratio by which an alternative has to be better to take the named effect's place, and how often one may.
+const LIKELIER: f64 = 2.0;
+const MOST_SWAPS: usize = 3;
+
 /// Most rounds of adding: an effect that was dropped may come back, but not for ever.
 const MOST_ROUNDS: usize = 2 * MOST_STEPS;
 
@@ -247,7 +251,7 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
             present = lighter;
         }
     }
-    finish(experiment, model, before, present, steps)
+    finish(experiment, model, before, present, (steps, MOST_SWAPS))
 }
 
 /// What a candidate has to show.
@@ -325,10 +329,10 @@ fn finish(
     model: &Model,
     before: Fit,
     after: Fit,
-    mut steps: Vec<Step>,
+    (mut steps, swaps): (Vec<Step>, usize),
 ) -> Explanation {
     let given = model.effects.len();
-    let mut faint = None;
+    let (mut faint, mut likelier) = (None, None);
     for (index, step) in steps.iter_mut().enumerate() {
         let effect = given + index;
         let whole = with_last(experiment, model, &after, effect);
@@ -343,13 +347,21 @@ fn finish(
         step.intervals = weighed.intervals;
         step.detectability = weighed.detectability;
         step.indistinguishable = twins(experiment, model, &whole, weighed.inflation);
+        if swaps > 0 && step.indistinguishable.iter().any(is_likelier) {
+            likelier = Some(index);
+            break;
+        }
         step.confidence = there / (1 + step.indistinguishable.len()) as f64;
     }
     if let Some(index) = faint {
         // A later step has taken over what this one stood for.
         steps.remove(index);
         let lighter = refine(experiment, model, after.estimate.without(given + index));
-        return finish(experiment, model, before, lighter, steps);
+        return finish(experiment, model, before, lighter, (steps, swaps));
+    }
+    if let Some(index) = likelier {
+        let after = swap(experiment, model, given, &mut steps[..=index]).unwrap_or(after);
+        return finish(experiment, model, before, after, (steps, swaps - 1));
     }
     let cells = cells(experiment, &after);
     let missing = missing_manoeuvre(experiment, &after);
@@ -378,6 +390,29 @@ fn finish(
         next_experiment,
         unseen,
     }
+}
+
+fn is_likelier(alternative: &Alternative) -> bool {
+    alternative.likelier > LIKELIER
+}
+
+/// Puts what is likelier now in the place of the last of some steps: while a later effect was missing, the one that could
+/// take on a little of it came first. Returns the model after all steps; `None` if there is nothing to put.
+fn swap(experiment: &Experiment, model: &Model, given: usize, steps: &mut [Step]) -> Option<Fit> {
+    let (step, earlier) = steps.split_last_mut()?;
+    let alternatives = std::mem::take(&mut step.indistinguishable).into_iter();
+    let best = alternatives.max_by(|a, b| a.likelier.total_cmp(&b.likelier))?;
+    let place = given + earlier.len();
+    let mut estimate = best.fit.estimate.clone();
+    let effect = estimate.effects.pop()?;
+    estimate.effects.insert(place, effect);
+    let after = evaluate(experiment, model, estimate.clone());
+    estimate.effects.truncate(place + 1);
+    step.effect = best.effect;
+    step.fit = refine(experiment, model, estimate);
+    step.error_after = step.fit.error();
+    step.held_out_after = held_out_error(experiment, model, &step.fit);
+    Some(after)
 }
 
 /// Every named effect with each that could stand in its place.

@@ -192,7 +192,7 @@ fn golden_section(start_at: impl Fn(f64) -> Start, mut low: f64, mut high: f64) 
 }
 
 /// An effect at a multiple of its size.
-fn scaled(added: &AddedEffect, share: f64) -> AddedEffect {
+pub(super) fn scaled(added: &AddedEffect, share: f64) -> AddedEffect {
     let null = added.effect.parameters()[0].null;
     let mut scaled = added.clone();
     scaled.values[0] = null + share * (scaled.values[0] - null);

@@ -11,7 +11,7 @@ use super::experiment::Experiment;
 use super::explain::absent;
 use super::fit::{Fit, refine};
 use super::jacobian::square_sum;
-use super::starts::with_extreme_shapes;
+use super::starts::{scaled, with_extreme_shapes};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
@@ -20,6 +20,9 @@ pub const TOLD_APART: f64 = 10.0;
 
 /// Angle between two signatures under which the one is worth a fit in place of the other, degree.
 const ALIKE_DEG: f64 = 37.0;
+
+/// Where a signature changes its form with its size, a third of the typical one is tried as well.
+const SMALL: f64 = 0.3;
 
 /// Angle up to which an effect without the shape of its own is the named one: a friction without its breakaway peak is
 /// plain friction, and no other explanation.
@@ -43,30 +46,32 @@ pub(super) fn twins(
         .filter(|effect| {
             let typical = AddedEffect::typical(*effect);
             let extreme = with_extreme_shapes(&typical);
+            let small = scaled(&typical, SMALL);
             [typical]
                 .iter()
                 .chain(&extreme)
+                .chain([&small])
                 .any(|form| place.angle_deg(form) < ALIKE_DEG)
         })
         .collect();
     if alike.is_empty() {
         return Vec::new();
     }
-    let own_parameters = whole.estimate.effects[last].values.len();
+    let own_parameters = whole.estimate.effects[last].values.len() as f64;
     let base = refine(experiment, model, base_estimate);
     try_effects(experiment, model, &base, &alike, &|_| {})
         .into_iter()
-        .filter(|swapped| {
-            let worse = (swapped.fit.cost - whole.cost) / (variance * inflation);
-            // Fewer parameters are a merit; more are no fault here.
-            let spared = own_parameters.saturating_sub(swapped.effect.parameters().len()) as f64;
-            worse - spared * swapped.effective_samples().ln() < TOLD_APART
+        .filter_map(|swapped| {
+            let better = (whole.cost - swapped.fit.cost) / (variance * inflation);
+            let spared = own_parameters - swapped.effect.parameters().len() as f64;
+            let merit = |spared: f64| spared * swapped.effective_samples().ln();
+            // Fewer parameters are a merit; more are no fault in what cannot be told apart.
+            let plain = plain(&swapped);
+            let alike = better + merit(spared.max(0.0)) > -TOLD_APART
+                && plain.is_none_or(|plain| place.angle_deg(&plain) > SAME_DEG);
+            alike.then_some((better + merit(spared), swapped.fit))
         })
-        .filter(|swapped| {
-            let plain = plain(swapped);
-            plain.is_none_or(|plain| place.angle_deg(&plain) > SAME_DEG)
-        })
-        .filter_map(|swapped| Alternative::new(experiment, model, whole, swapped.fit))
+        .filter_map(|(likelier, fit)| Alternative::new(experiment, model, whole, (fit, likelier)))
         .collect()
 }
 

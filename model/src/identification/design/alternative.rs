@@ -18,6 +18,8 @@ pub struct Alternative {
     pub angle_deg: f64,
     /// Fitted values of its parameters, in their units.
     pub values: Vec<f64>,
+    /// By how much it is likelier than the named one, as a likelihood ratio with its parameters paid for; negative: less likely.
+    pub likelier: f64,
     /// Error of the model with it instead.
     pub error_after: f64,
     /// The model with it instead, as fitted; it is the last of the effects.
@@ -25,14 +27,20 @@ pub struct Alternative {
 }
 
 impl Alternative {
-    /// An effect that was fitted, last of all, in place of the last one of `whole`.
+    /// An effect that was fitted, last of all, in place of the last one of `whole`, and is so much likelier.
     #[must_use]
-    pub fn new(experiment: &Experiment, model: &Model, whole: &Fit, fit: Fit) -> Option<Self> {
+    pub fn new(
+        experiment: &Experiment,
+        model: &Model,
+        whole: &Fit,
+        (fit, likelier): (Fit, f64),
+    ) -> Option<Self> {
         let added = fit.estimate.effects.last()?.clone();
         Some(Self {
             effect: added.effect,
             angle_deg: angle_deg(experiment, model, whole, &added)?,
             values: added.values,
+            likelier,
             error_after: fit.error(),
             fit,
         })
