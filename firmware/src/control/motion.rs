@@ -86,7 +86,7 @@ impl Motion {
             self.bias_sum_nm = self
                 .bias_sum_nm
                 .saturating_add(error)
-                .max(-limit)
+                .max(limit.saturating_neg())
                 .min(limit);
         } else {
             self.bias_sum_nm = self
