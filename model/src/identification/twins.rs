@@ -24,8 +24,9 @@ const ALIKE_DEG: f64 = 37.0;
 /// Where a signature changes its form with its size, a third of the typical one is tried as well.
 const SMALL: f64 = 0.3;
 
-/// Angle up to which an effect without the shape of its own is the named one: a friction without its breakaway peak is
-/// plain friction, and no other explanation.
+/// Angle up to which an effect without the shape of its own is the named one, if they have a size in common: a friction
+/// without its breakaway peak is plain friction, and no other explanation. A check valve that takes a steady pressure is one,
+/// though a lift valve that passes less looks the same.
 const SAME_DEG: f64 = 2.0;
 
 /// Effects that fit as well in place of the last one.
@@ -57,6 +58,7 @@ pub(super) fn twins(
     if alike.is_empty() {
         return Vec::new();
     }
+    let own_size = size_key(&whole.estimate.effects[last]);
     let own_parameters = whole.estimate.effects[last].values.len() as f64;
     let base = refine(experiment, model, base_estimate);
     try_effects(experiment, model, &base, &alike, &|_| {})
@@ -66,13 +68,18 @@ pub(super) fn twins(
             let spared = own_parameters - swapped.effect.parameters().len() as f64;
             let merit = |spared: f64| spared * swapped.effective_samples().ln();
             // Fewer parameters are a merit; more are no fault in what cannot be told apart.
-            let plain = plain(&swapped);
+            let plain = plain(&swapped).filter(|plain| size_key(plain) == own_size);
             let alike = better + merit(spared.max(0.0)) > -TOLD_APART
                 && plain.is_none_or(|plain| place.angle_deg(&plain) > SAME_DEG);
             alike.then_some((better + merit(spared), swapped.fit))
         })
         .filter_map(|(likelier, fit)| Alternative::new(experiment, model, whole, (fit, likelier)))
         .collect()
+}
+
+/// What the size of an effect is called in a model file.
+fn size_key(added: &AddedEffect) -> &'static str {
+    added.effect.parameters()[0].key
 }
 
 /// A candidate's effect without the shape of its own, `None` if it has none.
