@@ -1,5 +1,6 @@
 //! What the parameters that are already free could absorb, taken out of residuals and signatures.
 
+use std::borrow::Borrow;
 use std::ops::Range;
 
 use nalgebra::{Cholesky, DVector, Dyn};
@@ -8,8 +9,8 @@ use super::estimate::Estimate;
 use super::jacobian::{Jacobian, dot, subtract};
 
 /// Columns of a Jacobian that are free, ready to be projected out, with every run's load.
-pub struct Frame<'a> {
-    jacobian: &'a Jacobian,
+pub struct Frame<J> {
+    jacobian: J,
     kept: Vec<usize>,
     normal: Option<Cholesky<f64, Dyn>>,
     /// Pull of the priors of the shared parameters.
@@ -18,11 +19,12 @@ pub struct Frame<'a> {
     here: f64,
 }
 
-impl<'a> Frame<'a> {
+impl<J: Borrow<Jacobian>> Frame<J> {
     /// All shared parameters of the Jacobian but the columns `left_out`, and but those that stand at an end of their
     /// range: a clock that cannot move on absorbs nothing.
     #[must_use]
-    pub fn new(jacobian: &'a Jacobian, estimate: &Estimate, left_out: Range<usize>) -> Self {
+    pub fn new(owner: J, estimate: &Estimate, left_out: Range<usize>) -> Self {
+        let jacobian: &Jacobian = owner.borrow();
         let (mut matrix, right) = jacobian.reduced(estimate);
         for k in 0..matrix.nrows() {
             matrix[(k, k)] += 1e-9;
@@ -32,18 +34,18 @@ impl<'a> Frame<'a> {
             .filter(|&column| !estimate.is_at_an_end(jacobian.shared[column]))
             .collect();
         let normal = matrix.select_rows(&kept).select_columns(&kept).cholesky();
-        let mut frame = Self {
-            jacobian,
-            normal,
-            priors: DVector::zeros(kept.len()),
-            here: 0.0,
-            kept,
-        };
         let own: Vec<Vec<f64>> = jacobian
             .runs
             .iter()
             .map(|run| run.residual.clone())
             .collect();
+        let mut frame = Self {
+            jacobian: owner,
+            normal,
+            priors: DVector::zeros(kept.len()),
+            here: 0.0,
+            kept,
+        };
         frame.priors = right.select_rows(&frame.kept) - frame.pull(&own);
         frame.here = frame.cost_after(&own);
         frame
@@ -59,10 +61,10 @@ impl<'a> Frame<'a> {
     #[must_use]
     pub fn project_at_a_price(&self, mut signature: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, f64) {
         let shares = self.shares(&self.coupling(&signature));
-        let with_prior = |&(&kept, _): &(&usize, &f64)| self.jacobian.shared[kept].has_prior();
+        let with_prior = |&(&kept, _): &(&usize, &f64)| self.jacobian().shared[kept].has_prior();
         let clocks = self.kept.iter().zip(shares.iter()).filter(with_prior);
         let mut price: f64 = clocks.map(|(_, share)| share * share).sum();
-        for (run, column) in self.jacobian.runs.iter().zip(&mut signature) {
+        for (run, column) in self.jacobian().runs.iter().zip(&mut signature) {
             for (&kept, &share) in self.kept.iter().zip(shares.iter()) {
                 subtract(column, share, &run.shared[kept]);
             }
@@ -80,7 +82,7 @@ impl<'a> Frame<'a> {
     #[must_use]
     pub fn cost_after(&self, residuals: &[Vec<f64>]) -> f64 {
         let mut cost = 0.0;
-        for (run, residual) in self.jacobian.runs.iter().zip(residuals) {
+        for (run, residual) in self.jacobian().runs.iter().zip(residuals) {
             cost += dot(residual, residual) + run.load_value * run.load_value;
             if let Some((_, square, load_pull)) = run.load_pull(residual) {
                 cost -= load_pull * load_pull / square;
@@ -100,7 +102,7 @@ impl<'a> Frame<'a> {
     /// `high` times the way, and that cost: a parabola through both ends and the same way backwards.
     #[must_use]
     pub fn along(&self, residuals: &[Vec<f64>], low: f64, high: f64) -> (f64, f64) {
-        let own = |run: usize| &self.jacobian.runs[run].residual;
+        let own = |run: usize| &self.jacobian().runs[run].residual;
         let backwards: Vec<Vec<f64>> = residuals
             .iter()
             .enumerate()
@@ -125,7 +127,7 @@ impl<'a> Frame<'a> {
     /// Pull of residuals on the free parameters, the loads eliminated.
     fn pull(&self, residuals: &[Vec<f64>]) -> DVector<f64> {
         let mut pull = DVector::zeros(self.kept.len());
-        for (run, residual) in self.jacobian.runs.iter().zip(residuals) {
+        for (run, residual) in self.jacobian().runs.iter().zip(residuals) {
             let through_load = run
                 .load_pull(residual)
                 .map(|(load, square, load_pull)| (load, load_pull / square));
@@ -142,7 +144,7 @@ impl<'a> Frame<'a> {
     /// Products of a signature with the free columns, the loads eliminated.
     fn coupling(&self, signature: &[Vec<f64>]) -> DVector<f64> {
         let mut coupling = DVector::zeros(self.kept.len());
-        for (run, column) in self.jacobian.runs.iter().zip(signature) {
+        for (run, column) in self.jacobian().runs.iter().zip(signature) {
             let through_load = run.load.as_ref().map(|load| {
                 let share = dot(load, column) / (dot(load, load) + 1.0);
                 (load, share)
@@ -161,5 +163,9 @@ impl<'a> Frame<'a> {
         self.normal
             .as_ref()
             .map_or_else(|| DVector::zeros(pull.len()), |normal| normal.solve(pull))
+    }
+
+    fn jacobian(&self) -> &Jacobian {
+        self.jacobian.borrow()
     }
 }

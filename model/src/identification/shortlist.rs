@@ -6,6 +6,7 @@ use super::estimate::Estimate;
 use super::experiment::Experiment;
 use super::fit::{Fit, sketch};
 use super::frame::Frame;
+use super::jacobian::Jacobian;
 use super::starts::{Starts, valleys};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
@@ -62,7 +63,7 @@ pub(super) struct Shortlist<'a> {
     pub model: &'a Model,
     pub base: &'a Fit,
     /// What is free at the base, and adapts to an effect.
-    pub frame: Frame<'a>,
+    pub frame: Frame<&'a Jacobian>,
     /// Fall of the cost under which nothing is worth a sketch.
     pub worthwhile: f64,
 }

@@ -65,10 +65,12 @@ pub struct Place<'a> {
     model: &'a Model,
     whole: &'a Fit,
     last: usize,
-    /// Sensitivities of all that is free besides the last effect.
-    jacobian: Jacobian,
+    /// All that is free besides the last effect.
+    frame: Frame<Jacobian>,
     /// Residuals with nothing in the place.
     empty: Vec<Vec<f64>>,
+    /// What the last effect does that nothing else can imitate.
+    own: Vec<Vec<f64>>,
 }
 
 impl<'a> Place<'a> {
@@ -77,27 +79,31 @@ impl<'a> Place<'a> {
     pub fn new(experiment: &'a Experiment, model: &'a Model, whole: &'a Fit) -> Option<Self> {
         let last = whole.estimate.effects.len().checked_sub(1)?;
         let jacobian = Jacobian::new(experiment, model, &whole.weights, &whole.estimate);
+        let jacobian = without(jacobian, last);
         let mut place = Self {
             experiment,
             model,
             whole,
             last,
-            jacobian: without(jacobian, last),
+            frame: Frame::new(jacobian, &whole.estimate, 0..0),
             empty: Vec::new(),
+            own: Vec::new(),
         };
         place.empty = place.residuals(AddedEffect::null(whole.estimate.effects[last].effect));
+        place.own = place.signature(&whole.residuals);
         Some(place)
     }
 
     /// Angle between the signatures of the effect that is there and of `other` in its place, degree.
     #[must_use]
     pub fn angle_deg(&self, other: &AddedEffect) -> f64 {
-        let frame = Frame::new(&self.jacobian, &self.whole.estimate, 0..0);
-        let signature = |present: &[Vec<f64>]| frame.project(difference(&self.empty, present));
-        between_deg(
-            &signature(&self.whole.residuals),
-            &signature(&self.residuals(other.clone())),
-        )
+        let others = self.signature(&self.residuals(other.clone()));
+        between_deg(&self.own, &others)
+    }
+
+    /// What is done to the campaign by what leaves some residuals, less what all that is free besides can imitate.
+    fn signature(&self, present: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        self.frame.project(difference(&self.empty, present))
     }
 
     fn residuals(&self, effect: AddedEffect) -> Vec<Vec<f64>> {
