@@ -16,8 +16,8 @@ use host_tests::{ecu_day, ecu_tool, emulator};
 const SEED: u64 = 20_260_101;
 /// `HITCH_EMULATED_MINUTES` makes it longer or shorter.
 const MINUTES: u64 = 60;
-/// Instructions from the converters' codes to the drivers' pulses, whatever happens: 4 % of a millisecond at 168 MHz and
-/// two clocks an instruction.
+/// Instructions from the converters' codes to the drivers' pulses, whatever happens: 4 % of a millisecond at 168 MHz
+/// and two clocks an instruction.
 const MOST_INSTRUCTIONS: u64 = 3_000;
 /// Instructions of a whole millisecond in which nothing is stored: what fits at 168 MHz and two clocks an instruction.
 const MOST_OF_MILLISECOND: u64 = 84_000;

@@ -302,8 +302,8 @@ fn drift(rate_deg_per_s: f64, watched_s: u32) -> Drift {
     drift
 }
 
-/// The controller brings the hitch back to where it seems to have been, a few times and a few degrees in all. One sensor
-/// can't tell a drift from a leak, and needn't.
+/// The controller brings the hitch back to where it seems to have been, a few times and a few degrees in all. One
+/// sensor can't tell a drift from a leak, and needn't.
 #[test]
 fn a_drifting_angle_is_followed_by_a_few_degrees_at_most() {
     for rate_deg_per_s in [
@@ -315,8 +315,8 @@ fn a_drifting_angle_is_followed_by_a_few_degrees_at_most() {
     }
 }
 
-/// A correction is forgotten after ten minutes, and five within them are too many: a drift that asks for fewer is followed
-/// for as long as it lasts.
+/// A correction is forgotten after ten minutes, and five within them are too many: a drift that asks for fewer is
+/// followed for as long as it lasts.
 #[test]
 fn the_slowest_drift_that_is_noticed() {
     for rate_deg_per_s in [0.0004, -0.0004] {

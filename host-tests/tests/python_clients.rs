@@ -1,7 +1,8 @@
 //! The ECU's bus, used by programs that other people wrote: python-can, cantools, can-j1939 and pyxcp.
 //!
-//! Each script runs against an ECU of its own: the firmware's application with plant and operator, its bus on a TCP port. Their packages are installed once, under the target folder; on a
-//! machine without Python or network these tests say so and are left out, except in continuous integration (`CI` is set).
+//! Each script runs against an ECU of its own: the firmware's application with plant and operator, its bus on a TCP
+//! port. Their packages are installed once, under the target folder; on a machine without Python or network these tests
+//! say so and are left out, except in continuous integration (`CI` is set).
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,6 @@
-//! Rate control: the button outside moves the hitch at its set speed, whatever hangs on it, whatever the oil's temperature,
-//! both ways, with sensors of pressure and without, on plants as they are met, taught by the firmware itself.
+//! Rate control: the button outside moves the hitch at its set speed, whatever hangs on it, whatever the oil's
+//! temperature, both ways, with sensors of pressure and without, on plants as they are met, taught by the firmware
+//! itself.
 
 use hitch_firmware::control::units::MilliDegreePerSecond;
 use hitch_firmware::control::{Inputs, ValidCalibration};

@@ -1,4 +1,5 @@
-//! From power-up on the line that enables the coils' drivers is low until the operator has picked the hitch up, whatever else goes on.
+//! From power-up on the line that enables the coils' drivers is low until the operator has picked the hitch up,
+//! whatever else goes on.
 
 use hitch_firmware::can::{ExtendedId, Frame};
 use hitch_firmware::control::{State, ValidCalibration};

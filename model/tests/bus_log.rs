@@ -12,8 +12,8 @@ const MOTION_OF_ANOTHER: &str = "18FF4581";
 
 const MANIFEST: &str = "format = 1\n[[run]]\nfile = \"a.log\"\nbench = \"hitch\"\nload_kg = 150\n";
 
-/// Sample `index` of a log at 50 Hz: data of both messages. Lift 1.5 A, lowering 0 A, 90 degrees and 0.01 a sample more;
-/// 20 bar and 35 bar.
+/// Sample `index` of a log at 50 Hz: data of both messages. Lift 1.5 A, lowering 0 A, 90 degrees and 0.01 a sample
+/// more; 20 bar and 35 bar.
 fn sample(index: u16) -> [String; 2] {
     let time_ms = (63_900 + 20 * u32::from(index)) % 64_000;
     let hex = |words: [u16; 4]| {

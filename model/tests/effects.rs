@@ -92,8 +92,9 @@ fn a_null_value_gives_the_model_without_the_effect_bit_for_bit() {
     }
 }
 
-/// The null value is a limit, not a switch: a millionth of a typical size changes next to nothing. The steady plant takes
-/// finer steps for what is sudden: what its ordinary steps leave, a third of an instrument's noise at most, is borne with.
+/// The null value is a limit, not a switch: a millionth of a typical size changes next to nothing. The steady plant
+/// takes finer steps for what is sudden: what its ordinary steps leave, a third of an instrument's noise at most, is
+/// borne with.
 #[test]
 fn next_to_its_null_value_an_effect_is_next_to_nothing() {
     const LEFT: [(Channel, f64); 3] = [

@@ -43,8 +43,8 @@ fn triangle_a(time_s: f64) -> f64 {
     1.5 + 0.05 * (10.0 - (time_s - 12.0).abs()).max(0.0)
 }
 
-/// Choudhury's spool on a triangle: it stays at 1.5 A until the current is a band away, follows it half of what the jump
-/// left behind, and does so again on the way down from the peak.
+/// Choudhury's spool on a triangle: it stays at 1.5 A until the current is a band away, follows it half of what the
+/// jump left behind, and does so again on the way down from the peak.
 #[test]
 fn a_following_spool_sticks_where_the_current_stood_or_turned() {
     let (band_a, jump) = (0.08, 0.6);
@@ -113,7 +113,8 @@ fn a_narrow_gap_passes_less_when_the_oil_is_cold() {
     }
 }
 
-/// The spool's balance by hand: with a force of 0.3 at 15 bar it travels 1.3 / (1 + 0.3 dp / 15 bar) of its way at another drop.
+/// The spool's balance by hand: with a force of 0.3 at 15 bar it travels 1.3 / (1 + 0.3 dp / 15 bar) of its way at
+/// another drop.
 #[test]
 fn a_flow_force_on_the_travel_reads_the_table_at_another_current() {
     let time_s = [0.0, 0.02];

@@ -1,4 +1,5 @@
-//! How often is the hidden effect named? Cases of the second rig, answered by `hitch explain` and by what is usual today.
+//! How often is the hidden effect named? Cases of the second rig, answered by `hitch explain` and by what is usual
+//! today.
 //!
 //! ```text
 //! cargo bench --bench hidden_effects -- --count 40 --family steady --plan lab

@@ -1,5 +1,5 @@
-//! A CAN bus behind a TCP port: every connection is an adapter that speaks slcan, as python-can, slcand and others expect
-//! of one (`slcan` on `socket://HOST:PORT`).
+//! A CAN bus behind a TCP port: every connection is an adapter that speaks slcan, as python-can, slcand and others
+//! expect of one (`slcan` on `socket://HOST:PORT`).
 //!
 //! It is one bus: what a connection sends reaches the ECU and all other connections. Nothing here waits.
 

@@ -11,7 +11,8 @@ use hitch_model::units::{lpm_from_m3_s, pa_from_bar};
 pub const LARGEST_CURRENT_A: f64 = 3.5;
 /// Steps of the survey: 1 mA each.
 const STEPS: u32 = 3500;
-/// Port pressure at which the lift valve is surveyed, bar: any between the cracking pressure and the relief valve will do.
+/// Port pressure at which the lift valve is surveyed, bar: any between the cracking pressure and the relief valve will
+/// do.
 const LIFT_PORT_BAR: f64 = 20.0;
 /// Port pressure at which the lowering valve is surveyed, bar: the reference drop of its table.
 pub const LOWERING_PORT_BAR: f64 = 15.0;
@@ -62,8 +63,8 @@ pub fn static_flow_lpm(model: &Model, valve: Valve, current_a: f64) -> f64 {
 
 /// The part of a valve's curve between its threshold and its saturation, 1 mA apart.
 ///
-/// The first point is the last without flow (its flow is zero), the last the first with all of it. Fewer than two points:
-/// the valve never opens.
+/// The first point is the last without flow (its flow is zero), the last the first with all of it. Fewer than two
+/// points: the valve never opens.
 #[must_use]
 pub fn survey(model: &Model, valve: Valve) -> Vec<CurvePoint> {
     let point = |step: u32| {

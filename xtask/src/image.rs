@@ -24,7 +24,8 @@ pub struct Emulated {
     pub stack: Bound,
 }
 
-/// Builds the control layer as the ECU takes it, proves that it can't panic, builds all images and holds them to their budgets.
+/// Builds the control layer as the ECU takes it, proves that it can't panic, builds all images and holds them to their
+/// budgets.
 pub fn build_all(way: Way) -> Result<Emulated> {
     let folder = folder(way);
     build(way, &["--lib"])?;

@@ -1,7 +1,7 @@
 //! Mutation test of the safety envelope: every change to its code has to be noticed by its tests.
 //!
-//! That takes minutes, so `firmware/mutants.txt` says for which code it was last done. Where a byte of that is different, it is
-//! done again.
+//! That takes minutes, so `firmware/mutants.txt` says for which code it was last done. Where a byte of that is
+//! different, it is done again.
 
 use std::ffi::OsString;
 use std::fs;
@@ -13,8 +13,8 @@ use hitch_firmware::control::design_parameters::{SafetyParameters, SensorParamet
 
 use crate::{process, workspace};
 
-/// What decides whether a change is noticed, besides the envelope's limits, from the workspace's root: the envelope, what it is
-/// made of, its tests, and what is changed.
+/// What decides whether a change is noticed, besides the envelope's limits, from the workspace's root: the envelope,
+/// what it is made of, its tests, and what is changed.
 const DECIDES: [&str; 6] = [
     "firmware/src/control/safety",
     "firmware/src/control/mode.rs",
@@ -34,8 +34,8 @@ const HANGS: i32 = 3;
 /// Changes here make a loop endless, which on the ECU the watchdog notices; others only take long on a busy machine.
 const LOOP: &str = "Debounce::judge";
 
-/// Changes the envelope in every way and writes down that its tests have noticed; unless `again`, only if anything of it is
-/// different from what was written down.
+/// Changes the envelope in every way and writes down that its tests have noticed; unless `again`, only if anything of
+/// it is different from what was written down.
 pub fn run(again: bool) -> Result<()> {
     let code = format!("code {:016x}", code()?);
     let proven = workspace::root().join(PROVEN);

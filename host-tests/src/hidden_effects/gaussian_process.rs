@@ -1,8 +1,8 @@
 //! A Gaussian process for the discrepancy (Kennedy & O'Hagan 2001): it corrects what it cannot name.
 //!
 //! Exact, with a squared-exponential kernel over what the model knows at a sample: currents, their rates, simulated
-//! pressure, flow and angle, oil temperature. A few hundred samples of the training runs are its data, length and variance
-//! come from the marginal likelihood over a grid.
+//! pressure, flow and angle, oil temperature. A few hundred samples of the training runs are its data, length and
+//! variance come from the marginal likelihood over a grid.
 
 use hitch_model::Model;
 use hitch_model::campaign::{Bench, Campaign, Channel};

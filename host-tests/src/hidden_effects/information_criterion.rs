@@ -1,7 +1,7 @@
 //! What parameter estimation tools offer: each effect fitted alone, the best Schwarz criterion wins.
 //!
-//! Samples count as independent, weights and clocks as exact, nothing is held out: the usual way. The optimiser is given
-//! its best chance: several starts, both signs, all of an effect's parameters.
+//! Samples count as independent, weights and clocks as exact, nothing is held out: the usual way. The optimiser is
+//! given its best chance: several starts, both signs, all of an effect's parameters.
 
 use hitch_model::Model;
 use hitch_model::campaign::Campaign;

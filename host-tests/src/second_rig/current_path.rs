@@ -105,8 +105,8 @@ impl Stuck {
         }
     }
 
-    /// Choudhury's two-parameter model: stuck until the current has changed by the band, then `(band - jump) / 2` behind
-    /// it until it turns or stands still.
+    /// Choudhury's two-parameter model: stuck until the current has changed by the band, then `(band - jump) / 2`
+    /// behind it until it turns or stands still.
     fn advance_following(&mut self, current_a: f64) {
         let change_a = current_a - self.before_a;
         self.still_s = if change_a.abs() < 1e-9 {

@@ -1,4 +1,5 @@
-//! What the rig's data sheet says. Written down a second time on purpose: a wrong constant must not hide in both plants.
+//! What the rig's data sheet says. Written down a second time on purpose: a wrong constant must not hide in both
+//! plants.
 
 use std::sync::LazyLock;
 

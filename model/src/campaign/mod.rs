@@ -113,8 +113,8 @@ impl Run {
     /// Fewest samples that make a run.
     pub const FEWEST_SAMPLES: usize = 10;
 
-    /// Reads a log by itself, without a campaign around it; it may hold currents only. If it is that of a bus, it has to
-    /// be the bus of the project's own ECU.
+    /// Reads a log by itself, without a campaign around it; it may hold currents only. If it is that of a bus, it has
+    /// to be the bus of the project's own ECU.
     ///
     /// # Errors
     /// Whatever is wrong first, by file, line and column.

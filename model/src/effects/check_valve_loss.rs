@@ -2,8 +2,8 @@
 //!
 //! Beyond its nominal cracking pressure the poppet takes `loss (steady + (1 - steady) (Q / 40 l/min)^2)`: a throttling
 //! seat, and with the share `steady` a spring that is stiffer than its data sheet. The compensator holds the sum of all
-//! drops, so the lift orifice keeps what is left of 1.5 bar. Throttling makes large flows fall short the more; the spring
-//! alone takes the same share of every flow and is `lift-flow-scale` by another name.
+//! drops, so the lift orifice keeps what is left of 1.5 bar. Throttling makes large flows fall short the more; the
+//! spring alone takes the same share of every flow and is `lift-flow-scale` by another name.
 
 use super::Parameter;
 use super::described::Described;

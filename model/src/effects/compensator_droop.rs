@@ -1,8 +1,8 @@
 //! `compensator-droop`: the compensator's margin falls with the pressure that it works at.
 //!
-//! Force balance of its spool, `A_c (p_P - p_C) = F_0 + k x + 0.43 w x p_P`: the further it has to close and the higher the
-//! pressure, the smaller the margin. Linear about no load: `margin = 4 bar - c p_C`. What the lift orifice keeps shrinks
-//! from 1.5 bar, so the lift flow falls with its square root.
+//! Force balance of its spool, `A_c (p_P - p_C) = F_0 + k x + 0.43 w x p_P`: the further it has to close and the higher
+//! the pressure, the smaller the margin. Linear about no load: `margin = 4 bar - c p_C`. What the lift orifice keeps
+//! shrinks from 1.5 bar, so the lift flow falls with its square root.
 
 use super::Parameter;
 use super::described::Described;

@@ -1,8 +1,8 @@
 //! `entrained-air`: undissolved air makes the oil soft at low pressure.
 //!
 //! `E = E_l [1 + a (pa/(pa+p))^(1/n)] / [1 + a pa^(1/n) E_l / (n (pa+p)^((n+1)/n))]` (Simscape's mixture), a the volume
-//! of air at atmospheric pressure over that of the oil: c / (1 - c) for a share c of the whole. The change of state lies
-//! between isothermal, n = 1, and adiabatic, n = 1.4.
+//! of air at atmospheric pressure over that of the oil: c / (1 - c) for a share c of the whole. The change of state
+//! lies between isothermal, n = 1, and adiabatic, n = 1.4.
 
 use super::Parameter;
 use super::described::Described;

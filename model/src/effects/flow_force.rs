@@ -1,10 +1,11 @@
 //! `flow-force`: the oil's momentum closes the lowering valve against its solenoid.
 //!
-//! Steady flow force `F = 0.43 w x dp` (Merritt 5.2) on a spool held by a spring k_s: `x = x_c / (1 + K dp)` with
-//! `K = 0.43 w / k_s`. The data sheet's curve holds at 15 bar, so the opening is `(1 + s) / (1 + s dp / 15 bar)` of it, `s`
-//! the ratio of flow force to spring force there. With the usual form the flow is that much of the table's, as if it grew with
-//! the opening all the way; with the other the spool travels that much of its way, and the table is read there: where the
-//! table is flat the force then shows in nothing. The lift valve's drop is held by the compensator: nothing to see.
+//! Steady flow force `F = 0.43 w x dp` (Merritt 5.2) on a spool held by a spring k_s: `x = x_c / (1 + K dp)` with `K =
+//! 0.43 w / k_s`. The data sheet's curve holds at 15 bar, so the opening is `(1 + s) / (1 + s dp / 15 bar)` of it, `s`
+//! the ratio of flow force to spring force there. With the usual form the flow is that much of the table's, as if it
+//! grew with the opening all the way; with the other the spool travels that much of its way, and the table is read
+//! there: where the table is flat the force then shows in nothing. The lift valve's drop is held by the compensator:
+//! nothing to see.
 
 use super::Parameter;
 use super::described::Described;

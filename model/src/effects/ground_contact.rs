@@ -1,7 +1,8 @@
 //! `ground-contact`: the implement comes to rest on the ground before the end of the stroke.
 //!
 //! `F = k z (1 + c z')` upwards at the hitch point, never pulling, where z is how deep it has sunk below the height at
-//! which the implement touches (Bekker with n = 1, damped as by Hunt & Crossley). Floors have 1e6 to 1e7 N/m, soil 5e4 to 5e5 N/m.
+//! which the implement touches (Bekker with n = 1, damped as by Hunt & Crossley). Floors have 1e6 to 1e7 N/m, soil 5e4
+//! to 5e5 N/m.
 
 use super::Parameter;
 use super::described::Described;

@@ -1,7 +1,7 @@
 //! `hose-compliance`: hoses and fittings swell with the pressure.
 //!
-//! `dp/dt = (sum Q - A v) / (V/E + C)`. Two metres of half-inch two-wire hose have 3 to 6e-13 m3/Pa, as much as 0.6 l of
-//! oil; written in cm3/bar, 0.03 to 0.06.
+//! `dp/dt = (sum Q - A v) / (V/E + C)`. Two metres of half-inch two-wire hose have 3 to 6e-13 m3/Pa, as much as 0.6 l
+//! of oil; written in cm3/bar, 0.03 to 0.06.
 
 use super::Parameter;
 use super::described::Described;

@@ -1,7 +1,7 @@
 //! `load-inertia`: the moving masses want a force to be accelerated.
 //!
-//! `p A = F_weight + s M(x) dv/dt` with `M = (load + dead weight) (dh/dx)^2 + 20 kg`. One is the inertia of the weights as
-//! they are. On the dynamic starting point, which has that already, it is what comes on top: rocker, arms, mast.
+//! `p A = F_weight + s M(x) dv/dt` with `M = (load + dead weight) (dh/dx)^2 + 20 kg`. One is the inertia of the weights
+//! as they are. On the dynamic starting point, which has that already, it is what comes on top: rocker, arms, mast.
 
 use super::Parameter;
 use super::described::Described;

@@ -15,9 +15,9 @@
 //! Where the literature has two equations for one effect, each is an effect of its own with the same id and a `form`;
 //! the usual one has none. A search tries all and keeps the better, as `oil_viscosity.rs` and `spool_stiction.rs` show.
 //!
-//! Nothing else: plant, model files, identification, reports and `hitch effects` go through the catalogue, and so do the
-//! generic tests of `tests/effects.rs`: the null value changes not a bit, next to it the effect is next to nothing, a
-//! typical size shows in the channels named. A term that is to be tried without recompiling goes into a model file
+//! Nothing else: plant, model files, identification, reports and `hitch effects` go through the catalogue, and so do
+//! the generic tests of `tests/effects.rs`: the null value changes not a bit, next to it the effect is next to nothing,
+//! a typical size shows in the channels named. A term that is to be tried without recompiling goes into a model file
 //! instead (see `term.rs`).
 
 mod angle_sensor_gain;

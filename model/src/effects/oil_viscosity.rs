@@ -1,9 +1,9 @@
 //! `oil-viscosity`: part of the flow through the valves is laminar.
 //!
-//! A series about the point where the lowering valve's table holds says it with two numbers:
-//! `Q = Q_table(I) [(1 - s) sqrt(dp/dp_ref) + s (dp/dp_ref) nu(40 C)/nu(T)]`: `s` is the laminar share of the flow at the
-//! reference drop and 40 degrees (a series of the laminar-turbulent transition of McCloy & Martin about that point).
-//! Viscosity falls by 4 to 6 % a kelvin: `nu = nu(40 C) exp(-fall (T - 40 C))`, a local form of Walther's equation.
+//! A series about the point where the lowering valve's table holds says it with two numbers: `Q = Q_table(I) [(1 - s)
+//! sqrt(dp/dp_ref) + s (dp/dp_ref) nu(40 C)/nu(T)]`: `s` is the laminar share of the flow at the reference drop and 40
+//! degrees (a series of the laminar-turbulent transition of McCloy & Martin about that point). Viscosity falls by 4 to
+//! 6 % a kelvin: `nu = nu(40 C) exp(-fall (T - 40 C))`, a local form of Walther's equation.
 //!
 //! The transition itself, in both valves: `Q = Q_table(I) tanh(2 lambda / lambda_c)` with the flow number
 //! `lambda = D_h sqrt(2 dp / rho) / nu(T)`. The hydraulic diameter is twice the gap, which opens by 4 mm an ampere, so

@@ -1,7 +1,8 @@
 //! `pin-backlash`: play between the piston and the rocker angle's sensor.
 //!
-//! Gravity keeps the loaded pins closed, so play shows where the angle is taken off: the sensor follows the piston through
-//! a play operator of full width b, `w = clamp(w_before, x - b/2, x + b/2)`, and shows the angle at w. 0.5 to 2 mm.
+//! Gravity keeps the loaded pins closed, so play shows where the angle is taken off: the sensor follows the piston
+//! through a play operator of full width b, `w = clamp(w_before, x - b/2, x + b/2)`, and shows the angle at w. 0.5 to 2
+//! mm.
 
 use super::Parameter;
 use super::described::Described;

@@ -1,7 +1,7 @@
 //! `pin-friction`: dry friction in the linkage's pins, proportional to the load.
 //!
-//! `F = e F_weight tanh(v / 3 mm/s)`: each pin resists with `mu r |F_pin|`, and all pin forces grow with the load. With mu
-//! 0.10 to 0.20 and radii of 10 to 30 mm, e is 0.03 to 0.08.
+//! `F = e F_weight tanh(v / 3 mm/s)`: each pin resists with `mu r |F_pin|`, and all pin forces grow with the load. With
+//! mu 0.10 to 0.20 and radii of 10 to 30 mm, e is 0.03 to 0.08.
 
 use super::Parameter;
 use super::described::Described;

@@ -1,9 +1,9 @@
 //! `spool-lag`: the spools follow their currents late.
 //!
 //! Coil and spool together behave like a second-order, well damped system: 40 to 100 ms to 90 % of a step for valves of
-//! this class (Merritt, ch. 6; data sheets). Written as two first-order lags in series so that it stays stable and exact
-//! at any step: `share` moves part of the lag into the second one; none is a plain first-order lag, a half is critical
-//! damping. On the dynamic starting point it comes on top of the 45 ms that are declared there.
+//! this class (Merritt, ch. 6; data sheets). Written as two first-order lags in series so that it stays stable and
+//! exact at any step: `share` moves part of the lag into the second one; none is a plain first-order lag, a half is
+//! critical damping. On the dynamic starting point it comes on top of the 45 ms that are declared there.
 
 use super::Parameter;
 use super::described::Described;

@@ -18,7 +18,8 @@ static STATES: LazyLock<Vec<Signals>> = LazyLock::new(|| {
         state(|signal| signal.low),
         state(|signal| signal.high),
     ];
-    // A Weyl sequence of its own irrational step for each signal fills the ranges evenly, and the same on every machine.
+    // A Weyl sequence of its own irrational step for each signal fills the ranges evenly, and the same on every
+    // machine.
     states.extend((1..=DRAWN).map(|k| {
         let mut step_squared = 1.0_f64;
         state(|signal| {

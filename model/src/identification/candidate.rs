@@ -71,8 +71,8 @@ impl Candidate {
     }
 }
 
-/// Tries effects on a fitted model: all are screened, the promising ones sketched, and those that may be the best fitted
-/// in full. Best first.
+/// Tries effects on a fitted model: all are screened, the promising ones sketched, and those that may be the best
+/// fitted in full. Best first.
 #[must_use]
 pub fn try_effects(
     experiment: &Experiment,
@@ -129,8 +129,8 @@ fn better_forms(ranked: Vec<Candidate>) -> Vec<Candidate> {
 
 /// Sorts candidates by their odds against each other, the best first.
 ///
-/// All are counted at the inflation of the one with the least cost: each at its own would prefer what leaves a rest that
-/// hardly correlates with its signature over what leaves less.
+/// All are counted at the inflation of the one with the least cost: each at its own would prefer what leaves a rest
+/// that hardly correlates with its signature over what leaves less.
 fn rank(base: &Fit, candidates: &mut [Candidate]) {
     let Some(odds) = mutual_odds(base, candidates) else {
         return;

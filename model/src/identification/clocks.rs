@@ -30,8 +30,9 @@ impl Clocks {
     }
 }
 
-/// A record `delay_s` later, by cubic interpolation (Catmull & Rom): a straight line would flatten a pressure that rings
-/// with four samples a period. Held between its neighbours, so that the jump of a pump pressure does not spill over.
+/// A record `delay_s` later, by cubic interpolation (Catmull & Rom): a straight line would flatten a pressure that
+/// rings with four samples a period. Held between its neighbours, so that the jump of a pump pressure does not spill
+/// over.
 fn later(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
     let last = values.len() - 1;
     let mut cell = 0;

@@ -139,7 +139,8 @@ impl Estimate {
         self.nuisances[run].load / LOAD_PRIOR
     }
 
-    /// Whether a run's load error stands at an end of its range and a `pull` of the residuals on it, in costs a sigma, would move it out.
+    /// Whether a run's load error stands at an end of its range and a `pull` of the residuals on it, in costs a sigma,
+    /// would move it out.
     #[must_use]
     pub fn load_would_leave(&self, run: usize, pull: f64) -> bool {
         let load = self.load(run);

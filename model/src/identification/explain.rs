@@ -24,7 +24,8 @@ use crate::model::Model;
 pub const BELIEVED: f64 = 11.0;
 
 /// Smallest detectability that is believed, sigmas. Channels a few milliseconds out of step, a logger's rounding and
-/// the plant's discretisation make signatures of up to 0.05 on steady and 0.09 on ringing campaigns with nothing hidden.
+/// the plant's discretisation make signatures of up to 0.05 on steady and 0.09 on ringing campaigns with nothing
+/// hidden.
 pub(super) const VISIBLE: f64 = 0.1;
 
 /// What more it needs for each parameter of a shape that it brings.
@@ -40,8 +41,8 @@ const FEWEST_SAMPLES: usize = 50;
 /// Most effects that are added.
 const MOST_STEPS: usize = 5;
 
-/// What so many effects leave at more than this error, and the last of them at more than this share of what it found, no
-/// further one explains either: it is no campaign of this plant.
+/// What so many effects leave at more than this error, and the last of them at more than this share of what it found,
+/// no further one explains either: it is no campaign of this plant.
 const LOST_STEPS: usize = 2;
 const LOST: f64 = 4.0;
 const LITTLE_HELP: f64 = 0.8;
@@ -98,7 +99,8 @@ pub struct Step {
     pub held_out_before: f64,
     /// Held-out error with the effect.
     pub held_out_after: f64,
-    /// Probability that the effect is there beside the other steps', shared evenly with those that it cannot be told from.
+    /// Probability that the effect is there beside the other steps', shared evenly with those that it cannot be told
+    /// from.
     pub confidence: f64,
     /// Root mean square of its projected signature, in sigmas.
     pub detectability: f64,
@@ -396,8 +398,8 @@ fn is_likelier(alternative: &Alternative) -> bool {
     alternative.likelier > LIKELIER
 }
 
-/// Puts what is likelier now in the place of the last of some steps: while a later effect was missing, the one that could
-/// take on a little of it came first. Returns the model after all steps; `None` if there is nothing to put.
+/// Puts what is likelier now in the place of the last of some steps: while a later effect was missing, the one that
+/// could take on a little of it came first. Returns the model after all steps; `None` if there is nothing to put.
 fn swap(experiment: &Experiment, model: &Model, given: usize, steps: &mut [Step]) -> Option<Fit> {
     let (step, earlier) = steps.split_last_mut()?;
     let alternatives = std::mem::take(&mut step.indistinguishable).into_iter();

@@ -29,8 +29,8 @@ pub struct RunJacobian {
     pub residual: Vec<f64>,
     /// A column for each shared parameter: change of the simulation, whitened.
     pub shared: Vec<Vec<f64>>,
-    /// Column of the load error; `None` on a flow bench, and where it stands at an end of its range and would leave it: what cannot
-    /// move on absorbs nothing.
+    /// Column of the load error; `None` on a flow bench, and where it stands at an end of its range and would leave it:
+    /// what cannot move on absorbs nothing.
     pub load: Option<Vec<f64>>,
     /// Present load error, in prior sigmas.
     pub load_value: f64,

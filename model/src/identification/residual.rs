@@ -35,8 +35,8 @@ const AFTER_A_STOP_S: f64 = 1.5;
 /// flow, after a switch it turns the phase of a ringing pressure.
 const TIMING_S: f64 = 0.001;
 
-/// Part of a pressure's swing within [`RINGING_S`] of a sample that a dynamic model may be off by: frequency and damping
-/// of the ringing hang on oil, hose, seals and stops, whose constants nobody knows to better than some percent.
+/// Part of a pressure's swing within [`RINGING_S`] of a sample that a dynamic model may be off by: frequency and
+/// damping of the ringing hang on oil, hose, seals and stops, whose constants nobody knows to better than some percent.
 const RINGING_SHARE: f64 = 0.07;
 const RINGING_S: f64 = 0.1;
 

@@ -20,7 +20,8 @@ pub(super) const FAR: f64 = 1.3;
 /// A sketch that leaves less than this share of the cost needs no second start.
 const ARRIVED: f64 = 0.3;
 
-/// A sketch that leaves no more than this error leaves nothing to those that the screen thinks little of, nor to needles.
+/// A sketch that leaves no more than this error leaves nothing to those that the screen thinks little of, nor to
+/// needles.
 const EXPLAINED: f64 = 1.15;
 
 /// An effect is sketched if its screened cost leaves at most this share of what the best screened one explains

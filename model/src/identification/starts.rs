@@ -146,8 +146,8 @@ impl Shortlist<'_> {
         golden_section(start_at, 1.0, end)
     }
 
-    /// Whether a start is as good as none. Near the data, what is free may move on a little beside it; far from them the
-    /// frame promises more than it could keep.
+    /// Whether a start is as good as none. Near the data, what is free may move on a little beside it; far from them
+    /// the frame promises more than it could keep.
     fn is_nothing(&self, start: &Start) -> bool {
         let near = |cost: f64| (cost - start.cost).abs() <= NOTHING;
         near(self.base.cost) || (self.base.error() <= FAR && near(self.frame.here()))

@@ -25,8 +25,8 @@ const ALIKE_DEG: f64 = 37.0;
 const SMALL: f64 = 0.3;
 
 /// Angle up to which an effect without the shape of its own is the named one, if they have a size in common: a friction
-/// without its breakaway peak is plain friction, and no other explanation. A check valve that takes a steady pressure is one,
-/// though a lift valve that passes less looks the same.
+/// without its breakaway peak is plain friction, and no other explanation. A check valve that takes a steady pressure
+/// is one, though a lift valve that passes less looks the same.
 const SAME_DEG: f64 = 2.0;
 
 /// Effects that fit as well in place of the last one.

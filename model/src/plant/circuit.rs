@@ -265,7 +265,8 @@ impl Circuit<'_> {
         (pumped_m3_s(wanted_pa - short_pa), wanted_pa - short_pa)
     }
 
-    /// The pump pressure, Pa, that the relief valve leaves of what the compensator wants; `flow_at` is the lift flow over it.
+    /// The pump pressure, Pa, that the relief valve leaves of what the compensator wants; `flow_at` is the lift flow
+    /// over it.
     fn relieved_pa(&self, wanted_pa: f64, flow_at: &impl Fn(f64) -> f64) -> f64 {
         let Some(relief) = &self.sites.relief else {
             return self.constants.relief_valve.limit_pa(wanted_pa);

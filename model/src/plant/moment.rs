@@ -1,7 +1,7 @@
 //! The state of the plant at one instant, for terms of a user's own.
 //!
-//! A term may depend on what it changes itself. What a place knows of the present instant and what it takes from the end
-//! of the step before (10 ms in the steady plant, 2 ms in the dynamic one) is this:
+//! A term may depend on what it changes itself. What a place knows of the present instant and what it takes from the
+//! end of the step before (10 ms in the steady plant, 2 ms in the dynamic one) is this:
 //!
 //! | place | now | of the step before |
 //! |---|---|---|
@@ -15,8 +15,8 @@
 //! | sensors | all | |
 //!
 //! Travel stands for `x`, `rocker_angle` and `f_weight`. `v` is that of the step before in the steady plant (but for
-//! friction), which has it from the flows, and that of now in the dynamic plant. `i_lift` and `i_lower` are those of the
-//! end of the present step. `load`, `t_oil` and `nu` are the run's.
+//! friction), which has it from the flows, and that of now in the dynamic plant. `i_lift` and `i_lower` are those of
+//! the end of the present step. `load`, `t_oil` and `nu` are the run's.
 //!
 //! A flow bench has no piston: `x`, `v`, `rocker_angle`, `load` and `f_weight` are not numbers there, and neither is a
 //! term that depends on one of them, which therefore is absent. For the same reason a term is absent wherever its value

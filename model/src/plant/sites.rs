@@ -139,8 +139,8 @@ pub struct Sites {
     pub weight_factor: Vec<Law>,
     /// Inertia that comes on top of the model's own, as a share of load and dead weight.
     pub inertia_share: f64,
-    /// Longest step, s, that follows what is sudden: a spool that jumps, or a pressure that goes with the change of speed
-    /// over the last step; the quasi-static plant only.
+    /// Longest step, s, that follows what is sudden: a spool that jumps, or a pressure that goes with the change of
+    /// speed over the last step; the quasi-static plant only.
     pub longest_step_s: f64,
     /// Ground under the hitch.
     pub ground: Option<Ground>,

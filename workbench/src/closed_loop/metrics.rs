@@ -20,14 +20,15 @@ pub struct MoveResult {
     pub load_kg: f64,
     /// Oil temperature, C.
     pub oil_temperature_c: f64,
-    /// From the step of the set point until the angle stays within 0.5 degree, s; the length of the run if it never does.
+    /// From the step of the set point until the angle stays within 0.5 degree, s; the length of the run if it never
+    /// does.
     pub time_s: f64,
     /// Shortest time that the plant allows: valve fully open between edges of a normal manoeuvre, s.
     pub shortest_s: f64,
     /// `time_s / shortest_s`.
     pub ratio: f64,
-    /// Root mean square of the distance from the angle that the shortest manoeuvre has at the same time, until both have
-    /// arrived, degree.
+    /// Root mean square of the distance from the angle that the shortest manoeuvre has at the same time, until both
+    /// have arrived, degree.
     pub tracking_error_deg: f64,
     /// Furthest beyond the set point, degree.
     pub overshoot_deg: f64,

@@ -33,7 +33,8 @@ pub struct Args {
     /// Calibration to start from; without it, the nominal one with the model's valve map
     #[arg(long, value_name = "C.toml")]
     calibration: Option<PathBuf>,
-    /// Sets a value of the calibration, as in position.approach_gain=30, and leaves it there; may be given several times
+    /// Sets a value of the calibration, as in position.approach_gain=30, and leaves it there; may be given several
+    /// times
     #[arg(long, value_name = "GROUP.KEY=VALUE")]
     set: Vec<String>,
     /// How many candidates are tried

@@ -20,8 +20,8 @@ pub struct Detail {
     pub why: String,
     /// Ids of the pairs of effects that it would tell apart.
     pub separates: Vec<[&'static str; 2]>,
-    /// Smallest likelihood ratio to expect for these; of all manoeuvres the largest if none would tell any apart; `None`
-    /// if nothing was simulated.
+    /// Smallest likelihood ratio to expect for these; of all manoeuvres the largest if none would tell any apart;
+    /// `None` if nothing was simulated.
     pub expected_likelihood_ratio: Option<f64>,
     /// Rig time, minutes; `None` if no manoeuvre is proposed.
     pub minutes: Option<f64>,

@@ -100,8 +100,8 @@ pub fn parameters(effect: &dyn Effect, values: &[f64], intervals: &[(f64, f64)])
 
 /// Errors by channel before and after, in the channel's unit, beside the instrument's noise.
 ///
-/// They are the errors in sigma times sigma, so that they add up to the error of the whole; what the noise of the logged
-/// currents does to the simulation is no error of the model and not in them.
+/// They are the errors in sigma times sigma, so that they add up to the error of the whole; what the noise of the
+/// logged currents does to the simulation is no error of the model and not in them.
 pub fn channels(experiment: &Experiment, before: &Fit, after: &Fit) -> Map<String, Value> {
     let measured = |channel: &Channel| experiment.noise[channel.index()].is_finite();
     let entry = |channel: Channel| {

@@ -29,7 +29,8 @@ pub fn without(fixed: &[String]) -> Vec<&'static str> {
     KNOBS.into_iter().filter(|knob| !is_fixed(knob)).collect()
 }
 
-/// `base` with the value of each knob times two to the power of its coordinate; `None` if that isn't a valid calibration.
+/// `base` with the value of each knob times two to the power of its coordinate; `None` if that isn't a valid
+/// calibration.
 pub fn with_values(base: &Calibration, knobs: &[&str], point: &[f64]) -> Option<ValidCalibration> {
     let mut calibration = base.clone();
     for (key, doublings) in knobs.iter().zip(point) {

@@ -1,8 +1,9 @@
 //! Searches gains, ramps and limits for the bars of motion: CMA-ES over a set of moves.
 //!
-//! What a model says nothing of is there all the same: each candidate is driven on the model itself and on two neighbours
-//! whose thresholds are shifted up and down by what teaching leaves, and which have the hysteresis, friction, air and thick
-//! oil of valves and cylinders of this class where the model has none. Gains for a valve without hysteresis are useless on any other.
+//! What a model says nothing of is there all the same: each candidate is driven on the model itself and on two
+//! neighbours whose thresholds are shifted up and down by what teaching leaves, and which have the hysteresis,
+//! friction, air and thick oil of valves and cylinders of this class where the model has none. Gains for a valve
+//! without hysteresis are useless on any other.
 
 mod cost;
 mod knobs;
@@ -90,8 +91,8 @@ impl Trial {
         })
     }
 
-    /// Searches from `base` with about `trials` candidates, leaving the values in `fixed` (as in `position.creep_speed`)
-    /// as they are there; `tell` hears of each: how many so far, and the best cost.
+    /// Searches from `base` with about `trials` candidates, leaving the values in `fixed` (as in
+    /// `position.creep_speed`) as they are there; `tell` hears of each: how many so far, and the best cost.
     #[must_use]
     pub fn search(
         &self,

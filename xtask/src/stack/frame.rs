@@ -20,8 +20,8 @@ pub enum Callee {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Place {
     address: u32,
-    /// What a test of the flags is known to come to, among instructions that depend on it: returns often are a pair of them, of
-    /// which either both are carried out or none.
+    /// What a test of the flags is known to come to, among instructions that depend on it: returns often are a pair of
+    /// them, of which either both are carried out or none.
     known: Option<Outcome>,
 }
 
@@ -47,8 +47,8 @@ pub struct Frame {
     pub returns: bool,
 }
 
-/// Follows all ways through `function`. `returns` tells of each function whether it may come back: code behind a call of one that
-/// doesn't belongs to something else.
+/// Follows all ways through `function`. `returns` tells of each function whether it may come back: code behind a call
+/// of one that doesn't belongs to something else.
 pub fn frame(
     program: &Program<'_>,
     function: &Function,

@@ -1,4 +1,5 @@
-//! A linked image as functions: where each begins and ends, which may be called by address, and which the processor enters.
+//! A linked image as functions: where each begins and ends, which may be called by address, and which the processor
+//! enters.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;

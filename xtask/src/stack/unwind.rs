@@ -1,8 +1,8 @@
 //! A second opinion on the stack's depth: the unwind tables that the compiler writes for debuggers.
 //!
-//! They have a row for each step of a prologue: how far the frame's end is from the stack pointer, or from the frame pointer once
-//! that is set up. From then on they don't tell how deep the stack is, and epilogues and early returns have no rows; that
-//! is why the bound isn't taken from them.
+//! They have a row for each step of a prologue: how far the frame's end is from the stack pointer, or from the frame
+//! pointer once that is set up. From then on they don't tell how deep the stack is, and epilogues and early returns
+//! have no rows; that is why the bound isn't taken from them.
 
 use std::collections::BTreeMap;
 

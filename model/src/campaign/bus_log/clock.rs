@@ -1,7 +1,7 @@
 //! The clock of a node that tells when it has sampled.
 //!
-//! What a frame waits for the bus, for an adapter or for a busy computer is in its time stamp and not in this clock, which
-//! goes round every so often. The stamps tell how often it went round.
+//! What a frame waits for the bus, for an adapter or for a busy computer is in its time stamp and not in this clock,
+//! which goes round every so often. The stamps tell how often it went round.
 
 /// Most that a frame is delayed, and the clocks go apart in the course of a log, s.
 const MOST_APART_S: f64 = 1.0;
@@ -19,8 +19,8 @@ struct Origin {
 }
 
 impl Clock {
-    /// The time at which the clock showed `shown_s`, in a frame that was logged at `logged_s`; it goes round after `period_s`.
-    /// `None` if it can't be: somebody has set the clock, or its node was switched off in between.
+    /// The time at which the clock showed `shown_s`, in a frame that was logged at `logged_s`; it goes round after
+    /// `period_s`. `None` if it can't be: somebody has set the clock, or its node was switched off in between.
     pub fn time_s(&mut self, logged_s: f64, shown_s: f64, period_s: f64) -> Option<f64> {
         let origin = *self.origin.get_or_insert(Origin { logged_s, shown_s });
         let within_round_s = origin.logged_s + (shown_s - origin.shown_s);

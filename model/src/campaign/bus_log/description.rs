@@ -131,8 +131,8 @@ impl Description {
         })
     }
 
-    /// The signal of a message that says when it was sampled, s, and after how many seconds that goes round, if it has one:
-    /// one step behind the largest value that the description gives it.
+    /// The signal of a message that says when it was sampled, s, and after how many seconds that goes round, if it has
+    /// one: one step behind the largest value that the description gives it.
     pub fn clock(&self, message: &Message, name: &str) -> Result<Option<(Signal, f64)>, Fault> {
         let Some(found) = message.signals.iter().find(|signal| signal.name == name) else {
             return Ok(None);

@@ -1,4 +1,5 @@
-//! Runs that a logger took from a CAN bus: candump's `.log` and Vector's `.asc`, read by a description of the bus (DBC).
+//! Runs that a logger took from a CAN bus: candump's `.log` and Vector's `.asc`, read by a description of the bus
+//! (DBC).
 //!
 //! ```text
 //! log --(candump, asc)--> frames --(listener: signals of the DBC)--> series of each column --> rows of a run

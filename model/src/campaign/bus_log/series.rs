@@ -32,7 +32,8 @@ impl Series {
             .unwrap_or(f64::INFINITY)
     }
 
-    /// The value at each of `times_s`, by a straight line between the samples around it; NaN where none is within `within_s`.
+    /// The value at each of `times_s`, by a straight line between the samples around it; NaN where none is within
+    /// `within_s`.
     pub fn at(&self, times_s: &[f64], within_s: f64) -> Vec<f64> {
         times_s
             .iter()

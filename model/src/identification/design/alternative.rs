@@ -18,7 +18,8 @@ pub struct Alternative {
     pub angle_deg: f64,
     /// Fitted values of its parameters, in their units.
     pub values: Vec<f64>,
-    /// By how much it is likelier than the named one, as a likelihood ratio with its parameters paid for; negative: less likely.
+    /// By how much it is likelier than the named one, as a likelihood ratio with its parameters paid for; negative:
+    /// less likely.
     pub likelier: f64,
     /// Error of the model with it instead.
     pub error_after: f64,

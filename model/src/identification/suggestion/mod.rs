@@ -2,8 +2,9 @@
 //!
 //! A typed grammar (`shapes`) writes terms at every place whose channels are off, of the signals that the residuals go
 //! with. Each is a real [`TermEffect`]: it is simulated at a small size, and what its change of the trajectories
-//! explains once all that is free has adapted ranks it (`screen`). The best few are fitted like effects of the catalogue and
-//! judged by the error in held-out runs of the simulated model, not by how well a curve follows the residual.
+//! explains once all that is free has adapted ranks it (`screen`). The best few are fitted like effects of the
+//! catalogue and judged by the error in held-out runs of the simulated model, not by how well a curve follows the
+//! residual.
 //!
 //! Before the catalogue gives up it may have added effects that stand in for the true one. The search therefore starts
 //! twice, from the model without them and from the model with them, and prefers the former where it is as good.

@@ -8,8 +8,8 @@ use crate::units;
 /// Shares of the samples below the places at which a shape is started.
 pub const QUANTILES: [f64; 3] = [0.2, 0.45, 0.7];
 
-/// Quantiles of a signal, in SI, over the samples at which it matters: those with flow for a flow or a speed, those with
-/// current for a current. `None` if the campaign does not show it.
+/// Quantiles of a signal, in SI, over the samples at which it matters: those with flow for a flow or a speed, those
+/// with current for a current. `None` if the campaign does not show it.
 #[must_use]
 pub fn quantiles(experiment: &Experiment, model: &Model, signal: &str) -> Option<[f64; 3]> {
     let mut values: Vec<f64> = experiment
