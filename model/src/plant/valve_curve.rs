@@ -7,6 +7,7 @@
 pub struct ValveCurve {
     current_a: Vec<f64>,
     flow_m3_s: Vec<f64>,
+    threshold_a: f64,
 }
 
 /// What is wrong with the points of a [`ValveCurve`].
@@ -53,27 +54,35 @@ impl ValveCurve {
                 return Err(ValveCurveError::Order { index });
             }
         }
-        Ok(Self {
-            current_a,
-            flow_m3_s,
-        })
+        Ok(Self::through(current_a, flow_m3_s))
     }
 
     /// A valve that passes nothing at any current.
     #[must_use]
     pub fn shut() -> Self {
+        Self::through(vec![0.0, 1.0], vec![0.0, 0.0])
+    }
+
+    fn through(current_a: Vec<f64>, flow_m3_s: Vec<f64>) -> Self {
+        let first = flow_m3_s.iter().position(|&flow| flow > 0.0);
+        let threshold_a = current_a[first.unwrap_or(flow_m3_s.len()).saturating_sub(1)];
         Self {
-            current_a: vec![0.0, 1.0],
-            flow_m3_s: vec![0.0, 0.0],
+            current_a,
+            flow_m3_s,
+            threshold_a,
         }
     }
 
     /// Flow at the reference drop, m3/s, for a current in A.
     #[must_use]
     pub fn flow_m3_s(&self, current_a: f64) -> f64 {
-        let upper = self
-            .current_a
-            .partition_point(|&point_a| point_a <= current_a);
+        // Most of the time a valve is shut, and this is in the plant's innermost loop.
+        let upper = if current_a > self.threshold_a {
+            self.current_a
+                .partition_point(|&point_a| point_a <= current_a)
+        } else {
+            0
+        };
         if upper == 0 {
             return self.flow_m3_s[0];
         }
@@ -100,8 +109,7 @@ impl ValveCurve {
     /// Current up to which the valve is shut, A: the last point with no flow before the first with flow.
     #[must_use]
     pub fn threshold_a(&self) -> f64 {
-        let first = self.flow_m3_s.iter().position(|&flow| flow > 0.0);
-        self.current_a[first.unwrap_or(self.flow_m3_s.len()).saturating_sub(1)]
+        self.threshold_a
     }
 
     /// Largest flow at the reference drop, m3/s.
