@@ -1,25 +1,71 @@
-//! A bracketed root of a rising function, for the algebraic loops of the steady plant.
+//! Bracketed roots of rising functions, for the algebraic loops of the plant.
+//!
+//! Illinois variant of the false position: no derivative, never leaves the bracket. Inside the plant's inner loop a
+//! general solver crate costs more than the physics, hence these lines.
+
+/// Most evaluations of one search.
+const MOST_EVALUATIONS: usize = 100;
 
 /// Root of a function that rises from at most zero at `low` to at least zero at `high`, to within `tolerance`.
-///
-/// Illinois variant of the false position: no derivative, never leaves the bracket. Inside the plant's inner loop a
-/// general solver crate costs more than the physics, hence these lines.
 #[must_use]
-pub fn rising(function: impl Fn(f64) -> f64, mut low: f64, mut high: f64, tolerance: f64) -> f64 {
-    let (mut at_low, mut at_high) = (function(low), function(high));
+pub fn rising(function: impl Fn(f64) -> f64, low: f64, high: f64, tolerance: f64) -> f64 {
+    let at = |argument: f64| (function(argument), argument);
+    let (at_low, at_high) = (function(low), function(high));
     if at_low >= 0.0 {
         return low;
     }
     if at_high <= 0.0 {
         return high;
     }
-    let mut last_side = 0_i8;
-    for _ in 0..100 {
+    illinois(at, (low, at_low), (high, at_high), tolerance, 0.0)
+}
+
+/// What belongs to the root of a function that rises about as fast as its argument or faster, within `low` to `high`, to
+/// within `tolerance`: an end of them if the function has one sign all the way.
+///
+/// `function` gives its value and what belongs to it. From a good `guess` three evaluations do: so steep a function has
+/// its root no further away than its value there.
+#[must_use]
+pub fn steep<T>(
+    function: impl Fn(f64) -> (f64, T),
+    guess: f64,
+    (low, high): (f64, f64),
+    tolerance: f64,
+) -> T {
+    let (at_guess, outcome) = function(guess);
+    if at_guess.abs() <= tolerance {
+        return outcome;
+    }
+    let mut opposite = (guess - at_guess).clamp(low, high);
+    let (mut at_opposite, mut outcome) = function(opposite);
+    if (at_opposite > 0.0) == (at_guess > 0.0) {
+        opposite = if at_guess > 0.0 { low } else { high };
+        (at_opposite, outcome) = function(opposite);
+    }
+    if at_opposite.abs() <= tolerance || (at_opposite > 0.0) == (at_guess > 0.0) {
+        return outcome;
+    }
+    let (guess, opposite) = ((guess, at_guess), (opposite, at_opposite));
+    let (below, above) = match at_guess > 0.0 {
+        true => (opposite, guess),
+        false => (guess, opposite),
+    };
+    illinois(function, below, above, tolerance, tolerance)
+}
+
+/// What belongs to the root between two points, each with the function's value, of which the first is negative and the
+/// second positive: to within `tolerance` of the argument, or `small` in value.
+fn illinois<T>(
+    function: impl Fn(f64) -> (f64, T),
+    (mut low, mut at_low): (f64, f64),
+    (mut high, mut at_high): (f64, f64),
+    tolerance: f64,
+    small: f64,
+) -> T {
+    let (mut last_side, mut evaluations) = (0_i8, 0);
+    loop {
         let middle = (low * at_high - high * at_low) / (at_high - at_low);
-        let at_middle = function(middle);
-        if at_middle == 0.0 {
-            return middle;
-        }
+        let (at_middle, outcome) = function(middle);
         let (moved, side) = if at_middle > 0.0 {
             let moved = high - middle;
             (high, at_high) = (middle, at_middle);
@@ -36,9 +82,10 @@ pub fn rising(function: impl Fn(f64) -> f64, mut low: f64, mut high: f64, tolera
             (moved, -1)
         };
         last_side = side;
-        if moved <= tolerance || high - low <= tolerance {
-            return middle;
+        evaluations += 1;
+        let found = at_middle.abs() <= small || moved <= tolerance || high - low <= tolerance;
+        if found || evaluations == MOST_EVALUATIONS {
+            return outcome;
         }
     }
-    0.5 * (low + high)
 }

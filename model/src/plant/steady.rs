@@ -92,13 +92,16 @@ pub fn balance(
         let inertia_n = before.map_or(0.0, |b| inertia_kg * (speed_m_s - b.speed_m_s) / b.dt_s);
         at_force(speed_m_s, held_n + friction_n(speed_m_s) + inertia_n)
     };
-    let excess = |speed_m_s: f64| speed_m_s - at(speed_m_s).flows.net_m3_s() / area_m2;
+    let excess = |speed_m_s: f64| {
+        let balance = at(speed_m_s);
+        (speed_m_s - balance.flows.net_m3_s() / area_m2, balance)
+    };
     let speed_before = before.map_or(0.0, |b| b.speed_m_s);
     // A term may be a force that drives: then the speed can be any that the valves let through.
     let beyond_m_s = if terms { FASTEST_M_S } else { 0.0 };
     let low = free_m_s.min(speed_before).min(0.0) - beyond_m_s;
     let high = free_m_s.max(speed_before).max(0.0) + beyond_m_s;
-    at(super::root::rising(excess, low, high, 1e-9))
+    super::root::steep(excess, free_m_s, (low, high), 1e-9)
 }
 
 /// Inertia at the piston that the effects give the quasi-static plant, kg.
