@@ -1,10 +1,10 @@
 //! `load-arm`: the load's centre of gravity stands behind the hitch point.
 //!
-//! A mast that pitches with the lift lifts an overhanging load more, or less, than the hitch point: `F_weight = m g
-//! (dh/dx + d cos(pitch) dpitch/dx)`. With a pitch that changes faster and faster over the stroke that is `F_weight (1
-//! + s (m + (1 - |m|) (2 x / stroke - 1)))`: `s` is the change at the end of the stroke that it changes most, `m` tells
-//! how much of it is there all over the stroke. An overhang of 0.3 to 0.6 m and 5 to 12 degrees of pitch make 5 to 15
-//! %.
+//! A mast that pitches with the lift lifts an overhanging load more, or less, than the hitch point:
+//! `F_weight = m g (dh/dx + d cos(pitch) dpitch/dx)`. With a pitch that changes faster and faster over the stroke that is
+//! `F_weight (1 + s (m + (1 - |m|) (2 x / stroke - 1)))`: `s` is the change at the end of the stroke that it changes
+//! most, `m` tells how much of it is there all over the stroke. An overhang of 0.3 to 0.6 m and 5 to 12 degrees of
+//! pitch make 5 to 15 %.
 
 use super::Parameter;
 use super::described::Described;

@@ -1,9 +1,10 @@
 //! The dynamic plant: oil compressibility, inertia, viscous friction, end stops.
 //!
-//! `p' = E/V(x) (Q_lift - Q_lower - Q_leak - A v)`, `M(x) v' = p A - F_weight(x) - M'(x) v^2 / 2 - b v -
-//! F_friction(v) + F_stop(x, v)`, `x' = v` (RIG.md). Classical Runge-Kutta of order four: the ringing at 10 to 40 Hz wants a high
-//! order, the noisy measured current makes step control pointless, and a fixed rhythm keeps the result smooth in the
-//! parameters. Where a nearly drained orifice makes the pressure stiff, the step is cut to stay stable.
+//! `p' = E/V(x) (Q_lift - Q_lower - Q_leak - A v)`,
+//! `M(x) v' = p A - F_weight(x) - M'(x) v^2 / 2 - b v - F_friction(v) + F_stop(x, v)`, `x' = v` (RIG.md). Classical
+//! Runge-Kutta of order four: the ringing at 10 to 40 Hz wants a high order, the noisy measured current makes step
+//! control pointless, and a fixed rhythm keeps the result smooth in the parameters. Where a nearly drained orifice makes
+//! the pressure stiff, the step is cut to stay stable.
 //!
 //! Oil does not pull: a piston that flies on when its valve shuts leaves a void behind, which has to close before the
 //! pressure rises again. Within a step the pressure runs on below the vacuum as the account of that void.
