@@ -3,7 +3,7 @@
 use hitch_model::Model;
 use hitch_model::campaign::Channel;
 use hitch_model::effects::{AddedEffect, CATALOGUE, Effect, full_name};
-use hitch_model::plant::{Currents, Rig};
+use hitch_model::plant::{Currents, HitchRig, Rig};
 use hitch_model::simulation::simulate;
 use hitch_model::units::pa_from_bar;
 
@@ -136,6 +136,131 @@ fn a_flow_force_on_the_travel_reads_the_table_at_another_current() {
         assert!(
             (shown - wanted).abs() < 1e-6,
             "{port_bar} bar: {shown}, not {wanted}"
+        );
+    }
+}
+
+/// The spool's equation of motion in tiny steps: `w'' = omega^2 (I - w) - 2 damping omega w'`, omega from the lag.
+#[test]
+fn a_swinging_spool_overshoots_as_its_equation_says() {
+    let (lag_s, damping) = (0.06, 0.45);
+    let omega_rad_s = 2.0 * damping / lag_s;
+    let time_s: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.02).collect();
+    // Linear between the samples, as a log is.
+    let edge_a = |time_s: f64| 1.5 + 25.0 * (time_s - 0.2).clamp(0.0, 0.02);
+    let step_s = 1e-5;
+    let (mut place_a, mut speed_a_s, mut fine_s) = (1.5, 0.0, 0.0);
+    let mut spool_a = Vec::new();
+    for &at_s in &time_s {
+        while fine_s < at_s - 0.5 * step_s {
+            let pull = omega_rad_s * omega_rad_s * (edge_a(fine_s) - place_a);
+            speed_a_s += step_s * (pull - 2.0 * damping * omega_rad_s * speed_a_s);
+            place_a += step_s * speed_a_s;
+            fine_s += step_s;
+        }
+        spool_a.push(place_a);
+    }
+    let highest_a = spool_a.iter().copied().fold(0.0, f64::max);
+    assert!(highest_a > 2.05, "{highest_a} A is no overshoot");
+    let lift = |lift_a: f64| Currents {
+        lift_a,
+        lower_a: 0.0,
+    };
+    let swinging = model("spool-lag/swinging", &[lag_s, damping]);
+    let shown = flow_lpm(&swinging, 20.0, 40.0, &time_s, |t| lift(edge_a(t)));
+    let sample = |time_s: f64| (time_s / 0.02).round() as usize;
+    let nominal = Model::nominal();
+    let wanted = flow_lpm(&nominal, 20.0, 40.0, &time_s, |t| lift(spool_a[sample(t)]));
+    for ((time_s, shown), wanted) in time_s.iter().zip(shown).zip(wanted) {
+        assert!(
+            (shown - wanted).abs() < 0.01,
+            "{shown} l/min at {time_s} s, not {wanted}"
+        );
+    }
+}
+
+/// Dahl's friction by hand: pressure at rest is the weight's and, after lifting, the whole friction more, after lowering
+/// the whole friction less; trembling takes its share of that away a second.
+#[test]
+fn bristles_hold_at_rest_what_they_held_in_motion() {
+    let (force_n, bending_mm, load_kg) = (450.0, 0.3, 150.0);
+    let lift = |time_s: f64| {
+        if (1.0..2.0).contains(&time_s) {
+            1.8
+        } else {
+            0.0
+        }
+    };
+    let lower = |time_s: f64| {
+        if (4.0..4.5).contains(&time_s) {
+            1.7
+        } else {
+            0.0
+        }
+    };
+    let time_s: Vec<f64> = (0..350).map(|k| f64::from(k) * 0.02).collect();
+    let currents: Vec<Currents> = time_s
+        .iter()
+        .map(|&time_s| Currents {
+            lift_a: lift(time_s),
+            lower_a: lower(time_s),
+        })
+        .collect();
+    let rig = Rig::Hitch(HitchRig {
+        load_kg,
+        start_angle_rad: 80f64.to_radians(),
+    });
+    for straightening_1_s in [0.0, 0.7] {
+        let rough = model(
+            "coulomb-friction/bristles",
+            &[force_n, bending_mm, straightening_1_s],
+        );
+        let trace = simulate(&rough, rig, 40.0, &time_s, &currents);
+        let beyond_weight_n = |sample: usize| {
+            let angle_rad = trace.true_angle_deg[sample].to_radians();
+            let dh_dx = rough.linkage().dh_dx(rough.linkage().piston_m(angle_rad));
+            let weight_n = (load_kg + 30.0) * 9.81 * dh_dx;
+            let pressure_pa = pa_from_bar(trace.channel(Channel::CylinderPressure)[sample]);
+            pressure_pa * rough.constants().cylinder.area_m2() - weight_n
+        };
+        // The valves are shut from 2 s and from 4.5 s on.
+        for (shut_s, later_s, sign) in [(2.02, 3.9, 1.0), (4.52, 6.9, -1.0)] {
+            for at_s in [shut_s, later_s] {
+                let left = (-straightening_1_s * (at_s - shut_s)).exp();
+                let wanted_n = sign * force_n * left;
+                let shown_n = beyond_weight_n((at_s / 0.02) as usize);
+                assert!(
+                    (shown_n - wanted_n).abs() < 0.04 * force_n,
+                    "{shown_n} N at {at_s} s, not {wanted_n} N"
+                );
+            }
+        }
+    }
+}
+
+/// In motion bristles are plain dry friction, on the dynamic plant as well: the pressure is the other form's.
+#[test]
+fn bristles_in_motion_are_dry_friction() {
+    let time_s: Vec<f64> = (0..150).map(|k| f64::from(k) * 0.02).collect();
+    let moving = |lift_a: f64, lower_a: f64| {
+        let currents = vec![Currents { lift_a, lower_a }; time_s.len()];
+        let rig = Rig::Hitch(HitchRig {
+            load_kg: 150.0,
+            start_angle_rad: 90f64.to_radians(),
+        });
+        ["coulomb-friction", "coulomb-friction/bristles"].map(|name| {
+            let typical = AddedEffect::typical(effect(name));
+            let model = Model::dynamic().with_effects(vec![typical]);
+            let trace = simulate(&model, rig, 40.0, &time_s, &currents);
+            let pressure_bar = &trace.channel(Channel::CylinderPressure)[100..];
+            pressure_bar.iter().sum::<f64>() / pressure_bar.len() as f64
+        })
+    };
+    for (lift_a, lower_a) in [(1.5, 0.0), (0.0, 1.5)] {
+        let [plain_bar, bristles_bar] = moving(lift_a, lower_a);
+        assert!(
+            (plain_bar - bristles_bar).abs() < 0.02,
+            "{bristles_bar} bar, not {plain_bar} bar"
         );
     }
 }

@@ -1,21 +1,20 @@
 //! `coulomb-friction`: dry friction of the cylinder's seals and of the links.
 //!
-//! `F = F_C tanh(v / 3 mm/s)`, against the motion: pressure is higher while lifting and lower while lowering by
-//! `F_C / A`. The hyperbolic tangent stands for the transition through rest (Simscape's cylinder friction; Jelali &
-//! Kroll 4.3). 100 to 300 N and 1 to 4 % of the pressure force are usual for a 76 mm cylinder.
+//! Pressure is higher while lifting and lower while lowering by `F_C / A`. Two equations say what happens at rest: with
+//! a hyperbolic tangent, `F = F_C tanh(v / 3 mm/s)`, the friction is gone (Simscape's cylinder friction; Jelali & Kroll
+//! 4.3); bristles that bend before they slip hold what they held when the piston stopped (Dahl 1968; LuGre, Canudas de
+//! Wit 1995), until the trembling of a running machine has let them straighten. 100 to 300 N and 1 to 4 % of the
+//! pressure force are usual for a 76 mm cylinder, and some tenths of a millimetre of bending.
 
-use super::{Effect, Parameter};
+use super::Parameter;
+use super::described::Described;
 use crate::campaign::Channel;
-use crate::plant::sites::{RunConditions, Sites};
+use crate::plant::sites::Bristles;
 
 /// Speed at which the friction has reached three quarters of its full value, m/s.
 pub(super) const TRANSITION_SPEED_M_S: f64 = 0.003;
 
-/// Coulomb friction at the piston.
-#[derive(Debug)]
-pub struct CoulombFriction;
-
-static PARAMETERS: [Parameter; 1] = [Parameter {
+const FORCE: Parameter = Parameter {
     name: "force",
     unit: "N",
     key: "force_n",
@@ -24,47 +23,76 @@ static PARAMETERS: [Parameter; 1] = [Parameter {
     typical: 400.0,
     low: 0.0,
     high: 5000.0,
-}];
+};
 
-impl Effect for CoulombFriction {
-    fn id(&self) -> &'static str {
-        "coulomb-friction"
-    }
+const CHANNELS: &[Channel] = &[
+    Channel::PumpPressure,
+    Channel::CylinderPressure,
+    Channel::Flow,
+    Channel::RockerAngle,
+];
 
-    fn title(&self) -> &'static str {
-        "Coulomb friction at the piston"
-    }
-
-    fn equation(&self) -> &'static str {
-        "F = force * tanh(v / 3 mm/s)"
-    }
-
-    fn source(&self) -> &'static str {
-        "Simscape cylinder friction; Jelali & Kroll 4.3; 100 to 800 N for seals of a 76 mm cylinder and links"
-    }
-
-    fn shows(&self) -> &'static str {
-        "cylinder pressure steps down from lifting to holding and again to lowering, by the same at every load; slower \
-         lowering of light loads"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        &PARAMETERS
-    }
-
-    fn channels(&self) -> &'static [Channel] {
-        &[
-            Channel::PumpPressure,
-            Channel::CylinderPressure,
-            Channel::Flow,
-            Channel::RockerAngle,
-        ]
-    }
-
-    fn attach(&self, values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+/// Friction that is gone at rest.
+pub static SMOOTH: Described = Described {
+    id: "coulomb-friction",
+    form: None,
+    title: "Coulomb friction at the piston",
+    equation: "F = force * tanh(v / 3 mm/s)",
+    source: "Simscape cylinder friction; Jelali & Kroll 4.3; 100 to 800 N for seals of a 76 mm cylinder and links",
+    shows: "cylinder pressure steps down from lifting to holding and again to lowering, by the same at every load; slower \
+            lowering of light loads",
+    parameters: &[FORCE],
+    channels: CHANNELS,
+    needs: None,
+    erratic: false,
+    attach: |values, _, sites| {
         let force_n = values[0];
         sites.friction.push(Box::new(move |speed_m_s, _| {
             force_n * (speed_m_s / TRANSITION_SPEED_M_S).tanh()
         }));
-    }
-}
+    },
+};
+
+/// Friction that stays at rest.
+pub static BRISTLES: Described = Described {
+    id: "coulomb-friction",
+    form: Some("bristles"),
+    title: "Coulomb friction at the piston, which holds at rest",
+    equation: "F = force * z / bending, z' = v - (|v| / bending + straightening) z",
+    source: "Dahl 1968; Canudas de Wit et al. 1995 (LuGre with a level that does not hang on the speed); Jelali & Kroll 4.3",
+    shows: "cylinder pressure at rest lies higher after lifting than after lowering, by the same at every load; slower \
+            lowering of light loads",
+    parameters: &[
+        FORCE,
+        Parameter {
+            name: "bending",
+            unit: "mm",
+            key: "bending_mm",
+            meaning: "how far the piston moves before the seal slips",
+            null: 0.0,
+            typical: 0.3,
+            low: 0.02,
+            high: 5.0,
+        },
+        Parameter {
+            name: "straightening",
+            unit: "1/s",
+            key: "straightening_1_s",
+            meaning: "share of the force at rest that trembling takes away a second",
+            null: 0.0,
+            typical: 0.0,
+            low: 0.0,
+            high: 20.0,
+        },
+    ],
+    channels: CHANNELS,
+    needs: None,
+    erratic: false,
+    attach: |values, _, sites| {
+        sites.bristles = Some(Bristles {
+            force_n: values[0],
+            reach_m: 1e-3 * values[1],
+            straightening_1_s: values[2],
+        });
+    },
+};

@@ -1,9 +1,10 @@
 //! `spool-lag`: the spools follow their currents late.
 //!
 //! Coil and spool together behave like a second-order, well damped system: 40 to 100 ms to 90 % of a step for valves of
-//! this class (Merritt, ch. 6; data sheets). Written as two first-order lags in series so that it stays stable and
-//! exact at any step: `share` moves part of the lag into the second one; none is a plain first-order lag, a half is
-//! critical damping. On the dynamic starting point it comes on top of the 45 ms that are declared there.
+//! this class (Merritt, ch. 6; data sheets). The usual form is two first-order lags in series: `share` moves part of the
+//! lag into the second one; none is a plain first-order lag, a half is critical damping. A spool with less damping than
+//! that swings past its place: 5 to 15 Hz and a damping of 0.7 to 1 are usual. Both are exact at any step as long as the
+//! current runs linearly. On the dynamic starting point it comes on top of the 45 ms that are declared there.
 
 use super::Parameter;
 use super::described::Described;
@@ -13,8 +14,10 @@ use crate::plant::lag::Lag;
 use crate::plant::sites::{CurrentStage, Currents};
 use crate::plant::sites::{RunConditions, Sites};
 
-/// Lag of the spools.
-pub static SPOOL_LAG: Described = Described {
+const CHANNELS: &[Channel] = &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle];
+
+/// Spools that creep to their place.
+pub static CREEPING: Described = Described {
     id: "spool-lag",
     form: None,
     title: "Lag of the spools",
@@ -45,13 +48,60 @@ pub static SPOOL_LAG: Described = Described {
             high: 0.5,
         },
     ],
-    channels: &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle],
+    channels: CHANNELS,
     needs: None,
     erratic: false,
-    attach,
+    attach: attach_creeping,
 };
 
-fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+/// Spools that swing past their place.
+pub static SWINGING: Described = Described {
+    id: "spool-lag",
+    form: Some("swinging"),
+    title: "Lag of the spools, which swing",
+    equation: "(lag / 2 damping)^2 w'' + lag w' + w = I; Q = Q_table(w)",
+    source: "second-order spool, Merritt ch. 6; data sheets of proportional valves: 5 to 15 Hz, damping \
+         0.7 to 1",
+    shows: "flow and pump pressure follow every edge of a current late, by the same time at any \
+         load, and overshoot a little",
+    parameters: &[
+        Parameter {
+            name: "lag",
+            unit: "s",
+            key: "lag_s",
+            meaning: "how late it follows a ramp of the current",
+            null: 0.0,
+            typical: 0.05,
+            low: 0.0,
+            high: 1.0,
+        },
+        Parameter {
+            name: "damping",
+            unit: "",
+            key: "damping",
+            meaning: "damping ratio of the spool",
+            null: 1.0,
+            typical: 0.8,
+            low: 0.3,
+            high: 0.99,
+        },
+    ],
+    channels: CHANNELS,
+    needs: None,
+    erratic: false,
+    attach: attach_swinging,
+};
+
+fn attach_swinging(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+    let (lag_s, damping) = (values[0], values[1]);
+    sites.currents.push(Box::new(SwingingSpools {
+        frequency_rad_s: 2.0 * damping / lag_s,
+        damping,
+        spools: [Swinging::default(); 2],
+    }));
+}
+
+fn attach_creeping(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
     let second_s = values[0] * values[1];
     for time_constant_s in [values[0] - second_s, second_s] {
         sites.currents.push(Box::new(SpoolLag {
@@ -79,6 +129,69 @@ impl CurrentStage for SpoolLag {
         Currents {
             lift_a: self.spools[0].advance(currents.lift_a, dt_s),
             lower_a: self.spools[1].advance(currents.lower_a, dt_s),
+        }
+    }
+}
+
+/// Second-order lag of both spools.
+#[derive(Debug)]
+struct SwingingSpools {
+    frequency_rad_s: f64,
+    damping: f64,
+    spools: [Swinging; 2],
+}
+
+/// One of them, in terms of the current.
+#[derive(Debug, Clone, Copy, Default)]
+struct Swinging {
+    input_a: f64,
+    place_a: f64,
+    speed_a_s: f64,
+}
+
+impl Swinging {
+    /// Goes on while the current runs linearly to `input_a`: what is left of the way to the ramp swings and dies away.
+    fn advance(&mut self, [frequency, damping]: [f64; 2], input_a: f64, dt_s: f64) -> f64 {
+        if dt_s <= 0.0 {
+            return self.place_a;
+        }
+        let rate_a_s = (input_a - self.input_a) / dt_s;
+        let behind_a = 2.0 * damping * rate_a_s / frequency;
+        let (decay, swing) = (
+            damping * frequency,
+            frequency * (1.0 - damping * damping).sqrt(),
+        );
+        let (away_a, away_a_s) = (
+            self.place_a - self.input_a + behind_a,
+            self.speed_a_s - rate_a_s,
+        );
+        let quadrature_a = (away_a_s + decay * away_a) / swing;
+        let (sine, cosine) = (swing * dt_s).sin_cos();
+        let left = (-decay * dt_s).exp();
+        let left_a = left * (away_a * cosine + quadrature_a * sine);
+        let left_a_s = left * swing * (quadrature_a * cosine - away_a * sine) - decay * left_a;
+        self.place_a = input_a - behind_a + left_a;
+        self.speed_a_s = rate_a_s + left_a_s;
+        self.input_a = input_a;
+        self.place_a
+    }
+}
+
+impl CurrentStage for SwingingSpools {
+    fn rest(&mut self, currents: Currents) -> Currents {
+        self.spools = [currents.lift_a, currents.lower_a].map(|current_a| Swinging {
+            input_a: current_a,
+            place_a: current_a,
+            speed_a_s: 0.0,
+        });
+        currents
+    }
+
+    fn advance(&mut self, currents: Currents, dt_s: f64) -> Currents {
+        let constants = [self.frequency_rad_s, self.damping];
+        Currents {
+            lift_a: self.spools[0].advance(constants, currents.lift_a, dt_s),
+            lower_a: self.spools[1].advance(constants, currents.lower_a, dt_s),
         }
     }
 }

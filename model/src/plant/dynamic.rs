@@ -161,7 +161,7 @@ pub fn rests(
     state: MechanicalState,
     openings: [Openings; 3],
 ) -> bool {
-    circuit.sites.holds_tight()
+    circuit.sites.holds_still()
         && openings.iter().all(Openings::shut)
         && state.void_m3 == 0.0
         && state.speed_m_s.abs() < AT_REST_M_S
@@ -214,6 +214,12 @@ fn runge_kutta(
     dt_s: f64,
 ) -> MechanicalState {
     let rate = |state, openings| derivative(forces, circuit, openings, state);
+    let moved = |state: MechanicalState, rate, dt_s| {
+        let mut moved = moved(state, rate, dt_s);
+        let travel_m = moved.piston_m - state.piston_m;
+        moved.bristles_m = circuit.sites.bent_m(state.bristles_m, travel_m, dt_s);
+        moved
+    };
     let stopped = MechanicalState {
         speed_m_s: 0.0,
         ..state

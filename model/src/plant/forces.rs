@@ -43,7 +43,7 @@ impl Forces<'_> {
             piston_m,
             speed_m_s: self.moment.before.speed_m_s,
             pressure_pa: self.moment.before.cylinder_pressure_pa,
-            void_m3: 0.0,
+            ..MechanicalState::default()
         }
     }
 
@@ -61,6 +61,7 @@ impl Forces<'_> {
     #[must_use]
     pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {
         self.sites.friction_n(state.speed_m_s, weight_n)
+            + self.sites.bristles_n(state.bristles_m)
             + self.moment.term(Place::Friction, state, |_| ())
     }
 

@@ -90,6 +90,8 @@ pub struct MechanicalState {
     pub pressure_pa: f64,
     /// Void under the piston where the oil column has torn, m3; the dynamic plant only.
     pub void_m3: f64,
+    /// How far the bristles of friction that remembers are bent, m; nothing without any.
+    pub bristles_m: f64,
 }
 
 impl MechanicalState {
@@ -99,6 +101,7 @@ impl MechanicalState {
             self.speed_m_s,
             self.pressure_pa,
             self.void_m3,
+            self.bristles_m,
         ]
         .iter()
         .all(|value| value.is_finite())
@@ -269,7 +272,7 @@ impl<'m> Plant<'m> {
             (Rig::Hitch(rig), Dynamics::Steady) => {
                 let start = self.openings;
                 let end = self.open(currents, dt_s);
-                let stands = self.state.speed_m_s == 0.0 && self.sites.holds_tight();
+                let stands = self.state.speed_m_s == 0.0 && self.sites.holds_still();
                 if stands && start.shut() && end.shut() {
                     return;
                 }
@@ -278,8 +281,11 @@ impl<'m> Plant<'m> {
                     dt_s,
                 };
                 let (forces, circuit) = (self.forces(&rig), self.circuit());
-                self.state.piston_m =
+                let piston_m =
                     steady::step(&forces, &circuit, self.state, end, self.lowest_m, dt_s);
+                let moved_m = piston_m - self.state.piston_m;
+                self.state.bristles_m = self.sites.bent_m(self.state.bristles_m, moved_m, dt_s);
+                self.state.piston_m = piston_m;
                 self.balance(&rig, Some(before));
             }
             (Rig::Hitch(rig), Dynamics::Dynamic) => {
@@ -348,13 +354,7 @@ impl<'m> Plant<'m> {
     /// Brings the quasi-static speed, pressure and flows up to the present openings and travel.
     fn balance(&mut self, rig: &HitchRig, before: Option<steady::Before>) {
         let (forces, circuit) = (self.forces(rig), self.circuit());
-        let balance = steady::balance(
-            &forces,
-            &circuit,
-            self.openings,
-            self.state.piston_m,
-            before,
-        );
+        let balance = steady::balance(&forces, &circuit, self.openings, self.state, before);
         self.state.speed_m_s = balance.speed_m_s;
         self.state.pressure_pa = balance.pressure_pa;
         self.flows = balance.flows;

@@ -34,7 +34,7 @@ impl Plant<'_> {
             piston_m,
             speed_m_s: 0.0,
             pressure_pa: held_n.max(0.0) / self.model.constants().cylinder.area_m2(),
-            void_m3: 0.0,
+            ..MechanicalState::default()
         }
     }
 

@@ -97,6 +97,32 @@ impl Ground {
     }
 }
 
+/// Dry friction that remembers: bristles between piston and seal bend before they slip (Dahl 1968; LuGre with a level
+/// that does not hang on the speed, Canudas de Wit 1995), and straighten at rest as far as the machine trembles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bristles {
+    /// Force of bristles that slip, N.
+    pub force_n: f64,
+    /// How far they are bent then, m.
+    pub reach_m: f64,
+    /// How fast they straighten, 1/s.
+    pub straightening_1_s: f64,
+}
+
+impl Bristles {
+    /// How far they are bent, m, once the piston has moved on: `z' = v - (|v| / reach + straightening) z`, exactly for an
+    /// even speed.
+    #[must_use]
+    pub fn bent_m(&self, before_m: f64, moved_m: f64, dt_s: f64) -> f64 {
+        let share = moved_m.abs() / self.reach_m + self.straightening_1_s * dt_s;
+        if share <= 0.0 {
+            return before_m;
+        }
+        let end_m = moved_m / share;
+        end_m + (before_m - end_m) * (-share).exp()
+    }
+}
+
 /// A term of a user's own, in the SI unit of its place, from the state of the plant.
 pub type TermFunction = Box<dyn Fn(&Signals) -> f64 + Send + Sync>;
 
@@ -135,6 +161,8 @@ pub struct Sites {
     pub compliance_m3_pa: f64,
     /// Friction at the piston.
     pub friction: Vec<FrictionForce>,
+    /// Friction at the piston that remembers.
+    pub bristles: Option<Bristles>,
     /// Factors on the weight's force, from the piston travel, m.
     pub weight_factor: Vec<Law>,
     /// Inertia that comes on top of the model's own, as a share of load and dead weight.
@@ -169,6 +197,7 @@ impl Default for Sites {
             stiffness_factor: Vec::new(),
             compliance_m3_pa: 0.0,
             friction: Vec::new(),
+            bristles: None,
             weight_factor: Vec::new(),
             inertia_share: 0.0,
             longest_step_s: f64::INFINITY,
@@ -210,6 +239,20 @@ impl Sites {
         forces.map(|force| force(speed_m_s, weight_n)).sum()
     }
 
+    /// Force of bristles, N, that are bent so far, m.
+    #[must_use]
+    pub fn bristles_n(&self, bent_m: f64) -> f64 {
+        self.bristles
+            .map_or(0.0, |bristles| bristles.force_n * bent_m / bristles.reach_m)
+    }
+
+    /// [`Bristles::bent_m`]; nothing without any.
+    #[must_use]
+    pub fn bent_m(&self, before_m: f64, moved_m: f64, dt_s: f64) -> f64 {
+        self.bristles
+            .map_or(0.0, |bristles| bristles.bent_m(before_m, moved_m, dt_s))
+    }
+
     /// Factor on the weight's force at a piston travel, m.
     #[must_use]
     pub fn weight_factor(&self, piston_m: f64) -> f64 {
@@ -222,10 +265,11 @@ impl Sites {
         self.return_loss_pa_s2_m6 * flow_m3_s * flow_m3_s
     }
 
-    /// Whether the oil behind two shut valves stays where it is.
+    /// Whether a hitch at rest behind two shut valves stays as it is.
     #[must_use]
-    pub fn holds_tight(&self) -> bool {
-        self.leakage.is_empty() && self.terms.is_empty()
+    pub fn holds_still(&self) -> bool {
+        let straighten = |bristles: Bristles| bristles.straightening_1_s > 0.0;
+        self.leakage.is_empty() && self.terms.is_empty() && !self.bristles.is_some_and(straighten)
     }
 
     /// Sum of the leakages, m3/s, at a cylinder pressure, Pa.

@@ -44,19 +44,26 @@ pub struct Before {
     pub dt_s: f64,
 }
 
-/// Flow and force balance at piston travel `piston_m`.
+/// Flow and force balance where the piston stands, its bristles bent as they are there.
 #[must_use]
 pub fn balance(
     forces: &Forces,
     circuit: &Circuit,
     openings: Openings,
-    piston_m: f64,
+    MechanicalState {
+        piston_m,
+        bristles_m,
+        ..
+    }: MechanicalState,
     before: Option<Before>,
 ) -> Balance {
     let area_m2 = circuit.constants.cylinder.area_m2();
     let weight_n = forces.weight_n(piston_m);
     let held_n = (weight_n - forces.ground_n(piston_m, 0.0)).max(0.0);
-    let last = forces.before(piston_m);
+    let last = MechanicalState {
+        bristles_m,
+        ..forces.before(piston_m)
+    };
     let at_force = |speed_m_s: f64, force_n: f64| {
         let pressure_pa = force_n / area_m2;
         let state = MechanicalState {
@@ -75,8 +82,8 @@ pub fn balance(
         forces.friction_n(&state, weight_n)
     };
     let terms = circuit.sites.has_term(Place::Friction);
-    // A term may press on a piston at rest, too: a spring does.
-    let free = at_force(0.0, held_n + if terms { friction_n(0.0) } else { 0.0 });
+    // Bent bristles press on a piston at rest, too, and so may a term: a spring does.
+    let free = at_force(0.0, held_n + friction_n(0.0));
     let free_m_s = free.flows.net_m3_s() / area_m2;
     let inertia_kg = inertia_kg(forces, piston_m);
     let before = before.filter(|_| inertia_kg > 0.0);
@@ -134,6 +141,13 @@ pub fn step(
         speed_m_s: state.speed_m_s,
         dt_s,
     };
-    let there = balance(forces, circuit, end, guess_m, Some(before));
+    let guess = MechanicalState {
+        piston_m: guess_m,
+        bristles_m: circuit
+            .sites
+            .bent_m(state.bristles_m, guess_m - state.piston_m, dt_s),
+        ..state
+    };
+    let there = balance(forces, circuit, end, guess, Some(before));
     within(state.piston_m + 0.5 * dt_s * (state.speed_m_s + there.speed_m_s))
 }
