@@ -240,6 +240,7 @@ pub static HIDEABLE: [Hideable; 28] = [
         |rig, size, shape| {
             rig.friction.coulomb_n = size;
             rig.friction.bristles = shape.structured();
+            rig.friction.trembles = shape.structured() && shape.between(0.0, 1.0) < 0.5;
         },
     ),
     steady(

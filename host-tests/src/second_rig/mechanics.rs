@@ -14,7 +14,7 @@ const TRANSITION_M_S: f64 = 0.003;
 /// Stiffness of the bristles, N/m: half a millimetre of presliding at 400 N.
 const BRISTLES_N_M: f64 = 8e5;
 
-/// Time in which bristles at rest creep back, s: the rig is never free of vibration.
+/// Time in which bristles at rest creep back, s, where the rig trembles.
 const BRISTLE_CREEP_S: f64 = 0.15;
 
 /// Length of a scored spot in the bore, m.
@@ -142,7 +142,11 @@ impl<'a> Machine<'a> {
             return 0.0;
         }
         let limit_m = self.dry_limit_n(speed_m_s) / BRISTLES_N_M;
-        let creep = (-(speed_m_s / TRANSITION_M_S).powi(2)).exp() / BRISTLE_CREEP_S;
+        let creep = if self.physics.friction.trembles {
+            (-(speed_m_s / TRANSITION_M_S).powi(2)).exp() / BRISTLE_CREEP_S
+        } else {
+            0.0
+        };
         speed_m_s - (speed_m_s.abs() / limit_m + creep) * motion.bristles_m
     }
 

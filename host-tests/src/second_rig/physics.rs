@@ -61,6 +61,8 @@ pub struct Friction {
     pub gaussian: bool,
     /// Whether bristles carry it (LuGre) or a hyperbolic tangent.
     pub bristles: bool,
+    /// Whether bristles at rest creep back: few machines are free of vibration, test stands may be.
+    pub trembles: bool,
     /// Viscous friction at 40 degC, N s/m.
     pub viscous_n_s_m: f64,
     /// Whether that grows with the root of the oil's viscosity.
