@@ -30,6 +30,9 @@ mod report;
 /// A hitch that stalls this close to a limit of its travel has arrived: an end stop, or a misplaced limit.
 const END_ZONE: MilliDegree = MilliDegree(2_000);
 
+/// A lift that comes to rest further beyond its set point than this has swung there: 0.6 degree.
+const OVERSHOT: Micrometre = Micrometre(1_000);
+
 /// The controller: a calibration and a state.
 #[derive(Clone, Debug)]
 pub struct Controller {
@@ -238,8 +241,9 @@ impl Controller {
         };
         let area = self.calibration.hydraulics.piston_area;
         let told = course.told(self.rest.position(), self.scale, area);
-        self.motion.learn_lag(&told, &self.calibration.motion);
-        self.learning.learn(told);
+        if self.motion.learn_lag(&told, &self.calibration.motion) {
+            self.learning.learn(told);
+        }
     }
 
     /// Mode transitions that don't depend on the lever.
@@ -392,7 +396,8 @@ impl Controller {
     /// A move begins: counts it if nobody asked for it. Only moves to a set point teach; what makes a hitch leave its place
     /// (a leak, a sensor that drifts) has a part in its corrections.
     fn begin(&mut self, next: Phase) -> Result<(), Fault> {
-        self.learning.obstruct();
+        let before = self.learning.obstruct();
+        let beyond = self.rest.position() - self.target.1;
         let Phase::Moving { direction, .. } = next else {
             return Ok(());
         };
@@ -401,7 +406,12 @@ impl Controller {
         }
         match self.position.start() {
             Reason::SetPoint => self.learning.begin(direction, self.rest.position()),
-            Reason::Drift => self.sink.correct(&self.calibration.hold)?,
+            Reason::Drift => {
+                if before == Some(Direction::Lift) && beyond > OVERSHOT {
+                    self.motion.overshot();
+                }
+                self.sink.correct(&self.calibration.hold)?;
+            }
         }
         Ok(())
     }
@@ -421,6 +431,7 @@ impl Controller {
         }
         self.phase = phase.cut();
         self.learning.obstruct();
+        self.motion.obstruct();
         let at_end = match phase.speed() > MicrometrePerSecond::ZERO {
             true => sensed.angle >= calibration.position.upper_limit - END_ZONE,
             false => sensed.angle <= calibration.position.lower_limit + END_ZONE,

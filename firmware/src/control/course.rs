@@ -53,6 +53,12 @@ impl Course {
         }
     }
 
+    /// Way of the move.
+    #[must_use]
+    pub const fn direction(&self) -> Direction {
+        self.direction
+    }
+
     /// One step; true once the hitch has rested for long enough.
     pub fn step(&mut self, phase: Phase, motion: &Motion) -> bool {
         self.expected_nm = self.expected_nm.saturating_add(motion.model_speed().0);

@@ -114,6 +114,8 @@ parameter_group! {
         lowering_trail: Microsecond = 12_500, 0..=100_000;
         /// Furthest that a machine's spools may be slower or faster than the calibration says.
         lag_limit: Millisecond = 35, 0..=200;
+        /// Lag of the lift valve beyond the lowering valve's from which the load swings on a compensator that lags: valves of one machine, one of them off its curve, seem to differ by up to 12 ms.
+        swing_lag: Millisecond = 16, 0..=200;
         /// Largest error of the valve map that the estimator may blame on it: 0.25 A of threshold at 15 bar is 34 mm/s.
         bias_limit: MicrometrePerSecond = 80_000, 0..=500_000;
     }
@@ -144,6 +146,10 @@ parameter_group! {
         lift_acceleration: MillimetrePerSecondSquared = 3_800, 50..=20_000;
         /// Deceleration when lifting: full speed in 210 ms; a gravity-loaded piston would bounce from 3 m/s2 on at light load, and the time lost against it is little.
         lift_deceleration: MillimetrePerSecondSquared = 700, 50..=20_000;
+        /// Acceleration when lifting a load that swings on its compensator: full speed in 280 ms, most of a period behind the open valve.
+        swinging_acceleration: MillimetrePerSecondSquared = 540, 50..=20_000;
+        /// Deceleration when lifting a load that swings on its compensator: full speed in half a second, an eighth of what gravity alone could do.
+        swinging_deceleration: MillimetrePerSecondSquared = 290, 50..=20_000;
         /// Acceleration when lowering, at the reference drop; it goes with the speed that the load gives. 250 kg keep half of their pressure.
         lower_acceleration: MillimetrePerSecondSquared = 3_200, 50..=20_000;
         /// Deceleration when lowering, at the reference drop: what stops 250 kg adds half of their pressure, and thick oil still lets the estimate follow.

@@ -55,6 +55,13 @@ impl From<Millisecond> for Eighths {
     }
 }
 
+impl core::ops::Sub for Eighths {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self(self.0.saturating_sub(other.0))
+    }
+}
+
 impl core::ops::Add for Eighths {
     type Output = Self;
     fn add(self, other: Self) -> Self {
@@ -83,6 +90,15 @@ impl Lag {
     #[must_use]
     pub const fn further(&self) -> Eighths {
         self.further
+    }
+
+    /// How much slower, as far as moves of its own have told.
+    #[must_use]
+    pub fn told(&self) -> Eighths {
+        match self.weight > FIRST_WEIGHT {
+            true => self.further,
+            false => Eighths(0),
+        }
     }
 
     /// Takes in a `trail` that is over; `limit`: furthest that a spool may be slower or faster.
@@ -248,9 +264,11 @@ mod tests {
         lift.learn(&late, LIMIT);
         lower.assume(lift);
         assert_eq!(lower.further(), lift.further());
+        assert_eq!(lower.told(), Eighths(0), "hearsay");
         assert!((60..=80).contains(&lift.further().0), "{lift:?}");
         lower.learn(&Trail::default(), LIMIT);
         lower.learn(&late, LIMIT);
+        assert_eq!(lower.told(), lower.further());
         let before = lower.further();
         lower.assume(Lag::default());
         assert_eq!(lower.further(), before);

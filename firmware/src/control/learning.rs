@@ -34,9 +34,9 @@ impl Learning {
         self.course = Some(Course::begin(direction, from));
     }
 
-    /// Something has a part in this move: it tells nothing.
-    pub fn obstruct(&mut self) {
-        self.course = None;
+    /// Something has a part in this move: it tells nothing. Which way it went, if it isn't long over.
+    pub fn obstruct(&mut self) -> Option<Direction> {
+        self.course.take().map(|course| course.direction())
     }
 
     /// The valves' curves are others now.

@@ -40,6 +40,7 @@ pub mod saturation;
 pub mod sensors;
 pub mod signals;
 pub mod sink;
+pub mod swing;
 pub mod teach;
 pub mod units;
 pub mod valve_logic;

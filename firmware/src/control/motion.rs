@@ -22,6 +22,7 @@ use super::fixed::Divisor;
 use super::free_fall::{next_speed, run_out};
 use super::lag::{Eighths, Lag, Trail};
 use super::safety::CoilCurrents;
+use super::swing::Swing;
 use super::units::{
     MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliAmp, Millisecond, SquareMillimetre,
 };
@@ -55,6 +56,7 @@ pub struct Motion {
     lags: [Lag; 2],
     /// How much slower than that the valve in use is, by what this move has told so far.
     further: Eighths,
+    swing: Swing,
     lift_spool: Spool,
     lower_spool: Spool,
     /// How much the flow through the valve that is open changes for each ampere, at the drop of its table.
@@ -71,16 +73,20 @@ impl Motion {
             self.started = true;
             self.position_nm = measured_nm;
         }
-        let time = match self.sinking > MicrometrePerSecond::ZERO {
-            true => parameters.lowering_time,
-            false => parameters.position_time,
+        let (time, bias_time) = match self.sinking > MicrometrePerSecond::ZERO {
+            true => (parameters.lowering_time, parameters.lowering_time),
+            false => (
+                parameters.position_time,
+                self.swing
+                    .bias_time(parameters.position_time, self.model_speed),
+            ),
         };
         let position_time = time.divisor();
         self.position_nm = self.position_nm.saturating_add(self.speed().0);
         let error = measured_nm.saturating_sub(self.position_nm);
         self.position_nm = self.position_nm.saturating_add(position_time.divide(error));
         self.position = Micrometre(Divisor::THOUSAND.divide(self.position_nm));
-        let bias_time = bias_divisor(time);
+        let bias_time = bias_divisor(bias_time);
         if phase.is_moving() {
             let limit = parameters.bias_limit.0.saturating_mul(bias_time.1);
             self.bias_sum_nm = self
@@ -107,17 +113,26 @@ impl Motion {
             return;
         }
         let [lift, lower] = self.lags;
-        let (usual, lag) = match self.sinking > MicrometrePerSecond::ZERO {
+        let sinks = self.sinking > MicrometrePerSecond::ZERO;
+        let (usual, lag) = match sinks {
             true => (parameters.lowering_trail, lower),
             false => (parameters.lift_trail, lift),
         };
         let measured_nm = measured.0.saturating_mul(1000);
         self.trail.step(measured_nm, self.model_speed, usual.into());
         self.further = self.trail.further(lag, parameters.lag_limit.into());
+        if !sinks {
+            let beyond_spools = lift.further() + self.further - lower.told();
+            self.swing
+                .notice(beyond_spools, parameters.swing_lag.into());
+        }
     }
 
-    /// Takes in the end of a move that nothing else had a part in.
-    pub fn learn_lag(&mut self, told: &Told, parameters: &MotionParameters) {
+    /// Takes in the end of a move that nothing else had a part in; true if its way tells of its valve.
+    pub fn learn_lag(&mut self, told: &Told, parameters: &MotionParameters) -> bool {
+        if !self.swing.lets_learn() {
+            return false;
+        }
         self.trail.end(told);
         let [lift, lower] = &mut self.lags;
         let (lag, other) = match told.direction {
@@ -125,8 +140,28 @@ impl Motion {
             Direction::Lower => (lower, lift),
         };
         lag.learn(&self.trail, parameters.lag_limit.into());
+        if told.direction == Direction::Lift {
+            self.swing.doubt(lag.further() - other.told());
+        }
         other.assume(*lag);
         self.further = Eighths::default();
+        true
+    }
+
+    /// A lift went far beyond its set point.
+    pub fn overshot(&mut self) {
+        self.swing.prove();
+    }
+
+    /// Something stands in the way of the present move.
+    pub fn obstruct(&mut self) {
+        self.swing.obstruct();
+    }
+
+    /// True if the load swings when it is lifted in a hurry.
+    #[must_use]
+    pub fn swings(&self) -> bool {
+        self.swing.is_seen()
     }
 
     /// What has been learnt of the lags of this machine's spools, lift and lowering.
@@ -185,6 +220,7 @@ impl Motion {
     /// Forgets what the map got wrong: the next move may go the other way.
     pub fn forget_bias(&mut self) {
         self.trail = Trail::from(self.position_nm);
+        self.swing.begin();
         self.further = Eighths::default();
         self.bias_sum_nm = 0;
         self.bias = MicrometrePerSecond::ZERO;

@@ -138,6 +138,11 @@ impl PositionControl {
             _ => Direction::of((target - motion.position()).0),
         };
         let (limit, acceleration, deceleration) = match direction {
+            Direction::Lift if motion.swings() => (
+                parameters.lift_speed,
+                parameters.swinging_acceleration,
+                parameters.swinging_deceleration,
+            ),
             Direction::Lift => (
                 parameters.lift_speed,
                 parameters.lift_acceleration,

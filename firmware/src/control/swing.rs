@@ -1,0 +1,166 @@
+//! Whether the load of this machine swings on its compensator, which asks for gentle ramps.
+//!
+//! A compensator that follows the load's pressure with a lag `T` takes `T p'` off the drop `d` that it keeps over the lift
+//! valve. With the oil stiff and the load `M` accelerated by the pressure, `M v'' = A p'`, the speed no longer is `v_0` of the
+//! opening:
+//!
+//! ```text
+//! v = v_0 sqrt(1 - T p' / d)     so     v'' = K (1 - (v / v_0)^2),     K = A d / (M T)
+//! ```
+//!
+//! That swings about `v_0`, hardly damped, at `sqrt(2 K / v_0)`: 2.7 Hz behind the open valve for 230 kg and 10 ms, higher the
+//! less the valve is open. An edge of 40 ms makes the hitch half as fast again as its valve, and a valve that
+//! closes meanwhile leaves it flying, since gravity is all that stops a load. What is opened and closed slowly against that
+//! swing is followed without one.
+//!
+//! Such a machine is known by its start. Before anything flows its compensator has to come up from the pump's idle pressure, then
+//! the speed grows with the square of the time: the hitch trails its lift valve ([`super::lag`]) by 16 to 35 ms more than its
+//! lowering valve, which has no compensator. That is soon enough for braking the same move. A valve that is off its curve may
+//! look the same once; the gentle moves that follow tell its lag, and a small one takes the suspicion back. A machine
+//! whose swing hides gives itself away by where it comes to rest. A move that swung tells nothing of lags and offsets.
+//!
+//! ```text
+//! Unseen --- trails by far ---> Noticed --- next move ---> Known
+//!   ^  \__ rests far beyond its set point __> Proven        |
+//!   +---------------- trails like a spool -----------------+
+//! ```
+
+use super::lag::Eighths;
+use super::units::{MicrometrePerSecond, Millisecond};
+
+/// What is known of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Swing {
+    /// No sign of it yet.
+    #[default]
+    Unseen,
+    /// Seen in the present move, which began with steep ramps.
+    Noticed,
+    /// Seen in an earlier one.
+    Known,
+    /// A lift came to rest far beyond its set point.
+    Proven,
+}
+
+/// By how much the spools of one machine differ, with what offsets make of it: below is no swing.
+const SPOOLS_DIFFER: Eighths = Eighths(8 * 12);
+
+impl Swing {
+    /// The present lift trails its valve by `lag` more than a lowering does; from `limit` on that is no spool's.
+    pub fn notice(&mut self, lag: Eighths, limit: Eighths) {
+        if *self == Self::Unseen && lag > limit {
+            *self = Self::Noticed;
+        }
+    }
+
+    /// Another move begins.
+    pub fn begin(&mut self) {
+        if *self == Self::Noticed {
+            *self = Self::Known;
+        }
+    }
+
+    /// A gentle lift told that the hitch trails its valve by `lag` more than a lowering does.
+    pub fn doubt(&mut self, lag: Eighths) {
+        if *self == Self::Known && lag < SPOOLS_DIFFER {
+            *self = Self::Unseen;
+        }
+    }
+
+    /// A lift came to rest far beyond its set point.
+    pub fn prove(&mut self) {
+        *self = Self::Proven;
+    }
+
+    /// Something stood in the way of the present move: what it trailed by is no swing.
+    pub fn obstruct(&mut self) {
+        if *self == Self::Noticed {
+            *self = Self::Unseen;
+        }
+    }
+
+    /// True if ramps have to be gentle.
+    #[must_use]
+    pub fn is_seen(self) -> bool {
+        self != Self::Unseen
+    }
+
+    /// True if the present move, once over, tells of the spool and its offset.
+    #[must_use]
+    pub fn lets_learn(self) -> bool {
+        self != Self::Noticed
+    }
+
+    /// Time in which a difference between hitch and valve is blamed on the map while lifting at `speed`; `usual` without a swing.
+    ///
+    /// A bias that follows as fast as the load swings feeds the swing. That is slow behind an open valve; behind one that is
+    /// nearly shut it is fast, and a wrong threshold has to be made up for there: a millisecond more for each mm/s.
+    #[must_use]
+    pub fn bias_time(self, usual: Millisecond, speed: MicrometrePerSecond) -> Millisecond {
+        /// Furthest beyond the usual time: with 80 ms the bias follows in a sixth of a second.
+        const MOST: i32 = 50;
+        match self {
+            Self::Unseen => usual,
+            _ => Millisecond(usual.0.saturating_add((speed.0 >> 10).clamp(0, MOST))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMIT: Eighths = Eighths(8 * 16);
+
+    #[test]
+    fn the_move_that_shows_a_swing_tells_nothing_and_the_next_ones_do() {
+        let mut swing = Swing::default();
+        swing.notice(LIMIT, LIMIT);
+        assert_eq!(swing, Swing::Unseen, "a slow spool is no swing");
+        swing.notice(Eighths(LIMIT.0 + 1), LIMIT);
+        assert!(swing.is_seen() && !swing.lets_learn());
+        swing.begin();
+        swing.notice(Eighths(0), LIMIT);
+        assert!(swing.is_seen() && swing.lets_learn());
+        swing.obstruct();
+        assert!(swing.is_seen(), "known from an earlier move");
+    }
+
+    #[test]
+    fn a_gentle_move_takes_back_a_suspicion_but_no_proof() {
+        for (mut swing, after) in [
+            (Swing::Known, Swing::Unseen),
+            (Swing::Proven, Swing::Proven),
+        ] {
+            swing.doubt(SPOOLS_DIFFER);
+            assert!(swing.is_seen(), "trails too far for a spool");
+            swing.doubt(Eighths(SPOOLS_DIFFER.0 - 1));
+            assert_eq!(swing, after);
+        }
+        let mut swing = Swing::Noticed;
+        swing.prove();
+        swing.obstruct();
+        assert!(swing.is_seen() && swing.lets_learn());
+    }
+
+    #[test]
+    fn an_obstacle_is_no_swing() {
+        let mut swing = Swing::default();
+        swing.notice(Eighths(i32::MAX), LIMIT);
+        swing.obstruct();
+        assert_eq!(swing, Swing::Unseen);
+    }
+
+    #[test]
+    fn only_a_hitch_that_swings_is_slow_to_blame_the_map() {
+        let usual = Millisecond(30);
+        let time = |swing: Swing, speed: i32| swing.bias_time(usual, MicrometrePerSecond(speed)).0;
+        for speed in [i32::MIN, 0, 100_000, i32::MAX] {
+            assert_eq!(time(Swing::Unseen, speed), 30);
+        }
+        assert_eq!(
+            [i32::MIN, 0, 10_240, 100_000, i32::MAX].map(|speed| time(Swing::Known, speed)),
+            [30, 30, 40, 80, 80]
+        );
+    }
+}
