@@ -3,20 +3,54 @@
 //! `cargo run --release -p host-tests --bin drive-drawn-hitches` does it with many more.
 
 use hitch_firmware::control::Calibration;
-use host_tests::drawn_hitches::draw::draw;
+use host_tests::drawn_hitches::draw::{Drawn, draw};
 use host_tests::drawn_hitches::figures::{FIGURES, beyond, spread, table, worst};
 use host_tests::drawn_hitches::session::{MoveFigures, drive};
 
-/// Machines whose effects are of the textbooks' simplest form; the structured ones are what no controller has been made for.
+/// How many machines of a kind, and how many moves each.
 const MACHINES: usize = 40;
 const MOVES: usize = 4;
 
+/// What is asked of a kind of machine; final errors, pressure swings and faults have the same bars everywhere.
+struct Bars {
+    /// Median of time over shortest, and 95 % below.
+    ratio: [f64; 2],
+    /// Share of the moves that overshoot by more than 0.3 degree.
+    overshooting: f64,
+    /// Largest overshoot, degree.
+    overshoot_deg: f64,
+    /// Share of the moves that end further off than 0.3 degree.
+    off: f64,
+}
+
 #[test]
 fn an_untaught_machine_moves_well_whatever_it_is() {
+    let bars = Bars {
+        ratio: [1.15, 1.7],
+        overshooting: 0.1,
+        overshoot_deg: 1.0,
+        off: 0.0,
+    };
+    drive_all("textbook machines", false, &bars);
+}
+
+/// Structured machines are what no controller has been made for; their loads swing on compensators that lag.
+#[test]
+fn a_load_that_swings_on_its_compensator_is_lifted_gently() {
+    let bars = Bars {
+        ratio: [1.4, 2.5],
+        overshooting: 0.15,
+        overshoot_deg: 4.0,
+        off: 0.03,
+    };
+    drive_all("structured machines", true, &bars);
+}
+
+fn drive_all(title: &str, structured: bool, bars: &Bars) {
     let calibration = Calibration::nominal().validate().unwrap();
-    let machines: Vec<_> = (1..)
+    let machines: Vec<Drawn> = (1..)
         .map(|seed| draw(seed, MOVES))
-        .filter(|machine| !machine.structured)
+        .filter(|machine| machine.structured == structured)
         .take(MACHINES)
         .collect();
     let moves: Vec<MoveFigures> = machines
@@ -24,14 +58,18 @@ fn an_untaught_machine_moves_well_whatever_it_is() {
         .flat_map(|machine| drive(machine, &calibration))
         .collect();
     let all: Vec<&MoveFigures> = moves.iter().collect();
-    println!("{}", table("untaught machines", &all));
+    println!("{}", table(title, &all));
     println!("{}", worst(&moves, &machines, 3));
     let [ratio, overshoot, error, swing, restarts, fault] = &FIGURES;
     let [median, high, _] = spread(&all, ratio.of);
-    assert!(median <= 1.15, "median of time over shortest {median}");
-    assert!(high <= 1.7, "95 % below {high}");
-    assert!(beyond(&all, overshoot) <= 0.1 && spread(&all, overshoot.of)[2] <= 1.0);
-    assert_eq!(beyond(&all, error), 0.0);
+    assert!(
+        median <= bars.ratio[0],
+        "median of time over shortest {median}"
+    );
+    assert!(high <= bars.ratio[1], "95 % below {high}");
+    assert!(beyond(&all, overshoot) <= bars.overshooting);
+    assert!(spread(&all, overshoot.of)[2] <= bars.overshoot_deg);
+    assert!(beyond(&all, error) <= bars.off);
     assert_eq!(beyond(&all, swing), 0.0);
     assert!(beyond(&all, restarts) <= 0.04);
     assert_eq!(beyond(&all, fault), 0.0);
