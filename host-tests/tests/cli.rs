@@ -72,7 +72,7 @@ fn explain_tells_what_scripts_read() {
     assert_keys(&out, &["steps", "unexplained", "next_experiment"]);
     assert_keys(
         &out["channels"]["rocker_angle_deg"],
-        &["before", "after", "noise"],
+        &["before", "after", "noise", "late_s"],
     );
     assert_keys(
         &out["unexplained"],

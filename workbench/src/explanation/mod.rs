@@ -11,6 +11,7 @@ pub use found::Found;
 pub use next::{Detail, Next};
 pub use of_explanation::parameters;
 pub use rebuilt::rebuilt;
+pub use show::late_ms;
 
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -58,7 +59,8 @@ pub struct Head {
     pub error_after: f64,
     /// Error of a perfect model: the instruments' noise, in sigma.
     pub noise_floor: f64,
-    /// By channel key, in the channel's unit: the error before and after, and the noise of the instrument.
+    /// By channel key, in the channel's unit: the error before and after, the noise of the instrument, and
+    /// how late its clock is against that of the currents, s.
     pub channels: Map<String, Value>,
     /// The answer in a word.
     pub verdict: &'static str,

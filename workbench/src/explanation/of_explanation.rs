@@ -98,7 +98,8 @@ pub fn parameters(effect: &dyn Effect, values: &[f64], intervals: &[(f64, f64)])
         .collect()
 }
 
-/// Errors by channel before and after, in the channel's unit, beside the instrument's noise.
+/// Errors by channel before and after, in the channel's unit, beside the instrument's noise, and how late its clock is
+/// against that of the currents, s.
 ///
 /// They are the errors in sigma times sigma, so that they add up to the error of the whole; what the noise of the
 /// logged currents does to the simulation is no error of the model and not in them.
@@ -109,7 +110,12 @@ pub fn channels(experiment: &Experiment, before: &Fit, after: &Fit) -> Map<Strin
         let error = |fit: &Fit| fit.channel_error(channel.index()) * noise;
         (
             channel.key().to_owned(),
-            json!({ "before": error(before), "after": error(after), "noise": noise }),
+            json!({
+                "before": error(before),
+                "after": error(after),
+                "noise": noise,
+                "late_s": after.estimate.clocks.offsets_s[channel.index()],
+            }),
         )
     };
     Channel::ALL

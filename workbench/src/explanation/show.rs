@@ -156,7 +156,7 @@ impl fmt::Display for Head {
             "  error {before:.2} -> {after:.2} sigma (noise of the instruments: {:.2})\n",
             self.noise_floor
         )?;
-        let mut table = Table::new(["channel", "before", "after", "noise"]);
+        let mut table = Table::new(["channel", "before", "after", "noise", "late, ms"]);
         for (channel, values) in &self.channels {
             let number = |key: &str| {
                 values[key]
@@ -168,10 +168,19 @@ impl fmt::Display for Head {
                 number("before"),
                 number("after"),
                 number("noise"),
+                late_ms(values),
             ]);
         }
         write!(f, "{table}")
     }
+}
+
+/// How late a channel's clock is against that of the currents, ms, as text.
+pub fn late_ms(channel: &serde_json::Value) -> String {
+    let late_s = channel["late_s"].as_f64();
+    // Less than half a millisecond is none, on either side.
+    let late_ms = late_s.map(|late_s| (1e3 * late_s).round() + 0.0);
+    late_ms.map_or("-".to_owned(), |late_ms| format!("{late_ms:.0}"))
 }
 
 impl fmt::Display for Step {

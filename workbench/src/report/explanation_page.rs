@@ -8,7 +8,7 @@ use super::run_views::run_views;
 use super::runs::runs;
 use super::staircase::{self, staircase};
 use crate::comparison::{Comparison, Evaluated, Grouping};
-use crate::explanation::{Explanation, Found, Step};
+use crate::explanation::{Explanation, Found, Step, late_ms};
 
 /// Groupings that are shown before and after.
 const GROUPINGS: [Grouping; 4] = [
@@ -140,6 +140,7 @@ fn channels(shown: &Explanation) -> Markup {
             number("before"),
             number("after"),
             number("noise"),
+            late_ms(values),
         ]
     };
     let rows: Vec<Vec<String>> = shown.head.channels.iter().map(row).collect();
@@ -149,6 +150,7 @@ fn channels(shown: &Explanation) -> Markup {
             "error before",
             "error after",
             "noise of the instrument",
+            "clock late, ms",
         ],
         &rows,
     )
