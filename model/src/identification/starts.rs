@@ -1,7 +1,9 @@
 //! Where the fit of an effect starts: its size and shape looked for along secants.
 
+use super::clocks::{Clocks, OFFSET_PRIOR_S};
 use super::estimate::Estimate;
 use super::experiment::Experiment;
+use super::fit::sketch;
 use super::jacobian::huber_residuals;
 use super::scan::{Grid, JUMPS, RINGING, scan};
 use super::shortlist::{FAR, STARTS, Shortlist};
@@ -25,6 +27,9 @@ const SECTIONS: usize = 6;
 
 /// How far a secant is trusted, in its own size.
 const REACH: f64 = 8.0;
+
+/// Clocks that are off by more than this, s, may stand in for what is missing.
+const OFF_S: f64 = 2.0 * OFFSET_PRIOR_S;
 
 /// Where the fit of an effect may start.
 pub(super) struct Starts {
@@ -56,14 +61,53 @@ impl Start {
 impl Shortlist<'_> {
     /// Starts of an effect that a few secants lead to.
     pub(super) fn starts(&self, effect: &'static dyn Effect) -> Starts {
-        self.best_starts(effect, self.rank(sizes(effect)), false)
+        let mut ranked = self.rank(sizes(effect));
+        if let Some(start) = self.on_time(effect) {
+            ranked.push(start);
+            self.sort(&mut ranked);
+        }
+        self.best_starts(effect, ranked, false)
+    }
+
+    /// A lag in place of the clocks that stand in for it: what makes a spool late makes all its channels late, and once
+    /// their clocks have run off with that no slope leads back.
+    fn on_time(&self, effect: &'static dyn Effect) -> Option<Start> {
+        let size = &effect.parameters()[0];
+        let clocks = &self.base.estimate.clocks;
+        let mut late_s: Vec<f64> = effect
+            .channels()
+            .iter()
+            .map(|channel| clocks.offsets_s[channel.index()])
+            .collect();
+        late_s.sort_by(f64::total_cmp);
+        let late_s = *late_s.get(late_s.len() / 2)?;
+        if size.unit != "s" || late_s <= OFF_S {
+            return None;
+        }
+        let mut added = AddedEffect::typical(effect);
+        added.values[0] = late_s;
+        let mut estimate = with(&self.base.estimate, added);
+        estimate.clocks = Clocks::default();
+        let (experiment, weights) = (self.experiment, &self.base.weights);
+        let (cost, estimate) = sketch(experiment, self.model, weights, estimate, true);
+        Some(Start {
+            cost,
+            estimate,
+            promised_from: None,
+        })
     }
 
     /// Starts of an effect in the valleys that fine steps find.
     pub(super) fn looked_through(&self, effect: &'static dyn Effect, grid: &Grid) -> Starts {
         let mut ranked = self.rank(sizes(effect));
         if let Some(first) = ranked.first() {
-            let found = scan(self.experiment, self.model, self.base, &first.last(), grid);
+            let found = scan(
+                self.experiment,
+                self.model,
+                self.base,
+                &first.last(),
+                (grid, self.effort),
+            );
             ranked.extend(self.rank(found));
             self.sort(&mut ranked);
         }
