@@ -6,6 +6,7 @@
 
 use hitch_model::Model;
 use hitch_model::effects::{AddedEffect, CATALOGUE, Effect};
+use hitch_model::identification::candidate::Effort;
 use hitch_model::identification::candidate::try_effects;
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::fit_base;
@@ -74,7 +75,14 @@ fn distances(effect: &'static dyn Effect, seed: u64) -> Distances {
     let campaign = campaign(&rig, &mut random);
     let experiment = Experiment::new(&campaign, &nominal);
     let base = fit_base(&experiment, &nominal);
-    let candidates = try_effects(&experiment, &nominal, &base, &[effect], &|_| {});
+    let candidates = try_effects(
+        &experiment,
+        &nominal,
+        &base,
+        &[effect],
+        Effort::Thorough,
+        &|_| {},
+    );
     let found = candidates.first().expect("one effect was tried");
     let deviation = |(low, high): (f64, f64)| (high - low) / (2.0 * WIDTH);
     let intervals = found.intervals.iter().zip(found.values());

@@ -11,6 +11,7 @@ use super::explain::{BELIEVED, VISIBLE};
 use super::fit::{Fit, evaluate_weighted, refine};
 use super::frame::Frame;
 use super::jacobian::{Jacobian, SlowColumns, difference, huber, huber_residuals, square_sum};
+pub use super::scan::Effort;
 use super::shortlist::{Shortlist, Sketch, limit};
 use crate::effects::{AddedEffect, Effect, Parameter};
 use crate::model::Model;
@@ -79,6 +80,7 @@ pub fn try_effects(
     model: &Model,
     base: &Fit,
     effects: &[&'static dyn Effect],
+    effort: Effort,
     progress: &(dyn Fn(&str) + Sync),
 ) -> Vec<Candidate> {
     let slow = slow_columns(experiment, model, base);
@@ -91,6 +93,7 @@ pub fn try_effects(
         base,
         frame: Frame::new(&jacobian, &base.estimate, 0..0),
         worthwhile: WORTH_A_SKETCH * believed,
+        effort,
     };
     let sketches = shortlist.sketches(effects);
     let best = sketches.first().map_or(base.cost, |first| first.cost);

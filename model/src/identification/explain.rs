@@ -15,6 +15,7 @@ use super::experiment::Experiment;
 use super::fit::{Fit, evaluate, fit, refine};
 use super::holdout::held_out_error;
 use super::regime::Regime;
+use super::scan::Effort;
 use super::twins::twins;
 use super::unseen::{Unseen, unseen};
 use crate::effects::Effect;
@@ -169,7 +170,14 @@ pub fn diagnose(
     progress: Progress,
 ) -> Diagnosis {
     let absent = absent(model, &base.estimate);
-    let candidates = try_effects(experiment, model, &base, &absent, progress);
+    let candidates = try_effects(
+        experiment,
+        model,
+        &base,
+        &absent,
+        Effort::Thorough,
+        progress,
+    );
     let mut odds: Vec<f64> = mutual_odds(&base, &candidates)
         .map_or_else(Vec::new, |odds| candidates.iter().map(odds).collect());
     odds.push(0.0);

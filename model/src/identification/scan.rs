@@ -17,8 +17,12 @@ use crate::model::Model;
 pub(super) struct Grid {
     /// Smallest and largest size, in typical sizes.
     sizes: [f64; 2],
-    /// Ratio from one size to the next.
+    /// Share by which a size is larger than the one before.
     finer: f64,
+    /// What makes needles, looked through in a thorough search.
+    needles: Option<Needles>,
+    /// How far to either side of what one run found all runs are looked at, as a share of the size.
+    all_runs: f64,
     /// Values of a shape from one end of its range to the other.
     shapes: usize,
     /// How far two sizes of a shape are apart at least, as a share of the size.
@@ -31,10 +35,33 @@ pub(super) struct Grid {
     quasi_static: bool,
 }
 
+/// Sizes with the shape at its upper end: a spool that sticks on a ramp and jumps by the whole band comes to the same
+/// places again and again, so that the smaller a band is, the closer it has to be met.
+struct Needles {
+    /// Smallest and largest size, in typical sizes.
+    sizes: [f64; 2],
+    /// Share by which a size is larger than the one before, for each typical size.
+    finer: f64,
+}
+
+/// How thoroughly effects are looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// Needles too.
+    Thorough,
+    /// What others may be mistaken for: a needle is not.
+    Quick,
+}
+
 /// For jumps and bounces.
 pub(super) const JUMPS: Grid = Grid {
     sizes: [0.12, 4.0],
-    finer: 1.008,
+    finer: 0.008,
+    needles: Some(Needles {
+        sizes: [0.25, 1.5],
+        finer: 0.003,
+    }),
+    all_runs: 0.005,
     shapes: 3,
     apart: 0.03,
     best: 2,
@@ -45,7 +72,9 @@ pub(super) const JUMPS: Grid = Grid {
 /// For ringing: a valley reaches a seventh of the size to either side, and descending from there needs no closer look.
 pub(super) const RINGING: Grid = Grid {
     sizes: [0.1, 8.0],
-    finer: 1.06,
+    finer: 0.06,
+    needles: None,
+    all_runs: 0.0,
     shapes: 5,
     apart: 0.1,
     best: 4,
@@ -59,13 +88,13 @@ const PER_SHAPE: usize = 2;
 /// Values of a closer look to either side.
 const TO_EITHER_SIDE: i32 = 5;
 
-/// The sizes and shapes of an effect that fit the run best which it changes most; `hint` is any size of it.
+/// The sizes and shapes of an effect around those that fit the run best which it changes most; `hint` is any size of it.
 pub(super) fn scan(
     experiment: &Experiment,
     model: &Model,
     base: &Fit,
     hint: &AddedEffect,
-    grid: &Grid,
+    (grid, effort): (&Grid, Effort),
 ) -> Vec<AddedEffect> {
     let Some(run) = telling_run(experiment, model, base, hint) else {
         return Vec::new();
@@ -93,7 +122,7 @@ pub(super) fn scan(
         tried
     };
     let mut best: Vec<(f64, AddedEffect)> = Vec::new();
-    for (cost, added) in ranked(coarse(hint, grid)) {
+    for (cost, added) in ranked(coarse(hint, grid, effort)) {
         let alike = |(_, other): &&(f64, AddedEffect)| added.values[1..] == other.values[1..];
         let apart = |(_, other): &(f64, AddedEffect)| {
             let (a, b) = (added.values[0], other.values[0]);
@@ -112,7 +141,9 @@ pub(super) fn scan(
         best.truncate(grid.best);
     }
     best.truncate(grid.best);
-    best.into_iter().map(|(_, added)| added).collect()
+    best.into_iter()
+        .flat_map(|(_, added)| around(&added, (grid.all_runs, 0.0)))
+        .collect()
 }
 
 /// The run whose residuals the effect changes most, for its length.
@@ -133,24 +164,37 @@ fn telling_run(
     (0..experiment.runs.len()).max_by(|a, b| change(a).total_cmp(&change(b)))
 }
 
-/// Every size with every shape.
-fn coarse(hint: &AddedEffect, grid: &Grid) -> Vec<AddedEffect> {
-    let size = &hint.effect.parameters()[0];
-    let [smallest, largest] = grid.sizes;
-    let steps = ((largest / smallest).ln() / grid.finer.ln()) as i32;
-    let mut sizes: Vec<f64> = (0..=steps)
-        .map(|step| size.null + smallest * grid.finer.powi(step) * (size.typical - size.null))
-        .filter(|value| (size.low..=size.high).contains(value))
-        .collect();
-    combinations(hint, |index, range| {
-        if index == 0 {
-            return std::mem::take(&mut sizes);
-        }
-        let share = |k: usize| k as f64 / (grid.shapes - 1) as f64;
-        (0..grid.shapes)
+/// Every size with every shape, and what makes needles.
+fn coarse(hint: &AddedEffect, grid: &Grid, effort: Effort) -> Vec<AddedEffect> {
+    let share = |k: usize| k as f64 / (grid.shapes - 1) as f64;
+    let even = combinations(hint, |index, range| match index {
+        0 => sizes(range, grid.sizes, |_| grid.finer),
+        _ => (0..grid.shapes)
             .map(|k| range.low + share(k) * (range.high - range.low))
-            .collect()
-    })
+            .collect(),
+    });
+    let needles = grid.needles.as_ref();
+    let needles = needles.filter(|_| effort == Effort::Thorough);
+    let needles = needles.map_or_else(Vec::new, |needles| {
+        combinations(hint, |index, range| match index {
+            0 => sizes(range, needles.sizes, |size| needles.finer * size),
+            _ => vec![range.high],
+        })
+    });
+    [even, needles].concat()
+}
+
+/// Sizes from the smallest to the largest, in typical ones, each by a share larger than the one before.
+fn sizes(
+    size: &Parameter,
+    [smallest, largest]: [f64; 2],
+    larger_by: impl Fn(f64) -> f64,
+) -> Vec<f64> {
+    std::iter::successors(Some(smallest), |&at| Some(at * (1.0 + larger_by(at))))
+        .take_while(|&at| at <= largest)
+        .map(|at| size.null + at * (size.typical - size.null))
+        .filter(|value| (size.low..=size.high).contains(value))
+        .collect()
 }
 
 /// Sizes and shapes around others.

@@ -7,6 +7,7 @@ use super::experiment::Experiment;
 use super::fit::{Fit, sketch};
 use super::frame::Frame;
 use super::jacobian::Jacobian;
+use super::scan::Effort;
 use super::starts::{Starts, valleys};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
@@ -67,6 +68,8 @@ pub(super) struct Shortlist<'a> {
     pub frame: Frame<&'a Jacobian>,
     /// Fall of the cost under which nothing is worth a sketch.
     pub worthwhile: f64,
+    /// How thoroughly effects are looked for.
+    pub effort: Effort,
 }
 
 impl Shortlist<'_> {

@@ -11,6 +11,7 @@ use super::experiment::Experiment;
 use super::explain::absent;
 use super::fit::{Fit, refine};
 use super::jacobian::square_sum;
+use super::scan::Effort;
 use super::starts::{scaled, with_extreme_shapes};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
@@ -61,7 +62,7 @@ pub(super) fn twins(
     let own_size = size_key(&whole.estimate.effects[last]);
     let own_parameters = whole.estimate.effects[last].values.len() as f64;
     let base = refine(experiment, model, base_estimate);
-    try_effects(experiment, model, &base, &alike, &|_| {})
+    try_effects(experiment, model, &base, &alike, Effort::Quick, &|_| {})
         .into_iter()
         .filter_map(|swapped| {
             let better = (whole.cost - swapped.fit.cost) / (variance * inflation);

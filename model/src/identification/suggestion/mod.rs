@@ -18,6 +18,7 @@ use super::experiment::Experiment;
 use super::explain::{BELIEVED, Explanation, Progress, Verdict};
 use super::fit::{Fit, evaluate, refine};
 use super::holdout::held_out_error;
+use super::scan::Effort;
 use crate::effects::{AddedEffect, Effect, TermEffect};
 use crate::expression::TermDefinition;
 use crate::model::Model;
@@ -159,7 +160,14 @@ fn trials(
     };
     let terms = screen::best(experiment, model, start, definitions, count);
     let effects: Vec<&'static dyn Effect> = terms.iter().map(|term| *term as &dyn Effect).collect();
-    let candidates = try_effects(experiment, model, start, &effects, progress);
+    let candidates = try_effects(
+        experiment,
+        model,
+        start,
+        &effects,
+        Effort::Thorough,
+        progress,
+    );
     let believed = candidates
         .into_iter()
         .filter(|candidate| candidate.likelihood_ratio >= BELIEVED);
