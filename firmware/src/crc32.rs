@@ -1,5 +1,5 @@
-//! The one CRC of this firmware, half a byte at a time: a table of sixteen entries instead of 256, which took a kilobyte of
-//! the ECU's flash. Twice the look-ups are a few thousand instructions for a whole calibration.
+//! The one CRC of this firmware, half a byte at a time: a table of sixteen entries instead of 256, which took a
+//! kilobyte of the ECU's flash. Twice the look-ups are a few thousand instructions for a whole calibration.
 
 /// The polynomial of ISO-HDLC, lowest power first.
 const POLYNOMIAL: u32 = 0xEDB8_8320;

@@ -1,8 +1,8 @@
 //! Proves at link time that neither the controller nor the application around it can panic.
 //!
 //! The panic handler calls a function that nobody defines. As long as the compiler, with overflow checks on, can show
-//! that no step of any controller on any inputs gets there, and no millisecond of the application with any codes, contacts,
-//! frames and flash, the handler is thrown away and this image links; otherwise the linker names
+//! that no step of any controller on any inputs gets there, and no millisecond of the application with any codes,
+//! contacts, frames and flash, the handler is thrown away and this image links; otherwise the linker names
 //! `the_controller_can_panic`. The image is never run.
 
 #![no_std]

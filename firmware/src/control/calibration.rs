@@ -96,7 +96,8 @@ pub enum CalibrationError {
         /// `lift` or `lower`.
         valve: &'static str,
     },
-    /// A valve table doesn't start at zero flow, doesn't rise strictly in flow and current, or leaves the range of either.
+    /// A valve table doesn't start at zero flow, doesn't rise strictly in flow and current, or leaves the range of
+    /// either.
     ValvePoint {
         /// `lift` or `lower`.
         valve: &'static str,

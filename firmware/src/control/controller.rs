@@ -51,8 +51,8 @@ pub struct Controller {
     /// Set point and its travel: looked up when it changes.
     target: (MilliDegree, Micrometre),
     load: LoadEstimate,
-    /// Steps take turns: one learns the lag and looks up what the valve can give, the next learns the load. All of it in one
-    /// would take too long.
+    /// Steps take turns: one learns the lag and looks up what the valve can give, the next learns the load. All of it
+    /// in one would take too long.
     turn: bool,
     phase: Phase,
     sink: SinkWatch,
@@ -393,8 +393,8 @@ impl Controller {
         Ok(())
     }
 
-    /// A move begins: counts it if nobody asked for it. Only moves to a set point teach; what makes a hitch leave its place
-    /// (a leak, a sensor that drifts) has a part in its corrections.
+    /// A move begins: counts it if nobody asked for it. Only moves to a set point teach; what makes a hitch leave its
+    /// place (a leak, a sensor that drifts) has a part in its corrections.
     fn begin(&mut self, next: Phase) -> Result<(), Fault> {
         let before = self.learning.obstruct();
         let beyond = self.rest.position() - self.target.1;

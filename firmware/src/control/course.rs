@@ -1,7 +1,7 @@
 //! How far a whole move went, from rest to rest, and how far the valve's curve says that it should have gone.
 //!
-//! A curve that lies `d` further right gives less flow all the way; a spool that is slower delays the flow, but loses none
-//! of it. So at rest the hitch is behind by what the curve is off, whatever the lag:
+//! A curve that lies `d` further right gives less flow all the way; a spool that is slower delays the flow, but loses
+//! none of it. So at rest the hitch is behind by what the curve is off, whatever the lag:
 //!
 //! ```text
 //! expected way - measured way = d * sensitivity        sensitivity = integral of dv/dI over the move

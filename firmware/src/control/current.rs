@@ -27,8 +27,8 @@ const MOST_DROP: MilliVolt = MilliVolt(2_000);
 const MOST_CURRENT: MilliAmp = MilliAmp(8_191);
 /// Largest resistance, and largest gain from current to voltage.
 const MOST_RESISTANCE: MilliOhm = MilliOhm(65_535);
-/// Bits behind the point of the resistance that is learnt, in milliohms: a milliohm a second is one of these a millisecond, but
-/// for 2 %.
+/// Bits behind the point of the resistance that is learnt, in milliohms: a milliohm a second is one of these a
+/// millisecond, but for 2 %.
 const RESISTANCE_BITS: u32 = 10;
 /// Lowest: below it nothing is regulated anyway.
 const LEAST_SUPPLY: MilliVolt = MilliVolt(1_000);

@@ -4,8 +4,8 @@
 //!   Q = Cd A sqrt(2 dp / rho), so Q_ref = Q sqrt(dp_ref / dp)
 //! ```
 //!
-//! `1 / sqrt(dp)` comes from a table over the leading bits of `dp`: with an even number of them shifted out, the exponent
-//! halves into a shift of the result. What depends on the reference alone is worked out once.
+//! `1 / sqrt(dp)` comes from a table over the leading bits of `dp`: with an even number of them shifted out, the
+//! exponent halves into a shift of the result. What depends on the reference alone is worked out once.
 
 use super::fixed::square_root;
 use super::units::{MicroLitrePerSecond, MilliBar, MillimetrePerSecondSquared};
@@ -60,8 +60,8 @@ pub struct DropScale {
 }
 
 impl DropScale {
-    /// The scale at pressure drop `drop` of a table that was measured at `reference`, within 0.01 %. Drops are limited to
-    /// 64 mbar .. 524 bar.
+    /// The scale at pressure drop `drop` of a table that was measured at `reference`, within 0.01 %. Drops are limited
+    /// to 64 mbar .. 524 bar.
     #[must_use]
     pub fn new(reference: &DropReference, drop: MilliBar) -> Self {
         let drop = drop.0.clamp(DROPS.0, DROPS.1).cast_unsigned();

@@ -55,7 +55,8 @@ pub fn mul_div(a: i32, b: i32, c: Divisor) -> i32 {
     )
 }
 
-/// [`mul_div`] for what is reckoned once a move or once a calibration: a call takes longer and less flash than its body.
+/// [`mul_div`] for what is reckoned once a move or once a calibration: a call takes longer and less flash than its
+/// body.
 #[must_use]
 #[inline(never)]
 pub fn mul_div_seldom(a: i32, b: i32, c: Divisor) -> i32 {
@@ -104,7 +105,8 @@ fn with_sign(magnitude: u64, negative: bool) -> i32 {
     opposite_if(value, -i32::from(negative))
 }
 
-/// The opposite of `value` if `sign` is all ones, `value` if it is zero: a number's complement plus one is its opposite.
+/// The opposite of `value` if `sign` is all ones, `value` if it is zero: a number's complement plus one is its
+/// opposite.
 const fn opposite_if(value: i32, sign: i32) -> i32 {
     (value ^ sign).wrapping_sub(sign)
 }

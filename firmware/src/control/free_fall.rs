@@ -1,15 +1,15 @@
 //! How a load comes down through an opening: gravity pulls, and what holds it goes with the square of its speed.
 //!
-//! The cylinder carries the weight and the load's acceleration, `p = p_rest (1 + R a / g)` with the rise `R` of the load
-//! over travel of the piston, and the flow through an opening goes with the root of `p`. So with the speed `v_s` that the
-//! opening gives in the long run
+//! The cylinder carries the weight and the load's acceleration, `p = p_rest (1 + R a / g)` with the rise `R` of the
+//! load over travel of the piston, and the flow through an opening goes with the root of `p`. So with the speed `v_s`
+//! that the opening gives in the long run
 //!
 //! ```text
 //! v' = (g / R) (1 - (v / v_s)^2)
 //! ```
 //!
-//! A valve that opens fast can't make the load fall faster than freely, and one that closes lets more pass than at rest.
-//! Near the settled speed that is a lag of `v_s R / 2g`, 40 ms at 190 mm/s, the same for every weight.
+//! A valve that opens fast can't make the load fall faster than freely, and one that closes lets more pass than at
+//! rest. Near the settled speed that is a lag of `v_s R / 2g`, 40 ms at 190 mm/s, the same for every weight.
 
 use super::fixed::{Divisor, mul_div};
 use super::units::{Micrometre, MicrometrePerSecond};

@@ -7,8 +7,8 @@
 //!
 //! A valve's breakpoints are where the valve has its kinks, so they are kept: on an even grid they would be missed by
 //! milliamperes. The first piece is raised by half a milliampere, so that the smallest flow asks for more than the
-//! threshold. Slopes are in 2^-32 mA s/ul and stop short of a milliampere a microlitre a second, three hundred times that of
-//! the rig's valves; a steeper piece is followed at that slope and ends in a step.
+//! threshold. Slopes are in 2^-32 mA s/ul and stop short of a milliampere a microlitre a second, three hundred times
+//! that of the rig's valves; a steeper piece is followed at that slope and ends in a step.
 
 use super::units::{MicroLitrePerSecond, MilliAmp};
 use super::valve_map::{VALVE_POINTS, ValvePoint, ValveTable};
@@ -30,8 +30,8 @@ pub struct InverseCurve {
     saturation: MicroLitrePerSecond,
 }
 
-/// A straight piece of the curve, up to the flow `end`. Nobody asks where the first one begins, so its flow may be another than
-/// the curve's. The piece beyond saturation has no end.
+/// A straight piece of the curve, up to the flow `end`. Nobody asks where the first one begins, so its flow may be
+/// another than the curve's. The piece beyond saturation has no end.
 #[derive(Clone, Copy, Debug, Default)]
 struct Piece {
     end: MicroLitrePerSecond,
@@ -102,8 +102,8 @@ impl InverseCurve {
         self.saturation
     }
 
-    /// Current that lets `flow` through: none for none, just more than the threshold for the smallest, the saturation current
-    /// for all that is more than the valve can give.
+    /// Current that lets `flow` through: none for none, just more than the threshold for the smallest, the saturation
+    /// current for all that is more than the valve can give.
     #[must_use]
     #[inline(never)]
     pub fn current(&self, flow: MicroLitrePerSecond) -> MilliAmp {

@@ -1,16 +1,16 @@
 //! How slow this machine's spools are, told from how far the hitch trails its valve.
 //!
-//! A spool that is slower by `dT` than the estimate takes it for leaves the hitch behind by `dT v`, where `v` is the speed
-//! that its opening gives, whatever that does meanwhile. So at any moment of a move
+//! A spool that is slower by `dT` than the estimate takes it for leaves the hitch behind by `dT v`, where `v` is the
+//! speed that its opening gives, whatever that does meanwhile. So at any moment of a move
 //!
 //! ```text
 //! dT = sum(v behind) / (sum(v^2) + W)      W: what earlier moves have told, and at first how alike valves are
 //! ```
 //!
 //! which is early enough for braking that very move, and is kept for the next. It has the sensor's lag in it, as
-//! braking needs it. What the flow is wrong by leaves the hitch behind as well, but with the whole way and not with the speed:
-//! the sums end early, and of a move that is too short for that the rest tells how much it was.
-//! Even without any further lag a hitch trails its valve by a usual time, for its load has to be accelerated.
+//! braking needs it. What the flow is wrong by leaves the hitch behind as well, but with the whole way and not with the
+//! speed: the sums end early, and of a move that is too short for that the rest tells how much it was. Even without any
+//! further lag a hitch trails its valve by a usual time, for its load has to be accelerated.
 
 use super::course::Told;
 use super::fixed::Divisor;
@@ -119,7 +119,8 @@ impl Lag {
     }
 }
 
-/// Sums over a move, in which every other step is looked at. Ways are in 1.024 um, speeds in 1.024 mm/s, so that a shift makes them; times stay milliseconds.
+/// Sums over a move, in which every other step is looked at. Ways are in 1.024 um, speeds in 1.024 mm/s, so that a
+/// shift makes them; times stay milliseconds.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Trail {
     /// Where the hitch should be by the valves alone, in nanometres.
@@ -139,7 +140,8 @@ impl Trail {
         }
     }
 
-    /// Every other step; `model`: what the valves should give now, `usual`: the time by which a hitch trails them anyway.
+    /// Every other step; `model`: what the valves should give now, `usual`: the time by which a hitch trails them
+    /// anyway.
     pub fn step(&mut self, measured_nm: i32, model: MicrometrePerSecond, usual: Eighths) {
         if self.is_complete() {
             return;
@@ -194,8 +196,9 @@ mod tests {
 
     const LIMIT: Eighths = Eighths(8 * 35);
 
-    /// A lift that rises to `speed` in um/s for `hold_ms` and falls again, with a spool that is `slower_ms` slower than the one
-    /// of the estimate: how much slower the first move tells that it is, at rest and 20 ms into its fall, and the second.
+    /// A lift that rises to `speed` in um/s for `hold_ms` and falls again, with a spool that is `slower_ms` slower than
+    /// the one of the estimate: how much slower the first move tells that it is, at rest and 20 ms into its fall, and
+    /// the second.
     fn told_ms(speed: f64, hold_ms: i32, flow_error: f64, slower_ms: f64) -> [f64; 3] {
         let mut lag = Lag::default();
         let mut told = [0.0; 3];

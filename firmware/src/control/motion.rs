@@ -8,10 +8,10 @@
 //! b' = e / (4 T^2)                both poles at 1 / (2 T)
 //! ```
 //!
-//! `b` is what the map gets wrong (a shifted threshold, an unknown load); it is only learnt while the
-//! valves are meant to move something. A load that sinks follows its valve by [`super::free_fall`]. How slow the spools of
-//! this machine are is learnt from how far the hitch trails them ([`super::lag`]), and kept from move to move. Position is kept in nanometres: a speed in um/s is then just
-//! the way of one millisecond.
+//! `b` is what the map gets wrong (a shifted threshold, an unknown load); it is only learnt while the valves are meant
+//! to move something. A load that sinks follows its valve by [`super::free_fall`]. How slow the spools of this machine
+//! are is learnt from how far the hitch trails them ([`super::lag`]), and kept from move to move. Position is kept in
+//! nanometres: a speed in um/s is then just the way of one millisecond.
 
 use super::calibration::Calibration;
 use super::closing::ClosingCurve;

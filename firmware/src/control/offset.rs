@@ -1,16 +1,16 @@
 //! How far this machine's valves are off their curves, told from how far its moves go ([`super::course`]).
 //!
-//! Valves of one kind differ by 0.1 A in where they open, and hysteresis adds half of its width. What else shortens a way
-//! (oil, load, a compensator that droops) goes with the way itself, and the sensor's noise is there in any case, so it is a
-//! short move that tells. How much of the difference is believed is the share that the present doubt can make of it (a
-//! Kalman filter of one state):
+//! Valves of one kind differ by 0.1 A in where they open, and hysteresis adds half of its width. What else shortens a
+//! way (oil, load, a compensator that droops) goes with the way itself, and the sensor's noise is there in any case, so
+//! it is a short move that tells. How much of the difference is believed is the share that the present doubt can make
+//! of it (a Kalman filter of one state):
 //!
 //! ```text
 //! a = doubt * sensitivity     share = a^2 / (a^2 + noise^2 + (error of the flow * way)^2)     doubt^2 *= 1 - share
 //! ```
 //!
-//! An offset changes only at rest, is bounded, and is forgotten with the supply. A difference that is larger than all of
-//! this can make is no offset: something stood in the way.
+//! An offset changes only at rest, is bounded, and is forgotten with the supply. A difference that is larger than all
+//! of this can make is no offset: something stood in the way.
 
 use super::course::Told;
 use super::fixed::{Divisor, mul_div_seldom, square_root};

@@ -1,8 +1,8 @@
 //! Sink watch: a hitch that leaves its place by itself is brought back, but not for ever.
 //!
-//! A move that no lever asked for is a correction: the lowering spool or the check valve leaks. A few
-//! of them are carried out, over a few degrees, the next is a fault. A correction is forgotten after a while, and all of
-//! them when the lever moves.
+//! A move that no lever asked for is a correction: the lowering spool or the check valve leaks. A few of them are
+//! carried out, over a few degrees, the next is a fault. A correction is forgotten after a while, and all of them when
+//! the lever moves.
 
 use super::design_parameters::HoldParameters;
 use super::mode::Fault;

@@ -1,23 +1,24 @@
 //! Whether the load of this machine swings on its compensator, which asks for gentle ramps.
 //!
-//! A compensator that follows the load's pressure with a lag `T` takes `T p'` off the drop `d` that it keeps over the lift
-//! valve. With the oil stiff and the load `M` accelerated by the pressure, `M v'' = A p'`, the speed no longer is `v_0` of the
-//! opening:
+//! A compensator that follows the load's pressure with a lag `T` takes `T p'` off the drop `d` that it keeps over the
+//! lift valve. With the oil stiff and the load `M` accelerated by the pressure, `M v'' = A p'`, the speed no longer is
+//! `v_0` of the opening:
 //!
 //! ```text
 //! v = v_0 sqrt(1 - T p' / d)     so     v'' = K (1 - (v / v_0)^2),     K = A d / (M T)
 //! ```
 //!
-//! That swings about `v_0`, hardly damped, at `sqrt(2 K / v_0)`: 2.7 Hz behind the open valve for 230 kg and 10 ms, higher the
-//! less the valve is open. An edge of 40 ms makes the hitch half as fast again as its valve, and a valve that
-//! closes meanwhile leaves it flying, since gravity is all that stops a load. What is opened and closed slowly against that
-//! swing is followed without one.
+//! That swings about `v_0`, hardly damped, at `sqrt(2 K / v_0)`: 2.7 Hz behind the open valve for 230 kg and 10 ms,
+//! higher the less the valve is open. An edge of 40 ms makes the hitch half as fast again as its valve, and a valve
+//! that closes meanwhile leaves it flying, since gravity is all that stops a load. What is opened and closed slowly
+//! against that swing is followed without one.
 //!
-//! Such a machine is known by its start. Before anything flows its compensator has to come up from the pump's idle pressure, then
-//! the speed grows with the square of the time: the hitch trails its lift valve ([`super::lag`]) by 16 to 35 ms more than its
-//! lowering valve, which has no compensator. That is soon enough for braking the same move. A valve that is off its curve may
-//! look the same once; the gentle moves that follow tell its lag, and a small one takes the suspicion back. A machine
-//! whose swing hides gives itself away by where it comes to rest. A move that swung tells nothing of lags and offsets.
+//! Such a machine is known by its start. Before anything flows its compensator has to come up from the pump's idle
+//! pressure, then the speed grows with the square of the time: the hitch trails its lift valve ([`super::lag`]) by 16
+//! to 35 ms more than its lowering valve, which has no compensator. That is soon enough for braking the same move. A
+//! valve that is off its curve may look the same once; the gentle moves that follow tell its lag, and a small one takes
+//! the suspicion back. A machine whose swing hides gives itself away by where it comes to rest. A move that swung tells
+//! nothing of lags and offsets.
 //!
 //! ```text
 //! Unseen --- trails by far ---> Noticed --- next move ---> Known
@@ -91,10 +92,12 @@ impl Swing {
         self != Self::Noticed
     }
 
-    /// Time in which a difference between hitch and valve is blamed on the map while lifting at `speed`; `usual` without a swing.
+    /// Time in which a difference between hitch and valve is blamed on the map while lifting at `speed`; `usual`
+    /// without a swing.
     ///
-    /// A bias that follows as fast as the load swings feeds the swing. That is slow behind an open valve; behind one that is
-    /// nearly shut it is fast, and a wrong threshold has to be made up for there: a millisecond more for each mm/s.
+    /// A bias that follows as fast as the load swings feeds the swing. That is slow behind an open valve; behind one
+    /// that is nearly shut it is fast, and a wrong threshold has to be made up for there: a millisecond more for each
+    /// mm/s.
     #[must_use]
     pub fn bias_time(self, usual: Millisecond, speed: MicrometrePerSecond) -> Millisecond {
         /// Furthest beyond the usual time: with 80 ms the bias follows in a sixth of a second.

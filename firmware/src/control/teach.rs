@@ -56,7 +56,8 @@ pub struct Taught {
 }
 
 impl Taught {
-    /// The calibration with what was found in it, sealed: curves shifted, linkage moved to the sensor, limits inside the ends.
+    /// The calibration with what was found in it, sealed: curves shifted, linkage moved to the sensor, limits inside
+    /// the ends.
     #[must_use]
     pub fn applied_to(&self, calibration: &Calibration) -> Calibration {
         let mut taught = calibration.clone();

@@ -97,7 +97,8 @@ impl<F: NorFlash> Ecu<F> {
         self.flow.end()
     }
 
-    /// Whether a calibration is being stored, with both coils off and locked: milliseconds take as long as flash does then.
+    /// Whether a calibration is being stored, with both coils off and locked: milliseconds take as long as flash does
+    /// then.
     #[must_use]
     pub const fn is_storing(&self) -> bool {
         self.service.is_storing()

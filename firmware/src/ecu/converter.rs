@@ -1,8 +1,8 @@
 //! From converter codes to quantities.
 //!
-//! Twelve bits over a reference of 3.3 V, behind dividers that bring 5 V to full scale. The sensors are ratiometric
-//! and give 0.5 to 4.5 V, so that a broken wire and a short are outside. Nothing here can be taught: what a machine's sensor
-//! is off by is in the calibration's linkage.
+//! Twelve bits over a reference of 3.3 V, behind dividers that bring 5 V to full scale. The sensors are ratiometric and
+//! give 0.5 to 4.5 V, so that a broken wire and a short are outside. Nothing here can be taught: what a machine's
+//! sensor is off by is in the calibration's linkage.
 
 use crate::control::Inputs;
 use crate::control::units::{MilliAmp, MilliBar, MilliDegree, MilliVolt, PerMille};

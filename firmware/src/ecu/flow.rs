@@ -1,7 +1,7 @@
 //! Flow monitor: did every task of the millisecond run, once and in order?
 //!
-//! The watchdog may only be kicked with a [`Kick`], and only a whole millisecond gives one. A task that was left out, ran
-//! twice or out of order spoils the millisecond, and all that follow: the watchdog then resets the ECU.
+//! The watchdog may only be kicked with a [`Kick`], and only a whole millisecond gives one. A task that was left out,
+//! ran twice or out of order spoils the millisecond, and all that follow: the watchdog then resets the ECU.
 
 /// A task of the millisecond.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

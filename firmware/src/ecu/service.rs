@@ -166,8 +166,8 @@ impl<F: NorFlash> Service<F> {
     }
 }
 
-/// Hands a calibration to the controller. Ramps, gains and limits change under a moving hitch; whatever else changes makes
-/// it another machine, which the operator has to pick up anew.
+/// Hands a calibration to the controller. Ramps, gains and limits change under a moving hitch; whatever else changes
+/// makes it another machine, which the operator has to pick up anew.
 fn apply(calibration: ValidCalibration, controller: &mut Controller) {
     let same_machine = Calibration {
         position: calibration.position,

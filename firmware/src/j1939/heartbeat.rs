@@ -1,8 +1,8 @@
 //! The heartbeat by which a node shows that it still thinks, and hears whether its partner does (ISO 11783-7).
 //!
-//! One byte every 100 ms, for who has asked for it: 251 at first, then 0 to 250 round and round; 254 says that the sender is
-//! broken, 255 that it stops on purpose. A number that comes again, is further on than three or takes longer than 300 ms is a
-//! broken sender's; eight good ones in a row mend it.
+//! One byte every 100 ms, for who has asked for it: 251 at first, then 0 to 250 round and round; 254 says that the
+//! sender is broken, 255 that it stops on purpose. A number that comes again, is further on than three or takes longer
+//! than 300 ms is a broken sender's; eight good ones in a row mend it.
 
 use super::time::since_ms;
 

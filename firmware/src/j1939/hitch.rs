@@ -205,8 +205,8 @@ impl StatusMessage {
     }
 }
 
-/// What there is of the facilities of a tractor (ISO 11783-7, tractor facilities response): the position of the rear hitch, its
-/// commands and their limit status. A bit that is 0 promises nothing.
+/// What there is of the facilities of a tractor (ISO 11783-7, tractor facilities response): the position of the rear
+/// hitch, its commands and their limit status. A bit that is 0 promises nothing.
 pub const FACILITIES: [u8; 8] = [0, 0b1000_0000, 0, 0b1000_1000, 0, 0, 0, 0];
 
 /// What an implement asks of the rear hitch (SPN 1875).

@@ -5,8 +5,9 @@
 //! | 65349, hitch motion | lift current | lowering current | rocker angle | time of the sample |
 //! | 65350, hitch pressures | cylinder pressure | pump pressure | supply | time of the sample |
 //!
-//! The currents are their means since the last such group. Little-endian, with the scales of `hitch.dbc`; 0xFFFF: not measured. Both groups are of the same sample and carry its
-//! time, so whatever delays a frame on the bus or in a logger's adapter spoils no speed that is reckoned from it.
+//! The currents are their means since the last such group. Little-endian, with the scales of `hitch.dbc`; 0xFFFF: not
+//! measured. Both groups are of the same sample and carry its time, so whatever delays a frame on the bus or in a
+//! logger's adapter spoils no speed that is reckoned from it.
 
 use super::id::{GLOBAL, Id, Pgn};
 use super::time::since_ms;
@@ -53,7 +54,8 @@ const VOLTAGE: Scale = Scale {
 };
 
 impl Scale {
-    /// The raw value of a measurement, which has at most 20 bits, rounded to nearest; what is beyond the ends is at the end.
+    /// The raw value of a measurement, which has at most 20 bits, rounded to nearest; what is beyond the ends is at the
+    /// end.
     fn raw(self, counts: Option<i32>) -> u16 {
         let Some(counts) = counts else {
             return NOT_AVAILABLE;

@@ -162,7 +162,8 @@ impl Node {
         }
     }
 
-    /// An implement commands the hitch. Who begins to is asked for a heartbeat, and so is one whose heartbeat is broken.
+    /// An implement commands the hitch. Who begins to is asked for a heartbeat, and so is one whose heartbeat is
+    /// broken.
     fn commanded(&mut self, command: HitchCommand, source: u8, now_ms: u32) {
         let condemned = self.is_condemned(source, now_ms);
         let before = self.remote.owner();

@@ -10,9 +10,9 @@
 //!             bad heartbeat: time-out
 //! ```
 //!
-//! The reason why control was given back stays until the next one begins. A fault of the controller comes before it, and
-//! after two seconds a lock too: an implement has to see that its commands went missing, not that the hitch has been
-//! locked in consequence. Commands from anybody but the one that took control are not heard meanwhile.
+//! The reason why control was given back stays until the next one begins. A fault of the controller comes before it,
+//! and after two seconds a lock too: an implement has to see that its commands went missing, not that the hitch has
+//! been locked in consequence. Commands from anybody but the one that took control are not heard meanwhile.
 
 use super::hitch::{self, ExitCode, HitchCommand, HitchStatus, Limit, LimitStatus};
 use super::time::since_ms;
@@ -98,8 +98,8 @@ impl RemoteControl {
         };
     }
 
-    /// Lets time pass and takes in what the controller says of the hitch. `condemned`: the heartbeat of who has the hitch
-    /// says that it doesn't think any more.
+    /// Lets time pass and takes in what the controller says of the hitch. `condemned`: the heartbeat of who has the
+    /// hitch says that it doesn't think any more.
     pub fn update(&mut self, status: &HitchStatus, condemned: bool, now_ms: u32) {
         let State::Active { heard_ms, .. } = self.state else {
             return;

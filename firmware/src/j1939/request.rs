@@ -8,8 +8,8 @@ use crate::can::Frame;
 
 /// Requests that wait for their answer; more are dropped, their senders ask again.
 const QUEUE: usize = 8;
-/// Time between answers, ms: whoever asks all the time gets a bounded share of the bus in return. Eight answers are still
-/// far within the 200 ms that a requester waits.
+/// Time between answers, ms: whoever asks all the time gets a bounded share of the bus in return. Eight answers are
+/// still far within the 200 ms that a requester waits.
 const SPACING_MS: u32 = 5;
 /// Priority of an acknowledgement.
 const PRIORITY: u8 = 6;

@@ -144,9 +144,9 @@ impl CalibrationPages {
 
     /// Writes bytes of the block from `offset` on; `moving`: only what may be changed while the hitch moves.
     ///
-    /// A word is checked and changed as a whole. Tools write what doesn't fit one message in pieces of six or seven bytes,
-    /// so a piece may end inside a word; what there is of it waits for the next piece to complete it. A piece that
-    /// begins inside a word and doesn't go on where the last one ended is refused.
+    /// A word is checked and changed as a whole. Tools write what doesn't fit one message in pieces of six or seven
+    /// bytes, so a piece may end inside a word; what there is of it waits for the next piece to complete it. A piece
+    /// that begins inside a word and doesn't go on where the last one ended is refused.
     ///
     /// # Errors
     /// Why not; then nothing was changed.

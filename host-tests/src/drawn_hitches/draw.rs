@@ -1,4 +1,5 @@
-//! From a seed to a machine: every unit of a series, on a cold morning or a hot afternoon, with what happens to hang on it.
+//! From a seed to a machine: every unit of a series, on a cold morning or a hot afternoon, with what happens to hang on
+//! it.
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;

@@ -1,5 +1,5 @@
-//! The shortest manoeuvre that a machine allows: the valve opens from its threshold to saturation in an edge, stays open,
-//! and closes with the same edge, so that the hitch comes to rest on the set point. Short moves don't open fully.
+//! The shortest manoeuvre that a machine allows: the valve opens from its threshold to saturation in an edge, stays
+//! open, and closes with the same edge, so that the hitch comes to rest on the set point. Short moves don't open fully.
 
 use super::draw::Drawn;
 use crate::second_rig::data_sheet::{LIFT_TABLE, LOWER_TABLE};

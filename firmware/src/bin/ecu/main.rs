@@ -1,8 +1,8 @@
 //! The ECU: the application on a board.
 //!
 //! A cyclic executive: TIM1 starts the converters a thousand times a second, and when they are done one tick of the
-//! application runs. There is one task and nothing interrupts it, so nothing is shared, nothing waits for a lock,
-//! the stack's depth is one call chain, and the order of things is the order of the source. The bus is listened to while
+//! application runs. There is one task and nothing interrupts it, so nothing is shared, nothing waits for a lock, the
+//! stack's depth is one call chain, and the order of things is the order of the source. The bus is listened to while
 //! the converters are awaited: between two looks at it no more frames can arrive than its queue holds.
 
 #![no_std]

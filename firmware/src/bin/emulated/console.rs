@@ -1,6 +1,7 @@
 //! The emulator's console: words and numbers.
 //!
-//! Not by `core::fmt`, whose calls by address, of itself among others, would leave the image without a bound of its stack.
+//! Not by `core::fmt`, whose calls by address, of itself among others, would leave the image without a bound of its
+//! stack.
 
 use crate::host_file::{HostFile, HostFileError};
 

@@ -1,9 +1,9 @@
 //! The firmware on an emulated Cortex-M4 (QEMU `mps2-an386`).
 //!
 //! Told `ecu` by the emulator (`-semihosting-config arg=ecu`), it is the ECU: the application in lock step with whoever
-//! is at the emulator's standard input and output. Told `parts`, it measures what the parts of a step take. Otherwise it
-//! steps the controller alone. At the end of the input it says
-//! on the console what it did and how much stack that took, and ends the emulator with a status.
+//! is at the emulator's standard input and output. Told `parts`, it measures what the parts of a step take. Otherwise
+//! it steps the controller alone. At the end of the input it says on the console what it did and how much stack that
+//! took, and ends the emulator with a status.
 
 #![no_std]
 #![no_main]

@@ -63,8 +63,8 @@ impl Coils {
     }
 }
 
-/// Cuts both coils for good, whatever state the program is in: the enable line drops and the timer lets go of its outputs,
-/// which pull-down resistors then hold low.
+/// Cuts both coils for good, whatever state the program is in: the enable line drops and the timer lets go of its
+/// outputs, which pull-down resistors then hold low.
 pub fn cut() {
     GPIOB.bsrr().write(|w| w.set_br(ENABLE_PIN, true));
     TIM1.bdtr().modify(|w| w.set_moe(false));

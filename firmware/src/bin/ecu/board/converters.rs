@@ -1,7 +1,7 @@
 //! Three converters, each with an injected sequence that TIM1 starts.
 //!
-//! The coils' currents come first in theirs: they are what has to be sampled in the middle of a pulse. Which channels the
-//! signals are, and how a converter is set up and asked, is the part's.
+//! The coils' currents come first in theirs: they are what has to be sampled in the middle of a pulse. Which channels
+//! the signals are, and how a converter is set up and asked, is the part's.
 
 use hitch_firmware::ecu::{AdcCode, Samples};
 use stm32_metapac::adc::Adc;

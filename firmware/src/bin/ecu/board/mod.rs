@@ -1,7 +1,7 @@
 //! Registers, and nothing else: what differs from part to part is in the part's file and in the drivers that it names.
 //!
-//! The register layouts come from `stm32-metapac`, whose accesses are safe; a reserved bit or a wrong order of writes is
-//! what reading the reference manuals (RM0090 for the STM32F405, RM0440 for the STM32G474) has to prevent.
+//! The register layouts come from `stm32-metapac`, whose accesses are safe; a reserved bit or a wrong order of writes
+//! is what reading the reference manuals (RM0090 for the STM32F405, RM0440 for the STM32G474) has to prevent.
 
 mod clock;
 mod coils;

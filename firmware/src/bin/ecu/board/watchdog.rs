@@ -27,8 +27,8 @@ impl Watchdog {
         IWDG.kr().write(|w| w.set_key(Key::RESET));
     }
 
-    /// Starts its time anew between the parts of the start, when no millisecond can be whole yet: oscillator and clocks take 3 ms,
-    /// reading the calibration takes 2.
+    /// Starts its time anew between the parts of the start, when no millisecond can be whole yet: oscillator and clocks
+    /// take 3 ms, reading the calibration takes 2.
     pub fn kick_at_start(&mut self) {
         IWDG.kr().write(|w| w.set_key(Key::RESET));
     }

@@ -1,7 +1,7 @@
 //! bxCAN at 250 kbit/s on PA11 and PA12.
 //!
-//! Registers instead of the crate `bxcan`: what the ECU needs of it is a page, and that crate's claim to the registers is
-//! `unsafe` to make.
+//! Registers instead of the crate `bxcan`: what the ECU needs of it is a page, and that crate's claim to the registers
+//! is `unsafe` to make.
 
 use embedded_can::{ExtendedId, Id, StandardId};
 use hitch_firmware::can::Frame;

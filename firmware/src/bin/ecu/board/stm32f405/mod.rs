@@ -69,8 +69,8 @@ fn start_peripherals() {
     let _ = RCC.apb2enr().read();
 }
 
-/// Holds the part in reset below 2.7 V (level 3), where the flash may still be read at this clock. An option byte, written
-/// once in the life of a part.
+/// Holds the part in reset below 2.7 V (level 3), where the flash may still be read at this clock. An option byte,
+/// written once in the life of a part.
 pub fn set_brown_out_level() {
     /// `BOR_LEV` of level 3, VBOR3.
     const LEVEL_3: u8 = 0b00;

@@ -1,7 +1,7 @@
 //! FDCAN as a classic CAN at 250 kbit/s on PA11 and PA12.
 //!
-//! Registers instead of the crate `fdcan`: that one panics on frames longer than the buffer it is given, and its claim to
-//! the registers is `unsafe` to make.
+//! Registers instead of the crate `fdcan`: that one panics on frames longer than the buffer it is given, and its claim
+//! to the registers is `unsafe` to make.
 
 use embedded_can::{ExtendedId, Id, StandardId};
 use hitch_firmware::can::Frame;
