@@ -2,8 +2,9 @@
 use std::fs;
 
 use hitch_model::Model;
-use hitch_model::effects::{AddedEffect, CATALOGUE, TermEffect, full_name};
+use hitch_model::effects::{AddedEffect, CATALOGUE, Effect, TermEffect, full_name};
 use hitch_model::expression::{ParameterDefinition, Place, TermDefinition};
+use hitch_model::plant::signals::Signals;
 use proptest::prelude::*;
 use tempfile::TempDir;
 
@@ -219,5 +220,154 @@ proptest! {
         if let Err(error) = read(&bytes) {
             prop_assert_eq!(error.lines().count(), 1);
         }
+    }
+}
+
+/// A model file with terms of a user's own.
+const TERMS: &str = r#"format = 1
+base = "dynamic"
+
+[[term]]
+id = "end-cushion"
+title = "Cushion at the \"lower\" end"
+place = "lower-flow-factor"
+formula = "-c * ramp(1 - x / depth)"
+
+[[term.parameter]]
+name = "c"
+meaning = "share of the flow that is held back at the end"
+null = 0
+start = 0.5
+low = 0
+high = 1
+
+[[term.parameter]]
+name = "depth"
+unit = "mm"
+start = 20
+low = 5
+high = 50
+
+[[term]]
+id = "creeping-leak"
+place = "leakage"
+formula = "g * p_cyl * (40[cSt] / nu)"
+
+[[term.parameter]]
+name = "g"
+unit = "l/min/bar"
+null = 0
+start = 0.004
+low = 0
+high = 0.1
+
+[[effect]]
+id = "coulomb-friction"
+force_n = 400
+
+[[effect]]
+id = "end-cushion"
+c = 0.41
+depth_mm = 22
+"#;
+
+#[test]
+fn a_model_file_brings_its_terms_and_takes_fitted_values_back() {
+    let mut model = read(TERMS.as_bytes()).unwrap();
+    let ids: Vec<&str> = model.terms.iter().map(|term| term.id()).collect();
+    assert_eq!(ids, ["end-cushion", "creeping-leak"]);
+    assert_eq!(model.catalogue().last().unwrap().id(), "creeping-leak");
+    assert_eq!(model.effects[1].values, [0.41, 22.0]);
+    assert_eq!(model.terms[1].parameters()[0].key, "g_lpm_per_bar");
+    assert_eq!(model.terms[0].title(), "Cushion at the \"lower\" end");
+    assert_eq!(
+        model.terms[0].equation(),
+        "lower-flow-factor = -c * ramp(1 - x / depth)"
+    );
+
+    model.effects[1].values = vec![0.1 + 0.2, 1.0 / 0.07];
+    model.effects.push(AddedEffect::typical(model.terms[1]));
+    let back = read(model.to_toml().as_bytes()).unwrap();
+    for (read, written) in back.terms.iter().zip(&model.terms) {
+        assert!(
+            std::ptr::eq(*read, *written),
+            "the same definition gives the same effect"
+        );
+    }
+    let values = |model: &Model| -> Vec<(&str, Vec<f64>)> {
+        model
+            .effects
+            .iter()
+            .map(|added| (added.effect.id(), added.values.clone()))
+            .collect()
+    };
+    assert_eq!(values(&back), values(&model));
+    assert_eq!(back.to_toml(), model.to_toml());
+}
+
+#[test]
+fn a_term_acts_in_si_from_values_in_its_units() {
+    let model = read(TERMS.as_bytes()).unwrap();
+    let signals = Signals {
+        travel_m: 0.011,
+        ..Signals::default()
+    };
+    let cushion = model.terms[0].function(&[0.4, 22.0]);
+    assert!((cushion(&signals) + 0.2).abs() < 1e-15);
+}
+
+#[test]
+fn faults_of_a_term_in_a_model_file_have_a_place() {
+    let with = |good: &str, bad: &str| {
+        assert!(TERMS.contains(good), "{good}");
+        fault(&TERMS.replacen(good, bad, 1))
+    };
+    let cases = [
+        (
+            with("lower-flow-factor", "lower-flow"),
+            "m.toml:7:9: place \"lower-flow\" is not known; did you mean lower-",
+        ),
+        (
+            with("place =", "places ="),
+            "m.toml:7:1: key \"places\" is not known in [[term]]; did you mean place?",
+        ),
+        (
+            with("low = 0\nhigh = 1", "high = 1"),
+            "m.toml:10:1: [[term.parameter]] has no low",
+        ),
+        (
+            with("\nstart = 20", "\nnull = 0\nstart = 20"),
+            "m.toml:21:1: key \"null\" is not known in [[term.parameter]]",
+        ),
+        (
+            with("creeping-leak", "end-cushion"),
+            "m.toml:26:6: end-cushion is there twice; delete one of the two [[term]]",
+        ),
+        (
+            with("c = 0.41", "c = 2"),
+            "m.toml:44:5: c = 2 is out of range; it may be 0 to 1",
+        ),
+        (
+            with("depth_mm = 22", ""),
+            "m.toml:42:1: [[effect]] has no depth_mm",
+        ),
+        (
+            with("\"-c * ramp(1 - x", "\"\"\"\n-c * ramp(1 - z"),
+            "m.toml:",
+        ),
+        (
+            with("\"-c * ramp(1 - x", "\"-c *\\tramp(1 - z"),
+            "m.toml:8:11: name `z` is not known",
+        ),
+        (
+            with("id = \"end-cushion\"\nc", "id = \"end-cushio\"\nc"),
+            "m.toml:43:6: effect \"end-cushio\" is not known; did you mean end-cushion?",
+        ),
+    ];
+    for (found, expected) in cases {
+        assert!(
+            found.starts_with(expected),
+            "expected {expected}\n     got {found}"
+        );
     }
 }
