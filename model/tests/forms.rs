@@ -213,7 +213,7 @@ fn bristles_hold_at_rest_what_they_held_in_motion() {
     for straightening_1_s in [0.0, 0.7] {
         let rough = model(
             "coulomb-friction/bristles",
-            &[force_n, bending_mm, straightening_1_s],
+            &[force_n, bending_mm, straightening_1_s * bending_mm],
         );
         let trace = simulate(&rough, rig, 40.0, &time_s, &currents);
         let beyond_weight_n = |sample: usize| {

@@ -58,7 +58,7 @@ pub static BRISTLES: Described = Described {
     id: "coulomb-friction",
     form: Some("bristles"),
     title: "Coulomb friction at the piston, which holds at rest",
-    equation: "F = force * z / bending, z' = v - (|v| / bending + straightening) z",
+    equation: "F = force * z / bending, z' = v - (|v| + creep) z / bending",
     source: "Dahl 1968; Canudas de Wit et al. 1995 (LuGre with a level that does not hang on the speed); Jelali & Kroll 4.3",
     shows: "cylinder pressure at rest lies higher after lifting than after lowering, by the same at every load; slower \
             lowering of light loads",
@@ -75,14 +75,14 @@ pub static BRISTLES: Described = Described {
             high: 5.0,
         },
         Parameter {
-            name: "straightening",
-            unit: "1/s",
-            key: "straightening_1_s",
-            meaning: "share of the force at rest that trembling takes away a second",
+            name: "creep",
+            unit: "mm/s",
+            key: "creep_mm_per_s",
+            meaning: "speed that trembling gives the seal under the full force; none: it holds for ever",
             null: 0.0,
             typical: 0.0,
             low: 0.0,
-            high: 20.0,
+            high: 8.0,
         },
     ],
     channels: CHANNELS,
@@ -92,7 +92,7 @@ pub static BRISTLES: Described = Described {
         sites.bristles = Some(Bristles {
             force_n: values[0],
             reach_m: 1e-3 * values[1],
-            straightening_1_s: values[2],
+            creep_m_s: 1e-3 * values[2],
         });
     },
 };

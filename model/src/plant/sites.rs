@@ -105,16 +105,16 @@ pub struct Bristles {
     pub force_n: f64,
     /// How far they are bent then, m.
     pub reach_m: f64,
-    /// How fast they straighten, 1/s.
-    pub straightening_1_s: f64,
+    /// Speed of the piston at which their straightening takes half of the force, m/s; it goes on at rest.
+    pub creep_m_s: f64,
 }
 
 impl Bristles {
-    /// How far they are bent, m, once the piston has moved on: `z' = v - (|v| / reach + straightening) z`, exactly for an
+    /// How far they are bent, m, once the piston has moved on: `z' = v - (|v| + creep) z / reach`, exactly for an
     /// even speed.
     #[must_use]
     pub fn bent_m(&self, before_m: f64, moved_m: f64, dt_s: f64) -> f64 {
-        let share = moved_m.abs() / self.reach_m + self.straightening_1_s * dt_s;
+        let share = (moved_m.abs() + self.creep_m_s * dt_s) / self.reach_m;
         if share <= 0.0 {
             return before_m;
         }
@@ -268,7 +268,7 @@ impl Sites {
     /// Whether a hitch at rest behind two shut valves stays as it is.
     #[must_use]
     pub fn holds_still(&self) -> bool {
-        let straighten = |bristles: Bristles| bristles.straightening_1_s > 0.0;
+        let straighten = |bristles: Bristles| bristles.creep_m_s > 0.0;
         self.leakage.is_empty() && self.terms.is_empty() && !self.bristles.is_some_and(straighten)
     }
 
