@@ -97,6 +97,7 @@ fn attach_swinging(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
     sites.currents.push(Box::new(SwingingSpools {
         frequency_rad_s: 2.0 * damping / lag_s,
         damping,
+        free: Free::default(),
         spools: [Swinging::default(); 2],
     }));
 }
@@ -138,7 +139,38 @@ impl CurrentStage for SpoolLag {
 struct SwingingSpools {
     frequency_rad_s: f64,
     damping: f64,
+    /// Of the last step: steps are mostly alike, and sine and `exp` are dear.
+    free: Free,
     spools: [Swinging; 2],
+}
+
+/// What becomes of a spool's swing in one step, the same for both.
+#[derive(Debug, Clone, Copy, Default)]
+struct Free {
+    dt_s: f64,
+    /// How fast it dies away, and its own frequency, 1/s.
+    decay: f64,
+    swing: f64,
+    /// What is left of it, and how far round it has gone.
+    left: f64,
+    sine: f64,
+    cosine: f64,
+}
+
+impl Free {
+    fn new(frequency_rad_s: f64, damping: f64, dt_s: f64) -> Self {
+        let decay = damping * frequency_rad_s;
+        let swing = frequency_rad_s * (1.0 - damping * damping).sqrt();
+        let (sine, cosine) = (swing * dt_s).sin_cos();
+        Self {
+            dt_s,
+            decay,
+            swing,
+            left: (-decay * dt_s).exp(),
+            sine,
+            cosine,
+        }
+    }
 }
 
 /// One of them, in terms of the current.
@@ -150,30 +182,19 @@ struct Swinging {
 }
 
 impl Swinging {
-    /// Goes on while the current runs linearly to `input_a`: what is left of the way to the ramp swings and dies away.
-    fn advance(&mut self, [frequency, damping]: [f64; 2], input_a: f64, dt_s: f64) -> f64 {
-        if dt_s <= 0.0 {
-            return self.place_a;
-        }
-        let rate_a_s = (input_a - self.input_a) / dt_s;
-        let behind_a = 2.0 * damping * rate_a_s / frequency;
-        let (decay, swing) = (
-            damping * frequency,
-            frequency * (1.0 - damping * damping).sqrt(),
-        );
-        let (away_a, away_a_s) = (
-            self.place_a - self.input_a + behind_a,
-            self.speed_a_s - rate_a_s,
-        );
-        let quadrature_a = (away_a_s + decay * away_a) / swing;
-        let (sine, cosine) = (swing * dt_s).sin_cos();
-        let left = (-decay * dt_s).exp();
-        let left_a = left * (away_a * cosine + quadrature_a * sine);
-        let left_a_s = left * swing * (quadrature_a * cosine - away_a * sine) - decay * left_a;
+    /// Goes on while the current runs linearly to `input_a`, which it follows `late_s` behind: what is left of the way
+    /// to there swings and dies away.
+    fn advance(&mut self, free: &Free, late_s: f64, input_a: f64) {
+        let rate_a_s = (input_a - self.input_a) / free.dt_s;
+        let behind_a = late_s * rate_a_s;
+        let away_a = self.place_a - self.input_a + behind_a;
+        let away_a_s = self.speed_a_s - rate_a_s;
+        let quadrature_a = (away_a_s + free.decay * away_a) / free.swing;
+        let left_a = free.left * (away_a * free.cosine + quadrature_a * free.sine);
+        let turning_a = free.left * (quadrature_a * free.cosine - away_a * free.sine);
         self.place_a = input_a - behind_a + left_a;
-        self.speed_a_s = rate_a_s + left_a_s;
+        self.speed_a_s = rate_a_s + free.swing * turning_a - free.decay * left_a;
         self.input_a = input_a;
-        self.place_a
     }
 }
 
@@ -188,10 +209,17 @@ impl CurrentStage for SwingingSpools {
     }
 
     fn advance(&mut self, currents: Currents, dt_s: f64) -> Currents {
-        let constants = [self.frequency_rad_s, self.damping];
-        Currents {
-            lift_a: self.spools[0].advance(constants, currents.lift_a, dt_s),
-            lower_a: self.spools[1].advance(constants, currents.lower_a, dt_s),
+        if dt_s > 0.0 {
+            if self.free.dt_s != dt_s {
+                self.free = Free::new(self.frequency_rad_s, self.damping, dt_s);
+            }
+            let late_s = 2.0 * self.damping / self.frequency_rad_s;
+            let inputs_a = [currents.lift_a, currents.lower_a];
+            for (spool, input_a) in self.spools.iter_mut().zip(inputs_a) {
+                spool.advance(&self.free, late_s, input_a);
+            }
         }
+        let [lift_a, lower_a] = self.spools.map(|spool| spool.place_a);
+        Currents { lift_a, lower_a }
     }
 }
