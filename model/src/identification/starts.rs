@@ -72,7 +72,9 @@ impl Shortlist<'_> {
     /// A lag in place of the clocks that stand in for it: what makes a spool late makes all its channels late, and once
     /// their clocks have run off with that no slope leads back.
     fn on_time(&self, effect: &'static dyn Effect) -> Option<Start> {
-        let size = &effect.parameters()[0];
+        if effect.parameters()[0].unit != "s" {
+            return None;
+        }
         let clocks = &self.base.estimate.clocks;
         let mut late_s: Vec<f64> = effect
             .channels()
@@ -81,7 +83,7 @@ impl Shortlist<'_> {
             .collect();
         late_s.sort_by(f64::total_cmp);
         let late_s = *late_s.get(late_s.len() / 2)?;
-        if size.unit != "s" || late_s <= OFF_S {
+        if late_s <= OFF_S {
             return None;
         }
         let mut added = AddedEffect::typical(effect);
