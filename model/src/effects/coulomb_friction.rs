@@ -53,6 +53,9 @@ pub static SMOOTH: Described = Described {
     },
 };
 
+/// Longest step that follows bristles as they bend, s.
+const STEP_S: f64 = 0.01;
+
 /// Friction that stays at rest.
 pub static BRISTLES: Described = Described {
     id: "coulomb-friction",
@@ -94,5 +97,6 @@ pub static BRISTLES: Described = Described {
             reach_m: 1e-3 * values[1],
             creep_m_s: 1e-3 * values[2],
         });
+        sites.longest_step_s = sites.longest_step_s.min(STEP_S);
     },
 };

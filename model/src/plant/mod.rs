@@ -114,6 +114,9 @@ pub struct Plant<'m> {
     rig: Rig,
     sites: Sites,
     spools: [Lag; 2],
+    spool_currents: Currents,
+    /// How fast the spools' currents changed over the last step, A/s.
+    turning_a_s: f64,
     openings: Openings,
     state: MechanicalState,
     lowest_m: f64,
@@ -152,6 +155,8 @@ impl<'m> Plant<'m> {
             rig,
             sites,
             spools,
+            spool_currents: effective,
+            turning_a_s: 0.0,
             openings: Openings::default(),
             state: MechanicalState::default(),
             lowest_m: 0.0,
@@ -183,11 +188,14 @@ impl<'m> Plant<'m> {
             (Rig::Hitch(rig), Dynamics::Dynamic) => {
                 dynamic::longest_step_s(&self.forces(&rig), &self.circuit(), self.state)
             }
-            _ => steady::longest_step_s(&self.sites),
+            _ => {
+                let turning_a_s = currents.furthest_from_a(self.input) / dt_s;
+                steady::longest_step_s(&self.sites, turning_a_s.max(self.turning_a_s))
+            }
         };
         // A hair of slack: 0.02 s read from a log as a difference must not become one piece more.
         let pieces = (dt_s / longest_s - 1e-6).ceil().max(1.0) as usize;
-        let from = self.input;
+        let (from, spools) = (self.input, self.spool_currents);
         for piece in 1..=pieces {
             let share = piece as f64 / pieces as f64;
             let currents = Currents {
@@ -196,6 +204,7 @@ impl<'m> Plant<'m> {
             };
             self.integrate(currents, dt_s / pieces as f64);
         }
+        self.turning_a_s = self.spool_currents.furthest_from_a(spools) / dt_s;
         self.refresh_unless_balanced();
         let mut reading = self.truth();
         for sensor in &mut self.sites.sensors {
@@ -319,6 +328,7 @@ impl<'m> Plant<'m> {
             .fold(currents, |currents, stage| stage.advance(currents, dt_s));
         let lift_a = self.spools[0].advance(effective.lift_a, dt_s);
         let lower_a = self.spools[1].advance(effective.lower_a, dt_s);
+        self.spool_currents = Currents { lift_a, lower_a };
         self.shift(lift_a, lower_a);
         self.openings
     }

@@ -37,6 +37,13 @@ impl Currents {
             lower_a: change(Valve::Lowering, self.lower_a),
         }
     }
+
+    /// By how much the current differs that differs more, A.
+    #[must_use]
+    pub fn furthest_from_a(self, other: Self) -> f64 {
+        let lift_a = (self.lift_a - other.lift_a).abs();
+        lift_a.max((self.lower_a - other.lower_a).abs())
+    }
 }
 
 /// A part between coil current and effective spool current; it may remember (hysteresis, lag).

@@ -12,16 +12,27 @@ use super::forces::Forces;
 use super::sites::Sites;
 use crate::expression::Place;
 
-/// Longest step, s: half a sample of a 50 Hz log.
-const LONGEST_STEP_S: f64 = 0.01;
+/// Longest step, s, while the spools stand or follow a ramp: a sample of a 50 Hz log.
+const LONGEST_STEP_S: f64 = 0.02;
+
+/// Longest step, s, while a current jumps or a spool lags behind one that did: the flow is no straight line then.
+const LONGEST_STEP_OF_A_JUMP_S: f64 = 0.005;
+
+/// Currents that change faster than this jump, A/s.
+const JUMP_A_S: f64 = 2.5;
 
 /// Speed beyond all others by which terms of a user's own could move the piston, m/s.
 const FASTEST_M_S: f64 = 0.5;
 
-/// Longest step, s, with what the effects attach.
+/// Longest step, s, with what the effects attach, while the spools' currents change by so much, A/s.
 #[must_use]
-pub fn longest_step_s(sites: &Sites) -> f64 {
-    LONGEST_STEP_S.min(sites.longest_step_s)
+pub fn longest_step_s(sites: &Sites, turning_a_s: f64) -> f64 {
+    let own_s = if turning_a_s > JUMP_A_S {
+        LONGEST_STEP_OF_A_JUMP_S
+    } else {
+        LONGEST_STEP_S
+    };
+    own_s.min(sites.longest_step_s)
 }
 
 /// What the balances give at one instant.

@@ -1,0 +1,117 @@
+//! A run simulated at the steps of its log is the run simulated in steps as fine as one likes.
+//!
+//! The currents are those that a 50 Hz logger wrote, noise and all, taken as straight lines from sample to sample.
+
+use std::path::Path;
+
+use hitch_model::Model;
+use hitch_model::campaign::{Campaign, Channel, Run};
+use hitch_model::effects::{AddedEffect, CATALOGUE, Effect};
+use hitch_model::identification::experiment::{Experiment, Nuisance};
+use hitch_model::plant::Currents;
+use hitch_model::simulation::{Trace, simulate};
+
+/// Pieces that a sample is cut into for the converged solution: steps of half a millisecond.
+const FINER: usize = 40;
+
+/// Largest root mean square by which a channel may be off, as a share of its own.
+const BAR: f64 = 0.001;
+
+/// The same with an effect of typical size.
+const BAR_WITH_AN_EFFECT: f64 = 0.002;
+
+/// What jumps does so a piece of a step later or earlier; the peak of an accelerated load is as high as the last piece
+/// before a sample is short.
+const BARS_OF_JUMPS: [(&str, f64); 2] = [("spool-stiction", 0.01), ("load-inertia", 0.03)];
+
+/// The same currents in `FINER` pieces a sample.
+fn finely(time_s: &[f64], currents: &[Currents]) -> (Vec<f64>, Vec<Currents>) {
+    let between =
+        |from: f64, to: f64, piece: usize| from + (to - from) * piece as f64 / FINER as f64;
+    let mut fine = (vec![time_s[0]], vec![currents[0]]);
+    for sample in 1..time_s.len() {
+        let (from, to) = (currents[sample - 1], currents[sample]);
+        for piece in 1..=FINER {
+            fine.0
+                .push(between(time_s[sample - 1], time_s[sample], piece));
+            fine.1.push(Currents {
+                lift_a: between(from.lift_a, to.lift_a, piece),
+                lower_a: between(from.lower_a, to.lower_a, piece),
+            });
+        }
+    }
+    fine
+}
+
+fn logged(run: &Run) -> Vec<Currents> {
+    let both = run.lift_current_a.iter().zip(&run.lower_current_a);
+    both.map(|(&lift_a, &lower_a)| Currents { lift_a, lower_a })
+        .collect()
+}
+
+/// Of each channel the root mean square of the difference over its own, over all runs.
+fn shares(pairs: &[(Trace, Trace)]) -> [f64; 4] {
+    Channel::ALL.map(|channel| {
+        let (mut off, mut all) = (0.0, 0.0);
+        for (coarse, fine) in pairs {
+            let (coarse, fine) = (coarse.channel(channel), fine.channel(channel));
+            let finite = coarse
+                .iter()
+                .zip(fine)
+                .filter(|(a, b)| a.is_finite() && b.is_finite());
+            for (a, b) in finite {
+                off += (a - b).powi(2);
+                all += b.powi(2);
+            }
+        }
+        (off / all).sqrt()
+    })
+}
+
+fn off(model: &Model, campaign: &Campaign) -> [f64; 4] {
+    let experiment = Experiment::new(campaign, model);
+    let runs = campaign.runs.iter().zip(&experiment.runs);
+    let pairs: Vec<(Trace, Trace)> = runs
+        .map(|(run, ready)| {
+            let rig = ready.rig(Nuisance::default());
+            let currents = logged(run);
+            let (time_s, finely) = finely(&run.time_s, &currents);
+            let oil_c = ready.oil_temperature_c;
+            let coarse = simulate(model, rig, oil_c, &run.time_s, &currents);
+            let mut fine = simulate(model, rig, oil_c, &time_s, &finely);
+            let samples: Vec<usize> = (0..run.time_s.len()).map(|k| k * FINER).collect();
+            fine.keep(&samples);
+            (coarse, fine)
+        })
+        .collect();
+    shares(&pairs)
+}
+
+fn percent(shares: [f64; 4]) -> String {
+    let percent = |share: f64| format!("{:8.4} %", 100.0 * share);
+    shares.map(percent).join(" ")
+}
+
+fn bar(effect: &dyn Effect) -> f64 {
+    let own = BARS_OF_JUMPS.iter().find(|(id, _)| *id == effect.id());
+    own.map_or(BAR_WITH_AN_EFFECT, |(_, bar)| *bar)
+}
+
+#[test]
+fn the_steps_of_a_log_are_fine_enough() {
+    let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/known-threshold");
+    let campaign = Campaign::load(&campaign).expect("a shipped campaign");
+    println!("pump pressure, cylinder pressure, flow, angle:");
+    for model in [Model::nominal(), Model::dynamic()] {
+        let without = off(&model, &campaign);
+        println!("{} {}", percent(without), model.name);
+        assert!(without.iter().all(|share| *share <= BAR), "{}", model.name);
+        for &effect in CATALOGUE {
+            let with = model.with_effects(vec![AddedEffect::typical(effect)]);
+            let with = off(&with, &campaign);
+            println!("{} {}", percent(with), effect.id());
+            let fine = with.iter().all(|share| *share <= bar(effect));
+            assert!(fine, "{} {}", model.name, effect.id());
+        }
+    }
+}
