@@ -8,7 +8,7 @@
 use rayon::prelude::*;
 
 use super::experiment::{Experiment, ReadyRun};
-use super::jacobian::square_sum;
+use super::jacobian::{dot, square_sum};
 
 /// Reach of the autocovariances, s.
 const REACH_S: f64 = 2.0;
@@ -55,8 +55,7 @@ fn reach(run: &ReadyRun) -> usize {
 
 /// Mean product of a series with itself `lag` samples later.
 fn covariance(series: &[f64], lag: usize) -> f64 {
-    let products = series[lag..].iter().zip(series).map(|(a, b)| a * b);
-    products.sum::<f64>() / series.len() as f64
+    dot(&series[lag..], &series[..series.len() - lag]) / series.len() as f64
 }
 
 /// Weight of a lag in a Bartlett window.

@@ -6,17 +6,51 @@ use std::ops::Range;
 use nalgebra::{Cholesky, DVector, Dyn};
 
 use super::estimate::Estimate;
-use super::jacobian::{Jacobian, dot, subtract};
+use super::jacobian::{Jacobian, RunJacobian, dot, square_sum, subtract};
 
 /// Columns of a Jacobian that are free, ready to be projected out, with every run's load.
 pub struct Frame<J> {
     jacobian: J,
     kept: Vec<usize>,
     normal: Option<Cholesky<f64, Dyn>>,
+    /// Each run's load.
+    loads: Vec<Option<Load>>,
     /// Pull of the priors of the shared parameters.
     priors: DVector<f64>,
+    /// Products of the frame's own residuals.
+    own: Products,
     /// [`Frame::cost_after`] of the frame's own residuals.
     here: f64,
+}
+
+/// A run's load in a frame.
+struct Load {
+    /// Squared length of its column, with the unit prior.
+    square: f64,
+    /// Present load error, in prior sigmas.
+    value: f64,
+    /// Products of its column with the kept ones.
+    coupling: DVector<f64>,
+}
+
+/// Products of residuals with the columns of a frame: all of theirs that is linear in them.
+#[derive(Clone)]
+struct Products {
+    /// With each run's load.
+    loads: Vec<f64>,
+    /// With the kept columns.
+    columns: DVector<f64>,
+}
+
+impl Products {
+    /// Those of twice the residuals whose products these are, less others.
+    fn twice_less(&self, less: &Self) -> Self {
+        let loads = self.loads.iter().zip(&less.loads);
+        Self {
+            loads: loads.map(|(own, less)| 2.0 * own - less).collect(),
+            columns: 2.0 * &self.columns - &less.columns,
+        }
+    }
 }
 
 impl<J: Borrow<Jacobian>> Frame<J> {
@@ -34,20 +68,36 @@ impl<J: Borrow<Jacobian>> Frame<J> {
             .filter(|&column| !estimate.is_at_an_end(jacobian.shared[column]))
             .collect();
         let normal = matrix.select_rows(&kept).select_columns(&kept).cholesky();
-        let own: Vec<Vec<f64>> = jacobian
-            .runs
-            .iter()
-            .map(|run| run.residual.clone())
-            .collect();
+        let load = |run: &RunJacobian| {
+            let column = run.load.as_deref()?;
+            let products = kept.iter().map(|&kept| dot(&run.shared[kept], column));
+            Some(Load {
+                square: dot(column, column) + 1.0,
+                value: run.load_value,
+                coupling: DVector::from_iterator(kept.len(), products),
+            })
+        };
+        let loads = jacobian.runs.iter().map(load).collect();
+        let nothing = Products {
+            loads: Vec::new(),
+            columns: DVector::zeros(kept.len()),
+        };
         let mut frame = Self {
             jacobian: owner,
             normal,
+            loads,
             priors: DVector::zeros(kept.len()),
+            own: nothing,
             here: 0.0,
             kept,
         };
-        frame.priors = right.select_rows(&frame.kept) - frame.pull(&own);
-        frame.here = frame.cost_after(&own);
+        let runs = &frame.jacobian().runs;
+        let own: Vec<&[f64]> = runs.iter().map(|run| run.residual.as_slice()).collect();
+        let square = own.iter().map(|run| dot(run, run)).sum();
+        let products = frame.products(own);
+        frame.priors = right.select_rows(&frame.kept) - frame.pull(&products);
+        frame.here = frame.cost(square, &products);
+        frame.own = products;
         frame
     }
 
@@ -81,15 +131,7 @@ impl<J: Borrow<Jacobian>> Frame<J> {
     /// belong to the frame's estimate with something else changed.
     #[must_use]
     pub fn cost_after(&self, residuals: &[Vec<f64>]) -> f64 {
-        let mut cost = 0.0;
-        for (run, residual) in self.jacobian().runs.iter().zip(residuals) {
-            cost += dot(residual, residual) + run.load_value * run.load_value;
-            if let Some((_, square, load_pull)) = run.load_pull(residual) {
-                cost -= load_pull * load_pull / square;
-            }
-        }
-        let pull = self.pull(residuals) + &self.priors;
-        cost - pull.dot(&self.shares(&pull))
+        self.cost(square_sum(residuals), &self.products(residuals))
     }
 
     /// [`Frame::cost_after`] of the frame's own residuals: what there is without anything changed.
@@ -102,19 +144,15 @@ impl<J: Borrow<Jacobian>> Frame<J> {
     /// `high` times the way, and that cost: a parabola through both ends and the same way backwards.
     #[must_use]
     pub fn along(&self, residuals: &[Vec<f64>], low: f64, high: f64) -> (f64, f64) {
-        let own = |run: usize| &self.jacobian().runs[run].residual;
-        let backwards: Vec<Vec<f64>> = residuals
-            .iter()
-            .enumerate()
-            .map(|(run, moved)| {
-                own(run)
-                    .iter()
-                    .zip(moved)
-                    .map(|(o, m)| 2.0 * o - m)
-                    .collect()
-            })
-            .collect();
-        let (ahead, behind) = (self.cost_after(residuals), self.cost_after(&backwards));
+        let (mut own, mut mixed, mut moved) = (0.0, 0.0, 0.0);
+        for (run, residual) in self.jacobian().runs.iter().zip(residuals) {
+            own += dot(&run.residual, &run.residual);
+            mixed += dot(&run.residual, residual);
+            moved += dot(residual, residual);
+        }
+        let products = self.products(residuals);
+        let ahead = self.cost(moved, &products);
+        let behind = self.cost(4.0 * (own - mixed) + moved, &self.own.twice_less(&products));
         let here = self.here;
         let (slope, bend) = (0.5 * (ahead - behind), 0.5 * (ahead + behind) - here);
         if bend <= 0.0 {
@@ -124,18 +162,40 @@ impl<J: Borrow<Jacobian>> Frame<J> {
         (share, here + share * (slope + share * bend))
     }
 
-    /// Pull of residuals on the free parameters, the loads eliminated.
-    fn pull(&self, residuals: &[Vec<f64>]) -> DVector<f64> {
-        let mut pull = DVector::zeros(self.kept.len());
-        for (run, residual) in self.jacobian().runs.iter().zip(residuals) {
-            let through_load = run
-                .load_pull(residual)
-                .map(|(load, square, load_pull)| (load, load_pull / square));
-            for (row, &kept) in self.kept.iter().enumerate() {
-                pull[row] += dot(&run.shared[kept], residual);
-                if let Some((load, share)) = through_load {
-                    pull[row] -= share * dot(&run.shared[kept], load);
+    /// [`Frame::cost_after`] of residuals with this sum of squares and these products.
+    fn cost(&self, square: f64, products: &Products) -> f64 {
+        let runs = self.jacobian().runs.iter();
+        let mut cost = square + runs.map(|run| run.load_value.powi(2)).sum::<f64>();
+        for (load, product) in self.loads.iter().zip(&products.loads) {
+            if let Some(load) = load {
+                cost -= (product - load.value).powi(2) / load.square;
+            }
+        }
+        let pull = self.pull(products) + &self.priors;
+        cost - pull.dot(&self.shares(&pull))
+    }
+
+    fn products<R: AsRef<[f64]>>(&self, residuals: impl AsRef<[R]>) -> Products {
+        let runs = self.jacobian().runs.iter().zip(residuals.as_ref());
+        let mut columns = DVector::zeros(self.kept.len());
+        let loads = runs
+            .map(|(run, residual)| {
+                let residual = residual.as_ref();
+                for (sum, &kept) in columns.iter_mut().zip(&self.kept) {
+                    *sum += dot(&run.shared[kept], residual);
                 }
+                run.load.as_ref().map_or(0.0, |load| dot(load, residual))
+            })
+            .collect();
+        Products { loads, columns }
+    }
+
+    /// Pull of residuals with these products on the free parameters, the loads eliminated.
+    fn pull(&self, products: &Products) -> DVector<f64> {
+        let mut pull = products.columns.clone();
+        for (load, product) in self.loads.iter().zip(&products.loads) {
+            if let Some(load) = load {
+                pull -= &load.coupling * ((product - load.value) / load.square);
             }
         }
         pull
@@ -143,17 +203,11 @@ impl<J: Borrow<Jacobian>> Frame<J> {
 
     /// Products of a signature with the free columns, the loads eliminated.
     fn coupling(&self, signature: &[Vec<f64>]) -> DVector<f64> {
-        let mut coupling = DVector::zeros(self.kept.len());
-        for (run, column) in self.jacobian().runs.iter().zip(signature) {
-            let through_load = run.load.as_ref().map(|load| {
-                let share = dot(load, column) / (dot(load, load) + 1.0);
-                (load, share)
-            });
-            for (row, &kept) in self.kept.iter().enumerate() {
-                coupling[row] += dot(&run.shared[kept], column);
-                if let Some((load, share)) = through_load {
-                    coupling[row] -= share * dot(&run.shared[kept], load);
-                }
+        let products = self.products(signature);
+        let mut coupling = products.columns;
+        for (load, product) in self.loads.iter().zip(&products.loads) {
+            if let Some(load) = load {
+                coupling -= &load.coupling * (product / load.square);
             }
         }
         coupling

@@ -107,7 +107,7 @@ pub fn huber_residuals(
 /// Sum of squares of residuals.
 #[must_use]
 pub fn square_sum(residuals: &[Vec<f64>]) -> f64 {
-    residuals.iter().flatten().map(|e| e * e).sum()
+    residuals.iter().map(|run| dot(run, run)).sum()
 }
 
 /// Dot product. Eight sums side by side: one alone could not be vectorised, as the order of a sum of floats counts.
