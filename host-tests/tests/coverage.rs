@@ -6,10 +6,9 @@
 
 use hitch_model::Model;
 use hitch_model::effects::{AddedEffect, CATALOGUE, Effect};
-use hitch_model::identification::candidate::Effort;
-use hitch_model::identification::candidate::try_effects;
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::fit_base;
+use hitch_model::identification::trials::try_effects;
 use hitch_model::model::Dynamics;
 use host_tests::simulated_lab::campaign;
 use rand::SeedableRng;
@@ -75,14 +74,7 @@ fn distances(effect: &'static dyn Effect, seed: u64) -> Distances {
     let campaign = campaign(&rig, &mut random);
     let experiment = Experiment::new(&campaign, &nominal);
     let base = fit_base(&experiment, &nominal);
-    let candidates = try_effects(
-        &experiment,
-        &nominal,
-        &base,
-        &[effect],
-        Effort::Thorough,
-        &|_| {},
-    );
+    let candidates = try_effects(&experiment, &nominal, &base, &[effect], &|_| {});
     let found = candidates.first().expect("one effect was tried");
     let deviation = |(low, high): (f64, f64)| (high - low) / (2.0 * WIDTH);
     let intervals = found.intervals.iter().zip(found.values());

@@ -1,18 +1,11 @@
-//! One effect of the catalogue tried on a model: started from finite secants, fitted, weighed.
-
-use std::collections::HashSet;
-
-use rayon::prelude::*;
+//! One effect fitted beside everything that was free already, and weighed.
 
 use super::estimate::Shared;
 use super::evidence::{detectability, log_odds, variance_inflation};
 use super::experiment::Experiment;
-use super::explain::{BELIEVED, VISIBLE};
-use super::fit::{Fit, evaluate_weighted, refine};
+use super::fit::Fit;
 use super::frame::Frame;
 use super::jacobian::{Jacobian, SlowColumns, difference, huber, huber_residuals, square_sum};
-pub use super::scan::Effort;
-use super::shortlist::{Shortlist, Sketch, limit};
 use crate::effects::{AddedEffect, Effect, Parameter};
 use crate::model::Model;
 
@@ -20,14 +13,6 @@ use crate::model::Model;
 const SYSTEMATIC_A: f64 = 0.000_7;
 const SYSTEMATIC_S: f64 = 0.001;
 const SYSTEMATIC_SHARE: f64 = 0.005;
-
-/// An effect is fitted in full if its sketch is the best, or leaves at most this share of what the best sketch explains
-/// unexplained.
-const HOPELESS: f64 = 0.15;
-
-/// Falls of the cost that are worth a sketch and a fit, as shares of the least one that would be believed.
-const WORTH_A_SKETCH: f64 = 0.06;
-const WORTH_A_FIT: f64 = 0.25;
 
 /// An effect fitted beside everything that was free already.
 #[derive(Debug, Clone)]
@@ -48,6 +33,19 @@ pub struct Candidate {
 }
 
 impl Candidate {
+    /// The candidate of an effect that a screen found nothing of, in a fit at its null value.
+    #[must_use]
+    pub fn absent(effect: &'static dyn Effect, fit: Fit) -> Self {
+        Self {
+            effect,
+            fit,
+            likelihood_ratio: 0.0,
+            inflation: 1.0,
+            detectability: 0.0,
+            intervals: vec![(f64::NAN, f64::NAN); effect.parameters().len()],
+        }
+    }
+
     /// Logarithm of the odds that the effect is there: a shape of its own costs an effect as much as it has to explain.
     #[must_use]
     pub fn log_odds(&self) -> f64 {
@@ -72,107 +70,6 @@ impl Candidate {
     }
 }
 
-/// Tries effects on a fitted model: all are screened, the promising ones sketched, and those that may be the best
-/// fitted in full. Best first.
-#[must_use]
-pub fn try_effects(
-    experiment: &Experiment,
-    model: &Model,
-    base: &Fit,
-    effects: &[&'static dyn Effect],
-    effort: Effort,
-    progress: &(dyn Fn(&str) + Sync),
-) -> Vec<Candidate> {
-    let slow = slow_columns(experiment, model, base);
-    let jacobian = jacobian_by(experiment, model, base, &slow);
-    // An effect that is barely visible explains this much.
-    let believed = BELIEVED.max(base.weights.count() as f64 * VISIBLE.powi(2));
-    let shortlist = Shortlist {
-        experiment,
-        model,
-        base,
-        frame: Frame::new(&jacobian, &base.estimate, 0..0),
-        worthwhile: WORTH_A_SKETCH * believed,
-        effort,
-    };
-    let sketches = shortlist.sketches(effects);
-    let best = sketches.first().map_or(base.cost, |first| first.cost);
-    let hopeless = limit(base.cost, best, HOPELESS);
-    let mut candidates: Vec<Candidate> = sketches
-        .into_par_iter()
-        .enumerate()
-        .map(|(rank, sketch)| {
-            let promising = rank == 0 || sketch.cost < hopeless;
-            let candidate = if sketch.is_absent() {
-                absent(base, sketch)
-            } else if promising && base.cost - sketch.cost > WORTH_A_FIT * believed {
-                let fit = refine(experiment, model, sketch.estimate);
-                weigh(experiment, model, base, sketch.effect, fit)
-            } else {
-                let weights = base.weights.clone();
-                let fit = evaluate_weighted(experiment, model, sketch.estimate, weights);
-                weigh_by(experiment, model, base, sketch.effect, fit, &slow)
-            };
-            progress(candidate.effect.id());
-            candidate
-        })
-        .collect();
-    rank(base, &mut candidates);
-    better_forms(candidates)
-}
-
-/// Of an effect with several forms the likelier one.
-fn better_forms(ranked: Vec<Candidate>) -> Vec<Candidate> {
-    let mut named = HashSet::new();
-    let candidates = ranked.into_iter();
-    candidates
-        .filter(|candidate| named.insert(candidate.effect.id()))
-        .collect()
-}
-
-/// Sorts candidates by their odds against each other, the best first.
-///
-/// All are counted at the inflation of the one with the least cost: each at its own would prefer what leaves a rest
-/// that hardly correlates with its signature over what leaves less.
-fn rank(base: &Fit, candidates: &mut [Candidate]) {
-    let Some(odds) = mutual_odds(base, candidates) else {
-        return;
-    };
-    candidates.sort_by(|a, b| odds(b).total_cmp(&odds(a)));
-}
-
-/// Logarithm of the odds of candidates against their common base, all at one inflation; `None` without candidates.
-pub fn mutual_odds(
-    base: &Fit,
-    candidates: &[Candidate],
-) -> Option<impl Fn(&Candidate) -> f64 + use<>> {
-    let best = candidates
-        .iter()
-        .min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost))?;
-    let compared = best.fit.weights.count() as f64;
-    let variance = (square_sum(&best.fit.residuals) / compared).max(1.0);
-    let (inflation, effective, base_cost) = (best.inflation, best.effective_samples(), base.cost);
-    Some(move |candidate: &Candidate| {
-        let ratio = (base_cost - candidate.fit.cost) / (variance * inflation);
-        log_odds(ratio, candidate.effect.parameters().len(), effective)
-    })
-}
-
-/// The candidate of an effect that the screen found nothing of.
-fn absent(base: &Fit, sketch: Sketch) -> Candidate {
-    Candidate {
-        effect: sketch.effect,
-        fit: Fit {
-            estimate: sketch.estimate,
-            ..base.clone()
-        },
-        likelihood_ratio: 0.0,
-        inflation: 1.0,
-        detectability: 0.0,
-        intervals: vec![(f64::NAN, f64::NAN); sketch.effect.parameters().len()],
-    }
-}
-
 /// Weighs the last effect of a fitted model against the model without it.
 #[must_use]
 pub fn weigh(
@@ -187,20 +84,25 @@ pub fn weigh(
 }
 
 /// Columns of clocks and loads at a fit, whose residuals are known.
-fn slow_columns(experiment: &Experiment, model: &Model, fit: &Fit) -> SlowColumns {
+pub(super) fn slow_columns(experiment: &Experiment, model: &Model, fit: &Fit) -> SlowColumns {
     let residuals = huber(fit.residuals.clone());
     SlowColumns::new(experiment, model, &fit.weights, &fit.estimate, &residuals)
 }
 
 /// Sensitivities at a fit, whose residuals are known, with the columns of clocks and loads from there or nearby.
-fn jacobian_by(experiment: &Experiment, model: &Model, fit: &Fit, slow: &SlowColumns) -> Jacobian {
+pub(super) fn jacobian_by(
+    experiment: &Experiment,
+    model: &Model,
+    fit: &Fit,
+    slow: &SlowColumns,
+) -> Jacobian {
     let residuals = huber(fit.residuals.clone());
     let (weights, estimate) = (&fit.weights, &fit.estimate);
     Jacobian::with_slow_columns(experiment, model, weights, estimate, &residuals, slow)
 }
 
 /// [`weigh`] with the columns of clocks and loads from a point nearby.
-fn weigh_by(
+pub(super) fn weigh_by(
     experiment: &Experiment,
     model: &Model,
     base: &Fit,
@@ -210,8 +112,7 @@ fn weigh_by(
 ) -> Candidate {
     let index = fit.estimate.effects.len() - 1;
     let jacobian = jacobian_by(experiment, model, &fit, slow);
-    let compared = fit.weights.count() as f64;
-    let variance = (square_sum(&fit.residuals) / compared).max(1.0);
+    let variance = fit.variance();
     let signatures: Vec<Signature> = (0..effect.parameters().len())
         .map(|parameter| Signature::new(experiment, &fit, &jacobian, index, parameter))
         .collect();

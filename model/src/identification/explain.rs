@@ -7,7 +7,7 @@
 
 use super::adequacy::{Cell, adequate, cells};
 use super::attribution::{Attribution, attribute};
-use super::candidate::{Candidate, mutual_odds, try_effects, weigh};
+use super::candidate::{Candidate, weigh};
 use super::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
 use super::estimate::Estimate;
 use super::evidence::shares;
@@ -15,7 +15,7 @@ use super::experiment::Experiment;
 use super::fit::{Fit, evaluate, fit, refine};
 use super::holdout::held_out_error;
 use super::regime::Regime;
-use super::scan::Effort;
+use super::trials::{Odds, Trials, try_effects};
 use super::twins::twins;
 use super::unseen::{Unseen, unseen};
 use crate::effects::Effect;
@@ -170,16 +170,15 @@ pub fn diagnose(
     progress: Progress,
 ) -> Diagnosis {
     let absent = absent(model, &base.estimate);
-    let candidates = try_effects(
-        experiment,
-        model,
-        &base,
-        &absent,
-        Effort::Thorough,
-        progress,
-    );
-    let mut odds: Vec<f64> = mutual_odds(&base, &candidates)
-        .map_or_else(Vec::new, |odds| candidates.iter().map(odds).collect());
+    let candidates = try_effects(experiment, model, &base, &absent, progress);
+    let cheapest = candidates
+        .iter()
+        .min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
+    let mut odds: Vec<f64> = cheapest.map_or_else(Vec::new, |cheapest| {
+        let odds = Odds::new(&base, cheapest);
+        let of = |candidate: &Candidate| odds.of(&candidate.fit);
+        candidates.iter().map(of).collect()
+    });
     odds.push(0.0);
     let mut confidences = shares(&odds);
     confidences.pop();
@@ -225,7 +224,8 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
         if !enough(&before) || steps.len() == MOST_STEPS || lost {
             break;
         }
-        let diagnosis = diagnose(experiment, model, present.clone(), progress);
+        let absent = absent(model, &present.estimate);
+        let trials = Trials::new(experiment, model, &present, &absent, progress);
         if present_held_out.is_nan() {
             present_held_out = held_out_error(experiment, model, &present);
         }
@@ -238,7 +238,7 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
             visible,
             held_out: present_held_out,
         };
-        let Some((best, held_out_after)) = proven(experiment, model, &diagnosis, proof) else {
+        let Some((best, held_out_after)) = proven(experiment, model, &trials, proof) else {
             break;
         };
         steps.push(Step {
@@ -280,12 +280,11 @@ struct Proof {
 fn proven<'a>(
     experiment: &Experiment,
     model: &Model,
-    diagnosis: &'a Diagnosis,
+    trials: &'a Trials,
     proof: Proof,
 ) -> Option<(&'a Candidate, f64)> {
-    diagnosis
-        .candidates
-        .iter()
+    trials
+        .likely(believed)
         .filter(|candidate| believable(candidate, proof.visible))
         .take(MOST_TRIED)
         .map(|candidate| {

@@ -113,6 +113,12 @@ impl Fit {
     pub fn error(&self) -> f64 {
         ErrorSums::of(self).error()
     }
+
+    /// Mean square of the residuals, at least that of noise alone: one.
+    #[must_use]
+    pub fn variance(&self) -> f64 {
+        (square_sum(&self.residuals) / self.weights.count() as f64).max(1.0)
+    }
 }
 
 /// Evaluates an estimate without changing it.

@@ -23,6 +23,7 @@ mod starts;
 pub mod suggestion;
 mod synchronise;
 pub mod traces;
+pub mod trials;
 pub mod twins;
 pub mod unseen;
 pub mod whereabouts;

@@ -19,7 +19,7 @@ pub(super) struct Grid {
     sizes: [f64; 2],
     /// Share by which a size is larger than the one before.
     finer: f64,
-    /// What makes needles, looked through in a thorough search.
+    /// What makes needles.
     needles: Option<Needles>,
     /// How far to either side of what one run found all runs are looked at, as a share of the size.
     all_runs: f64,
@@ -42,15 +42,6 @@ struct Needles {
     sizes: [f64; 2],
     /// Share by which a size is larger than the one before, for each typical size.
     finer: f64,
-}
-
-/// How thoroughly effects are looked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
-    /// Needles too.
-    Thorough,
-    /// What others may be mistaken for: a needle is not.
-    Quick,
 }
 
 /// For jumps and bounces.
@@ -94,7 +85,7 @@ pub(super) fn scan(
     model: &Model,
     base: &Fit,
     hint: &AddedEffect,
-    (grid, effort): (&Grid, Effort),
+    grid: &Grid,
 ) -> Vec<AddedEffect> {
     let Some(run) = telling_run(experiment, model, base, hint) else {
         return Vec::new();
@@ -122,7 +113,7 @@ pub(super) fn scan(
         tried
     };
     let mut best: Vec<(f64, AddedEffect)> = Vec::new();
-    for (cost, added) in ranked(coarse(hint, grid, effort)) {
+    for (cost, added) in ranked(coarse(hint, grid)) {
         let alike = |(_, other): &&(f64, AddedEffect)| added.values[1..] == other.values[1..];
         let apart = |(_, other): &(f64, AddedEffect)| {
             let (a, b) = (added.values[0], other.values[0]);
@@ -165,7 +156,7 @@ fn telling_run(
 }
 
 /// Every size with every shape, and what makes needles.
-fn coarse(hint: &AddedEffect, grid: &Grid, effort: Effort) -> Vec<AddedEffect> {
+fn coarse(hint: &AddedEffect, grid: &Grid) -> Vec<AddedEffect> {
     let share = |k: usize| k as f64 / (grid.shapes - 1) as f64;
     let even = combinations(hint, |index, range| match index {
         0 => sizes(range, grid.sizes, |_| grid.finer),
@@ -173,9 +164,7 @@ fn coarse(hint: &AddedEffect, grid: &Grid, effort: Effort) -> Vec<AddedEffect> {
             .map(|k| range.low + share(k) * (range.high - range.low))
             .collect(),
     });
-    let needles = grid.needles.as_ref();
-    let needles = needles.filter(|_| effort == Effort::Thorough);
-    let needles = needles.map_or_else(Vec::new, |needles| {
+    let needles = grid.needles.as_ref().map_or_else(Vec::new, |needles| {
         combinations(hint, |index, range| match index {
             0 => sizes(range, needles.sizes, |size| needles.finer * size),
             _ => vec![range.high],

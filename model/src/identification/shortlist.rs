@@ -7,7 +7,6 @@ use super::experiment::Experiment;
 use super::fit::{Fit, sketch};
 use super::frame::Frame;
 use super::jacobian::Jacobian;
-use super::scan::Effort;
 use super::starts::{Starts, valleys};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
@@ -24,6 +23,10 @@ const ARRIVED: f64 = 0.3;
 /// A sketch that leaves no more than this error leaves nothing to those that the screen thinks little of, nor to
 /// needles.
 const EXPLAINED: f64 = 1.15;
+
+/// An effect is fitted in full if its sketch is the best, or leaves at most this share of what the best sketch explains
+/// unexplained.
+pub(super) const HOPELESS: f64 = 0.15;
 
 /// An effect is sketched if its screened cost leaves at most this share of what the best screened one explains
 /// unexplained, unless so many are better: where no effect explains much, all explain nearly as much as the best.
@@ -68,8 +71,6 @@ pub(super) struct Shortlist<'a> {
     pub frame: Frame<&'a Jacobian>,
     /// Fall of the cost under which nothing is worth a sketch.
     pub worthwhile: f64,
-    /// How thoroughly effects are looked for.
-    pub effort: Effort,
 }
 
 impl Shortlist<'_> {

@@ -103,13 +103,7 @@ impl Shortlist<'_> {
     pub(super) fn looked_through(&self, effect: &'static dyn Effect, grid: &Grid) -> Starts {
         let mut ranked = self.rank(sizes(effect));
         if let Some(first) = ranked.first() {
-            let found = scan(
-                self.experiment,
-                self.model,
-                self.base,
-                &first.last(),
-                (grid, self.effort),
-            );
+            let found = scan(self.experiment, self.model, self.base, &first.last(), grid);
             ranked.extend(self.rank(found));
             self.sort(&mut ranked);
         }

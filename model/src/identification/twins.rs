@@ -3,15 +3,16 @@
 //! What is likelier and what these data can tell apart are two things: the evidence names the simplest that fits, and a
 //! twin that fits as well is listed beside it, whatever its parameters cost.
 
+use std::collections::HashSet;
+
 use rayon::prelude::*;
 
-use super::candidate::{Candidate, try_effects};
 use super::design::{Alternative, Place};
+use super::estimate::Estimate;
 use super::experiment::Experiment;
 use super::explain::absent;
-use super::fit::{Fit, refine};
-use super::jacobian::square_sum;
-use super::scan::Effort;
+use super::fit::{Fit, refine, sketch};
+use super::shortlist::{HOPELESS, limit};
 use super::starts::{scaled, with_extreme_shapes};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
@@ -30,52 +31,74 @@ const SMALL: f64 = 0.3;
 /// is one, though a lift valve that passes less looks the same.
 const SAME_DEG: f64 = 2.0;
 
-/// Effects that fit as well in place of the last one.
+/// Effects that fit as well in place of the last one, whose variance is inflated by so much.
+///
+/// Each starts from the fit itself, with as much of it in the named effect's place as looks most like that.
 pub(super) fn twins(
     experiment: &Experiment,
     model: &Model,
     whole: &Fit,
     inflation: f64,
 ) -> Vec<Alternative> {
-    let last = whole.estimate.effects.len() - 1;
     let Some(place) = Place::new(experiment, model, whole) else {
         return Vec::new();
     };
-    let base_estimate = whole.estimate.without(last);
-    let variance = (square_sum(&whole.residuals) / whole.weights.count() as f64).max(1.0);
-    let alike: Vec<&'static dyn Effect> = absent(model, &whole.estimate)
+    let hopeless = limit(whole.cost + place.explained(), whole.cost, HOPELESS);
+    let swapped: Vec<Fit> = absent(model, &whole.estimate)
         .into_par_iter()
-        .filter(|effect| {
-            let typical = AddedEffect::typical(*effect);
-            let extreme = with_extreme_shapes(&typical);
-            let small = scaled(&typical, SMALL);
-            [typical]
-                .iter()
-                .chain(&extreme)
-                .chain([&small])
-                .any(|form| place.angle_deg(form) < ALIKE_DEG)
-        })
+        .filter_map(|effect| start(&place, whole, effect))
+        .map(|start| sketch(experiment, model, &whole.weights, start, false))
+        .filter(|(cost, _)| *cost < hopeless)
+        .map(|(_, estimate)| refine(experiment, model, estimate))
         .collect();
-    if alike.is_empty() {
-        return Vec::new();
-    }
-    let own_size = size_key(&whole.estimate.effects[last]);
-    let own_parameters = whole.estimate.effects[last].values.len() as f64;
-    let base = refine(experiment, model, base_estimate);
-    try_effects(experiment, model, &base, &alike, Effort::Quick, &|_| {})
+    let compared = whole.weights.count() as f64;
+    let variance = whole.variance();
+    let mut twins: Vec<(f64, Fit)> = swapped
         .into_iter()
-        .filter_map(|swapped| {
-            let better = (whole.cost - swapped.fit.cost) / (variance * inflation);
-            let spared = own_parameters - swapped.effect.parameters().len() as f64;
-            let merit = |spared: f64| spared * swapped.effective_samples().ln();
+        .filter_map(|fit| {
+            let (own, other) = (last(whole)?, last(&fit)?);
+            let better = (whole.cost - fit.cost) / (variance * inflation);
+            let spared = own.values.len() as f64 - other.values.len() as f64;
+            let merit = |spared: f64| spared * (compared / inflation).ln();
             // Fewer parameters are a merit; more are no fault in what cannot be told apart.
-            let plain = plain(&swapped).filter(|plain| size_key(plain) == own_size);
+            let plain = plain(other).filter(|plain| size_key(plain) == size_key(own));
             let alike = better + merit(spared.max(0.0)) > -TOLD_APART
                 && plain.is_none_or(|plain| place.angle_deg(&plain) > SAME_DEG);
-            alike.then_some((better + merit(spared), swapped.fit))
+            alike.then_some((better + merit(spared), fit))
         })
+        .collect();
+    twins.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut named = HashSet::new();
+    twins
+        .into_iter()
+        .filter(|(_, fit)| last(fit).is_some_and(|added| named.insert(added.effect.id())))
         .filter_map(|(likelier, fit)| Alternative::new(experiment, model, whole, (fit, likelier)))
         .collect()
+}
+
+fn last(fit: &Fit) -> Option<&AddedEffect> {
+    fit.estimate.effects.last()
+}
+
+/// A fit with another effect in the place of its last one, in the form and size most like it; `None` if it is like it
+/// in none.
+fn start(place: &Place, whole: &Fit, effect: &'static dyn Effect) -> Option<Estimate> {
+    let typical = AddedEffect::typical(effect);
+    let small = scaled(&typical, SMALL);
+    let mut forms = with_extreme_shapes(&typical);
+    forms.extend([typical, small]);
+    let size = &effect.parameters()[0];
+    let likened = forms.into_iter().map(|form| {
+        let (angle_deg, share) = place.likeness(&form);
+        let mut alike = scaled(&form, share);
+        alike.values[0] = alike.values[0].clamp(size.low, size.high);
+        (angle_deg, alike)
+    });
+    let (angle_deg, alike) = likened.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let worth_a_try = angle_deg < ALIKE_DEG && !alike.is_null();
+    let mut estimate = whole.estimate.clone();
+    *estimate.effects.last_mut()? = alike;
+    worth_a_try.then_some(estimate)
 }
 
 /// What the size of an effect is called in a model file.
@@ -83,9 +106,9 @@ fn size_key(added: &AddedEffect) -> &'static str {
     added.effect.parameters()[0].key
 }
 
-/// A candidate's effect without the shape of its own, `None` if it has none.
-fn plain(candidate: &Candidate) -> Option<AddedEffect> {
-    let mut plain = candidate.fit.estimate.effects.last()?.clone();
+/// An effect without the shape of its own, `None` if it has none.
+fn plain(added: &AddedEffect) -> Option<AddedEffect> {
+    let mut plain = added.clone();
     let parameters = plain.effect.parameters();
     for (value, parameter) in plain.values.iter_mut().zip(parameters).skip(1) {
         if (parameter.low..=parameter.high).contains(&parameter.null) {

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use hitch_model::Model;
 use hitch_model::campaign::Campaign;
 use hitch_model::effects::Effect;
-use hitch_model::identification::candidate::Effort;
-use hitch_model::identification::candidate::{Candidate, try_effects};
+use hitch_model::identification::candidate::Candidate;
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::fit_base;
+use hitch_model::identification::trials::try_effects;
 
 use super::effects::find;
 use crate::error::Error;
@@ -56,7 +56,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     );
     let say = |what: &str| progress.say(format!("fitting {what}"));
     for effect in effects {
-        for candidate in try_effects(&experiment, &model, &fit, &[effect], Effort::Thorough, &say) {
+        for candidate in try_effects(&experiment, &model, &fit, &[effect], &say) {
             let _ = writeln!(text, "{}", shown(&candidate));
             fit = candidate.fit;
         }

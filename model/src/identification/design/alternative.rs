@@ -98,8 +98,26 @@ impl<'a> Place<'a> {
     /// Angle between the signatures of the effect that is there and of `other` in its place, degree.
     #[must_use]
     pub fn angle_deg(&self, other: &AddedEffect) -> f64 {
+        self.likeness(other).0
+    }
+
+    /// [`Place::angle_deg`], and how many times `other` comes nearest to the effect that is there.
+    #[must_use]
+    pub fn likeness(&self, other: &AddedEffect) -> (f64, f64) {
         let others = self.signature(&self.residuals(other.clone()));
-        between_deg(&self.own, &others)
+        let square = product(&others, &others);
+        let share = if square > 0.0 {
+            product(&self.own, &others) / square
+        } else {
+            1.0
+        };
+        (between_deg(&self.own, &others), share)
+    }
+
+    /// Fall of the cost that only the effect which is there explains, to first order.
+    #[must_use]
+    pub fn explained(&self) -> f64 {
+        product(&self.own, &self.own)
     }
 
     /// What is done to the campaign by what leaves some residuals, less what all that is free besides can imitate.
@@ -134,10 +152,12 @@ fn without(mut jacobian: Jacobian, effect: usize) -> Jacobian {
     jacobian
 }
 
+fn product(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| dot(a, b)).sum()
+}
+
 /// Angle between two signatures, degree; a right one if either is nothing.
 fn between_deg(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
-    let product =
-        |x: &[Vec<f64>], y: &[Vec<f64>]| -> f64 { x.iter().zip(y).map(|(x, y)| dot(x, y)).sum() };
     let (aa, bb, ab) = (product(a, a), product(b, b), product(a, b));
     if aa <= 0.0 || bb <= 0.0 {
         return 90.0;

@@ -13,12 +13,12 @@ mod screen;
 mod shapes;
 mod spread;
 
-use super::candidate::{Candidate, try_effects, weigh};
+use super::candidate::{Candidate, weigh};
 use super::experiment::Experiment;
 use super::explain::{BELIEVED, Explanation, Progress, Verdict};
 use super::fit::{Fit, evaluate, refine};
 use super::holdout::held_out_error;
-use super::scan::Effort;
+use super::trials::try_effects;
 use crate::effects::{AddedEffect, Effect, TermEffect};
 use crate::expression::TermDefinition;
 use crate::model::Model;
@@ -160,14 +160,7 @@ fn trials(
     };
     let terms = screen::best(experiment, model, start, definitions, count);
     let effects: Vec<&'static dyn Effect> = terms.iter().map(|term| *term as &dyn Effect).collect();
-    let candidates = try_effects(
-        experiment,
-        model,
-        start,
-        &effects,
-        Effort::Thorough,
-        progress,
-    );
+    let candidates = try_effects(experiment, model, start, &effects, progress);
     let believed = candidates
         .into_iter()
         .filter(|candidate| candidate.likelihood_ratio >= BELIEVED);

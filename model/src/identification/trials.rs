@@ -1,0 +1,216 @@
+//! Effects tried on a model: all are screened, the promising ones sketched, and those that may be the best fitted in
+//! full.
+//!
+//! To rank them their costs are enough. What makes a candidate (evidence, detectability, intervals) wants a Jacobian of
+//! its own and is only reckoned of those that are asked for.
+
+use std::collections::HashSet;
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+
+use super::candidate::{Candidate, jacobian_by, slow_columns, weigh, weigh_by};
+use super::evidence::log_odds;
+use super::experiment::Experiment;
+use super::explain::{BELIEVED, VISIBLE};
+use super::fit::{Fit, evaluate_weighted, refine};
+use super::frame::Frame;
+use super::jacobian::SlowColumns;
+use super::shortlist::{HOPELESS, Shortlist, Sketch, limit};
+use crate::effects::Effect;
+use crate::model::Model;
+
+/// Falls of the cost that are worth a sketch and a fit, as shares of the least one that would be believed.
+const WORTH_A_SKETCH: f64 = 0.06;
+const WORTH_A_FIT: f64 = 0.25;
+
+/// Effects tried on one fitted model, the most likely first.
+pub struct Trials<'a> {
+    experiment: &'a Experiment,
+    model: &'a Model,
+    base: &'a Fit,
+    slow: SlowColumns,
+    ranked: Vec<Trial>,
+}
+
+/// One effect tried.
+struct Trial {
+    effect: &'static dyn Effect,
+    fit: Fit,
+    pace: Pace,
+    weighed: OnceLock<Candidate>,
+}
+
+/// How far a trial went.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Pace {
+    /// The screen found nothing of the effect.
+    Absent,
+    /// Screened or sketched, near the base.
+    Sketched,
+    /// Fitted in full.
+    Fitted,
+}
+
+/// Tries effects on a fitted model and weighs all; best first.
+#[must_use]
+pub fn try_effects(
+    experiment: &Experiment,
+    model: &Model,
+    base: &Fit,
+    effects: &[&'static dyn Effect],
+    progress: &(dyn Fn(&str) + Sync),
+) -> Vec<Candidate> {
+    Trials::new(experiment, model, base, effects, progress).all_weighed()
+}
+
+impl<'a> Trials<'a> {
+    /// Tries effects; `progress` is told of each.
+    #[must_use]
+    pub fn new(
+        experiment: &'a Experiment,
+        model: &'a Model,
+        base: &'a Fit,
+        effects: &[&'static dyn Effect],
+        progress: &(dyn Fn(&str) + Sync),
+    ) -> Self {
+        let slow = slow_columns(experiment, model, base);
+        let jacobian = jacobian_by(experiment, model, base, &slow);
+        // An effect that is barely visible explains this much.
+        let believed = BELIEVED.max(base.weights.count() as f64 * VISIBLE.powi(2));
+        let shortlist = Shortlist {
+            experiment,
+            model,
+            base,
+            frame: Frame::new(&jacobian, &base.estimate, 0..0),
+            worthwhile: WORTH_A_SKETCH * believed,
+        };
+        let sketches = shortlist.sketches(effects);
+        let best = sketches.first().map_or(base.cost, |first| first.cost);
+        let hopeless = limit(base.cost, best, HOPELESS);
+        let trial = |(rank, sketch): (usize, Sketch)| {
+            let promising = rank == 0 || sketch.cost < hopeless;
+            let worthwhile = base.cost - sketch.cost > WORTH_A_FIT * believed;
+            let trial = Trial::new(experiment, model, base, sketch, promising && worthwhile);
+            progress(trial.effect.id());
+            trial
+        };
+        let ranked = sketches.into_par_iter().enumerate().map(trial).collect();
+        let mut trials = Self {
+            experiment,
+            model,
+            base,
+            slow,
+            ranked,
+        };
+        trials.rank();
+        trials
+    }
+
+    /// Sorts by the odds, the best first, and keeps of an effect with several forms the likelier one.
+    fn rank(&mut self) {
+        let best = self
+            .ranked
+            .iter()
+            .min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
+        let Some(best) = best else {
+            return;
+        };
+        let odds = Odds::new(self.base, self.weighed(best));
+        self.ranked
+            .sort_by(|a, b| odds.of(&b.fit).total_cmp(&odds.of(&a.fit)));
+        let mut named = HashSet::new();
+        self.ranked.retain(|trial| named.insert(trial.effect.id()));
+    }
+
+    /// Weighs a trial, once.
+    fn weighed<'t>(&self, trial: &'t Trial) -> &'t Candidate {
+        let (experiment, model, base) = (self.experiment, self.model, self.base);
+        let (effect, fit) = (trial.effect, &trial.fit);
+        trial.weighed.get_or_init(|| match trial.pace {
+            Pace::Absent => Candidate::absent(effect, fit.clone()),
+            Pace::Sketched => weigh_by(experiment, model, base, effect, fit.clone(), &self.slow),
+            Pace::Fitted => weigh(experiment, model, base, effect, fit.clone()),
+        })
+    }
+
+    /// All candidates, the most likely first.
+    #[must_use]
+    pub fn all_weighed(&self) -> Vec<Candidate> {
+        let ranked = self.ranked.par_iter();
+        ranked.map(|trial| self.weighed(trial).clone()).collect()
+    }
+
+    /// The candidates, the most likely first, whose cost falls far enough for as much evidence as `believed` asks of
+    /// their effect; each is weighed as it is come to.
+    pub fn likely(
+        &self,
+        believed: impl Fn(&dyn Effect) -> f64,
+    ) -> impl Iterator<Item = &Candidate> {
+        self.ranked
+            .iter()
+            .filter(move |trial| self.base.cost - trial.fit.cost >= believed(trial.effect))
+            .map(|trial| self.weighed(trial))
+    }
+}
+
+impl Trial {
+    fn new(
+        experiment: &Experiment,
+        model: &Model,
+        base: &Fit,
+        sketch: Sketch,
+        in_full: bool,
+    ) -> Self {
+        let effect = sketch.effect;
+        let (pace, fit) = if sketch.is_absent() {
+            let estimate = sketch.estimate;
+            let fit = Fit {
+                estimate,
+                ..base.clone()
+            };
+            (Pace::Absent, fit)
+        } else if in_full {
+            (Pace::Fitted, refine(experiment, model, sketch.estimate))
+        } else {
+            let weights = base.weights.clone();
+            let fit = evaluate_weighted(experiment, model, sketch.estimate, weights);
+            (Pace::Sketched, fit)
+        };
+        Self {
+            effect,
+            fit,
+            pace,
+            weighed: OnceLock::new(),
+        }
+    }
+}
+
+/// The odds of effects against their common base, all at the inflation of the one with the least cost: each at its own
+/// would prefer what leaves a rest that hardly correlates with its signature over what leaves less.
+pub struct Odds {
+    base_cost: f64,
+    /// What the cost falls by for a likelihood ratio of one.
+    unit: f64,
+    effective_samples: f64,
+}
+
+impl Odds {
+    /// The odds beside the candidate with the least cost.
+    #[must_use]
+    pub fn new(base: &Fit, best: &Candidate) -> Self {
+        Self {
+            base_cost: base.cost,
+            unit: best.fit.variance() * best.inflation,
+            effective_samples: best.effective_samples(),
+        }
+    }
+
+    /// Logarithm of the odds of the last effect of a fit.
+    #[must_use]
+    pub fn of(&self, fit: &Fit) -> f64 {
+        let parameters = fit.estimate.effects.last().map_or(0, |e| e.values.len());
+        let ratio = (self.base_cost - fit.cost) / self.unit;
+        log_odds(ratio, parameters, self.effective_samples)
+    }
+}
