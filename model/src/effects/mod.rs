@@ -89,7 +89,8 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &load_arm::LOAD_ARM,
     &ground_contact::GROUND_CONTACT,
     &angle_sensor_gain::ANGLE_SENSOR_GAIN,
-    &angle_sensor_lag::AngleSensorLag,
+    &angle_sensor_lag::FILTERING,
+    &angle_sensor_lag::DELAYED,
     &pressure_sensor_offset::PRESSURE_SENSOR_OFFSET,
 ];
 
