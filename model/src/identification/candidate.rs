@@ -223,7 +223,7 @@ impl Seen {
         let first = columns.iter().position(own).unwrap_or(0);
         let count = columns.iter().filter(|shared| own(shared)).count();
         let frame = Frame::new(jacobian, &fit.estimate, first..first + count);
-        let (left, price) = frame.project_at_a_price(change);
+        let (left, price) = frame.project_within_range(change);
         Self {
             detectability: detectability(&left, price, fit.weights.count()),
             inflation: variance_inflation(experiment, &fit.residuals, &left),

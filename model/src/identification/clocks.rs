@@ -6,6 +6,10 @@ use crate::simulation::Trace;
 /// Prior sigma of an offset, s: a channel may be a sample of 20 ms out of step (DATA.md).
 pub const OFFSET_PRIOR_S: f64 = 0.008;
 
+/// Farthest offset, s: a little more than the sample that a channel may be out of step. What is later lags for another
+/// reason.
+pub const FARTHEST_S: f64 = 0.024;
+
 /// Clock errors of a campaign.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Clocks {

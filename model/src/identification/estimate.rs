@@ -1,6 +1,6 @@
 //! What a fit may change, and its scaling.
 
-use super::clocks::{Clocks, OFFSET_PRIOR_S};
+use super::clocks::{Clocks, FARTHEST_S, OFFSET_PRIOR_S};
 use super::experiment::{Experiment, LOAD_PRIOR, Nuisance};
 use super::jacobian::Step;
 use crate::effects::{AddedEffect, Parameter};
@@ -91,6 +91,14 @@ impl Estimate {
         }
     }
 
+    /// How far a shared parameter may go down and up from where it stands, in its scales.
+    #[must_use]
+    pub fn room(&self, shared: Shared) -> (f64, f64) {
+        let (low, high) = self.range(shared);
+        let (value, scale) = (self.get(shared), self.scale(shared));
+        ((low - value) / scale, (high - value) / scale)
+    }
+
     /// Smallest and largest value of a shared parameter, in its unit.
     #[must_use]
     pub fn range(&self, shared: Shared) -> (f64, f64) {
@@ -99,7 +107,7 @@ impl Estimate {
                 let range = self.parameter(effect, parameter);
                 (range.low, range.high)
             }
-            Shared::Offset(_) => (-FARTHEST * OFFSET_PRIOR_S, FARTHEST * OFFSET_PRIOR_S),
+            Shared::Offset(_) => (-FARTHEST_S, FARTHEST_S),
         }
     }
 

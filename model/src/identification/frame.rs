@@ -3,7 +3,7 @@
 use std::borrow::Borrow;
 use std::ops::Range;
 
-use nalgebra::{Cholesky, DVector, Dyn};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::estimate::Estimate;
 use super::jacobian::{Jacobian, RunJacobian, dot, square_sum, subtract};
@@ -12,7 +12,11 @@ use super::jacobian::{Jacobian, RunJacobian, dot, square_sum, subtract};
 pub struct Frame<J> {
     jacobian: J,
     kept: Vec<usize>,
+    /// Normal matrix of the kept columns, the loads eliminated, and its root.
+    matrix: DMatrix<f64>,
     normal: Option<Cholesky<f64, Dyn>>,
+    /// How far each kept parameter may still go within its range, in scales.
+    room: Vec<(f64, f64)>,
     /// Each run's load.
     loads: Vec<Option<Load>>,
     /// Pull of the priors of the shared parameters.
@@ -67,7 +71,9 @@ impl<J: Borrow<Jacobian>> Frame<J> {
             .filter(|column| !left_out.contains(column))
             .filter(|&column| !estimate.is_at_an_end(jacobian.shared[column]))
             .collect();
-        let normal = matrix.select_rows(&kept).select_columns(&kept).cholesky();
+        let matrix = matrix.select_rows(&kept).select_columns(&kept);
+        let room = |&column: &usize| estimate.room(jacobian.shared[column]);
+        let room = kept.iter().map(room).collect();
         let load = |run: &RunJacobian| {
             let column = run.load.as_deref()?;
             let products = kept.iter().map(|&kept| dot(&run.shared[kept], column));
@@ -84,7 +90,9 @@ impl<J: Borrow<Jacobian>> Frame<J> {
         };
         let mut frame = Self {
             jacobian: owner,
-            normal,
+            normal: matrix.clone().cholesky(),
+            matrix,
+            room,
             loads,
             priors: DVector::zeros(kept.len()),
             own: nothing,
@@ -109,8 +117,58 @@ impl<J: Borrow<Jacobian>> Frame<J> {
 
     /// [`Frame::project`], and what the imitation costs in priors: a load far from what was weighed speaks against it.
     #[must_use]
-    pub fn project_at_a_price(&self, mut signature: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, f64) {
+    pub fn project_at_a_price(&self, signature: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, f64) {
         let shares = self.shares(&self.coupling(&signature));
+        self.without(signature, &shares)
+    }
+
+    /// [`Frame::project_at_a_price`] of what is there as it stands, not of a direction: no parameter imitates it
+    /// beyond the end of its range.
+    #[must_use]
+    pub fn project_within_range(&self, signature: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, f64) {
+        let coupling = self.coupling(&signature);
+        let mut shares = self.shares(&coupling);
+        let mut held: Vec<usize> = Vec::new();
+        let beyond = |shares: &DVector<f64>, held: &[usize]| {
+            let mut free = (0..shares.len()).filter(|row| !held.contains(row));
+            free.find(|&row| shares[row] < self.room[row].0 || shares[row] > self.room[row].1)
+        };
+        while let Some(row) = beyond(&shares, &held) {
+            held.push(row);
+            let at = held.iter().map(|&row| {
+                let (low, high) = self.room[row];
+                (row, shares[row].clamp(low, high))
+            });
+            let at: Vec<(usize, f64)> = at.collect();
+            let Some(others) = self.shares_beside(&coupling, &at) else {
+                break;
+            };
+            shares = others;
+        }
+        self.without(signature, &shares)
+    }
+
+    /// Shares of the free parameters with some of them held; `None` if they cannot be told apart.
+    fn shares_beside(
+        &self,
+        coupling: &DVector<f64>,
+        held: &[(usize, f64)],
+    ) -> Option<DVector<f64>> {
+        let (mut matrix, mut right) = (self.matrix.clone(), coupling.clone());
+        for &(row, share) in held {
+            right -= self.matrix.column(row) * share;
+        }
+        for &(row, share) in held {
+            matrix.row_mut(row).fill(0.0);
+            matrix.column_mut(row).fill(0.0);
+            matrix[(row, row)] = 1.0;
+            right[row] = share;
+        }
+        Some(matrix.cholesky()?.solve(&right))
+    }
+
+    /// A signature less shares of the free columns and what the loads can imitate of the rest, and the price of both.
+    fn without(&self, mut signature: Vec<Vec<f64>>, shares: &DVector<f64>) -> (Vec<Vec<f64>>, f64) {
         let with_prior = |&(&kept, _): &(&usize, &f64)| self.jacobian().shared[kept].has_prior();
         let clocks = self.kept.iter().zip(shares.iter()).filter(with_prior);
         let mut price: f64 = clocks.map(|(_, share)| share * share).sum();

@@ -5,16 +5,13 @@
 
 use rayon::prelude::*;
 
-use super::clocks::{Clocks, OFFSET_PRIOR_S};
+use super::clocks::{Clocks, FARTHEST_S, OFFSET_PRIOR_S};
 use super::estimate::Estimate;
 use super::experiment::Experiment;
 use super::jacobian::{dot, huber};
 use super::residual::Weights;
 use super::traces::CurrentShift;
 use crate::model::Model;
-
-/// Farthest offset that is tried, s: a little more than the sample that a channel may be out of step.
-const FARTHEST_S: f64 = 0.024;
 
 /// From one offset to the next, s: a tenth of the fastest period that a sample of 20 ms still shows.
 const STEP_S: f64 = 0.004;

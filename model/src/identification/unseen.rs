@@ -40,7 +40,7 @@ pub fn unseen(experiment: &Experiment, model: &Model, fit: &Fit) -> Vec<Unseen> 
             let mut with = estimate.clone();
             with.effects.push(AddedEffect::typical(effect));
             let with = huber_residuals(experiment, model, weights, &with);
-            let (left, price) = frame.project_at_a_price(difference(&base, &with));
+            let (left, price) = frame.project_within_range(difference(&base, &with));
             Unseen {
                 effect,
                 detectability: detectability(&left, price, weights.count()),
