@@ -348,8 +348,13 @@ fn finish(
         let base = evaluate(experiment, model, after.estimate.without(effect));
         let weighed = weigh(experiment, model, &base, step.effect, whole.clone());
         if weighed.detectability < VISIBLE {
-            faint = Some(index);
-            break;
+            // A later step has taken over what this one stood for, unless nothing else gets there without it.
+            let lighter = refine(experiment, model, after.estimate.without(effect));
+            let fallen = (lighter.cost - after.cost) / (after.variance() * weighed.inflation);
+            if fallen < believed(step.effect) {
+                faint = Some((index, lighter));
+                break;
+            }
         }
         let there = 1.0 / (1.0 + (-weighed.log_odds()).exp());
         step.values = weighed.values().to_vec();
@@ -362,10 +367,8 @@ fn finish(
         }
         step.confidence = there / (1 + step.indistinguishable.len()) as f64;
     }
-    if let Some(index) = faint {
-        // A later step has taken over what this one stood for.
+    if let Some((index, lighter)) = faint {
         steps.remove(index);
-        let lighter = refine(experiment, model, after.estimate.without(given + index));
         return finish(experiment, model, before, lighter, (steps, swaps));
     }
     if let Some(index) = likelier {
