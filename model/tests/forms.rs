@@ -264,3 +264,46 @@ fn bristles_in_motion_are_dry_friction() {
         );
     }
 }
+
+/// A margin that falls with the flow: `Q^2 / Q_table^2 = (drop - k Q) / drop`, a quadratic in the flow.
+#[test]
+fn a_compensator_that_droops_with_the_flow_leaves_the_flow_of_a_quadratic() {
+    let (flow_share, slope, port_bar) = (0.15, 0.004, 30.0);
+    let time_s: Vec<f64> = (0..200).map(|k| f64::from(k) * 0.02).collect();
+    for lift_a in [1.4, 1.7, 2.0] {
+        let lift = |_| Currents {
+            lift_a,
+            lower_a: 0.0,
+        };
+        let shown = |model: &Model| {
+            let shown = flow_lpm(model, port_bar, 40.0, &time_s, lift);
+            shown[shown.len() - 1]
+        };
+        let (full_lpm, pump_lpm) = (shown(&Model::nominal()), 54.5 * 0.88);
+        let (full_bar, left_bar) = (1.5, 1.5 - slope * port_bar);
+        let lost_bar_lpm = flow_share * 4.0 / pump_lpm;
+        let a = full_bar / (full_lpm * full_lpm);
+        let root = (lost_bar_lpm * lost_bar_lpm + 4.0 * a * left_bar).sqrt();
+        let expected_lpm = (root - lost_bar_lpm) / (2.0 * a);
+        let drooping = shown(&model("compensator-droop/flow", &[flow_share, slope]));
+        assert!(
+            (drooping - expected_lpm).abs() < 1e-3,
+            "{drooping} {expected_lpm}"
+        );
+    }
+}
+
+/// A check valve whose spring is stiffer takes the same share of every flow.
+#[test]
+fn a_stiffer_spring_takes_the_same_share_of_every_flow() {
+    let time_s: Vec<f64> = (0..200).map(|k| f64::from(k) * 0.02).collect();
+    for lift_a in [1.4, 1.7, 2.0] {
+        let lift = |_| Currents {
+            lift_a,
+            lower_a: 0.0,
+        };
+        let shown = |model: &Model| flow_lpm(model, 30.0, 40.0, &time_s, lift)[199];
+        let share = shown(&model("check-valve-loss/spring", &[0.3])) / shown(&Model::nominal());
+        assert!((share - (1.2_f64 / 1.5).sqrt()).abs() < 1e-9, "{share}");
+    }
+}

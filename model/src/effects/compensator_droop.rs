@@ -2,7 +2,8 @@
 //!
 //! Force balance of its spool, `A_c (p_P - p_C) = F_0 + k x + 0.43 w x p_P`: the further it has to close and the higher
 //! the pressure, the smaller the margin. Linear about no load: `margin = 4 bar - c p_C`. What the lift orifice keeps
-//! shrinks from 1.5 bar, so the lift flow falls with its square root.
+//! shrinks from 1.5 bar, so the lift flow falls with its square root. The spool closes further the less flow it has to
+//! pass by, so the margin falls with the lift flow too: by a share `d` of the 4 bar from none to the pump's whole flow.
 
 use super::Parameter;
 use super::described::Described;
@@ -10,8 +11,10 @@ use crate::campaign::Channel;
 
 use crate::plant::sites::{RunConditions, Sites};
 
-/// Droop of the pressure compensator.
-pub static COMPENSATOR_DROOP: Described = Described {
+const CHANNELS: &[Channel] = &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle];
+
+/// Droop with the load alone.
+pub static WITH_LOAD: Described = Described {
     id: "compensator-droop",
     form: None,
     title: "Droop of the pressure compensator",
@@ -29,14 +32,56 @@ pub static COMPENSATOR_DROOP: Described = Described {
         low: -0.02,
         high: 0.05,
     }],
-    channels: &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle],
+    channels: CHANNELS,
     needs: None,
     erratic: false,
-    attach,
+    attach: |values, _, sites| fall_with_load(values[0], sites),
 };
 
-fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
-    let slope = values[0];
+/// Droop with the flow, and with the load.
+pub static WITH_FLOW: Described = Described {
+    id: "compensator-droop",
+    form: Some("flow"),
+    title: "Droop of the pressure compensator with flow and load",
+    equation: "p_P - p_C = 4 bar (1 - flow Q / Q_pump) - slope p_C",
+    source: "spool force balance of a three-way compensator; 0.05 to 0.2 of the margin over the \
+         pump's flow",
+    shows: "slow lifts are relatively faster than fast ones, and the pump pressure stands the less \
+         over the load the more flows",
+    parameters: &[
+        Parameter {
+            name: "flow",
+            unit: "",
+            key: "flow",
+            meaning: "share of the margin lost from no lift flow to the pump's whole",
+            null: 0.0,
+            typical: 0.1,
+            low: 0.0,
+            high: 0.3,
+        },
+        Parameter {
+            name: "slope",
+            unit: "bar/bar",
+            key: "slope",
+            meaning: "margin lost for each bar of cylinder pressure",
+            null: 0.0,
+            typical: 0.0,
+            low: -0.02,
+            high: 0.05,
+        },
+    ],
+    channels: CHANNELS,
+    needs: None,
+    erratic: false,
+    attach: |values, conditions, sites| {
+        let RunConditions { constants, .. } = conditions;
+        let lost_pa = values[0] * constants.compensator.margin_pa;
+        sites.margin_lost_to_flow_pa_s_m3 += lost_pa / constants.pump.flow_m3_s();
+        fall_with_load(values[1], sites);
+    },
+};
+
+fn fall_with_load(slope: f64, sites: &mut Sites) {
     sites.margin.push(Box::new(move |cylinder_pressure_pa| {
         -slope * cylinder_pressure_pa
     }));

@@ -243,7 +243,8 @@ impl Circuit<'_> {
             let drop_pa = self.lift_drop_pa(pump_pressure_pa, cylinder_pressure_pa);
             self.lift_valve_m3_s(opening, drop_pa)
         };
-        let wanted_pa = self.relieved_pa(self.lifting_pressure_pa(state), &flow_at);
+        let without_flow_pa = self.lifting_pressure_pa(state);
+        let wanted_pa = self.relieved_pa(self.drooped_pa(without_flow_pa, &flow_at), &flow_at);
         let pumped_m3_s = |pump_pressure_pa: f64| {
             constants.pump.flow_m3_s() - self.sites.pump_slip_m3_s(pump_pressure_pa)
         };
@@ -263,6 +264,18 @@ impl Circuit<'_> {
             super::root::rising(spare, 0.0, drop_pa, 10.0)
         };
         (pumped_m3_s(wanted_pa - short_pa), wanted_pa - short_pa)
+    }
+
+    /// The pump pressure, Pa, that the compensator sets over the lift flow `flow_at` it, where it would set `wanted_pa`
+    /// without any.
+    fn drooped_pa(&self, wanted_pa: f64, flow_at: &impl Fn(f64) -> f64) -> f64 {
+        let lost_pa_s_m3 = self.sites.margin_lost_to_flow_pa_s_m3;
+        if lost_pa_s_m3 == 0.0 {
+            return wanted_pa;
+        }
+        let lost_pa = |pressure_pa: f64| lost_pa_s_m3 * flow_at(pressure_pa);
+        let excess = |pressure_pa: f64| pressure_pa + lost_pa(pressure_pa) - wanted_pa;
+        super::root::rising(excess, wanted_pa - lost_pa(wanted_pa), wanted_pa, 10.0)
     }
 
     /// The pump pressure, Pa, that the relief valve leaves of what the compensator wants; `flow_at` is the lift flow

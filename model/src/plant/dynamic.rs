@@ -28,6 +28,9 @@ const AT_REST_M_S2: f64 = 4e-5;
 /// Largest rate times step that the integrator is given; its stability ends at 2.78.
 const STABLE: f64 = 1.5;
 
+/// To within how much a working compensator keeps its margin in the solution of the circuit, Pa.
+const TOLERANCE_PA: f64 = 100.0;
+
 /// A cylinder cannot hold more than a vacuum, Pa gauge.
 const VACUUM_PA: f64 = -1.0e5;
 
@@ -127,7 +130,9 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: MechanicalState) 
         constants.lower_valve.transition_drop_pa,
     );
     // A working compensator keeps the lift valve's drop whatever the cylinder pressure is.
-    let compensated = flows.pump_pressure_pa >= circuit.lifting_pressure_pa(&state);
+    let drooped_pa = circuit.sites.margin_lost_to_flow_pa_s_m3 * flows.lift_m3_s;
+    let compensated =
+        flows.pump_pressure_pa + drooped_pa >= circuit.lifting_pressure_pa(&state) - TOLERANCE_PA;
     let lift = if compensated {
         0.0
     } else {

@@ -150,6 +150,8 @@ pub struct Sites {
     pub flow_number_1_a_sqrt_pa: Option<f64>,
     /// Added to the compensator's margin, Pa, from the cylinder pressure, Pa.
     pub margin: Vec<Law>,
+    /// What the compensator's margin loses for each lift flow, Pa/(m3/s).
+    pub margin_lost_to_flow_pa_s_m3: f64,
     /// Added to the check valve's cracking pressure, Pa.
     pub cracking_extra_pa: f64,
     /// What the check valve takes beyond its cracking pressure, over the square of the flow, Pa/(m3/s)2.
@@ -195,6 +197,7 @@ impl Default for Sites {
             lower_travel_factor: Vec::new(),
             flow_number_1_a_sqrt_pa: None,
             margin: Vec::new(),
+            margin_lost_to_flow_pa_s_m3: 0.0,
             cracking_extra_pa: 0.0,
             check_valve_loss_pa_s2_m6: 0.0,
             pump_slip: Vec::new(),
