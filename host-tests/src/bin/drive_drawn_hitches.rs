@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
+use anyhow::Context as _;
 use clap::Parser;
 use hitch_firmware::control::{Calibration, ValidCalibration};
 use host_tests::drawn_hitches::draw::{Drawn, draw};
@@ -31,9 +32,24 @@ struct Arguments {
     /// Write every millisecond of the first machine as CSV, instead of any table
     #[arg(long, value_name = "TRACE.csv")]
     trace: Option<PathBuf>,
+    /// Write the figures of every move as CSV, beside the tables
+    #[arg(long, value_name = "MOVES.csv")]
+    table: Option<PathBuf>,
+    /// Only machines of this kind
+    #[arg(long, value_enum)]
+    only: Option<Kind>,
     /// Another value in it, as in `hitch loop --set`
     #[arg(long, value_name = "GROUP.NAME=VALUE")]
     set: Vec<String>,
+}
+
+/// A kind of machine.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Kind {
+    /// Effects are what textbooks say.
+    Textbook,
+    /// They have more structure than that.
+    Structured,
 }
 
 fn main() -> anyhow::Result<()> {
@@ -41,14 +57,23 @@ fn main() -> anyhow::Result<()> {
     let calibration = calibration(&arguments)?;
     let machines: Vec<Drawn> = (arguments.seed..arguments.seed + arguments.machines)
         .map(|seed| draw(seed, arguments.moves))
+        .filter(|drawn| {
+            arguments
+                .only
+                .is_none_or(|kind| drawn.structured == (kind == Kind::Structured))
+        })
         .collect();
     if let Some(path) = &arguments.trace {
-        return Ok(std::fs::write(path, trace(&machines[0], &calibration))?);
+        let drawn = machines.first().context("no machine of this kind")?;
+        return Ok(std::fs::write(path, trace(drawn, &calibration))?);
     }
     let moves: Vec<MoveFigures> = machines
         .par_iter()
         .flat_map_iter(|drawn| drive(drawn, &calibration))
         .collect();
+    if let Some(path) = &arguments.table {
+        std::fs::write(path, csv(&moves))?;
+    }
     let print = |title: &str, chosen: fn(&MoveFigures) -> bool| {
         let group: Vec<&MoveFigures> = moves.iter().filter(|moved| chosen(moved)).collect();
         if !group.is_empty() {
@@ -67,6 +92,31 @@ fn main() -> anyhow::Result<()> {
     });
     println!("{}", worst(&moves, &machines, arguments.worst));
     Ok(())
+}
+
+/// A line a move.
+fn csv(moves: &[MoveFigures]) -> String {
+    let mut text = "seed,structured,move,from_deg,to_deg,time_s,shortest_s,ratio,overshoot_deg,final_error_deg,swing_ratio,switched_on_after\n"
+        .to_owned();
+    for moved in moves {
+        let _ = writeln!(
+            text,
+            "{},{},{},{:.3},{:.3},{:.3},{:.3},{:.4},{:.4},{:.4},{:.3},{}",
+            moved.seed,
+            moved.structured,
+            moved.index,
+            moved.from_deg,
+            moved.to_deg,
+            moved.time_s,
+            moved.shortest_s,
+            moved.ratio,
+            moved.overshoot_deg,
+            moved.final_error_deg,
+            moved.swing_ratio,
+            moved.switched_on_after,
+        );
+    }
+    text
 }
 
 /// A line a millisecond: what the hitch did, and what the controller thought and asked for.
