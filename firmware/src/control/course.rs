@@ -74,18 +74,44 @@ impl Course {
     #[inline(never)]
     pub fn told(&self, rest: Micrometre, scale: DropScale, area: SquareMillimetre) -> Told {
         let along = |way: i32| Micrometre(self.direction.sign(way));
-        let volume = MicroLitrePerSecond(self.sensitivity_nl);
-        let volume = match self.direction {
-            Direction::Lift => volume,
-            Direction::Lower => scale.to_present(volume),
+        // nl over mm2 are um: a scale takes ways, where it would cut the volume short.
+        let sensitivity = Divisor::at_least_one(area.0).divide(self.sensitivity_nl);
+        let sensitivity = match self.direction {
+            Direction::Lift => sensitivity,
+            Direction::Lower => scale.to_present(MicroLitrePerSecond(sensitivity)).0,
         };
         let expected = along(Divisor::THOUSAND.divide(self.expected_nm));
         Told {
             direction: self.direction,
             expected,
             missing: expected - along((rest - self.from).0),
-            // nl over mm2 are um.
-            sensitivity: Micrometre(Divisor::at_least_one(area.0).divide(volume.0)),
+            sensitivity: Micrometre(sensitivity),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::drop_scale::DropReference;
+    use super::super::units::MilliBar;
+    use super::*;
+
+    #[test]
+    fn a_lowering_valve_that_opens_fully_makes_its_offset_felt_at_any_drop() {
+        // A third of a second on the rig's steep part, 616 ml/s for each ampere: 45 mm on 4537 mm2.
+        let course = Course {
+            sensitivity_nl: 333 * 616_000,
+            ..Course::begin(Direction::Lower, Micrometre(100_000))
+        };
+        for drop in [5_000, 15_000, 25_000] {
+            let scale = DropScale::new(&DropReference::new(MilliBar(15_000)), MilliBar(drop));
+            let told = course.told(Micrometre(80_000), scale, SquareMillimetre(4_537));
+            let exact = 333.0 * 616_000.0 / 4_537.0 * (f64::from(drop) / 15_000.0).sqrt();
+            assert!(
+                (f64::from(told.sensitivity.0) - exact).abs() < 10.0,
+                "{drop} mbar: {:?}, not {exact} um/A",
+                told.sensitivity
+            );
         }
     }
 }
