@@ -19,17 +19,22 @@ pub struct Clocks {
 
 impl Clocks {
     /// A simulated trace as channels with these offsets would have been logged at `time_s`.
-    pub fn stamp(&self, time_s: &[f64], trace: &mut Trace) {
-        for channel in Channel::ALL {
-            self.stamp_channel(channel.index(), time_s, trace);
+    #[must_use]
+    pub fn stamped(&self, time_s: &[f64], trace: &Trace) -> Trace {
+        Trace {
+            channels: Channel::ALL.map(|channel| self.stamped_channel(channel, time_s, trace)),
+            true_angle_deg: trace.true_angle_deg.clone(),
         }
     }
 
-    /// [`Clocks::stamp`] for one channel, by its index.
-    pub fn stamp_channel(&self, channel: usize, time_s: &[f64], trace: &mut Trace) {
-        let offset_s = self.offsets_s[channel];
+    /// [`Clocks::stamped`] for one channel.
+    #[must_use]
+    pub fn stamped_channel(&self, channel: Channel, time_s: &[f64], trace: &Trace) -> Vec<f64> {
+        let offset_s = self.offsets_s[channel.index()];
         if offset_s != 0.0 && time_s.len() > 1 {
-            trace.channels[channel] = later(time_s, &trace.channels[channel], offset_s);
+            later(time_s, trace.channel(channel), offset_s)
+        } else {
+            trace.channel(channel).to_vec()
         }
     }
 }
@@ -52,14 +57,15 @@ fn later(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
     }
     // Nearly every log is even, and there each sample lies at the same share of the way between two others.
     let (shift, share) = (steps.ceil(), steps.ceil() - steps);
-    let between = |around: &[f64]| held_catmull_rom([0, 1, 2, 3].map(|k| around[k]), share);
-    let inner = values.windows(4).map(between);
+    let weights = catmull_rom(share);
     let sample_of_window = 1 + shift as isize;
     let at_edge = |sample: usize| value_at(time_s, values, time_s[sample] - delay_s);
     let first = sample_of_window.clamp(0, last as isize + 1) as usize;
     let skipped = (first as isize - sample_of_window) as usize;
     let mut moved: Vec<f64> = (0..first).map(at_edge).collect();
-    moved.extend(inner.skip(skipped).take(last + 1 - first));
+    let inner = values.get(skipped..).unwrap_or_default().windows(4);
+    let inner = inner.map(|around| held([0, 1, 2, 3].map(|k| around[k]), weights));
+    moved.extend(inner.take(last + 1 - first));
     moved.extend((moved.len()..=last).map(at_edge));
     moved
 }
@@ -72,26 +78,28 @@ fn value_at(time_s: &[f64], values: &[f64], at_s: f64) -> f64 {
     let cell = later.clamp(1, last) - 1;
     let share = (at_s - time_s[cell]) / (time_s[cell + 1] - time_s[cell]);
     let around = [cell.saturating_sub(1), cell, cell + 1, (cell + 2).min(last)];
-    held_catmull_rom(around.map(|k| values[k]), share)
+    held(around.map(|k| values[k]), catmull_rom(share))
 }
 
-/// [`catmull_rom`] no further than to the two points in the middle.
-fn held_catmull_rom(around: [f64; 4], share: f64) -> f64 {
-    let (before, after) = (around[1], around[2]);
-    catmull_rom(around, share)
-        .max(before.min(after))
-        .min(before.max(after))
+/// A weighted sum of four points, no further than to the two in the middle.
+fn held([a, b, c, d]: [f64; 4], [of_a, of_b, of_c, of_d]: [f64; 4]) -> f64 {
+    (of_a * a + of_b * b + of_c * c + of_d * d)
+        .max(b.min(c))
+        .min(b.max(c))
 }
 
-/// Value at `share` of the way from the second to the third of four equidistant points.
-fn catmull_rom([a, b, c, d]: [f64; 4], share: f64) -> f64 {
-    let (slope_b, slope_c) = (0.5 * (c - a), 0.5 * (d - b));
-    let s = share;
-    let (s2, s3) = (s * s, s * s * s);
-    (2.0 * s3 - 3.0 * s2 + 1.0) * b
-        + (s3 - 2.0 * s2 + s) * slope_b
-        + (3.0 * s2 - 2.0 * s3) * c
-        + (s3 - s2) * slope_c
+/// Weights of four equidistant points in the value at a share of the way from the second to the third.
+fn catmull_rom(share: f64) -> [f64; 4] {
+    let (s, s2, s3) = (share, share * share, share * share * share);
+    // Of the slopes at the two points in the middle, half the difference of their neighbours each.
+    let (of_first, of_second) = (0.5 * (s3 - 2.0 * s2 + s), 0.5 * (s3 - s2));
+    let (leaving, arriving) = (2.0 * s3 - 3.0 * s2 + 1.0, 3.0 * s2 - 2.0 * s3);
+    [
+        -of_first,
+        leaving - of_second,
+        arriving + of_first,
+        of_second,
+    ]
 }
 
 #[cfg(test)]

@@ -208,9 +208,7 @@ impl ReadyRun {
     /// A trace as clocks with these errors would have logged it.
     #[must_use]
     pub fn stamped(&self, in_step: &Trace, clocks: &Clocks) -> Trace {
-        let mut trace = in_step.clone();
-        clocks.stamp(&self.drive.time_s, &mut trace);
-        trace
+        clocks.stamped(&self.drive.time_s, in_step)
     }
 }
 

@@ -232,8 +232,8 @@ fn offset_columns(
                 let mut moved = clocks;
                 moved.offsets_s[channel] += STEP_OF_OFFSET * OFFSET_PRIOR_S;
                 let mut trace = stamped.clone();
-                trace.channels[channel].clone_from(&plain.channels[channel]);
-                moved.stamp_channel(channel, time_s, &mut trace);
+                let late = moved.stamped_channel(Channel::ALL[channel], time_s, &plain);
+                trace.channels[channel] = late;
                 let moved = huber(vec![weights.runs[index].whiten(run, &trace)]);
                 quotient(&base, moved, STEP_OF_OFFSET).swap_remove(0)
             })
