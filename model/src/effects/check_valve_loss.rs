@@ -15,10 +15,8 @@ use crate::units::{m3_s_from_lpm, pa_from_bar};
 /// Flow at which the loss is stated, l/min.
 const RATED_LPM: f64 = 40.0;
 
-const CHANNELS: &[Channel] = &[Channel::Flow, Channel::RockerAngle];
-
-/// A seat that throttles, with a stiffer spring or without.
-pub static THROTTLING: Described = Described {
+/// Pressure loss of the check valve.
+pub static CHECK_VALVE_LOSS: Described = Described {
     id: "check-valve-loss",
     form: None,
     title: "Pressure loss of the check valve",
@@ -50,35 +48,10 @@ pub static THROTTLING: Described = Described {
             high: 1.0,
         },
     ],
-    channels: CHANNELS,
+    channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
     erratic: false,
     attach,
-};
-
-/// A stiffer spring alone.
-pub static CRACKING: Described = Described {
-    id: "check-valve-loss",
-    form: Some("spring"),
-    title: "Higher cracking pressure of the check valve",
-    equation: "dp_orifice = p_P - p_C - 2.5 bar - loss; Q = Q_table(I) sqrt(dp_orifice / 1.5 bar)",
-    source: "spread of springs, a quarter of a bar; a spring other than the data sheet's",
-    shows: "lift flows of every size fall short by the same share, as those of a smaller lift valve \
-         would; the pump pressure does not change",
-    parameters: &[Parameter {
-        name: "loss",
-        unit: "bar",
-        key: "loss_bar",
-        meaning: "pressure that it takes beyond 2.5 bar",
-        null: 0.0,
-        typical: 0.4,
-        low: 0.0,
-        high: 1.4,
-    }],
-    channels: CHANNELS,
-    needs: None,
-    erratic: false,
-    attach: |values, conditions, sites| attach(&[values[0], 1.0], conditions, sites),
 };
 
 fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {

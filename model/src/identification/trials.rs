@@ -186,18 +186,6 @@ impl Trial {
     }
 }
 
-/// An effect that can only go one way foretells the sign of what it does; one that can go either way is half as likely
-/// to have gone this one. Where two are twins but for that, like a check valve that takes more and a lift valve that
-/// passes less, it is all there is to choose by.
-fn price_of_either_sign(effect: &dyn Effect) -> f64 {
-    let size = &effect.parameters()[0];
-    if size.low < size.null {
-        std::f64::consts::LN_2
-    } else {
-        0.0
-    }
-}
-
 /// The odds of effects against their common base, all at the inflation of the one with the least cost: each at its own
 /// would prefer what leaves a rest that hardly correlates with its signature over what leaves less.
 pub struct Odds {
@@ -221,11 +209,8 @@ impl Odds {
     /// Logarithm of the odds of the last effect of a fit.
     #[must_use]
     pub fn of(&self, fit: &Fit) -> f64 {
-        let Some(added) = fit.estimate.effects.last() else {
-            return 0.0;
-        };
+        let parameters = fit.estimate.effects.last().map_or(0, |e| e.values.len());
         let ratio = (self.base_cost - fit.cost) / self.unit;
-        let odds = log_odds(ratio, added.values.len(), self.effective_samples);
-        odds - price_of_either_sign(added.effect)
+        log_odds(ratio, parameters, self.effective_samples)
     }
 }
