@@ -11,7 +11,7 @@ use super::described::Described;
 use crate::campaign::Channel;
 use crate::plant::Reading;
 use crate::plant::lag::Lag;
-use crate::plant::sites::{RunConditions, SensorStage, Sites};
+use crate::plant::sites::{SensorStage, Sites};
 
 const CHANNELS: &[Channel] = &[Channel::RockerAngle];
 
@@ -75,7 +75,7 @@ pub static DELAYED: Described = Described {
     channels: CHANNELS,
     needs: None,
     erratic: false,
-    attach: |values: &[f64], _: RunConditions<'_>, sites: &mut Sites| {
+    attach: |values, _, sites| {
         let dead_s = values[0] * values[1];
         attach(values[0] - dead_s, dead_s, sites);
     },

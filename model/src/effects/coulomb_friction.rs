@@ -97,6 +97,6 @@ pub static BRISTLES: Described = Described {
             reach_m: 1e-3 * values[1],
             creep_m_s: 1e-3 * values[2],
         });
-        sites.longest_step_s = sites.longest_step_s.min(STEP_S);
+        sites.limit_step(STEP_S);
     },
 };

@@ -40,5 +40,5 @@ pub static LOAD_INERTIA: Described = Described {
 
 fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
     sites.inertia_share += values[0];
-    sites.longest_step_s = sites.longest_step_s.min(STEP_S);
+    sites.limit_step(STEP_S);
 }

@@ -78,7 +78,7 @@ pub static FOLLOWING: Described = Described {
 
 /// Attaches spools of a kind to both valves.
 fn attach<S: Spool + 'static>(values: &[f64], sites: &mut Sites, spool: S) {
-    sites.longest_step_s = sites.longest_step_s.min(STEP_S);
+    sites.limit_step(STEP_S);
     let band_a = values[0];
     sites.currents.push(Box::new(Sticking {
         friction: Friction {

@@ -234,6 +234,11 @@ impl Sites {
         self.terms.iter().any(|(at, _)| *at == place)
     }
 
+    /// Has the quasi-static plant take steps of at most `longest_s`, s.
+    pub fn limit_step(&mut self, longest_s: f64) {
+        self.longest_step_s = self.longest_step_s.min(longest_s);
+    }
+
     /// Sum of the terms at a place, in its SI unit; one that is not finite is left out.
     #[must_use]
     pub fn term(&self, place: Place, signals: &Signals) -> f64 {
