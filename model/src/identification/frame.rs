@@ -172,13 +172,14 @@ impl<J: Borrow<Jacobian>> Frame<J> {
         let with_prior = |&(&kept, _): &(&usize, &f64)| self.jacobian().shared[kept].has_prior();
         let clocks = self.kept.iter().zip(shares.iter()).filter(with_prior);
         let mut price: f64 = clocks.map(|(_, share)| share * share).sum();
-        for (run, column) in self.jacobian().runs.iter().zip(&mut signature) {
+        let runs = self.jacobian().runs.iter().zip(&self.loads);
+        for ((run, load), left) in runs.zip(&mut signature) {
             for (&kept, &share) in self.kept.iter().zip(shares.iter()) {
-                subtract(column, share, &run.shared[kept]);
+                subtract(left, share, &run.shared[kept]);
             }
-            if let Some(load) = &run.load {
-                let share = dot(load, column) / (dot(load, load) + 1.0);
-                subtract(column, share, load);
+            if let (Some(column), Some(load)) = (&run.load, load) {
+                let share = dot(column, left) / load.square;
+                subtract(left, share, column);
                 price += share * share;
             }
         }
