@@ -10,12 +10,11 @@ use super::attribution::{Attribution, attribute};
 use super::candidate::{Candidate, weigh};
 use super::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
 use super::estimate::Estimate;
-use super::evidence::shares;
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate, fit, refine};
 use super::holdout::held_out_error;
 use super::regime::Regime;
-use super::trials::{Odds, Trials, try_effects};
+use super::trials::Trials;
 use super::twins::twins;
 use super::unseen::{Unseen, unseen};
 use crate::effects::Effect;
@@ -170,18 +169,9 @@ pub fn diagnose(
     progress: Progress,
 ) -> Diagnosis {
     let absent = absent(model, &base.estimate);
-    let candidates = try_effects(experiment, model, &base, &absent, progress);
-    let cheapest = candidates
-        .iter()
-        .min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
-    let mut odds: Vec<f64> = cheapest.map_or_else(Vec::new, |cheapest| {
-        let odds = Odds::new(&base, cheapest);
-        let of = |candidate: &Candidate| odds.of(&candidate.fit);
-        candidates.iter().map(of).collect()
-    });
-    odds.push(0.0);
-    let mut confidences = shares(&odds);
-    confidences.pop();
+    let trials = Trials::new(experiment, model, &base, &absent, progress);
+    let (candidates, confidences) = (trials.all_weighed(), trials.confidences());
+    drop(trials);
     Diagnosis {
         base,
         candidates,

@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::candidate::{Candidate, jacobian_by, slow_columns, weigh, weigh_by};
-use super::evidence::log_odds;
+use super::evidence::{log_odds, shares};
 use super::experiment::Experiment;
 use super::explain::{BELIEVED, VISIBLE};
 use super::fit::{Fit, evaluate_weighted, refine};
@@ -38,6 +38,8 @@ struct Trial {
     effect: &'static dyn Effect,
     fit: Fit,
     pace: Pace,
+    /// Logarithm of the odds that the effect is there; not a number before all are tried.
+    log_odds: f64,
     weighed: OnceLock<Candidate>,
 }
 
@@ -117,8 +119,11 @@ impl<'a> Trials<'a> {
             return;
         };
         let odds = Odds::new(self.base, self.weighed(best));
+        for trial in &mut self.ranked {
+            trial.log_odds = odds.of(&trial.fit);
+        }
         self.ranked
-            .sort_by(|a, b| odds.of(&b.fit).total_cmp(&odds.of(&a.fit)));
+            .sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
         let mut named = HashSet::new();
         self.ranked.retain(|trial| named.insert(trial.effect.id()));
     }
@@ -139,6 +144,17 @@ impl<'a> Trials<'a> {
     pub fn all_weighed(&self) -> Vec<Candidate> {
         let ranked = self.ranked.par_iter();
         ranked.map(|trial| self.weighed(trial).clone()).collect()
+    }
+
+    /// Probability of each among all and none, the most likely first.
+    #[must_use]
+    pub fn confidences(&self) -> Vec<f64> {
+        let none = 0.0;
+        let odds = self.ranked.iter().map(|trial| trial.log_odds);
+        let odds: Vec<f64> = odds.chain([none]).collect();
+        let mut confidences = shares(&odds);
+        confidences.truncate(self.ranked.len());
+        confidences
     }
 
     /// The candidates, the most likely first, whose cost falls far enough for as much evidence as `believed` asks of
@@ -181,6 +197,7 @@ impl Trial {
             effect,
             fit,
             pace,
+            log_odds: f64::NAN,
             weighed: OnceLock::new(),
         }
     }
@@ -188,7 +205,7 @@ impl Trial {
 
 /// The odds of effects against their common base, all at the inflation of the one with the least cost: each at its own
 /// would prefer what leaves a rest that hardly correlates with its signature over what leaves less.
-pub struct Odds {
+struct Odds {
     base_cost: f64,
     /// What the cost falls by for a likelihood ratio of one.
     unit: f64,
@@ -197,8 +214,7 @@ pub struct Odds {
 
 impl Odds {
     /// The odds beside the candidate with the least cost.
-    #[must_use]
-    pub fn new(base: &Fit, best: &Candidate) -> Self {
+    fn new(base: &Fit, best: &Candidate) -> Self {
         Self {
             base_cost: base.cost,
             unit: best.fit.variance() * best.inflation,
@@ -207,8 +223,7 @@ impl Odds {
     }
 
     /// Logarithm of the odds of the last effect of a fit.
-    #[must_use]
-    pub fn of(&self, fit: &Fit) -> f64 {
+    fn of(&self, fit: &Fit) -> f64 {
         let parameters = fit.estimate.effects.last().map_or(0, |e| e.values.len());
         let ratio = (self.base_cost - fit.cost) / self.unit;
         log_odds(ratio, parameters, self.effective_samples)
