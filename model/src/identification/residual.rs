@@ -10,6 +10,8 @@
 //!
 //! Both are linear in the difference, so sensitivities go through the same filter.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::estimate::Estimate;
@@ -117,7 +119,11 @@ impl RunWeights {
             run.trace(model, nuisance, CurrentShift { later_s, spreads })
         };
         let [below, above] = [-1.0, 1.0].map(|spreads| trace(0.0, spreads));
-        let edges = pump_edges(run, model, [&below, &above]);
+        let edges = pump_edges(
+            run,
+            model,
+            [-EDGE_SPREADS, EDGE_SPREADS].map(|s| trace(0.0, s)),
+        );
         let [below, above] = [below, above].map(|trace| run.stamped(&trace, clocks));
         let [early, late] =
             [-TIMING_S, TIMING_S].map(|later_s| run.stamped(&trace(later_s, 0.0), clocks));
@@ -240,12 +246,19 @@ fn ringing_tolerance(time_s: &[f64], pressure: &[f64]) -> Vec<f64> {
 /// out of step cannot say on which side of the jump they lie.
 const EDGE_SAMPLES: usize = 2;
 
+/// How far the current may be off, in its sigmas, where it decides whether the lift valve opens at all: a plateau of a
+/// staircase that lies at the threshold says nothing of the pump pressure.
+const EDGE_SPREADS: f64 = 3.0;
+
 /// Samples next to a jump of the pump pressure between idle and load pressure.
-fn pump_edges(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
+fn pump_edges(run: &ReadyRun, model: &Model, traces: [Arc<Trace>; 2]) -> Vec<bool> {
     let idle_bar = units::bar_from_pa(model.constants().compensator.idle_pressure_pa());
     let last = run.len() - 1;
     let lifts = |sample: usize| {
-        traces.map(|trace| (trace.channel(Channel::PumpPressure)[sample] - idle_bar).abs() > 1e-6)
+        let high = |trace: &Arc<Trace>| {
+            (trace.channel(Channel::PumpPressure)[sample] - idle_bar).abs() > 1e-6
+        };
+        traces.each_ref().map(high)
     };
     (0..=last)
         .map(|sample| {
