@@ -11,7 +11,7 @@ use super::candidate::{Candidate, weigh};
 use super::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
 use super::estimate::Estimate;
 use super::experiment::Experiment;
-use super::fit::{Fit, evaluate, fit, refine};
+use super::fit::{Fit, evaluate, evaluate_weighted, fit, refine};
 use super::holdout::held_out_error;
 use super::regime::Regime;
 use super::trials::Trials;
@@ -340,7 +340,9 @@ fn finish(
         if weighed.detectability < VISIBLE {
             // A later step has taken over what this one stood for, unless nothing else gets there without it.
             let lighter = refine(experiment, model, after.estimate.without(effect));
-            let fallen = (lighter.cost - after.cost) / (after.variance() * weighed.inflation);
+            let estimate = lighter.estimate.clone();
+            let compared = evaluate_weighted(experiment, model, estimate, after.weights.clone());
+            let fallen = (compared.cost - after.cost) / (after.variance() * weighed.inflation);
             if fallen < believed(step.effect) {
                 faint = Some((index, lighter));
                 break;
