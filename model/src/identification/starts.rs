@@ -8,7 +8,7 @@ use super::jacobian::huber_residuals;
 use super::scan::{Grid, JUMPS, RINGING, scan};
 use super::shortlist::{FAR, STARTS, Shortlist};
 use crate::campaign::Channel;
-use crate::effects::{AddedEffect, Effect};
+use crate::effects::{AddedEffect, Effect, Parameter};
 
 /// Sizes of the secants, in typical sizes: derivatives at zero miss a play or a gap, one size misses what saturates.
 const SIZES: [f64; 3] = [0.1, 1.0, 4.0];
@@ -50,6 +50,12 @@ struct Start {
     promised_from: Option<f64>,
 }
 
+/// The end of a secant: an effect simulated at one size.
+struct SecantEnd {
+    residuals: Vec<Vec<f64>>,
+    start: Start,
+}
+
 impl Start {
     /// The effect that it starts.
     fn last(&self) -> AddedEffect {
@@ -61,12 +67,32 @@ impl Start {
 impl Shortlist<'_> {
     /// Starts of an effect that a few secants lead to.
     pub(super) fn starts(&self, effect: &'static dyn Effect) -> Starts {
-        let mut ranked = self.rank(sizes(effect));
-        if let Some(start) = self.on_time(effect) {
-            ranked.push(start);
-            self.sort(&mut ranked);
-        }
+        let ends = self.ends(sizes(effect));
+        let late = self.late(&ends);
+        let mut ranked = self.rank(ends);
+        ranked.extend(late);
+        ranked.extend(self.on_time(effect));
+        self.sort(&mut ranked);
         self.best_starts(effect, ranked, false)
+    }
+
+    /// The best size of an effect that begins between two of the sizes, like the ground under a hitch that is never
+    /// lowered to the end: the smaller is nothing, and the larger so much that no secant of it leads back.
+    fn late(&self, ends: &[SecantEnd]) -> Option<Start> {
+        let shows = |end: &SecantEnd| (end.start.cost - self.base.cost).abs() > self.worthwhile;
+        let begun = ends.iter().position(shows)?;
+        let (nothing, begun) = (&ends[begun.checked_sub(1)?].start, &ends[begun].start);
+        if self.base.cost - begun.cost > self.worthwhile {
+            return None;
+        }
+        let (smaller, larger) = (nothing.last(), begun.last());
+        let null = larger.effect.parameters()[0].null;
+        let smaller = (smaller.values[0] - null) / (larger.values[0] - null);
+        Some(golden_section(
+            |share| self.end(scaled(&larger, share)).start,
+            smaller,
+            1.0,
+        ))
     }
 
     /// A lag in place of the clocks that stand in for it: what makes a spool late makes all its channels late, and once
@@ -101,10 +127,10 @@ impl Shortlist<'_> {
 
     /// Starts of an effect in the valleys that fine steps find.
     pub(super) fn looked_through(&self, effect: &'static dyn Effect, grid: &Grid) -> Starts {
-        let mut ranked = self.rank(sizes(effect));
+        let mut ranked = self.rank(self.ends(sizes(effect)));
         if let Some(first) = ranked.first() {
             let found = scan(self.experiment, self.model, self.base, &first.last(), grid);
-            ranked.extend(self.rank(found));
+            ranked.extend(self.rank(self.ends(found)));
             self.sort(&mut ranked);
         }
         self.best_starts(effect, ranked, true)
@@ -118,7 +144,7 @@ impl Shortlist<'_> {
         looked_through: bool,
     ) -> Starts {
         if let Some(best) = self.promising(&ranked) {
-            ranked.extend(self.rank(with_extreme_shapes(&best)));
+            ranked.extend(self.rank(self.ends(with_extreme_shapes(&best))));
             self.sort(&mut ranked);
         }
         let cost = ranked.first().map_or(self.base.cost, |first| first.cost);
@@ -138,11 +164,11 @@ impl Shortlist<'_> {
     }
 
     /// Of every secant its end and the best point along it: the one is sure, the other may be far better. Best first.
-    fn rank(&self, added: Vec<AddedEffect>) -> Vec<Start> {
-        let mut ranked: Vec<Start> = added
+    fn rank(&self, ends: Vec<SecantEnd>) -> Vec<Start> {
+        let mut ranked: Vec<Start> = ends
             .into_iter()
-            .flat_map(|added| {
-                let (residuals, end) = self.simulated(added.clone());
+            .flat_map(|SecantEnd { residuals, start }| {
+                let added = start.last();
                 let (lowest, highest) = reach(&added);
                 let (share, cost) = self.frame.along(&residuals, lowest, highest);
                 let promised = Start {
@@ -150,7 +176,7 @@ impl Shortlist<'_> {
                     estimate: with(&self.base.estimate, scaled(&added, share)),
                     promised_from: Some(1.0 / share),
                 };
-                [promised, end]
+                [promised, start]
             })
             .collect();
         self.sort(&mut ranked);
@@ -178,11 +204,11 @@ impl Shortlist<'_> {
     /// promises what is not there yet; then the size is looked for on the way to the secant's `end`.
     fn kept(&self, promise: &Start, end: f64) -> Start {
         let size = promise.last();
-        let start = self.simulated(size.clone()).1;
+        let start = self.end(size.clone()).start;
         if end <= 1.0 || !self.is_nothing(&start) {
             return start;
         }
-        let start_at = |share: f64| self.simulated(scaled(&size, share)).1;
+        let start_at = |share: f64| self.end(scaled(&size, share)).start;
         golden_section(start_at, 1.0, end)
     }
 
@@ -199,8 +225,12 @@ impl Shortlist<'_> {
         (self.base.cost - first.cost > self.worthwhile).then(|| first.last())
     }
 
-    /// What an added effect leaves, and that as a start.
-    fn simulated(&self, added: AddedEffect) -> (Vec<Vec<f64>>, Start) {
+    fn ends(&self, added: Vec<AddedEffect>) -> Vec<SecantEnd> {
+        added.into_iter().map(|added| self.end(added)).collect()
+    }
+
+    /// An added effect simulated.
+    fn end(&self, added: AddedEffect) -> SecantEnd {
         let estimate = with(&self.base.estimate, added);
         let residuals = huber_residuals(self.experiment, self.model, &self.base.weights, &estimate);
         let start = Start {
@@ -208,7 +238,7 @@ impl Shortlist<'_> {
             estimate,
             promised_from: None,
         };
-        (residuals, start)
+        SecantEnd { residuals, start }
     }
 }
 
@@ -287,7 +317,10 @@ fn reach(added: &AddedEffect) -> (f64, f64) {
     )
 }
 
-/// An effect with each parameter of its shape at either end of its range in turn; none without a shape.
+/// Ratio of the ends of a range from which it is taken by its order of magnitude.
+const DECADE: f64 = 10.0;
+
+/// An effect with each parameter of its shape towards either end of its range in turn; none without a shape.
 pub(super) fn with_extreme_shapes(at: &AddedEffect) -> Vec<AddedEffect> {
     let parameters = at.effect.parameters().iter().enumerate().skip(1);
     parameters
@@ -295,9 +328,19 @@ pub(super) fn with_extreme_shapes(at: &AddedEffect) -> Vec<AddedEffect> {
             let ends = [range.low, range.high].into_iter();
             ends.filter(|end| end.is_finite()).map(move |end| {
                 let mut added = at.clone();
-                added.values[index] = end;
+                added.values[index] = extreme(range, end);
                 added
             })
         })
         .collect()
+}
+
+/// A value as extreme as is of use for a start: the end of the range, unless that is an order of magnitude away.
+/// There, where the ground is all but rigid, the slopes vanish that would lead back.
+fn extreme(range: &Parameter, end: f64) -> f64 {
+    if range.low > 0.0 && range.high > DECADE * range.low {
+        (range.typical * end).sqrt()
+    } else {
+        end
+    }
 }
