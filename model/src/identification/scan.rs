@@ -1,15 +1,16 @@
-//! A fine search for the size of an effect whose cost has many valleys, on the run that tells most of it.
+//! A fine search for the size of an effect whose cost has many valleys, on the runs that tell most of it.
 //!
 //! A spool that sticks on a ramp jumps once a band: with a band that is a fiftieth off, the twentieth jump comes at
 //! the wrong time, and the fit is worse than without the effect. A pressure that rings ten times before it has died
-//! away is out of step with the model's as soon as the stiffness is a tenth off. No secant leads there. But one run is
+//! away is out of step with the model's as soon as the stiffness is a tenth off. No secant leads there. But a few runs are
 //! enough to see it, and a second of computing goes through hundreds of sizes.
 
 use rayon::prelude::*;
 
 use super::experiment::Experiment;
 use super::fit::Fit;
-use super::jacobian::{huber, residuals, square_sum};
+use super::jacobian::residuals;
+use super::starts::scaled;
 use crate::effects::{AddedEffect, Parameter};
 use crate::model::Model;
 
@@ -21,7 +22,7 @@ pub(super) struct Grid {
     finer: f64,
     /// What makes needles.
     needles: Option<Needles>,
-    /// How far to either side of what one run found all runs are looked at, as a share of the size.
+    /// How far to either side of what the telling runs found all runs are looked at, as a share of the size.
     all_runs: f64,
     /// Values of a shape from one end of its range to the other.
     shapes: usize,
@@ -79,7 +80,11 @@ const PER_SHAPE: usize = 2;
 /// Values of a closer look to either side.
 const TO_EITHER_SIDE: i32 = 5;
 
-/// The sizes and shapes of an effect around those that fit the run best which it changes most; `hint` is any size of it.
+/// Share of the sizes, the best on the most telling run, that are tried on the others.
+const WINNOWED: f64 = 0.25;
+
+/// The sizes and shapes of an effect around those that fit the runs best which tell them apart; `hint` is any size of
+/// it.
 pub(super) fn scan(
     experiment: &Experiment,
     model: &Model,
@@ -87,46 +92,24 @@ pub(super) fn scan(
     hint: &AddedEffect,
     grid: &Grid,
 ) -> Vec<AddedEffect> {
-    let Some(run) = telling_run(experiment, model, base, hint) else {
-        return Vec::new();
+    let scan = Scan {
+        experiment,
+        model: if grid.quasi_static {
+            model.quasi_static()
+        } else {
+            model.clone()
+        },
+        base,
+        telling: telling_runs(experiment, model, base, hint),
     };
-    let ready = &experiment.runs[run];
-    let model = &if grid.quasi_static {
-        model.quasi_static()
-    } else {
-        model.clone()
-    };
-    let cost = |added: &AddedEffect| -> f64 {
-        let mut effects = base.estimate.effects.clone();
-        effects.push(added.clone());
-        let model = model.with_effects(effects);
-        let (nuisance, clocks) = (base.estimate.nuisances[run], &base.estimate.clocks);
-        let trace = ready.simulate(&model, nuisance, clocks);
-        square_sum(&huber(vec![base.weights.runs[run].whiten(ready, &trace)]))
-    };
-    let ranked = |grid: Vec<AddedEffect>| {
-        let mut tried: Vec<(f64, AddedEffect)> = grid
-            .into_par_iter()
-            .map(|added| (cost(&added), added))
-            .collect();
-        tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-        tried
-    };
-    let mut best: Vec<(f64, AddedEffect)> = Vec::new();
-    for (cost, added) in ranked(coarse(hint, grid)) {
-        let alike = |(_, other): &&(f64, AddedEffect)| added.values[1..] == other.values[1..];
-        let apart = |(_, other): &(f64, AddedEffect)| {
-            let (a, b) = (added.values[0], other.values[0]);
-            (a - b).abs() > grid.apart * a.abs().max(b.abs())
-        };
-        if best.iter().filter(alike).count() < PER_SHAPE && best.iter().filter(alike).all(apart) {
-            best.push((cost, added));
-        }
-    }
-    for reach in grid.closer {
+    let mut best = apart(scan.winnowed(coarse(hint, grid)), grid.apart);
+    for &reach in grid.closer {
         best = best
             .into_iter()
-            .map(|(_, added)| ranked(around(&added, *reach)).swap_remove(0))
+            .map(|(_, added)| {
+                scan.ranked(around(&added, reach), &scan.telling)
+                    .swap_remove(0)
+            })
             .collect();
         best.sort_by(|a, b| a.0.total_cmp(&b.0));
         best.truncate(grid.best);
@@ -137,22 +120,108 @@ pub(super) fn scan(
         .collect()
 }
 
-/// The run whose residuals the effect changes most, for its length.
-fn telling_run(
+/// What is scanned.
+struct Scan<'a> {
+    experiment: &'a Experiment,
+    model: Model,
+    base: &'a Fit,
+    /// The runs that are looked at, the most telling first.
+    telling: Vec<usize>,
+}
+
+impl Scan<'_> {
+    /// Loss that an added effect leaves on some runs.
+    fn loss(&self, added: &AddedEffect, runs: &[usize]) -> f64 {
+        let mut effects = self.base.estimate.effects.clone();
+        effects.push(added.clone());
+        let model = self.model.with_effects(effects);
+        let estimate = &self.base.estimate;
+        let left = runs.iter().map(|&run| {
+            let ready = &self.experiment.runs[run];
+            let trace = ready.simulate(&model, estimate.nuisances[run], &estimate.clocks);
+            self.base.weights.runs[run].whiten(ready, &trace)
+        });
+        left.flatten().map(bounded_loss).sum()
+    }
+
+    /// Added effects by what they leave on some runs, the best first.
+    fn ranked(&self, added: Vec<AddedEffect>, runs: &[usize]) -> Vec<(f64, AddedEffect)> {
+        let mut ranked: Vec<(f64, AddedEffect)> = added
+            .into_par_iter()
+            .map(|added| (self.loss(&added, runs), added))
+            .collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        ranked
+    }
+
+    /// The better ones of added effects by what they leave on all telling runs, the best first.
+    fn winnowed(&self, added: Vec<AddedEffect>) -> Vec<(f64, AddedEffect)> {
+        let most_telling = &self.telling[..self.telling.len().min(1)];
+        let mut better = self.ranked(added, most_telling);
+        better.truncate((WINNOWED * better.len() as f64).ceil() as usize);
+        let better = better.into_iter().map(|(_, added)| added).collect();
+        self.ranked(better, &self.telling)
+    }
+}
+
+/// The best few of every shape whose sizes are this share apart.
+fn apart(ranked: Vec<(f64, AddedEffect)>, share: f64) -> Vec<(f64, AddedEffect)> {
+    let mut best: Vec<(f64, AddedEffect)> = Vec::new();
+    for (loss, added) in ranked {
+        let alike = |(_, other): &&(f64, AddedEffect)| added.values[1..] == other.values[1..];
+        let apart = |(_, other): &(f64, AddedEffect)| {
+            let (a, b) = (added.values[0], other.values[0]);
+            (a - b).abs() > share * a.abs().max(b.abs())
+        };
+        if best.iter().filter(alike).count() < PER_SHAPE && best.iter().filter(alike).all(apart) {
+            best.push((loss, added));
+        }
+    }
+    best
+}
+
+/// Sigmas beyond which a residual counts no more.
+const BOUND: f64 = 3.0;
+
+/// Sizes on either side of a hint that the telling run has to tell apart, in the hint's.
+const TOLD_APART: [f64; 2] = [0.9, 1.1];
+
+/// Samples of runs that are enough to tell sizes apart.
+const ENOUGH: usize = 1200;
+
+/// The loss of a residual, of whose size nothing counts beyond [`BOUND`]: the noise of the current decides here and
+/// there whether a spool jumps, and what comes after a jump that was missed must not outweigh all others.
+fn bounded_loss(residual: f64) -> f64 {
+    (residual * residual).min(BOUND * BOUND)
+}
+
+/// The runs that tell sizes of the effect apart best, for their length: one that it changes much, but by any size
+/// alike, like a plateau that is reached from below, leaves them all in question.
+fn telling_runs(
     experiment: &Experiment,
     model: &Model,
     base: &Fit,
     hint: &AddedEffect,
-) -> Option<usize> {
-    let mut with = base.estimate.clone();
-    with.effects.push(hint.clone());
-    let changed = residuals(experiment, model, &base.weights, &with);
-    let change = |&run: &usize| -> f64 {
-        let both = changed[run].iter().zip(&base.residuals[run]);
-        let sum: f64 = both.map(|(with, without)| (with - without).powi(2)).sum();
-        sum / experiment.runs[run].regimes.len().max(1) as f64
+) -> Vec<usize> {
+    let [smaller, larger] = TOLD_APART.map(|share| {
+        let mut with = base.estimate.clone();
+        with.effects.push(scaled(hint, share));
+        residuals(experiment, model, &base.weights, &with)
+    });
+    let change = |run: &usize| -> f64 {
+        let both = smaller[*run].iter().zip(&larger[*run]);
+        let sum: f64 = both.map(|(a, b)| bounded_loss(a - b)).sum();
+        sum / experiment.runs[*run].regimes.len().max(1) as f64
     };
-    (0..experiment.runs.len()).max_by(|a, b| change(a).total_cmp(&change(b)))
+    let mut runs: Vec<usize> = (0..experiment.runs.len()).collect();
+    runs.sort_by(|a, b| change(b).total_cmp(&change(a)));
+    let mut samples = 0;
+    let few = |&run: &usize| {
+        let too_few = samples < ENOUGH;
+        samples += experiment.runs[run].len();
+        too_few
+    };
+    runs.into_iter().take_while(few).collect()
 }
 
 /// Every size with every shape, and what makes needles.
