@@ -47,6 +47,10 @@ const LOST_STEPS: usize = 2;
 const LOST: f64 = 4.0;
 const LITTLE_HELP: f64 = 0.8;
 
+/// Share of what is left that an effect beside others has to explain. What explains less, and leaves the rest as it
+/// was, patches what an effect before it has not quite the form for.
+const NO_PATCH: f64 = 0.1;
+
 /// Most candidates of one round that are tried on held-out runs.
 const MOST_TRIED: usize = 3;
 
@@ -227,6 +231,7 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
         let proof = Proof {
             visible,
             held_out: present_held_out,
+            share: if steps.is_empty() { 0.0 } else { NO_PATCH },
         };
         let Some((best, held_out_after)) = proven(experiment, model, &trials, proof) else {
             break;
@@ -261,6 +266,17 @@ struct Proof {
     visible: f64,
     /// A smaller held-out error than this.
     held_out: f64,
+    /// At least this share of what the held-out runs have above their noise explained.
+    share: f64,
+}
+
+impl Proof {
+    /// Whether a held-out error will do. A campaign of one run has none; it is not held against it.
+    fn admits(self, held_out: f64) -> bool {
+        let excess = |error: f64| error * error - 1.0;
+        let explained = excess(self.held_out) - excess(held_out);
+        held_out.is_nan() || explained > (self.share * excess(self.held_out)).max(0.0)
+    }
 }
 
 /// The most likely believable candidate with a smaller held-out error than without it, and that error.
@@ -281,8 +297,7 @@ fn proven<'a>(
             let held_out = held_out_error(experiment, model, &candidate.fit);
             (candidate, held_out)
         })
-        // A campaign of one run has no held-out error; it is not held against it.
-        .find(|(_, held_out)| held_out.is_nan() || *held_out < proof.held_out)
+        .find(|(_, held_out)| proof.admits(*held_out))
 }
 
 /// Whether a candidate's evidence is strong enough and its signature large enough.
