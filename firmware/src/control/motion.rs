@@ -109,7 +109,9 @@ impl Motion {
         phase: Phase,
         parameters: &MotionParameters,
     ) {
-        if phase == Phase::Holding {
+        // Without flow nobody trails it, nor is it known which valve is in use.
+        let flows = self.model_speed != MicrometrePerSecond::ZERO;
+        if phase == Phase::Holding || !flows {
             return;
         }
         let [lift, lower] = self.lags;
