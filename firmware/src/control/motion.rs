@@ -132,16 +132,23 @@ impl Motion {
 
     /// Takes in the end of a move that nothing else had a part in; true if its way tells of its valve.
     pub fn learn_lag(&mut self, told: &Told, parameters: &MotionParameters) -> bool {
+        self.trail.end(told);
+        let limit = parameters.lag_limit.into();
+        let [lift, lower] = &mut self.lags;
+        if told.direction == Direction::Lift {
+            let beyond = lift.further() - lower.told();
+            let left = beyond + self.trail.further(*lift, limit);
+            let suspicious = parameters.swing_lag.into();
+            self.swing.acquit(beyond + self.further, left, suspicious);
+        }
         if !self.swing.lets_learn() {
             return false;
         }
-        self.trail.end(told);
-        let [lift, lower] = &mut self.lags;
         let (lag, other) = match told.direction {
             Direction::Lift => (lift, lower),
             Direction::Lower => (lower, lift),
         };
-        lag.learn(&self.trail, parameters.lag_limit.into());
+        lag.learn(&self.trail, limit);
         if told.direction == Direction::Lift {
             self.swing.doubt(lag.further() - other.told());
         }

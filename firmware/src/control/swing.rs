@@ -16,14 +16,15 @@
 //! Such a machine is known by its start. Before anything flows its compensator has to come up from the pump's idle
 //! pressure, then the speed grows with the square of the time: the hitch trails its lift valve ([`super::lag`]) by 16
 //! to 35 ms more than its lowering valve, which has no compensator. That is soon enough for braking the same move. A
-//! valve that is off its curve may look the same once; the gentle moves that follow tell its lag, and a small one takes
-//! the suspicion back. A machine whose swing hides gives itself away by where it comes to rest. A move that swung tells
-//! nothing of lags and offsets.
+//! valve that is off its curve may look the same once: on a short lift its whole way gives it away, else the gentle
+//! moves that follow tell its lag, and a small one takes the suspicion back. A machine whose swing hides gives itself
+//! away by where it comes to rest. A move that swung tells nothing of lags and offsets.
 //!
 //! ```text
 //! Unseen --- trails by far ---> Noticed --- next move ---> Known
-//!   ^  \__ rests far beyond its set point __> Proven        |
-//!   +---------------- trails like a spool -----------------+
+//!   ^ ^  \__ rests far beyond its set point __> Proven      |
+//!   | +---- its whole way is short ---+                     |
+//!   +----------------- trails like a spool -----------------+
 //! ```
 
 use super::lag::Eighths;
@@ -58,6 +59,18 @@ impl Swing {
     pub fn begin(&mut self) {
         if *self == Self::Noticed {
             *self = Self::Known;
+        }
+    }
+
+    /// The lift that is suspected is over: it trailed its valve by `seemed` more than a lowering does, and by `left`
+    /// without what its whole way is short of.
+    ///
+    /// A valve that opens late makes a short lift trail by half as much again as the `limit`, but with its whole way and
+    /// not with its speed: next to nothing is left. What a swing is late by, it flies on with once the valve closes.
+    pub fn acquit(&mut self, seemed: Eighths, left: Eighths, limit: Eighths) {
+        let of_late_valve = limit + Eighths(limit.0 / 2);
+        if *self == Self::Noticed && seemed < of_late_valve && left < Eighths(limit.0 / 4) {
+            *self = Self::Unseen;
         }
     }
 
@@ -144,6 +157,30 @@ mod tests {
         swing.prove();
         swing.obstruct();
         assert!(swing.is_seen() && swing.lets_learn());
+    }
+
+    #[test]
+    fn a_valve_that_opens_late_is_acquitted_and_a_swing_is_not() {
+        let suspected = || {
+            let mut swing = Swing::default();
+            swing.notice(Eighths(LIMIT.0 + 1), LIMIT);
+            swing
+        };
+        for (seemed_ms, left_ms, after) in [
+            (20, -3, Swing::Unseen),
+            (20, 10, Swing::Noticed),
+            (40, -3, Swing::Noticed),
+        ] {
+            let mut swing = suspected();
+            swing.acquit(Eighths(8 * seemed_ms), Eighths(8 * left_ms), LIMIT);
+            assert_eq!(swing, after, "{seemed_ms} ms, {left_ms} ms left");
+        }
+        for extreme in [i32::MIN, i32::MAX].map(Eighths) {
+            let mut known = suspected();
+            known.begin();
+            known.acquit(extreme, extreme, extreme);
+            assert_eq!(known, Swing::Known, "told by an earlier lift");
+        }
     }
 
     #[test]
