@@ -1,7 +1,6 @@
 //! One millisecond of control.
 
 use super::calibration::ValidCalibration;
-use super::closing::ClosingCurve;
 use super::current::Regulation;
 use super::drop_scale::DropScale;
 use super::learning::Learning;
@@ -78,7 +77,7 @@ impl Controller {
         let load = LoadEstimate::new(&calibration.hydraulics);
         let curves = ValveCurves::of(&calibration);
         let scale = curves.scale(load.drop());
-        let closing = closing(&calibration);
+        let closing = Closing::of(&calibration);
         let origin = calibration.linkage.travel(MilliDegree::ZERO);
         let regulation = Regulation::new(&calibration.current);
         Self {
@@ -121,7 +120,7 @@ impl Controller {
     /// Takes another calibration of the same machine: one whose ramps, gains or limits differ. The hitch may be moving,
     /// and goes on from where it is. What was learnt of the valves' curves goes with the curves.
     pub fn recalibrate(&mut self, calibration: ValidCalibration) {
-        self.closing = closing(&calibration);
+        self.closing = Closing::of(&calibration);
         let measured_at = |calibration: &ValidCalibration| calibration.hydraulics.reference_drop;
         if (&calibration.lift, &calibration.lower)
             != (&self.calibration.lift, &self.calibration.lower)
@@ -491,13 +490,5 @@ impl Controller {
             lift: with(map.lift_current(flow), offsets.lift()),
             lower: with(map.lower_current(-flow), offsets.lower()),
         }
-    }
-}
-
-fn closing(calibration: &ValidCalibration) -> Closing {
-    let hysteresis = calibration.hydraulics.hysteresis;
-    Closing {
-        lift: ClosingCurve::of(&calibration.lift, hysteresis),
-        lower: ClosingCurve::of(&calibration.lower, hysteresis),
     }
 }

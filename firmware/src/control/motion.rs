@@ -37,6 +37,18 @@ pub struct Closing {
     pub lower: ClosingCurve,
 }
 
+impl Closing {
+    /// The curves of a calibration's valves.
+    #[must_use]
+    pub fn of(calibration: &Calibration) -> Self {
+        let hysteresis = calibration.hydraulics.hysteresis;
+        Self {
+            lift: ClosingCurve::of(&calibration.lift, hysteresis),
+            lower: ClosingCurve::of(&calibration.lower, hysteresis),
+        }
+    }
+}
+
 /// Estimated motion of the piston.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Motion {
