@@ -235,13 +235,17 @@ impl Controller {
 
     /// Learns from where the hitch is on its way from rest to rest.
     fn learn(&mut self) {
-        let Some(course) = self.learning.follow(self.phase, &self.motion) else {
+        if let Some((told, of_offset)) = self.learning.over() {
+            let parameters = &self.calibration.motion;
+            if self.motion.learn_lag(&told, of_offset, parameters) {
+                self.learning.learn(told);
+            }
             return;
-        };
-        let area = self.calibration.hydraulics.piston_area;
-        let told = course.told(self.rest.position(), self.scale, area);
-        if self.motion.learn_lag(&told, &self.calibration.motion) {
-            self.learning.learn(told);
+        }
+        if let Some(course) = self.learning.follow(self.phase, &self.motion) {
+            let area = self.calibration.hydraulics.piston_area;
+            let told = course.told(self.rest.position(), self.scale, area);
+            self.learning.end(told);
         }
     }
 

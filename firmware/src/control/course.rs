@@ -38,6 +38,8 @@ pub struct Told {
     pub missing: Micrometre,
     /// What would be missing for each ampere that the curve is off.
     pub sensitivity: Micrometre,
+    /// The same as a volume at the drop of the valve's table, nl for each ampere.
+    pub sensitivity_nl: i32,
 }
 
 impl Course {
@@ -86,6 +88,7 @@ impl Course {
             expected,
             missing: expected - along((rest - self.from).0),
             sensitivity: Micrometre(sensitivity),
+            sensitivity_nl: self.sensitivity_nl,
         }
     }
 }

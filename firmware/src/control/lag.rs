@@ -8,13 +8,18 @@
 //! ```
 //!
 //! which is early enough for braking that very move, and is kept for the next. It has the sensor's lag in it, as
-//! braking needs it. What the flow is wrong by leaves the hitch behind as well, but with the whole way and not with the
-//! speed: the sums end early, and of a move that is too short for that the rest tells how much it was. Even without any
-//! further lag a hitch trails its valve by a usual time, for its load has to be accelerated.
+//! braking needs it. Even without any further lag a hitch trails its valve by a usual time, for its load has to be
+//! accelerated.
+//!
+//! What the flow is wrong by leaves the hitch behind as well, but for good, where a lag is made up for once the valve
+//! closes. So where the hitch comes to rest tells how much of what it was behind by had another cause: an error of the
+//! flow has grown with the way `x`, one of the valve's threshold with the sensitivity `s` to it.
 
 use super::course::Told;
-use super::fixed::Divisor;
-use super::units::{MicrometrePerSecond, Microsecond, Millisecond};
+use super::fixed::{Divisor, mul_div_seldom};
+use super::units::{
+    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, Millisecond,
+};
 
 /// Sum of squares from which the rest of a move tells no more of the lag: 20 ms at full speed.
 const COMPLETE: i32 = 200_000;
@@ -123,8 +128,13 @@ impl Lag {
 /// shift makes them; times stay milliseconds.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Trail {
+    from_nm: i32,
     /// Where the hitch should be by the valves alone, in nanometres.
     expected_nm: i32,
+    /// What has passed less than that for each ampere that the valve opens late, nl/A.
+    sensitivity_nl: i32,
+    /// Sum of speed times sensitivity, in 1024 nl/A.
+    speed_sensitivity: i32,
     /// Sum of speed times way behind, in eighths.
     speed_behind: i32,
     speed_squared: i32,
@@ -135,14 +145,21 @@ impl Trail {
     #[must_use]
     pub fn from(position_nm: i32) -> Self {
         Self {
+            from_nm: position_nm,
             expected_nm: position_nm,
             ..Self::default()
         }
     }
 
-    /// Every other step; `model`: what the valves should give now, `usual`: the time by which a hitch trails them
-    /// anyway.
-    pub fn step(&mut self, measured_nm: i32, model: MicrometrePerSecond, usual: Eighths) {
+    /// Every other step; `model`: what the valves should give now, `slope`: how much that changes for each ampere,
+    /// `usual`: the time by which a hitch trails them anyway.
+    pub fn step(
+        &mut self,
+        measured_nm: i32,
+        model: MicrometrePerSecond,
+        slope: MicroLitrePerSecond,
+        usual: Eighths,
+    ) {
         if self.is_complete() {
             return;
         }
@@ -150,7 +167,13 @@ impl Trail {
             .expected_nm
             .saturating_add(model.0)
             .saturating_add(model.0);
+        self.sensitivity_nl = self
+            .sensitivity_nl
+            .saturating_add(slope.0)
+            .saturating_add(slope.0);
         let speed = model.0 >> 10;
+        let of_ampere = speed.wrapping_mul(self.sensitivity_nl >> 10);
+        self.speed_sensitivity = self.speed_sensitivity.saturating_add(of_ampere);
         let behind = self.expected_nm.saturating_sub(measured_nm) >> 7;
         let further = behind.saturating_sub(speed.wrapping_mul(usual.0));
         // 16 mm behind at 400 mm/s fit; an absurd product may be any.
@@ -166,18 +189,29 @@ impl Trail {
         self.speed_squared >= COMPLETE
     }
 
-    /// Takes out what the flow of a whole move was wrong by: if that has grown with the way `x`, it is the integral
-    /// of `v x / x_end`, half of the way.
-    pub fn end(&mut self, told: &Told) {
-        if !self.is_complete() {
-            // Eighths of every other step, halved.
-            let of_flow = told
-                .expected
-                .0
-                .saturating_mul(told.missing.0)
-                .saturating_mul(2);
-            self.speed_behind = self.speed_behind.saturating_sub(of_flow);
-        }
+    /// Takes out what had another cause than a lag, now that the move is over: `of_offset` of what is missing from its
+    /// way is the threshold's, the rest the flow's.
+    ///
+    /// That has grown with the way, and its product with the speed is the integral of `v x / x_end` up to where the sums
+    /// ended, `x^2 / 2 x_end`.
+    pub fn end(&mut self, told: &Told, of_offset: Micrometre) {
+        let way = Divisor::THOUSAND.divide(self.expected_nm.saturating_sub(self.from_nm));
+        let way = way.saturating_abs();
+        let of_flow = told.missing - of_offset;
+        // Eighths of every other step, halved.
+        let grown = mul_div_seldom(of_flow.0, way, Divisor::at_least_one(told.expected.0));
+        let by_flow = grown.saturating_mul(way).saturating_mul(2);
+        // Some thousand um/ms: what is rounded away is no part of a millisecond.
+        let weighted =
+            Divisor::at_least_one(told.sensitivity_nl >> 10).divide(self.speed_sensitivity);
+        let by_offset = of_offset
+            .0
+            .saturating_mul(weighted.saturating_abs())
+            .saturating_mul(8);
+        self.speed_behind = self
+            .speed_behind
+            .saturating_sub(by_flow)
+            .saturating_sub(by_offset);
     }
 
     /// How much slower than `lag` the spool is.
@@ -190,59 +224,104 @@ impl Trail {
 
 #[cfg(test)]
 mod tests {
-    use super::super::units::Micrometre;
+
     use super::super::valve_logic::Direction;
     use super::*;
 
     const LIMIT: Eighths = Eighths(8 * 35);
 
-    /// A lift that rises to `speed` in um/s for `hold_ms` and falls again, with a spool that is `slower_ms` slower than
-    /// the one of the estimate: how much slower the first move tells that it is, at rest and 20 ms into its fall, and
-    /// the second.
-    fn told_ms(speed: f64, hold_ms: i32, flow_error: f64, slower_ms: f64) -> [f64; 3] {
-        let mut lag = Lag::default();
-        let mut told = [0.0; 3];
-        for move_index in 0..2 {
+    /// A lift on a valve that opens for a while to `speed` in um/s at most, with the errors of a machine.
+    struct Lift {
+        speed: f64,
+        hold_ms: i32,
+        flow_error: f64,
+        /// How much slower the spool is than the one of the estimate.
+        slower_ms: f64,
+        /// By how much of its full stroke the valve opens late.
+        late: f64,
+    }
+
+    impl Lift {
+        /// How much slower the first move tells that the spool is, at rest and 20 ms into its fall, and the second.
+        fn told_ms(&self) -> [f64; 3] {
+            let mut lag = Lag::default();
+            let mut told = [0.0; 3];
+            for move_index in 0..2 {
+                let mut trail = Trail::from(5_000_000);
+                let end = self.drive(&mut trail, lag, |trail| {
+                    if move_index == 0 {
+                        told[0] = f64::from(trail.further(lag, LIMIT).0) / 8.0;
+                    }
+                });
+                let late = self.late * f64::from(end.sensitivity_nl) / f64::from(SLOPE.0) * FULL;
+                trail.end(&end, Micrometre((late * 1e-3) as i32));
+                lag.learn(&trail, LIMIT);
+                told[move_index + 1] = f64::from(lag.further().0) / 8.0;
+            }
+            told
+        }
+
+        /// The whole move; `falling` sees it 20 ms into its fall.
+        fn drive(&self, trail: &mut Trail, lag: Lag, mut falling: impl FnMut(&Trail)) -> Told {
             let lag_ms = 40.0 + f64::from(lag.further().0) / 8.0;
-            let mut trail = Trail::from(5_000_000);
             let (mut model, mut truth) = (0.0, 0.0);
-            let (mut expected_nm, mut place_nm) = (0.0, 5_000_000.0);
-            for ms in 0..hold_ms + 700 {
-                let falling = f64::from((ms - hold_ms - 40).max(0)) / 100.0;
-                let opening = speed * ((f64::from(ms) / 40.0).min(1.0) - falling).max(0.0);
+            let (mut expected_nm, mut way_nm, mut sensitivity_nl) = (0.0, 0.0, 0);
+            for ms in 0..self.hold_ms + 700 {
+                let fall = f64::from((ms - self.hold_ms - 40).max(0)) / 100.0;
+                let opening = self.speed * ((f64::from(ms) / 40.0).min(1.0) - fall).max(0.0);
                 model += (opening - model) / lag_ms;
-                truth += (opening - truth) / (40.0 + slower_ms);
-                expected_nm += model;
-                place_nm += truth * (1.0 + flow_error);
+                truth += (opening - truth) / (40.0 + self.slower_ms);
+                let flow = flow(model);
+                let slope = match flow > 0.0 && flow < OPEN {
+                    true => SLOPE,
+                    false => MicroLitrePerSecond::ZERO,
+                };
+                expected_nm += flow;
+                way_nm += self::flow(truth - self.late * FULL) * (1.0 + self.flow_error);
+                sensitivity_nl += slope.0;
                 if ms % 2 == 0 {
-                    trail.step(
-                        place_nm as i32,
-                        MicrometrePerSecond(model as i32),
-                        Eighths(0),
-                    );
+                    let place_nm = 5_000_000 + way_nm as i32;
+                    let flow = MicrometrePerSecond(flow as i32);
+                    trail.step(place_nm, flow, slope, Eighths(0));
                 }
-                if ms == hold_ms + 60 && move_index == 0 {
-                    told[0] = f64::from(trail.further(lag, LIMIT).0) / 8.0;
+                if ms == self.hold_ms + 60 {
+                    falling(trail);
                 }
             }
-            trail.end(&Told {
+            Told {
                 direction: Direction::Lift,
                 expected: Micrometre((expected_nm * 1e-3) as i32),
-                missing: Micrometre(((expected_nm - place_nm + 5_000_000.0) * 1e-3) as i32),
-                sensitivity: Micrometre(0),
-            });
-            lag.learn(&trail, LIMIT);
-            told[move_index + 1] = f64::from(lag.further().0) / 8.0;
+                missing: Micrometre(((expected_nm - way_nm) * 1e-3) as i32),
+                sensitivity: Micrometre(sensitivity_nl / 4_537),
+                sensitivity_nl,
+            }
         }
-        told
+    }
+
+    /// Speed of a spool's full stroke, um/s, the part of it without flow and the part with more and more, and the slope
+    /// of the rig's lift valve.
+    const FULL: f64 = 147_000.0;
+    const SHUT: f64 = 8_000.0;
+    const OPEN: f64 = 135_000.0;
+    const SLOPE: MicroLitrePerSecond = MicroLitrePerSecond(313_000);
+
+    fn flow(spool: f64) -> f64 {
+        (spool - SHUT).clamp(0.0, OPEN)
     }
 
     #[test]
     fn a_move_tells_the_lag_of_its_spool_before_it_is_braked() {
         for slower_ms in [-15.0, -7.0, 0.0, 7.0, 15.0_f64] {
-            for (speed, hold_ms) in [(60_000.0, 30), (100_000.0, 100), (147_000.0, 400)] {
+            for (speed, hold_ms) in [(60_000.0, 30), (100_000.0, 100), (FULL, 400)] {
                 for flow_error in [-0.05, 0.0, 0.05] {
-                    let told = told_ms(speed, hold_ms, flow_error, slower_ms);
+                    let told = Lift {
+                        speed,
+                        hold_ms,
+                        flow_error,
+                        slower_ms,
+                        late: 0.0,
+                    }
+                    .told_ms();
                     // A third is told while spool and load still follow, the rest by the next moves.
                     for (told_ms, share) in told.into_iter().zip([0.7, 0.7, 0.5]) {
                         let error_ms = (told_ms - slower_ms).abs();
@@ -257,12 +336,33 @@ mod tests {
     }
 
     #[test]
+    fn a_valve_that_opens_late_is_no_slow_spool() {
+        for late in [-0.05, 0.05] {
+            for (speed, hold_ms) in [(60_000.0, 30), (100_000.0, 100), (FULL, 100)] {
+                let told = Lift {
+                    speed,
+                    hold_ms,
+                    flow_error: 0.0,
+                    slower_ms: 0.0,
+                    late,
+                }
+                .told_ms();
+                assert!(told[0] * late > 0.0, "seems slow on the way: {told:?}");
+                assert!(
+                    told[1..].iter().all(|told_ms| told_ms.abs() <= 4.0),
+                    "{late} late at {speed} um/s: {told:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn one_valve_tells_of_the_other_until_that_one_moves() {
         let (mut lift, mut lower) = (Lag::default(), Lag::default());
         let late = Trail {
-            expected_nm: 0,
             speed_behind: 8 * 10 * COMPLETE,
             speed_squared: COMPLETE,
+            ..Trail::default()
         };
         lift.learn(&late, LIMIT);
         lower.assume(lift);
@@ -285,15 +385,18 @@ mod tests {
                 let mut lag = Lag::default();
                 for _ in 0..1_000 {
                     let model = MicrometrePerSecond(speed);
-                    trail.step(-place_nm.saturating_add(1), model, Eighths(800));
+                    let slope = MicroLitrePerSecond(place_nm);
+                    trail.step(-place_nm.saturating_add(1), model, slope, Eighths(800));
                 }
                 for missing in [i32::MIN, i32::MAX] {
-                    trail.end(&Told {
+                    let told = Told {
                         direction: Direction::Lower,
                         expected: Micrometre(i32::MAX),
                         missing: Micrometre(missing),
                         sensitivity: Micrometre(0),
-                    });
+                        sensitivity_nl: missing,
+                    };
+                    trail.end(&told, Micrometre(place_nm));
                     lag.learn(&trail, LIMIT);
                     assert!(lag.further().0.abs() <= LIMIT.0);
                 }

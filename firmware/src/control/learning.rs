@@ -17,7 +17,9 @@ use super::valve_logic::{Direction, Phase};
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Learning {
     course: Option<Course>,
-    /// What a move told that is over, until it is taken in.
+    /// What a move told that is over and how much of it is its valve's threshold's, until its lag is taken in.
+    over: Option<(Told, Micrometre)>,
+    /// What it told until its offset is.
     told: Option<Told>,
     offsets: Offsets,
 }
@@ -36,12 +38,14 @@ impl Learning {
 
     /// Something has a part in this move: it tells nothing. Which way it went, if it isn't long over.
     pub fn obstruct(&mut self) -> Option<Direction> {
+        self.over = None;
         self.course.take().map(|course| course.direction())
     }
 
     /// The valves' curves are others now.
     pub fn forget_curves(&mut self) {
         self.course = None;
+        self.over = None;
         self.told = None;
         self.offsets = Offsets::default();
     }
@@ -57,7 +61,18 @@ impl Learning {
         }
     }
 
-    /// Takes in how far a move went: in the next step, for a lag is learnt from it in this one.
+    /// A move is over: its lag is learnt in the next step, its offset in the one after that. All in one would take too
+    /// long.
+    pub fn end(&mut self, told: Told) {
+        self.over = Some((told, self.offsets.blamed(&told)));
+    }
+
+    /// What a move told that has just been over, to learn its lag from, and how much of it is its threshold's.
+    pub fn over(&mut self) -> Option<(Told, Micrometre)> {
+        self.over.take()
+    }
+
+    /// Takes in how far a move went, in the next step.
     pub fn learn(&mut self, told: Told) {
         self.told = Some(told);
     }

@@ -133,7 +133,8 @@ impl Motion {
             false => (parameters.lift_trail, lift),
         };
         let measured_nm = measured.0.saturating_mul(1000);
-        self.trail.step(measured_nm, self.model_speed, usual.into());
+        self.trail
+            .step(measured_nm, self.model_speed, self.slope, usual.into());
         self.further = self.trail.further(lag, parameters.lag_limit.into());
         if !sinks {
             let beyond_spools = lift.further() + self.further - lower.told();
@@ -142,9 +143,15 @@ impl Motion {
         }
     }
 
-    /// Takes in the end of a move that nothing else had a part in; true if its way tells of its valve.
-    pub fn learn_lag(&mut self, told: &Told, parameters: &MotionParameters) -> bool {
-        self.trail.end(told);
+    /// Takes in the end of a move that nothing else had a part in, `of_offset` of whose missing way is its valve's
+    /// threshold's; true if its way tells of its valve.
+    pub fn learn_lag(
+        &mut self,
+        told: &Told,
+        of_offset: Micrometre,
+        parameters: &MotionParameters,
+    ) -> bool {
+        self.trail.end(told, of_offset);
         let limit = parameters.lag_limit.into();
         let [lift, lower] = &mut self.lags;
         if told.direction == Direction::Lift {
