@@ -113,9 +113,9 @@ parameter_group! {
         /// The same of the lowering valve: oil, friction and the load's own fall.
         lowering_trail: Microsecond = 12_000, 0..=100_000;
         /// Furthest that a machine's spools may be slower or faster than the calibration says.
-        lag_limit: Millisecond = 35, 0..=200;
+        lag_limit: Millisecond = 30, 0..=200;
         /// Lag of the lift valve beyond the lowering valve's from which the load swings on a compensator that lags: valves of one machine, one of them off its curve, seem to differ by up to 12 ms.
-        swing_lag: Millisecond = 16, 0..=200;
+        swing_lag: Millisecond = 14, 0..=200;
         /// Largest error of the valve map that the estimator may blame on it: 0.25 A of threshold at 15 bar is 34 mm/s.
         bias_limit: MicrometrePerSecond = 80_000, 0..=500_000;
     }
