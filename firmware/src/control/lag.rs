@@ -224,7 +224,6 @@ impl Trail {
 
 #[cfg(test)]
 mod tests {
-
     use super::super::valve_logic::Direction;
     use super::*;
 
