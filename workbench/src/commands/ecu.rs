@@ -1,5 +1,6 @@
 //! `hitch ecu`: the ECU on the bench, live.
 use std::io::{self, BufRead};
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
@@ -167,6 +168,8 @@ fn orders() -> Receiver<String> {
 /// The bench, who is at it, and for how long.
 struct Session<'m> {
     bench: Bench<'m>,
+    /// Where clients find the bus.
+    address: Option<SocketAddr>,
     bus: Option<Bus>,
     status: StatusLine,
     last_ms: u64,
@@ -176,10 +179,9 @@ impl<'m> Session<'m> {
     fn new(model: &'m Model, args: &Args, door: Option<CanDoor>) -> Self {
         /// Oil temperature of the rig's data, C.
         const OIL_TEMPERATURE_C: f64 = 40.0;
-        if let Some(address) = door.as_ref().and_then(|door| door.address().ok()) {
-            eprintln!("CAN is open: slcan on {address}");
-        }
+        let address = door.as_ref().and_then(|door| door.address().ok());
         Self {
+            address,
             bench: Bench::new(model, args.load, OIL_TEMPERATURE_C, START_DEG, 1),
             bus: door.map(Bus::behind),
             status: StatusLine::start(),
@@ -191,6 +193,10 @@ impl<'m> Session<'m> {
 
     /// Runs in real time until the time is over or the operator has had enough.
     fn run(&mut self, machine: &mut impl EcuMachine) -> Result<(), Error> {
+        // Only now that the ECU answers: its image may have had to be made first, and a client would have given up.
+        if let Some(address) = self.address {
+            eprintln!("CAN is open: slcan on {address}");
+        }
         let orders = orders();
         let mut said: Vec<Frame> = Vec::new();
         let mut due = Instant::now();
