@@ -14,8 +14,8 @@
 //! against that swing is followed without one.
 //!
 //! Such a machine is known by its start. Before anything flows its compensator has to come up from the pump's idle
-//! pressure, then the speed grows with the square of the time: the hitch trails its lift valve ([`super::lag`]) by 16
-//! to 35 ms more than its lowering valve, which has no compensator. That is soon enough for braking the same move. A
+//! pressure, then the speed grows with the square of the time: the hitch trails its lift valve ([`super::lag`]) by 14
+//! ms or more beyond its lowering valve, which has no compensator. That is soon enough for braking the same move. A
 //! valve that is off its curve may look the same once: on a short lift its whole way gives it away, else the gentle
 //! moves that follow tell its lag, and a small one takes the suspicion back. A machine whose swing hides gives itself
 //! away by where it comes to rest. A move that swung tells nothing of lags and offsets.

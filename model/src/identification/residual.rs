@@ -1,8 +1,8 @@
 //! Measured minus simulated, in units of what the instruments and the logged current leave unknown.
 //!
 //! * Pressures and flow: the yardstick of a sample is the instrument's noise and, in quadrature, what the uncertainty
-//!   of the logged current and of the time of sampling make of the simulated value. Samples that a log cannot say at all (a pressure edge that
-//!   may lie on either side of the sample) are left out.
+//!   of the logged current and of the time of sampling make of the simulated value. Samples that a log cannot say at
+//!   all (a pressure edge that may lie on either side of the sample) are left out.
 //! * The angle integrates the flow, so errors of the logged current add up in it as a random walk whose steps are
 //!   known. A scalar Kalman filter takes that walk out: what is compared is each sample with its prediction from the
 //!   model and the samples before (Kristensen, Madsen & Jorgensen 2004, with the diffusion known instead of fitted).

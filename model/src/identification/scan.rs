@@ -2,8 +2,8 @@
 //!
 //! A spool that sticks on a ramp jumps once a band: with a band that is a fiftieth off, the twentieth jump comes at
 //! the wrong time, and the fit is worse than without the effect. A pressure that rings ten times before it has died
-//! away is out of step with the model's as soon as the stiffness is a tenth off. No secant leads there. But a few runs are
-//! enough to see it, and a second of computing goes through hundreds of sizes.
+//! away is out of step with the model's as soon as the stiffness is a tenth off. No secant leads there. But a few runs
+//! are enough to see it, and a second of computing goes through hundreds of sizes.
 
 use rayon::prelude::*;
 
@@ -169,11 +169,11 @@ fn apart(ranked: Vec<(f64, AddedEffect)>, share: f64) -> Vec<(f64, AddedEffect)>
     let mut best: Vec<(f64, AddedEffect)> = Vec::new();
     for (loss, added) in ranked {
         let alike = |(_, other): &&(f64, AddedEffect)| added.values[1..] == other.values[1..];
-        let apart = |(_, other): &(f64, AddedEffect)| {
+        let far = |(_, other): &(f64, AddedEffect)| {
             let (a, b) = (added.values[0], other.values[0]);
             (a - b).abs() > share * a.abs().max(b.abs())
         };
-        if best.iter().filter(alike).count() < PER_SHAPE && best.iter().filter(alike).all(apart) {
+        if best.iter().filter(alike).count() < PER_SHAPE && best.iter().filter(alike).all(far) {
             best.push((loss, added));
         }
     }
@@ -183,7 +183,7 @@ fn apart(ranked: Vec<(f64, AddedEffect)>, share: f64) -> Vec<(f64, AddedEffect)>
 /// Sigmas beyond which a residual counts no more.
 const BOUND: f64 = 3.0;
 
-/// Sizes on either side of a hint that the telling run has to tell apart, in the hint's.
+/// Sizes on either side of a hint that the telling runs have to tell apart, in the hint's.
 const TOLD_APART: [f64; 2] = [0.9, 1.1];
 
 /// Samples of runs that are enough to tell sizes apart.
