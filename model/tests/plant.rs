@@ -70,6 +70,33 @@ fn the_transmission_is_the_slope_of_the_height() {
     }
 }
 
+/// A stop wants a force as long as it lasts; what is held afterwards is the weight alone, in steps of any length.
+#[test]
+fn what_stopped_the_masses_does_not_stay_in_the_cylinder() {
+    let inertia = AddedEffect::typical(find("load-inertia").unwrap());
+    let model = Model::nominal().with_effects(vec![inertia]);
+    for step_s in [0.002, 0.004, 0.02] {
+        let mut plant = Plant::new(&model, hitch(250.0, 90.0), 40.0, Currents::default());
+        let mut largest_bar: f64 = 0.0;
+        let steps = (3.0 / step_s) as u32;
+        for step in 0..steps {
+            let time_s = f64::from(step) * step_s;
+            let lift_a = 2.0 * (time_s / 0.1).min((1.0 - time_s) / 0.1).clamp(0.0, 1.0);
+            plant.step(currents(lift_a, 0.0), step_s);
+            largest_bar = largest_bar.max(plant.reading().cylinder_pressure_bar);
+        }
+        let held_deg = plant.rocker_angle_rad().to_degrees();
+        let alone = Plant::new(&model, hitch(250.0, held_deg), 40.0, Currents::default());
+        let weight_bar = alone.reading().cylinder_pressure_bar;
+        let held_bar = plant.reading().cylinder_pressure_bar;
+        assert!(largest_bar > 1.05 * weight_bar, "nothing was accelerated");
+        assert!(
+            (held_bar - weight_bar).abs() < 1e-3,
+            "{step_s} s: {held_bar} bar held, {weight_bar} bar of weight"
+        );
+    }
+}
+
 #[test]
 fn the_cylinder_holds_what_hangs_on_the_hitch() {
     // RIG.md: with 30 kg dead weight about 7.4 bar at 50 kg and 26 bar at 250 kg.

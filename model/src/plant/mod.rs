@@ -119,6 +119,8 @@ pub struct Plant<'m> {
     turning_a_s: f64,
     openings: Openings,
     state: MechanicalState,
+    /// Whether the quasi-static piston stood at either end of the last step: nothing of its inertia is left.
+    stands: bool,
     lowest_m: f64,
     flows: Flows,
     input: Currents,
@@ -159,6 +161,7 @@ impl<'m> Plant<'m> {
             turning_a_s: 0.0,
             openings: Openings::default(),
             state: MechanicalState::default(),
+            stands: false,
             lowest_m: 0.0,
             flows: Flows::default(),
             input: at_rest,
@@ -281,8 +284,7 @@ impl<'m> Plant<'m> {
             (Rig::Hitch(rig), Dynamics::Steady) => {
                 let start = self.openings;
                 let end = self.open(currents, dt_s);
-                let stands = self.state.speed_m_s == 0.0 && self.sites.holds_still();
-                if stands && start.shut() && end.shut() {
+                if self.stands && self.sites.holds_still() && start.shut() && end.shut() {
                     return;
                 }
                 let before = steady::Before {
@@ -296,6 +298,7 @@ impl<'m> Plant<'m> {
                 self.state.bristles_m = self.sites.bent_m(self.state.bristles_m, moved_m, dt_s);
                 self.state.piston_m = piston_m;
                 self.balance(&rig, Some(before));
+                self.stands = before.speed_m_s == 0.0 && self.state.speed_m_s == 0.0;
             }
             (Rig::Hitch(rig), Dynamics::Dynamic) => {
                 let middle = Currents {
