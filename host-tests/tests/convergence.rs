@@ -20,9 +20,8 @@ const BAR: f64 = 0.001;
 /// The same with an effect of typical size.
 const BAR_WITH_AN_EFFECT: f64 = 0.002;
 
-/// What jumps does so a piece of a step later or earlier; the peak of an accelerated load is as high as the last piece
-/// before a sample is short.
-const BARS_OF_JUMPS: [(&str, f64); 2] = [("spool-stiction", 0.01), ("load-inertia", 0.03)];
+/// The peak of an accelerated load is as high as the last piece before a sample is short.
+const BAR_OF_PEAKS: f64 = 0.004;
 
 /// The same currents in `FINER` pieces a sample.
 fn finely(time_s: &[f64], currents: &[Currents]) -> (Vec<f64>, Vec<Currents>) {
@@ -93,8 +92,11 @@ fn percent(shares: [f64; 4]) -> String {
 }
 
 fn bar(effect: &dyn Effect) -> f64 {
-    let own = BARS_OF_JUMPS.iter().find(|(id, _)| *id == effect.id());
-    own.map_or(BAR_WITH_AN_EFFECT, |(_, bar)| *bar)
+    if effect.id() == "load-inertia" {
+        BAR_OF_PEAKS
+    } else {
+        BAR_WITH_AN_EFFECT
+    }
 }
 
 #[test]

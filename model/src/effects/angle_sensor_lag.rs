@@ -15,6 +15,10 @@ use crate::plant::sites::{SensorStage, Sites};
 
 const CHANNELS: &[Channel] = &[Channel::RockerAngle];
 
+/// Longest step of a sensor, which takes the angle between two steps from a straight line, s. Where a motion starts or
+/// stops, lines of 20 ms are as far off as the sensor's own noise, and least for whole samples of dead time.
+const STEP_S: f64 = 0.005;
+
 /// A sensor that filters.
 pub static FILTERING: Described = Described {
     id: "angle-sensor-lag",
@@ -82,6 +86,9 @@ pub static DELAYED: Described = Described {
 };
 
 fn attach(time_constant_s: f64, dead_s: f64, sites: &mut Sites) {
+    if time_constant_s + dead_s > 0.0 {
+        sites.limit_step(STEP_S);
+    }
     sites.sensors.push(Box::new(LateAngle {
         time_constant_s,
         dead_s,

@@ -12,8 +12,9 @@ use crate::campaign::Channel;
 
 use crate::plant::sites::{CurrentStage, Currents, Sites, Valve};
 
-/// Longest step that follows a jump, s.
-const STEP_S: f64 = 0.004;
+/// Largest change of a current in a step, A: a jump is noticed at the end of a step, and what it is late on a fast ramp
+/// would be taken for a wider band.
+const CHANGE_A: f64 = 0.008;
 
 /// Change of the current under which it stands still, A/s: a cleaned record holds its plateaus to less.
 const STILL_A_S: f64 = 0.005;
@@ -78,7 +79,7 @@ pub static FOLLOWING: Described = Described {
 
 /// Attaches spools of a kind to both valves.
 fn attach<S: Spool + 'static>(values: &[f64], sites: &mut Sites, spool: S) {
-    sites.limit_step(STEP_S);
+    sites.limit_change(CHANGE_A);
     let band_a = values[0];
     sites.currents.push(Box::new(Sticking {
         friction: Friction {

@@ -187,15 +187,7 @@ impl<'m> Plant<'m> {
 
     /// Goes on by `dt_s` while the coil currents run linearly to `currents`.
     pub fn step(&mut self, currents: Currents, dt_s: f64) {
-        let longest_s = match (self.rig, self.model.constants().dynamics) {
-            (Rig::Hitch(rig), Dynamics::Dynamic) => {
-                dynamic::longest_step_s(&self.forces(&rig), &self.circuit(), self.state)
-            }
-            _ => {
-                let turning_a_s = currents.furthest_from_a(self.input) / dt_s;
-                steady::longest_step_s(&self.sites, turning_a_s.max(self.turning_a_s))
-            }
-        };
+        let longest_s = self.longest_step_s(currents.furthest_from_a(self.input) / dt_s);
         // A hair of slack: 0.02 s read from a log as a difference must not become one piece more.
         let pieces = (dt_s / longest_s - 1e-6).ceil().max(1.0) as usize;
         let (from, spools) = (self.input, self.spool_currents);
@@ -206,8 +198,31 @@ impl<'m> Plant<'m> {
                 lower_a: from.lower_a + (currents.lower_a - from.lower_a) * share,
             };
             self.integrate(currents, dt_s / pieces as f64);
+            if piece == pieces || !self.sites.sensors.is_empty() {
+                self.read(dt_s / pieces as f64);
+            }
         }
         self.turning_a_s = self.spool_currents.furthest_from_a(spools) / dt_s;
+    }
+
+    /// Longest step, s, while the coil currents change by so much, A/s.
+    fn longest_step_s(&self, driven_a_s: f64) -> f64 {
+        let turning_a_s = self.turning_a_s.max(driven_a_s);
+        let own_s = match (self.rig, self.model.constants().dynamics) {
+            (Rig::Hitch(rig), Dynamics::Dynamic) => {
+                dynamic::longest_step_s(&self.forces(&rig), &self.circuit(), self.state)
+            }
+            (Rig::Hitch(rig), Dynamics::Steady) => {
+                let lands = steady::lands(&self.forces(&rig), self.state.piston_m);
+                steady::longest_step_s(&self.sites, turning_a_s, lands)
+            }
+            (Rig::Flow { .. }, _) => steady::longest_step_s(&self.sites, turning_a_s, false),
+        };
+        own_s.min(self.sites.largest_change_a / driven_a_s)
+    }
+
+    /// Reads the instruments `dt_s` after the last time.
+    fn read(&mut self, dt_s: f64) {
         self.refresh_unless_balanced();
         let mut reading = self.truth();
         for sensor in &mut self.sites.sensors {

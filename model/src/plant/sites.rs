@@ -176,9 +176,11 @@ pub struct Sites {
     pub weight_factor: Vec<Law>,
     /// Inertia that comes on top of the model's own, as a share of load and dead weight.
     pub inertia_share: f64,
-    /// Longest step, s, that follows what is sudden: a spool that jumps, or a pressure that goes with the change of
-    /// speed over the last step; the quasi-static plant only.
+    /// Longest step, s, that follows what is sudden: a pressure that goes with the change of speed over the last step,
+    /// or a sensor that remembers; the quasi-static plant only.
     pub longest_step_s: f64,
+    /// Largest change of a coil current in a step, A, that tells when a spool jumps.
+    pub largest_change_a: f64,
     /// Ground under the hitch.
     pub ground: Option<Ground>,
     /// Instruments, in order.
@@ -211,6 +213,7 @@ impl Default for Sites {
             weight_factor: Vec::new(),
             inertia_share: 0.0,
             longest_step_s: f64::INFINITY,
+            largest_change_a: f64::INFINITY,
             ground: None,
             sensors: Vec::new(),
             terms: Vec::new(),
@@ -237,6 +240,11 @@ impl Sites {
     /// Has the quasi-static plant take steps of at most `longest_s`, s.
     pub fn limit_step(&mut self, longest_s: f64) {
         self.longest_step_s = self.longest_step_s.min(longest_s);
+    }
+
+    /// Has the plant take steps in which no current changes by more than `largest_a`, A.
+    pub fn limit_change(&mut self, largest_a: f64) {
+        self.largest_change_a = self.largest_change_a.min(largest_a);
     }
 
     /// Sum of the terms at a place, in its SI unit; one that is not finite is left out.

@@ -15,19 +15,29 @@ use crate::expression::Place;
 /// Longest step, s, while the spools stand or follow a ramp: a sample of a 50 Hz log.
 const LONGEST_STEP_S: f64 = 0.02;
 
-/// Longest step, s, while a current jumps or a spool lags behind one that did: the flow is no straight line then.
+/// Longest step, s, while a current jumps or a spool lags behind one that did, and where the hitch comes down on the
+/// ground: the flow is no straight line then.
 const LONGEST_STEP_OF_A_JUMP_S: f64 = 0.005;
 
 /// Currents that change faster than this jump, A/s.
 const JUMP_A_S: f64 = 2.5;
 
+/// Travel that the piston may sink by in a step, m.
+const STEP_M: f64 = 0.003;
+
 /// Speed beyond all others by which terms of a user's own could move the piston, m/s.
 const FASTEST_M_S: f64 = 0.5;
 
-/// Longest step, s, with what the effects attach, while the spools' currents change by so much, A/s.
+/// Whether the hitch stands on the ground or may come down on it within a step.
 #[must_use]
-pub fn longest_step_s(sites: &Sites, turning_a_s: f64) -> f64 {
-    let own_s = if turning_a_s > JUMP_A_S {
+pub fn lands(forces: &Forces, piston_m: f64) -> bool {
+    forces.sites.ground.is_some() && forces.ground_n(piston_m - STEP_M, 0.0) > 0.0
+}
+
+/// Longest step, s, with what the effects attach, while the spools' currents change by so much, A/s, or the hitch lands.
+#[must_use]
+pub fn longest_step_s(sites: &Sites, turning_a_s: f64, lands: bool) -> f64 {
+    let own_s = if turning_a_s > JUMP_A_S || lands {
         LONGEST_STEP_OF_A_JUMP_S
     } else {
         LONGEST_STEP_S
