@@ -12,6 +12,8 @@ pub struct Estimate {
     pub effects: Vec<AddedEffect>,
     /// What the log's clocks are off by.
     pub clocks: Clocks,
+    /// Whether the clocks stay as they are.
+    pub clocks_held: bool,
     /// What each run may be off by.
     pub nuisances: Vec<Nuisance>,
 }
@@ -54,17 +56,24 @@ impl Estimate {
         Self {
             effects,
             clocks: Clocks::default(),
+            clocks_held: false,
             nuisances: vec![Nuisance::default(); experiment.runs.len()],
         }
     }
 
-    /// Every shared parameter that is free, effects first, then [`CLOCKS`].
+    /// Every shared parameter that is free, effects first, then [`CLOCKS`] unless they are held.
     #[must_use]
     pub fn shared(&self) -> Vec<Shared> {
         let effects = self.effects.iter().enumerate().flat_map(|(effect, added)| {
             (0..added.values.len()).map(move |parameter| Shared::Effect(effect, parameter))
         });
-        effects.chain(CLOCKS).collect()
+        effects.chain(self.free_clocks().iter().copied()).collect()
+    }
+
+    /// Those of [`CLOCKS`] that are free: all or none.
+    #[must_use]
+    pub fn free_clocks(&self) -> &'static [Shared] {
+        if self.clocks_held { &[] } else { &CLOCKS }
     }
 
     /// Description of an effect's parameter.

@@ -31,6 +31,7 @@ pub fn held_out_error(experiment: &Experiment, model: &Model, fit: &Fit) -> f64 
             let (test, weights, test_start) = part(experiment, fit, |run| !outside(run));
             let start = Estimate {
                 effects: trained.effects,
+                clocks_held: false,
                 clocks: trained.clocks,
                 nuisances: test_start.nuisances,
             };

@@ -14,6 +14,7 @@ pub mod fit;
 pub mod frame;
 pub mod holdout;
 pub mod jacobian;
+mod lateness;
 pub mod noise;
 pub mod regime;
 pub mod residual;

@@ -1,10 +1,10 @@
 //! Where the fit of an effect starts: its size and shape looked for along secants.
 
-use super::clocks::{Clocks, OFFSET_PRIOR_S};
 use super::estimate::Estimate;
 use super::experiment::Experiment;
 use super::fit::sketch;
 use super::jacobian::huber_residuals;
+use super::lateness::in_place_of_clocks;
 use super::scan::{Grid, JUMPS, RINGING, scan};
 use super::shortlist::{FAR, STARTS, Shortlist};
 use crate::campaign::Channel;
@@ -27,9 +27,6 @@ const SECTIONS: usize = 6;
 
 /// How far a secant is trusted, in its own size.
 const REACH: f64 = 8.0;
-
-/// Clocks that are off by more than this, s, may stand in for what is missing.
-const OFF_S: f64 = 2.0 * OFFSET_PRIOR_S;
 
 /// Where the fit of an effect may start.
 pub(super) struct Starts {
@@ -71,7 +68,7 @@ impl Shortlist<'_> {
         let late = self.late(&ends);
         let mut ranked = self.rank(ends);
         ranked.extend(late);
-        ranked.extend(self.on_time(effect));
+        ranked.extend(self.in_place_of_clocks(effect));
         self.sort(&mut ranked);
         self.best_starts(effect, ranked, false)
     }
@@ -95,29 +92,11 @@ impl Shortlist<'_> {
         ))
     }
 
-    /// A lag in place of the clocks that stand in for it: what makes a spool late makes all its channels late, and once
-    /// their clocks have run off with that no slope leads back.
-    fn on_time(&self, effect: &'static dyn Effect) -> Option<Start> {
-        if effect.parameters()[0].unit != "s" {
-            return None;
-        }
-        let clocks = &self.base.estimate.clocks;
-        let mut late_s: Vec<f64> = effect
-            .channels()
-            .iter()
-            .map(|channel| clocks.offsets_s[channel.index()])
-            .collect();
-        late_s.sort_by(f64::total_cmp);
-        let late_s = *late_s.get(late_s.len() / 2)?;
-        if late_s <= OFF_S {
-            return None;
-        }
-        let mut added = AddedEffect::typical(effect);
-        added.values[0] = late_s;
-        let mut estimate = with(&self.base.estimate, added);
-        estimate.clocks = Clocks::default();
+    /// A lag in place of the clocks that stand in for it.
+    fn in_place_of_clocks(&self, effect: &'static dyn Effect) -> Option<Start> {
+        let start = in_place_of_clocks(&self.base.estimate, effect)?;
         let (experiment, weights) = (self.experiment, &self.base.weights);
-        let (cost, estimate) = sketch(experiment, self.model, weights, estimate, true);
+        let (cost, estimate) = sketch(experiment, self.model, weights, start, true);
         Some(Start {
             cost,
             estimate,

@@ -16,6 +16,7 @@ use super::explain::{BELIEVED, VISIBLE};
 use super::fit::{Fit, evaluate_weighted, refine};
 use super::frame::Frame;
 use super::jacobian::SlowColumns;
+use super::lateness::on_time;
 use super::shortlist::{HOPELESS, Shortlist, Sketch, limit};
 use crate::effects::Effect;
 use crate::model::Model;
@@ -187,7 +188,8 @@ impl Trial {
             };
             (Pace::Absent, fit)
         } else if in_full {
-            (Pace::Fitted, refine(experiment, model, sketch.estimate))
+            let fit = refine(experiment, model, sketch.estimate);
+            (Pace::Fitted, on_time(experiment, model, fit))
         } else {
             let weights = base.weights.clone();
             let fit = evaluate_weighted(experiment, model, sketch.estimate, weights);
