@@ -2,7 +2,7 @@
 //!
 //! The truth is the project's own plant, so that every parameter means what the catalogue says; the currents run on
 //! between samples, loads are weighed wrong, instruments are noisy and have digits. `HITCH_COVERAGE_SEEDS=100` judges
-//! every effect by a hundred campaigns.
+//! every effect by a hundred campaigns, `HITCH_COVERAGE_EFFECT=spool-lag` that effect alone.
 
 use hitch_model::Model;
 use hitch_model::effects::{AddedEffect, CATALOGUE, Effect};
@@ -32,7 +32,9 @@ fn intervals_hold_the_truth() {
         .unwrap_or(FEW_SEEDS);
     let (mut held, mut judged, mut too_few) = (0, 0, Vec::new());
     println!("effect                    parameters held  rms distance, sigmas");
-    for effect in CATALOGUE {
+    let only = std::env::var("HITCH_COVERAGE_EFFECT").ok();
+    let asked = |effect: &&&dyn Effect| only.as_ref().is_none_or(|id| effect.id() == id);
+    for effect in CATALOGUE.iter().filter(asked) {
         let distances: Vec<Distances> = (0..seeds)
             .into_par_iter()
             .map(|seed| distances(*effect, seed))
@@ -76,25 +78,28 @@ fn distances(effect: &'static dyn Effect, seed: u64) -> Distances {
     let base = fit_base(&experiment, &nominal);
     let candidates = try_effects(&experiment, &nominal, &base, &[effect], &|_| {});
     let found = candidates.first().expect("one effect was tried");
-    let deviation = |(low, high): (f64, f64)| (high - low) / (2.0 * WIDTH);
     let intervals = found.intervals.iter().zip(found.values());
     intervals
         .zip(&truth.values)
-        .map(|((&interval, &value), &truth)| {
-            if (interval.0..=interval.1).contains(&truth) {
-                // An interval that an end of the range has cut may be shorter than the estimate's error.
-                ((value - truth) / deviation(interval)).clamp(-WIDTH, WIDTH)
-            } else {
-                // NaN, too, is a miss.
-                let far = (value - truth) / deviation(interval);
-                if far.abs() > WIDTH {
-                    far
-                } else {
-                    f64::INFINITY
-                }
-            }
-        })
+        .map(|((&interval, &value), &truth)| distance(value, interval, truth))
         .collect()
+}
+
+/// How many deviations too large a value is, by the half of its 95 % interval in which the truth lies.
+fn distance(value: f64, (low, high): (f64, f64), truth: f64) -> f64 {
+    let half = if truth < value {
+        value - low
+    } else {
+        high - value
+    };
+    let distance = WIDTH * (value - truth) / half;
+    if (low..=high).contains(&truth) {
+        // An interval that an end of the range has cut may be shorter than the estimate's error.
+        distance.clamp(-WIDTH, WIDTH)
+    } else {
+        // NaN, too, is a miss: where the screen found nothing there is no interval.
+        distance
+    }
 }
 
 fn starting_point(effect: &dyn Effect) -> Model {

@@ -1,12 +1,15 @@
 //! One effect fitted beside everything that was free already, and weighed.
 
+use rayon::prelude::*;
+
 use super::estimate::Shared;
 use super::evidence::{detectability, log_odds, variance_inflation};
 use super::experiment::Experiment;
 use super::fit::Fit;
 use super::frame::Frame;
 use super::jacobian::{Jacobian, SlowColumns, difference, huber, huber_residuals, square_sum};
-use crate::effects::{AddedEffect, Effect, Parameter};
+use super::profile::Profile;
+use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
 /// See [`systematic`].
@@ -121,17 +124,25 @@ pub(super) fn weigh_by(
         inflation,
     } = Seen::new(experiment, model, &fit, &jacobian);
     let intervals = signatures
-        .iter()
+        .par_iter()
         .map(|signature| {
             let deviation = (variance * signature.inflation / signature.square).sqrt();
             let value = fit.estimate.get(signature.shared);
             let range = &effect.parameters()[signature.parameter];
-            let half = 1.96
-                * (deviation * fit.estimate.scale(signature.shared))
-                    .hypot(systematic(range, value));
+            let systematic = 1.96 * systematic(&fit.estimate.effects[index], signature.parameter);
+            let promised = 1.96 * deviation * fit.estimate.scale(signature.shared);
+            let profile = Profile {
+                experiment,
+                model,
+                fit: &fit,
+                shared: signature.shared,
+                frame: besides(&fit, &jacobian, signature.shared),
+            };
+            let rise = 1.96f64.powi(2) * variance * signature.inflation;
+            let [down, up] = [-promised, promised].map(|half| profile.end(half, rise));
             (
-                (value - half).max(range.low),
-                (value + half).min(range.high),
+                (value - down.hypot(systematic)).max(range.low),
+                (value + up.hypot(systematic)).min(range.high),
             )
         })
         .collect();
@@ -145,17 +156,20 @@ pub(super) fn weigh_by(
     }
 }
 
-/// One sigma of what no number of samples takes away from a parameter, in its unit.
+/// One sigma of what no number of samples takes away from a parameter of an effect, in its unit.
 ///
 /// A log tells where a ramp of the current bends only to within a sample, and the last of its noise holds a play open:
-/// some 0.7 mA, and as much time as a tenth of a sample. Loads, areas and tables are good to half a percent.
-fn systematic(parameter: &Parameter, value: f64) -> f64 {
-    let absolute = match parameter.unit {
-        "A" => SYSTEMATIC_A,
-        "s" => SYSTEMATIC_S,
+/// some 0.7 mA, and as much time as a tenth of a sample. Loads, areas and tables are good to half a percent. What part
+/// of a lag is of which kind is known no better than as much time.
+fn systematic(added: &AddedEffect, parameter: usize) -> f64 {
+    let (parameters, values) = (added.effect.parameters(), &added.values);
+    let absolute = match (parameters[0].unit, parameters[parameter].unit) {
+        (_, "A") => SYSTEMATIC_A,
+        (_, "s") => SYSTEMATIC_S,
+        ("s", "") if values[0] > 0.0 => SYSTEMATIC_S / values[0],
         _ => 0.0,
     };
-    absolute.hypot(SYSTEMATIC_SHARE * value)
+    absolute.hypot(SYSTEMATIC_SHARE * values[parameter])
 }
 
 /// A parameter's signature with all that is free besides it projected out.
@@ -198,7 +212,14 @@ fn projected(fit: &Fit, jacobian: &Jacobian, shared: Shared) -> (Vec<Vec<f64>>, 
         .iter()
         .map(|run| run.shared[column].clone())
         .collect();
-    Frame::new(jacobian, &fit.estimate, column..column + 1).project_at_a_price(signature)
+    besides(fit, jacobian, shared).project_at_a_price(signature)
+}
+
+/// All that is free besides a parameter.
+fn besides<'a>(fit: &Fit, jacobian: &'a Jacobian, shared: Shared) -> Frame<&'a Jacobian> {
+    let mut columns = jacobian.shared.iter();
+    let column = columns.position(|&s| s == shared).unwrap_or(0);
+    Frame::new(jacobian, &fit.estimate, column..column + 1)
 }
 
 /// How much of the last effect of a fit is seen.

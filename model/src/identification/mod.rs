@@ -16,6 +16,7 @@ pub mod holdout;
 pub mod jacobian;
 mod lateness;
 pub mod noise;
+pub mod profile;
 pub mod regime;
 pub mod residual;
 mod scan;
