@@ -70,6 +70,36 @@ fn the_transmission_is_the_slope_of_the_height() {
     }
 }
 
+/// A hitch that is seen at rest below the ground's height stands in a hollow: it stays there without pressure, and the
+/// pump lifts it out against nothing, until the ground no longer carries it.
+#[test]
+fn a_hitch_in_a_hollow_is_not_thrown_out() {
+    for model in [Model::nominal(), Model::dynamic()] {
+        let ground = AddedEffect {
+            effect: find("ground-contact").unwrap(),
+            values: vec![0.25, 1000.0],
+        };
+        let model = model.with_effects(vec![ground]);
+        let mut plant = Plant::new(&model, hitch(250.0, 55.0), 40.0, Currents::default());
+        let angle_deg = |plant: &Plant| plant.rocker_angle_rad().to_degrees();
+        for _ in 0..500 {
+            plant.step(Currents::default(), STEP_S);
+        }
+        assert!((angle_deg(&plant) - 55.0).abs() < 0.1, "{}", model.name);
+        assert!(plant.reading().cylinder_pressure_bar < 0.5);
+        let mut carried_bar: f64 = 0.0;
+        while angle_deg(&plant) < 90.0 {
+            plant.step(currents(1.6, 0.0), STEP_S);
+            if (65.0..70.0).contains(&angle_deg(&plant)) {
+                carried_bar = carried_bar.max(plant.reading().cylinder_pressure_bar);
+            }
+        }
+        assert!(carried_bar < 5.0, "{}: {carried_bar} bar", model.name);
+        let lifted_bar = plant.reading().cylinder_pressure_bar;
+        assert!(lifted_bar > 20.0, "{}: {lifted_bar} bar", model.name);
+    }
+}
+
 /// A stop wants a force as long as it lasts; what is held afterwards is the weight alone, in steps of any length.
 #[test]
 fn what_stopped_the_masses_does_not_stay_in_the_cylinder() {

@@ -65,7 +65,7 @@ impl<'a> Machine<'a> {
     /// At rest at a travel, m.
     #[must_use]
     pub fn at_rest(&self, travel_m: f64) -> Motion {
-        let pressure_pa = self.weight_n(&linkage::at(travel_m), 0.0) / AREA_M2;
+        let pressure_pa = self.held_n(&linkage::at(travel_m), 0.0) / AREA_M2;
         Motion {
             travel_m,
             pressure_pa,
@@ -74,7 +74,19 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// Force of load and links on the piston, N: virtual work, less what the ground carries.
+    /// A travel, m, or that of a hitch which lies on the ground, if it is higher: there the masses come to rest.
+    #[must_use]
+    pub fn out_of_the_ground_m(&self, travel_m: f64) -> f64 {
+        let weight_n = |travel_m: f64| self.weight_n(&linkage::at(travel_m), 0.0);
+        rising_root(weight_n, 0.0, STROKE_M).max(travel_m)
+    }
+
+    /// What a pressure has to hold, N: oil does not pull the hitch to the ground.
+    fn held_n(&self, posture: &Posture, speed_m_s: f64) -> f64 {
+        self.weight_n(posture, speed_m_s).max(0.0)
+    }
+
+    /// Force of load and links on the piston, N: virtual work, less the push of the ground.
     fn weight_n(&self, posture: &Posture, speed_m_s: f64) -> f64 {
         let hitch_kg = self.load_kg + DEAD_WEIGHT_KG;
         let ground_n = self.physics.ground.map_or(0.0, |ground| {
@@ -86,7 +98,7 @@ impl<'a> Machine<'a> {
                 0.0
             }
         });
-        let hanging_n = (hitch_kg * GRAVITY_M_S2 - ground_n).max(0.0);
+        let hanging_n = hitch_kg * GRAVITY_M_S2 - ground_n;
         let tipping_n =
             self.load_kg * GRAVITY_M_S2 * self.physics.load_arm_m * posture.pitch_slope_rad_m;
         hanging_n * posture.slope + tipping_n
@@ -170,7 +182,7 @@ impl<'a> Machine<'a> {
     fn settled(&self, circuit: &Circuit, motion: Motion, spools: Spools) -> Motion {
         let posture = linkage::at(motion.travel_m);
         let pressure = |speed_m_s: f64| {
-            let weight_n = self.weight_n(&posture, speed_m_s);
+            let weight_n = self.held_n(&posture, speed_m_s);
             (weight_n + self.friction_n(&motion, weight_n, speed_m_s)) / AREA_M2
         };
         let gained = |speed_m_s: f64| circuit.flows(spools, pressure(speed_m_s)).net_m3_s / AREA_M2;

@@ -96,7 +96,11 @@ impl<'a> Rig<'a> {
             Stand::Hitch { load_kg, start_deg } => {
                 let load_kg = load_kg * circumstances.load_factor;
                 let machine = Machine::new(physics, load_kg, circuit.fluidity());
-                let motion = machine.at_rest(linkage::travel_m(start_deg));
+                let start_m = linkage::travel_m(start_deg);
+                let motion = machine.at_rest(match family {
+                    Family::Steady => start_m,
+                    Family::Dynamic => machine.out_of_the_ground_m(start_m),
+                });
                 let sensor = AngleSensor::new(&physics.sensors, motion.travel_m);
                 Place::Hitch(machine, motion, sensor)
             }

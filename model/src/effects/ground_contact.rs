@@ -58,5 +58,6 @@ fn attach(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
         height_m: conditions.linkage.at(0.0).height_m + values[0],
         stiffness_n_m: values[1] * 1e3,
         damping_s_m: DAMPING_S_M,
+        hollow: false,
     });
 }

@@ -168,11 +168,11 @@ impl<'m> Plant<'m> {
             reading: Reading::default(),
             signals: rest::signals_of_run(rig, oil_temperature_c),
         };
+        plant.state = plant.state_at_rest();
         if let Rig::Hitch(rig) = rig {
             plant.lowest_m = plant.forces(&rig).lowest_m();
+            plant.stand_on_the_ground(&rig);
         }
-        plant.state = plant.state_at_rest();
-        plant.lowest_m = plant.lowest_m.min(plant.state.piston_m);
         plant.remember();
         plant.shift(effective.lift_a, effective.lower_a);
         plant.refresh();
@@ -329,6 +329,7 @@ impl<'m> Plant<'m> {
                     return;
                 }
                 self.state = dynamic::step(&forces, &circuit, self.state, openings, dt_s);
+                self.leave_the_hollow(&rig);
             }
         }
         if !self.sites.terms.is_empty() {

@@ -3,7 +3,10 @@
 use super::signals::Signals;
 use super::{HitchRig, MechanicalState, Plant, Rig, oil, root};
 use crate::expression::Place;
-use crate::model::Dynamics;
+
+/// A hitch that is seen to stand no further from where the ground bears it lies there, m of travel: 0.15 degree. Its
+/// sensor is no better, and a hard floor turns that into the pressure of the whole weight.
+const HAIR_M: f64 = 0.3e-3;
 
 impl Plant<'_> {
     /// The plant at rest with the angle that its sensor shows.
@@ -14,15 +17,33 @@ impl Plant<'_> {
                 ..MechanicalState::default()
             },
             Rig::Hitch(rig) => {
-                let shown_m = self.piston_at_rest_m(&rig);
-                let piston_m = match self.model.constants().dynamics {
-                    // A hitch that is seen below the ground's height stands in a hollow.
-                    Dynamics::Steady => shown_m,
-                    // With inertia the ground would throw it out of there.
-                    Dynamics::Dynamic => shown_m.max(self.lowest_m),
-                };
+                let piston_m = self.piston_at_rest_m(&rig);
                 self.held_at(&rig, piston_m)
             }
+        }
+    }
+
+    /// Puts a hitch that is seen at rest near the ground's height on the ground, and one that is seen below in a hollow.
+    pub(super) fn stand_on_the_ground(&mut self, rig: &HitchRig) {
+        let off_m = self.state.piston_m - self.lowest_m;
+        let dh_dx = self.model.linkage().dh_dx(self.state.piston_m);
+        if let Some(ground) = &mut self.sites.ground {
+            if off_m.abs() < HAIR_M {
+                ground.height_m += dh_dx * off_m;
+                self.lowest_m = self.state.piston_m;
+                self.state = self.held_at(rig, self.state.piston_m);
+            } else {
+                ground.hollow = off_m < 0.0;
+            }
+        }
+        self.lowest_m = self.lowest_m.min(self.state.piston_m);
+    }
+
+    /// Where the hitch does not touch it the ground is as high as it is.
+    pub(super) fn leave_the_hollow(&mut self, rig: &HitchRig) {
+        let away = self.forces(rig).ground_n(self.state.piston_m, 0.0) == 0.0;
+        if let Some(ground) = &mut self.sites.ground {
+            ground.hollow &= !away;
         }
     }
 
