@@ -158,10 +158,9 @@ impl Motion {
             let beyond = lift.further() - lower.told();
             let left = beyond + self.trail.further(*lift, limit);
             let suspicious = parameters.swing_lag.into();
-            self.swing.acquit(beyond + self.further, left, suspicious);
-        }
-        if !self.swing.lets_learn() {
-            return false;
+            if !self.swing.decide(beyond + self.further, left, suspicious) {
+                return false;
+            }
         }
         let (lag, other) = match told.direction {
             Direction::Lift => (lift, lower),

@@ -62,16 +62,24 @@ impl Swing {
         }
     }
 
-    /// The lift that is suspected is over: it trailed its valve by `seemed` more than a lowering does, and by `left`
-    /// without what its whole way is short of.
+    /// A lift is over: it trailed its valve by `seemed` more than a lowering does, and by `left` without what its whole
+    /// way is short of. True if it tells of spool and offset; one that swung doesn't.
     ///
     /// A valve that opens late makes a short lift trail by half as much again as the `limit`, but with its whole way and
-    /// not with its speed: next to nothing is left. What a swing is late by, it flies on with once the valve closes.
-    pub fn acquit(&mut self, seemed: Eighths, left: Eighths, limit: Eighths) {
+    /// not with its speed: next to nothing is left. What a swing is late by, it flies on with once the valve closes. That
+    /// is proof, and gentle lifts mustn't take it back: in them a compensator that lags by 3 or 4 ms hardly shows.
+    pub fn decide(&mut self, seemed: Eighths, left: Eighths, limit: Eighths) -> bool {
         let of_late_valve = limit + Eighths(limit.0 / 2);
-        if *self == Self::Noticed && seemed < of_late_valve && left < Eighths(limit.0 / 4) {
-            *self = Self::Unseen;
+        match *self {
+            Self::Noticed if left > Eighths(limit.0 / 2) => *self = Self::Proven,
+            Self::Noticed if seemed < of_late_valve && left < Eighths(limit.0 / 4) => {
+                *self = Self::Unseen;
+                return true;
+            }
+            Self::Noticed => {}
+            _ => return true,
         }
+        false
     }
 
     /// A gentle lift told that the hitch trails its valve by `lag` more than a lowering does.
@@ -97,12 +105,6 @@ impl Swing {
     #[must_use]
     pub fn is_seen(self) -> bool {
         self != Self::Unseen
-    }
-
-    /// True if the present move, once over, tells of the spool and its offset.
-    #[must_use]
-    pub fn lets_learn(self) -> bool {
-        self != Self::Noticed
     }
 
     /// Time in which a difference between hitch and valve is blamed on the map while lifting at `speed`; `usual`
@@ -134,10 +136,12 @@ mod tests {
         swing.notice(LIMIT, LIMIT);
         assert_eq!(swing, Swing::Unseen, "a slow spool is no swing");
         swing.notice(Eighths(LIMIT.0 + 1), LIMIT);
-        assert!(swing.is_seen() && !swing.lets_learn());
+        assert!(swing.is_seen());
+        assert!(!swing.decide(LIMIT, Eighths(LIMIT.0 / 3), LIMIT), "swung");
         swing.begin();
         swing.notice(Eighths(0), LIMIT);
-        assert!(swing.is_seen() && swing.lets_learn());
+        assert_eq!(swing, Swing::Known);
+        assert!(swing.decide(LIMIT, LIMIT, LIMIT), "was gentle");
         swing.obstruct();
         assert!(swing.is_seen(), "known from an earlier move");
     }
@@ -156,7 +160,7 @@ mod tests {
         let mut swing = Swing::Noticed;
         swing.prove();
         swing.obstruct();
-        assert!(swing.is_seen() && swing.lets_learn());
+        assert_eq!(swing, Swing::Proven);
     }
 
     #[test]
@@ -168,17 +172,19 @@ mod tests {
         };
         for (seemed_ms, left_ms, after) in [
             (20, -3, Swing::Unseen),
-            (20, 10, Swing::Noticed),
+            (20, 6, Swing::Noticed),
+            (20, 10, Swing::Proven),
             (40, -3, Swing::Noticed),
         ] {
             let mut swing = suspected();
-            swing.acquit(Eighths(8 * seemed_ms), Eighths(8 * left_ms), LIMIT);
+            let tells = swing.decide(Eighths(8 * seemed_ms), Eighths(8 * left_ms), LIMIT);
+            assert_eq!(tells, after == Swing::Unseen);
             assert_eq!(swing, after, "{seemed_ms} ms, {left_ms} ms left");
         }
         for extreme in [i32::MIN, i32::MAX].map(Eighths) {
             let mut known = suspected();
             known.begin();
-            known.acquit(extreme, extreme, extreme);
+            assert!(known.decide(extreme, extreme, extreme));
             assert_eq!(known, Swing::Known, "told by an earlier lift");
         }
     }
