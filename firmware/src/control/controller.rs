@@ -29,9 +29,6 @@ mod report;
 /// A hitch that stalls this close to a limit of its travel has arrived: an end stop, or a misplaced limit.
 const END_ZONE: MilliDegree = MilliDegree(2_000);
 
-/// A lift that comes to rest further beyond its set point than this has swung there: 0.6 degree.
-const OVERSHOT: Micrometre = Micrometre(1_000);
-
 /// The controller: a calibration and a state.
 #[derive(Clone, Debug)]
 pub struct Controller {
@@ -50,8 +47,8 @@ pub struct Controller {
     /// Set point and its travel: looked up when it changes.
     target: (MilliDegree, Micrometre),
     load: LoadEstimate,
-    /// Steps take turns: one learns the lag and looks up what the valve can give, the next learns the load. All of it
-    /// in one would take too long.
+    /// Steps take turns: one learns the lag and looks up what the valve can give, or how far a move went, the next learns
+    /// the load. All of it in one would take too long.
     turn: bool,
     phase: Phase,
     sink: SinkWatch,
@@ -235,14 +232,16 @@ impl Controller {
 
     /// Learns from where the hitch is on its way from rest to rest.
     fn learn(&mut self) {
-        if let Some((told, of_offset)) = self.learning.over() {
+        if self.turn
+            && let Some((told, of_offset)) = self.learning.over()
+        {
             let parameters = &self.calibration.motion;
             if self.motion.learn_lag(&told, of_offset, parameters) {
                 self.learning.learn(told);
             }
             return;
         }
-        if let Some(course) = self.learning.follow(self.phase, &self.motion) {
+        if let Some(course) = self.learning.follow(self.phase, &self.motion, self.turn) {
             let area = self.calibration.hydraulics.piston_area;
             let told = course.told(self.rest.position(), self.scale, area);
             self.learning.end(told);
@@ -334,11 +333,16 @@ impl Controller {
         }
         let target = self.target.1;
         // While the valves close the hitch may fly past the set point: that is no arrival.
+        let rest = self.rest.position();
         let resting = matches!(self.phase, Phase::Holding)
-            && self
+            && match self
                 .position
-                .reason_to_move(target, self.rest.position(), &calibration.position)
-                .is_none();
+                .reason_to_move(target, rest, &calibration.position)
+            {
+                Some(Reason::SetPoint) => false,
+                Some(Reason::Drift) => self.learning.hurries(rest - target, &mut self.motion),
+                None => true,
+            };
         let operator = &calibration.operator;
         let floats = self.float.update(lever, sensed.angle, resting, operator);
         // Until the valves are shut nobody asks for a demand.
@@ -399,8 +403,7 @@ impl Controller {
     /// A move begins: counts it if nobody asked for it. Only moves to a set point teach; what makes a hitch leave its
     /// place (a leak, a sensor that drifts) has a part in its corrections.
     fn begin(&mut self, next: Phase) -> Result<(), Fault> {
-        let before = self.learning.obstruct();
-        let beyond = self.rest.position() - self.target.1;
+        self.learning.obstruct();
         let Phase::Moving { direction, .. } = next else {
             return Ok(());
         };
@@ -409,12 +412,7 @@ impl Controller {
         }
         match self.position.start() {
             Reason::SetPoint => self.learning.begin(direction, self.rest.position()),
-            Reason::Drift => {
-                if before == Some(Direction::Lift) && beyond > OVERSHOT {
-                    self.motion.overshot();
-                }
-                self.sink.correct(&self.calibration.hold)?;
-            }
+            Reason::Drift => self.sink.correct(&self.calibration.hold)?,
         }
         Ok(())
     }

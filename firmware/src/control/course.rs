@@ -71,6 +71,11 @@ impl Course {
         self.held >= REST
     }
 
+    /// The hitch has rested for long enough.
+    pub fn end(&mut self) {
+        self.held = REST;
+    }
+
     /// What a move told that ended at `rest`, through a valve with this `scale` and into a cylinder of this `area`.
     #[must_use]
     #[inline(never)]

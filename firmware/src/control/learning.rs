@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! how far a hitch trails its valve   lag       lag of its spool        during the move, kept at rest
-//! how far a move goes                course    offset of its valve     half a second later
+//! how far a move goes                course    offset of its valve     half a second later, or before a correction
 //! ```
 //!
 //! The first is in [`super::motion`], for it needs the estimate of every step.
@@ -12,6 +12,9 @@ use super::motion::Motion;
 use super::offset::Offsets;
 use super::units::Micrometre;
 use super::valve_logic::{Direction, Phase};
+
+/// A lift that comes to rest further beyond its set point than this has swung there: 0.6 degree.
+const OVERSHOT: Micrometre = Micrometre(1_000);
 
 /// The move under way, and what the ones before taught.
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,10 +39,23 @@ impl Learning {
         self.course = Some(Course::begin(direction, from));
     }
 
-    /// Something has a part in this move: it tells nothing. Which way it went, if it isn't long over.
-    pub fn obstruct(&mut self) -> Option<Direction> {
+    /// Something has a part in this move: it tells nothing.
+    pub fn obstruct(&mut self) {
         self.over = None;
-        self.course.take().map(|course| course.direction())
+        self.course = None;
+    }
+
+    /// A move that came to rest `beyond` its set point is to be corrected: it is over now, and tells more than others
+    /// do. A lift that swung that far tells of nothing else. True until all has been taken in.
+    pub fn hurries(&mut self, beyond: Micrometre, motion: &mut Motion) -> bool {
+        if let Some(course) = &mut self.course {
+            course.end();
+            if course.direction() == Direction::Lift && beyond > OVERSHOT {
+                motion.overshot();
+                self.course = None;
+            }
+        }
+        self.course.is_some() || self.over.is_some() || self.told.is_some()
     }
 
     /// The valves' curves are others now.
@@ -50,12 +66,12 @@ impl Learning {
         self.offsets = Offsets::default();
     }
 
-    /// One step of the way from rest to rest; the move once it is over.
-    pub fn follow(&mut self, phase: Phase, motion: &Motion) -> Option<Course> {
-        if let Some(told) = self.told.take() {
+    /// One step of the way from rest to rest; the move once it is over. What takes long waits for a step with `room`.
+    pub fn follow(&mut self, phase: Phase, motion: &Motion, room: bool) -> Option<Course> {
+        if room && let Some(told) = self.told.take() {
             self.offsets.learn(&told);
         }
-        match self.course.as_mut()?.step(phase, motion) {
+        match self.course.as_mut()?.step(phase, motion) && room {
             true => self.course.take(),
             false => None,
         }
@@ -75,5 +91,28 @@ impl Learning {
     /// Takes in how far a move went, in the next step.
     pub fn learn(&mut self, told: Told) {
         self.told = Some(told);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_move_to_be_corrected_is_told_first_and_a_lift_that_swung_tells_nothing() {
+        for (direction, beyond, swings) in [
+            (Direction::Lift, OVERSHOT, false),
+            (Direction::Lift, OVERSHOT + Micrometre(1), true),
+            (Direction::Lower, OVERSHOT + Micrometre(1), false),
+        ] {
+            let (mut learning, mut motion) = (Learning::default(), Motion::default());
+            assert!(!learning.hurries(beyond, &mut motion), "nothing under way");
+            learning.begin(direction, Micrometre::ZERO);
+            assert_eq!(learning.hurries(beyond, &mut motion), !swings);
+            assert_eq!(motion.swings(), swings);
+            let told = learning.follow(Phase::Holding, &motion, true);
+            assert_eq!(told.is_some(), !swings, "{direction:?}");
+            assert!(!learning.hurries(beyond, &mut motion));
+        }
     }
 }
