@@ -1,0 +1,212 @@
+//! What is wrong with a log or its settings is said with its place.
+
+use super::logs::*;
+
+#[test]
+fn what_is_wrong_with_a_line_is_said_with_its_place() {
+    let good = candump(12);
+    let with = |line: &str| fault_of_log(&format!("{good}{line}\n"));
+    let cases = [
+        (
+            "1700000000.5 can0 123#00",
+            "a.log:25:1: \"1700000000.5\" is no time in parentheses",
+        ),
+        (
+            "(noon) can0 123#00",
+            "a.log:25:1: \"(noon)\" is no time in seconds",
+        ),
+        (
+            "(1700000001.0)",
+            "a.log:25:15: the line ends before its bus",
+        ),
+        (
+            "(1700000001.0) can0",
+            "a.log:25:20: the line ends before its frame",
+        ),
+        (
+            "(1700000001.0) can0 123 [2] 00 11",
+            "a.log:25:21: \"123\" is no frame",
+        ),
+        (
+            "(1700000001.0) can0 12#00",
+            "a.log:25:21: \"12#00\" has no identifier",
+        ),
+        (
+            "(1700000001.0) can0 FFF#00",
+            "a.log:25:21: \"FFF#00\" has more than 11 bits",
+        ),
+        (
+            "(1700000001.0) can0 123#0x11",
+            "a.log:25:25: \"123#0x11\" has bad data",
+        ),
+        (
+            "(1700000001.0) can0 123#001",
+            "a.log:25:27: \"123#001\" has bad data",
+        ),
+        (
+            "(1700000001.0) can0 123#001122334455667788",
+            "a.log:25:41: \"123#001122334455667788\" has too much data",
+        ),
+        (
+            "(1700000001.0) can0 123##",
+            "a.log:25:21: \"123##\" has no flags",
+        ),
+        (
+            "(1700000001.0) can0 123#00 X",
+            "a.log:25:28: \"X\" stands behind the frame",
+        ),
+        (
+            "(1700000000.3) can0 18FF4580#00",
+            "a.log:25:1: the frame has 1 bytes, too few for HitchMotion.SampleTime",
+        ),
+        (
+            "(1700000000.3) can0 18FF4580#DC82007D48710000",
+            "a.log:25:1: time goes back",
+        ),
+        (
+            "(1700000009.3) can0 18FF4580#DC82007D48710000",
+            "a.log:25:1: HitchMotion.SampleTime jumps",
+        ),
+    ];
+    for (line, expected) in cases {
+        let said = with(line);
+        assert!(said.starts_with(expected), "{line}\n{said}");
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_line_of_vector_s_is_said_with_its_place() {
+    let manifest = MANIFEST.replace("a.log", "a.asc");
+    let with = |line: &str| {
+        let log = format!("base hex timestamps absolute\n{line}\n");
+        fault(&[("campaign.toml", &manifest), ("a.asc", &log)])
+    };
+    let cases = [
+        ("base oct", "a.asc:2:6: \"oct\" is no base"),
+        (
+            "base hex timestamps some",
+            "a.asc:2:21: \"some\" is no kind of time stamps",
+        ),
+        ("soon 1 123 Rx d 1 00", "a.asc:2:1: \"soon\" is no time"),
+        (
+            " 0.5 1 EngineData Rx d 1 00",
+            "a.asc:2:8: \"EngineData\" is no identifier",
+        ),
+        (
+            " 0.5 1 800 Rx d 1 00",
+            "a.asc:2:8: \"800\" is no identifier",
+        ),
+        (" 0.5 1 123 Up d 1 00", "a.asc:2:12: \"Up\" is no direction"),
+        (
+            " 0.5 1 123 Rx q 1 00",
+            "a.asc:2:15: \"q\" is no kind of frame",
+        ),
+        (
+            " 0.5 1 123 Rx d 2 00",
+            "a.asc:2:21: the line ends before its last byte",
+        ),
+        (
+            " 0.5 1 123 Rx d 1 +1",
+            "a.asc:2:19: \"+1\" is no such number",
+        ),
+        (
+            " 0.5 CANFD 1 Rx 123 1 0 8 99 00",
+            "a.asc:2:27: \"99\" is no such number",
+        ),
+        (
+            "",
+            "a.asc: holds no HitchMotion.LiftCurrent, which is lift_current_a; the ECU sends it",
+        ),
+    ];
+    for (line, expected) in cases {
+        let said = with(line);
+        assert!(said.starts_with(expected), "{line}\n{said}");
+    }
+}
+
+#[test]
+fn what_is_wrong_with_the_settings_is_said_with_its_place() {
+    let log = candump(12);
+    let with = |can: &str, dbc: &str| {
+        let manifest = format!("{MANIFEST}{can}");
+        fault(&[
+            ("campaign.toml", &manifest),
+            ("a.log", &log),
+            ("rig.dbc", dbc),
+        ])
+    };
+    let signals = "[can]\ndbc = \"rig.dbc\"\n[can.signals]\nlift_current_a = \"M.S\"\n";
+    let dbc = |signal: &str| {
+        format!("VERSION \"\"\nBU_:\nBO_ 1 M: 8 Vector__XXX\n SG_ S : {signal} Vector__XXX\n")
+    };
+    let good = dbc("0|8@1+ (1,0) [0|1] \"A\"");
+    let cases = [
+        (
+            "[can]\ndbc = \"no.dbc\"\n",
+            &good,
+            "campaign.toml:7:7: the folder holds no file \"no.dbc\"",
+        ),
+        (
+            "[can]\ndbc = \"rig.dbc\"\n",
+            &good,
+            "campaign.toml:6:1: [can] has a dbc and no signals",
+        ),
+        (
+            "[can]\nsource = 300\n",
+            &good,
+            "campaign.toml:7:10: source = 300 is out of range",
+        ),
+        (
+            "[can]\nclock = \"Noon\"\n[can.signals]\n",
+            &good,
+            "campaign.toml:7:9: no message that is taken has a signal \"Noon\"",
+        ),
+        (
+            "[can.signals]\nlift = \"M.S\"\n",
+            &good,
+            "campaign.toml:7:1: key \"lift\" is not known",
+        ),
+        (
+            "[can.signals]\nflow_lpm = \"Flow\"\n",
+            &good,
+            "campaign.toml:7:12: \"Flow\" is no signal",
+        ),
+        (
+            "[can.signals]\nflow_lpm = \"HitchMotio.X\"\n",
+            &good,
+            "campaign.toml:7:12: the DBC has no message \"HitchMotio\"; did you mean HitchMotion?",
+        ),
+        (
+            "[can.signals]\nflow_lpm = \"HitchMotion.RockerAngle\"\n",
+            &good,
+            "campaign.toml:7:12: signal HitchMotion.RockerAngle is in \"deg\"",
+        ),
+        (
+            signals,
+            &dbc("0|8@1+ (1,0) [0|1] \"\""),
+            "campaign.toml:9:18: signal M.S has no unit",
+        ),
+        (
+            signals,
+            &dbc("0|0@1+ (1,0) [0|1] \"A\""),
+            "campaign.toml:9:18: signal M.S has bits that no frame has",
+        ),
+        (
+            signals,
+            &"VERSION \"\"\nBO_ x\n".to_owned(),
+            "rig.dbc:2:5: this is not DBC",
+        ),
+        (
+            signals,
+            &good,
+            "a.log: holds no M.S, which is lift_current_a; log the bus",
+        ),
+    ];
+    for (can, dbc, expected) in cases {
+        let said = with(can, dbc);
+        assert!(
+            said.starts_with(expected),
+            "{can}\n{said}\nexpected {expected}"
+        );
+    }
+}
