@@ -13,7 +13,7 @@ use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
 /// See [`systematic`].
-const SYSTEMATIC_A: f64 = 0.000_7;
+const SYSTEMATIC_A: f64 = 0.000_9;
 const SYSTEMATIC_S: f64 = 0.001;
 const SYSTEMATIC_SHARE: f64 = 0.005;
 
@@ -159,7 +159,7 @@ pub(super) fn weigh_by(
 /// One sigma of what no number of samples takes away from a parameter of an effect, in its unit.
 ///
 /// A log tells where a ramp of the current bends only to within a sample, and the last of its noise holds a play open:
-/// some 0.7 mA, and as much time as a tenth of a sample. Loads, areas and tables are good to half a percent. What part
+/// some 0.9 mA, and as much time as a tenth of a sample. Loads, areas and tables are good to half a percent. What part
 /// of a lag is of which kind is known no better than as much time.
 fn systematic(added: &AddedEffect, parameter: usize) -> f64 {
     let (parameters, values) = (added.effect.parameters(), &added.values);

@@ -18,7 +18,7 @@ const KEPT: f64 = 0.5;
 
 /// Once it is broken, the cost has to rise by so many times what was promised: a step of a staircase is one sample, and
 /// the noise of the current decides on which side of it a spool breaks loose.
-const BROKEN: f64 = 5.0;
+const BROKEN: f64 = 8.0;
 
 /// How much farther each look goes than the one before.
 const FARTHER: f64 = 1.5;

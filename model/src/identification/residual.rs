@@ -119,11 +119,15 @@ impl RunWeights {
             run.trace(model, nuisance, CurrentShift { later_s, spreads })
         };
         let [below, above] = [-1.0, 1.0].map(|spreads| trace(0.0, spreads));
-        let edges = pump_edges(
-            run,
-            model,
-            [-EDGE_SPREADS, EDGE_SPREADS].map(|s| trace(0.0, s)),
-        );
+        let edges = run.measured[Channel::PumpPressure.index()]
+            .as_ref()
+            .map(|_| {
+                pump_edges(
+                    run,
+                    model,
+                    [-EDGE_SPREADS, EDGE_SPREADS].map(|s| trace(0.0, s)),
+                )
+            });
         let [below, above] = [below, above].map(|trace| run.stamped(&trace, clocks));
         let [early, late] =
             [-TIMING_S, TIMING_S].map(|later_s| run.stamped(&trace(later_s, 0.0), clocks));
@@ -131,6 +135,7 @@ impl RunWeights {
             scale: vec![0.0; 4 * run.len()],
             gain: vec![0.0; run.len()],
         };
+        let at_an_edge = |sample: usize| edges.as_ref().is_some_and(|edges| edges[sample]);
         let stops = at_a_stop(run, model, [&below, &above]);
         let ringing = experiment.ringing;
         for channel in [
@@ -155,7 +160,7 @@ impl RunWeights {
                 let yardstick = sigma.hypot(spread).hypot(shift).hypot(tolerance[sample]);
                 let known = yardstick <= UNKNOWABLE * sigma
                     && !stops[sample]
-                    && !(channel == Channel::PumpPressure && edges[sample]);
+                    && !(channel == Channel::PumpPressure && at_an_edge(sample));
                 if value.is_finite() && known {
                     weights.scale[offset + sample] = 1.0 / yardstick;
                 }

@@ -3,6 +3,7 @@
 use super::signals::Signals;
 use super::{HitchRig, MechanicalState, Plant, Rig, oil, root};
 use crate::expression::Place;
+use crate::model::Dynamics;
 
 /// A hitch that is seen to stand no further from where the ground bears it lies there, m of travel: 0.15 degree. Its
 /// sensor is no better, and a hard floor turns that into the pressure of the whole weight.
@@ -24,11 +25,13 @@ impl Plant<'_> {
     }
 
     /// Puts a hitch that is seen at rest near the ground's height on the ground, and one that is seen below in a hollow.
+    /// Of the quasi-static plant only the hollow: there a ground that is a hair higher carries it as well.
     pub(super) fn stand_on_the_ground(&mut self, rig: &HitchRig) {
         let off_m = self.state.piston_m - self.lowest_m;
         let dh_dx = self.model.linkage().dh_dx(self.state.piston_m);
+        let dynamic = self.model.constants().dynamics == Dynamics::Dynamic;
         if let Some(ground) = &mut self.sites.ground {
-            if off_m.abs() < HAIR_M {
+            if dynamic && off_m.abs() < HAIR_M {
                 ground.height_m += dh_dx * off_m;
                 self.lowest_m = self.state.piston_m;
                 self.state = self.held_at(rig, self.state.piston_m);
