@@ -7,7 +7,9 @@ use super::evidence::{detectability, log_odds, variance_inflation};
 use super::experiment::Experiment;
 use super::fit::Fit;
 use super::frame::Frame;
-use super::jacobian::{Jacobian, SlowColumns, difference, huber, huber_residuals, square_sum};
+use super::jacobian::{
+    Jacobian, RunJacobian, SlowColumns, difference, huber, huber_residuals, square_sum,
+};
 use super::profile::Profile;
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
@@ -136,7 +138,7 @@ pub(super) fn weigh_by(
                 model,
                 fit: &fit,
                 shared: signature.shared,
-                frame: besides(&fit, &jacobian, signature.shared),
+                frame: &signature.frame,
             };
             let rise = 1.96f64.powi(2) * variance * signature.inflation;
             let [down, up] = [-promised, promised].map(|half| profile.end(half, rise));
@@ -172,54 +174,43 @@ fn systematic(added: &AddedEffect, parameter: usize) -> f64 {
     absolute.hypot(SYSTEMATIC_SHARE * values[parameter])
 }
 
-/// A parameter's signature with all that is free besides it projected out.
-struct Signature {
+/// A parameter's signature, a step of one scale, with all that is free besides it projected out.
+struct Signature<'a> {
     parameter: usize,
     shared: Shared,
+    /// All that is free besides it.
+    frame: Frame<&'a Jacobian>,
+    /// Squared length of what is left, and what imitating the rest costs in priors.
     square: f64,
     inflation: f64,
 }
 
-impl Signature {
+impl<'a> Signature<'a> {
     fn new(
         experiment: &Experiment,
         fit: &Fit,
-        jacobian: &Jacobian,
+        jacobian: &'a Jacobian,
         effect: usize,
         parameter: usize,
     ) -> Self {
         let shared = Shared::Effect(effect, parameter);
-        let (projected, price) = projected(fit, jacobian, shared);
+        let column = jacobian.shared.iter().position(|&s| s == shared);
+        let own = column.map_or(0..0, |column| column..column + 1);
+        let frame = Frame::new(jacobian, &fit.estimate, own);
+        let of_run = |run: &RunJacobian| match column {
+            Some(column) => run.shared[column].clone(),
+            None => vec![0.0; run.residual.len()],
+        };
+        let signature = jacobian.runs.iter().map(of_run).collect();
+        let (projected, price) = frame.project_at_a_price(signature);
         Self {
             parameter,
             shared,
+            frame,
             square: (square_sum(&projected) + price).max(1e-12),
             inflation: variance_inflation(experiment, &fit.residuals, &projected),
         }
     }
-}
-
-/// A parameter's signature, a step of one scale, with all that is free besides it projected out, and what imitating it
-/// costs in priors.
-fn projected(fit: &Fit, jacobian: &Jacobian, shared: Shared) -> (Vec<Vec<f64>>, f64) {
-    let column = jacobian.shared.iter().position(|&s| s == shared);
-    let Some(column) = column else {
-        let nothing = |run: &Vec<f64>| vec![0.0; run.len()];
-        return (fit.residuals.iter().map(nothing).collect(), 0.0);
-    };
-    let signature = jacobian
-        .runs
-        .iter()
-        .map(|run| run.shared[column].clone())
-        .collect();
-    besides(fit, jacobian, shared).project_at_a_price(signature)
-}
-
-/// All that is free besides a parameter.
-fn besides<'a>(fit: &Fit, jacobian: &'a Jacobian, shared: Shared) -> Frame<&'a Jacobian> {
-    let mut columns = jacobian.shared.iter();
-    let column = columns.position(|&s| s == shared).unwrap_or(0);
-    Frame::new(jacobian, &fit.estimate, column..column + 1)
 }
 
 /// How much of the last effect of a fit is seen.

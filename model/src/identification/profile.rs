@@ -38,7 +38,7 @@ pub struct Profile<'a> {
     /// Which parameter.
     pub shared: Shared,
     /// All that is free besides it, at the fit.
-    pub frame: Frame<&'a Jacobian>,
+    pub frame: &'a Frame<&'a Jacobian>,
 }
 
 impl Profile<'_> {
