@@ -70,11 +70,12 @@ fn the_transmission_is_the_slope_of_the_height() {
     }
 }
 
-/// A hitch that is seen at rest below the ground's height stands in a hollow: it stays there without pressure, and the
-/// pump lifts it out against nothing, until the ground no longer carries it.
+/// A hitch that is seen at rest below the ground's height stands without pressure, and the pump lifts it off against
+/// nothing, until the ground no longer carries it: the quasi-static plant where it is seen, in a hollow, the dynamic
+/// plant on the ground.
 #[test]
-fn a_hitch_in_a_hollow_is_not_thrown_out() {
-    for model in [Model::nominal(), Model::dynamic()] {
+fn a_hitch_that_is_seen_below_the_ground_is_not_thrown_out() {
+    for (model, on_it) in [(Model::nominal(), false), (Model::dynamic(), true)] {
         let ground = AddedEffect {
             effect: find("ground-contact").unwrap(),
             values: vec![0.25, 1000.0],
@@ -85,14 +86,22 @@ fn a_hitch_in_a_hollow_is_not_thrown_out() {
         for _ in 0..500 {
             plant.step(Currents::default(), STEP_S);
         }
-        assert!((angle_deg(&plant) - 55.0).abs() < 0.1, "{}", model.name);
+        // The ground, which bears 250 kg and 30 kg of links, yields by 280 kg * 9.81 m/s2 / 1 MN/m.
+        let height_m = |piston_m| model.linkage().at(piston_m).height_m;
+        let over_the_lowest_m = height_m(plant.state().piston_m) - height_m(0.0);
+        if on_it {
+            let yielded_m = 0.25 - over_the_lowest_m;
+            assert!((yielded_m - 2.75e-3).abs() < 1e-4, "{yielded_m} m");
+        } else {
+            assert!((angle_deg(&plant) - 55.0).abs() < 0.1);
+        }
         assert!(plant.reading().cylinder_pressure_bar < 0.5);
         let mut carried_bar: f64 = 0.0;
         while angle_deg(&plant) < 90.0 {
-            plant.step(currents(1.6, 0.0), STEP_S);
             if (65.0..70.0).contains(&angle_deg(&plant)) {
                 carried_bar = carried_bar.max(plant.reading().cylinder_pressure_bar);
             }
+            plant.step(currents(1.6, 0.0), STEP_S);
         }
         assert!(carried_bar < 5.0, "{}: {carried_bar} bar", model.name);
         let lifted_bar = plant.reading().cylinder_pressure_bar;

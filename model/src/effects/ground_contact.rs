@@ -4,8 +4,8 @@
 //! which the implement touches (Bekker with n = 1, damped as by Hunt & Crossley). Floors have 1e6 to 1e7 N/m, soil 5e4
 //! to 5e5 N/m.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use crate::plant::sites::Ground;
@@ -49,7 +49,7 @@ pub static GROUND_CONTACT: Described = Described {
         Channel::RockerAngle,
     ],
     needs: None,
-    erratic: false,
+    search: Search::Places,
     attach,
 };
 
@@ -58,6 +58,5 @@ fn attach(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
         height_m: conditions.linkage.at(0.0).height_m + values[0],
         stiffness_n_m: values[1] * 1e3,
         damping_s_m: DAMPING_S_M,
-        hollow: false,
     });
 }

@@ -60,7 +60,7 @@ fn derivative(
     let slope = masses.half_inertia_slope_kg_m(load_kg, dh_dx, d2h_dx2_1_m) * heavier;
     let speed_m_s = state.speed_m_s;
     let weight_n = forces.weight_at_n(dh_dx, &state);
-    let force_n = pressure_pa * area_m2 - weight_n + forces.pushed_n(state, weight_n)
+    let force_n = pressure_pa * area_m2 - weight_n + forces.ground_n(state.piston_m, speed_m_s)
         - slope * speed_m_s * speed_m_s
         - cylinder.viscous_friction_n_s_m * speed_m_s
         - forces.friction_n(&state, weight_n)

@@ -57,16 +57,6 @@ impl Forces<'_> {
         ground.force_n(posture.height_m, speed_m_s * posture.dh_dx) * posture.dh_dx
     }
 
-    /// Force of the ground on a hitch in motion, N, upwards, under a weight's force, N.
-    #[must_use]
-    pub fn pushed_n(&self, state: MechanicalState, weight_n: f64) -> f64 {
-        let ground_n = self.ground_n(state.piston_m, state.speed_m_s);
-        match &self.sites.ground {
-            Some(ground) if ground.hollow => ground_n.min(weight_n),
-            _ => ground_n,
-        }
-    }
-
     /// Friction against the motion, N, in a state under a weight's force, N.
     #[must_use]
     pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {

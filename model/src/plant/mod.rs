@@ -329,7 +329,6 @@ impl<'m> Plant<'m> {
                     return;
                 }
                 self.state = dynamic::step(&forces, &circuit, self.state, openings, dt_s);
-                self.leave_the_hollow(&rig);
             }
         }
         if !self.sites.terms.is_empty() {

@@ -24,30 +24,15 @@ impl Plant<'_> {
         }
     }
 
-    /// Puts a hitch that is seen at rest near the ground's height on the ground, and one that is seen below in a hollow.
-    /// Of the quasi-static plant only the hollow: there a ground that is a hair higher carries it as well.
+    /// Puts a hitch that is seen at rest below the ground, or a hair above, on it. In the quasi-static plant it stays
+    /// where it is seen: below it stands in a hollow, and ground that is a hair higher carries it as well.
     pub(super) fn stand_on_the_ground(&mut self, rig: &HitchRig) {
-        let off_m = self.state.piston_m - self.lowest_m;
-        let dh_dx = self.model.linkage().dh_dx(self.state.piston_m);
         let dynamic = self.model.constants().dynamics == Dynamics::Dynamic;
-        if let Some(ground) = &mut self.sites.ground {
-            if dynamic && off_m.abs() < HAIR_M {
-                ground.height_m += dh_dx * off_m;
-                self.lowest_m = self.state.piston_m;
-                self.state = self.held_at(rig, self.state.piston_m);
-            } else {
-                ground.hollow = off_m < 0.0;
-            }
+        let off_m = self.state.piston_m - self.lowest_m;
+        if self.sites.ground.is_some() && dynamic && off_m < HAIR_M {
+            self.state = self.held_at(rig, self.lowest_m);
         }
         self.lowest_m = self.lowest_m.min(self.state.piston_m);
-    }
-
-    /// Where the hitch does not touch it the ground is as high as it is.
-    pub(super) fn leave_the_hollow(&mut self, rig: &HitchRig) {
-        let away = self.forces(rig).ground_n(self.state.piston_m, 0.0) == 0.0;
-        if let Some(ground) = &mut self.sites.ground {
-            ground.hollow &= !away;
-        }
     }
 
     /// The hitch held at a piston travel.

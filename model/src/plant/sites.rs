@@ -89,9 +89,6 @@ pub struct Ground {
     pub stiffness_n_m: f64,
     /// Damping, s/m: share by which the force grows for each metre a second of approach; the dynamic plant only.
     pub damping_s_m: f64,
-    /// Whether it carries the hitch but does not push it up: one that is seen at rest below the ground's height stands
-    /// in a hollow, until it has left that.
-    pub hollow: bool,
 }
 
 impl Ground {
