@@ -350,7 +350,7 @@ impl Controller {
             return None;
         }
         let lower_speed = lowering_limit(inputs.lowering_dial, operator, &calibration.position);
-        Some(PositionControl::demand(
+        let demand = PositionControl::demand(
             target,
             self.phase,
             &self.motion,
@@ -358,7 +358,8 @@ impl Controller {
             lower_speed,
             self.scale,
             calibration,
-        ))
+        );
+        Some(self.position.paced(demand, &calibration.position))
     }
 
     /// The next phase; starting a move forgets the last one's bias, and counts it if nobody asked for it.

@@ -10,7 +10,8 @@
 //! ```
 //!
 //! It never asks for less than a creep speed: the end of the approach is then a cut of the coil, at the
-//! moment from which the closing spool carries the hitch onto the set point ([`RunOn::cut_point`]).
+//! moment from which the closing spool carries the hitch onto the set point ([`RunOn::cut_point`]). A hitch that came
+//! to rest elsewhere is brought there at that speed.
 
 use super::calibration::Calibration;
 use super::design_parameters::PositionParameters;
@@ -30,6 +31,8 @@ pub struct PositionControl {
     arrived: bool,
     /// A move to this set point has begun: another one is a correction.
     started: bool,
+    /// The present move is one, for the move itself ended elsewhere.
+    retries: bool,
     /// The present place is taken for the set point until the lever moves (end stop).
     accepted: bool,
 }
@@ -108,6 +111,7 @@ impl PositionControl {
     /// A move starts now: for this reason.
     pub fn start(&mut self) -> Reason {
         let reason = self.reason();
+        self.retries = self.started && !self.arrived;
         self.started = true;
         reason
     }
@@ -171,6 +175,19 @@ impl PositionControl {
             acceleration,
         }
     }
+
+    /// The `demand`, but creeping if the last move didn't get there.
+    ///
+    /// What sent that one elsewhere the estimate doesn't know, and a short way doesn't tell in time: in a hurry this one
+    /// would end as far beyond, and the next one as well. What leaves its place after it has rested there didn't err.
+    #[must_use]
+    pub fn paced(&self, demand: Demand, parameters: &PositionParameters) -> Demand {
+        let speed = match self.retries {
+            true => demand.speed.min(parameters.creep_speed),
+            false => demand.speed,
+        };
+        Demand { speed, ..demand }
+    }
 }
 
 /// The profile `u(r)` of the module's head.
@@ -217,6 +234,29 @@ mod tests {
             );
             last = speed;
         }
+    }
+
+    #[test]
+    fn a_move_that_ended_elsewhere_is_made_good_creeping() {
+        let parameters = PositionParameters::NOMINAL;
+        let (fast, creep) = (parameters.lift_speed, parameters.creep_speed);
+        let demand = Demand {
+            direction: Direction::Lift,
+            speed: fast,
+            acceleration: parameters.lift_acceleration,
+        };
+        let mut position = PositionControl::default();
+        let mut moved = |reason, rests| {
+            assert_eq!(position.start(), reason);
+            if rests {
+                let here = Micrometre::ZERO;
+                assert_eq!(position.reason_to_move(here, here, &parameters), None);
+            }
+            position.paced(demand, &parameters).speed
+        };
+        assert_eq!(moved(Reason::SetPoint, false), fast);
+        assert_eq!(moved(Reason::Drift, true), creep, "ended elsewhere");
+        assert_eq!(moved(Reason::Drift, false), fast, "left its place");
     }
 
     #[test]
