@@ -63,7 +63,7 @@ fn a_value_set_by_hand_is_driven_and_a_wrong_one_is_refused_in_one_line() {
         ],
     );
     assert!(slow["ratio_p95"].as_f64().unwrap() > swift["ratio_p95"].as_f64().unwrap() + 0.5);
-    for bad in ["position.kp=1", "position.approach_gain=1e6", "nonsense"] {
+    for bad in ["position.kd=1", "position.approach_gain=1e6", "nonsense"] {
         let output = run(folder.path(), &["loop", "--set", bad]);
         assert_eq!(output.status.code(), Some(2), "{bad}");
         let said = text(&output.stderr);

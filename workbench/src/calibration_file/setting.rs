@@ -32,6 +32,9 @@ impl Scalar {
     }
 }
 
+/// What others call a scalar: group, their name, ours.
+const ALSO_CALLED: [(&str, &str, &str); 1] = [("position", "kp", "approach_gain")];
+
 /// The calibration with settings from the command line, validated again.
 ///
 /// # Errors
@@ -50,7 +53,7 @@ pub fn with_settings(
     })
 }
 
-/// Sets one scalar, named with or without its unit; its name without.
+/// Sets one scalar, named with or without its unit, or as others call it; its name without.
 ///
 /// # Errors
 /// What is wrong with the setting.
@@ -63,6 +66,10 @@ pub fn set(calibration: &mut Calibration, setting: &str) -> Result<String, Strin
         let what = quote(setting);
         return Err(format!("{what} is not like position.approach_gain=30"));
     };
+    let ours = ALSO_CALLED
+        .iter()
+        .find(|&&(of, theirs, _)| (of, theirs) == (group, name));
+    let name = ours.map_or(name, |&(_, _, ours)| ours);
     let Ok(value) = value.parse::<f64>() else {
         let what = quote(value);
         return Err(format!("{what} is not a number; {group}.{name} needs one"));
@@ -162,12 +169,16 @@ mod tests {
         assert_eq!(name, "position.restart_band");
         assert_eq!(calibration.position.approach_gain.0, 31);
         assert_eq!(calibration.position.restart_band.0, 500);
+        let name = set(&mut calibration, "position.kp=32").unwrap();
+        assert_eq!(name, "position.approach_gain", "what others call it");
+        assert_eq!(calibration.position.approach_gain.0, 32);
         for (bad, said) in [
             ("kp=3", "is not like"),
             (
-                "position.kp=3",
-                "there is no \"position.kp\"; known: lower_limit, ",
+                "position.ki=3",
+                "there is no \"position.ki\"; known: lower_limit, ",
             ),
+            ("rate.kp=3", "there is no \"rate.kp\""),
             ("position.aproach_gain=3", "did you mean approach_gain?"),
             ("postion.approach_gain=3", "did you mean position?"),
             ("position.approach_gain=x", "is not a number"),
