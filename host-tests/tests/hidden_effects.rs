@@ -1,12 +1,15 @@
 //! A few cases of the second rig, always the same: the hidden effect is named, nothing is named where nothing is
 //! hidden, and what is in no catalogue is owned up to. `cargo bench --bench hidden_effects` asks many more.
 
+use hitch_model::campaign::Campaign;
+use hitch_model::identification::experiment::Experiment;
+use hitch_model::identification::explain::explain;
 use host_tests::hidden_effects::answer::Method;
 use host_tests::hidden_effects::explaining::Explaining;
 use host_tests::hidden_effects::grade::{Graded, Posed};
 use host_tests::hidden_effects::starting_point;
 use host_tests::second_rig::campaign_writer::{campaign, planned_runs, write};
-use host_tests::second_rig::draw::{Kind, Wish, draw};
+use host_tests::second_rig::draw::{Case, Kind, Wish, draw};
 use host_tests::second_rig::hideable::{Fidelity, find};
 use host_tests::second_rig::manoeuvres::Plan;
 use host_tests::second_rig::test_stand::Family;
@@ -98,10 +101,8 @@ fn an_effect_is_named_in_the_field() {
     assert!(graded[0].named_first());
 }
 
-/// The short moves of the lab alone: ringing pressures take long to simulate.
-#[test]
-fn an_effect_is_named_where_pressures_ring() {
-    let question = (11, "entrained-air", Fidelity::Faithful, false);
+/// A campaign of the dynamic rig: the short moves of the lab alone, for ringing pressures take long to simulate.
+fn short_moves(question: Question) -> (Case, Campaign) {
     let case = draw(question.0, &wish(Family::Dynamic, Plan::Lab, question));
     let mut measured = campaign(&case);
     measured.runs.retain(|run| {
@@ -109,9 +110,36 @@ fn an_effect_is_named_where_pressures_ring() {
             .iter()
             .any(|kind| run.file.starts_with(kind))
     });
+    (case, measured)
+}
+
+#[test]
+fn an_effect_is_named_where_pressures_ring() {
+    let question = (11, "entrained-air", Fidelity::Faithful, false);
+    let (case, measured) = short_moves(question);
     let answer = Explaining.answer(&measured, &starting_point(case.family));
     println!("{question:?}: {answer:?}");
     assert_eq!(answer.named, ["entrained-air"]);
+}
+
+/// A millimetre higher than its ground a hitch hangs, a millimetre lower it stands, and a load rings on stiff ground:
+/// the place is found all the same.
+#[test]
+fn the_ground_is_found_where_loads_ring_on_it() {
+    for seed in 13..16 {
+        let question = (seed, "ground-contact", Fidelity::Faithful, false);
+        let (case, measured) = short_moves(question);
+        let model = starting_point(case.family);
+        let found = explain(&Experiment::new(&measured, &model), &model, &|_| {});
+        let first = found.steps.first().expect("something is found");
+        let (height_m, truth_m) = (first.values[0], case.hidden[0].size);
+        println!(
+            "{question:?}, {truth_m} m: {} {height_m}",
+            first.effect.id()
+        );
+        assert_eq!(first.effect.id(), "ground-contact");
+        assert!((height_m - truth_m).abs() < 1e-3);
+    }
 }
 
 /// What is written is what was measured.
@@ -121,7 +149,7 @@ fn a_written_campaign_is_read_back() {
     let case = draw(question.0, &wish(Family::Steady, Plan::Field, question));
     let folder = tempfile::tempdir().expect("a folder");
     write(&case, &folder.path().join("drawn")).expect("written");
-    let read = hitch_model::campaign::Campaign::load(&folder.path().join("drawn"));
+    let read = Campaign::load(&folder.path().join("drawn"));
     let read = read.expect("a sound campaign");
     let measured = campaign(&case);
     assert_eq!(read.runs.len(), planned_runs(&case).len());

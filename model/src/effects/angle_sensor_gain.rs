@@ -2,8 +2,8 @@
 //!
 //! `y = (1 + g) angle`; 0.5 to 1 % of full scale is usual for a hall sensor, more for a worn lever or a wrong supply.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use crate::plant::Reading;
@@ -32,7 +32,7 @@ pub static ANGLE_SENSOR_GAIN: Described = Described {
     }],
     channels: &[Channel::RockerAngle],
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach,
 };
 

@@ -6,8 +6,8 @@
 
 use std::collections::VecDeque;
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 use crate::plant::Reading;
 use crate::plant::lag::Lag;
@@ -41,7 +41,7 @@ pub static FILTERING: Described = Described {
     }],
     channels: CHANNELS,
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach: |values, _, sites| attach(values[0], 0.0, sites),
 };
 
@@ -78,7 +78,7 @@ pub static DELAYED: Described = Described {
     ],
     channels: CHANNELS,
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach: |values, _, sites| {
         let dead_s = values[0] * values[1];
         attach(values[0] - dead_s, dead_s, sites);

@@ -5,8 +5,8 @@
 //! drops, so the lift orifice keeps what is left of 1.5 bar. Throttling makes large flows fall short the more; the
 //! spring alone takes the same share of every flow and is `lift-flow-scale` by another name.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use crate::plant::sites::{RunConditions, Sites};
@@ -50,7 +50,7 @@ pub static CHECK_VALVE_LOSS: Described = Described {
     ],
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach,
 };
 

@@ -5,8 +5,8 @@
 //! shrinks from 1.5 bar, so the lift flow falls with its square root. The spool closes further the less flow it has to
 //! pass by, so the margin falls with the lift flow too: by a share `d` of the 4 bar from none to the pump's whole flow.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use crate::plant::sites::{RunConditions, Sites};
@@ -34,7 +34,7 @@ pub static WITH_LOAD: Described = Described {
     }],
     channels: CHANNELS,
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach: |values, _, sites| fall_with_load(values[0], sites),
 };
 
@@ -72,7 +72,7 @@ pub static WITH_FLOW: Described = Described {
     ],
     channels: CHANNELS,
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach: |values, conditions, sites| {
         let RunConditions { constants, .. } = conditions;
         let lost_pa = values[0] * constants.compensator.margin_pa;

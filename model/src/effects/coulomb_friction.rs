@@ -6,8 +6,8 @@
 //! Wit 1995), until the trembling of a running machine has let them straighten. 100 to 300 N and 1 to 4 % of the
 //! pressure force are usual for a 76 mm cylinder, and some tenths of a millimetre of bending.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 use crate::plant::sites::Bristles;
 
@@ -44,7 +44,7 @@ pub static SMOOTH: Described = Described {
     parameters: &[FORCE],
     channels: CHANNELS,
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach: |values, _, sites| {
         let force_n = values[0];
         sites.friction.push(Box::new(move |speed_m_s, _| {
@@ -90,7 +90,7 @@ pub static BRISTLES: Described = Described {
     ],
     channels: CHANNELS,
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach: |values, _, sites| {
         sites.bristles = Some(Bristles {
             force_n: values[0],

@@ -1,6 +1,6 @@
 //! An effect as data: its texts, its parameters, and a function that puts it into a plant.
 
-use super::{Effect, Parameter};
+use super::{Effect, Parameter, Search};
 use crate::campaign::Channel;
 use crate::model::Dynamics;
 use crate::plant::sites::{RunConditions, Sites};
@@ -16,7 +16,7 @@ pub struct Described {
     pub(super) parameters: &'static [Parameter],
     pub(super) channels: &'static [Channel],
     pub(super) needs: Option<Dynamics>,
-    pub(super) erratic: bool,
+    pub(super) search: Search,
     pub(super) attach: fn(&[f64], RunConditions<'_>, &mut Sites),
 }
 
@@ -57,8 +57,8 @@ impl Effect for Described {
         self.needs
     }
 
-    fn erratic(&self) -> bool {
-        self.erratic
+    fn search(&self) -> Search {
+        self.search
     }
 
     fn attach(&self, values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {

@@ -4,8 +4,8 @@
 //! of air at atmospheric pressure over that of the oil: c / (1 - c) for a share c of the whole. The change of state
 //! lies between isothermal, n = 1, and adiabatic, n = 1.4.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 use crate::model::Dynamics;
 use crate::plant::sites::{RunConditions, Sites};
@@ -50,7 +50,7 @@ pub static ENTRAINED_AIR: Described = Described {
     ],
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
-    erratic: false,
+    search: Search::Secants,
     attach,
 };
 

@@ -7,8 +7,8 @@
 //! there: where the table is flat the force then shows in nothing. The lift valve's drop is held by the compensator:
 //! nothing to see.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use crate::plant::sites::{Law, RunConditions, Sites};
@@ -35,7 +35,7 @@ pub static ON_FLOW: Described = Described {
     }],
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach: attach_to_flow,
 };
 

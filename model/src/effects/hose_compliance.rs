@@ -3,8 +3,8 @@
 //! `dp/dt = (sum Q - A v) / (V/E + C)`. Two metres of half-inch two-wire hose have 3 to 6e-13 m3/Pa, as much as 0.6 l
 //! of oil; written in cm3/bar, 0.03 to 0.06.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 use crate::model::Dynamics;
 use crate::plant::sites::{RunConditions, Sites};
@@ -31,7 +31,7 @@ pub static HOSE_COMPLIANCE: Described = Described {
     }],
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
-    erratic: false,
+    search: Search::Secants,
     attach,
 };
 

@@ -6,8 +6,8 @@
 //! most, `m` tells how much of it is there all over the stroke. An overhang of 0.3 to 0.6 m and 5 to 12 degrees of
 //! pitch make 5 to 15 %.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use crate::plant::sites::{RunConditions, Sites};
@@ -51,7 +51,7 @@ pub static LOAD_ARM: Described = Described {
         Channel::RockerAngle,
     ],
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach,
 };
 

@@ -3,8 +3,8 @@
 //! `p A = F_weight + s M(x) dv/dt` with `M = (load + dead weight) (dh/dx)^2 + 20 kg`. One is the inertia of the weights
 //! as they are. On the dynamic starting point, which has that already, it is what comes on top: rocker, arms, mast.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use crate::plant::sites::{RunConditions, Sites};
@@ -34,7 +34,7 @@ pub static LOAD_INERTIA: Described = Described {
     }],
     channels: &[Channel::CylinderPressure],
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach,
 };
 

@@ -5,8 +5,8 @@
 //!    how large the effect usually is.
 //! 2. In it one `pub static` of type `described::Described`: texts, parameters with unit, range, null value and typical
 //!    size, the channels in which it shows on a lab campaign, the starting point that it needs if not every one can show
-//!    it, whether it is erratic, and `attach`. The first parameter is the size: at its null value the effect is not there, whatever the others
-//!    are. `flow_force.rs` is a short example, `pin_backlash.rs` one that remembers.
+//!    it, how its size is looked for, and `attach`. The first parameter is the size: at its null value the effect is not
+//!    there, whatever the others are. `flow_force.rs` is a short example, `pin_backlash.rs` one that remembers.
 //! 3. `attach` gets a value for each parameter, in its unit, and what is known of the run ([`RunConditions`]), and puts
 //!    numbers, closures or small stateful parts at the [`Sites`] where the physics acts; SI inside. If no site is where
 //!    it acts, add one to [`Sites`] and call it from the component concerned.
@@ -116,7 +116,49 @@ pub struct Parameter {
     pub high: f64,
 }
 
+/// How the size of an effect is looked for before it is fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Search {
+    /// Along a few secants: from most sizes a fit leads to the best one.
+    Secants,
+    /// In fine steps: a size that is a few percent off can be worse than none, for what jumps or bounces does so at
+    /// another time then.
+    Jumps,
+    /// Place by place: the size is where something is met, and nothing tells of it before.
+    Places,
+}
+
+/// Ratio of the ends of a range from which a parameter is taken by its order of magnitude.
+const DECADE: f64 = 10.0;
+
 impl Parameter {
+    /// Whether its range covers so much that its order of magnitude is what counts.
+    #[must_use]
+    pub fn is_by_magnitude(&self) -> bool {
+        self.low > 0.0 && self.high.is_finite() && self.high > DECADE * self.low
+    }
+
+    /// Its value at a share of its range, evenly or by its order of magnitude; the range is finite.
+    #[must_use]
+    pub fn at_share(&self, share: f64) -> f64 {
+        if self.is_by_magnitude() {
+            self.low * (self.high / self.low).powf(share)
+        } else {
+            self.low + share * (self.high - self.low)
+        }
+    }
+
+    /// The value that lies a share of its range above another, within the range.
+    #[must_use]
+    pub fn moved(&self, value: f64, share: f64) -> f64 {
+        let moved = if self.is_by_magnitude() {
+            value * (self.high / self.low).powf(share)
+        } else {
+            value + share * (self.high - self.low)
+        };
+        moved.clamp(self.low, self.high)
+    }
+
     /// A natural size of a step of it, in its unit: from nothing to the typical value, or what there is of that.
     #[must_use]
     pub fn scale(&self) -> f64 {
@@ -153,10 +195,9 @@ pub trait Effect: Sync {
     fn needs(&self) -> Option<Dynamics> {
         None
     }
-    /// Whether a size that is a few percent off can be worse than none: what jumps or bounces does so at another time
-    /// then, and a fit has to start close by.
-    fn erratic(&self) -> bool {
-        false
+    /// How its size is looked for before it is fitted.
+    fn search(&self) -> Search {
+        Search::Secants
     }
     /// Puts it into a plant, with a value for each parameter.
     fn attach(&self, values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites);

@@ -9,8 +9,8 @@
 //! `lambda = D_h sqrt(2 dp / rho) / nu(T)`. The hydraulic diameter is twice the gap, which opens by 4 mm an ampere, so
 //! this one shows at the lowest currents.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 use crate::plant::oil::viscosity_m2_s;
 use crate::plant::sites::{RunConditions, Sites};
@@ -55,7 +55,7 @@ pub static SERIES: Described = Described {
     ],
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach: attach_series,
 };
 
@@ -90,7 +90,7 @@ pub static FLOW_NUMBER: Described = Described {
     }],
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach: attach_flow_number,
 };
 

@@ -4,8 +4,8 @@
 //! through a play operator of full width b, `w = clamp(w_before, x - b/2, x + b/2)`, and shows the angle at w. 0.5 to 2
 //! mm.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use crate::plant::sites::SensorStage;
@@ -34,7 +34,7 @@ pub static PIN_BACKLASH: Described = Described {
     }],
     channels: &[Channel::RockerAngle],
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach,
 };
 

@@ -3,8 +3,8 @@
 //! `F = e F_weight tanh(v / 3 mm/s)`: each pin resists with `mu r |F_pin|`, and all pin forces grow with the load. With
 //! mu 0.10 to 0.20 and radii of 10 to 30 mm, e is 0.03 to 0.08.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use super::coulomb_friction::TRANSITION_SPEED_M_S;
@@ -36,7 +36,7 @@ pub static PIN_FRICTION: Described = Described {
         Channel::RockerAngle,
     ],
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach,
 };
 

@@ -2,8 +2,8 @@
 //!
 //! `y = p + o`; 0.25 to 1 % of a full scale of 250 or 350 bar is 0.6 to 3.5 bar, more with temperature.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use crate::plant::Reading;
@@ -31,7 +31,7 @@ pub static PRESSURE_SENSOR_OFFSET: Described = Described {
     }],
     channels: &[Channel::CylinderPressure],
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach,
 };
 

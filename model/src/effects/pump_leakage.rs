@@ -3,8 +3,8 @@
 //! Wilson's laminar slip, `Q = Q_0 - k p` (Merritt 4.2). The compensator sends what nobody needs to tank, so a smaller
 //! delivery shows only where the lift valve asks for more than is left.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use crate::plant::sites::{RunConditions, Sites};
@@ -31,7 +31,7 @@ pub static PUMP_LEAKAGE: Described = Described {
     }],
     channels: &[Channel::PumpPressure, Channel::Flow],
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach,
 };
 

@@ -4,8 +4,8 @@
 //! some flow: `above` is the part of the override that lies above the 154 bar, none if they hold at the pump's whole
 //! flow. 10 to 25 bar at 48 l/min; valves crack at 0.85 to 0.93 of their setting.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use crate::plant::sites::ReliefOverride;
@@ -46,7 +46,7 @@ pub static RELIEF_OVERRIDE: Described = Described {
     ],
     channels: &[Channel::PumpPressure, Channel::Flow],
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach,
 };
 

@@ -6,8 +6,8 @@
 //! that swings past its place: 5 to 15 Hz and a damping of 0.7 to 1 are usual. Both are exact at any step as long as the
 //! current runs linearly. On the dynamic starting point it comes on top of the 45 ms that are declared there.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use crate::plant::lag::Lag;
@@ -50,7 +50,7 @@ pub static CREEPING: Described = Described {
     ],
     channels: CHANNELS,
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach: attach_creeping,
 };
 
@@ -88,7 +88,7 @@ pub static SWINGING: Described = Described {
     ],
     channels: CHANNELS,
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach: attach_swinging,
 };
 

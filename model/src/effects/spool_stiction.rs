@@ -6,8 +6,8 @@
 //! follows the current, half of what the jump left of the band behind, until that turns or stands still (Choudhury,
 //! Thornhill and Shah 2005).
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use crate::plant::sites::{CurrentStage, Currents, Sites, Valve};
@@ -56,7 +56,7 @@ pub static STICKING: Described = Described {
     parameters: PARAMETERS,
     channels: CHANNELS,
     needs: None,
-    erratic: true,
+    search: Search::Jumps,
     attach: |values, _, sites| attach(values, sites, Jumping::default()),
 };
 
@@ -73,7 +73,7 @@ pub static FOLLOWING: Described = Described {
     parameters: PARAMETERS,
     channels: CHANNELS,
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach: |values, _, sites| attach(values, sites, Following::default()),
 };
 

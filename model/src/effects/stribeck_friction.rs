@@ -4,8 +4,8 @@
 //! which is reached within a few millimetres a second (Simscape's cylinder friction; Jelali & Kroll 4.3). k is 1.2 to
 //! 1.6, v_s 5 to 20 mm/s.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use super::coulomb_friction::TRANSITION_SPEED_M_S;
@@ -54,7 +54,7 @@ pub static STRIBECK_FRICTION: Described = Described {
     ],
     channels: &[Channel::CylinderPressure, Channel::RockerAngle],
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach,
 };
 

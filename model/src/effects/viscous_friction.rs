@@ -3,8 +3,8 @@
 //! `F = f v`, oil sheared in seals and guides; 500 to 5000 N s/m, several times that when cold. On the dynamic starting
 //! point it comes on top of the 12 000 N s/m declared there.
 
-use super::Parameter;
 use super::described::Described;
+use super::{Parameter, Search};
 use crate::campaign::Channel;
 
 use crate::plant::sites::{RunConditions, Sites};
@@ -36,7 +36,7 @@ pub static VISCOUS_FRICTION: Described = Described {
         Channel::RockerAngle,
     ],
     needs: None,
-    erratic: false,
+    search: Search::Secants,
     attach,
 };
 

@@ -3,7 +3,7 @@
 use super::clocks::{Clocks, FARTHEST_S, OFFSET_PRIOR_S};
 use super::experiment::{Experiment, LOAD_PRIOR, Nuisance};
 use super::jacobian::Step;
-use crate::effects::{AddedEffect, Parameter};
+use crate::effects::{AddedEffect, Parameter, Search};
 
 /// Values of everything that is free: the effects' parameters, and the nuisances with a prior.
 #[derive(Debug, Clone)]
@@ -80,6 +80,15 @@ impl Estimate {
     #[must_use]
     pub fn parameter(&self, effect: usize, parameter: usize) -> &'static Parameter {
         &self.effects[effect].effect.parameters()[parameter]
+    }
+
+    /// Whether a shared parameter is the place where something is met.
+    #[must_use]
+    pub fn is_place(&self, shared: Shared) -> bool {
+        match shared {
+            Shared::Effect(effect, 0) => self.effects[effect].effect.search() == Search::Places,
+            _ => false,
+        }
     }
 
     /// A natural size of a shared parameter, in its unit: its step in a fit is one of these.

@@ -16,8 +16,12 @@ use super::traces::CurrentShift;
 use crate::campaign::Channel;
 use crate::model::Model;
 
-/// Step of a difference quotient, in scales of the parameter.
+/// Step of a difference quotient, as a share of the parameter, or of its scale if that is more.
 const STEP: f64 = 0.02;
+
+/// The same for where something is met, in scales: a hitch that stands on the ground hangs above one that is millimetres
+/// lower, and all its pressure is another.
+const STEP_OF_PLACE: f64 = 0.002;
 
 /// The same for a channel's offset, in prior sigmas.
 const STEP_OF_OFFSET: f64 = 0.25;
@@ -164,7 +168,11 @@ fn shared_column(
     parameter: Shared,
 ) -> Vec<Vec<f64>> {
     let (value, scale) = (estimate.get(parameter), estimate.scale(parameter));
-    let step = STEP * value.abs().max(scale);
+    let step = if estimate.is_place(parameter) {
+        STEP_OF_PLACE * scale
+    } else {
+        STEP * value.abs().max(scale)
+    };
     let mut moved = estimate.clone();
     moved.set(parameter, value + step);
     if moved.get(parameter) == value {

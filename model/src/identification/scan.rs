@@ -18,13 +18,15 @@ use crate::model::Model;
 pub(super) struct Grid {
     /// Smallest and largest size, in typical sizes.
     sizes: [f64; 2],
-    /// Share by which a size is larger than the one before.
-    finer: f64,
+    /// How far a size is from the one before.
+    step: Step,
+    /// Which runs are looked at.
+    telling: Telling,
     /// What makes needles.
     needles: Option<Needles>,
     /// How far to either side of what the telling runs found all runs are looked at, as a share of the size.
     all_runs: f64,
-    /// Values of a shape from one end of its range to the other.
+    /// Values of a shape from one end of its range to the other, by its magnitude if that is what counts.
     shapes: usize,
     /// How far two sizes of a shape are apart at least, as a share of the size.
     apart: f64,
@@ -45,10 +47,27 @@ struct Needles {
     finer: f64,
 }
 
+/// How far a size is from the one before.
+enum Step {
+    /// A share of it.
+    Share(f64),
+    /// So many typical sizes.
+    Even(f64),
+}
+
+/// The runs that tell most of an effect.
+enum Telling {
+    /// Those that a size changes which is a little off.
+    Changed,
+    /// Those that the model fails without it.
+    Failed,
+}
+
 /// For jumps and bounces.
 pub(super) const JUMPS: Grid = Grid {
     sizes: [0.12, 4.0],
-    finer: 0.008,
+    step: Step::Share(0.008),
+    telling: Telling::Changed,
     needles: Some(Needles {
         sizes: [0.25, 1.5],
         finer: 0.003,
@@ -64,7 +83,8 @@ pub(super) const JUMPS: Grid = Grid {
 /// For ringing: a valley reaches a seventh of the size to either side, and descending from there needs no closer look.
 pub(super) const RINGING: Grid = Grid {
     sizes: [0.1, 8.0],
-    finer: 0.06,
+    step: Step::Share(0.06),
+    telling: Telling::Changed,
     needles: None,
     all_runs: 0.0,
     shapes: 5,
@@ -74,8 +94,24 @@ pub(super) const RINGING: Grid = Grid {
     quasi_static: false,
 };
 
-/// Sizes of each shape that are looked at more closely.
+/// For what is met somewhere: what stands at the place or comes down on it is right within a few millimetres, and what
+/// rings on it has a valley for every period.
+pub(super) const PLACES: Grid = Grid {
+    sizes: [0.1, 6.5],
+    step: Step::Even(0.06),
+    telling: Telling::Failed,
+    needles: None,
+    all_runs: 0.0,
+    shapes: 5,
+    apart: 0.05,
+    best: 2,
+    closer: &[(0.04, 0.125)],
+    quasi_static: false,
+};
+
+/// Sizes of each shape that are looked at more closely, and of all shapes.
 const PER_SHAPE: usize = 2;
+const LOOKED_AT: usize = 6;
 
 /// Values of a closer look to either side.
 const TO_EITHER_SIDE: i32 = 5;
@@ -100,9 +136,16 @@ pub(super) fn scan(
             model.clone()
         },
         base,
-        telling: telling_runs(experiment, model, base, hint),
+        telling: enough(
+            experiment,
+            &match grid.telling {
+                Telling::Changed => changed(experiment, model, base, hint),
+                Telling::Failed => failed(base),
+            },
+        ),
     };
     let mut best = apart(scan.winnowed(coarse(hint, grid)), grid.apart);
+    best.truncate(LOOKED_AT);
     for &reach in grid.closer {
         best = best
             .into_iter()
@@ -195,26 +238,31 @@ fn bounded_loss(residual: f64) -> f64 {
     (residual * residual).min(BOUND * BOUND)
 }
 
-/// The runs that tell sizes of the effect apart best, for their length: one that it changes much, but by any size
-/// alike, like a plateau that is reached from below, leaves them all in question.
-fn telling_runs(
-    experiment: &Experiment,
-    model: &Model,
-    base: &Fit,
-    hint: &AddedEffect,
-) -> Vec<usize> {
+/// Loss by which two sizes of the effect differ in each run. One that it changes much, but by any size alike, like a
+/// plateau that is reached from below, leaves them all in question.
+fn changed(experiment: &Experiment, model: &Model, base: &Fit, hint: &AddedEffect) -> Vec<f64> {
     let [smaller, larger] = TOLD_APART.map(|share| {
         let mut with = base.estimate.clone();
         with.effects.push(scaled(hint, share));
         residuals(experiment, model, &base.weights, &with)
     });
-    let change = |run: &usize| -> f64 {
-        let both = smaller[*run].iter().zip(&larger[*run]);
-        let sum: f64 = both.map(|(a, b)| bounded_loss(a - b)).sum();
-        sum / experiment.runs[*run].regimes.len().max(1) as f64
-    };
-    let mut runs: Vec<usize> = (0..experiment.runs.len()).collect();
-    runs.sort_by(|a, b| change(b).total_cmp(&change(a)));
+    let runs = smaller.iter().zip(&larger);
+    runs.map(|(a, b)| a.iter().zip(b).map(|(a, b)| bounded_loss(a - b)).sum())
+        .collect()
+}
+
+/// Loss of the model without the effect in each run.
+fn failed(base: &Fit) -> Vec<f64> {
+    let runs = base.residuals.iter();
+    runs.map(|run| run.iter().copied().map(bounded_loss).sum())
+        .collect()
+}
+
+/// Runs that tell enough, the most telling first for their length, by what each tells.
+fn enough(experiment: &Experiment, told: &[f64]) -> Vec<usize> {
+    let density = |run: usize| told[run] / experiment.runs[run].regimes.len().max(1) as f64;
+    let mut runs: Vec<usize> = (0..told.len()).collect();
+    runs.sort_by(|&a, &b| density(b).total_cmp(&density(a)));
     let mut samples = 0;
     let few = |&run: &usize| {
         let too_few = samples < ENOUGH;
@@ -227,28 +275,27 @@ fn telling_runs(
 /// Every size with every shape, and what makes needles.
 fn coarse(hint: &AddedEffect, grid: &Grid) -> Vec<AddedEffect> {
     let share = |k: usize| k as f64 / (grid.shapes - 1) as f64;
+    let next = |size: f64| match grid.step {
+        Step::Share(share) => size * (1.0 + share),
+        Step::Even(step) => size + step,
+    };
     let even = combinations(hint, |index, range| match index {
-        0 => sizes(range, grid.sizes, |_| grid.finer),
-        _ => (0..grid.shapes)
-            .map(|k| range.low + share(k) * (range.high - range.low))
-            .collect(),
+        0 => sizes(range, grid.sizes, next),
+        _ => (0..grid.shapes).map(|k| range.at_share(share(k))).collect(),
     });
     let needles = grid.needles.as_ref().map_or_else(Vec::new, |needles| {
+        let next = |size: f64| size * (1.0 + needles.finer * size);
         combinations(hint, |index, range| match index {
-            0 => sizes(range, needles.sizes, |size| needles.finer * size),
+            0 => sizes(range, needles.sizes, next),
             _ => vec![range.high],
         })
     });
     [even, needles].concat()
 }
 
-/// Sizes from the smallest to the largest, in typical ones, each by a share larger than the one before.
-fn sizes(
-    size: &Parameter,
-    [smallest, largest]: [f64; 2],
-    larger_by: impl Fn(f64) -> f64,
-) -> Vec<f64> {
-    std::iter::successors(Some(smallest), |&at| Some(at * (1.0 + larger_by(at))))
+/// Sizes from the smallest to the largest, in typical ones, each with the next larger one.
+fn sizes(size: &Parameter, [smallest, largest]: [f64; 2], next: impl Fn(f64) -> f64) -> Vec<f64> {
+    std::iter::successors(Some(smallest), |&at| Some(next(at)))
         .take_while(|&at| at <= largest)
         .map(|at| size.null + at * (size.typical - size.null))
         .filter(|value| (size.low..=size.high).contains(value))
@@ -258,13 +305,13 @@ fn sizes(
 /// Sizes and shapes around others.
 fn around(at: &AddedEffect, (size_reach, shape_reach): (f64, f64)) -> Vec<AddedEffect> {
     combinations(at, |index, range| {
-        let reach = if index == 0 {
-            size_reach * (at.values[0] - range.null)
-        } else {
-            shape_reach * (range.high - range.low)
-        };
+        let value = at.values[index];
         let mut values: Vec<f64> = (-TO_EITHER_SIDE..=TO_EITHER_SIDE)
-            .map(|k| at.values[index] + reach * f64::from(k) / f64::from(TO_EITHER_SIDE))
+            .map(|k| f64::from(k) / f64::from(TO_EITHER_SIDE))
+            .map(|share| match index {
+                0 => value + size_reach * share * (value - range.null),
+                _ => range.moved(value, shape_reach * share),
+            })
             .map(|value| value.clamp(range.low, range.high))
             .collect();
         values.dedup();

@@ -5,10 +5,10 @@ use super::experiment::Experiment;
 use super::fit::sketch;
 use super::jacobian::huber_residuals;
 use super::lateness::in_place_of_clocks;
-use super::scan::{Grid, JUMPS, RINGING, scan};
+use super::scan::{Grid, JUMPS, PLACES, RINGING, scan};
 use super::shortlist::{FAR, STARTS, Shortlist};
 use crate::campaign::Channel;
-use crate::effects::{AddedEffect, Effect, Parameter};
+use crate::effects::{AddedEffect, Effect, Parameter, Search};
 
 /// Sizes of the secants, in typical sizes: derivatives at zero miss a play or a gap, one size misses what saturates.
 const SIZES: [f64; 3] = [0.1, 1.0, 4.0];
@@ -150,12 +150,13 @@ impl Shortlist<'_> {
                 let added = start.last();
                 let (lowest, highest) = reach(&added);
                 let (share, cost) = self.frame.along(&residuals, lowest, highest);
-                let promised = Start {
+                // The best of a secant that leads away from the data is nothing at all.
+                let promised = (share != 0.0).then(|| Start {
                     cost,
                     estimate: with(&self.base.estimate, scaled(&added, share)),
                     promised_from: Some(1.0 / share),
-                };
-                [promised, start]
+                });
+                promised.into_iter().chain([start])
             })
             .collect();
         self.sort(&mut ranked);
@@ -267,11 +268,12 @@ fn with(estimate: &Estimate, added: AddedEffect) -> Estimate {
 /// How to look through an effect's cost if that has many valleys: the phase of a ringing pressure makes them, and what
 /// jumps or bounces.
 pub(super) fn valleys(experiment: &Experiment, effect: &dyn Effect) -> Option<&'static Grid> {
-    let rings = experiment.ringing && effect.channels() == [Channel::CylinderPressure];
-    if effect.erratic() {
-        Some(&JUMPS)
-    } else {
-        rings.then_some(&RINGING)
+    let pressure_alone = effect.channels() == [Channel::CylinderPressure];
+    match effect.search() {
+        Search::Jumps => Some(&JUMPS),
+        Search::Places if experiment.ringing => Some(&PLACES),
+        Search::Secants if experiment.ringing && pressure_alone => Some(&RINGING),
+        Search::Places | Search::Secants => None,
     }
 }
 
@@ -296,9 +298,6 @@ fn reach(added: &AddedEffect) -> (f64, f64) {
     )
 }
 
-/// Ratio of the ends of a range from which it is taken by its order of magnitude.
-const DECADE: f64 = 10.0;
-
 /// An effect with each parameter of its shape towards either end of its range in turn; none without a shape.
 pub(super) fn with_extreme_shapes(at: &AddedEffect) -> Vec<AddedEffect> {
     let parameters = at.effect.parameters().iter().enumerate().skip(1);
@@ -317,7 +316,7 @@ pub(super) fn with_extreme_shapes(at: &AddedEffect) -> Vec<AddedEffect> {
 /// A value as extreme as is of use for a start: the end of the range, unless that is an order of magnitude away.
 /// There, where the ground is all but rigid, the slopes vanish that would lead back.
 fn extreme(range: &Parameter, end: f64) -> f64 {
-    if range.low > 0.0 && range.high > DECADE * range.low {
+    if range.is_by_magnitude() {
         (range.typical * end).sqrt()
     } else {
         end
