@@ -41,7 +41,7 @@ fn a_load_that_swings_on_its_compensator_is_lifted_gently() {
     let bars = Bars {
         ratio: [1.4, 2.5],
         overshooting: 0.15,
-        overshoot_deg: 4.0,
+        overshoot_deg: 1.2,
         off: 0.03,
     };
     drive_all("structured machines", true, &bars);
