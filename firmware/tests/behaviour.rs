@@ -94,6 +94,26 @@ fn the_hitch_follows_the_lever_and_then_rests_with_both_coils_off() {
     }
 }
 
+/// A converter's last digit and a shaking cab: 0.1 degree, one sigma.
+#[test]
+fn a_lever_that_trembles_moves_nothing() {
+    let mut hitch = Hitch::picked_up();
+    let mut random = 1_u32;
+    let mut noise = || {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (random >> 16).cast_signed() % 150 - 75
+    };
+    for target in [90_000, 105_000, 104_000] {
+        for step in 0..20_000 {
+            hitch.lever = target + (0..6).map(|_| noise()).sum::<i32>();
+            let outputs = hitch.run(1);
+            let off = outputs.lift_current.0 == 0 && outputs.lower_current.0 == 0;
+            assert!(off || step < 3_000, "{step} ms after {target} mdeg");
+        }
+    }
+    assert!((hitch.angle_deg() - 104.0).abs() < 0.5);
+}
+
 #[test]
 fn set_points_beyond_the_limits_are_held_inside() {
     let mut hitch = Hitch::picked_up();

@@ -4,6 +4,7 @@ use super::calibration::ValidCalibration;
 use super::current::Regulation;
 use super::drop_scale::DropScale;
 use super::learning::Learning;
+use super::lever::SteadyLever;
 use super::load::LoadEstimate;
 use super::mode::{Fault, Mode};
 use super::motion::{Closing, Motion, Slack, flow, piston_speed};
@@ -39,6 +40,7 @@ pub struct Controller {
     button: ButtonGuard,
     quick_lift: QuickLift,
     float: Float,
+    lever: SteadyLever,
     position: PositionControl,
     rate: RateControl,
     motion: Motion,
@@ -85,6 +87,7 @@ impl Controller {
             button: ButtonGuard::default(),
             quick_lift: QuickLift::default(),
             float: Float::default(),
+            lever: SteadyLever::default(),
             position: PositionControl::default(),
             rate: RateControl::default(),
             motion: Motion::default(),
@@ -316,9 +319,9 @@ impl Controller {
     fn follow_lever(&mut self, sensed: &Sensed, inputs: &Inputs) -> Option<Demand> {
         let moving = self.phase.is_moving();
         let calibration = &self.calibration;
-        let lever = self
-            .quick_lift
-            .set_point(sensed.lever, &calibration.operator);
+        let trembles = calibration.position.lever_deadband;
+        let lever = self.lever.follow(sensed.lever, trembles + trembles);
+        let lever = self.quick_lift.set_point(lever, &calibration.operator);
         let highest = upper_limit(inputs.upper_limit, &calibration.position);
         let changed = self
             .position

@@ -23,6 +23,7 @@ pub mod free_fall;
 pub mod inverse_curve;
 pub mod lag;
 pub mod learning;
+pub mod lever;
 pub mod linkage;
 pub mod load;
 pub mod lock;

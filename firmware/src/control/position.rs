@@ -27,6 +27,8 @@ use super::valve_logic::{Demand, Direction, Phase};
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PositionControl {
     set_point: Option<MilliDegree>,
+    /// The set point that all of what follows is about: the one in use is within the dead band of it.
+    asked: MilliDegree,
     /// The hitch has rested at this set point: leaving it now is its own doing.
     arrived: bool,
     /// A move to this set point has begun: another one is a correction.
@@ -49,8 +51,9 @@ pub enum Reason {
 impl PositionControl {
     /// Takes in the lever, and the limit that caps it; true if that is a new set point.
     ///
-    /// On the way to a new set point every movement of the lever counts. Once the hitch has arrived, small
-    /// ones are noise, also while it is being brought back.
+    /// On the way to a set point every movement of the lever counts, but small ones make no new set point of it: what
+    /// the hitch does then is still about the same one. Once it has arrived, they are noise, also while it is being
+    /// brought back.
     pub fn follow(
         &mut self,
         lever: MilliDegree,
@@ -59,20 +62,16 @@ impl PositionControl {
         parameters: &PositionParameters,
     ) -> bool {
         let lever = lever.limited(parameters.lower_limit, upper_limit);
-        let on_the_way = moving && !self.arrived;
-        let band = if on_the_way {
-            MilliDegree::ZERO
-        } else {
-            parameters.lever_deadband
-        };
-        let changed = self
-            .set_point
-            .is_none_or(|present| (lever - present).magnitude() > band);
+        let changed = self.set_point.is_none()
+            || (lever - self.asked).magnitude() > parameters.lever_deadband;
         if changed {
             *self = Self {
                 set_point: Some(lever),
+                asked: lever,
                 ..Self::default()
             };
+        } else if moving && !self.arrived {
+            self.set_point = Some(lever);
         }
         changed
     }
