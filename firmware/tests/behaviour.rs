@@ -249,6 +249,32 @@ fn a_stuck_hitch_is_tried_a_few_times_and_then_reported() {
 }
 
 #[test]
+fn a_hitch_that_comes_down_to_the_ground_stays_there_and_one_that_hangs_is_reported() {
+    for (pressure, fault) in [
+        (None, None),
+        (Some(MilliBar(300)), None),
+        (Some(MilliBar(7_400)), Some(Fault::NotMoving)),
+    ] {
+        let mut hitch = Hitch::picked_up();
+        hitch.stuck = true;
+        hitch.lever = 60_000;
+        let inputs = Inputs {
+            cylinder_pressure: pressure,
+            ..hitch.inputs()
+        };
+        let found = (0..20_000).find_map(|_| hitch.step(&inputs).fault);
+        assert_eq!(found, fault, "{pressure:?}");
+        if fault.is_none() {
+            assert_eq!(hitch.run(1).state, State::Holding);
+            hitch.stuck = false;
+            hitch.lever = 100_000;
+            hitch.run(4_000);
+            assert!((hitch.angle_deg() - 100.0).abs() < 0.5);
+        }
+    }
+}
+
+#[test]
 fn the_relief_valve_is_noticed_by_the_pump_pressure() {
     let mut hitch = Hitch::picked_up();
     hitch.stuck = true;

@@ -13,7 +13,7 @@ use super::position::{PositionControl, Reason};
 use super::rate::RateControl;
 use super::rest::RestPosition;
 use super::safety::{CoilCurrents, Envelope, Limits};
-use super::saturation::SaturationWatch;
+use super::saturation::{SaturationWatch, goes_no_further};
 use super::sensors::{Sensed, Sensors};
 use super::signals::{Inputs, Outputs};
 use super::sink::SinkWatch;
@@ -26,9 +26,6 @@ use super::valve_logic::{Demand, Direction, Phase};
 use super::valve_map::ValveCurves;
 
 mod report;
-
-/// A hitch that stalls this close to a limit of its travel has arrived: an end stop, or a misplaced limit.
-const END_ZONE: MilliDegree = MilliDegree(2_000);
 
 /// The controller: a calibration and a state.
 #[derive(Clone, Debug)]
@@ -437,11 +434,8 @@ impl Controller {
         self.phase = phase.cut();
         self.learning.obstruct();
         self.motion.obstruct();
-        let at_end = match phase.speed() > MicrometrePerSecond::ZERO {
-            true => sensed.angle >= calibration.position.upper_limit - END_ZONE,
-            false => sensed.angle <= calibration.position.lower_limit + END_ZONE,
-        };
-        if at_end {
+        let lifts = phase.speed() > MicrometrePerSecond::ZERO;
+        if goes_no_further(lifts, sensed, calibration) {
             self.position.accept();
             return Ok(());
         }

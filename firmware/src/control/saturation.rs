@@ -3,13 +3,36 @@
 //! While lifting, flow is what the map says only as long as the compensator has margin. At the relief
 //! pressure, at the end of the stroke or against an obstacle the pump's flow goes over the relief valve at 154 bar
 //! instead. Seen in the pump pressure if there is a sensor, and in any case by comparing demanded with
-//! measured travel. The coil is then cut, and after a rest there are a few more attempts.
+//! measured travel. The coil is then cut, and after a rest there are a few more attempts. At the end of its stroke, and on
+//! the ground, a hitch stays where it is until the lever is moved: that is no fault.
 
+use super::calibration::Calibration;
 use super::design_parameters::{HydraulicParameters, SaturationParameters};
 use super::mode::Fault;
 use super::motion::Motion;
-use super::units::{Count, Micrometre, MilliBar, Millisecond};
+use super::sensors::Sensed;
+use super::units::{Count, Micrometre, MilliBar, MilliDegree, Millisecond};
 use super::valve_logic::{Direction, Phase};
+
+/// A hitch that stalls this close to a limit of its travel has arrived: an end stop, or a misplaced limit.
+const END_ZONE: MilliDegree = MilliDegree(2_000);
+
+/// True if a hitch that has stalled has come as far as it can: to an end of its stroke, or down to the ground.
+///
+/// What lies on the ground leaves no pressure behind an open valve. Without a sensor a lowering valve that doesn't open
+/// looks the same; then nothing sinks, and nothing is unsafe.
+#[must_use]
+pub fn goes_no_further(lifts: bool, sensed: &Sensed, calibration: &Calibration) -> bool {
+    let (position, hydraulics) = (&calibration.position, &calibration.hydraulics);
+    let lies = || {
+        let empty = |pressure| pressure <= hydraulics.smallest_drop;
+        sensed.cylinder_pressure.is_none_or(empty)
+    };
+    match lifts {
+        true => sensed.angle >= position.upper_limit - END_ZONE,
+        false => sensed.angle <= position.lower_limit + END_ZONE || lies(),
+    }
+}
 
 /// Watches whether flow arrives.
 #[derive(Clone, Copy, Debug, Default)]
