@@ -2,6 +2,7 @@
 
 use hitch_model::Model;
 use hitch_model::campaign::Campaign;
+use hitch_model::effects::{Effect, find};
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::{Verdict, explain};
 
@@ -28,7 +29,7 @@ impl Method for Explaining {
         let experiment = Experiment::new(campaign, model);
         let explanation = explain(&experiment, model, &|_| {});
         let steps = &explanation.steps;
-        let id = |effect: &dyn hitch_model::effects::Effect| effect.id().to_owned();
+        let id = |effect: &dyn Effect| effect.id().to_owned();
         Answer {
             named: steps.iter().map(|step| id(step.effect)).collect(),
             group: steps
@@ -39,7 +40,7 @@ impl Method for Explaining {
             intervals: steps
                 .iter()
                 .filter_map(|step| {
-                    let (low, high) = *step.intervals.first()?;
+                    let (low, high) = *step.intervals.get(size(step.effect)?)?;
                     Some((id(step.effect), low, high))
                 })
                 .collect(),
@@ -50,4 +51,14 @@ impl Method for Explaining {
             )),
         }
     }
+}
+
+/// Index of the parameter that means what the size of the effect's usual form means.
+fn size(effect: &dyn Effect) -> Option<usize> {
+    let usual = find(effect.id())?.parameters().first()?;
+    let mut parameters = effect.parameters().iter();
+    parameters
+        .clone()
+        .position(|parameter| parameter.name == usual.name)
+        .or_else(|| parameters.position(|parameter| parameter.unit == usual.unit))
 }
