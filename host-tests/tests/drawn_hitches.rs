@@ -51,7 +51,6 @@ fn a_load_that_swings_on_its_compensator_is_lifted_gently() {
 /// fro about its set point until that looks like a leak.
 #[test]
 fn a_spool_that_swings_slowly_is_no_reason_to_hunt() {
-    let calibration = Calibration::nominal().validate().unwrap();
     let machines: Vec<Drawn> = (1..=MACHINES as u64)
         .map(|seed| {
             let mut machine = draw(seed, MOVES);
@@ -64,32 +63,34 @@ fn a_spool_that_swings_slowly_is_no_reason_to_hunt() {
             machine
         })
         .collect();
-    let moves: Vec<MoveFigures> = machines
-        .iter()
-        .flat_map(|machine| drive(machine, &calibration))
-        .collect();
+    let moves = driven("machines with slow spools", &machines);
     let all: Vec<&MoveFigures> = moves.iter().collect();
-    println!("{}", table("machines with slow spools", &all));
-    println!("{}", worst(&moves, &machines, 3));
     let [_, _, error, _, _, fault] = &FIGURES;
     assert_eq!(beyond(&all, fault), 0.0);
     assert!(spread(&all, error.of)[2] <= 0.5);
 }
 
-fn drive_all(title: &str, structured: bool, bars: &Bars) {
+/// The moves of some machines with the nominal calibration, printed with the worst of them.
+fn driven(title: &str, machines: &[Drawn]) -> Vec<MoveFigures> {
     let calibration = Calibration::nominal().validate().unwrap();
-    let machines: Vec<Drawn> = (1..)
-        .map(|seed| draw(seed, MOVES))
-        .filter(|machine| machine.structured == structured)
-        .take(MACHINES)
-        .collect();
     let moves: Vec<MoveFigures> = machines
         .iter()
         .flat_map(|machine| drive(machine, &calibration))
         .collect();
     let all: Vec<&MoveFigures> = moves.iter().collect();
     println!("{}", table(title, &all));
-    println!("{}", worst(&moves, &machines, 3));
+    println!("{}", worst(&moves, machines, 3));
+    moves
+}
+
+fn drive_all(title: &str, structured: bool, bars: &Bars) {
+    let machines: Vec<Drawn> = (1..)
+        .map(|seed| draw(seed, MOVES))
+        .filter(|machine| machine.structured == structured)
+        .take(MACHINES)
+        .collect();
+    let moves = driven(title, &machines);
+    let all: Vec<&MoveFigures> = moves.iter().collect();
     let [ratio, overshoot, error, swing, restarts, fault] = &FIGURES;
     let [median, high, _] = spread(&all, ratio.of);
     assert!(
