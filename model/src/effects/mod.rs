@@ -138,17 +138,7 @@ impl Parameter {
         self.low > 0.0 && self.high.is_finite() && self.high > DECADE * self.low
     }
 
-    /// Its value at a share of its range, evenly or by its order of magnitude; the range is finite.
-    #[must_use]
-    pub fn at_share(&self, share: f64) -> f64 {
-        if self.is_by_magnitude() {
-            self.low * (self.high / self.low).powf(share)
-        } else {
-            self.low + share * (self.high - self.low)
-        }
-    }
-
-    /// The value that lies a share of its range above another, within the range.
+    /// The value that lies a share of its range above another, evenly or by its order of magnitude, within the range.
     #[must_use]
     pub fn moved(&self, value: f64, share: f64) -> f64 {
         let moved = if self.is_by_magnitude() {

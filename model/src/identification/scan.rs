@@ -281,7 +281,9 @@ fn coarse(hint: &AddedEffect, grid: &Grid) -> Vec<AddedEffect> {
     };
     let even = combinations(hint, |index, range| match index {
         0 => sizes(range, grid.sizes, next),
-        _ => (0..grid.shapes).map(|k| range.at_share(share(k))).collect(),
+        _ => (0..grid.shapes)
+            .map(|k| range.moved(range.low, share(k)))
+            .collect(),
     });
     let needles = grid.needles.as_ref().map_or_else(Vec::new, |needles| {
         let next = |size: f64| size * (1.0 + needles.finer * size);
@@ -309,10 +311,11 @@ fn around(at: &AddedEffect, (size_reach, shape_reach): (f64, f64)) -> Vec<AddedE
         let mut values: Vec<f64> = (-TO_EITHER_SIDE..=TO_EITHER_SIDE)
             .map(|k| f64::from(k) / f64::from(TO_EITHER_SIDE))
             .map(|share| match index {
-                0 => value + size_reach * share * (value - range.null),
+                0 => {
+                    (value + size_reach * share * (value - range.null)).clamp(range.low, range.high)
+                }
                 _ => range.moved(value, shape_reach * share),
             })
-            .map(|value| value.clamp(range.low, range.high))
             .collect();
         values.dedup();
         values
