@@ -3,7 +3,7 @@
 use hitch_model::Model;
 use hitch_model::campaign::Channel;
 use hitch_model::effects::{AddedEffect, CATALOGUE, Effect, full_name};
-use hitch_model::plant::{Currents, HitchRig, Rig};
+use hitch_model::plant::{Currents, HitchRig, Plant, Rig};
 use hitch_model::simulation::simulate;
 use hitch_model::units::pa_from_bar;
 
@@ -291,4 +291,52 @@ fn a_compensator_that_droops_with_the_flow_leaves_the_flow_of_a_quadratic() {
             "{drooping} {expected_lpm}"
         );
     }
+}
+
+/// Oil is kept: behind shut valves the piston moves by what the oil gives up and the hose takes, of which a share has
+/// followed the recorded pressure late (`W' = (share C p - W) / creep`).
+#[test]
+fn a_creeping_hose_takes_the_oil_that_the_piston_gives_up() {
+    let (compliance_cm3_bar, share, creep_s) = (0.06, 0.6, 0.08);
+    let creeping = AddedEffect {
+        effect: effect("hose-compliance/creeping"),
+        values: vec![compliance_cm3_bar, share, creep_s],
+    };
+    let model = Model::dynamic().with_effects(vec![creeping]);
+    let rig = Rig::Hitch(HitchRig {
+        load_kg: 200.0,
+        start_angle_rad: 80f64.to_radians(),
+    });
+    let mut plant = Plant::new(&model, rig, 40.0, Currents::default());
+    let constants = model.constants();
+    let (area_m2, step_s) = (constants.cylinder.area_m2(), 5e-4);
+    let compliance_m3_pa = 1e-6 * compliance_cm3_bar / pa_from_bar(1.0);
+    let mut last = plant.state();
+    let mut wall_pa = last.pressure_pa;
+    let (mut kept_m3, mut swing_m, mut error_m): (f64, f64, f64) = (0.0, 0.0, 0.0);
+    // The spools have shut half a second after their current is gone.
+    let (off_s, shut_s) = (1.0, 1.5);
+    for step in 1..5000 {
+        let time_s = f64::from(step) * step_s;
+        let lift_a = if time_s < off_s { 1.9 } else { 0.0 };
+        let lower_a = 0.0;
+        plant.step(Currents { lift_a, lower_a }, step_s);
+        let now = plant.state();
+        let mean_pa = 0.5 * (now.pressure_pa + last.pressure_pa);
+        let crept_pa = (mean_pa - wall_pa) * (1.0 - (-step_s / creep_s).exp());
+        wall_pa += crept_pa;
+        let rise_pa = now.pressure_pa - last.pressure_pa;
+        let oil_m3_pa = constants.cylinder.volume_m3(now.piston_m) / constants.oil.bulk_modulus_pa;
+        if time_s > shut_s {
+            kept_m3 += area_m2 * (now.piston_m - last.piston_m)
+                + (oil_m3_pa + (1.0 - share) * compliance_m3_pa) * rise_pa
+                + share * compliance_m3_pa * crept_pa;
+            swing_m = swing_m.max((now.piston_m - last.piston_m).abs());
+            error_m = error_m.max(kept_m3.abs() / area_m2);
+        }
+        last = now;
+    }
+    let swing_m_s = swing_m / step_s;
+    assert!(swing_m_s > 1e-3, "{swing_m_s} m/s is no swing");
+    assert!(error_m < 2e-7, "{error_m} m are missing");
 }

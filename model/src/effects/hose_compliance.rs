@@ -1,40 +1,95 @@
 //! `hose-compliance`: hoses and fittings swell with the pressure.
 //!
 //! `dp/dt = (sum Q - A v) / (V/E + C)`. Two metres of half-inch two-wire hose have 3 to 6e-13 m3/Pa, as much as 0.6 l
-//! of oil; written in cm3/bar, 0.03 to 0.06.
+//! of oil; written in cm3/bar, 0.03 to 0.06. Rubber does not swell at once: a share of it creeps after the pressure
+//! (Kelvin-Voigt), which slows a fast ringing less than a slow one and damps both.
 
 use super::described::Described;
 use super::{Parameter, Search};
 use crate::campaign::Channel;
 use crate::model::Dynamics;
-use crate::plant::sites::{RunConditions, Sites};
+use crate::plant::sites::Hose;
 use crate::units::pa_from_bar;
 
-/// Compliance of hoses.
-pub static HOSE_COMPLIANCE: Described = Described {
+const COMPLIANCE: Parameter = Parameter {
+    name: "compliance",
+    unit: "cm3/bar",
+    key: "compliance_cm3_bar",
+    meaning: "volume that the hoses take up",
+    null: 0.0,
+    typical: 0.04,
+    low: 0.0,
+    high: 1.0,
+};
+
+const SOURCE: &str = "two-wire hose, 0.25 l at 0.4 to 0.8e9 Pa: 0.03 to 0.06 cm3/bar";
+
+fn m3_pa(cm3_bar: f64) -> f64 {
+    cm3_bar * 1e-6 / pa_from_bar(1.0)
+}
+
+/// Hoses that swell at once.
+pub static ELASTIC: Described = Described {
     id: "hose-compliance",
     form: None,
     title: "Compliance of hoses",
     equation: "dp/dt = (sum Q - A v) / (V/E + C)",
-    source: "two-wire hose, 0.25 l at 0.4 to 0.8e9 Pa: 0.03 to 0.06 cm3/bar",
+    source: SOURCE,
     shows: "slower ringing of the cylinder pressure at every load alike; entrained air softens light \
          loads more",
-    parameters: &[Parameter {
-        name: "compliance",
-        unit: "cm3/bar",
-        key: "compliance_cm3_bar",
-        meaning: "volume that the hoses take up",
-        null: 0.0,
-        typical: 0.04,
-        low: 0.0,
-        high: 1.0,
-    }],
+    parameters: &[COMPLIANCE],
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
     search: Search::Secants,
-    attach,
+    attach: |values, _, sites| {
+        sites.hose = Hose {
+            at_once_m3_pa: m3_pa(values[0]),
+            ..Hose::default()
+        };
+    },
 };
 
-fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
-    sites.compliance_m3_pa += values[0] * 1e-6 / pa_from_bar(1.0);
-}
+/// Hoses that creep.
+pub static CREEPING: Described = Described {
+    id: "hose-compliance",
+    form: Some("creeping"),
+    title: "Compliance of hoses whose wall creeps",
+    equation: "dp/dt = (sum Q - A v - W') / (V/E + (1 - share) C), W' = (share C p - W) / creep",
+    source: SOURCE,
+    shows: "slower ringing of the cylinder pressure that dies away sooner, most where it is about as fast as the wall \
+         creeps",
+    parameters: &[
+        COMPLIANCE,
+        Parameter {
+            name: "share",
+            unit: "",
+            key: "share",
+            meaning: "share of it that creeps",
+            null: 0.0,
+            typical: 0.5,
+            low: 0.0,
+            high: 1.0,
+        },
+        Parameter {
+            name: "creep",
+            unit: "s",
+            key: "creep_s",
+            meaning: "retardation time of the wall",
+            null: 0.0,
+            typical: 0.05,
+            low: 0.005,
+            high: 1.0,
+        },
+    ],
+    channels: &[Channel::CylinderPressure],
+    needs: Some(Dynamics::Dynamic),
+    search: Search::Secants,
+    attach: |values, _, sites| {
+        let whole_m3_pa = m3_pa(values[0]);
+        sites.hose = Hose {
+            at_once_m3_pa: (1.0 - values[1]) * whole_m3_pa,
+            creeping_m3_pa: values[1] * whole_m3_pa,
+            creep_s: values[2],
+        };
+    },
+};

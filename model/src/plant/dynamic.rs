@@ -1,6 +1,6 @@
 //! The dynamic plant: oil compressibility, inertia, viscous friction, end stops.
 //!
-//! `p' = E/V(x) (Q_lift - Q_lower - Q_leak - A v)`,
+//! `p' = (Q_lift - Q_lower - Q_leak - Q_hose - A v) / (V(x)/E + C)`,
 //! `M(x) v' = p A - F_weight(x) - M'(x) v^2 / 2 - b v - F_friction(v) + F_stop(x, v)`, `x' = v` (RIG.md). Classical
 //! Runge-Kutta of order four: the ringing at 10 to 40 Hz wants a high order, the noisy measured current makes step
 //! control pointless, and a fixed rhythm keeps the result smooth in the parameters. Where a nearly drained orifice makes
@@ -25,6 +25,9 @@ const LONGEST_STEP_S: f64 = 0.004;
 const AT_REST_M_S: f64 = 5e-7;
 const AT_REST_M_S2: f64 = 4e-5;
 
+/// The same for how far a hose's wall is behind the pressure, Pa.
+const AT_REST_PA: f64 = 10.0;
+
 /// Largest rate times step that the integrator is given; its stability ends at 2.78.
 const STABLE: f64 = 1.5;
 
@@ -34,9 +37,10 @@ const TOLERANCE_PA: f64 = 100.0;
 /// A cylinder cannot hold more than a vacuum, Pa gauge.
 const VACUUM_PA: f64 = -1.0e5;
 
-type Derivative = [f64; 3];
+/// Rates of travel, speed, pressure and of what the hose's wall is behind.
+type Derivative = [f64; 4];
 
-/// Derivatives of travel, speed and pressure.
+/// [`Derivative`] of a state.
 fn derivative(
     forces: &Forces,
     circuit: &Circuit,
@@ -46,11 +50,13 @@ fn derivative(
     let model = forces.model;
     let cylinder = &circuit.constants.cylinder;
     let area_m2 = cylinder.area_m2();
+    let torn = state.pressure_pa < VACUUM_PA;
     let pressure_pa = state.pressure_pa.max(VACUUM_PA);
     let state = MechanicalState {
         pressure_pa,
         ..state
     };
+    let hose = &circuit.sites.hose;
     let flows = circuit.solve(openings, &state);
     let (dh_dx, d2h_dx2_1_m) = model.linkage().transmission(state.piston_m);
     let masses = &circuit.constants.masses;
@@ -65,11 +71,15 @@ fn derivative(
         - cylinder.viscous_friction_n_s_m * speed_m_s
         - forces.friction_n(&state, weight_n)
         + cylinder.stop_force_n(state.piston_m, speed_m_s);
+    let gained_m3_s =
+        flows.net_m3_s() - hose.creep_m3_s(state.wall_behind_pa) - area_m2 * speed_m_s;
+    let rise_pa_s = stiffness_pa_m3(circuit, state.piston_m, pressure_pa) * gained_m3_s;
+    let seen_pa_s = if torn { 0.0 } else { rise_pa_s };
     [
         speed_m_s,
         force_n / inertia_kg,
-        stiffness_pa_m3(circuit, state.piston_m, pressure_pa)
-            * (flows.net_m3_s() - area_m2 * speed_m_s),
+        rise_pa_s,
+        seen_pa_s - hose.catching_up_1_s() * state.wall_behind_pa,
     ]
 }
 
@@ -78,7 +88,7 @@ fn stiffness_pa_m3(circuit: &Circuit, piston_m: f64, pressure_pa: f64) -> f64 {
     let constants = circuit.constants;
     let modulus_pa = constants.oil.bulk_modulus_pa * circuit.sites.stiffness_factor(pressure_pa);
     let volume_m3 = constants.cylinder.volume_m3(piston_m.max(0.0));
-    1.0 / (volume_m3 / modulus_pa + circuit.sites.compliance_m3_pa)
+    1.0 / (volume_m3 / modulus_pa + circuit.sites.hose.at_once_m3_pa)
 }
 
 /// What a void counts as while the oil column is torn, Pa/m3: the oil's own stiffness.
@@ -112,6 +122,7 @@ fn moved(state: MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState
         piston_m: state.piston_m + dt_s * rate[0],
         speed_m_s: state.speed_m_s + dt_s * rate[1],
         pressure_pa: state.pressure_pa + dt_s * rate[2],
+        wall_behind_pa: state.wall_behind_pa + dt_s * rate[3],
         ..state
     }
 }
@@ -147,6 +158,16 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: MechanicalState) 
     (lower + lift) * constants.oil.bulk_modulus_pa / volume_m3
 }
 
+/// How fast a hose's wall settles the pressure and itself, 1/s.
+fn creeping_rate(circuit: &Circuit, state: MechanicalState) -> f64 {
+    let hose = &circuit.sites.hose;
+    if hose.creeping_m3_pa == 0.0 {
+        return 0.0;
+    }
+    let stiffness = stiffness_pa_m3(circuit, state.piston_m, state.pressure_pa.max(VACUUM_PA));
+    hose.catching_up_1_s() * (1.0 + hose.creeping_m3_pa * stiffness)
+}
+
 /// Longest step, s, that follows the ringing of load and oil where the piston stands.
 #[must_use]
 pub fn longest_step_s(forces: &Forces, circuit: &Circuit, state: MechanicalState) -> f64 {
@@ -170,6 +191,7 @@ pub fn rests(
         && openings.iter().all(Openings::shut)
         && state.void_m3 == 0.0
         && state.speed_m_s.abs() < AT_REST_M_S
+        && state.wall_behind_pa.abs() < AT_REST_PA
         && derivative(forces, circuit, Openings::default(), state)[1].abs() < AT_REST_M_S2
 }
 
@@ -186,7 +208,7 @@ pub fn step(
         .into_iter()
         .filter(|openings| !openings.shut())
         .map(|o| settling_rate(circuit, o, state))
-        .fold(0.0, f64::max);
+        .fold(creeping_rate(circuit, state), f64::max);
     let pieces = (rate * dt_s / STABLE).ceil().clamp(1.0, 64.0) as usize;
     if pieces == 1 {
         return runge_kutta(forces, circuit, state, openings, dt_s);

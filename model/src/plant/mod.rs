@@ -92,6 +92,8 @@ pub struct MechanicalState {
     pub void_m3: f64,
     /// How far the bristles of friction that remembers are bent, m; nothing without any.
     pub bristles_m: f64,
+    /// How far a hose's creeping wall is behind the pressure, Pa; the dynamic plant only, nothing without any.
+    pub wall_behind_pa: f64,
 }
 
 impl MechanicalState {
@@ -102,6 +104,7 @@ impl MechanicalState {
             self.pressure_pa,
             self.void_m3,
             self.bristles_m,
+            self.wall_behind_pa,
         ]
         .iter()
         .all(|value| value.is_finite())

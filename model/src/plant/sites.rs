@@ -130,6 +130,43 @@ impl Bristles {
     }
 }
 
+/// A hose whose wall swells with the pressure: partly at once, and partly creeping after it (a spring beside a spring
+/// with a damper: Kelvin-Voigt, the standard linear solid; Ferry, ch. 3).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Hose {
+    /// What it takes up at once, m3/Pa.
+    pub at_once_m3_pa: f64,
+    /// What it takes up in the long run besides, m3/Pa.
+    pub creeping_m3_pa: f64,
+    /// How late that follows a steady rise of the pressure, s.
+    pub creep_s: f64,
+}
+
+impl Hose {
+    /// Flow, m3/s, that its creeping wall takes while it is so far behind the pressure, Pa.
+    #[inline(always)]
+    #[must_use]
+    pub fn creep_m3_s(&self, behind_pa: f64) -> f64 {
+        self.per_creep_time(self.creeping_m3_pa * behind_pa)
+    }
+
+    /// How fast it catches up with a pressure that stands still, 1/s of what it is behind.
+    #[inline(always)]
+    #[must_use]
+    pub fn catching_up_1_s(&self) -> f64 {
+        self.per_creep_time(1.0)
+    }
+
+    #[inline(always)]
+    fn per_creep_time(&self, whole: f64) -> f64 {
+        if self.creep_s > 0.0 {
+            whole / self.creep_s
+        } else {
+            0.0
+        }
+    }
+}
+
 /// A term of a user's own, in the SI unit of its place, from the state of the plant.
 pub type TermFunction = Box<dyn Fn(&Signals) -> f64 + Send + Sync>;
 
@@ -166,8 +203,8 @@ pub struct Sites {
     pub leakage: Vec<Law>,
     /// Factors on the oil's bulk modulus, from the cylinder pressure, Pa; the dynamic plant only.
     pub stiffness_factor: Vec<Law>,
-    /// Volume that hoses and fittings take up besides the oil, m3/Pa; the dynamic plant only.
-    pub compliance_m3_pa: f64,
+    /// What hoses and fittings take up besides the oil; the dynamic plant only.
+    pub hose: Hose,
     /// Friction at the piston.
     pub friction: Vec<FrictionForce>,
     /// Friction at the piston that remembers.
@@ -207,7 +244,7 @@ impl Default for Sites {
             return_loss_pa_s2_m6: 0.0,
             leakage: Vec::new(),
             stiffness_factor: Vec::new(),
-            compliance_m3_pa: 0.0,
+            hose: Hose::default(),
             friction: Vec::new(),
             bristles: None,
             weight_factor: Vec::new(),
