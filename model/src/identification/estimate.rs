@@ -82,12 +82,15 @@ impl Estimate {
         &self.effects[effect].effect.parameters()[parameter]
     }
 
-    /// Whether a shared parameter is the place where something is met.
+    /// How a shared parameter is looked for: of an effect that is met at a place, only the size is one.
     #[must_use]
-    pub fn is_place(&self, shared: Shared) -> bool {
+    pub fn search(&self, shared: Shared) -> Search {
         match shared {
-            Shared::Effect(effect, 0) => self.effects[effect].effect.search() == Search::Places,
-            _ => false,
+            Shared::Effect(effect, parameter) => match self.effects[effect].effect.search() {
+                Search::Places if parameter > 0 => Search::Secants,
+                search => search,
+            },
+            Shared::Offset(_) => Search::Secants,
         }
     }
 

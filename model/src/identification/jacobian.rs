@@ -14,14 +14,16 @@ use super::experiment::Experiment;
 use super::residual::Weights;
 use super::traces::CurrentShift;
 use crate::campaign::Channel;
+use crate::effects::Search;
 use crate::model::Model;
 
 /// Step of a difference quotient, as a share of the parameter, or of its scale if that is more.
 const STEP: f64 = 0.02;
 
-/// The same for where something is met, in scales: a hitch that stands on the ground hangs above one that is millimetres
-/// lower, and all its pressure is another.
-const STEP_OF_PLACE: f64 = 0.002;
+/// The same where a small change soon makes all different. What rings a hundredth slower is a third of a radian behind
+/// after five swings, and a secant is no slope any more; a hitch that stands on the ground hangs above one that is
+/// millimetres lower.
+const FINE_STEP: f64 = 0.002;
 
 /// The same for a channel's offset, in prior sigmas.
 const STEP_OF_OFFSET: f64 = 0.25;
@@ -168,10 +170,10 @@ fn shared_column(
     parameter: Shared,
 ) -> Vec<Vec<f64>> {
     let (value, scale) = (estimate.get(parameter), estimate.scale(parameter));
-    let step = if estimate.is_place(parameter) {
-        STEP_OF_PLACE * scale
-    } else {
-        STEP * value.abs().max(scale)
+    let step = match estimate.search(parameter) {
+        Search::Places => FINE_STEP * scale,
+        Search::Secants if experiment.ringing => FINE_STEP * value.abs().max(scale),
+        Search::Secants | Search::Jumps => STEP * value.abs().max(scale),
     };
     let mut moved = estimate.clone();
     moved.set(parameter, value + step);
