@@ -26,7 +26,8 @@ pub(super) struct Grid {
     needles: Option<Needles>,
     /// How far to either side of what the telling runs found all runs are looked at, as a share of the size.
     all_runs: f64,
-    /// Values of a shape from one end of its range to the other, by its magnitude if that is what counts.
+    /// Values of the first shape from one end of its range to the other, by its magnitude if that is what counts; a fit
+    /// finds the others from where the effect has them.
     shapes: usize,
     /// How far two sizes of a shape are apart at least, as a share of the size.
     apart: f64,
@@ -63,8 +64,11 @@ enum Telling {
     Failed,
 }
 
+/// All grids, those first that take least.
+pub(super) static GRIDS: [&Grid; 3] = [&RINGING, &PLACES, &JUMPS];
+
 /// For jumps and bounces.
-pub(super) const JUMPS: Grid = Grid {
+pub(super) static JUMPS: Grid = Grid {
     sizes: [0.12, 4.0],
     step: Step::Share(0.008),
     telling: Telling::Changed,
@@ -81,7 +85,7 @@ pub(super) const JUMPS: Grid = Grid {
 };
 
 /// For ringing: a valley reaches a seventh of the size to either side, and descending from there needs no closer look.
-pub(super) const RINGING: Grid = Grid {
+pub(super) static RINGING: Grid = Grid {
     sizes: [0.1, 8.0],
     step: Step::Share(0.06),
     telling: Telling::Changed,
@@ -96,7 +100,7 @@ pub(super) const RINGING: Grid = Grid {
 
 /// For what is met somewhere: what stands at the place or comes down on it is right within a few millimetres, and what
 /// rings on it has a valley for every period.
-pub(super) const PLACES: Grid = Grid {
+pub(super) static PLACES: Grid = Grid {
     sizes: [0.1, 6.5],
     step: Step::Even(0.06),
     telling: Telling::Failed,
@@ -281,9 +285,10 @@ fn coarse(hint: &AddedEffect, grid: &Grid) -> Vec<AddedEffect> {
     };
     let even = combinations(hint, |index, range| match index {
         0 => sizes(range, grid.sizes, next),
-        _ => (0..grid.shapes)
+        1 => (0..grid.shapes)
             .map(|k| range.moved(range.low, share(k)))
             .collect(),
+        other => vec![hint.values[other]],
     });
     let needles = grid.needles.as_ref().map_or_else(Vec::new, |needles| {
         let next = |size: f64| size * (1.0 + needles.finer * size);

@@ -7,6 +7,7 @@ use super::experiment::Experiment;
 use super::fit::{Fit, sketch};
 use super::frame::Frame;
 use super::jacobian::Jacobian;
+use super::scan::GRIDS;
 use super::starts::{Starts, valleys};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
@@ -83,7 +84,7 @@ impl Shortlist<'_> {
         let promising = promising.min(MOST_SKETCHED);
         let mut others = screened.into_iter();
         let mut sketches = self.sketched(others.by_ref().take(promising).collect());
-        let explained = self.explained(&sketches);
+        let explained = sketches.iter().any(|sketch| self.explains(sketch));
         if !explained {
             let rest = ALWAYS_SKETCHED.saturating_sub(promising);
             sketches.extend(self.sketched(others.by_ref().take(rest).collect()));
@@ -106,24 +107,36 @@ impl Shortlist<'_> {
         screened
     }
 
-    /// Whether some sketch leaves next to nothing.
-    fn explained(&self, sketches: &[Sketch]) -> bool {
+    /// Whether a sketch leaves next to nothing.
+    fn explains(&self, sketch: &Sketch) -> bool {
         let compared = self.base.weights.count() as f64;
-        let left = |sketch: &Sketch| (sketch.cost / compared).sqrt();
-        sketches.iter().any(|sketch| left(sketch) <= EXPLAINED)
+        (sketch.cost / compared).sqrt() <= EXPLAINED
     }
 
-    /// Looks through the effects whose cost has many valleys, and puts what leads on in place of their sketches.
+    /// Looks through the effects whose cost has many valleys, those first where it takes least, until one explains all,
+    /// and puts what leads on in place of their sketches.
     fn look_through(&self, sketches: &mut [Sketch]) {
-        sketches.par_iter_mut().for_each(|sketch| {
-            let Some(grid) = valleys(self.experiment, sketch.effect) else {
-                return;
+        for grid in GRIDS {
+            let looked_for = |sketch: &&mut Sketch| {
+                let valleys = valleys(self.experiment, sketch.effect);
+                valleys.is_some_and(|valleys| std::ptr::eq(valleys, grid))
             };
-            let found = self.sketch(self.looked_through(sketch.effect, grid));
-            if found.cost < sketch.cost {
-                *sketch = found;
+            let explained = sketches
+                .par_iter_mut()
+                .filter(looked_for)
+                .map(|sketch| {
+                    let found = self.sketch(self.looked_through(sketch.effect, grid));
+                    let explains = self.explains(&found);
+                    if found.cost < sketch.cost {
+                        *sketch = found;
+                    }
+                    explains
+                })
+                .reduce(|| false, |one, other| one || other);
+            if explained {
+                return;
             }
-        });
+        }
     }
 
     fn sketched(&self, screened: Vec<Starts>) -> Vec<Sketch> {
