@@ -53,14 +53,11 @@ fn a_load_that_swings_on_its_compensator_is_lifted_gently() {
 fn a_spool_that_swings_slowly_is_no_reason_to_hunt() {
     let machines: Vec<Drawn> = (1..=MACHINES as u64)
         .map(|seed| {
-            let mut machine = draw(seed, MOVES);
-            machine.physics.spool = SpoolMotion::Swinging {
+            draw(seed, MOVES).with_spool(SpoolMotion::Swinging {
                 frequency_rad_s: 30.0,
                 damping: 0.7,
                 dead_time_s: 0.004,
-            };
-            machine.conditions.spool_lag_s = 0.002;
-            machine
+            })
         })
         .collect();
     let moves = driven("machines with slow spools", &machines);

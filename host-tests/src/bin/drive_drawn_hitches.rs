@@ -9,6 +9,7 @@ use hitch_firmware::control::{Calibration, ValidCalibration};
 use host_tests::drawn_hitches::draw::{Drawn, draw};
 use host_tests::drawn_hitches::figures::{table, worst};
 use host_tests::drawn_hitches::session::{MoveFigures, drive, drive_watched};
+use host_tests::second_rig::physics::SpoolMotion;
 use rayon::prelude::*;
 
 /// Arguments.
@@ -38,6 +39,9 @@ struct Arguments {
     /// Only machines of this kind
     #[arg(long, value_enum)]
     only: Option<Kind>,
+    /// Give each machine spools of second order instead of its own: natural frequency in rad/s, damping, dead time in ms
+    #[arg(long, value_name = "FREQUENCY,DAMPING,DEAD", value_parser = second_order)]
+    spool: Option<SpoolMotion>,
     /// Another value in it, as in `hitch loop --set`
     #[arg(long, value_name = "GROUP.NAME=VALUE")]
     set: Vec<String>,
@@ -56,7 +60,13 @@ fn main() -> anyhow::Result<()> {
     let arguments = Arguments::parse();
     let calibration = calibration(&arguments)?;
     let machines: Vec<Drawn> = (arguments.seed..arguments.seed + arguments.machines)
-        .map(|seed| draw(seed, arguments.moves))
+        .map(|seed| {
+            let drawn = draw(seed, arguments.moves);
+            match arguments.spool {
+                Some(motion) => drawn.with_spool(motion),
+                None => drawn,
+            }
+        })
         .filter(|drawn| {
             arguments
                 .only
@@ -92,6 +102,19 @@ fn main() -> anyhow::Result<()> {
     });
     println!("{}", worst(&moves, &machines, arguments.worst));
     Ok(())
+}
+
+/// `FREQUENCY,DAMPING,DEAD` of a spool.
+fn second_order(text: &str) -> anyhow::Result<SpoolMotion> {
+    let numbers: Vec<f64> = text.split(',').map(str::parse).collect::<Result<_, _>>()?;
+    let [frequency_rad_s, damping, dead_time_ms] = numbers[..] else {
+        anyhow::bail!("three numbers make a spool");
+    };
+    Ok(SpoolMotion::Swinging {
+        frequency_rad_s,
+        damping,
+        dead_time_s: dead_time_ms * 1e-3,
+    })
 }
 
 /// A line a move.

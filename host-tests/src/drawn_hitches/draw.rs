@@ -43,6 +43,16 @@ pub struct Drawn {
     pub angles_deg: Vec<f64>,
 }
 
+impl Drawn {
+    /// The same machine with spools that move like this and next to no other lag.
+    #[must_use]
+    pub fn with_spool(mut self, motion: SpoolMotion) -> Self {
+        self.physics.spool = motion;
+        self.conditions.spool_lag_s = 0.002;
+        self
+    }
+}
+
 /// The machine of a seed with as many moves.
 #[must_use]
 pub fn draw(seed: u64, moves: usize) -> Drawn {
