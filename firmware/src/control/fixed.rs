@@ -44,8 +44,19 @@ impl Divisor {
 }
 
 /// `a * b / c`, exact product, rounded to nearest with halves away from zero, saturating.
+///
+/// Most products fit a word, for which few instructions will do.
 #[must_use]
 pub fn mul_div(a: i32, b: i32, c: Divisor) -> i32 {
+    match a.checked_mul(b) {
+        Some(product) => c.divide(product),
+        None => mul_div_long(a, b, c),
+    }
+}
+
+/// The same for a long product.
+#[inline(never)]
+fn mul_div_long(a: i32, b: i32, c: Divisor) -> i32 {
     let product = u64::from(a.unsigned_abs()) * u64::from(b.unsigned_abs());
     let half = u64::from(c.0.get() / 2);
     // The product is below 2^62, so adding half a divisor can't overflow.
