@@ -9,8 +9,9 @@
 //! a = doubt * sensitivity     share = a^2 / (a^2 + noise^2 + (error of the flow * way)^2)     doubt^2 *= 1 - share
 //! ```
 //!
-//! An offset changes only at rest, is bounded, and is forgotten with the supply. A difference that is larger than all
-//! of this can make is no offset: something stood in the way.
+//! An offset changes only at rest, is bounded, and is forgotten with the supply. A way that is shorter than all of this
+//! can make it is no offset: something stood in the way. Nothing takes a hitch further than its valve lets it: then what
+//! was believed is wrong, and all doubt is back.
 
 use super::course::Told;
 use super::fixed::{Divisor, mul_div_seldom, square_root};
@@ -131,7 +132,11 @@ impl Belief {
 
     #[inline(never)]
     fn learn(&mut self, told: &Told, flow_error: i32) {
-        let share = self.share(told, flow_error);
+        let mut share = self.share(told, flow_error);
+        if share == 0 && told.missing < Micrometre::ZERO {
+            self.doubt = FIRST_DOUBT;
+            share = self.share(told, flow_error);
+        }
         let sensitivity = told.sensitivity.0;
         // um * 1/1000 over um/A is mA.
         let further = mul_div_seldom(told.missing.0, share, Divisor::at_least_one(sensitivity));
@@ -194,6 +199,17 @@ mod tests {
         offsets.learn(&told);
         let learnt = offsets.lift() - FIRST_LIFT;
         assert!(learnt.0 < 35, "{learnt:?}");
+    }
+
+    #[test]
+    fn a_way_that_is_far_too_long_brings_all_doubt_back() {
+        let mut offsets = Offsets::default();
+        for _ in 0..6 {
+            offsets.learn(&lift(12_000, 80 - offsets.lift().0, 0.0));
+        }
+        let before = offsets.lift();
+        offsets.learn(&lift(12_000, -240, 0.0));
+        assert!(offsets.lift() < before - MilliAmp(60), "{offsets:?}");
     }
 
     #[test]
