@@ -236,7 +236,8 @@ impl Controller {
             && let Some((told, of_offset)) = self.learning.over()
         {
             let parameters = &self.calibration.motion;
-            if self.motion.learn_lag(&told, of_offset, parameters) {
+            let rest = self.rest.position();
+            if self.motion.learn_lag(&told, of_offset, rest, parameters) {
                 self.learning.learn(told);
             }
             return;
@@ -391,6 +392,9 @@ impl Controller {
         if next.is_moving() && !self.phase.is_moving() {
             self.motion.forget_bias();
             self.begin(next)?;
+        }
+        if self.phase.is_moving() && !next.is_moving() {
+            self.motion.cut(&self.closing, &self.calibration.hydraulics);
         }
         self.phase = next;
         let follows_lever = matches!(self.mode, Mode::Position);

@@ -22,6 +22,7 @@ pub mod fixed;
 pub mod free_fall;
 pub mod inverse_curve;
 pub mod lag;
+pub mod late;
 pub mod learning;
 pub mod lever;
 pub mod linkage;

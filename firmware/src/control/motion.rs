@@ -21,6 +21,7 @@ use super::drop_scale::DropScale;
 use super::fixed::Divisor;
 use super::free_fall::{next_speed, run_out};
 use super::lag::{Eighths, Lag, Trail};
+use super::late::Late;
 use super::safety::CoilCurrents;
 use super::swing::Swing;
 use super::units::{
@@ -69,6 +70,10 @@ pub struct Motion {
     /// How much slower than that the valve in use is, by what this move has told so far.
     further: Eighths,
     swing: Swing,
+    /// How late lift and lowering valve close.
+    late: [Late; 2],
+    /// Where the hitch should come to rest since its coil was cut, and how fast its valve let it go then.
+    cut: (Micrometre, MicrometrePerSecond),
     lift_spool: Spool,
     lower_spool: Spool,
     /// How much the flow through the valve that is open changes for each ampere, at the drop of its table.
@@ -143,12 +148,21 @@ impl Motion {
         }
     }
 
-    /// Takes in the end of a move that nothing else had a part in, `of_offset` of whose missing way is its valve's
-    /// threshold's; true if its way tells of its valve.
+    /// The coil has just been cut: where that should bring the hitch.
+    pub fn cut(&mut self, closing: &Closing, hydraulics: &HydraulicParameters) {
+        let place = self
+            .run_on(hydraulics)
+            .cut_point(self.share_of_cut(closing));
+        self.cut = (place, self.opening_speed + self.bias);
+    }
+
+    /// Takes in the end of a move at `rest` that nothing else had a part in, `of_offset` of whose missing way is its
+    /// valve's threshold's; true if its way tells of its valve.
     pub fn learn_lag(
         &mut self,
         told: &Told,
         of_offset: Micrometre,
+        rest: Micrometre,
         parameters: &MotionParameters,
     ) -> bool {
         self.trail.end(told, of_offset);
@@ -162,10 +176,14 @@ impl Motion {
                 return false;
             }
         }
-        let (lag, other) = match told.direction {
-            Direction::Lift => (lift, lower),
-            Direction::Lower => (lower, lift),
+        let [late_lift, late_lower] = &mut self.late;
+        let (lag, other, late, other_late) = match told.direction {
+            Direction::Lift => (lift, lower, late_lift, late_lower),
+            Direction::Lower => (lower, lift, late_lower, late_lift),
         };
+        let (place, speed) = self.cut;
+        late.learn(rest - place, speed);
+        other_late.assume(*late);
         lag.learn(&self.trail, limit);
         if told.direction == Direction::Lift {
             self.swing.doubt(lag.further() - other.told());
@@ -285,17 +303,20 @@ impl Motion {
 
     /// How far the piston still goes.
     #[must_use]
+    #[inline(never)]
     pub fn run_on(&self, hydraulics: &HydraulicParameters) -> RunOn {
         let speed = self.opening_speed + self.bias;
         let [lift, lower] = self.lags(hydraulics);
-        let lag = match self.opening_speed < MicrometrePerSecond::ZERO {
-            true => lower,
-            false => lift,
+        let [late_lift, late_lower] = self.late;
+        let (lag, late) = match self.opening_speed < MicrometrePerSecond::ZERO {
+            true => (lower, late_lower),
+            false => (lift, late_lift),
         };
         let lag = (lag + self.further).max(Eighths(0));
+        let within = |time| way_in(time, speed);
         RunOn {
-            from: self.position() - run_out(self.sinking),
-            of_spool: Micrometre(speed.0).scaled(lag.0, Eighths::IN_SECOND),
+            from: self.position() - run_out(self.sinking) + within(late.by()),
+            of_spool: within(lag),
         }
     }
 
@@ -315,8 +336,8 @@ impl Motion {
 /// How far the piston still goes from where it is.
 #[derive(Clone, Copy, Debug)]
 pub struct RunOn {
-    /// Where it would stop if its valve were shut at once: a load that sinks runs out by what its inertia adds
-    /// ([`run_out`]).
+    /// Where it would stop if its spool turned at once and its valve were shut: a load that sinks runs out by what its
+    /// inertia adds ([`run_out`]), and a valve closes late ([`Late`]).
     from: Micrometre,
     /// What the spool's lag adds to the way.
     of_spool: Micrometre,
@@ -372,6 +393,15 @@ impl Slack {
     }
 }
 
+/// Way at a speed in the time that a valve may take to close. A word holds the product: no hitch is faster than this,
+/// and no lag that a calibration may have, with all that a machine may add to it, is longer than 0.7 s.
+#[inline(never)]
+fn way_in(time: Eighths, speed: MicrometrePerSecond) -> Micrometre {
+    const FASTEST: MicrometrePerSecond = MicrometrePerSecond(380_000);
+    let speed = speed.limited(-FASTEST, FASTEST);
+    Micrometre(Eighths::IN_SECOND.divide(speed.0.wrapping_mul(time.0)))
+}
+
 /// `4 T^2` as divisor and as number: from the sum of position errors to the bias.
 fn bias_divisor(time: Millisecond) -> (Divisor, i32) {
     let time = time.0.max(1);
@@ -389,6 +419,7 @@ pub fn flow(speed: MicrometrePerSecond, area: SquareMillimetre) -> MicroLitrePer
 
 /// Piston speed that a flow gives.
 #[must_use]
+#[inline(never)]
 pub fn piston_speed(flow: MicroLitrePerSecond, area: SquareMillimetre) -> MicrometrePerSecond {
     // One of the valves always is shut.
     if flow == MicroLitrePerSecond::ZERO {
