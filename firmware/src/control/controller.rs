@@ -394,7 +394,7 @@ impl Controller {
             self.begin(next)?;
         }
         if self.phase.is_moving() && !next.is_moving() {
-            self.motion.cut(&self.closing, &self.calibration.hydraulics);
+            self.motion.cut(&self.closing, &self.calibration);
         }
         self.phase = next;
         let follows_lever = matches!(self.mode, Mode::Position);
@@ -405,8 +405,7 @@ impl Controller {
         Ok(())
     }
 
-    /// A move begins: counts it if nobody asked for it. Only moves to a set point teach; what makes a hitch leave its
-    /// place (a leak, a sensor that drifts) has a part in its corrections.
+    /// A move begins: counts it if nobody asked for it. Only moves to a set point teach: a leak has a part in corrections.
     fn begin(&mut self, next: Phase) -> Result<(), Fault> {
         self.learning.obstruct();
         let Phase::Moving { direction, .. } = next else {
@@ -416,7 +415,10 @@ impl Controller {
             return Ok(());
         }
         match self.position.start() {
-            Reason::SetPoint => self.learning.begin(direction, self.rest.position()),
+            Reason::SetPoint => {
+                self.motion.count_late();
+                self.learning.begin(direction, self.rest.position());
+            }
             Reason::Drift => self.sink.correct(&self.calibration.hold)?,
         }
         Ok(())

@@ -72,6 +72,9 @@ pub struct Motion {
     swing: Swing,
     /// How late lift and lowering valve close.
     late: [Late; 2],
+    /// Whether that counts: on a move to a set point it does, a correction creeps, and most of its way is still to come
+    /// when the estimate thinks it over.
+    counts_late: bool,
     /// Where the hitch should come to rest since its coil was cut, and how fast its valve let it go then.
     cut: (Micrometre, MicrometrePerSecond),
     lift_spool: Spool,
@@ -148,10 +151,15 @@ impl Motion {
         }
     }
 
+    /// The move that begins goes to a set point.
+    pub fn count_late(&mut self) {
+        self.counts_late = true;
+    }
+
     /// The coil has just been cut: where that should bring the hitch.
-    pub fn cut(&mut self, closing: &Closing, hydraulics: &HydraulicParameters) {
+    pub fn cut(&mut self, closing: &Closing, calibration: &Calibration) {
         let place = self
-            .run_on(hydraulics)
+            .run_on(&calibration.hydraulics)
             .cut_point(self.share_of_cut(closing));
         self.cut = (place, self.opening_speed + self.bias);
     }
@@ -265,6 +273,7 @@ impl Motion {
     /// Forgets what the map got wrong: the next move may go the other way.
     pub fn forget_bias(&mut self) {
         self.trail = Trail::from(self.position_nm);
+        self.counts_late = false;
         self.swing.begin();
         self.further = Eighths::default();
         self.bias_sum_nm = 0;
@@ -312,10 +321,14 @@ impl Motion {
             true => (lower, late_lower),
             false => (lift, late_lift),
         };
+        let late = match self.counts_late {
+            true => late.by(),
+            false => Eighths(0),
+        };
         let lag = (lag + self.further).max(Eighths(0));
         let within = |time| way_in(time, speed);
         RunOn {
-            from: self.position() - run_out(self.sinking) + within(late.by()),
+            from: self.position() - run_out(self.sinking) + within(late),
             of_spool: within(lag),
         }
     }
