@@ -22,8 +22,6 @@ const COMPLIANCE: Parameter = Parameter {
     high: 1.0,
 };
 
-const SOURCE: &str = "two-wire hose, 0.25 l at 0.4 to 0.8e9 Pa: 0.03 to 0.06 cm3/bar";
-
 fn m3_pa(cm3_bar: f64) -> f64 {
     cm3_bar * 1e-6 / pa_from_bar(1.0)
 }
@@ -34,7 +32,7 @@ pub static ELASTIC: Described = Described {
     form: None,
     title: "Compliance of hoses",
     equation: "dp/dt = (sum Q - A v) / (V/E + C)",
-    source: SOURCE,
+    source: "two-wire hose, 0.25 l at 0.4 to 0.8e9 Pa: 0.03 to 0.06 cm3/bar",
     shows: "slower ringing of the cylinder pressure at every load alike; entrained air softens light \
          loads more",
     parameters: &[COMPLIANCE],
@@ -55,7 +53,8 @@ pub static CREEPING: Described = Described {
     form: Some("creeping"),
     title: "Compliance of hoses whose wall creeps",
     equation: "dp/dt = (sum Q - A v - W') / (V/E + (1 - share) C), W' = (share C p - W) / creep",
-    source: SOURCE,
+    source: "Kelvin-Voigt in series with a spring, the standard linear solid (Ferry 1980, ch. 1); size as of hoses that \
+         swell at once",
     shows: "slower ringing of the cylinder pressure that dies away sooner, most where it is about as fast as the wall \
          creeps",
     parameters: &[

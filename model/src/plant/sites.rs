@@ -131,7 +131,7 @@ impl Bristles {
 }
 
 /// A hose whose wall swells with the pressure: partly at once, and partly creeping after it (a spring beside a spring
-/// with a damper: Kelvin-Voigt, the standard linear solid; Ferry, ch. 3).
+/// with a damper, the standard linear solid; Ferry, Viscoelastic Properties of Polymers, 1980, ch. 1).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Hose {
     /// What it takes up at once, m3/Pa.
