@@ -52,8 +52,7 @@ fn intervals_hold_the_truth() {
         );
         held += inside;
         judged += all.len();
-        let misses = (all.len() - inside) as f64;
-        if misses > misses_allowed(all.len(), effect.parameters().len()) {
+        if (all.len() - inside) as f64 > misses_allowed(all.len()) {
             too_few.push((effect.id(), distances));
         }
     }
@@ -63,11 +62,10 @@ fn intervals_hold_the_truth() {
     assert!(share >= 0.9, "{held} of {judged}");
 }
 
-/// Misses that one effect in a thousand exceeds if a twentieth is to be missed: mean and three deviations. Where a size
-/// and its shapes stand in for each other, a campaign's estimates miss together.
-fn misses_allowed(judged: usize, together: usize) -> f64 {
+/// Misses that one effect in a thousand exceeds if a twentieth is to be missed: mean and three deviations.
+fn misses_allowed(judged: usize) -> f64 {
     let mean = 0.05 * judged as f64;
-    mean + 3.0 * (0.95 * mean * together as f64).sqrt() + 0.5
+    mean + 3.0 * (0.95 * mean).sqrt() + 0.5
 }
 
 fn distances(effect: &'static dyn Effect, seed: u64) -> Distances {
