@@ -88,7 +88,7 @@ pub static CREEPING: Described = Described {
         sites.hose = Hose {
             at_once_m3_pa: (1.0 - values[1]) * whole_m3_pa,
             creeping_m3_pa: values[1] * whole_m3_pa,
-            creep_s: values[2],
+            catching_up_1_s: 1.0 / values[2],
         };
     },
 };

@@ -79,7 +79,7 @@ fn derivative(
         speed_m_s,
         force_n / inertia_kg,
         rise_pa_s,
-        seen_pa_s - hose.catching_up_1_s() * state.wall_behind_pa,
+        seen_pa_s - hose.catching_up_1_s * state.wall_behind_pa,
     ]
 }
 
@@ -165,7 +165,7 @@ fn creeping_rate(circuit: &Circuit, state: MechanicalState) -> f64 {
         return 0.0;
     }
     let stiffness = stiffness_pa_m3(circuit, state.piston_m, state.pressure_pa.max(VACUUM_PA));
-    hose.catching_up_1_s() * (1.0 + hose.creeping_m3_pa * stiffness)
+    hose.catching_up_1_s * (1.0 + hose.creeping_m3_pa * stiffness)
 }
 
 /// Longest step, s, that follows the ringing of load and oil where the piston stands.

@@ -138,8 +138,8 @@ pub struct Hose {
     pub at_once_m3_pa: f64,
     /// What it takes up in the long run besides, m3/Pa.
     pub creeping_m3_pa: f64,
-    /// How late that follows a steady rise of the pressure, s.
-    pub creep_s: f64,
+    /// How fast that catches up with a pressure that stands still, 1/s of what it is behind.
+    pub catching_up_1_s: f64,
 }
 
 impl Hose {
@@ -147,23 +147,7 @@ impl Hose {
     #[inline(always)]
     #[must_use]
     pub fn creep_m3_s(&self, behind_pa: f64) -> f64 {
-        self.per_creep_time(self.creeping_m3_pa * behind_pa)
-    }
-
-    /// How fast it catches up with a pressure that stands still, 1/s of what it is behind.
-    #[inline(always)]
-    #[must_use]
-    pub fn catching_up_1_s(&self) -> f64 {
-        self.per_creep_time(1.0)
-    }
-
-    #[inline(always)]
-    fn per_creep_time(&self, whole: f64) -> f64 {
-        if self.creep_s > 0.0 {
-            whole / self.creep_s
-        } else {
-            0.0
-        }
+        self.creeping_m3_pa * self.catching_up_1_s * behind_pa
     }
 }
 
