@@ -4,6 +4,7 @@ usage: python3 own_plant.py [PATH_TO_HITCH]     (without it, target/release/hitc
 
 The plant is a toy: linear valves with a threshold, a lag of 60 ms, and an angle straight from the flow. `hitch controller`
 answers each line (one a millisecond) with the coil currents it asks for.
+A machine can be taught first where its valves open and where its ends are: `hitch controller --help` says how.
 """
 import subprocess, sys
 

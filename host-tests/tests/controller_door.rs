@@ -3,6 +3,7 @@
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 
+use hitch_workbench::calibration_file;
 use host_tests::program::hitch;
 
 const HEADER: &str = "time_s,lever_deg,rocker_angle_deg";
@@ -16,9 +17,14 @@ struct Door {
 
 impl Door {
     fn open(header: &str) -> Self {
+        Self::open_with(header, &[])
+    }
+
+    fn open_with(header: &str, options: &[&str]) -> Self {
         let mut command = hitch();
         let command = command
             .arg("controller")
+            .args(options)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
@@ -128,6 +134,77 @@ fn another_plant_is_moved_through_the_door() {
         );
     }
     assert_eq!(toy.door.close(), (Some(0), String::new()));
+}
+
+/// A hitch whose valves open at 1.2 A and 1.1 A and whose ends are a degree higher than the linkage says, with a sensor's
+/// noise; the mechanic's hand is on button and switch or isn't.
+fn step_taught(
+    door: &mut Door,
+    toy: &mut (u32, [f64; 2], f64),
+    lever_deg: f64,
+    hand: bool,
+) -> String {
+    let (step, [lift_a, lower_a], angle_deg) = toy;
+    let noise_deg = f64::from(*step * 7919 % 41) * 1e-3 - 0.02;
+    let hand = if hand { "5,1" } else { ",0" };
+    door.send(&format!(
+        "{:.3},{lever_deg},{:.4},{hand}",
+        f64::from(*step) * 1e-3,
+        *angle_deg + noise_deg
+    ));
+    let answer = door.answer();
+    let cells: Vec<&str> = answer.split(',').collect();
+    *lift_a += (cells[0].parse::<f64>().unwrap() - *lift_a) / 45.0;
+    *lower_a += (cells[1].parse::<f64>().unwrap() - *lower_a) / 45.0;
+    let rate = 45.0 * (*lift_a - 1.2).max(0.0) - 30.0 * (*lower_a - 1.1).max(0.0);
+    *angle_deg = (*angle_deg + rate * 1e-3).clamp(45.1, 136.9);
+    *step += 1;
+    cells[2].to_owned()
+}
+
+#[test]
+fn a_machine_is_taught_through_the_door_and_what_was_found_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("taught.toml");
+    let mut door = Door::open_with(
+        &format!("{HEADER},jog_deg_per_s,teach"),
+        &["--out", file.to_str().unwrap()],
+    );
+    let mut toy = (0, [0.0; 2], 90.0);
+    assert_eq!(step_taught(&mut door, &mut toy, 60.0, false), "locked");
+    let state = (0..60_000)
+        .map(|_| step_taught(&mut door, &mut toy, 60.0, true))
+        .find(|state| state != "teaching");
+    assert_eq!(state.as_deref(), Some("taught"));
+    assert!(!file.exists(), "nobody has let go yet");
+    assert_eq!(step_taught(&mut door, &mut toy, 60.0, false), "locked");
+    let found = calibration_file::read(&file).unwrap();
+    for (table, opens_ma) in [(&found.lift, 1_200), (&found.lower, 1_100)] {
+        let error_ma = (table.threshold().0 - opens_ma).abs();
+        assert!(error_ma <= 40, "{opens_ma} mA: {error_ma} off");
+    }
+    let lower_limit = found.position.lower_limit.0;
+    assert!((lower_limit - 45_600).abs() <= 50, "{lower_limit}");
+    // It goes on with what was found: the lever at its bottom stop brings the hitch to the new limit.
+    for lever_deg in [60.0, 40.0, 90.0, 40.0] {
+        (0..3_000).for_each(|_| {
+            step_taught(&mut door, &mut toy, lever_deg, false);
+        });
+    }
+    assert!((toy.2 - 45.6).abs() <= 0.4, "{}", toy.2);
+    assert_eq!(door.close(), (Some(0), String::new()));
+}
+
+#[test]
+fn who_lets_go_too_soon_has_taught_nothing() {
+    let mut door = Door::open(&format!("{HEADER},jog_deg_per_s,teach"));
+    let mut toy = (0, [0.0; 2], 90.0);
+    step_taught(&mut door, &mut toy, 60.0, false);
+    for _ in 0..2_000 {
+        assert_eq!(step_taught(&mut door, &mut toy, 60.0, true), "teaching");
+    }
+    assert_eq!(step_taught(&mut door, &mut toy, 60.0, false), "locked");
+    assert_eq!(door.close(), (Some(0), String::new()));
 }
 
 #[test]

@@ -11,7 +11,7 @@ use hitch_model::naming::{offer_names, unknown_name};
 /// Columns that have to be there.
 const NEEDED: [&str; 3] = ["time_s", "lever_deg", "rocker_angle_deg"];
 /// All columns.
-const KNOWN: [&str; 16] = [
+const KNOWN: [&str; 17] = [
     "time_s",
     "lever_deg",
     "rocker_angle_deg",
@@ -28,6 +28,7 @@ const KNOWN: [&str; 16] = [
     "transport_lock",
     "hold",
     "quick_lift",
+    "teach",
 ];
 /// Time from line to line, s: the controller's step, with room for rounded clocks.
 const STEP_S: std::ops::RangeInclusive<f64> = 0.000_45..=0.001_55;
@@ -179,8 +180,7 @@ fn inputs_of(values: &[Option<f64>; KNOWN.len()]) -> Inputs {
             transport_lock: on(13),
             hold: on(14),
             quick_lift: on(15),
-            // A stored calibration is needed for that, and there is none here.
-            teach: false,
+            teach: on(16),
         },
     }
 }
@@ -246,16 +246,17 @@ mod tests {
     #[test]
     fn what_the_operator_sets_has_columns_too() {
         let mut columns = Columns::parse(
-            "time_s,lever_deg,rocker_angle_deg,lowering_dial_percent,hold,transport_lock,engine_speed_rpm\n",
+            "time_s,lever_deg,rocker_angle_deg,lowering_dial_percent,hold,transport_lock,engine_speed_rpm,teach\n",
         )
         .unwrap();
-        let inputs = columns.inputs("0,90,90,50.5,1,0,850\n").unwrap();
+        let inputs = columns.inputs("0,90,90,50.5,1,0,850,1\n").unwrap();
         assert_eq!(inputs.lowering_dial, Some(PerMille(505)));
         assert_eq!(inputs.engine_speed, Some(RevolutionPerMinute(850)));
         assert_eq!(
             inputs.switches,
             Switches {
                 hold: true,
+                teach: true,
                 ..Switches::default()
             }
         );

@@ -20,6 +20,7 @@ pub mod progress;
 pub mod rebuild;
 pub mod report;
 pub mod status_line;
+pub mod teaching;
 pub mod text;
 pub mod tuning;
 pub mod valve_survey;

@@ -2,12 +2,14 @@
 use std::io::{self, BufRead, Write};
 use std::path::{Path, PathBuf};
 
-use hitch_firmware::control::{Controller, Outputs};
+use hitch_firmware::control::{Controller, Outputs, State};
 use hitch_model::input_error::{InputError, Place};
 
 use super::loop_::calibration;
 use crate::error::Error;
 use crate::input_stream::{Columns, LineError};
+use crate::output;
+use crate::teaching::{self, Teaching};
 
 /// Header of what the command prints.
 const HEADER: &str = "lift_current_a,lower_current_a,state";
@@ -19,14 +21,20 @@ const HEADER: &str = "lift_current_a,lower_current_a,state";
     Standard input is CSV: a header, then a line a millisecond. Columns: time_s, lever_deg, rocker_angle_deg and, where the \
     plant has them, cylinder_pressure_bar, pump_pressure_bar, oil_temperature_c, supply_v; and, where there are such things, \
     jog_deg_per_s, upper_limit_deg, lowering_dial_percent, engine_speed_rpm, measured_lift_current_a, \
-    measured_lower_current_a and the switches transport_lock, hold, quick_lift (0 is off). An empty cell is a sample that is \
-    missing. Each line is answered at once by one line of currents and state. Nothing moves until the lever has been moved \
-    through the present angle."
+    measured_lower_current_a and the switches transport_lock, hold, quick_lift, teach (0 is off). An empty cell is a sample that \
+    is missing. Each line is answered at once by one line of currents and state. Nothing moves until the lever has been moved \
+    through the present angle.\n\n\
+    A machine may be taught first. Still locked and away from the ends, with teach at 1 and any jog_deg_per_s, as if the \
+    button were held, the controller finds where the valves open and where the ends are, within a minute. Its state is teaching meanwhile, then taught, or not-taught with the reason. Once teach is 0 again and jog_deg_per_s \
+    empty, what was found counts, and --out has it for the next time."
 )]
 pub struct Args {
     /// The controller's calibration; without it, the nominal one
     #[arg(long, value_name = "C.toml")]
     calibration: Option<PathBuf>,
+    /// Where the calibration goes once the machine has been taught
+    #[arg(long, value_name = "C.toml")]
+    out: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -34,16 +42,24 @@ pub struct Args {
 /// # Errors
 /// If the calibration or a line is wrong, or standard output is closed.
 pub fn run(args: &Args) -> Result<(), Error> {
+    output::check_writable(args.out.as_deref())?;
     let controller = Controller::new(calibration(args.calibration.as_ref())?);
-    serve(controller, io::stdin().lock(), io::stdout().lock())
+    let teaching = Teaching::new(args.out.clone());
+    serve(
+        controller,
+        teaching,
+        io::stdin().lock(),
+        io::stdout().lock(),
+    )
 }
 
 /// Answers every line of `input` on `output`, flushed line by line.
 ///
 /// # Errors
-/// If a line is wrong (with its line and column), or `output` is closed.
+/// If a line is wrong (with its line and column), `output` is closed, or what was taught can't be written.
 pub fn serve(
     mut controller: Controller,
+    mut teaching: Teaching,
     mut input: impl BufRead,
     mut output: impl Write,
 ) -> Result<(), Error> {
@@ -66,18 +82,21 @@ pub fn serve(
             let inputs = columns
                 .inputs(&line)
                 .map_err(|error| fault(number, error))?;
-            answer(&mut output, &reply(&controller.step(&inputs)))?;
+            let outputs = controller.step(&inputs);
+            teaching.follow(&mut controller, outputs.state)?;
+            answer(&mut output, &reply(&outputs, &controller))?;
         }
         number += 1;
     }
     Ok(())
 }
 
-fn reply(outputs: &Outputs) -> String {
+fn reply(outputs: &Outputs, controller: &Controller) -> String {
     let ampere = |milli: i32| f64::from(milli) * 1e-3;
-    let state = match outputs.fault {
-        Some(fault) => format!("{}:{}", outputs.state.name(), fault.name()),
-        None => outputs.state.name().to_owned(),
+    let state = match (outputs.fault, outputs.state) {
+        (Some(fault), state) => format!("{}:{}", state.name(), fault.name()),
+        (None, State::Teaching) => teaching::state(controller.taught()),
+        (None, state) => state.name().to_owned(),
     };
     format!(
         "{:.3},{:.3},{state}",
