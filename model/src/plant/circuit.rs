@@ -56,6 +56,13 @@ impl Openings {
         self.lift.shut() && self.lower.shut()
     }
 
+    /// Whether both valves together are open further than in others.
+    #[must_use]
+    pub fn wider_than(&self, others: &Self) -> bool {
+        let width = |of: &Self| of.lift.flow_m3_s + of.lower.flow_m3_s;
+        width(self) > width(others)
+    }
+
     /// The openings at a share of the way to others.
     #[must_use]
     pub fn towards(self, to: Self, share: f64) -> Self {

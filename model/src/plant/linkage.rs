@@ -68,6 +68,8 @@ pub struct Posture {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linkage {
     step_m: f64,
+    /// One over the step: a division less in the plant's innermost loop.
+    cells_per_m: f64,
     nodes: Vec<Posture>,
 }
 
@@ -127,7 +129,11 @@ impl Linkage {
             angle_rad = angle_at_pin(dimensions, pin_x, angle_rad)?;
             nodes.push(posture(dimensions, angle_rad)?);
         }
-        Ok(Self { step_m, nodes })
+        Ok(Self {
+            step_m,
+            cells_per_m: step_m.recip(),
+            nodes,
+        })
     }
 
     /// The posture at piston travel `piston_m`; travel beyond the stroke is held at its end.
@@ -195,7 +201,7 @@ impl Linkage {
     }
 
     fn cell(&self, piston_m: f64) -> (usize, f64) {
-        let position = (piston_m / self.step_m).clamp(0.0, CELLS as f64);
+        let position = (piston_m * self.cells_per_m).clamp(0.0, CELLS as f64);
         let node = (position as usize).min(CELLS - 1);
         (node, position - node as f64)
     }
