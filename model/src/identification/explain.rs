@@ -14,7 +14,8 @@ use super::experiment::Experiment;
 use super::fit::{Fit, evaluate, evaluate_weighted, fit, refine};
 use super::holdout::held_out_error;
 use super::regime::Regime;
-use super::trials::Trials;
+use super::scans::Scans;
+use super::trials::{Trials, VISIBLE};
 use super::twins::twins;
 use super::unseen::{Unseen, unseen};
 use crate::effects::Effect;
@@ -23,17 +24,8 @@ use crate::model::Model;
 /// Likelihood ratio that an effect needs: chi-squared with one degree of freedom at 5 % over some fifty tries.
 pub const BELIEVED: f64 = 11.0;
 
-/// Smallest detectability that is believed, sigmas. Channels a few milliseconds out of step, a logger's rounding and
-/// the plant's discretisation make signatures of up to 0.05 on steady and 0.09 on ringing campaigns with nothing
-/// hidden.
-pub(super) const VISIBLE: f64 = 0.1;
-
 /// What more it needs for each parameter of a shape that it brings.
 const BELIEVED_PER_SHAPE: f64 = 3.0;
-
-/// Smallest detectability that is believed where the model is adequate without the effect: what is left is noise
-/// already, and what a faint signature explains of it may as well be the instruments' own.
-const VISIBLE_IN_NOISE: f64 = 0.15;
 
 /// Fewest compared samples that anything is concluded from.
 const FEWEST_SAMPLES: usize = 50;
@@ -173,7 +165,8 @@ pub fn diagnose(
     progress: Progress,
 ) -> Diagnosis {
     let absent = absent(model, &base.estimate);
-    let trials = Trials::new(experiment, model, &base, &absent, progress);
+    let scans = Scans::default();
+    let trials = Trials::new(experiment, model, &base, &absent, &scans, progress);
     let (candidates, confidences) = (trials.all_weighed(), trials.confidences());
     drop(trials);
     Diagnosis {
@@ -209,6 +202,7 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
     let mut present = before.clone();
     let mut present_held_out = f64::NAN;
     let mut steps: Vec<Step> = Vec::new();
+    let scans = Scans::default();
     for _ in 0..MOST_ROUNDS {
         let lost = steps.len() >= LOST_STEPS
             && present.error() > LOST
@@ -219,17 +213,12 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
             break;
         }
         let absent = absent(model, &present.estimate);
-        let trials = Trials::new(experiment, model, &present, &absent, progress);
+        let trials = Trials::new(experiment, model, &present, &absent, &scans, progress);
         if present_held_out.is_nan() {
             present_held_out = held_out_error(experiment, model, &present);
         }
-        let visible = if adequate(experiment, &cells(experiment, &present), &present) {
-            VISIBLE_IN_NOISE
-        } else {
-            VISIBLE
-        };
         let proof = Proof {
-            visible,
+            visible: trials.visible(),
             held_out: present_held_out,
             share: if steps.is_empty() { 0.0 } else { NO_PATCH },
         };

@@ -20,6 +20,7 @@ pub mod profile;
 pub mod regime;
 pub mod residual;
 mod scan;
+pub mod scans;
 mod shortlist;
 mod starts;
 pub mod suggestion;

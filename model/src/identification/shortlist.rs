@@ -8,6 +8,7 @@ use super::fit::{Fit, sketch};
 use super::frame::Frame;
 use super::jacobian::Jacobian;
 use super::scan::GRIDS;
+use super::scans::Scans;
 use super::starts::{Starts, valleys};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
@@ -72,6 +73,8 @@ pub(super) struct Shortlist<'a> {
     pub frame: Frame<&'a Jacobian>,
     /// Fall of the cost under which nothing is worth a sketch.
     pub worthwhile: f64,
+    /// Fine searches of the rounds before.
+    pub scans: &'a Scans,
 }
 
 impl Shortlist<'_> {

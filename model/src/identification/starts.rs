@@ -108,7 +108,9 @@ impl Shortlist<'_> {
     pub(super) fn looked_through(&self, effect: &'static dyn Effect, grid: &Grid) -> Starts {
         let mut ranked = self.rank(self.ends(sizes(effect)));
         if let Some(first) = ranked.first() {
-            let found = scan(self.experiment, self.model, self.base, &first.last(), grid);
+            let hint = first.last();
+            let scan = || scan(self.experiment, self.model, self.base, &hint, grid);
+            let found = self.scans.of(effect, self.base.cost, scan);
             ranked.extend(self.rank(self.ends(found)));
             self.sort(&mut ranked);
         }

@@ -9,14 +9,16 @@ use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
+use super::adequacy::{adequate, cells};
 use super::candidate::{Candidate, jacobian_by, slow_columns, weigh, weigh_by};
 use super::evidence::{log_odds, shares};
 use super::experiment::Experiment;
-use super::explain::{BELIEVED, VISIBLE};
+use super::explain::BELIEVED;
 use super::fit::{Fit, evaluate_weighted, refine};
 use super::frame::Frame;
 use super::jacobian::SlowColumns;
 use super::lateness::on_time;
+use super::scans::Scans;
 use super::shortlist::{HOPELESS, Shortlist, Sketch, limit};
 use crate::effects::Effect;
 use crate::model::Model;
@@ -25,11 +27,21 @@ use crate::model::Model;
 const WORTH_A_SKETCH: f64 = 0.06;
 const WORTH_A_FIT: f64 = 0.25;
 
+/// Smallest detectability that is believed, sigmas. Channels a few milliseconds out of step, a logger's rounding and
+/// the plant's discretisation make signatures of up to 0.05 on steady and 0.09 on ringing campaigns with nothing
+/// hidden.
+pub(super) const VISIBLE: f64 = 0.1;
+
+/// Smallest detectability that is believed where the model is adequate without the effect: what is left is noise
+/// already, and what a faint signature explains of it may as well be the instruments' own.
+const VISIBLE_IN_NOISE: f64 = 0.15;
+
 /// Effects tried on one fitted model, the most likely first.
 pub struct Trials<'a> {
     experiment: &'a Experiment,
     model: &'a Model,
     base: &'a Fit,
+    visible: f64,
     slow: SlowColumns,
     ranked: Vec<Trial>,
 }
@@ -64,29 +76,37 @@ pub fn try_effects(
     effects: &[&'static dyn Effect],
     progress: &(dyn Fn(&str) + Sync),
 ) -> Vec<Candidate> {
-    Trials::new(experiment, model, base, effects, progress).all_weighed()
+    let scans = Scans::default();
+    Trials::new(experiment, model, base, effects, &scans, progress).all_weighed()
 }
 
 impl<'a> Trials<'a> {
-    /// Tries effects; `progress` is told of each.
+    /// Tries effects with the fine searches of the rounds before; `progress` is told of each.
     #[must_use]
     pub fn new(
         experiment: &'a Experiment,
         model: &'a Model,
         base: &'a Fit,
         effects: &[&'static dyn Effect],
+        scans: &Scans,
         progress: &(dyn Fn(&str) + Sync),
     ) -> Self {
         let slow = slow_columns(experiment, model, base);
         let jacobian = jacobian_by(experiment, model, base, &slow);
+        let visible = if adequate(experiment, &cells(experiment, base), base) {
+            VISIBLE_IN_NOISE
+        } else {
+            VISIBLE
+        };
         // An effect that is barely visible explains this much.
-        let believed = BELIEVED.max(base.weights.count() as f64 * VISIBLE.powi(2));
+        let believed = BELIEVED.max(base.weights.count() as f64 * visible.powi(2));
         let shortlist = Shortlist {
             experiment,
             model,
             base,
             frame: Frame::new(&jacobian, &base.estimate, 0..0),
             worthwhile: WORTH_A_SKETCH * believed,
+            scans,
         };
         let sketches = shortlist.sketches(effects);
         let best = sketches.first().map_or(base.cost, |first| first.cost);
@@ -103,6 +123,7 @@ impl<'a> Trials<'a> {
             experiment,
             model,
             base,
+            visible,
             slow,
             ranked,
         };
@@ -138,6 +159,12 @@ impl<'a> Trials<'a> {
             Pace::Sketched => weigh_by(experiment, model, base, effect, fit.clone(), &self.slow),
             Pace::Fitted => weigh(experiment, model, base, effect, fit.clone()),
         })
+    }
+
+    /// Smallest detectability that is believed here, sigmas.
+    #[must_use]
+    pub fn visible(&self) -> f64 {
+        self.visible
     }
 
     /// All candidates, the most likely first.

@@ -18,7 +18,8 @@ use super::experiment::Experiment;
 use super::explain::{BELIEVED, Explanation, Progress, Verdict};
 use super::fit::{Fit, evaluate, refine};
 use super::holdout::held_out_error;
-use super::trials::try_effects;
+use super::scans::Scans;
+use super::trials::Trials;
 use crate::effects::{AddedEffect, Effect, TermEffect};
 use crate::expression::TermDefinition;
 use crate::model::Model;
@@ -160,11 +161,11 @@ fn trials(
     };
     let terms = screen::best(experiment, model, start, definitions, count);
     let effects: Vec<&'static dyn Effect> = terms.iter().map(|term| *term as &dyn Effect).collect();
-    let candidates = try_effects(experiment, model, start, &effects, progress);
-    let believed = candidates
-        .into_iter()
-        .filter(|candidate| candidate.likelihood_ratio >= BELIEVED);
-    believed
+    let scans = Scans::default();
+    let trials = Trials::new(experiment, model, start, &effects, &scans, progress);
+    trials
+        .likely(|_| BELIEVED)
+        .filter(|candidate| candidate.likelihood_ratio >= BELIEVED)
         .take(HELD_OUT)
         .filter_map(|candidate| {
             let id = candidate.effect.id();
@@ -172,7 +173,7 @@ fn trials(
             Some(Trial {
                 term,
                 held_out: held_out_error(experiment, model, &candidate.fit),
-                candidate,
+                candidate: candidate.clone(),
             })
         })
         .filter(|trial| trial.held_out.is_finite())
