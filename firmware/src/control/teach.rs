@@ -59,6 +59,7 @@ impl Taught {
     /// The calibration with what was found in it, sealed: curves shifted, linkage moved to the sensor, limits inside
     /// the ends.
     #[must_use]
+    #[inline(never)]
     pub fn applied_to(&self, calibration: &Calibration) -> Calibration {
         let mut taught = calibration.clone();
         shift(&mut taught.lift, self.lift_shift);

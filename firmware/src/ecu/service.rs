@@ -78,6 +78,7 @@ impl<F: NorFlash> Service<F> {
     }
 
     /// The keeper's part of a millisecond. `at_rest`: both coils are off and the lock is shut.
+    #[inline(never)]
     pub fn update(
         &mut self,
         controller: &mut Controller,
@@ -109,6 +110,7 @@ impl<F: NorFlash> Service<F> {
     }
 
     /// Puts what teaching found on the working page, once; true if there was something.
+    #[inline(never)]
     fn take_taught(&mut self, controller: &Controller) -> bool {
         let Some(result) = controller.taught() else {
             self.taught_seen = false;
