@@ -69,12 +69,35 @@ fn curves_that_make_no_map_are_refused() {
             index: 0
         }
     ));
+    let crowds = refused(|c| {
+        let second = c.lift.points[1].flow;
+        c.lift.points[2].flow = second + c.lift.least_gap() - MicroLitrePerSecond(1);
+    });
+    assert!(matches!(
+        crowds,
+        CalibrationError::ValveGap {
+            valve: "lift",
+            index: 2
+        }
+    ));
     let turns = refused(|c| c.linkage.travel[7] = Micrometre(0));
     assert!(matches!(turns, CalibrationError::Linkage { index: 7 }));
     assert!(matches!(
         refused(|c| c.linkage.angle_step = MilliDegree(0)),
         CalibrationError::Linkage { .. }
     ));
+}
+
+#[test]
+fn points_may_be_a_quarter_of_a_percent_apart() {
+    let mut calibration = Calibration::nominal();
+    let table = &mut calibration.lift;
+    assert_eq!(
+        table.least_gap(),
+        MicroLitrePerSecond(665_483_i32.div_euclid(400) + 1)
+    );
+    table.points[2].flow = table.points[1].flow + table.least_gap();
+    assert!(calibration.sealed().validate().is_ok());
 }
 
 #[test]

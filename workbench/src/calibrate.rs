@@ -10,7 +10,7 @@ use hitch_firmware::control::{Controller, ValidCalibration};
 use hitch_model::Model;
 use hitch_model::model::Dynamics;
 use hitch_model::plant::Valve;
-use hitch_model::units::{bar_from_pa, m3_s_from_lpm};
+use hitch_model::units::{bar_from_pa, lpm_from_m3_s, m3_s_from_lpm};
 
 use crate::valve_survey::{CurvePoint, LOWERING_PORT_BAR, survey};
 
@@ -104,11 +104,12 @@ fn linkage(model: &Model, calibration: &mut Calibration) {
 
 /// The table of a surveyed curve with as few points as its tolerance needs and as fit.
 fn valve_table(valve: &'static str, curve: &[CurvePoint]) -> Result<ValveTable, CalibrateError> {
+    let gap_lpm = least_gap_lpm(curve);
     let mut tolerance_a = TOLERANCE_A;
-    let mut points = thinned(curve, tolerance_a);
+    let mut points = thinned(curve, tolerance_a, gap_lpm);
     while points.len() > VALVE_POINTS {
         tolerance_a *= 1.25;
-        points = thinned(curve, tolerance_a);
+        points = thinned(curve, tolerance_a, gap_lpm);
     }
     if points.len() < 2 {
         return Err(CalibrateError::Shut { valve });
@@ -119,16 +120,28 @@ fn valve_table(valve: &'static str, curve: &[CurvePoint]) -> Result<ValveTable, 
     };
     for (target, point) in table.points.iter_mut().zip(&points) {
         *target = ValvePoint {
-            flow: MicroLitrePerSecond((m3_s_from_lpm(point.flow_lpm) * 1e9).round() as i32),
+            flow: flow(point),
             current: MilliAmp((point.current_a * 1e3).round() as i32),
         };
     }
     Ok(table)
 }
 
+/// Flow of a surveyed point, rounded to what a table holds.
+fn flow(point: &CurvePoint) -> MicroLitrePerSecond {
+    MicroLitrePerSecond((m3_s_from_lpm(point.flow_lpm) * 1e9).round() as i32)
+}
+
+/// How far apart in flow the points of a table for this curve have to be, with what rounding takes of it.
+fn least_gap_lpm(curve: &[CurvePoint]) -> f64 {
+    let saturation = curve.last().map_or(MicroLitrePerSecond::ZERO, flow);
+    let gap = ValveTable::least_gap_of(saturation) + MicroLitrePerSecond(1);
+    lpm_from_m3_s(f64::from(gap.0) * 1e-9)
+}
+
 /// Douglas and Peucker: the curve's ends, and where the straight line between two kept points is furthest off, until it
-/// is within the tolerance everywhere.
-fn thinned(curve: &[CurvePoint], tolerance_a: f64) -> Vec<CurvePoint> {
+/// is within the tolerance everywhere, or no place is left that is `gap_lpm` from both.
+fn thinned(curve: &[CurvePoint], tolerance_a: f64, gap_lpm: f64) -> Vec<CurvePoint> {
     let (Some(first), Some(last)) = (curve.first(), curve.last()) else {
         return Vec::new();
     };
@@ -136,15 +149,59 @@ fn thinned(curve: &[CurvePoint], tolerance_a: f64) -> Vec<CurvePoint> {
         let share = (point.flow_lpm - first.flow_lpm) / (last.flow_lpm - first.flow_lpm);
         (first.current_a + share * (last.current_a - first.current_a) - point.current_a).abs()
     };
+    let has_room = |point: &CurvePoint| {
+        (point.flow_lpm - first.flow_lpm).min(last.flow_lpm - point.flow_lpm) >= gap_lpm
+    };
     let furthest = (1..curve.len().saturating_sub(1))
+        .filter(|&at| has_room(&curve[at]))
         .max_by(|&a, &b| off_a(&curve[a]).total_cmp(&off_a(&curve[b])));
     match furthest {
         Some(at) if off_a(&curve[at]) > tolerance_a => {
-            let mut points = thinned(&curve[..=at], tolerance_a);
+            let mut points = thinned(&curve[..=at], tolerance_a, gap_lpm);
             points.pop();
-            points.extend(thinned(&curve[at..], tolerance_a));
+            points.extend(thinned(&curve[at..], tolerance_a, gap_lpm));
             points
         }
         _ => vec![*first, *last],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A curve 1 mA apart that bends every 7 mA, and is flat at first: its bends are closer than a table may have points.
+    fn bent() -> Vec<CurvePoint> {
+        let mut flow_lpm = 0.0;
+        let point = |step: u32| {
+            let slope = [1.5, 0.5][step as usize / 7 % 2];
+            flow_lpm += slope * 0.02 * (f64::from(step) / 1e3).powi(2).min(1.0);
+            CurvePoint {
+                current_a: 1.0 + f64::from(step) * 1e-3,
+                flow_lpm,
+            }
+        };
+        let rising = (1..2_000).map(point);
+        let threshold = CurvePoint {
+            current_a: 1.0,
+            flow_lpm: 0.0,
+        };
+        std::iter::once(threshold).chain(rising).collect()
+    }
+
+    #[test]
+    fn points_are_as_far_apart_as_the_firmware_wants_them() {
+        let curve = bent();
+        let table = valve_table("lift", &curve).unwrap();
+        let points = table.used();
+        assert!(points.len() > 10);
+        for pair in points.windows(2) {
+            assert!(pair[1].flow - pair[0].flow >= table.least_gap());
+        }
+        let mut calibration = Calibration::nominal();
+        calibration.lift = table;
+        assert!(calibration.sealed().validate().is_ok());
+        let ends = [curve[0], curve[curve.len() - 1]].map(|point| flow(&point));
+        assert_eq!([points[0].flow, table.saturation()], ends);
     }
 }

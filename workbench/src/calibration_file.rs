@@ -14,6 +14,9 @@
 //! restart_band_mm = 0.6
 //! ```
 //!
+//! Flows of a valve are at least 0.25 % of the largest one apart: the firmware's inverse map takes one kink in each cell of
+//! its grid.
+//!
 //! Sections and keys that are missing keep the values of the nominal calibration, so a file may hold just what differs.
 //! The scalars' names, units, ranges and reasons come from the firmware itself.
 
@@ -276,6 +279,14 @@ fn objection(error: CalibrationError) -> (&'static str, String, &'static str) {
             format!("point {} of [{valve}] is out of order", index + 1),
             "start at no flow, and let currents and flows rise strictly",
         ),
+        E::ValveGap { valve, index } => (
+            valve,
+            format!(
+                "point {} of [{valve}] is too close to the one before it",
+                index + 1
+            ),
+            "let flows be at least 0.25 % of the largest one apart, and 0.0003 l/min",
+        ),
         E::ValveSize { valve } => (
             valve,
             format!("[{valve}] has no points"),
@@ -348,6 +359,13 @@ mod tests {
         assert!(
             order.starts_with("c.toml:2:1: point 2 of [lift] is out of order"),
             "{order}"
+        );
+        let close = fault(
+            "format = 1\n[lift]\ncurrent_a = [1.0, 1.1, 1.2, 3.0]\nflow_lpm = [0, 1, 1.09, 40]\n",
+        );
+        assert!(
+            close.starts_with("c.toml:2:1: point 3 of [lift] is too close to the one before it"),
+            "{close}"
         );
         let crossed = fault("format = 1\n[position]\nlower_limit_deg = 140\n");
         assert!(

@@ -104,6 +104,13 @@ pub enum CalibrationError {
         /// The offending point.
         index: usize,
     },
+    /// A point of a valve table is closer to the one before it than [`ValveTable::least_gap`] in flow.
+    ValveGap {
+        /// `lift` or `lower`.
+        valve: &'static str,
+        /// The offending point.
+        index: usize,
+    },
     /// The linkage table's step isn't positive, or its travel doesn't rise strictly.
     Linkage {
         /// The offending point.
@@ -372,11 +379,13 @@ fn visit_valve(table: &mut ValveTable, visit: &mut dyn FnMut(&mut i32)) {
     }
 }
 
+#[inline(never)]
 fn check_valve(valve: &'static str, table: &ValveTable) -> Result<(), CalibrationError> {
     let points = table.used();
     if points.len() < 2 || usize::try_from(table.count) != Ok(points.len()) {
         return Err(CalibrationError::ValveSize { valve });
     }
+    let gap = table.least_gap();
     let mut last = None;
     for (index, &point) in points.iter().enumerate() {
         let rises = last.is_none_or(|last: super::valve_map::ValvePoint| {
@@ -388,6 +397,9 @@ fn check_valve(valve: &'static str, table: &ValveTable) -> Result<(), Calibratio
             && point.current <= CURRENT_LIMIT;
         if !(rises && starts && in_range) {
             return Err(CalibrationError::ValvePoint { valve, index });
+        }
+        if last.is_some_and(|last| point.flow - last.flow < gap) {
+            return Err(CalibrationError::ValveGap { valve, index });
         }
         last = Some(point);
     }

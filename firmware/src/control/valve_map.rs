@@ -20,6 +20,10 @@ use super::units::{MicroLitrePerSecond, MilliAmp, MilliBar};
 /// Room for breakpoints in a valve table.
 pub const VALVE_POINTS: usize = 32;
 
+/// Least distance of two points of a table in flow: with so much, flows are whole numbers finely enough for a table of any
+/// range.
+const LEAST_GAP: MicroLitrePerSecond = MicroLitrePerSecond(5);
+
 /// Bits behind the point of a slope of the curve in ul/s/mA: with the largest flow they fill a word.
 const SLOPE_BITS: u32 = 8;
 
@@ -33,7 +37,8 @@ pub struct ValvePoint {
     pub current: MilliAmp,
 }
 
-/// Flow over current of one valve, both strictly rising, from threshold to saturation.
+/// Flow over current of one valve, both strictly rising, from threshold to saturation; flows are at least
+/// [`ValveTable::least_gap`] apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct ValveTable {
@@ -67,6 +72,21 @@ impl ValveTable {
         self.used()
             .last()
             .map_or(MicroLitrePerSecond::ZERO, |point| point.flow)
+    }
+
+    /// How far apart in flow two of its points have to be at least: 0.25 % of the largest flow, and 5 ul/s. Then no two are
+    /// in one cell of the inverse map ([`super::inverse_curve`]), and a kink is found with one comparison.
+    #[must_use]
+    pub fn least_gap(&self) -> MicroLitrePerSecond {
+        Self::least_gap_of(self.saturation())
+    }
+
+    /// The same for a table with this largest flow.
+    #[must_use]
+    pub fn least_gap_of(saturation: MicroLitrePerSecond) -> MicroLitrePerSecond {
+        const SHARES: u32 = 400;
+        let gap = saturation.0.unsigned_abs().div_ceil(SHARES);
+        MicroLitrePerSecond(gap.cast_signed().max(LEAST_GAP.0))
     }
 
     /// Flow that `current` lets through (at the table's own pressure drop).

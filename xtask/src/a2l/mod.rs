@@ -163,7 +163,7 @@ fn valve(
          /begin AXIS_DESCR STD_AXIS NO_INPUT_QUANTITY {flow} {VALVE_POINTS} 0 10000000\n    MONOTONY STRICT_INCREASE\n  \
          /end AXIS_DESCR\n/end CHARACTERISTIC\n",
         what = quoted(&format!(
-            "{what}: current over flow, from the threshold to saturation. (Changed at rest only.)"
+            "{what}: current over flow, from the threshold to saturation. Flows are at least 0.25 % of the largest one apart. (Changed at rest only.)"
         )),
         address = word_address(word),
     );
