@@ -1,7 +1,7 @@
 //! The inverse valve map against an independent solution in f64, over its whole input grid.
 
 use hitch_firmware::control::Calibration;
-use hitch_firmware::control::inverse_curve::InverseCurve;
+use hitch_firmware::control::inverse_curve::{FlowSteps, InverseCurve};
 use hitch_firmware::control::units::{MicroLitrePerSecond, MilliAmp, MilliBar};
 use hitch_firmware::control::valve_map::{ValveCurves, ValveMap};
 
@@ -181,7 +181,8 @@ fn axis_ends_are_held() {
 fn the_map_and_its_inverse_meet() {
     let calibration = Calibration::nominal();
     for (table, name) in [(&calibration.lift, "lift"), (&calibration.lower, "lower")] {
-        let inverse = InverseCurve::of(table);
+        let mut inverse = InverseCurve::EMPTY;
+        inverse.fill(table, FlowSteps::MICROLITRES);
         for milliampere in 0..=3_500 {
             let current = MilliAmp(milliampere);
             let flow = table.flow(current);
@@ -191,7 +192,7 @@ fn the_map_and_its_inverse_meet() {
                 "{name} at {current:?}: no flow exactly up to the threshold"
             );
             if flow.0 > 0 && flow < table.saturation() {
-                let back = inverse.current(flow);
+                let back = inverse.current(flow.0);
                 assert!(
                     (back - current).magnitude() <= MilliAmp(1),
                     "{name}: {current:?} comes back as {back:?}"

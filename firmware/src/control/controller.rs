@@ -55,7 +55,6 @@ pub struct Controller {
     envelope: Envelope,
     regulation: Regulation,
     rest: RestPosition,
-    curves: ValveCurves,
     scale: DropScale,
     learning: Learning,
     teach: Teach,
@@ -63,6 +62,8 @@ pub struct Controller {
     available: MicrometrePerSecond,
     /// Flow asked of the valves, positive into the cylinder.
     demanded_flow: MicroLitrePerSecond,
+    // The largest comes last, so that the others are close to the controller's address.
+    curves: ValveCurves,
 }
 
 impl Controller {
@@ -71,12 +72,13 @@ impl Controller {
     #[inline(never)]
     pub fn new(calibration: ValidCalibration) -> Self {
         let load = LoadEstimate::new(&calibration.hydraulics);
-        let curves = ValveCurves::of(&calibration);
+        let mut curves = ValveCurves::EMPTY;
+        curves.fill(&calibration);
         let scale = curves.scale(load.drop());
         let closing = Closing::of(&calibration);
         let origin = calibration.linkage.travel(MilliDegree::ZERO);
-        let regulation = Regulation::new(&calibration.current);
         Self {
+            regulation: Regulation::new(&calibration.current),
             calibration,
             sensors: Sensors::default(),
             mode: Mode::default(),
@@ -97,7 +99,6 @@ impl Controller {
             sink: SinkWatch::default(),
             saturation: SaturationWatch::default(),
             envelope: Envelope::default(),
-            regulation,
             rest: RestPosition::default(),
             curves,
             scale,
@@ -123,9 +124,9 @@ impl Controller {
             != (&self.calibration.lift, &self.calibration.lower)
         {
             self.learning.forget_curves();
-            self.curves = ValveCurves::of(&calibration);
+            self.curves.fill(&calibration);
         } else if measured_at(&calibration) != measured_at(&self.calibration) {
-            self.curves = ValveCurves::of(&calibration);
+            self.curves.fill(&calibration);
         }
         self.calibration = calibration;
     }
@@ -481,20 +482,18 @@ impl Controller {
     fn currents(&mut self) -> CoilCurrents {
         let flow = flow(self.mapped_speed(), self.calibration.hydraulics.piston_area);
         self.demanded_flow = flow;
-        let slack = self.slack.take_up(
-            self.phase.speed().magnitude(),
-            self.calibration.hydraulics.hysteresis,
-        );
+        let (speed, hydraulics) = (self.phase.speed(), &self.calibration.hydraulics);
+        let slack = self.slack.take_up(speed.magnitude(), hydraulics.hysteresis);
         let map = self.curves.at(self.scale);
         let offsets = self.learning.offsets();
+        let with = |current: MilliAmp, offset| (current - slack + offset).max(MilliAmp::ZERO);
         // No flow is no current, whatever the valve.
-        let with = |current: MilliAmp, offset: MilliAmp| match current > MilliAmp::ZERO {
-            true => (current - slack + offset).max(MilliAmp::ZERO),
-            false => MilliAmp::ZERO,
-        };
-        CoilCurrents {
-            lift: with(map.lift_current(flow), offsets.lift()),
-            lower: with(map.lower_current(-flow), offsets.lower()),
+        let mut currents = CoilCurrents::OFF;
+        if flow.0 > 0 {
+            currents.lift = with(map.lift_current(flow), offsets.lift());
+        } else if flow.0 < 0 {
+            currents.lower = with(map.lower_current(-flow), offsets.lower());
         }
+        currents
     }
 }

@@ -14,7 +14,7 @@
 use super::calibration::Calibration;
 use super::drop_scale::{DropReference, DropScale};
 use super::fixed::Divisor;
-use super::inverse_curve::InverseCurve;
+use super::inverse_curve::{FlowSteps, InverseCurve};
 use super::units::{MicroLitrePerSecond, MilliAmp, MilliBar};
 
 /// Room for breakpoints in a valve table.
@@ -135,15 +135,27 @@ pub struct ValveCurves {
 }
 
 impl ValveCurves {
+    /// No curves: no flow at any current.
+    pub const EMPTY: Self = Self {
+        lift: InverseCurve::EMPTY,
+        lower: InverseCurve::EMPTY,
+        reference: DropReference::UNKNOWN,
+    };
+
     /// The curves of a calibration.
     #[must_use]
-    #[inline(never)]
     pub fn of(calibration: &Calibration) -> Self {
-        Self {
-            lift: InverseCurve::of(&calibration.lift),
-            lower: InverseCurve::of(&calibration.lower),
-            reference: DropReference::new(calibration.hydraulics.reference_drop),
-        }
+        let mut curves = Self::EMPTY;
+        curves.fill(calibration);
+        curves
+    }
+
+    /// Makes these the curves of a calibration, in their place.
+    #[inline(never)]
+    pub fn fill(&mut self, calibration: &Calibration) {
+        self.reference = DropReference::new(calibration.hydraulics.reference_drop);
+        self.lift.fill(&calibration.lift, FlowSteps::MICROLITRES);
+        self.lower.fill(&calibration.lower, self.reference.steps());
     }
 
     /// The lowering valve's scale at a pressure drop.
@@ -173,18 +185,13 @@ impl ValveMap<'_> {
     /// Lift current for a flow into the cylinder.
     #[must_use]
     pub fn lift_current(&self, flow: MicroLitrePerSecond) -> MilliAmp {
-        self.curves.lift.current(flow)
+        self.curves.lift.current(flow.0)
     }
 
     /// Lowering current for a flow out of the cylinder.
     #[must_use]
     pub fn lower_current(&self, flow: MicroLitrePerSecond) -> MilliAmp {
-        if flow <= MicroLitrePerSecond::ZERO {
-            return MilliAmp::ZERO;
-        }
-        self.curves
-            .lower
-            .current(self.scale.to_reference(flow).max(MicroLitrePerSecond(1)))
+        self.curves.lower.current(self.scale.steps(flow))
     }
 
     /// Largest flow into the cylinder.
