@@ -6,7 +6,7 @@
 
 use crate::host_file::{HostFile, HostFileError};
 
-const BUFFER_BYTES: usize = 2_048;
+const BUFFER_BYTES: usize = 1_024;
 
 /// Both directions.
 pub struct Link {
