@@ -9,12 +9,13 @@
 //! the current changes. The estimate follows what the integral has to add while the current is steady: resistance
 //! changes with temperature, which is slow. A milliohm times a milliampere is a microvolt, so none of this
 //! needs a division but the last line. What is multiplied is limited to what the compiler can see to fit a word: a
-//! product that may have to saturate takes eight times as long.
+//! product that may have to saturate takes eight times as long. The second and the third term are in [`super::pi`].
 //!
 //! Without a measured current the first term alone remains.
 
 use super::design_parameters::CurrentParameters;
 use super::fixed::Divisor;
+use super::pi::{Gains, ProportionalIntegral, VoltageRange};
 use super::safety::CoilCurrents;
 use super::signals::Inputs;
 use super::units::{Duty, MilliAmp, MilliOhm, MilliVolt, Millisecond};
@@ -23,9 +24,9 @@ use super::units::{Duty, MilliAmp, MilliOhm, MilliVolt, Millisecond};
 const MOST_SUPPLY: MilliVolt = MilliVolt(19_000);
 /// Highest drop over the diode.
 const MOST_DROP: MilliVolt = MilliVolt(2_000);
-/// Largest current, and largest difference of two.
+/// Largest current.
 const MOST_CURRENT: MilliAmp = MilliAmp(8_191);
-/// Largest resistance, and largest gain from current to voltage.
+/// Largest resistance.
 const MOST_RESISTANCE: MilliOhm = MilliOhm(65_535);
 /// Bits behind the point of the resistance that is learnt, in milliohms: a milliohm a second is one of these a
 /// millisecond, but for 2 %.
@@ -102,7 +103,7 @@ impl Regulation {
     }
 }
 
-/// Microvolts over a resistance or by a gain.
+/// Microvolts over a resistance.
 fn microvolts(resistance: MilliOhm, current: MilliAmp) -> i32 {
     let resistance = resistance.limited(MilliOhm::ZERO, MOST_RESISTANCE);
     let current = current.limited(-MOST_CURRENT, MOST_CURRENT);
@@ -112,7 +113,7 @@ fn microvolts(resistance: MilliOhm, current: MilliAmp) -> i32 {
 /// Regulates one coil.
 #[derive(Clone, Copy, Debug)]
 struct Regulator {
-    integral_uv: i32,
+    pi: ProportionalIntegral,
     /// Resistance in 2^-10 milliohms.
     resistance: i32,
     /// The request when it last changed, and how long ago.
@@ -123,7 +124,7 @@ struct Regulator {
 impl Regulator {
     const fn new(parameters: &CurrentParameters) -> Self {
         Self {
-            integral_uv: 0,
+            pi: ProportionalIntegral::NEW,
             resistance: finely(parameters.nominal_resistance),
             steady: MilliAmp::ZERO,
             steady_for: Millisecond::ZERO,
@@ -143,48 +144,29 @@ impl Regulator {
         parameters: &CurrentParameters,
     ) -> Duty {
         if asked <= MilliAmp::ZERO {
-            self.integral_uv = 0;
+            self.pi = ProportionalIntegral::NEW;
             self.steady = MilliAmp::ZERO;
             return Duty::ZERO;
         }
+        let drop = parameters
+            .freewheel_drop
+            .limited(MilliVolt::ZERO, MOST_DROP);
+        let drop_uv = drop.0.saturating_mul(1000);
         let rest_uv = microvolts(self.resistance(), asked);
         let voltage_uv = match measured {
             Some(measured) => {
+                let given = VoltageRange {
+                    least_uv: drop_uv.saturating_neg(),
+                    most_uv: supply.0.saturating_mul(1000),
+                };
                 let error = asked + dither - measured;
-                let most_uv = supply.0.saturating_mul(1000);
-                let voltage_uv = self.regulated(rest_uv, error, most_uv, parameters);
+                let voltage_uv = self.pi.step(Gains::of(parameters), error, rest_uv, &given);
                 self.learn(asked, parameters);
                 voltage_uv
             }
             None => rest_uv,
         };
-        let drop = parameters
-            .freewheel_drop
-            .limited(MilliVolt::ZERO, MOST_DROP);
-        share(
-            voltage_uv.saturating_add(drop.0.saturating_mul(1000)),
-            supply + drop,
-        )
-    }
-
-    /// The voltage with its proportional and integral parts; the integral stops where the supply ends.
-    fn regulated(
-        &mut self,
-        rest_uv: i32,
-        error: MilliAmp,
-        most_uv: i32,
-        parameters: &CurrentParameters,
-    ) -> i32 {
-        let change_uv = microvolts(parameters.integral, error);
-        let integral_uv = self.integral_uv.saturating_add(change_uv);
-        let voltage_uv = rest_uv
-            .saturating_add(microvolts(parameters.proportional, error))
-            .saturating_add(integral_uv);
-        let outwards = (voltage_uv > most_uv && change_uv > 0) || (voltage_uv < 0 && change_uv < 0);
-        if !outwards {
-            self.integral_uv = integral_uv.max(most_uv.saturating_neg()).min(most_uv);
-        }
-        voltage_uv
+        share(voltage_uv.saturating_add(drop_uv), supply + drop)
     }
 
     /// Moves what the integral has to add into the resistance, a little a step.
@@ -197,7 +179,7 @@ impl Regulator {
         if self.steady_for < parameters.settling_time {
             return;
         }
-        let change = match self.integral_uv {
+        let change = match self.pi.integral_uv() {
             ..0 => parameters.adaptation.0.saturating_neg(),
             0 => 0,
             1.. => parameters.adaptation.0,

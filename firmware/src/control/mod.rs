@@ -34,6 +34,7 @@ pub mod nominal;
 pub mod offset;
 pub mod operator;
 pub mod parameter;
+pub mod pi;
 pub mod position;
 pub mod rate;
 pub mod rest;

@@ -1,10 +1,12 @@
-//! What the parts of a step take: the valve maps, and the regulation of the coils' currents.
+//! What the parts of a step take: the valve maps, the proportional and integral part of a coil's current, and all of the
+//! currents' regulation.
 //!
 //! A part is called by address, and so is a function that does nothing; the difference is the part's own.
 
 use core::hint::black_box;
 
 use hitch_firmware::control::current::Regulation;
+use hitch_firmware::control::pi::{Gains, ProportionalIntegral, VoltageRange};
 use hitch_firmware::control::safety::CoilCurrents;
 use hitch_firmware::control::units::{MicroLitrePerSecond, MilliAmp, MilliBar, MilliVolt};
 use hitch_firmware::control::valve_map::{ValveCurves, ValveMap};
@@ -23,6 +25,7 @@ const FLOW_STEP: usize = 997;
 pub fn run(stopwatch: &Stopwatch) -> Result<(), Failure> {
     let calibration = Calibration::nominal().validate()?;
     time_maps(stopwatch, &calibration);
+    time_pi(stopwatch, &calibration);
     time_regulation(stopwatch, &calibration);
     Ok(())
 }
@@ -77,6 +80,59 @@ fn time_maps(stopwatch: &Stopwatch, calibration: &ValidCalibration) {
         "lower_map_of_flow_and_drop=",
         most_ticks(stopwatch, both, &curves),
     );
+}
+
+/// What proportional and integral part work on, as far as it doesn't change from step to step.
+struct PiLoop {
+    pi: ProportionalIntegral,
+    gains: Gains,
+    given: VoltageRange,
+}
+
+/// A step of theirs, for the current that is wanted, the one that is measured and the voltage that is needed at rest.
+type PiStep = fn(&mut PiLoop, MilliAmp, MilliAmp, i32) -> i32;
+
+/// The most ticks of proportional and integral part, over errors, rests and supplies that reach every branch: what is
+/// asked for is beyond the supply, or below nothing, and the integral grows there, or stops, or is cut short.
+#[inline(never)]
+fn time_pi(stopwatch: &Stopwatch, calibration: &ValidCalibration) {
+    let step: PiStep =
+        |on, wanted, measured, rest_uv| on.pi.step(on.gains, wanted - measured, rest_uv, &on.given);
+    let nothing: PiStep = |_, _, _, _| 0;
+    let mut on = PiLoop {
+        pi: ProportionalIntegral::NEW,
+        gains: Gains::of(&calibration.current),
+        given: VoltageRange {
+            least_uv: -700_000,
+            most_uv: 0,
+        },
+    };
+    let mut most = 0;
+    for at in 0..6_000 {
+        // Without a common divisor these meet in every way.
+        let wanted = MilliAmp(at % 89 * 200 - 7_900);
+        let rest_uv = at % 31 * 1_000_000;
+        on.given.most_uv = 4_000_000 + at % 7 * 2_500_000;
+        let ticks = [step, nothing].map(|part| {
+            let part = black_box(part);
+            ticks_of_pi(stopwatch, part, &mut on, wanted, rest_uv)
+        });
+        most = ticks[0].saturating_sub(ticks[1]).max(most);
+    }
+    report("pi=", most);
+}
+
+/// The ticks of one such step: see [`ticks_of_call`].
+#[inline(never)]
+fn ticks_of_pi(
+    stopwatch: &Stopwatch,
+    step: PiStep,
+    on: &mut PiLoop,
+    wanted: MilliAmp,
+    rest_uv: i32,
+) -> u32 {
+    let measured = MilliAmp(1_000);
+    stopwatch.ticks_of(|| step(on, wanted, measured, rest_uv)).1
 }
 
 #[inline(never)]
