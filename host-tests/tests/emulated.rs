@@ -98,6 +98,7 @@ fn a_step_and_its_parts_take_what_is_written_down() {
             "lower-map-of-flow-and-drop-worst",
             part("lower_map_of_flow_and_drop"),
         ),
+        ("pi-worst", part("pi")),
         (
             "regulation-of-one-coil-worst",
             part("regulation_of_one_coil"),
