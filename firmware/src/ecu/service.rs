@@ -78,6 +78,9 @@ impl<F: NorFlash> Service<F> {
     }
 
     /// The keeper's part of a millisecond. `at_rest`: both coils are off and the lock is shut.
+    ///
+    /// Not merged into its caller, and neither is what a teaching ends with: copies of that in the tick would cost a
+    /// kilobyte of flash and 200 bytes of the deepest stack.
     #[inline(never)]
     pub fn update(
         &mut self,
