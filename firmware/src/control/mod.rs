@@ -33,6 +33,7 @@ pub mod motion;
 pub mod nominal;
 pub mod offset;
 pub mod operator;
+pub mod outrun;
 pub mod parameter;
 pub mod pi;
 pub mod position;

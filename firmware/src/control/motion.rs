@@ -22,6 +22,7 @@ use super::fixed::Divisor;
 use super::free_fall::{next_speed, run_out};
 use super::lag::{Eighths, Lag, Trail};
 use super::late::Late;
+use super::outrun::Outrun;
 use super::safety::CoilCurrents;
 use super::swing::Swing;
 use super::units::{
@@ -65,6 +66,7 @@ pub struct Motion {
     /// What their openings give in the long run.
     opening_speed: MicrometrePerSecond,
     trail: Trail,
+    outrun: Outrun,
     /// Lags of lift and lowering valve.
     lags: [Lag; 2],
     /// How much slower than that the valve in use is, by what this move has told so far.
@@ -145,6 +147,7 @@ impl Motion {
             .step(measured_nm, self.model_speed, self.slope, usual.into());
         self.further = self.trail.further(lag, parameters.lag_limit.into());
         if !sinks {
+            self.outrun.step(measured_nm, self.model_speed);
             let beyond_spools = lift.further() + self.further - lower.told();
             self.swing
                 .notice(beyond_spools, parameters.swing_lag.into());
@@ -180,6 +183,7 @@ impl Motion {
             let beyond = lift.further() - lower.told();
             let left = beyond + self.trail.further(*lift, limit);
             let suspicious = parameters.swing_lag.into();
+            self.swing.acquit(self.outrun.outran(told));
             if !self.swing.decide(beyond + self.further, left, suspicious) {
                 return false;
             }
@@ -273,6 +277,7 @@ impl Motion {
     /// Forgets what the map got wrong: the next move may go the other way.
     pub fn forget_bias(&mut self) {
         self.trail = Trail::from(self.position_nm);
+        self.outrun = Outrun::from(self.position_nm);
         self.counts_late = false;
         self.swing.begin();
         self.further = Eighths::default();

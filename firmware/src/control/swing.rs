@@ -17,7 +17,8 @@
 //! pressure, then the speed grows with the square of the time: the hitch trails its lift valve ([`super::lag`]) by 14
 //! ms or more beyond its lowering valve, which has no compensator. That is soon enough for braking the same move. A
 //! valve that is off its curve may look the same once: on a short lift its whole way gives it away, else the gentle
-//! moves that follow tell its lag, and a small one takes the suspicion back. A machine whose swing hides gives itself
+//! moves that follow tell its lag, and a small one takes the suspicion back. So may a lift spool that is slower than the
+//! lowering one: its load doesn't outrun the valve ([`super::outrun`]). A machine whose swing hides gives itself
 //! away by where it comes to rest. A move that swung tells nothing of lags and offsets.
 //!
 //! ```text
@@ -25,6 +26,8 @@
 //!   ^ ^  \__ rests far beyond its set point __> Proven      |
 //!   | +---- its whole way is short ---+                     |
 //!   +----------------- trails like a spool -----------------+
+//!
+//! Noticed --- its load doesn't outrun its valve --> Acquitted --- rests far beyond its set point --> Proven
 //! ```
 
 use super::lag::Eighths;
@@ -42,6 +45,8 @@ pub enum Swing {
     Known,
     /// A lift came to rest far beyond its set point.
     Proven,
+    /// What looked like one was a slow spool.
+    Acquitted,
 }
 
 /// By how much the spools of one machine differ, with what offsets make of it: below is no swing.
@@ -59,6 +64,14 @@ impl Swing {
     pub fn begin(&mut self) {
         if *self == Self::Noticed {
             *self = Self::Known;
+        }
+    }
+
+    /// A lift is over in which the load `outran` its valve, or didn't: then its lift spool is slow, and lifts that trail
+    /// on no longer are suspicious.
+    pub fn acquit(&mut self, outran: bool) {
+        if *self == Self::Noticed && !outran {
+            *self = Self::Acquitted;
         }
     }
 
@@ -104,7 +117,7 @@ impl Swing {
     /// True if ramps have to be gentle.
     #[must_use]
     pub fn is_seen(self) -> bool {
-        self != Self::Unseen
+        !matches!(self, Self::Unseen | Self::Acquitted)
     }
 
     /// Time in which a difference between hitch and valve is blamed on the map while lifting at `speed`; `usual`
@@ -118,7 +131,7 @@ impl Swing {
         /// Furthest beyond the usual time: with 80 ms the bias follows in a sixth of a second.
         const MOST: i32 = 50;
         match self {
-            Self::Unseen => usual,
+            Self::Unseen | Self::Acquitted => usual,
             _ => Millisecond(usual.0.saturating_add((speed.0 >> 10).clamp(0, MOST))),
         }
     }
@@ -187,6 +200,31 @@ mod tests {
             assert!(known.decide(extreme, extreme, extreme));
             assert_eq!(known, Swing::Known, "told by an earlier lift");
         }
+    }
+
+    #[test]
+    fn a_load_that_did_not_outrun_its_valve_hangs_on_a_slow_spool_and_no_later_trail_is_suspicious()
+    {
+        let noticed = || {
+            let mut swing = Swing::default();
+            swing.notice(Eighths(LIMIT.0 + 1), LIMIT);
+            swing
+        };
+        let mut swing = noticed();
+        swing.acquit(true);
+        assert_eq!(swing, Swing::Noticed, "outran");
+        swing.acquit(false);
+        assert!(swing.decide(LIMIT, LIMIT, LIMIT), "tells of its spool");
+        swing.begin();
+        swing.notice(Eighths(i32::MAX), LIMIT);
+        assert!(!swing.is_seen());
+        swing.prove();
+        swing.acquit(false);
+        assert_eq!(swing, Swing::Proven, "overshot all the same");
+        let mut known = noticed();
+        known.begin();
+        known.acquit(false);
+        assert_eq!(known, Swing::Known, "was gentle");
     }
 
     #[test]
