@@ -153,7 +153,7 @@ parameter_group! {
         /// Acceleration when lowering, at the reference drop; it goes with the speed that the load gives. 250 kg keep half of their pressure.
         lower_acceleration: MillimetrePerSecondSquared = 3_200, 50..=20_000;
         /// Deceleration when lowering, at the reference drop: what stops 250 kg adds half of their pressure, and thick oil still lets the estimate follow.
-        lower_deceleration: MillimetrePerSecondSquared = 800, 50..=20_000;
+        lower_deceleration: MillimetrePerSecondSquared = 850, 50..=20_000;
         /// Deceleration when a move is called off or reversed: twice the ramp, for the operator has changed their mind.
         abort_deceleration: MillimetrePerSecondSquared = 3_000, 50..=20_000;
     }
