@@ -2,6 +2,7 @@
 
 use crate::campaign::Channel;
 use crate::model::Model;
+use crate::plant::dynamic::Steps;
 use crate::plant::{Currents, Plant, Rig};
 
 /// What the instruments would have shown over a run, by [`Channel::index`], in the channels' units.
@@ -42,6 +43,31 @@ pub fn simulate(
     time_s: &[f64],
     currents: &[Currents],
 ) -> Trace {
+    follow(time_s, currents, |at_rest| {
+        Plant::new(model, rig, oil_temperature_c, at_rest)
+    })
+}
+
+/// [`simulate`] in longer steps, for what is compared with another simulation in the same ones.
+#[must_use]
+pub fn draft(
+    model: &Model,
+    rig: Rig,
+    oil_temperature_c: f64,
+    time_s: &[f64],
+    currents: &[Currents],
+) -> Trace {
+    follow(time_s, currents, |at_rest| {
+        Plant::new(model, rig, oil_temperature_c, at_rest).in_steps(Steps::DRAFT)
+    })
+}
+
+/// What a plant's instruments show while it follows the currents, from rest under the first.
+fn follow<'m>(
+    time_s: &[f64],
+    currents: &[Currents],
+    plant_at_rest: impl FnOnce(Currents) -> Plant<'m>,
+) -> Trace {
     let mut trace = Trace {
         channels: std::array::from_fn(|_| Vec::with_capacity(time_s.len())),
         true_angle_deg: Vec::with_capacity(time_s.len()),
@@ -49,7 +75,7 @@ pub fn simulate(
     let Some(first) = currents.first() else {
         return trace;
     };
-    let mut plant = Plant::new(model, rig, oil_temperature_c, *first);
+    let mut plant = plant_at_rest(*first);
     for (sample, currents) in currents.iter().enumerate() {
         if sample > 0 {
             plant.step(*currents, time_s[sample] - time_s[sample - 1]);

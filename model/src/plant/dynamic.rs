@@ -14,12 +14,30 @@ use super::circuit::{Circuit, Openings};
 use super::forces::Forces;
 use crate::model::Model;
 
-/// Longest step, in rad of the ringing of load on oil: classical Runge-Kutta keeps its amplitude to 2e-3 a period and
-/// its phase to 5e-3 rad (`h^6 / 144` and `h^5 / 120` a step).
-const LONGEST_STEP_RAD: f64 = 0.55;
+/// How long the integrator's steps may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steps {
+    /// In rad of the ringing of load on oil.
+    longest_rad: f64,
+    /// In s, however slow the ringing: the spools' lag bends the openings.
+    longest_s: f64,
+}
 
-/// Longest step, s, however slow the ringing: the spools' lag bends the openings.
-const LONGEST_STEP_S: f64 = 0.004;
+impl Steps {
+    /// Classical Runge-Kutta keeps the amplitude of the ringing to 2e-3 a period and its phase to 5e-3 rad (`h^6 / 144`
+    /// and `h^5 / 120` a step).
+    pub const FINE: Self = Self {
+        longest_rad: 0.55,
+        longest_s: 0.004,
+    };
+
+    /// For differences between simulations in the same steps. The amplitude is off by 4e-2 a period and the phase by
+    /// 5e-2 rad, most of which cancels there; three times as much, in steps a quarter longer, no longer does.
+    pub const DRAFT: Self = Self {
+        longest_rad: 1.0,
+        longest_s: 0.008,
+    };
+}
 
 /// Speed, m/s, and acceleration, m/s2, below which a hitch that nothing drives is at rest: what is left of the ringing
 /// is less than a hundredth of any instrument's last digit.
@@ -171,13 +189,18 @@ fn creeping_rate(circuit: &Circuit, state: MechanicalState) -> f64 {
 
 /// Longest step, s, that follows the ringing of load and oil where the piston stands.
 #[must_use]
-pub fn longest_step_s(forces: &Forces, circuit: &Circuit, state: MechanicalState) -> f64 {
+pub fn longest_step_s(
+    forces: &Forces,
+    circuit: &Circuit,
+    state: MechanicalState,
+    steps: Steps,
+) -> f64 {
     let dh_dx = forces.model.linkage().dh_dx(state.piston_m);
     let area_m2 = circuit.constants.cylinder.area_m2();
     let stiffness_n_m = area_m2 * area_m2 * void_stiffness_pa_m3(forces.model, state.piston_m);
     let masses = &circuit.constants.masses;
     let ringing_rad_s = (stiffness_n_m / masses.inertia_kg(forces.rig.load_kg, dh_dx)).sqrt();
-    (LONGEST_STEP_RAD / ringing_rad_s).min(LONGEST_STEP_S)
+    (steps.longest_rad / ringing_rad_s).min(steps.longest_s)
 }
 
 /// Whether a step with these openings would leave the hitch where it stands.

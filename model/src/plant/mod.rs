@@ -52,6 +52,7 @@ use crate::effects::{AddedEffect, CATALOGUE};
 use crate::expression::Place;
 use crate::model::{Dynamics, Model};
 use circuit::{Circuit, Flows, Openings};
+use dynamic::Steps;
 use forces::Forces;
 use lag::Lag;
 use moment::Moment;
@@ -115,6 +116,7 @@ impl MechanicalState {
 pub struct Plant<'m> {
     model: &'m Model,
     rig: Rig,
+    steps: Steps,
     sites: Sites,
     spools: [Lag; 2],
     spool_currents: Currents,
@@ -158,6 +160,7 @@ impl<'m> Plant<'m> {
         let mut plant = Self {
             model,
             rig,
+            steps: Steps::FINE,
             sites,
             spools,
             spool_currents: effective,
@@ -188,6 +191,12 @@ impl<'m> Plant<'m> {
         plant
     }
 
+    /// The plant in other steps.
+    #[must_use]
+    pub fn in_steps(self, steps: Steps) -> Self {
+        Self { steps, ..self }
+    }
+
     /// Goes on by `dt_s` while the coil currents run linearly to `currents`.
     pub fn step(&mut self, currents: Currents, dt_s: f64) {
         let longest_s = self.longest_step_s(currents.furthest_from_a(self.input) / dt_s);
@@ -213,7 +222,8 @@ impl<'m> Plant<'m> {
         let turning_a_s = self.turning_a_s.max(driven_a_s);
         let own_s = match (self.rig, self.model.constants().dynamics) {
             (Rig::Hitch(rig), Dynamics::Dynamic) => {
-                dynamic::longest_step_s(&self.forces(&rig), &self.circuit(), self.state)
+                let (forces, circuit) = (self.forces(&rig), self.circuit());
+                dynamic::longest_step_s(&forces, &circuit, self.state, self.steps)
             }
             (Rig::Hitch(rig), Dynamics::Steady) => {
                 let lands = steady::lands(&self.forces(&rig), self.state.piston_m);
