@@ -2,15 +2,20 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::clocks::Clocks;
 use super::conditioning::Drive;
+use super::estimate::Estimate;
 use super::noise::from_second_differences;
 use super::regime::{Regime, regimes};
+use super::shortfall::Shortfall;
 use super::traces::{CurrentShift, Traces};
 use crate::campaign::{Bench, Campaign, Channel, Run};
+use crate::effects::{AddedEffect, Search};
 use crate::model::{Dynamics, Model};
 use crate::plant::{Currents, HitchRig, Rig};
-use crate::simulation::{Trace, simulate};
+use crate::simulation::{Trace, draft, simulate};
 use crate::units;
 
 /// Smallest noise that is believed of each channel, in its unit, by [`Channel::index`]: a logger's last digit.
@@ -55,6 +60,8 @@ pub struct ReadyRun {
     /// Samples left out because a flow bench had not reached its pressure yet.
     pub settling_samples: usize,
     traces: Traces,
+    /// What drafts of the run are short of; `None` where it is simulated finely.
+    shortfall: Option<Arc<Shortfall>>,
 }
 
 /// A campaign, ready.
@@ -98,6 +105,19 @@ impl Experiment {
         }
     }
 
+    /// The experiment with its runs drafted around an estimate: as good there, and for the search near it.
+    #[must_use]
+    pub fn drafted(&self, model: &Model, estimate: &Estimate) -> Self {
+        let model = model.with_effects(estimate.effects.clone());
+        let runs = self.runs.par_iter().zip(&estimate.nuisances);
+        Self {
+            runs: runs
+                .map(|(run, &nuisance)| run.drafted(&model, nuisance))
+                .collect(),
+            ..self.without_runs()
+        }
+    }
+
     /// Name and noise alone, to be filled with some of the runs.
     #[must_use]
     pub fn without_runs(&self) -> Self {
@@ -137,6 +157,22 @@ impl ReadyRun {
             regimes,
             settling_samples,
             traces,
+            shortfall: None,
+        }
+    }
+
+    /// The run drafted around a model and a nuisance; as it is if there are no drafts of it.
+    fn drafted(&self, model: &Model, nuisance: Nuisance) -> Self {
+        if !self.on_hitch() || !can_be_drafted(model) {
+            return self.clone();
+        }
+        let in_step = CurrentShift::default();
+        let fine = self.trace(model, nuisance, in_step);
+        let drafted = self.driven(draft, model, nuisance, in_step);
+        Self {
+            traces: Traces::new(self.len()),
+            shortfall: Some(Arc::new(Shortfall::new(&fine, &drafted))),
+            ..self.clone()
         }
     }
 
@@ -188,6 +224,22 @@ impl ReadyRun {
     /// [`ReadyRun::trace`] made anew, even if it is kept.
     #[must_use]
     pub fn simulated(&self, model: &Model, nuisance: Nuisance, shift: CurrentShift) -> Trace {
+        match &self.shortfall {
+            Some(shortfall) if can_be_drafted(model) => {
+                shortfall.added_to(self.driven(draft, model, nuisance, shift))
+            }
+            _ => self.driven(simulate, model, nuisance, shift),
+        }
+    }
+
+    /// What a way of simulating makes of the run's currents.
+    fn driven(
+        &self,
+        simulate: impl Fn(&Model, Rig, f64, &[f64], &[Currents]) -> Trace,
+        model: &Model,
+        nuisance: Nuisance,
+        shift: CurrentShift,
+    ) -> Trace {
         let currents = self.drive.shifted(shift.later_s, shift.spreads);
         let rig = self.rig(nuisance);
         let course_s = self.drive.course_s();
@@ -210,6 +262,13 @@ impl ReadyRun {
     pub fn stamped(&self, in_step: &Trace, clocks: &Clocks) -> Trace {
         clocks.stamped(&self.drive.time_s, in_step)
     }
+}
+
+/// Whether there are drafts of a model. One without inertia takes long steps already, and steps that are twice as long
+/// follow the ringing of load on oil, not that of a hitch that comes down on stiff ground.
+fn can_be_drafted(model: &Model) -> bool {
+    let lands = |added: &AddedEffect| added.effect.search() == Search::Places && !added.is_null();
+    model.constants().dynamics == Dynamics::Dynamic && !model.effects.iter().any(lands)
 }
 
 /// Samples at the start of a flow-bench run before the port has the pressure that it then keeps: by the gauge, which

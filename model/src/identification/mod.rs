@@ -21,6 +21,7 @@ pub mod regime;
 pub mod residual;
 mod scan;
 pub mod scans;
+mod shortfall;
 mod shortlist;
 mod starts;
 pub mod suggestion;

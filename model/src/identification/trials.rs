@@ -100,8 +100,9 @@ impl<'a> Trials<'a> {
         };
         // An effect that is barely visible explains this much.
         let believed = BELIEVED.max(base.weights.count() as f64 * visible.powi(2));
+        let drafted = experiment.drafted(model, &base.estimate);
         let shortlist = Shortlist {
-            experiment,
+            experiment: &drafted,
             model,
             base,
             frame: Frame::new(&jacobian, &base.estimate, 0..0),

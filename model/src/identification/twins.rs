@@ -40,14 +40,15 @@ pub(super) fn twins(
     whole: &Fit,
     inflation: f64,
 ) -> Vec<Alternative> {
-    let Some(place) = Place::new(experiment, model, whole) else {
+    let drafted = experiment.drafted(model, &whole.estimate);
+    let Some(place) = Place::new(&drafted, model, whole) else {
         return Vec::new();
     };
     let hopeless = limit(whole.cost + place.explained(), whole.cost, HOPELESS);
     let swapped: Vec<Fit> = absent(model, &whole.estimate)
         .into_par_iter()
         .filter_map(|effect| start(&place, whole, effect))
-        .map(|start| sketch(experiment, model, &whole.weights, start, false))
+        .map(|start| sketch(&drafted, model, &whole.weights, start, false))
         .filter(|(cost, _)| *cost < hopeless)
         .map(|(_, estimate)| refine(experiment, model, estimate))
         .collect();
