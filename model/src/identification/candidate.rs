@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::central::both_ways;
 use super::estimate::Shared;
 use super::evidence::{detectability, log_odds, variance_inflation};
 use super::experiment::Experiment;
@@ -85,7 +86,9 @@ pub fn weigh(
     fit: Fit,
 ) -> Candidate {
     let slow = slow_columns(experiment, model, &fit);
-    weigh_by(experiment, model, base, effect, fit, &slow)
+    let jacobian = jacobian_by(experiment, model, &fit, &slow);
+    let jacobian = both_ways(experiment, model, &fit, jacobian);
+    weigh_with(experiment, model, base, effect, fit, &jacobian)
 }
 
 /// Columns of clocks and loads at a fit, whose residuals are known.
@@ -106,7 +109,7 @@ pub(super) fn jacobian_by(
     Jacobian::with_slow_columns(experiment, model, weights, estimate, &residuals, slow)
 }
 
-/// [`weigh`] with the columns of clocks and loads from a point nearby.
+/// [`weigh`] with the columns of clocks and loads from a point nearby, and differences one way: enough to compare effects.
 pub(super) fn weigh_by(
     experiment: &Experiment,
     model: &Model,
@@ -115,16 +118,27 @@ pub(super) fn weigh_by(
     fit: Fit,
     slow: &SlowColumns,
 ) -> Candidate {
-    let index = fit.estimate.effects.len() - 1;
     let jacobian = jacobian_by(experiment, model, &fit, slow);
+    weigh_with(experiment, model, base, effect, fit, &jacobian)
+}
+
+fn weigh_with(
+    experiment: &Experiment,
+    model: &Model,
+    base: &Fit,
+    effect: &'static dyn Effect,
+    fit: Fit,
+    jacobian: &Jacobian,
+) -> Candidate {
+    let index = fit.estimate.effects.len() - 1;
     let variance = fit.variance();
     let signatures: Vec<Signature> = (0..effect.parameters().len())
-        .map(|parameter| Signature::new(experiment, &fit, &jacobian, index, parameter))
+        .map(|parameter| Signature::new(experiment, &fit, jacobian, index, parameter))
         .collect();
     let Seen {
         detectability,
         inflation,
-    } = Seen::new(experiment, model, &fit, &jacobian);
+    } = Seen::new(experiment, model, &fit, jacobian);
     let intervals = signatures
         .par_iter()
         .map(|signature| {

@@ -3,6 +3,7 @@
 pub mod adequacy;
 pub mod attribution;
 pub mod candidate;
+mod central;
 pub mod clocks;
 pub mod conditioning;
 pub mod design;
