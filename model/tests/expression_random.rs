@@ -6,6 +6,7 @@ use hitch_model::expression::parse::parse;
 use hitch_model::expression::{Dimension, Fault};
 use hitch_model::plant::signals::{SIGNALS, Signals};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 const NAMES: [&str; 2] = ["a", "b"];
 
@@ -89,13 +90,23 @@ fn call(name: &str, of: &[f64]) -> f64 {
         ("tanh", [a]) => a.tanh(),
         ("sin", [a]) => a.sin(),
         ("cos", [a]) => a.cos(),
-        ("ramp", [a]) => a.max(0.0),
+        ("ramp", [a]) => greater(*a, 0.0),
         ("step", [a]) => f64::from(u8::from(*a > 0.0)),
-        ("min", [a, b]) => a.min(*b),
-        ("max", [a, b]) => a.max(*b),
-        ("clamp", [a, low, high]) => a.max(*low).min(*high),
+        ("min", [a, b]) => less(*a, *b),
+        ("max", [a, b]) => greater(*a, *b),
+        ("clamp", [a, low, high]) => less(greater(*a, *low), *high),
         _ => unreachable!("{name} of {of:?}"),
     }
+}
+
+/// The smaller one; the second of two zeros, of which `f64::min` gives either, and a division tells which.
+fn less(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The greater one, likewise.
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 const OF_ONE: [&str; 11] = [
@@ -179,7 +190,7 @@ fn nesting_and_length_are_bounded() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, rng_seed: RngSeed::Fixed(4), ..ProptestConfig::default() })]
 
     #[test]
     fn the_compiled_form_gives_what_the_definitions_give(
