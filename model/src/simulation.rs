@@ -43,30 +43,18 @@ pub fn simulate(
     time_s: &[f64],
     currents: &[Currents],
 ) -> Trace {
-    follow(time_s, currents, |at_rest| {
-        Plant::new(model, rig, oil_temperature_c, at_rest)
-    })
+    simulate_in(Steps::FINE, model, rig, oil_temperature_c, time_s, currents)
 }
 
-/// [`simulate`] in longer steps, for what is compared with another simulation in the same ones.
+/// [`simulate`] in other steps of the dynamic plant.
 #[must_use]
-pub fn draft(
+pub fn simulate_in(
+    steps: Steps,
     model: &Model,
     rig: Rig,
     oil_temperature_c: f64,
     time_s: &[f64],
     currents: &[Currents],
-) -> Trace {
-    follow(time_s, currents, |at_rest| {
-        Plant::new(model, rig, oil_temperature_c, at_rest).in_steps(Steps::DRAFT)
-    })
-}
-
-/// What a plant's instruments show while it follows the currents, from rest under the first.
-fn follow<'m>(
-    time_s: &[f64],
-    currents: &[Currents],
-    plant_at_rest: impl FnOnce(Currents) -> Plant<'m>,
 ) -> Trace {
     let mut trace = Trace {
         channels: std::array::from_fn(|_| Vec::with_capacity(time_s.len())),
@@ -75,7 +63,7 @@ fn follow<'m>(
     let Some(first) = currents.first() else {
         return trace;
     };
-    let mut plant = plant_at_rest(*first);
+    let mut plant = Plant::new(model, rig, oil_temperature_c, *first).in_steps(steps);
     for (sample, currents) in currents.iter().enumerate() {
         if sample > 0 {
             plant.step(*currents, time_s[sample] - time_s[sample - 1]);

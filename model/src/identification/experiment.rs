@@ -14,8 +14,9 @@ use super::traces::{CurrentShift, Traces};
 use crate::campaign::{Bench, Campaign, Channel, Run};
 use crate::effects::{AddedEffect, Search};
 use crate::model::{Dynamics, Model};
+use crate::plant::dynamic::Steps;
 use crate::plant::{Currents, HitchRig, Rig};
-use crate::simulation::{Trace, draft, simulate};
+use crate::simulation::{Trace, simulate_in};
 use crate::units;
 
 /// Smallest noise that is believed of each channel, in its unit, by [`Channel::index`]: a logger's last digit.
@@ -168,7 +169,7 @@ impl ReadyRun {
         }
         let in_step = CurrentShift::default();
         let fine = self.trace(model, nuisance, in_step);
-        let drafted = self.driven(draft, model, nuisance, in_step);
+        let drafted = self.driven(Steps::DRAFT, model, nuisance, in_step);
         Self {
             traces: Traces::new(self.len()),
             shortfall: Some(Arc::new(Shortfall::new(&fine, &drafted))),
@@ -226,16 +227,16 @@ impl ReadyRun {
     pub fn simulated(&self, model: &Model, nuisance: Nuisance, shift: CurrentShift) -> Trace {
         match &self.shortfall {
             Some(shortfall) if can_be_drafted(model) => {
-                shortfall.added_to(self.driven(draft, model, nuisance, shift))
+                shortfall.added_to(self.driven(Steps::DRAFT, model, nuisance, shift))
             }
-            _ => self.driven(simulate, model, nuisance, shift),
+            _ => self.driven(Steps::FINE, model, nuisance, shift),
         }
     }
 
-    /// What a way of simulating makes of the run's currents.
+    /// What the model makes of the run's currents in such steps.
     fn driven(
         &self,
-        simulate: impl Fn(&Model, Rig, f64, &[f64], &[Currents]) -> Trace,
+        steps: Steps,
         model: &Model,
         nuisance: Nuisance,
         shift: CurrentShift,
@@ -243,7 +244,14 @@ impl ReadyRun {
         let currents = self.drive.shifted(shift.later_s, shift.spreads);
         let rig = self.rig(nuisance);
         let course_s = self.drive.course_s();
-        let mut trace = simulate(model, rig, self.oil_temperature_c, course_s, &currents);
+        let mut trace = simulate_in(
+            steps,
+            model,
+            rig,
+            self.oil_temperature_c,
+            course_s,
+            &currents,
+        );
         trace.keep(self.drive.samples());
         trace
     }
