@@ -57,6 +57,7 @@ pub struct Model {
     pub terms: Vec<&'static TermEffect>,
     constants: Arc<Constants>,
     linkage: Arc<Linkage>,
+    spool_lag_s: f64,
 }
 
 impl Model {
@@ -66,12 +67,17 @@ impl Model {
     /// [`LinkageError`] when the dimensions make no linkage.
     pub fn new(name: impl Into<String>, constants: Constants) -> Result<Self, LinkageError> {
         let linkage = Linkage::new(&constants.linkage, constants.cylinder.stroke_m)?;
+        let spool_lag_s = match constants.dynamics {
+            Dynamics::Steady => 0.0,
+            Dynamics::Dynamic => constants.spool_time_constant_s,
+        };
         Ok(Self {
             name: name.into(),
             effects: Vec::new(),
             terms: Vec::new(),
             constants: Arc::new(constants),
             linkage: Arc::new(linkage),
+            spool_lag_s,
         })
     }
 
@@ -85,6 +91,12 @@ impl Model {
     #[must_use]
     pub fn shared_constants(&self) -> &Arc<Constants> {
         &self.constants
+    }
+
+    /// First-order lag of either spool behind its current, s.
+    #[must_use]
+    pub fn spool_lag_s(&self) -> f64 {
+        self.spool_lag_s
     }
 
     /// The linkage.
@@ -102,7 +114,7 @@ impl Model {
         }
     }
 
-    /// The same model with stiff oil and no inertia.
+    /// The same model with stiff oil and no inertia; its spools lag as they did.
     #[must_use]
     pub fn quasi_static(&self) -> Self {
         let constants = Constants {

@@ -151,12 +151,8 @@ impl<'m> Plant<'m> {
             .currents
             .iter_mut()
             .fold(at_rest, |currents, stage| stage.rest(currents));
-        let constants = model.constants();
-        let lag_s = match constants.dynamics {
-            Dynamics::Steady => 0.0,
-            Dynamics::Dynamic => constants.spool_time_constant_s,
-        };
-        let spools = [effective.lift_a, effective.lower_a].map(|a| Lag::at_rest(lag_s, a));
+        let spools = [effective.lift_a, effective.lower_a];
+        let spools = spools.map(|a| Lag::at_rest(model.spool_lag_s(), a));
         let mut plant = Self {
             model,
             rig,
