@@ -7,6 +7,7 @@
 
 use super::adequacy::{Cell, adequate, cells};
 use super::attribution::{Attribution, attribute};
+use super::belief::{Proof, believed};
 use super::candidate::{Candidate, weigh};
 use super::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
 use super::estimate::Estimate;
@@ -21,12 +22,6 @@ use super::unseen::{Unseen, unseen};
 use crate::effects::Effect;
 use crate::model::Model;
 
-/// Likelihood ratio that an effect needs: chi-squared with one degree of freedom at 5 % over some fifty tries.
-pub const BELIEVED: f64 = 11.0;
-
-/// What more it needs for each parameter of a shape that it brings.
-const BELIEVED_PER_SHAPE: f64 = 3.0;
-
 /// Fewest compared samples that anything is concluded from.
 const FEWEST_SAMPLES: usize = 50;
 
@@ -38,10 +33,6 @@ const MOST_STEPS: usize = 5;
 const LOST_STEPS: usize = 2;
 const LOST: f64 = 4.0;
 const LITTLE_HELP: f64 = 0.8;
-
-/// Share of what is left that an effect beside others has to explain. What explains less, and leaves the rest as it
-/// was, patches what an effect before it has not quite the form for.
-const NO_PATCH: f64 = 0.1;
 
 /// Most candidates of one round that are tried on held-out runs.
 const MOST_TRIED: usize = 3;
@@ -217,11 +208,7 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
         if present_held_out.is_nan() {
             present_held_out = held_out_error(experiment, model, &present);
         }
-        let proof = Proof {
-            visible: trials.visible(),
-            held_out: present_held_out,
-            share: if steps.is_empty() { 0.0 } else { NO_PATCH },
-        };
+        let proof = Proof::new(trials.visible(), present_held_out, steps.len());
         let Some((best, held_out_after)) = proven(experiment, model, &trials, proof) else {
             break;
         };
@@ -248,26 +235,6 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
     finish(experiment, model, before, present, (steps, MOST_SWAPS))
 }
 
-/// What a candidate has to show.
-#[derive(Debug, Clone, Copy)]
-struct Proof {
-    /// At least this detectability.
-    visible: f64,
-    /// A smaller held-out error than this.
-    held_out: f64,
-    /// At least this share of what the held-out runs have above their noise explained.
-    share: f64,
-}
-
-impl Proof {
-    /// Whether a held-out error will do. A campaign of one run has none; it is not held against it.
-    fn admits(self, held_out: f64) -> bool {
-        let excess = |error: f64| error * error - 1.0;
-        let explained = excess(self.held_out) - excess(held_out);
-        held_out.is_nan() || explained > (self.share * excess(self.held_out)).max(0.0)
-    }
-}
-
 /// The most likely believable candidate with a smaller held-out error than without it, and that error.
 ///
 /// The likeliest may fail here though it is there: a leak that only one run shows is misjudged from the others as long
@@ -280,23 +247,13 @@ fn proven<'a>(
 ) -> Option<(&'a Candidate, f64)> {
     trials
         .likely(believed)
-        .filter(|candidate| believable(candidate, proof.visible))
+        .filter(|candidate| proof.accepts(experiment, candidate))
         .take(MOST_TRIED)
         .map(|candidate| {
             let held_out = held_out_error(experiment, model, &candidate.fit);
             (candidate, held_out)
         })
         .find(|(_, held_out)| proof.admits(*held_out))
-}
-
-/// Whether a candidate's evidence is strong enough and its signature large enough.
-fn believable(candidate: &Candidate, visible: f64) -> bool {
-    candidate.likelihood_ratio >= believed(candidate.effect) && candidate.detectability >= visible
-}
-
-/// Likelihood ratio that an effect needs.
-fn believed(effect: &dyn Effect) -> f64 {
-    BELIEVED + BELIEVED_PER_SHAPE * (effect.parameters().len() - 1) as f64
 }
 
 /// Drops the first step whose effect the later ones have made needless; returns the fit without it.

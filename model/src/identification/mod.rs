@@ -2,6 +2,7 @@
 
 pub mod adequacy;
 pub mod attribution;
+pub mod belief;
 pub mod candidate;
 mod central;
 pub mod clocks;

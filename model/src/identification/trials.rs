@@ -10,10 +10,10 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::adequacy::{adequate, cells};
+use super::belief::BELIEVED;
 use super::candidate::{Candidate, jacobian_by, slow_columns, weigh, weigh_by};
 use super::evidence::{log_odds, shares};
 use super::experiment::Experiment;
-use super::explain::BELIEVED;
 use super::fit::{Fit, evaluate_weighted, refine};
 use super::frame::Frame;
 use super::jacobian::SlowColumns;

@@ -98,7 +98,7 @@ fn shown(candidate: &Candidate) -> String {
         "  + {id}: {}; error {error:.2} sigma",
         parameters.join(", ")
     );
-    if candidate.likelihood_ratio < hitch_model::identification::explain::BELIEVED {
+    if candidate.likelihood_ratio < hitch_model::identification::belief::BELIEVED {
         return line + " (the campaign does not ask for it)";
     }
     line

@@ -1,10 +1,11 @@
 //! From the identification's diagnosis to what is shown of it.
 use hitch_model::Model;
 use hitch_model::identification::adequacy::{adequate, cells};
+use hitch_model::identification::belief::BELIEVED;
 use hitch_model::identification::candidate;
 use hitch_model::identification::design::{NextExperiment, Pair, Rival, next_experiment};
 use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{self, BELIEVED, Verdict};
+use hitch_model::identification::explain::{self, Verdict};
 use hitch_model::identification::fit::Fit;
 use hitch_model::identification::twins::TOLD_APART;
 

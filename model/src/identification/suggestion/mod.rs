@@ -13,9 +13,10 @@ mod screen;
 mod shapes;
 mod spread;
 
+use super::belief::BELIEVED;
 use super::candidate::{Candidate, weigh};
 use super::experiment::Experiment;
-use super::explain::{BELIEVED, Explanation, Progress, Verdict};
+use super::explain::{Explanation, Progress, Verdict};
 use super::fit::{Fit, evaluate, refine};
 use super::holdout::held_out_error;
 use super::scans::Scans;

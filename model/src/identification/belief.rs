@@ -1,0 +1,74 @@
+//! What an effect has to show to be believed.
+
+use super::candidate::Candidate;
+use super::experiment::Experiment;
+use crate::effects::Effect;
+
+/// Likelihood ratio that an effect needs: chi-squared with one degree of freedom at 5 % over some fifty tries.
+pub const BELIEVED: f64 = 11.0;
+
+/// What more it needs for each parameter of a shape that it brings.
+const BELIEVED_PER_SHAPE: f64 = 3.0;
+
+/// Share of what is left that an effect beside others has to explain. What explains less, and leaves the rest as it
+/// was, patches what an effect before it has not quite the form for.
+const NO_PATCH: f64 = 0.1;
+
+/// Width of a current path that is believed, in sigmas of the logged currents: as wide as what cleaning leaves of their
+/// noise it holds the valves still that this would shake, and fits better though nothing is there.
+const HELD_STILL: f64 = 1.5;
+
+/// What a candidate has to show.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Proof {
+    /// At least this detectability.
+    visible: f64,
+    /// A smaller held-out error than this.
+    held_out: f64,
+    /// At least this share of what the held-out runs have above their noise explained.
+    share: f64,
+}
+
+impl Proof {
+    /// After so many effects were added, before which held-out runs left so much.
+    pub fn new(visible: f64, held_out: f64, added: usize) -> Self {
+        Self {
+            visible,
+            held_out,
+            share: if added == 0 { 0.0 } else { NO_PATCH },
+        }
+    }
+
+    /// Whether a candidate's evidence is strong enough, its signature large enough and its size surely not nothing.
+    pub fn accepts(self, experiment: &Experiment, candidate: &Candidate) -> bool {
+        candidate.likelihood_ratio >= believed(candidate.effect)
+            && candidate.detectability >= self.visible
+            && surely_there(experiment, candidate)
+    }
+
+    /// Whether a held-out error will do. A campaign of one run has none; it is not held against it.
+    pub fn admits(self, held_out: f64) -> bool {
+        let excess = |error: f64| error * error - 1.0;
+        let explained = excess(self.held_out) - excess(held_out);
+        held_out.is_nan() || explained > (self.share * excess(self.held_out)).max(0.0)
+    }
+}
+
+/// Whether a size is beyond what a log cannot say of it even with many samples.
+fn surely_there(experiment: &Experiment, candidate: &Candidate) -> bool {
+    let (Some(&(low, high)), Some(&value)) =
+        (candidate.intervals.first(), candidate.values().first())
+    else {
+        return false;
+    };
+    let size = &candidate.effect.parameters()[0];
+    let is_width = size.unit == "A" && size.low == size.null;
+    let noise = experiment.current_noise;
+    let held_still_a = HELD_STILL * noise.lift_a.max(noise.lower_a);
+    (low > size.null || high < size.null) && (!is_width || value > held_still_a)
+}
+
+/// Likelihood ratio that an effect needs.
+pub(super) fn believed(effect: &dyn Effect) -> f64 {
+    BELIEVED + BELIEVED_PER_SHAPE * (effect.parameters().len() - 1) as f64
+}
