@@ -4,13 +4,14 @@
 //! [`super::jacobian`]), which makes a fit of 45 parameters cost as much as one of five. Simulated trajectories are
 //! compared, never one-step predictions: those feed the measured pressure back and hide leakage and friction.
 
-use super::estimate::Estimate;
+use super::estimate::{Estimate, Shared};
 use super::experiment::Experiment;
 use super::jacobian::{
     Jacobian, SlowColumns, huber, huber_residuals, load_steps, residuals, square_sum,
 };
 use super::residual::Weights;
 use super::synchronise::synchronised;
+use crate::effects::Search;
 use crate::model::Model;
 
 /// Coarse weights of the channels (pump pressure, cylinder pressure, flow, angle): ringing pressures make valleys
@@ -27,8 +28,10 @@ const LAST_ITERATIONS: usize = 2;
 /// Iterations after which the columns of skew and loads, which hardly change, are computed anew.
 const SLOW_EVERY: usize = 4;
 
-/// Dampings tried for one step.
+/// Dampings tried for one step, the first of a descent, and how much larger each is than the one before.
 const TRIES: usize = 4;
+const FIRST_DAMPING: f64 = 1e-3;
+const DAMPED_MORE: f64 = 30.0;
 
 /// Relative fall of the cost that is still worth an iteration.
 const WORTHWHILE: f64 = 1e-5;
@@ -225,7 +228,7 @@ fn descend(
     iterations: usize,
 ) -> Estimate {
     let mut point = Point::new(experiment, model, weights, start);
-    let mut damping = 1e-3;
+    let mut damping = FIRST_DAMPING;
     let mut slow = None;
     for iteration in 0..iterations {
         if iteration % SLOW_EVERY == 0 {
@@ -250,23 +253,36 @@ fn descend(
         );
         slow = Some(columns);
         let before = point.cost;
-        for _ in 0..TRIES {
-            let trial = jacobian
-                .step(&point.estimate, damping)
-                .map(|step| point.estimate.moved(&jacobian.shared, &step))
-                .map(|trial| Point::new(experiment, model, weights, trial));
-            if let Some(better) = trial.filter(|trial| trial.cost < point.cost) {
-                point = better;
-                damping = (damping * 0.1).max(1e-9);
-                break;
-            }
-            damping *= 30.0;
+        let better = |held: &dyn Fn(Shared) -> bool, damping: f64| {
+            let step = jacobian.step(&point.estimate, damping, held)?;
+            let moved = point.estimate.moved(&jacobian.shared, &step);
+            let trial = Point::new(experiment, model, weights, moved);
+            (trial.cost < point.cost).then_some((trial, damping))
+        };
+        let found = dampings(damping)
+            .find_map(|damping| better(&|_| false, damping))
+            .or_else(|| {
+                // The slope of what jumps says little of where a step of it leads, and spoils that of all the others.
+                let jumps = |shared| point.estimate.search(shared) == Search::Jumps;
+                let jumping = jacobian.shared.iter().any(|&shared| jumps(shared));
+                dampings(FIRST_DAMPING)
+                    .take(if jumping { TRIES } else { 0 })
+                    .find_map(|damping| better(&jumps, damping))
+            });
+        if let Some((trial, damped)) = found {
+            point = trial;
+            damping = (damped * 0.1).max(1e-9);
         }
         if before - point.cost <= WORTHWHILE * before {
             break;
         }
     }
     point.estimate
+}
+
+/// Dampings to try one after the other.
+fn dampings(first: f64) -> impl Iterator<Item = f64> {
+    std::iter::successors(Some(first), |&damping| Some(DAMPED_MORE * damping)).take(TRIES)
 }
 
 /// An estimate with what it leaves.

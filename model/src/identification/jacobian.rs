@@ -374,15 +374,23 @@ impl Jacobian {
         (matrix, right)
     }
 
-    /// The step that the damped normal equations give; `None` if they are singular.
+    /// The step that the damped normal equations give with what is `held` where it is; `None` if they are singular.
     ///
     /// A parameter that stands at an end of its range and would leave it is held there, and the others step without it:
     /// stopped only afterwards it would drag them along to where it cannot follow.
     #[must_use]
-    pub fn step(&self, estimate: &Estimate, damping: f64) -> Option<Step> {
+    pub fn step(
+        &self,
+        estimate: &Estimate,
+        damping: f64,
+        held: impl Fn(Shared) -> bool,
+    ) -> Option<Step> {
         let (mut matrix, mut right) = self.reduced(estimate);
         for k in 0..matrix.nrows() {
             matrix[(k, k)] = matrix[(k, k)] * (1.0 + damping) + 1e-9;
+        }
+        for k in (0..matrix.nrows()).filter(|&k| held(self.shared[k])) {
+            hold(&mut matrix, &mut right, k);
         }
         let shared = loop {
             let step = matrix.clone().cholesky()?.solve(&right);
@@ -391,13 +399,10 @@ impl Jacobian {
                 let (low, high) = estimate.range(self.shared[k]);
                 (value <= low && step[k] < 0.0) || (value >= high && step[k] > 0.0)
             });
-            let Some(held) = leaving else {
+            let Some(leaving) = leaving else {
                 break step;
             };
-            matrix.row_mut(held).fill(0.0);
-            matrix.column_mut(held).fill(0.0);
-            matrix[(held, held)] = 1.0;
-            right[held] = 0.0;
+            hold(&mut matrix, &mut right, leaving);
         };
         let loads = self
             .runs
@@ -412,6 +417,14 @@ impl Jacobian {
             .collect();
         Some(Step { shared, loads })
     }
+}
+
+/// Takes an unknown out of normal equations: its step is nothing.
+fn hold(matrix: &mut DMatrix<f64>, right: &mut DVector<f64>, unknown: usize) {
+    matrix.row_mut(unknown).fill(0.0);
+    matrix.column_mut(unknown).fill(0.0);
+    matrix[(unknown, unknown)] = 1.0;
+    right[unknown] = 0.0;
 }
 
 impl RunJacobian {
