@@ -17,6 +17,7 @@ pub mod frame;
 pub mod holdout;
 pub mod jacobian;
 mod lateness;
+mod needle;
 pub mod noise;
 pub mod profile;
 pub mod regime;

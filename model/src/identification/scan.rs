@@ -37,6 +37,8 @@ pub(super) struct Grid {
     closer: &'static [(f64, f64)],
     /// Whether it is seen without the ringing of the pressure, at a tenth of the time.
     quasi_static: bool,
+    /// Whether secants see something of it: what they find next to nothing of is not there.
+    pub hinted: bool,
 }
 
 /// Sizes with the shape at its upper end: a spool that sticks on a ramp and jumps by the whole band comes to the same
@@ -82,6 +84,7 @@ pub(super) static JUMPS: Grid = Grid {
     best: 2,
     closer: &[(0.01, 0.25), (0.002, 0.05), (0.000_4, 0.01)],
     quasi_static: true,
+    hinted: true,
 };
 
 /// For ringing: a valley reaches a seventh of the size to either side, and descending from there needs no closer look.
@@ -96,6 +99,7 @@ pub(super) static RINGING: Grid = Grid {
     best: 4,
     closer: &[],
     quasi_static: false,
+    hinted: false,
 };
 
 /// For what is met somewhere: what stands at the place or comes down on it is right within a few millimetres, and what
@@ -111,11 +115,19 @@ pub(super) static PLACES: Grid = Grid {
     best: 2,
     closer: &[(0.04, 0.125)],
     quasi_static: false,
+    hinted: false,
 };
 
 /// Sizes of each shape that are looked at more closely, and of all shapes.
 const PER_SHAPE: usize = 2;
 const LOOKED_AT: usize = 6;
+
+/// Sizes seen without the ringing, the best of them, that are looked at with it.
+const SEEN_RINGING: usize = 60;
+
+/// Share of their loss without the effect that it has to take on the telling runs to be looked at more closely: there is
+/// little else in them.
+const HARDLY: f64 = 0.85;
 
 /// Values of a closer look to either side.
 const TO_EITHER_SIDE: i32 = 5;
@@ -132,24 +144,32 @@ pub(super) fn scan(
     hint: &AddedEffect,
     grid: &Grid,
 ) -> Vec<AddedEffect> {
+    let failed = failed(base);
+    let told = match grid.telling {
+        Telling::Changed => changed(experiment, model, base, hint),
+        Telling::Failed => failed.clone(),
+    };
     let scan = Scan {
         experiment,
-        model: if grid.quasi_static {
-            model.quasi_static()
-        } else {
-            model.clone()
-        },
+        model: model.clone(),
         base,
-        telling: enough(
-            experiment,
-            &match grid.telling {
-                Telling::Changed => changed(experiment, model, base, hint),
-                Telling::Failed => failed(base),
-            },
-        ),
+        telling: enough(experiment, &told),
     };
-    let mut best = apart(scan.winnowed(coarse(hint, grid)), grid.apart);
-    best.truncate(LOOKED_AT);
+    let coarse = coarse(hint, grid);
+    let (ranked, looked_at) = if grid.quasi_static && experiment.ringing {
+        let mut still = scan.still().winnowed(coarse);
+        still.truncate(SEEN_RINGING);
+        let ringing = scan.ranked(without_losses(still), &scan.telling);
+        (ringing, grid.best)
+    } else {
+        (scan.winnowed(coarse), LOOKED_AT)
+    };
+    let mut best = apart(ranked, grid.apart);
+    best.truncate(looked_at);
+    let without: f64 = scan.telling.iter().map(|&run| failed[run]).sum();
+    if grid.hinted && best.first().is_none_or(|first| first.0 > HARDLY * without) {
+        return Vec::new();
+    }
     for &reach in grid.closer {
         best = best
             .into_iter()
@@ -168,6 +188,7 @@ pub(super) fn scan(
 }
 
 /// What is scanned.
+#[derive(Clone)]
 struct Scan<'a> {
     experiment: &'a Experiment,
     model: Model,
@@ -177,6 +198,15 @@ struct Scan<'a> {
 }
 
 impl Scan<'_> {
+    /// The same seen without the ringing of the pressure: what that leaves all but hides a needle, but not from the
+    /// better ones.
+    fn still(&self) -> Self {
+        Self {
+            model: self.model.quasi_static(),
+            ..self.clone()
+        }
+    }
+
     /// Loss that an added effect leaves on some runs.
     fn loss(&self, added: &AddedEffect, runs: &[usize]) -> f64 {
         let mut effects = self.base.estimate.effects.clone();
@@ -206,9 +236,12 @@ impl Scan<'_> {
         let most_telling = &self.telling[..self.telling.len().min(1)];
         let mut better = self.ranked(added, most_telling);
         better.truncate((WINNOWED * better.len() as f64).ceil() as usize);
-        let better = better.into_iter().map(|(_, added)| added).collect();
-        self.ranked(better, &self.telling)
+        self.ranked(without_losses(better), &self.telling)
     }
+}
+
+fn without_losses(ranked: Vec<(f64, AddedEffect)>) -> Vec<AddedEffect> {
+    ranked.into_iter().map(|(_, added)| added).collect()
 }
 
 /// The best few of every shape whose sizes are this share apart.

@@ -120,9 +120,12 @@ impl Shortlist<'_> {
     /// and puts what leads on in place of their sketches.
     fn look_through(&self, sketches: &mut [Sketch]) {
         for grid in GRIDS {
+            let best = sketches.iter().map(|sketch| sketch.cost);
+            let doubtful = limit(self.base.cost, best.fold(self.base.cost, f64::min), DOUBTFUL);
             let looked_for = |sketch: &&mut Sketch| {
                 let valleys = valleys(self.experiment, sketch.effect);
                 valleys.is_some_and(|valleys| std::ptr::eq(valleys, grid))
+                    && (!grid.hinted || sketch.cost < doubtful)
             };
             let explained = sketches
                 .par_iter_mut()

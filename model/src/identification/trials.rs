@@ -18,6 +18,7 @@ use super::fit::{Fit, evaluate_weighted, refine};
 use super::frame::Frame;
 use super::jacobian::SlowColumns;
 use super::lateness::on_time;
+use super::needle::threaded;
 use super::scans::Scans;
 use super::shortlist::{HOPELESS, Shortlist, Sketch, limit};
 use crate::effects::Effect;
@@ -217,7 +218,8 @@ impl Trial {
             (Pace::Absent, fit)
         } else if in_full {
             let fit = refine(experiment, model, sketch.estimate);
-            (Pace::Fitted, on_time(experiment, model, fit))
+            let fit = on_time(experiment, model, fit);
+            (Pace::Fitted, threaded(experiment, model, fit))
         } else {
             let weights = base.weights.clone();
             let fit = evaluate_weighted(experiment, model, sketch.estimate, weights);
