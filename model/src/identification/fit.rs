@@ -49,6 +49,17 @@ pub struct Fit {
     pub cost: f64,
 }
 
+/// Where a descent came to.
+#[derive(Debug, Clone)]
+pub struct Descent {
+    /// The values found.
+    pub estimate: Estimate,
+    /// Sum of Huber's losses plus the cost of the priors.
+    pub cost: f64,
+    /// What the cost fell by in the last iteration.
+    pub falling: f64,
+}
+
 /// Sums of squares of whitened residuals and numbers of samples, by channel.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ErrorSums {
@@ -153,12 +164,11 @@ pub fn evaluate_weighted(
 #[must_use]
 pub fn fit(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
     let coarse = Weights::new(experiment, model, &start).scaled(COARSE);
-    let estimate = descend(experiment, model, &coarse, start, COARSE_ITERATIONS);
-    refine(experiment, model, estimate)
+    let found = descend(experiment, model, &coarse, start, COARSE_ITERATIONS);
+    refine(experiment, model, found.estimate)
 }
 
-/// Fits roughly, under given weights, to see whether an effect deserves a full fit; returns the cost as well. From
-/// `far` away it starts coarse.
+/// Fits roughly, under given weights, to see whether an effect deserves a full fit. From `far` away it starts coarse.
 #[must_use]
 pub fn sketch(
     experiment: &Experiment,
@@ -166,16 +176,14 @@ pub fn sketch(
     weights: &Weights,
     start: Estimate,
     far: bool,
-) -> (f64, Estimate) {
-    let estimate = if far {
+) -> Descent {
+    let start = if far {
         let coarse = weights.clone().scaled(COARSE);
-        descend(experiment, model, &coarse, start, COARSE_ITERATIONS)
+        descend(experiment, model, &coarse, start, COARSE_ITERATIONS).estimate
     } else {
         start
     };
-    let estimate = descend(experiment, model, weights, estimate, COARSE_ITERATIONS);
-    let cost = Point::new(experiment, model, weights, estimate.clone()).cost;
-    (cost, estimate)
+    descend(experiment, model, weights, start, COARSE_ITERATIONS)
 }
 
 /// Fits from a start that is already near.
@@ -183,12 +191,12 @@ pub fn sketch(
 pub fn refine(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
     let weights = Weights::new(experiment, model, &start);
     let start = synchronised(experiment, model, &weights, start);
-    let estimate = descend(experiment, model, &weights, start, FINE_ITERATIONS);
+    let found = descend(experiment, model, &weights, start, FINE_ITERATIONS);
     // The weights belong to the values: once more with those of the values found.
-    let weights = Weights::new(experiment, model, &estimate);
-    let estimate = synchronised(experiment, model, &weights, estimate);
-    let estimate = descend(experiment, model, &weights, estimate, FINE_ITERATIONS);
-    evaluate_weighted(experiment, model, estimate, weights)
+    let weights = Weights::new(experiment, model, &found.estimate);
+    let start = synchronised(experiment, model, &weights, found.estimate);
+    let found = descend(experiment, model, &weights, start, FINE_ITERATIONS);
+    evaluate_weighted(experiment, model, found.estimate, weights)
 }
 
 /// One round under given weights from a start that is all but there already.
@@ -199,7 +207,7 @@ pub fn refine_once(
     weights: &Weights,
     start: Estimate,
 ) -> Estimate {
-    descend(experiment, model, weights, start, LAST_ITERATIONS)
+    descend(experiment, model, weights, start, LAST_ITERATIONS).estimate
 }
 
 /// Fits only each run's load error, under given weights: two Gauss-Newton steps, it is all but linear.
@@ -226,10 +234,11 @@ fn descend(
     weights: &Weights,
     start: Estimate,
     iterations: usize,
-) -> Estimate {
+) -> Descent {
     let mut point = Point::new(experiment, model, weights, start);
     let mut damping = FIRST_DAMPING;
     let mut slow = None;
+    let mut falling = 0.0;
     for iteration in 0..iterations {
         if iteration % SLOW_EVERY == 0 {
             slow = None;
@@ -273,11 +282,16 @@ fn descend(
             point = trial;
             damping = (damped * 0.1).max(1e-9);
         }
-        if before - point.cost <= WORTHWHILE * before {
+        falling = before - point.cost;
+        if falling <= WORTHWHILE * before {
             break;
         }
     }
-    point.estimate
+    Descent {
+        estimate: point.estimate,
+        cost: point.cost,
+        falling,
+    }
 }
 
 /// Dampings to try one after the other.

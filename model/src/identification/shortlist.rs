@@ -2,9 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::estimate::Estimate;
 use super::experiment::Experiment;
-use super::fit::{Fit, sketch};
+use super::fit::{Descent, Fit, sketch};
 use super::frame::Frame;
 use super::jacobian::Jacobian;
 use super::scan::GRIDS;
@@ -19,7 +18,12 @@ pub(super) const STARTS: usize = 2;
 /// Error from which a model counts as far from the data.
 pub(super) const FAR: f64 = 1.3;
 
-/// A sketch that leaves less than this share of the cost needs no second start.
+/// Error from which it may be in a valley of its own, so that a sketch starts coarse. Nearer to the data that leads away
+/// from what is right already.
+const ASTRAY: f64 = 2.0;
+
+/// A sketch that leaves less than this share of the cost goes first anyway: other effects with many valleys are looked
+/// through for what it leaves.
 const ARRIVED: f64 = 0.3;
 
 /// A sketch that leaves no more than this error leaves nothing to those that the screen thinks little of, nor to
@@ -28,7 +32,12 @@ const EXPLAINED: f64 = 1.15;
 
 /// An effect is fitted in full if its sketch is the best, or leaves at most this share of what the best sketch explains
 /// unexplained.
-pub(super) const HOPELESS: f64 = 0.15;
+const HOPELESS: f64 = 0.15;
+
+/// One whose cost hardly fell any more is done: it has to leave at most this share unexplained. What it may fall yet,
+/// in falls of its last iteration: of iterations that each bring four fifths of the one before.
+const BEATEN: f64 = 0.03;
+const STILL_TO_FALL: f64 = 4.0;
 
 /// An effect is sketched if its screened cost leaves at most this share of what the best screened one explains
 /// unexplained, unless so many are better: where no effect explains much, all explain nearly as much as the best.
@@ -44,14 +53,15 @@ const CLOSE: f64 = 60.0;
 /// An effect roughly fitted.
 pub(super) struct Sketch {
     pub effect: &'static dyn Effect,
-    pub cost: f64,
-    pub estimate: Estimate,
+    /// Where that came to. If it was only screened, nobody knows how far it still falls: infinitely.
+    pub found: Descent,
 }
 
 impl Sketch {
     /// Whether the screen found nothing of the effect.
     pub fn is_absent(&self) -> bool {
-        self.estimate
+        self.found
+            .estimate
             .effects
             .last()
             .is_none_or(AddedEffect::is_null)
@@ -60,8 +70,15 @@ impl Sketch {
 
 /// Cost above which an effect is given up, when the best of its kind leaves `best` of `base`: above what leaves `share`
 /// of that unexplained.
-pub(super) fn limit(base: f64, best: f64, share: f64) -> f64 {
+fn limit(base: f64, best: f64, share: f64) -> f64 {
     best + (share * (base - best)).max(CLOSE)
+}
+
+/// Whether a fit from where a sketch came to may leave as little as the best of its kind, which leaves `best` of
+/// `base`.
+pub(super) fn may_catch_up(sketch: &Descent, base: f64, best: f64) -> bool {
+    let limit = |share: f64| limit(base, best, share);
+    sketch.cost < limit(HOPELESS) && sketch.cost - STILL_TO_FALL * sketch.falling < limit(BEATEN)
 }
 
 /// What effects are looked for on.
@@ -110,31 +127,45 @@ impl Shortlist<'_> {
         screened
     }
 
+    /// The cost that is left without an effect once what is free has adapted as the screen reckons it.
+    fn without(&self) -> f64 {
+        self.base.cost.min(self.frame.here())
+    }
+
     /// Whether a sketch leaves next to nothing.
     fn explains(&self, sketch: &Sketch) -> bool {
         let compared = self.base.weights.count() as f64;
-        (sketch.cost / compared).sqrt() <= EXPLAINED
+        (sketch.found.cost / compared).sqrt() <= EXPLAINED
     }
 
     /// Looks through the effects whose cost has many valleys, those first where it takes least, until one explains all,
     /// and puts what leads on in place of their sketches.
     fn look_through(&self, sketches: &mut [Sketch]) {
         for grid in GRIDS {
-            let best = sketches.iter().map(|sketch| sketch.cost);
-            let doubtful = limit(self.base.cost, best.fold(self.base.cost, f64::min), DOUBTFUL);
+            let Some((leader, least)) = leader(sketches) else {
+                return;
+            };
+            let arrived = least < ARRIVED * self.base.cost;
+            let doubtful = limit(self.base.cost, least, DOUBTFUL);
             let looked_for = |sketch: &&mut Sketch| {
                 let valleys = valleys(self.experiment, sketch.effect);
                 valleys.is_some_and(|valleys| std::ptr::eq(valleys, grid))
-                    && (!grid.hinted || sketch.cost < doubtful)
+                    && (!grid.hinted || sketch.found.cost < doubtful)
+                    && (!arrived || sketch.effect.id() == leader)
             };
             let explained = sketches
                 .par_iter_mut()
                 .filter(looked_for)
                 .map(|sketch| {
-                    let found = self.sketch(self.looked_through(sketch.effect, grid));
-                    let explains = self.explains(&found);
-                    if found.cost < sketch.cost {
-                        *sketch = found;
+                    let starts = self.looked_through(sketch.effect, grid);
+                    let other = if starts.cost < doubtful {
+                        self.sketch(starts)
+                    } else {
+                        self.unsketched(starts)
+                    };
+                    let explains = self.explains(&other);
+                    if other.found.cost < sketch.found.cost {
+                        *sketch = other;
                     }
                     explains
                 })
@@ -154,60 +185,64 @@ impl Shortlist<'_> {
 
     /// Sketches an effect if the screen found anything of it.
     fn sketch(&self, starts: Starts) -> Sketch {
-        if self.base.cost - starts.cost <= self.worthwhile {
+        if self.without() - starts.cost <= self.worthwhile {
             return self.unsketched(starts);
         }
-        let effect = starts.effect;
-        let (cost, estimate) = self.sketch_starts(starts);
         Sketch {
-            effect,
-            cost,
-            estimate,
+            effect: starts.effect,
+            found: self.sketch_starts(starts),
         }
     }
 
     /// What the screen found of an effect as it is.
     fn unsketched(&self, mut starts: Starts) -> Sketch {
         let effect = starts.effect;
-        if self.base.cost - starts.cost > self.worthwhile && !starts.estimates.is_empty() {
-            return Sketch {
-                effect,
+        let found = if self.without() - starts.cost > self.worthwhile && !starts.ranked.is_empty() {
+            Descent {
+                estimate: starts.ranked.swap_remove(0).estimate,
                 cost: starts.cost,
-                estimate: starts.estimates.swap_remove(0),
-            };
-        }
-        let mut without = self.base.estimate.clone();
-        without.effects.push(AddedEffect::null(effect));
-        Sketch {
-            effect,
-            cost: self.base.cost,
-            estimate: without,
-        }
+                falling: f64::INFINITY,
+            }
+        } else {
+            let mut without = self.base.estimate.clone();
+            without.effects.push(AddedEffect::null(effect));
+            Descent {
+                estimate: without,
+                cost: self.base.cost,
+                falling: 0.0,
+            }
+        };
+        Sketch { effect, found }
     }
 
-    /// Sketches from one start, and from the next where the first leads nowhere; returns the best cost and estimate.
-    fn sketch_starts(&self, starts: Starts) -> (f64, Estimate) {
+    /// Sketches from one start, and from the next where the first leads no lower than that one begins; returns the best.
+    fn sketch_starts(&self, starts: Starts) -> Descent {
         let base = self.base;
         let far = base.error() > FAR;
         // Starts that were looked for one by one lie in their valley: a coarse fit would lead away from it.
-        let coarse = far && !starts.looked_through;
-        let mut best = (base.cost, base.estimate.clone());
-        let starts = starts.estimates.into_iter();
-        for start in starts.take(if far { STARTS } else { 1 }) {
-            let (experiment, weights) = (self.experiment, &base.weights);
-            let found = sketch(experiment, self.model, weights, start, coarse);
-            if best.1.effects.len() < found.1.effects.len() || found.0 < best.0 {
-                best = found;
-            }
-            if best.0 < ARRIVED * base.cost {
+        let coarse = base.error() > ASTRAY && !starts.looked_through;
+        let mut best: Option<Descent> = None;
+        for start in starts.ranked.into_iter().take(if far { STARTS } else { 1 }) {
+            if best.as_ref().is_some_and(|best| best.cost < start.cost) {
                 break;
             }
+            let (experiment, weights) = (self.experiment, &base.weights);
+            let found = sketch(experiment, self.model, weights, start.estimate, coarse);
+            if best.as_ref().is_none_or(|best| found.cost < best.cost) {
+                best = Some(found);
+            }
         }
-        best
+        best.expect("there is a start at least")
     }
+}
+
+/// The effect whose sketch leaves the least cost, and that.
+fn leader(sketches: &[Sketch]) -> Option<(&'static str, f64)> {
+    let costs = sketches.iter().map(|s| (s.effect.id(), s.found.cost));
+    costs.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// The best first.
 fn sort(sketches: &mut [Sketch]) {
-    sketches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    sketches.sort_by(|a, b| a.found.cost.total_cmp(&b.found.cost));
 }

@@ -33,16 +33,16 @@ pub(super) struct Starts {
     pub effect: &'static dyn Effect,
     /// Least cost that is left once all else has adapted.
     pub cost: f64,
-    /// The most promising sizes, at least one, the best first.
-    pub estimates: Vec<Estimate>,
+    /// The most promising, at least one, the best first.
+    pub ranked: Vec<Start>,
     /// Whether each lies in a valley of its own that was found in fine steps.
     pub looked_through: bool,
 }
 
 /// A start and the cost that it leaves once all else has adapted.
-struct Start {
-    cost: f64,
-    estimate: Estimate,
+pub(super) struct Start {
+    pub cost: f64,
+    pub estimate: Estimate,
     /// How many times its size away the secant ends that promises the cost; `None` if the cost was simulated.
     promised_from: Option<f64>,
 }
@@ -96,10 +96,10 @@ impl Shortlist<'_> {
     fn in_place_of_clocks(&self, effect: &'static dyn Effect) -> Option<Start> {
         let start = in_place_of_clocks(&self.base.estimate, effect)?;
         let (experiment, weights) = (self.experiment, &self.base.weights);
-        let (cost, estimate) = sketch(experiment, self.model, weights, start, true);
+        let found = sketch(experiment, self.model, weights, start, true);
         Some(Start {
-            cost,
-            estimate,
+            cost: found.cost,
+            estimate: found.estimate,
             promised_from: None,
         })
     }
@@ -129,17 +129,17 @@ impl Shortlist<'_> {
             self.sort(&mut ranked);
         }
         let cost = ranked.first().map_or(self.base.cost, |first| first.cost);
-        let mut estimates: Vec<Estimate> = Vec::new();
+        let mut valleys: Vec<Start> = Vec::new();
         for start in ranked {
-            let known = |other: &Estimate| !apart(other, &start.estimate);
-            if estimates.len() < STARTS && !estimates.iter().any(known) {
-                estimates.push(start.estimate);
+            let known = |other: &Start| !apart(&other.estimate, &start.estimate);
+            if valleys.len() < STARTS && !valleys.iter().any(known) {
+                valleys.push(start);
             }
         }
         Starts {
             effect,
             cost,
-            estimates,
+            ranked: valleys,
             looked_through,
         }
     }

@@ -20,7 +20,7 @@ use super::jacobian::SlowColumns;
 use super::lateness::on_time;
 use super::needle::threaded;
 use super::scans::Scans;
-use super::shortlist::{HOPELESS, Shortlist, Sketch, limit};
+use super::shortlist::{Shortlist, Sketch, may_catch_up};
 use crate::effects::Effect;
 use crate::model::Model;
 
@@ -111,11 +111,10 @@ impl<'a> Trials<'a> {
             scans,
         };
         let sketches = shortlist.sketches(effects);
-        let best = sketches.first().map_or(base.cost, |first| first.cost);
-        let hopeless = limit(base.cost, best, HOPELESS);
+        let best = sketches.first().map_or(base.cost, |first| first.found.cost);
         let trial = |(rank, sketch): (usize, Sketch)| {
-            let promising = rank == 0 || sketch.cost < hopeless;
-            let worthwhile = base.cost - sketch.cost > WORTH_A_FIT * believed;
+            let promising = rank == 0 || may_catch_up(&sketch.found, base.cost, best);
+            let worthwhile = base.cost - sketch.found.cost > WORTH_A_FIT * believed;
             let trial = Trial::new(experiment, model, base, sketch, promising && worthwhile);
             progress(trial.effect.id());
             trial
@@ -210,19 +209,19 @@ impl Trial {
     ) -> Self {
         let effect = sketch.effect;
         let (pace, fit) = if sketch.is_absent() {
-            let estimate = sketch.estimate;
+            let estimate = sketch.found.estimate;
             let fit = Fit {
                 estimate,
                 ..base.clone()
             };
             (Pace::Absent, fit)
         } else if in_full {
-            let fit = refine(experiment, model, sketch.estimate);
+            let fit = refine(experiment, model, sketch.found.estimate);
             let fit = on_time(experiment, model, fit);
             (Pace::Fitted, threaded(experiment, model, fit))
         } else {
             let weights = base.weights.clone();
-            let fit = evaluate_weighted(experiment, model, sketch.estimate, weights);
+            let fit = evaluate_weighted(experiment, model, sketch.found.estimate, weights);
             (Pace::Sketched, fit)
         };
         Self {

@@ -12,7 +12,7 @@ use super::estimate::Estimate;
 use super::experiment::Experiment;
 use super::explain::absent;
 use super::fit::{Fit, refine, sketch};
-use super::shortlist::{HOPELESS, limit};
+use super::shortlist::may_catch_up;
 use super::starts::{scaled, with_extreme_shapes};
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
@@ -44,13 +44,13 @@ pub(super) fn twins(
     let Some(place) = Place::new(&drafted, model, whole) else {
         return Vec::new();
     };
-    let hopeless = limit(whole.cost + place.explained(), whole.cost, HOPELESS);
+    let without = whole.cost + place.explained();
     let swapped: Vec<Fit> = absent(model, &whole.estimate)
         .into_par_iter()
         .filter_map(|effect| start(&place, whole, effect))
         .map(|start| sketch(&drafted, model, &whole.weights, start, false))
-        .filter(|(cost, _)| *cost < hopeless)
-        .map(|(_, estimate)| refine(experiment, model, estimate))
+        .filter(|found| may_catch_up(found, without, whole.cost))
+        .map(|found| refine(experiment, model, found.estimate))
         .collect();
     let compared = whole.weights.count() as f64;
     let variance = whole.variance();
