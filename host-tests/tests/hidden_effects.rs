@@ -122,6 +122,39 @@ fn an_effect_is_named_where_pressures_ring() {
     assert_eq!(answer.named, ["entrained-air"]);
 }
 
+/// A tenth of a milliampere beside its band a spool that sticks jumps at other times, and the ringing that follows hides
+/// how much better the right one is: it is found all the same, within a thousandth.
+#[test]
+fn a_spool_that_sticks_is_found_where_its_jumps_make_pressures_ring() {
+    let question = (30, "spool-stiction", Fidelity::Faithful, false);
+    let case = draw(question.0, &wish(Family::Dynamic, Plan::Lab, question));
+    let model = starting_point(case.family);
+    let found = explain(&Experiment::new(&campaign(&case), &model), &model, &|_| {});
+    let first = found.steps.first().expect("something is found");
+    let (band_a, truth_a) = (first.values[0], case.hidden[0].size);
+    println!("{question:?}, {truth_a} A: {} {band_a}", first.effect.id());
+    assert_eq!(first.effect.id(), "spool-stiction");
+    assert!((band_a / truth_a - 1.0).abs() < 1e-3);
+}
+
+/// The last of a current's noise shakes the model's spools and rings its pressures; a spool that sticks within it would
+/// hold them still, and is not there.
+#[test]
+fn the_noise_of_a_current_is_no_stiction() {
+    let question = (23, "nothing", Fidelity::Faithful, true);
+    let graded = ask(Family::Dynamic, Plan::Lab, &[question]);
+    assert!(graded[0].answer.named.is_empty() && !graded[0].answer.unknown);
+}
+
+/// Through the same gap oil of 62 degC leaks 2.7 times as much as oil of 40 degC.
+#[test]
+fn a_leak_of_thin_oil_leaves_nothing_unknown() {
+    let question = (31, "lowering-leakage", Fidelity::Structured, false);
+    let graded = ask(Family::Steady, Plan::Lab, &[question]);
+    assert_eq!(graded[0].answer.named, ["lowering-leakage"]);
+    assert!(!graded[0].answer.unknown);
+}
+
 /// A millimetre higher than its ground a hitch hangs, a millimetre lower it stands, and a load rings on stiff ground:
 /// the place is found all the same.
 #[test]
