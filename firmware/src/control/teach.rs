@@ -240,7 +240,8 @@ impl Teach {
         } else {
             Step::Drive(Drive {
                 looked: travel,
-                age: Millisecond::ZERO,
+                // A cylinder that was pressed against its end has to lose 150 bar first.
+                age: -parameters.rest_time,
                 total: Millisecond::ZERO,
             })
         };
