@@ -16,8 +16,10 @@ parameter_group! {
     HydraulicParameters, "hydraulics" {
         /// Piston area: turns piston speed into flow. 76 mm bore.
         piston_area: SquareMillimetre = 4537, 500..=50_000;
-        /// Time constant of solenoid and spool: what flows on after the coil has been told to stop.
+        /// Time constant of the lift valve's solenoid and spool: what flows on after the coil has been told to stop.
         spool_lag: Millisecond = 40, 0..=500;
+        /// The same of the lowering valve: of one kind, but by 10 ms and more another unit.
+        lower_spool_lag: Millisecond = 40, 0..=500;
         /// Hysteresis of coil and spool: how much further the current has to fall than it rose for the same flow. 2 % of the range, half of what valves have with dither: believing too much of it is worse than too little.
         hysteresis: MilliAmp = 80, 0..=1_000;
         /// Pressure drop at which the lowering table was measured.

@@ -11,8 +11,8 @@
 //!
 //! It never asks for less than a creep speed: the end of the approach is then a cut of the coil, at the
 //! moment from which the closing spool carries the hitch onto the set point ([`RunOn::cut_point`]). A load that is
-//! stopped at a speed `v` swings on by `v / w` of its frequency on the oil, so that is slow: all of it is within the half
-//! degree in which the move is over, and costs no time. A hitch that came to rest elsewhere is brought there at some
+//! stopped at a speed `v` swings on by `v / w` of its frequency on the oil, so that is slow: all of it is within the
+//! half degree in which the move is over, and costs no time. A hitch that came to rest elsewhere is brought there at some
 //! times that speed.
 
 use super::calibration::Calibration;
