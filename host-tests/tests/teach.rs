@@ -1,6 +1,6 @@
 //! The firmware teaches itself thresholds and ends on plants whose valves and sensors are off.
 
-use hitch_firmware::control::teach::TeachError;
+use hitch_firmware::control::teach::{Taught, TeachError};
 use hitch_firmware::control::units::MilliDegree;
 use hitch_firmware::control::{Inputs, State};
 use hitch_model::Model;
@@ -42,7 +42,14 @@ fn thresholds_that_are_off_by_a_quarter_ampere_are_found() {
             let found = taught(&model, load_kg).unwrap();
             let [lift_found_a, lower_found_a] =
                 [found.lift_shift, found.lower_shift].map(|shift| f64::from(shift.0) * 1e-3);
-            let calibration = found.applied_to(&nominal()).validate().unwrap();
+            // What else is found, the lags of the spools, has a test of its own.
+            let hydraulics = &nominal().hydraulics;
+            let thresholds_alone = Taught {
+                lift_lag: hydraulics.spool_lag,
+                lower_lag: hydraulics.lower_spool_lag,
+                ..found
+            };
+            let calibration = thresholds_alone.applied_to(&nominal()).validate().unwrap();
             let right = run(
                 &Model::dynamic(),
                 &nominal(),
@@ -64,6 +71,54 @@ fn thresholds_that_are_off_by_a_quarter_ampere_are_found() {
             assert!((lower_end_deg - 44.1).abs() <= 0.1 && (upper_end_deg - 135.9).abs() <= 0.1);
             assert_as_good(&moves, &right);
         }
+    }
+}
+
+/// A step of current tells how slow a spool is, with a load on aerated oil that swings behind it and a noisy sensor.
+#[test]
+fn the_lags_of_the_spools_are_found() {
+    let effects = dynamic_with(&[
+        ("lift-threshold-shift", &[0.1]),
+        ("lower-threshold-shift", &[-0.1]),
+        ("solenoid-hysteresis", &[0.12]),
+        ("coulomb-friction", &[400.0]),
+        ("entrained-air", &[0.02, 1.2]),
+    ])
+    .effects;
+    for true_ms in [30.0, 45.0, 55.0] {
+        let mut constants = Model::dynamic().constants().clone();
+        constants.spool_time_constant_s = 1e-3 * true_ms;
+        let model = Model::new("another spool", constants)
+            .unwrap()
+            .with_effects(effects.clone());
+        for load_kg in [50.0, 150.0, 250.0] {
+            let found = taught(&model, load_kg).unwrap();
+            let calibration = found.applied_to(&nominal()).validate().unwrap();
+            let hydraulics = &calibration.hydraulics;
+            let lags = [hydraulics.spool_lag, hydraulics.lower_spool_lag];
+            println!("{load_kg:5} kg, {true_ms:.0} ms: found {lags:?}");
+            for lag in lags {
+                assert!((f64::from(lag.0) - true_ms).abs() <= 7.0, "{found:?}");
+            }
+        }
+    }
+}
+
+/// At the upper end the pump presses until its relief valve opens, and oil with air in it keeps much of that: a light
+/// load doesn't leave before the lowering valve has drained it. That is no lower end.
+#[test]
+fn a_light_load_on_aerated_oil_is_given_time_to_leave_the_upper_end() {
+    let model = dynamic_with(&[
+        ("entrained-air", &[0.05, 1.2]),
+        ("coulomb-friction", &[700.0]),
+        ("solenoid-hysteresis", &[0.13]),
+    ]);
+    for load_kg in [50.0, 60.0] {
+        let found = taught(&model, load_kg).unwrap();
+        assert!(
+            (found.lower_end.0 - 44_100).abs() < 200,
+            "{found:?} with {load_kg} kg"
+        );
     }
 }
 

@@ -53,12 +53,15 @@ pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, 
     hydraulics.relief_pressure = MilliBar((relief_bar * 1e3).round() as i32);
     if constants.dynamics == Dynamics::Dynamic {
         // A quasi-static model knows nothing of the lag; then the default stays.
-        hydraulics.spool_lag = Millisecond((constants.spool_time_constant_s * 1e3).round() as i32);
+        let lag = Millisecond((constants.spool_time_constant_s * 1e3).round() as i32);
+        hydraulics.spool_lag = lag;
+        hydraulics.lower_spool_lag = lag;
     }
     // What was identified of coil and spool; a model without it says nothing about it.
     if let Some(lag_s) = found(model, "spool-lag") {
         let further = Millisecond((lag_s * 1e3).round() as i32);
         hydraulics.spool_lag = hydraulics.spool_lag + further;
+        hydraulics.lower_spool_lag = hydraulics.lower_spool_lag + further;
     }
     if let Some(width_a) = found(model, "solenoid-hysteresis") {
         hydraulics.hysteresis = MilliAmp((width_a * 1e3).round() as i32);

@@ -16,6 +16,7 @@
 //! flow has grown with the way `x`, one of the valve's threshold with the sensitivity `s` to it.
 
 use super::course::Told;
+use super::design_parameters::HydraulicParameters;
 use super::fixed::{Divisor, mul_div_seldom};
 use super::units::{
     MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, Millisecond,
@@ -72,6 +73,12 @@ impl core::ops::Add for Eighths {
     fn add(self, other: Self) -> Self {
         Self(self.0.saturating_add(other.0))
     }
+}
+
+/// What the calibration says of the lags of lift and lowering valve.
+#[must_use]
+pub const fn known_lags(hydraulics: &HydraulicParameters) -> [Millisecond; 2] {
+    [hydraulics.spool_lag, hydraulics.lower_spool_lag]
 }
 
 /// How much slower than the calibration says the spool of a valve is, and how sure that is.

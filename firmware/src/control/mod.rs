@@ -46,6 +46,8 @@ pub mod signals;
 pub mod sink;
 pub mod swing;
 pub mod teach;
+pub mod teach_lag;
+pub mod teach_twin;
 pub mod units;
 pub mod valve_logic;
 pub mod valve_map;

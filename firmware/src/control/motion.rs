@@ -20,7 +20,7 @@ use super::design_parameters::{HydraulicParameters, MotionParameters};
 use super::drop_scale::DropScale;
 use super::fixed::Divisor;
 use super::free_fall::{next_speed, run_out};
-use super::lag::{Eighths, Lag, Trail};
+use super::lag::{Eighths, Lag, Trail, known_lags};
 use super::late::Late;
 use super::outrun::Outrun;
 use super::safety::CoilCurrents;
@@ -223,8 +223,9 @@ impl Motion {
 
     /// What has been learnt of the lags of this machine's spools, lift and lowering.
     fn lags(&self, hydraulics: &HydraulicParameters) -> [Eighths; 2] {
-        let known = Eighths::from(hydraulics.spool_lag);
-        self.lags.map(|lag| known + lag.further())
+        let [known_lift, known_lower] = known_lags(hydraulics).map(Eighths::from);
+        let [lift, lower] = self.lags.map(|lag| lag.further());
+        [known_lift + lift, known_lower + lower]
     }
 
     /// Takes in the currents that have just been sent to the coils; `slowing`: a move is coming to its end.

@@ -1,12 +1,15 @@
-//! Teaching: the firmware finds the threshold currents of both valves and the ends of travel by itself.
+//! Teaching: the firmware finds the threshold currents and the lags of both valves and the ends of travel by itself.
 //!
 //! A service switch and a held button start it from the lock; letting go ends it. Several ramps a valve, up and down in
-//! turn, then once to either end:
+//! turn, a step of current each, then once to either end:
 //!
 //! ```text
 //! +------+   rested    +------+  moved   +------+        +-------+  stands still  +------+
 //! | Rest | ----------> | Ramp | -------> | Rest | -...-> | Drive | -------------> | Done |
 //! +------+             +------+          +------+        +-------+  (both ends)   +------+
+//!     ^    after the   +------+  over       ^
+//!     +--- ramps ----> | Open | ------------+
+//!                      +------+
 //! ```
 //!
 //! A ramp rises until the hitch has moved further than noise. By then the current is past the threshold, by how much
@@ -17,15 +20,20 @@ use super::calibration::Calibration;
 use super::design_parameters::TeachParameters;
 use super::drop_scale::DropScale;
 use super::fixed::Divisor;
+use super::lag::known_lags;
 use super::linkage::LinkageTable;
-use super::motion::piston_speed;
 use super::safety::CoilCurrents;
+use super::teach_lag::{STEP, Way, found};
+use super::teach_twin::Twin;
 use super::units::{Micrometre, MilliAmp, MilliDegree, Millisecond};
 use super::valve_logic::Direction;
 use super::valve_map::ValveTable;
 
 /// Ramps a valve.
 pub const REPEATS: usize = 3;
+/// Ramps of both valves, and a step each.
+const RAMPS: usize = 2 * REPEATS;
+const RAMPS_AND_STEPS: usize = RAMPS + 2;
 
 /// Why a machine could not be taught.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +57,10 @@ pub struct Taught {
     pub lift_shift: MilliAmp,
     /// How far the lowering valve's curve is shifted.
     pub lower_shift: MilliAmp,
+    /// Lag of the lift valve's spool.
+    pub lift_lag: Millisecond,
+    /// Lag of the lowering valve's spool.
+    pub lower_lag: Millisecond,
     /// Angle at the lower end.
     pub lower_end: MilliDegree,
     /// Angle at the upper end.
@@ -64,6 +76,8 @@ impl Taught {
         let mut taught = calibration.clone();
         shift(&mut taught.lift, self.lift_shift);
         shift(&mut taught.lower, self.lower_shift);
+        taught.hydraulics.spool_lag = self.lift_lag;
+        taught.hydraulics.lower_spool_lag = self.lower_lag;
         let offset = mean_offset(self.lower_end, self.upper_end, calibration);
         taught.linkage.first_angle = taught.linkage.first_angle + offset;
         let margin = calibration.teach.end_margin;
@@ -96,6 +110,7 @@ fn mean_offset(lower: MilliDegree, upper: MilliDegree, calibration: &Calibration
 enum Step {
     Rest(Millisecond),
     Ramp(Ramp),
+    Open(Opening),
     Drive(Drive),
     Done,
 }
@@ -111,12 +126,14 @@ struct Ramp {
     twin_at: Option<MilliAmp>,
 }
 
-/// The calibration's valve, spool and piston.
-#[derive(Clone, Copy, Debug, Default)]
-struct Twin {
-    spool_ua: i32,
-    travel_nm: i32,
-    filtered_nm: i32,
+/// After a step of current, and its twin.
+#[derive(Clone, Copy, Debug)]
+struct Opening {
+    start: Micrometre,
+    age: Millisecond,
+    twin: Twin,
+    /// The hitch's and the twin's.
+    ways: [Way; 2],
 }
 
 /// On the way to an end.
@@ -135,6 +152,7 @@ pub struct Teach {
     finished: usize,
     filtered_udeg: Option<i32>,
     shifts: [[MilliAmp; REPEATS]; 2],
+    lags: [Millisecond; 2],
     ends: [MilliDegree; 2],
     result: Option<Result<Taught, TeachError>>,
 }
@@ -146,6 +164,7 @@ impl Default for Teach {
             finished: 0,
             filtered_udeg: None,
             shifts: [[MilliAmp::ZERO; REPEATS]; 2],
+            lags: [Millisecond::ZERO; 2],
             ends: [MilliDegree::ZERO; 2],
             result: None,
         }
@@ -183,6 +202,7 @@ impl Teach {
         let outcome = match self.step {
             Step::Rest(rested) => Ok(self.rest(rested, travel, calibration)),
             Step::Ramp(ramp) => self.ramp(ramp, direction, travel, scale, calibration),
+            Step::Open(opening) => Ok(self.open(opening, direction, travel, scale, calibration)),
             Step::Drive(drive) => self.drive(drive, direction, travel, calibration),
             Step::Done => Ok(MilliAmp::ZERO),
         };
@@ -229,7 +249,7 @@ impl Teach {
         let parameters = &calibration.teach;
         self.step = if rested < parameters.rest_time {
             Step::Rest(rested.next())
-        } else if self.finished < 2 * REPEATS {
+        } else if self.finished < RAMPS {
             Step::Ramp(Ramp {
                 start: travel,
                 current_ua: parameters.ramp_start.0.saturating_mul(1000),
@@ -237,10 +257,18 @@ impl Teach {
                 moved_at: None,
                 twin_at: None,
             })
+        } else if self.finished < RAMPS_AND_STEPS {
+            Step::Open(Opening {
+                start: travel,
+                age: Millisecond::ZERO,
+                twin: Twin::default(),
+                ways: Default::default(),
+            })
         } else {
             Step::Drive(Drive {
                 looked: travel,
-                age: Millisecond::ZERO,
+                // A cylinder that was pressed against its end has to lose 150 bar first.
+                age: -parameters.rest_time,
                 total: Millisecond::ZERO,
             })
         };
@@ -304,7 +332,7 @@ impl Teach {
         }
         self.finished = self.finished.saturating_add(1);
         self.step = Step::Rest(Millisecond::ZERO);
-        if self.finished < 2 * REPEATS {
+        if self.finished < RAMPS {
             return Ok(());
         }
         match self
@@ -315,6 +343,46 @@ impl Teach {
             true => Ok(()),
             false => Err(TeachError::Spread),
         }
+    }
+
+    /// One step after a step of current.
+    fn open(
+        &mut self,
+        mut opening: Opening,
+        direction: Direction,
+        travel: Micrometre,
+        scale: DropScale,
+        calibration: &Calibration,
+    ) -> MilliAmp {
+        let valve = self.finished % 2;
+        let on_curve = Self::driving(calibration)[valve];
+        let travelled = Micrometre(direction.sign((travel - opening.start).0));
+        let current_ua = on_curve.0.saturating_mul(1000);
+        let twin_travelled = opening.twin.step(current_ua, direction, scale, calibration);
+        let [real, twin] = &mut opening.ways;
+        real.note(opening.age, travelled);
+        twin.note(opening.age, twin_travelled);
+        opening.age = opening.age.next();
+        if opening.age < STEP {
+            self.step = Step::Open(opening);
+            return on_curve + mean(&self.shifts[valve]);
+        }
+        let motion = &calibration.motion;
+        let usual = [motion.lift_trail, motion.lowering_trail][valve];
+        let known = known_lags(&calibration.hydraulics)[valve];
+        self.lags[valve] = found(real, twin, usual, known, motion.lag_limit);
+        self.finished = self.finished.saturating_add(1);
+        self.step = Step::Rest(Millisecond::ZERO);
+        MilliAmp::ZERO
+    }
+
+    /// Currents that drive the hitch slowly, by the calibration's curves.
+    fn driving(calibration: &Calibration) -> [MilliAmp; 2] {
+        let parameters = &calibration.teach;
+        [
+            calibration.lift.threshold() + parameters.lift_excess,
+            calibration.lower.threshold() + parameters.lower_excess,
+        ]
     }
 
     /// One step towards an end, which is where the hitch stands still.
@@ -340,11 +408,8 @@ impl Teach {
             drive.looked = travel;
         }
         self.step = Step::Drive(drive);
-        let [lift, lower] = self.shifts.map(|shifts| mean(&shifts));
-        Ok(match direction {
-            Direction::Lift => calibration.lift.threshold() + lift + parameters.lift_excess,
-            Direction::Lower => calibration.lower.threshold() + lower + parameters.lower_excess,
-        })
+        let valve = self.finished % 2;
+        Ok(Self::driving(calibration)[valve] + mean(&self.shifts[valve]))
     }
 
     fn note_end(
@@ -370,9 +435,12 @@ impl Teach {
             return Err(TeachError::Ends);
         }
         let [lift_shift, lower_shift] = self.shifts.map(|shifts| mean(&shifts));
+        let [lift_lag, lower_lag] = self.lags;
         self.end(Ok(Taught {
             lift_shift,
             lower_shift,
+            lift_lag,
+            lower_lag,
             lower_end,
             upper_end,
         }));
@@ -380,32 +448,7 @@ impl Teach {
     }
 }
 
-impl Twin {
-    /// One step of the ramp; how far it has moved, through the filter that the hitch's angle goes through.
-    fn step(
-        &mut self,
-        current_ua: i32,
-        direction: Direction,
-        scale: DropScale,
-        calibration: &Calibration,
-    ) -> Micrometre {
-        let lag = calibration.hydraulics.spool_lag.divisor();
-        let error = current_ua.saturating_sub(self.spool_ua);
-        self.spool_ua = self.spool_ua.saturating_add(lag.divide(error));
-        let spool = MilliAmp(Divisor::THOUSAND.divide(self.spool_ua));
-        let flow = match direction {
-            Direction::Lift => calibration.lift.flow(spool),
-            Direction::Lower => scale.to_present(calibration.lower.flow(spool)),
-        };
-        let speed = piston_speed(flow, calibration.hydraulics.piston_area);
-        self.travel_nm = self.travel_nm.saturating_add(speed.0);
-        let time = calibration.teach.filter_time.divisor();
-        let behind = self.travel_nm.saturating_sub(self.filtered_nm);
-        self.filtered_nm = self.filtered_nm.saturating_add(time.divide(behind));
-        Micrometre(Divisor::THOUSAND.divide(self.filtered_nm))
-    }
-}
-
+#[inline(never)]
 fn mean(shifts: &[MilliAmp; REPEATS]) -> MilliAmp {
     const COUNT: Divisor = Divisor::at_least_one(REPEATS as i32);
     let sum = shifts
@@ -414,6 +457,7 @@ fn mean(shifts: &[MilliAmp; REPEATS]) -> MilliAmp {
     MilliAmp(COUNT.divide(sum.0))
 }
 
+#[inline(never)]
 fn spread(shifts: &[MilliAmp; REPEATS]) -> MilliAmp {
     let most = shifts.iter().max().copied().unwrap_or_default();
     let least = shifts.iter().min().copied().unwrap_or_default();

@@ -25,8 +25,8 @@ const HEADER: &str = "lift_current_a,lower_current_a,state";
     is missing. Each line is answered at once by one line of currents and state. Nothing moves until the lever has been moved \
     through the present angle.\n\n\
     A machine may be taught first. Still locked and away from the ends, with teach at 1 and any jog_deg_per_s, as if the \
-    button were held, the controller finds where the valves open and where the ends are, within a minute. Its state is \
-    teaching meanwhile, then taught, or not-taught with the reason. Once teach is 0 again and jog_deg_per_s empty, what was \
+    button were held, the controller finds where the valves open, how slowly, and where the ends are, within a minute. Its \
+    state is teaching meanwhile, then taught, or not-taught with the reason. Once teach is 0 again and jog_deg_per_s empty, what was \
     found counts, and --out has it for the next time."
 )]
 pub struct Args {
