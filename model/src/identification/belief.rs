@@ -65,7 +65,11 @@ fn surely_there(experiment: &Experiment, candidate: &Candidate) -> bool {
     let is_width = size.unit == "A" && size.low == size.null;
     let noise = experiment.current_noise;
     let held_still_a = HELD_STILL * noise.lift_a.max(noise.lower_a);
-    (low > size.null || high < size.null) && (!is_width || value > held_still_a)
+    // A spool not surely later than the log knows when its currents jumped stands in for that.
+    let is_lag = size.unit == "s" && size.null == 0.0;
+    (low > size.null || high < size.null)
+        && (!is_width || value > held_still_a)
+        && (!is_lag || low > experiment.jumps_within_s)
 }
 
 /// Likelihood ratio that an effect needs.

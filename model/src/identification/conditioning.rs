@@ -128,6 +128,24 @@ impl Drive {
     }
 }
 
+/// How far off all jumps of some currents may be together, s: half a sample for one that is nothing but jumps, nothing
+/// for one that runs steadily. A machine and the log of its bus keep step, and then all jumps are off alike.
+#[must_use]
+pub fn jumps_within_s<'a>(drives: impl Iterator<Item = &'a Drive>) -> f64 {
+    let (mut unplaced, mut all) = (0.0, 0.0);
+    for drive in drives {
+        for (sample, step) in drive.time_s.windows(2).enumerate() {
+            for current_a in [|c: &Currents| c.lift_a, |c: &Currents| c.lower_a] {
+                let at = |sample: usize| current_a(&drive.currents[sample]);
+                let jump_a = jump_before(at, drive.currents.len(), sample + 1);
+                unplaced += jump_a * jump_a * 0.5 * (step[1] - step[0]);
+                all += (at(sample + 1) - at(sample)).powi(2);
+            }
+        }
+    }
+    if all > 0.0 { unplaced / all } else { 0.0 }
+}
+
 /// Currents at a share of the way from one to the other.
 fn between(from: Currents, to: Currents, share: f64) -> Currents {
     Currents {
@@ -181,11 +199,11 @@ impl Course {
 }
 
 /// Height of a jump between the sample before and this one: what the rise has more than those before and after it.
-fn jump_before(current_a: &[f64], sample: usize) -> f64 {
-    if sample < 2 || sample + 1 >= current_a.len() {
+fn jump_before(current_a: impl Fn(usize) -> f64, samples: usize, sample: usize) -> f64 {
+    if sample < 2 || sample + 1 >= samples {
         return 0.0;
     }
-    let rise = |to: usize| current_a[to] - current_a[to - 1];
+    let rise = |to: usize| current_a(to) - current_a(to - 1);
     let (own, before, after) = (rise(sample), rise(sample - 1), rise(sample + 1));
     let more_than = |other: f64| own.abs() - other * own.signum();
     more_than(before)
@@ -227,7 +245,7 @@ impl Cleaned {
             .map(|sample| {
                 (sigma_a * sigma_a * (lines.variance[sample] + slow_share).min(1.0))
                     .sqrt()
-                    .hypot(jump_before(&lines.value, sample) * JUMP_SHARE)
+                    .hypot(jump_before(|at| lines.value[at], samples, sample) * JUMP_SHARE)
             })
             .collect();
         let slope_spread_a = lines.slope_variance.iter().map(|v| sigma_a * v.sqrt());

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::clocks::Clocks;
-use super::conditioning::Drive;
+use super::conditioning::{Drive, jumps_within_s};
 use super::estimate::Estimate;
 use super::noise::from_second_differences;
 use super::regime::{Regime, regimes};
@@ -76,6 +76,8 @@ pub struct Experiment {
     pub noise: [f64; 4],
     /// One sigma of the logged currents, A.
     pub current_noise: Currents,
+    /// How far off all jumps of the logged currents may be together, s.
+    pub jumps_within_s: f64,
     /// Variance of the mean of the currents' noise over half a second, in that of white noise: one and up.
     pub current_persistence: f64,
     /// Whether the model's pressures ring, so that phase and size of the ringing are to be borne with.
@@ -91,16 +93,18 @@ impl Experiment {
         let persistence = current_persistence(campaign, sigma);
         // What of the noise no mean over half a second takes away.
         let slow_share = (persistence - 1.0) / persistence_block(campaign) as f64;
-        let runs = campaign
+        let runs: Vec<_> = campaign
             .runs
             .iter()
             .map(|run| ReadyRun::new(run, model, sigma, slow_share))
             .collect();
+        let jumps_within_s = jumps_within_s(runs.iter().map(|run| &run.drive));
         Self {
             name: campaign.name.clone(),
             runs,
             noise,
             current_noise: sigma,
+            jumps_within_s,
             current_persistence: persistence,
             ringing: model.constants().dynamics == Dynamics::Dynamic,
         }
