@@ -33,6 +33,7 @@ pub static ANGLE_SENSOR_GAIN: Described = Described {
     channels: &[Channel::RockerAngle],
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach,
 };
 

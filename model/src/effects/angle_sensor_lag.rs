@@ -42,6 +42,7 @@ pub static FILTERING: Described = Described {
     channels: CHANNELS,
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: |values, _, sites| attach(values[0], 0.0, sites),
 };
 
@@ -79,6 +80,7 @@ pub static DELAYED: Described = Described {
     channels: CHANNELS,
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: |values, _, sites| {
         let dead_s = values[0] * values[1];
         attach(values[0] - dead_s, dead_s, sites);

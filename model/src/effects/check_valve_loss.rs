@@ -51,6 +51,7 @@ pub static CHECK_VALVE_LOSS: Described = Described {
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach,
 };
 

@@ -35,6 +35,7 @@ pub static WITH_LOAD: Described = Described {
     channels: CHANNELS,
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: |values, _, sites| fall_with_load(values[0], sites),
 };
 
@@ -73,6 +74,7 @@ pub static WITH_FLOW: Described = Described {
     channels: CHANNELS,
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: |values, conditions, sites| {
         let RunConditions { constants, .. } = conditions;
         let lost_pa = values[0] * constants.compensator.margin_pa;

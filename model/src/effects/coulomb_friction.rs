@@ -45,6 +45,7 @@ pub static SMOOTH: Described = Described {
     channels: CHANNELS,
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: |values, _, sites| {
         let force_n = values[0];
         sites.friction.push(Box::new(move |speed_m_s, _| {
@@ -91,6 +92,7 @@ pub static BRISTLES: Described = Described {
     channels: CHANNELS,
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: |values, _, sites| {
         sites.bristles = Some(Bristles {
             force_n: values[0],

@@ -17,6 +17,7 @@ pub struct Described {
     pub(super) channels: &'static [Channel],
     pub(super) needs: Option<Dynamics>,
     pub(super) search: Search,
+    pub(super) refines: bool,
     pub(super) attach: fn(&[f64], RunConditions<'_>, &mut Sites),
 }
 
@@ -59,6 +60,10 @@ impl Effect for Described {
 
     fn search(&self) -> Search {
         self.search
+    }
+
+    fn refines(&self) -> bool {
+        self.refines
     }
 
     fn attach(&self, values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {

@@ -51,6 +51,7 @@ pub static ENTRAINED_AIR: Described = Described {
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
     search: Search::Secants,
+    refines: false,
     attach,
 };
 

@@ -36,6 +36,7 @@ pub static ON_FLOW: Described = Described {
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: attach_to_flow,
 };
 

@@ -39,6 +39,7 @@ pub static ELASTIC: Described = Described {
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
     search: Search::Secants,
+    refines: false,
     attach: |values, _, sites| {
         sites.hose = Hose {
             at_once_m3_pa: m3_pa(values[0]),
@@ -83,6 +84,7 @@ pub static CREEPING: Described = Described {
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
     search: Search::Secants,
+    refines: false,
     attach: |values, _, sites| {
         let whole_m3_pa = m3_pa(values[0]);
         sites.hose = Hose {

@@ -52,6 +52,7 @@ pub static LOAD_ARM: Described = Described {
     ],
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach,
 };
 

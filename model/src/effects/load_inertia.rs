@@ -35,6 +35,7 @@ pub static LOAD_INERTIA: Described = Described {
     channels: &[Channel::CylinderPressure],
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach,
 };
 

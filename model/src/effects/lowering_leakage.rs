@@ -40,6 +40,7 @@ pub static EVEN: Described = Described {
     channels: CHANNELS,
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: |values, _, sites| leak(values[0], sites),
 };
 
@@ -55,6 +56,7 @@ pub static THINNING: Described = Described {
     channels: CHANNELS,
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: |values, conditions, sites| {
         let fluidity = viscosity_m2_s(TOLD_AT_C) / viscosity_m2_s(conditions.oil_temperature_c);
         leak(values[0] * fluidity, sites);

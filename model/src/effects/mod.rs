@@ -61,7 +61,9 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &threshold_shift::LIFT,
     &threshold_shift::LOWERING,
     &flow_scale::LIFT,
+    &flow_scale::LIFT_UNEVEN,
     &flow_scale::LOWERING,
+    &flow_scale::LOWERING_UNEVEN,
     &solenoid_hysteresis::SolenoidHysteresis,
     &spool_stiction::STICKING,
     &spool_stiction::FOLLOWING,
@@ -91,7 +93,8 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &pin_backlash::PIN_BACKLASH,
     &load_inertia::LOAD_INERTIA,
     &load_arm::LOAD_ARM,
-    &ground_contact::GROUND_CONTACT,
+    &ground_contact::SPRINGY,
+    &ground_contact::DAMPED,
     &angle_sensor_gain::ANGLE_SENSOR_GAIN,
     &angle_sensor_lag::FILTERING,
     &angle_sensor_lag::DELAYED,
@@ -192,6 +195,10 @@ pub trait Effect: Sync {
     fn search(&self) -> Search {
         Search::Secants
     }
+    /// Whether it only says more of what its effect's usual form says: it is looked for from what that one finds.
+    fn refines(&self) -> bool {
+        false
+    }
     /// Puts it into a plant, with a value for each parameter.
     fn attach(&self, values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites);
 }
@@ -232,6 +239,20 @@ impl AddedEffect {
     pub fn typical(effect: &'static dyn Effect) -> Self {
         let values = effect.parameters().iter().map(|p| p.typical).collect();
         Self { effect, values }
+    }
+
+    /// The same effect in another form: what both have keeps its value, the rest has its typical one.
+    #[must_use]
+    pub fn in_form(&self, form: &'static dyn Effect) -> Self {
+        let own = self.effect.parameters().iter().zip(&self.values);
+        let value = |other: &Parameter| {
+            let same = own.clone().find(|(own, _)| own.name == other.name);
+            same.map_or(other.typical, |(_, &value)| value)
+        };
+        Self {
+            effect: form,
+            values: form.parameters().iter().map(value).collect(),
+        }
     }
 
     /// The effect turned off.

@@ -56,6 +56,7 @@ pub static SERIES: Described = Described {
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: attach_series,
 };
 
@@ -91,6 +92,7 @@ pub static FLOW_NUMBER: Described = Described {
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: attach_flow_number,
 };
 

@@ -35,6 +35,7 @@ pub static PIN_BACKLASH: Described = Described {
     channels: &[Channel::RockerAngle],
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach,
 };
 

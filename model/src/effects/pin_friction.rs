@@ -37,6 +37,7 @@ pub static PIN_FRICTION: Described = Described {
     ],
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach,
 };
 

@@ -32,6 +32,7 @@ pub static PRESSURE_SENSOR_OFFSET: Described = Described {
     channels: &[Channel::CylinderPressure],
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach,
 };
 

@@ -32,6 +32,7 @@ pub static PUMP_LEAKAGE: Described = Described {
     channels: &[Channel::PumpPressure, Channel::Flow],
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach,
 };
 

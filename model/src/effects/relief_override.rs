@@ -47,6 +47,7 @@ pub static RELIEF_OVERRIDE: Described = Described {
     channels: &[Channel::PumpPressure, Channel::Flow],
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach,
 };
 

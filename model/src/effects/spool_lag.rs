@@ -51,6 +51,7 @@ pub static CREEPING: Described = Described {
     channels: CHANNELS,
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: attach_creeping,
 };
 
@@ -89,6 +90,7 @@ pub static SWINGING: Described = Described {
     channels: CHANNELS,
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: attach_swinging,
 };
 

@@ -57,6 +57,7 @@ pub static STICKING: Described = Described {
     channels: CHANNELS,
     needs: None,
     search: Search::Jumps,
+    refines: false,
     attach: |values, _, sites| attach(values, sites, Jumping::default()),
 };
 
@@ -74,6 +75,7 @@ pub static FOLLOWING: Described = Described {
     channels: CHANNELS,
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: |values, _, sites| attach(values, sites, Following::default()),
 };
 

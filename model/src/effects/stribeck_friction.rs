@@ -55,6 +55,7 @@ pub static STRIBECK_FRICTION: Described = Described {
     channels: &[Channel::CylinderPressure, Channel::RockerAngle],
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach,
 };
 

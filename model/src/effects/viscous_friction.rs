@@ -44,6 +44,7 @@ pub static EVEN: Described = Described {
     channels: CHANNELS,
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: |values, _, sites| oppose(values[0], sites),
 };
 
@@ -72,6 +73,7 @@ pub static THICKENING: Described = Described {
     channels: CHANNELS,
     needs: None,
     search: Search::Secants,
+    refines: false,
     attach: |values, conditions, sites| {
         let thickness = viscosity_m2_s(conditions.oil_temperature_c) / viscosity_m2_s(TOLD_AT_C);
         oppose(values[0] * thickness.powf(values[1]), sites);

@@ -97,7 +97,11 @@ pub(super) struct Shortlist<'a> {
 impl Shortlist<'_> {
     /// Every effect, sketched if it has a chance, the best first.
     pub fn sketches(&self, effects: &[&'static dyn Effect]) -> Vec<Sketch> {
-        let screened = self.screened(effects);
+        let (refining, own): (Vec<_>, Vec<_>) = effects
+            .iter()
+            .copied()
+            .partition(|effect| refines_any(*effect, effects));
+        let screened = self.screened(&own);
         let best = screened.first().map_or(self.base.cost, |first| first.cost);
         let doubtful = limit(self.base.cost, best, DOUBTFUL);
         let promising = screened.partition_point(|starts| starts.cost < doubtful);
@@ -113,6 +117,7 @@ impl Shortlist<'_> {
         if !explained {
             self.look_through(&mut sketches);
         }
+        self.refine(&mut sketches, &refining);
         sort(&mut sketches);
         sketches
     }
@@ -176,6 +181,38 @@ impl Shortlist<'_> {
         }
     }
 
+    /// Adds what forms that say more of their effect make of what its usual form found, where that may be the best.
+    fn refine(&self, sketches: &mut Vec<Sketch>, refining: &[&'static dyn Effect]) {
+        let best = leader(sketches).map_or(self.base.cost, |(_, least)| least);
+        let hopeless = limit(self.base.cost, best, HOPELESS);
+        let refined = refining.par_iter().map(|&effect| {
+            let same = |sketch: &&Sketch| sketch.effect.id() == effect.id() && !sketch.is_absent();
+            let usual = sketches.iter().filter(same).map(|sketch| &sketch.found);
+            let usual = usual.min_by(|a, b| a.cost.total_cmp(&b.cost));
+            let worthwhile = |usual: &&Descent| {
+                usual.cost < hopeless && self.without() - usual.cost > self.worthwhile
+            };
+            usual
+                .filter(worthwhile)
+                .map_or_else(|| self.absent(effect), |usual| self.refined(usual, effect))
+        });
+        let refined: Vec<Sketch> = refined.collect();
+        sketches.extend(refined);
+    }
+
+    /// What a form makes of what another one of its effect found.
+    fn refined(&self, usual: &Descent, effect: &'static dyn Effect) -> Sketch {
+        let mut start = usual.estimate.clone();
+        if let Some(last) = start.effects.last_mut() {
+            *last = last.in_form(effect);
+        }
+        let weights = &self.base.weights;
+        Sketch {
+            effect,
+            found: sketch(self.experiment, self.model, weights, start, false),
+        }
+    }
+
     fn sketched(&self, screened: Vec<Starts>) -> Vec<Sketch> {
         screened
             .into_par_iter()
@@ -197,22 +234,31 @@ impl Shortlist<'_> {
     /// What the screen found of an effect as it is.
     fn unsketched(&self, mut starts: Starts) -> Sketch {
         let effect = starts.effect;
-        let found = if self.without() - starts.cost > self.worthwhile && !starts.ranked.is_empty() {
-            Descent {
+        if self.without() - starts.cost <= self.worthwhile || starts.ranked.is_empty() {
+            return self.absent(effect);
+        }
+        Sketch {
+            effect,
+            found: Descent {
                 estimate: starts.ranked.swap_remove(0).estimate,
                 cost: starts.cost,
                 falling: f64::INFINITY,
-            }
-        } else {
-            let mut without = self.base.estimate.clone();
-            without.effects.push(AddedEffect::null(effect));
-            Descent {
+            },
+        }
+    }
+
+    /// Nothing of an effect.
+    fn absent(&self, effect: &'static dyn Effect) -> Sketch {
+        let mut without = self.base.estimate.clone();
+        without.effects.push(AddedEffect::null(effect));
+        Sketch {
+            effect,
+            found: Descent {
                 estimate: without,
                 cost: self.base.cost,
                 falling: 0.0,
-            }
-        };
-        Sketch { effect, found }
+            },
+        }
     }
 
     /// Sketches from one start, and from the next where the first leads no lower than that one begins; returns the best.
@@ -234,6 +280,12 @@ impl Shortlist<'_> {
         }
         best.expect("there is a start at least")
     }
+}
+
+/// Whether an effect refines another of some.
+fn refines_any(effect: &dyn Effect, others: &[&'static dyn Effect]) -> bool {
+    let usual = |other: &&dyn Effect| other.id() == effect.id() && !other.refines();
+    effect.refines() && others.iter().any(|other| usual(&(*other as &dyn Effect)))
 }
 
 /// The effect whose sketch leaves the least cost, and that.

@@ -1,8 +1,8 @@
 //! The hydraulic circuit at one instant: which flows and which pump pressure go with a cylinder pressure.
 
 use super::moment::Moment;
-use super::sites::Sites;
-use super::{MechanicalState, OrificeValve};
+use super::sites::{FlowFactor, Sites};
+use super::{MechanicalState, OrificeValve, ValveCurve};
 use crate::expression::Place;
 use crate::model::Constants;
 
@@ -117,8 +117,12 @@ impl Circuit<'_> {
     /// Opens the valves as far as effective currents, A, tell.
     #[must_use]
     pub fn openings(&self, lift_a: f64, lower_a: f64) -> Openings {
-        let opening = |valve: &OrificeValve, current_a: f64, factor: f64| Opening {
-            flow_m3_s: valve.curve.flow_m3_s(current_a) * factor,
+        let flow_m3_s = |curve: &ValveCurve, current_a: f64, factor: FlowFactor| {
+            let table_m3_s = curve.flow_m3_s(current_a);
+            table_m3_s * factor.at(table_m3_s, curve.saturation_m3_s())
+        };
+        let opening = |valve: &OrificeValve, current_a: f64, factor: FlowFactor| Opening {
+            flow_m3_s: flow_m3_s(&valve.curve, current_a, factor),
             beyond_threshold_a: match self.depends_on_travel() {
                 true => (current_a - valve.curve.threshold_a()).max(0.0),
                 false => 0.0,

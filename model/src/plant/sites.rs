@@ -80,7 +80,37 @@ pub struct ReliefOverride {
     pub below_setting_pa: f64,
 }
 
-/// Ground under the hitch: a spring and damper that can only push, and that starts from nothing (Hunt & Crossley 1975).
+/// What a valve's flow is multiplied by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlowFactor {
+    /// At half the largest flow.
+    pub at_half: f64,
+    /// What it grows by from there to the largest flow.
+    pub growth: f64,
+}
+
+impl Default for FlowFactor {
+    fn default() -> Self {
+        Self {
+            at_half: 1.0,
+            growth: 0.0,
+        }
+    }
+}
+
+impl FlowFactor {
+    /// The factor where the table has a flow, which is `largest` at most.
+    #[must_use]
+    pub fn at(&self, flow: f64, largest: f64) -> f64 {
+        if self.growth == 0.0 || largest <= 0.0 {
+            return self.at_half;
+        }
+        self.at_half + self.growth * (2.0 * flow / largest - 1.0)
+    }
+}
+
+/// Ground under the hitch: a spring and damper that can only push; its damping starts from nothing (Hunt & Crossley 1975)
+/// or is there at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ground {
     /// Height of the ground over the shaft, m, where the hitch point touches it.
@@ -89,6 +119,8 @@ pub struct Ground {
     pub stiffness_n_m: f64,
     /// Damping, s/m: share by which the force grows for each metre a second of approach; the dynamic plant only.
     pub damping_s_m: f64,
+    /// Damping that goes with the speed alone, N s/m; the dynamic plant only.
+    pub damping_n_s_m: f64,
 }
 
 impl Ground {
@@ -100,7 +132,8 @@ impl Ground {
             return 0.0;
         }
         let spring_n = self.stiffness_n_m * depth_m;
-        (spring_n * (1.0 - self.damping_s_m * speed_m_s)).max(0.0)
+        let damped_n = spring_n * (1.0 - self.damping_s_m * speed_m_s);
+        (damped_n - self.damping_n_s_m * speed_m_s).max(0.0)
     }
 }
 
@@ -159,9 +192,9 @@ pub struct Sites {
     /// Between coil current and effective spool current, in order.
     pub currents: Vec<Box<dyn CurrentStage>>,
     /// Factor on the lift valve's flow.
-    pub lift_flow_factor: f64,
+    pub lift_flow_factor: FlowFactor,
     /// Factor on the lowering valve's flow.
-    pub lower_flow_factor: f64,
+    pub lower_flow_factor: FlowFactor,
     /// Factors on the lowering valve's flow, from its pressure drop, Pa.
     pub lower_drop_factor: Vec<Law>,
     /// Factors on how far the lowering spool is beyond where it opens, from the valve's pressure drop, Pa.
@@ -214,8 +247,8 @@ impl Default for Sites {
     fn default() -> Self {
         Self {
             currents: Vec::new(),
-            lift_flow_factor: 1.0,
-            lower_flow_factor: 1.0,
+            lift_flow_factor: FlowFactor::default(),
+            lower_flow_factor: FlowFactor::default(),
             lower_drop_factor: Vec::new(),
             lower_travel_factor: Vec::new(),
             flow_number_1_a_sqrt_pa: None,
