@@ -325,8 +325,8 @@ impl Circuit<'_> {
         let opening = self.lower_opening(opening, state);
         let free_m3_s = self.lower_valve_m3_s(opening, state.pressure_pa);
         let terms = self.sites.has_term(Place::ReturnPressure);
-        let loss = self.sites.return_loss_pa_s2_m6;
-        if (loss == 0.0 && !terms) || free_m3_s == 0.0 {
+        let line = &self.sites.return_line;
+        if (line.is_free() && !terms) || free_m3_s == 0.0 {
             return free_m3_s;
         }
         let square_root_law = self.constants.lower_valve.transition_drop_pa == 0.0
@@ -334,8 +334,7 @@ impl Circuit<'_> {
             && self.sites.lower_travel_factor.is_empty()
             && self.sites.flow_number_1_a_sqrt_pa.is_none();
         if square_root_law && !terms {
-            // Two orifices in a row, Q = k sqrt(p - a Q2).
-            return free_m3_s / (1.0 + loss * free_m3_s * free_m3_s / state.pressure_pa).sqrt();
+            return line.behind_orifice_m3_s(free_m3_s, state.pressure_pa);
         }
         let passed_m3_s = |flow_m3_s: f64| {
             let drop_pa = state.pressure_pa - self.return_pressure_pa(flow_m3_s, state);

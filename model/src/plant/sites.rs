@@ -80,6 +80,38 @@ pub struct ReliefOverride {
     pub below_setting_pa: f64,
 }
 
+/// What holds the flow from the lowering valve to tank back.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ReturnLine {
+    /// Pressure over the square of the flow, Pa s2/m6.
+    pub turbulent_pa_s2_m6: f64,
+    /// Pressure over the flow, Pa s/m3.
+    pub laminar_pa_s_m3: f64,
+}
+
+impl ReturnLine {
+    /// Whether it holds nothing back.
+    #[must_use]
+    pub fn is_free(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Pressure before it, Pa, at a flow through it, m3/s.
+    #[must_use]
+    pub fn pressure_pa(&self, flow_m3_s: f64) -> f64 {
+        (self.laminar_pa_s_m3 + self.turbulent_pa_s2_m6 * flow_m3_s) * flow_m3_s
+    }
+
+    /// Flow through an orifice and the line behind it, m3/s, where a pressure, Pa, would drive `free_m3_s` through the
+    /// orifice alone: the root of `p = (p / Q_free^2 + turbulent) Q^2 + laminar Q`.
+    #[must_use]
+    pub fn behind_orifice_m3_s(&self, free_m3_s: f64, pressure_pa: f64) -> f64 {
+        let narrower = 1.0 + self.turbulent_pa_s2_m6 * free_m3_s * free_m3_s / pressure_pa;
+        let half = 0.5 * self.laminar_pa_s_m3 * free_m3_s / pressure_pa;
+        free_m3_s / (half + (half * half + narrower).sqrt())
+    }
+}
+
 /// What a valve's flow is multiplied by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlowFactor {
@@ -214,8 +246,8 @@ pub struct Sites {
     pub pump_slip: Vec<Law>,
     /// What the relief valve lacks of an ideal one.
     pub relief: Option<ReliefOverride>,
-    /// Pressure behind the lowering valve over the square of the flow through it, Pa/(m3/s)2.
-    pub return_loss_pa_s2_m6: f64,
+    /// What is behind the lowering valve.
+    pub return_line: ReturnLine,
     /// Flow out of the cylinder past the valves, m3/s, from the cylinder pressure, Pa.
     pub leakage: Vec<Law>,
     /// Factors on the oil's bulk modulus, from the cylinder pressure, Pa; the dynamic plant only.
@@ -258,7 +290,7 @@ impl Default for Sites {
             check_valve_loss_pa_s2_m6: 0.0,
             pump_slip: Vec::new(),
             relief: None,
-            return_loss_pa_s2_m6: 0.0,
+            return_line: ReturnLine::default(),
             leakage: Vec::new(),
             stiffness_factor: Vec::new(),
             hose: Hose::default(),
@@ -339,7 +371,7 @@ impl Sites {
     /// Pressure behind the lowering valve, Pa, at a flow through it, m3/s.
     #[must_use]
     pub fn return_pressure_pa(&self, flow_m3_s: f64) -> f64 {
-        self.return_loss_pa_s2_m6 * flow_m3_s * flow_m3_s
+        self.return_line.pressure_pa(flow_m3_s)
     }
 
     /// Whether a hitch at rest behind two shut valves stays as it is.
