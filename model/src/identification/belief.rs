@@ -1,6 +1,6 @@
 //! What an effect has to show to be believed.
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, systematic};
 use super::experiment::Experiment;
 use crate::effects::Effect;
 
@@ -54,22 +54,22 @@ impl Proof {
     }
 }
 
-/// Whether a size is beyond what a log cannot say of it even with many samples.
+/// Whether a size is beyond what a log cannot say of it even with many samples. Its shape may be anything: ground that a
+/// hitch only ever rests on is as likely soft and high as hard and low, but there it is.
 fn surely_there(experiment: &Experiment, candidate: &Candidate) -> bool {
-    let (Some(&(low, high)), Some(&value)) =
-        (candidate.intervals.first(), candidate.values().first())
-    else {
+    let Some(added) = candidate.fit.estimate.effects.last() else {
         return false;
     };
-    let size = &candidate.effect.parameters()[0];
+    let size = &added.effect.parameters()[0];
+    let off = (added.values[0] - size.null).abs();
+    let of_noise = off / candidate.likelihood_ratio.sqrt();
+    let sure = off - 1.96 * of_noise.hypot(systematic(added, 0));
     let is_width = size.unit == "A" && size.low == size.null;
     let noise = experiment.current_noise;
     let held_still_a = HELD_STILL * noise.lift_a.max(noise.lower_a);
     // A spool not surely later than the log knows when its currents jumped stands in for that.
     let is_lag = size.unit == "s" && size.null == 0.0;
-    (low > size.null || high < size.null)
-        && (!is_width || value > held_still_a)
-        && (!is_lag || low > experiment.jumps_within_s)
+    sure > 0.0 && (!is_width || off > held_still_a) && (!is_lag || sure > experiment.jumps_within_s)
 }
 
 /// Likelihood ratio that an effect needs.

@@ -177,7 +177,7 @@ fn weigh_with(
 /// A log tells where a ramp of the current bends only to within a sample, and the last of its noise holds a play open:
 /// some 0.9 mA, and as much time as a tenth of a sample. Loads, areas and tables are good to half a percent. What part
 /// of a lag is of which kind is known no better than as much time.
-fn systematic(added: &AddedEffect, parameter: usize) -> f64 {
+pub(super) fn systematic(added: &AddedEffect, parameter: usize) -> f64 {
     let (parameters, values) = (added.effect.parameters(), &added.values);
     let absolute = match (parameters[0].unit, parameters[parameter].unit) {
         (_, "A") => SYSTEMATIC_A,

@@ -5,7 +5,7 @@
 //! every addition each earlier effect has to be needed still. At the end each named effect is tried against those
 //! whose signature is nearly its own: what fits as well is said to be indistinguishable.
 
-use super::adequacy::{Cell, adequate, cells};
+use super::adequacy::{Cell, adequate, cells, cells_since};
 use super::attribution::{Attribution, attribute};
 use super::belief::{Proof, believed};
 use super::candidate::{Candidate, weigh};
@@ -157,7 +157,15 @@ pub fn diagnose(
 ) -> Diagnosis {
     let absent = absent(model, &base.estimate);
     let scans = Scans::default();
-    let trials = Trials::new(experiment, model, &base, &absent, &scans, progress);
+    let cells = cells(experiment, &base);
+    let trials = Trials::new(
+        experiment,
+        model,
+        (&cells, &base),
+        &absent,
+        &scans,
+        progress,
+    );
     let (candidates, confidences) = (trials.all_weighed(), trials.confidences());
     drop(trials);
     Diagnosis {
@@ -190,6 +198,7 @@ fn has(estimate: &Estimate, effect: &dyn Effect) -> bool {
 pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Explanation {
     let given = model.effects.len();
     let before = fit_base(experiment, model);
+    let cells_before = cells(experiment, &before);
     let mut present = before.clone();
     let mut present_held_out = f64::NAN;
     let mut steps: Vec<Step> = Vec::new();
@@ -204,7 +213,8 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
             break;
         }
         let absent = absent(model, &present.estimate);
-        let trials = Trials::new(experiment, model, &present, &absent, &scans, progress);
+        let base = (cells_before.as_slice(), &present);
+        let trials = Trials::new(experiment, model, base, &absent, &scans, progress);
         if present_held_out.is_nan() {
             present_held_out = held_out_error(experiment, model, &present);
         }
@@ -328,7 +338,7 @@ fn finish(
         let after = swap(experiment, model, given, &mut steps[..=index]).unwrap_or(after);
         return finish(experiment, model, before, after, (steps, swaps - 1));
     }
-    let cells = cells(experiment, &after);
+    let cells = cells_since(&cells(experiment, &before), experiment, &after);
     let missing = missing_manoeuvre(experiment, &after);
     let verdict = verdict(experiment, &cells, &steps, &after, missing);
     let rest = if verdict == Verdict::Unexplained {

@@ -16,6 +16,7 @@ pub mod fit;
 pub mod frame;
 pub mod holdout;
 pub mod jacobian;
+mod landings;
 mod lateness;
 mod needle;
 pub mod noise;

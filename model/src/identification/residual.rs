@@ -16,6 +16,7 @@ use rayon::prelude::*;
 
 use super::estimate::Estimate;
 use super::experiment::{Experiment, ReadyRun};
+use super::landings::landings;
 use super::traces::CurrentShift;
 use crate::campaign::Channel;
 use crate::model::Model;
@@ -137,6 +138,7 @@ impl RunWeights {
         };
         let at_an_edge = |sample: usize| edges.as_ref().is_some_and(|edges| edges[sample]);
         let stops = at_a_stop(run, model, [&below, &above]);
+        let landings = landings(run, model, [&below, &above]);
         let ringing = experiment.ringing;
         for channel in [
             Channel::PumpPressure,
@@ -160,6 +162,7 @@ impl RunWeights {
                 let yardstick = sigma.hypot(spread).hypot(shift).hypot(tolerance[sample]);
                 let known = yardstick <= UNKNOWABLE * sigma
                     && !stops[sample]
+                    && !landings[sample]
                     && !(channel == Channel::PumpPressure && at_an_edge(sample));
                 if value.is_finite() && known {
                     weights.scale[offset + sample] = 1.0 / yardstick;

@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
-use super::adequacy::{adequate, cells};
+use super::adequacy::{Cell, adequate, cells, cells_since};
 use super::belief::BELIEVED;
 use super::candidate::{Candidate, jacobian_by, slow_columns, weigh, weigh_by};
 use super::evidence::{log_odds, shares};
@@ -32,6 +32,10 @@ const WORTH_A_FIT: f64 = 0.25;
 /// the plant's discretisation make signatures of up to 0.05 on steady and 0.09 on ringing campaigns with nothing
 /// hidden.
 pub(super) const VISIBLE: f64 = 0.1;
+
+/// Logarithm of how much rarer than usual forms those are that say more: where another effect explains as much, it is
+/// that one.
+const RARER: f64 = 3.0;
 
 /// Smallest detectability that is believed where the model is adequate without the effect: what is left is noise
 /// already, and what a faint signature explains of it may as well be the instruments' own.
@@ -77,24 +81,35 @@ pub fn try_effects(
     effects: &[&'static dyn Effect],
     progress: &(dyn Fn(&str) + Sync),
 ) -> Vec<Candidate> {
+    let before = cells(experiment, base);
     let scans = Scans::default();
-    Trials::new(experiment, model, base, effects, &scans, progress).all_weighed()
+    Trials::new(
+        experiment,
+        model,
+        (&before, base),
+        effects,
+        &scans,
+        progress,
+    )
+    .all_weighed()
 }
 
 impl<'a> Trials<'a> {
-    /// Tries effects with the fine searches of the rounds before; `progress` is told of each.
+    /// Tries effects on a base to which a model with other cells has come, with the fine searches of the rounds before;
+    /// `progress` is told of each.
     #[must_use]
     pub fn new(
         experiment: &'a Experiment,
         model: &'a Model,
-        base: &'a Fit,
+        (before, base): (&[Cell], &'a Fit),
         effects: &[&'static dyn Effect],
         scans: &Scans,
         progress: &(dyn Fn(&str) + Sync),
     ) -> Self {
         let slow = slow_columns(experiment, model, base);
         let jacobian = jacobian_by(experiment, model, base, &slow);
-        let visible = if adequate(experiment, &cells(experiment, base), base) {
+        let cells = cells_since(before, experiment, base);
+        let visible = if adequate(experiment, &cells, base) {
             VISIBLE_IN_NOISE
         } else {
             VISIBLE
@@ -255,8 +270,10 @@ impl Odds {
 
     /// Logarithm of the odds of the last effect of a fit.
     fn of(&self, fit: &Fit) -> f64 {
-        let parameters = fit.estimate.effects.last().map_or(0, |e| e.values.len());
         let ratio = (self.base_cost - fit.cost) / self.unit;
-        log_odds(ratio, parameters, self.effective_samples)
+        let last = fit.estimate.effects.last();
+        let parameters = last.map_or(0, |added| added.values.len());
+        let rarer = last.is_some_and(|added| added.effect.refines());
+        log_odds(ratio, parameters, self.effective_samples) - if rarer { RARER } else { 0.0 }
     }
 }

@@ -234,12 +234,11 @@ impl Circuit<'_> {
         let lift_valve = &self.constants.lift_valve;
         let flow_m3_s =
             lift_valve.flow_m3_s(opening.flow_m3_s, drop_pa) * self.discharge(opening, drop_pa);
-        let loss = self.sites.check_valve_loss_pa_s2_m6;
-        if loss == 0.0 || flow_m3_s == 0.0 {
+        let check_valve = &self.sites.check_valve;
+        if check_valve.is_free() || flow_m3_s == 0.0 {
             return flow_m3_s;
         }
-        // Two orifices in a row, Q = k sqrt(dp - a Q2): the flow of the first alone, less by sqrt(1 + a Q2 / dp).
-        flow_m3_s / (1.0 + loss * flow_m3_s * flow_m3_s / drop_pa).sqrt()
+        check_valve.behind_orifice_m3_s(flow_m3_s, drop_pa)
     }
 
     /// Lift flow, m3/s, and pump pressure, Pa.

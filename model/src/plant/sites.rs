@@ -80,16 +80,16 @@ pub struct ReliefOverride {
     pub below_setting_pa: f64,
 }
 
-/// What holds the flow from the lowering valve to tank back.
+/// What takes pressure in line with an orifice: a pipe, a filter, an open seat.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct ReturnLine {
+pub struct Line {
     /// Pressure over the square of the flow, Pa s2/m6.
     pub turbulent_pa_s2_m6: f64,
     /// Pressure over the flow, Pa s/m3.
     pub laminar_pa_s_m3: f64,
 }
 
-impl ReturnLine {
+impl Line {
     /// Whether it holds nothing back.
     #[must_use]
     pub fn is_free(&self) -> bool {
@@ -102,7 +102,7 @@ impl ReturnLine {
         (self.laminar_pa_s_m3 + self.turbulent_pa_s2_m6 * flow_m3_s) * flow_m3_s
     }
 
-    /// Flow through an orifice and the line behind it, m3/s, where a pressure, Pa, would drive `free_m3_s` through the
+    /// Flow through an orifice in line with it, m3/s, where a pressure, Pa, would drive `free_m3_s` through the
     /// orifice alone: the root of `p = (p / Q_free^2 + turbulent) Q^2 + laminar Q`.
     #[must_use]
     pub fn behind_orifice_m3_s(&self, free_m3_s: f64, pressure_pa: f64) -> f64 {
@@ -240,14 +240,14 @@ pub struct Sites {
     pub margin_lost_to_flow_pa_s_m3: f64,
     /// Added to the check valve's cracking pressure, Pa.
     pub cracking_extra_pa: f64,
-    /// What the check valve takes beyond its cracking pressure, over the square of the flow, Pa/(m3/s)2.
-    pub check_valve_loss_pa_s2_m6: f64,
+    /// What the open check valve takes.
+    pub check_valve: Line,
     /// Pump flow lost to slip, m3/s, from the pump pressure, Pa.
     pub pump_slip: Vec<Law>,
     /// What the relief valve lacks of an ideal one.
     pub relief: Option<ReliefOverride>,
     /// What is behind the lowering valve.
-    pub return_line: ReturnLine,
+    pub return_line: Line,
     /// Flow out of the cylinder past the valves, m3/s, from the cylinder pressure, Pa.
     pub leakage: Vec<Law>,
     /// Factors on the oil's bulk modulus, from the cylinder pressure, Pa; the dynamic plant only.
@@ -287,10 +287,10 @@ impl Default for Sites {
             margin: Vec::new(),
             margin_lost_to_flow_pa_s_m3: 0.0,
             cracking_extra_pa: 0.0,
-            check_valve_loss_pa_s2_m6: 0.0,
+            check_valve: Line::default(),
             pump_slip: Vec::new(),
             relief: None,
-            return_line: ReturnLine::default(),
+            return_line: Line::default(),
             leakage: Vec::new(),
             stiffness_factor: Vec::new(),
             hose: Hose::default(),

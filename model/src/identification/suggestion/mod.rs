@@ -163,7 +163,8 @@ fn trials(
     let terms = screen::best(experiment, model, start, definitions, count);
     let effects: Vec<&'static dyn Effect> = terms.iter().map(|term| *term as &dyn Effect).collect();
     let scans = Scans::default();
-    let trials = Trials::new(experiment, model, start, &effects, &scans, progress);
+    let base = (found.cells.as_slice(), start);
+    let trials = Trials::new(experiment, model, base, &effects, &scans, progress);
     trials
         .likely(|_| BELIEVED)
         .filter(|candidate| candidate.likelihood_ratio >= BELIEVED)
