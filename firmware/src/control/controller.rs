@@ -351,7 +351,8 @@ impl Controller {
         if floats || resting || matches!(self.phase, Phase::Settling { .. }) {
             return None;
         }
-        let lower_speed = lowering_limit(inputs.lowering_dial, operator, &calibration.position);
+        let parameters = &calibration.position;
+        let lower_speed = lowering_limit(inputs.lowering_dial, operator, parameters);
         let demand = PositionControl::demand(
             target,
             self.phase,
@@ -361,7 +362,7 @@ impl Controller {
             self.scale,
             calibration,
         );
-        Some(self.position.paced(demand, &calibration.position))
+        Some(self.position.paced(demand, lower_speed, parameters))
     }
 
     /// The next phase; starting a move forgets the last one's bias, and counts it if nobody asked for it.

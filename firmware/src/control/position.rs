@@ -14,6 +14,9 @@
 //! stopped at a speed `v` swings on by `v / w` of its frequency on the oil, so that is slow: all of it is within the
 //! half degree in which the move is over, and costs no time. A hitch that came to rest elsewhere is brought there at some
 //! times that speed.
+//!
+//! A load that swings back before its coil is cut seems to have some way left. A valve that opens for that once more
+//! gives the next swing its flow, and carries the hitch beyond: what has slowed down to its end stays slow.
 
 use super::calibration::Calibration;
 use super::design_parameters::PositionParameters;
@@ -27,6 +30,8 @@ use super::valve_logic::{Demand, Direction, Phase};
 
 /// A correction goes so many times as fast as the slowest approach: a whole one at that speed would take seconds.
 const CORRECTION: i32 = 3;
+/// ... and a move that has slowed down so far doesn't get faster again: half of a millimetre is left then.
+const END: i32 = 6;
 
 /// Follows the lever.
 #[derive(Clone, Copy, Debug, Default)]
@@ -40,6 +45,8 @@ pub struct PositionControl {
     started: bool,
     /// The present move is one, for the move itself ended elsewhere.
     retries: bool,
+    /// The present move has slowed down to its end.
+    ends: bool,
     /// The present place is taken for the set point until the lever moves (end stop).
     accepted: bool,
 }
@@ -117,6 +124,7 @@ impl PositionControl {
         let reason = self.reason();
         self.retries = self.started && !self.arrived;
         self.started = true;
+        self.ends = false;
         reason
     }
 
@@ -180,23 +188,36 @@ impl PositionControl {
         }
     }
 
-    /// The `demand`, but creeping if the last move didn't get there.
+    /// The `demand`, but slow once the move has slowed down to its end, and creeping if the last one didn't get there.
     ///
     /// What sent that one elsewhere the estimate doesn't know, and a short way doesn't tell in time: in a hurry this one
     /// would end as far beyond, and the next one as well. What leaves its place after it has rested there didn't err.
+    /// `lower_speed`: the fastest lowering that the operator allows.
     #[must_use]
-    pub fn paced(&self, demand: Demand, parameters: &PositionParameters) -> Demand {
-        let speed = match self.retries {
-            true => demand.speed.min(correction_speed(parameters)),
-            false => demand.speed,
+    pub fn paced(
+        &mut self,
+        demand: Demand,
+        lower_speed: MicrometrePerSecond,
+        parameters: &PositionParameters,
+    ) -> Demand {
+        // A dial that is nearly shut is no end: it may be opened during the move.
+        let by_dial = demand.direction == Direction::Lower && demand.speed == lower_speed;
+        self.ends |= !by_dial && demand.speed <= creeping(END, parameters);
+        let times = match (self.retries, self.ends) {
+            (true, _) => CORRECTION,
+            (false, true) => END,
+            (false, false) => return demand,
         };
-        Demand { speed, ..demand }
+        Demand {
+            speed: demand.speed.min(creeping(times, parameters)),
+            ..demand
+        }
     }
 }
 
-/// Fastest correction.
-fn correction_speed(parameters: &PositionParameters) -> MicrometrePerSecond {
-    MicrometrePerSecond(parameters.creep_speed.0.saturating_mul(CORRECTION))
+/// So many times as fast as the slowest approach.
+fn creeping(times: i32, parameters: &PositionParameters) -> MicrometrePerSecond {
+    MicrometrePerSecond(parameters.creep_speed.0.saturating_mul(times))
 }
 
 /// The profile `u(r)` of the module's head.
@@ -257,7 +278,7 @@ mod tests {
     #[test]
     fn a_move_that_ended_elsewhere_is_made_good_slowly_but_not_as_slowly_as_a_move_ends() {
         let parameters = PositionParameters::NOMINAL;
-        let (fast, creep) = (parameters.lift_speed, correction_speed(&parameters));
+        let (fast, creep) = (parameters.lift_speed, creeping(CORRECTION, &parameters));
         assert!(creep > parameters.creep_speed && creep.0 < fast.0 / 10);
         let demand = Demand {
             direction: Direction::Lift,
@@ -271,11 +292,64 @@ mod tests {
                 let here = Micrometre::ZERO;
                 assert_eq!(position.reason_to_move(here, here, &parameters), None);
             }
-            position.paced(demand, &parameters).speed
+            position.paced(demand, fast, &parameters).speed
         };
         assert_eq!(moved(Reason::SetPoint, false), fast);
         assert_eq!(moved(Reason::Drift, true), creep, "ended elsewhere");
         assert_eq!(moved(Reason::Drift, false), fast, "left its place");
+    }
+
+    #[test]
+    fn a_move_that_has_slowed_down_to_its_end_stays_slow_until_the_next_one() {
+        let parameters = PositionParameters::NOMINAL;
+        let (fast, end) = (parameters.lift_speed, creeping(END, &parameters));
+        let paced = |position: &mut PositionControl, speed| {
+            let demand = Demand {
+                direction: Direction::Lift,
+                speed,
+                acceleration: parameters.lift_acceleration,
+            };
+            position.paced(demand, fast, &parameters).speed
+        };
+        let (low, high) = (MilliDegree(80_000), MilliDegree(90_000));
+        let mut position = PositionControl::default();
+        position.follow(low, parameters.upper_limit, false, &parameters);
+        position.start();
+        for speed in [fast, end + MicrometrePerSecond(1), fast] {
+            assert_eq!(paced(&mut position, speed), speed, "under way");
+        }
+        let slow = parameters.creep_speed;
+        for (asked, given) in [(end, end), (fast, end), (slow, slow), (fast, end)] {
+            assert_eq!(paced(&mut position, asked), given);
+        }
+        position.follow(high, parameters.upper_limit, true, &parameters);
+        assert_eq!(paced(&mut position, fast), fast, "another set point");
+        assert_eq!(paced(&mut position, end), end);
+        let here = Micrometre::ZERO;
+        assert_eq!(position.reason_to_move(here, here, &parameters), None);
+        position.start();
+        assert_eq!(paced(&mut position, fast), fast, "another move");
+    }
+
+    #[test]
+    fn a_lowering_dial_that_is_opened_during_a_move_is_obeyed() {
+        let parameters = PositionParameters::NOMINAL;
+        let mut position = PositionControl::default();
+        position.start();
+        let mut paced = |speed, dial| {
+            let demand = Demand {
+                direction: Direction::Lower,
+                speed,
+                acceleration: parameters.lower_acceleration,
+            };
+            position.paced(demand, dial, &parameters).speed
+        };
+        let (fast, end) = (parameters.lower_speed, creeping(END, &parameters));
+        for dial in [MicrometrePerSecond::ZERO, parameters.creep_speed, end, fast] {
+            assert_eq!(paced(dial, dial), dial);
+        }
+        assert_eq!(paced(end, fast), end, "its end");
+        assert_eq!(paced(fast, fast), end);
     }
 
     #[test]
