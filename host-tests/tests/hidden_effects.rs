@@ -155,6 +155,37 @@ fn a_leak_of_thin_oil_leaves_nothing_unknown() {
     assert!(!graded[0].answer.unknown);
 }
 
+/// Ground that a hitch without inertia only ever rests on is as likely soft and high as hard and low, but there it is,
+/// and a landing that comes a hair earlier is no inertia.
+#[test]
+fn the_ground_that_a_hitch_rests_on_is_named_and_nothing_beside_it() {
+    let questions = [
+        (917, "ground-contact", Fidelity::Faithful, false),
+        (903, "ground-contact", Fidelity::Structured, false),
+        (906, "ground-contact", Fidelity::Structured, false),
+    ];
+    for graded in ask(Family::Steady, Plan::Lab, &questions) {
+        assert_eq!(graded.answer.named, ["ground-contact"]);
+        assert!(!graded.answer.unknown);
+    }
+}
+
+/// Cold seals and pipes hold back more, a metering edge is off otherwise when wide open: the usual form of an effect
+/// leaves that unknown, or has others named for it.
+#[test]
+fn what_an_effect_has_beyond_its_usual_form_is_no_second_effect() {
+    let questions = [
+        (901, "viscous-friction", Fidelity::Structured, false),
+        (902, "lower-flow-scale", Fidelity::Structured, false),
+        (902, "return-line-loss", Fidelity::Structured, false),
+    ];
+    for graded in ask(Family::Steady, Plan::Lab, &questions) {
+        let case = &graded.posed.case;
+        assert_eq!(graded.answer.named, [case.hidden[0].what.id]);
+        assert!(!graded.answer.unknown);
+    }
+}
+
 /// A millimetre higher than its ground a hitch hangs, a millimetre lower it stands, and a load rings on stiff ground:
 /// the place is found all the same.
 #[test]
