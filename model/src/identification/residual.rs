@@ -139,6 +139,7 @@ impl RunWeights {
         let at_an_edge = |sample: usize| edges.as_ref().is_some_and(|edges| edges[sample]);
         let stops = at_a_stop(run, model, [&below, &above]);
         let landings = landings(run, model, [&below, &above]);
+        let hangs_on_a_hair = |sample: usize| stops[sample] || landings[sample];
         let ringing = experiment.ringing;
         for channel in [
             Channel::PumpPressure,
@@ -161,8 +162,7 @@ impl RunWeights {
                 let shift = 0.5 * (late.channel(channel)[sample] - early.channel(channel)[sample]);
                 let yardstick = sigma.hypot(spread).hypot(shift).hypot(tolerance[sample]);
                 let known = yardstick <= UNKNOWABLE * sigma
-                    && !stops[sample]
-                    && !landings[sample]
+                    && !hangs_on_a_hair(sample)
                     && !(channel == Channel::PumpPressure && at_an_edge(sample));
                 if value.is_finite() && known {
                     weights.scale[offset + sample] = 1.0 / yardstick;
