@@ -68,6 +68,7 @@ impl Shortlist<'_> {
         let late = self.late(&ends);
         let mut ranked = self.rank(ends);
         ranked.extend(late);
+        ranked.extend(self.rank(self.ends(with_opposite_shapes(effect))));
         ranked.extend(self.in_place_of_clocks(effect));
         self.sort(&mut ranked);
         self.best_starts(effect, ranked, false)
@@ -289,6 +290,14 @@ fn sizes(effect: &'static dyn Effect) -> Vec<AddedEffect> {
         .collect()
 }
 
+/// An effect at its typical size with each parameter of its shape that may have either sign at both ends of its range:
+/// an arm that grows over the stroke and one that is there all over it have nothing in common, and where one is hidden
+/// no secant of the other leads anywhere.
+fn with_opposite_shapes(effect: &'static dyn Effect) -> Vec<AddedEffect> {
+    let typical = AddedEffect::typical(effect);
+    with_shapes(&typical, |shape| shape.low < 0.0 && shape.high > 0.0)
+}
+
 /// Smallest and largest multiple of an effect's size that its range and the trust in a secant allow.
 fn reach(added: &AddedEffect) -> (f64, f64) {
     let range = &added.effect.parameters()[0];
@@ -302,8 +311,14 @@ fn reach(added: &AddedEffect) -> (f64, f64) {
 
 /// An effect with each parameter of its shape towards either end of its range in turn; none without a shape.
 pub(super) fn with_extreme_shapes(at: &AddedEffect) -> Vec<AddedEffect> {
+    with_shapes(at, |_| true)
+}
+
+/// [`with_extreme_shapes`] of those parameters that are `chosen`.
+fn with_shapes(at: &AddedEffect, chosen: impl Fn(&Parameter) -> bool) -> Vec<AddedEffect> {
     let parameters = at.effect.parameters().iter().enumerate().skip(1);
     parameters
+        .filter(|(_, range)| chosen(range))
         .flat_map(|(index, range)| {
             let ends = [range.low, range.high].into_iter();
             ends.filter(|end| end.is_finite()).map(move |end| {
