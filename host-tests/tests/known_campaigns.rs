@@ -56,11 +56,14 @@ fn is_named_on(name: &str, model: &Model) {
     assert_eq!(explanation.verdict, Verdict::Explained, "{name}");
     let last = explanation.steps.last().expect("a step");
     assert!(
-        last.held_out_after <= 1.10,
+        last.held_out_after.error <= 1.10,
         "{name}: held out {}",
-        last.held_out_after
+        last.held_out_after.error
     );
-    assert!(last.held_out_before > 2.0 * last.held_out_after, "{name}");
+    assert!(
+        last.held_out_before.error > 2.0 * last.held_out_after.error,
+        "{name}"
+    );
 }
 
 fn nothing_is_named(name: &str, model: &Model) {

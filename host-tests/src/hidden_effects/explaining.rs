@@ -47,7 +47,7 @@ impl Method for Explaining {
             // What it leaves alone is no better on other runs than before.
             held_out: Some(steps.first().zip(steps.last()).map_or_else(
                 || (explanation.before.error(), explanation.before.error()),
-                |(first, last)| (first.held_out_before, last.held_out_after),
+                |(first, last)| (first.held_out_before.error, last.held_out_after.error),
             )),
         }
     }

@@ -2,6 +2,7 @@
 
 use super::candidate::{Candidate, systematic};
 use super::experiment::Experiment;
+use super::holdout::HeldOut;
 use crate::effects::Effect;
 
 /// Likelihood ratio that an effect needs: chi-squared with one degree of freedom at 5 % over some fifty tries.
@@ -23,15 +24,15 @@ const HELD_STILL: f64 = 1.5;
 pub(super) struct Proof {
     /// At least this detectability.
     visible: f64,
-    /// A smaller held-out error than this.
-    held_out: f64,
+    /// Less than this left in held-out runs.
+    held_out: HeldOut,
     /// At least this share of what the held-out runs have above their noise explained.
     share: f64,
 }
 
 impl Proof {
     /// After so many effects were added, before which held-out runs left so much.
-    pub fn new(visible: f64, held_out: f64, added: usize) -> Self {
+    pub fn new(visible: f64, held_out: HeldOut, added: usize) -> Self {
         Self {
             visible,
             held_out,
@@ -46,11 +47,11 @@ impl Proof {
             && surely_there(experiment, candidate)
     }
 
-    /// Whether a held-out error will do. A campaign of one run has none; it is not held against it.
-    pub fn admits(self, held_out: f64) -> bool {
-        let excess = |error: f64| error * error - 1.0;
-        let explained = excess(self.held_out) - excess(held_out);
-        held_out.is_nan() || explained > (self.share * excess(self.held_out)).max(0.0)
+    /// Whether what is left in held-out runs will do. A campaign of one run has none; it is not held against it.
+    pub fn admits(self, held_out: HeldOut) -> bool {
+        let before = self.held_out.excess();
+        let explained = before - held_out.excess();
+        explained.is_nan() || explained > (self.share * before).max(0.0)
     }
 }
 

@@ -13,7 +13,7 @@ use super::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
 use super::estimate::Estimate;
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate, evaluate_weighted, fit, refine};
-use super::holdout::held_out_error;
+use super::holdout::{HeldOut, held_out};
 use super::regime::Regime;
 use super::scans::Scans;
 use super::trials::{Trials, VISIBLE};
@@ -82,10 +82,10 @@ pub struct Step {
     pub error_before: f64,
     /// Error with the effect.
     pub error_after: f64,
-    /// Held-out error of the model before the step.
-    pub held_out_before: f64,
-    /// Held-out error with the effect.
-    pub held_out_after: f64,
+    /// What the model before the step leaves in held-out runs.
+    pub held_out_before: HeldOut,
+    /// What it leaves there with the effect.
+    pub held_out_after: HeldOut,
     /// Probability that the effect is there beside the other steps', shared evenly with those that it cannot be told
     /// from.
     pub confidence: f64,
@@ -200,7 +200,7 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
     let before = fit_base(experiment, model);
     let cells_before = cells(experiment, &before);
     let mut present = before.clone();
-    let mut present_held_out = f64::NAN;
+    let mut present_held_out = HeldOut::NONE;
     let mut steps: Vec<Step> = Vec::new();
     let scans = Scans::default();
     for _ in 0..MOST_ROUNDS {
@@ -215,11 +215,11 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
         let absent = absent(model, &present.estimate);
         let base = (cells_before.as_slice(), &present);
         let trials = Trials::new(experiment, model, base, &absent, &scans, progress);
-        if present_held_out.is_nan() {
-            present_held_out = held_out_error(experiment, model, &present);
+        if present_held_out.error.is_nan() {
+            present_held_out = held_out(experiment, model, &present);
         }
         let proof = Proof::new(trials.visible(), present_held_out, steps.len());
-        let Some((best, held_out_after)) = proven(experiment, model, &trials, proof) else {
+        let Some((best, left)) = proven(experiment, model, &trials, proof) else {
             break;
         };
         steps.push(Step {
@@ -227,7 +227,7 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
             error_before: present.error(),
             error_after: best.fit.error(),
             held_out_before: present_held_out,
-            held_out_after,
+            held_out_after: left,
             confidence: f64::NAN,
             detectability: best.detectability,
             indistinguishable: Vec::new(),
@@ -236,16 +236,16 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
             fit: best.fit.clone(),
         });
         present = best.fit.clone();
-        present_held_out = held_out_after;
+        present_held_out = left;
         if let Some(lighter) = drop_needless(experiment, model, &present, given, &mut steps) {
-            present_held_out = held_out_error(experiment, model, &lighter);
+            present_held_out = held_out(experiment, model, &lighter);
             present = lighter;
         }
     }
     finish(experiment, model, before, present, (steps, MOST_SWAPS))
 }
 
-/// The most likely believable candidate with a smaller held-out error than without it, and that error.
+/// The most likely believable candidate that leaves less in held-out runs than there was without it, and that.
 ///
 /// The likeliest may fail here though it is there: a leak that only one run shows is misjudged from the others as long
 /// as another effect is missing. Then the next one goes first.
@@ -254,16 +254,16 @@ fn proven<'a>(
     model: &Model,
     trials: &'a Trials,
     proof: Proof,
-) -> Option<(&'a Candidate, f64)> {
+) -> Option<(&'a Candidate, HeldOut)> {
     trials
         .likely(believed)
         .filter(|candidate| proof.accepts(experiment, candidate))
         .take(MOST_TRIED)
         .map(|candidate| {
-            let held_out = held_out_error(experiment, model, &candidate.fit);
-            (candidate, held_out)
+            let left = held_out(experiment, model, &candidate.fit);
+            (candidate, left)
         })
-        .find(|(_, held_out)| proof.admits(*held_out))
+        .find(|(_, left)| proof.admits(*left))
 }
 
 /// Drops the first step whose effect the later ones have made needless; returns the fit without it.
@@ -386,7 +386,7 @@ fn swap(experiment: &Experiment, model: &Model, given: usize, steps: &mut [Step]
     step.effect = best.effect;
     step.fit = refine(experiment, model, estimate);
     step.error_after = step.fit.error();
-    step.held_out_after = held_out_error(experiment, model, &step.fit);
+    step.held_out_after = held_out(experiment, model, &step.fit);
     Some(after)
 }
 

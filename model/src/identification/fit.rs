@@ -71,11 +71,21 @@ impl ErrorSums {
     /// Sums over all runs of a fit.
     #[must_use]
     pub fn of(fit: &Fit) -> Self {
+        Self::summed(&fit.residuals, fit.weights.counts)
+    }
+
+    /// The same with the residuals as a fit sees them.
+    #[must_use]
+    pub fn seen(fit: &Fit) -> Self {
+        Self::summed(&huber(fit.residuals.clone()), fit.weights.counts)
+    }
+
+    fn summed(residuals: &[Vec<f64>], counts: [usize; 4]) -> Self {
         let mut sums = Self {
             squares: [0.0; 4],
-            counts: fit.weights.counts,
+            counts,
         };
-        for run in &fit.residuals {
+        for run in residuals {
             let samples = run.len() / 4;
             for (channel, square) in sums.squares.iter_mut().enumerate() {
                 let part = &run[channel * samples..(channel + 1) * samples];

@@ -11,18 +11,43 @@ use crate::model::Model;
 /// Number of parts that the runs are dealt into, each held out once.
 const FOLDS: usize = 4;
 
-/// Held-out error of a model that was fitted to all runs, as [`super::fit::Fit::error`] counts it.
+/// What a model leaves in runs that were not used to fit, sigmas.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeldOut {
+    /// Its error, as [`super::fit::Fit::error`] counts it.
+    pub error: f64,
+    /// The same of the residuals as a fit sees them, by which models are compared. While a second effect is missing one
+    /// run may be simulated against a stop that the hitch never reached, and its dead-head pressure would be all that
+    /// the error tells of the first.
+    pub loss: f64,
+}
+
+impl HeldOut {
+    /// Nothing was held out, or not yet.
+    pub const NONE: Self = Self {
+        error: f64::NAN,
+        loss: f64::NAN,
+    };
+
+    /// Squared loss above that of noise.
+    #[must_use]
+    pub fn excess(self) -> f64 {
+        self.loss * self.loss - 1.0
+    }
+}
+
+/// What a model leaves in held-out runs after it was fitted to all.
 ///
 /// The runs are dealt round-robin, whole: samples of one run are never on both sides. Shared parameters come from the
 /// other runs; a held-out run only chooses its own load error, within its prior. The yardsticks are those of the fit to
-/// all runs. NaN with fewer than two runs.
+/// all runs. [`HeldOut::NONE`] with fewer than two runs.
 #[must_use]
-pub fn held_out_error(experiment: &Experiment, model: &Model, fit: &Fit) -> f64 {
+pub fn held_out(experiment: &Experiment, model: &Model, fit: &Fit) -> HeldOut {
     let folds = FOLDS.min(experiment.runs.len());
     if folds < 2 {
-        return f64::NAN;
+        return HeldOut::NONE;
     }
-    let sums: Vec<ErrorSums> = (0..folds)
+    let parts: Vec<(ErrorSums, ErrorSums)> = (0..folds)
         .into_par_iter()
         .map(|fold| {
             let outside = |run: usize| run % folds != fold;
@@ -36,10 +61,15 @@ pub fn held_out_error(experiment: &Experiment, model: &Model, fit: &Fit) -> f64 
                 nuisances: test_start.nuisances,
             };
             let loaded = fit_loads(&test, model, &weights, start);
-            ErrorSums::of(&evaluate_weighted(&test, model, loaded, weights))
+            let tested = evaluate_weighted(&test, model, loaded, weights);
+            (ErrorSums::of(&tested), ErrorSums::seen(&tested))
         })
         .collect();
-    ErrorSums::total(&sums).error()
+    let (errors, losses): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+    HeldOut {
+        error: ErrorSums::total(&errors).error(),
+        loss: ErrorSums::total(&losses).error(),
+    }
 }
 
 /// The runs that `chosen` picks, with their weights and the estimate for them.

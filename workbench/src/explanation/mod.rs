@@ -81,6 +81,10 @@ pub struct Step {
     pub held_out_before: f64,
     /// Error after, on runs that were not used to fit.
     pub held_out_after: f64,
+    /// The error before on those runs as a fit counts it, by which effects are chosen: far outliers by their distance.
+    pub held_out_loss_before: f64,
+    /// The same after.
+    pub held_out_loss_after: f64,
     /// How sure the data make one that it is this effect, 0 to 1.
     pub confidence: f64,
     /// Effects that it cannot be told from on these data.

@@ -44,8 +44,10 @@ fn step(step: &explain::Step) -> Step {
         form: step.effect.form(),
         error_before: step.error_before,
         error_after: step.error_after,
-        held_out_before: step.held_out_before,
-        held_out_after: step.held_out_after,
+        held_out_before: step.held_out_before.error,
+        held_out_after: step.held_out_after.error,
+        held_out_loss_before: step.held_out_before.loss,
+        held_out_loss_after: step.held_out_after.loss,
         confidence: step.confidence,
         indistinguishable: step
             .indistinguishable

@@ -183,17 +183,33 @@ pub fn late_ms(channel: &serde_json::Value) -> String {
     late_ms.map_or("-".to_owned(), |late_ms| format!("{late_ms:.0}"))
 }
 
+impl Step {
+    /// Why it was added although the error on held-out runs is no smaller: a few samples make all of that while the next
+    /// effect is missing.
+    fn without_outliers(&self) -> String {
+        if self.held_out_after >= self.held_out_before {
+            format!(
+                " ({:.2} -> {:.2} with outliers by their distance)",
+                self.held_out_loss_before, self.held_out_loss_after
+            )
+        } else {
+            String::new()
+        }
+    }
+}
+
 impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let values: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
         writeln!(f, "{}: {}", self.name(), values.join(", "))?;
         writeln!(
             f,
-            "     error {:.2} -> {:.2}, on held-out runs {:.2} -> {:.2}; confidence {:.2}, detectability {:.2}",
+            "     error {:.2} -> {:.2}, on held-out runs {:.2} -> {:.2}{}; confidence {:.2}, detectability {:.2}",
             self.error_before,
             self.error_after,
             self.held_out_before,
             self.held_out_after,
+            self.without_outliers(),
             self.confidence,
             self.detectability
         )?;

@@ -18,7 +18,7 @@ use super::candidate::{Candidate, weigh};
 use super::experiment::Experiment;
 use super::explain::{Explanation, Progress, Verdict};
 use super::fit::{Fit, evaluate, refine};
-use super::holdout::held_out_error;
+use super::holdout::{HeldOut, held_out};
 use super::scans::Scans;
 use super::trials::Trials;
 use crate::effects::{AddedEffect, Effect, TermEffect};
@@ -40,7 +40,7 @@ const WORTH_OFFERING: f64 = 0.25;
 /// Part of it that may stay for the search to end with the first start.
 const SETTLED: f64 = 0.1;
 
-/// Growth of the held-out error that one parameter less is worth.
+/// Growth of what is left in held-out runs that one parameter less is worth.
 const PER_PARAMETER: f64 = 0.01;
 
 /// Significant digits of the values that are written into the definition.
@@ -55,10 +55,10 @@ pub struct Suggestion {
     pub values: Vec<f64>,
     /// Their 95 % intervals.
     pub intervals: Vec<(f64, f64)>,
-    /// Held-out error of the model that the explanation ended with.
-    pub held_out_before: f64,
-    /// Held-out error with the term.
-    pub held_out_after: f64,
+    /// What the model that the explanation ended with leaves in held-out runs.
+    pub held_out_before: HeldOut,
+    /// What it leaves there with the term.
+    pub held_out_after: HeldOut,
     /// The model with the term, and of the explanation's steps those that are needed beside it.
     pub fit: Fit,
     /// Steps of the explanation that are not needed once the term is there.
@@ -77,36 +77,36 @@ pub fn suggest(
         return None;
     }
     let last = found.steps.last().map(|step| step.held_out_after);
-    let present = last.unwrap_or_else(|| held_out_error(experiment, model, &found.before));
-    let excess = |error: f64| (error * error - 1.0).max(0.0);
+    let present = last.unwrap_or_else(|| held_out(experiment, model, &found.before));
+    let excess = |left: f64| (left * left - 1.0).max(0.0);
     let mut tried = trials(experiment, model, found, &found.before, progress);
     let least = tried
         .iter()
-        .map(|trial| trial.held_out)
-        .fold(present, f64::min);
-    if !found.steps.is_empty() && excess(least) > SETTLED * excess(present) {
+        .map(|trial| trial.held_out.loss)
+        .fold(present.loss, f64::min);
+    if !found.steps.is_empty() && excess(least) > SETTLED * excess(present.loss) {
         tried.extend(trials(experiment, model, found, &found.after, progress));
     }
     let best = tried
         .into_iter()
         .min_by(|a, b| a.score().total_cmp(&b.score()))?;
-    let left = excess(best.held_out) / excess(present);
+    let left = excess(best.held_out.loss) / excess(present.loss);
     (left < 1.0 - WORTH_OFFERING).then(|| best.suggestion(experiment, model, found, present))
 }
 
-/// A term fitted on a start, and its error on held-out runs.
+/// A term fitted on a start, and what it leaves in held-out runs.
 struct Trial {
     term: &'static TermEffect,
     candidate: Candidate,
-    held_out: f64,
+    held_out: HeldOut,
 }
 
 impl Trial {
-    /// Held-out error, the more parameters of effects the dearer.
+    /// What is left in held-out runs, the more parameters of effects the dearer.
     fn score(&self) -> f64 {
         let effects = &self.candidate.fit.estimate.effects;
         let parameters: usize = effects.iter().map(|added| added.values.len()).sum();
-        self.held_out * (1.0 + PER_PARAMETER * parameters as f64)
+        self.held_out.loss * (1.0 + PER_PARAMETER * parameters as f64)
     }
 
     fn suggestion(
@@ -114,12 +114,12 @@ impl Trial {
         experiment: &Experiment,
         model: &Model,
         found: &Explanation,
-        held_out_before: f64,
+        held_out_before: HeldOut,
     ) -> Suggestion {
         let given = model.effects.len();
         let (candidate, dropped) = without_needless(experiment, model, self.candidate, given);
         let held_out_after = if dropped {
-            held_out_error(experiment, model, &candidate.fit)
+            held_out(experiment, model, &candidate.fit)
         } else {
             self.held_out
         };
@@ -174,11 +174,11 @@ fn trials(
             let term = terms.iter().copied().find(|term| term.id() == id)?;
             Some(Trial {
                 term,
-                held_out: held_out_error(experiment, model, &candidate.fit),
+                held_out: held_out(experiment, model, &candidate.fit),
                 candidate: candidate.clone(),
             })
         })
-        .filter(|trial| trial.held_out.is_finite())
+        .filter(|trial| trial.held_out.loss.is_finite())
         .collect()
 }
 
