@@ -218,6 +218,31 @@ fn two_effects_are_named_though_each_alone_looks_wrong() {
     }
 }
 
+/// Before a droop is known, a leak that thins with the oil and one that does not take on other parts of it; once both are
+/// known, each is what the textbook says.
+#[test]
+fn the_form_of_the_first_effect_is_chosen_anew_with_the_second() {
+    let case = pair(Family::Steady, Plan::Field, 3_139);
+    let model = starting_point(case.family);
+    let found = explain(&Experiment::new(&campaign(&case), &model), &model, &|_| {});
+    for step in &found.steps {
+        println!(
+            "{:?} {:?}: {:?}",
+            step.effect.id(),
+            step.effect.form(),
+            step.values
+        );
+        let hidden = case
+            .hidden
+            .iter()
+            .find(|hidden| hidden.what.id == step.effect.id());
+        let truth = hidden.expect("it is there").size;
+        assert_eq!(step.effect.form(), None);
+        assert!((step.values[0] / truth - 1.0).abs() < 0.02);
+    }
+    assert_eq!(found.steps.len(), case.hidden.len());
+}
+
 /// A millimetre higher than its ground a hitch hangs, a millimetre lower it stands, and a load rings on stiff ground:
 /// the place is found all the same.
 #[test]

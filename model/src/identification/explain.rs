@@ -2,8 +2,9 @@
 //!
 //! Belief rests on two things together: a likelihood ratio that counts autocorrelated residuals at their effective
 //! number, Bonferroni-corrected for all that was tried, and a smaller error in runs that were not used to fit. After
-//! every addition each earlier effect has to be needed still. At the end each named effect is tried against those
-//! whose signature is nearly its own: what fits as well is said to be indistinguishable.
+//! every addition each earlier effect has to be needed still, and the form of each is chosen anew. At the end each
+//! named effect is tried against those whose signature is nearly its own: what fits as well is said to be
+//! indistinguishable.
 
 use super::adequacy::{Cell, adequate, cells, cells_since};
 use super::attribution::{Attribution, attribute};
@@ -13,13 +14,14 @@ use super::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
 use super::estimate::Estimate;
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate, evaluate_weighted, fit, refine};
+use super::forms::reformed;
 use super::holdout::{HeldOut, held_out};
 use super::regime::Regime;
 use super::scans::Scans;
 use super::trials::{Trials, VISIBLE};
 use super::twins::twins;
 use super::unseen::{Unseen, unseen};
-use crate::effects::Effect;
+use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
 /// Fewest compared samples that anything is concluded from.
@@ -241,6 +243,15 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
             present_held_out = held_out(experiment, model, &lighter);
             present = lighter;
         }
+        if steps.len() > 1
+            && let Some(other) = reformed(experiment, model, &cells_before, &present, given)
+        {
+            restate(experiment, model, &other, given, &mut steps);
+            present_held_out = steps
+                .last()
+                .map_or(present_held_out, |last| last.held_out_after);
+            present = other;
+        }
     }
     finish(experiment, model, before, present, (steps, MOST_SWAPS))
 }
@@ -286,8 +297,36 @@ fn drop_needless(
     None
 }
 
+/// States the steps from the first one on whose effect has another form now as they would have been with that.
+fn restate(experiment: &Experiment, model: &Model, after: &Fit, given: usize, steps: &mut [Step]) {
+    let effects = &after.estimate.effects[given..];
+    let other = |(added, step): (&AddedEffect, &Step)| added.effect.form() != step.effect.form();
+    let Some(first) = effects.iter().zip(steps.iter()).position(other) else {
+        return;
+    };
+    for index in first..steps.len() {
+        let earlier = index.checked_sub(1).map(|earlier| &steps[earlier]);
+        let before = earlier.map(|earlier| (earlier.error_after, earlier.held_out_after));
+        let mut estimate = after.estimate.clone();
+        estimate.effects.truncate(given + index + 1);
+        let whole = estimate.effects.len() == after.estimate.effects.len();
+        let step = &mut steps[index];
+        if let Some((error, held_out)) = before {
+            (step.error_before, step.held_out_before) = (error, held_out);
+        }
+        step.effect = effects[index].effect;
+        step.fit = if whole {
+            after.clone()
+        } else {
+            refine(experiment, model, estimate)
+        };
+        step.error_after = step.fit.error();
+        step.held_out_after = held_out(experiment, model, &step.fit);
+    }
+}
+
 /// The same fit with one effect moved to the end of the list.
-fn with_last(experiment: &Experiment, model: &Model, fit: &Fit, effect: usize) -> Fit {
+pub(super) fn with_last(experiment: &Experiment, model: &Model, fit: &Fit, effect: usize) -> Fit {
     let mut estimate = fit.estimate.clone();
     let moved = estimate.effects.remove(effect);
     estimate.effects.push(moved);

@@ -13,6 +13,7 @@ pub mod evidence;
 pub mod experiment;
 pub mod explain;
 pub mod fit;
+mod forms;
 pub mod frame;
 pub mod holdout;
 pub mod jacobian;

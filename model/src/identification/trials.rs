@@ -251,7 +251,7 @@ impl Trial {
 
 /// The odds of effects against their common base, all at the inflation of the one with the least cost: each at its own
 /// would prefer what leaves a rest that hardly correlates with its signature over what leaves less.
-struct Odds {
+pub(super) struct Odds {
     base_cost: f64,
     /// What the cost falls by for a likelihood ratio of one.
     unit: f64,
@@ -260,7 +260,7 @@ struct Odds {
 
 impl Odds {
     /// The odds beside the candidate with the least cost.
-    fn new(base: &Fit, best: &Candidate) -> Self {
+    pub(super) fn new(base: &Fit, best: &Candidate) -> Self {
         Self {
             base_cost: base.cost,
             unit: best.fit.variance() * best.inflation,
@@ -270,10 +270,16 @@ impl Odds {
 
     /// Logarithm of the odds of the last effect of a fit.
     fn of(&self, fit: &Fit) -> f64 {
+        self.of_last(fit, 1)
+    }
+
+    /// Logarithm of the odds of the last effects of a fit together.
+    pub(super) fn of_last(&self, fit: &Fit, count: usize) -> f64 {
         let ratio = (self.base_cost - fit.cost) / self.unit;
-        let last = fit.estimate.effects.last();
-        let parameters = last.map_or(0, |added| added.values.len());
-        let rarer = last.is_some_and(|added| added.effect.refines());
-        log_odds(ratio, parameters, self.effective_samples) - if rarer { RARER } else { 0.0 }
+        let effects = &fit.estimate.effects;
+        let counted = &effects[effects.len().saturating_sub(count)..];
+        let parameters = counted.iter().map(|added| added.values.len()).sum();
+        let rarer = counted.iter().filter(|added| added.effect.refines());
+        log_odds(ratio, parameters, self.effective_samples) - RARER * rarer.count() as f64
     }
 }
