@@ -15,6 +15,11 @@ const BELIEVED_PER_SHAPE: f64 = 3.0;
 /// was, patches what an effect before it has not quite the form for.
 const NO_PATCH: f64 = 0.1;
 
+/// Smallest detectability of an effect beside others where held-out runs leave no more than noise, sigmas. A few cells
+/// may still have some of what the one before it lacks, as it rings on the ground: a threshold or a flow that is off by
+/// next to nothing takes on 0.15 of that.
+const VISIBLE_BESIDE: f64 = 0.2;
+
 /// Width of a current path that is believed, in sigmas of the logged currents: as wide as what cleaning leaves of their
 /// noise it holds the valves still that this would shake, and fits better though nothing is there.
 const HELD_STILL: f64 = 1.5;
@@ -33,8 +38,13 @@ pub(super) struct Proof {
 impl Proof {
     /// After so many effects were added, before which held-out runs left so much.
     pub fn new(visible: f64, held_out: HeldOut, added: usize) -> Self {
+        let nothing_left = added > 0 && held_out.excess() <= 0.0;
         Self {
-            visible,
+            visible: if nothing_left {
+                visible.max(VISIBLE_BESIDE)
+            } else {
+                visible
+            },
             held_out,
             share: if added == 0 { 0.0 } else { NO_PATCH },
         }
