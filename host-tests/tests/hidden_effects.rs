@@ -170,12 +170,13 @@ fn the_ground_that_a_hitch_rests_on_is_named_and_nothing_beside_it() {
     }
 }
 
-/// Cold seals and pipes hold back more, a metering edge is off otherwise when wide open: the usual form of an effect
-/// leaves that unknown, or has others named for it.
+/// Cold seals and pipes hold back more, pins turn unevenly, a metering edge is off otherwise when wide open: the usual
+/// form of an effect leaves that unknown, or has others named for it.
 #[test]
 fn what_an_effect_has_beyond_its_usual_form_is_no_second_effect() {
     let questions = [
         (901, "viscous-friction", Fidelity::Structured, false),
+        (903, "pin-friction", Fidelity::Structured, false),
         (902, "lower-flow-scale", Fidelity::Structured, false),
         (902, "return-line-loss", Fidelity::Structured, false),
     ];

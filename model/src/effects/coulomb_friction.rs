@@ -48,8 +48,8 @@ pub static SMOOTH: Described = Described {
     refines: false,
     attach: |values, _, sites| {
         let force_n = values[0];
-        sites.friction.push(Box::new(move |speed_m_s, _| {
-            force_n * (speed_m_s / TRANSITION_SPEED_M_S).tanh()
+        sites.friction.push(Box::new(move |state, _| {
+            force_n * (state.speed_m_s / TRANSITION_SPEED_M_S).tanh()
         }));
     },
 };

@@ -61,7 +61,8 @@ pub static STRIBECK_FRICTION: Described = Described {
 
 fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
     let (force_n, breakaway, speed_m_s) = (values[0], values[1], values[2] * 1e-3);
-    sites.friction.push(Box::new(move |v_m_s, _| {
+    sites.friction.push(Box::new(move |state, _| {
+        let v_m_s = state.speed_m_s;
         let factor = 1.0 + (breakaway - 1.0) * (-v_m_s.abs() / speed_m_s).exp();
         force_n * factor * (v_m_s / TRANSITION_SPEED_M_S).tanh()
     }));

@@ -81,7 +81,7 @@ pub static THICKENING: Described = Described {
 };
 
 fn oppose(coefficient_n_s_m: f64, sites: &mut Sites) {
-    sites
-        .friction
-        .push(Box::new(move |speed_m_s, _| coefficient_n_s_m * speed_m_s));
+    sites.friction.push(Box::new(move |state, _| {
+        coefficient_n_s_m * state.speed_m_s
+    }));
 }

@@ -60,7 +60,7 @@ impl Forces<'_> {
     /// Friction against the motion, N, in a state under a weight's force, N.
     #[must_use]
     pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {
-        self.sites.friction_n(state.speed_m_s, weight_n)
+        self.sites.friction_n(state, weight_n)
             + self.sites.bristles_n(state.bristles_m)
             + self.moment.term(Place::Friction, state, |_| ())
     }

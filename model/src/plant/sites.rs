@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::signals::Signals;
-use super::{Linkage, Reading};
+use super::{Linkage, MechanicalState, Reading};
 use crate::expression::Place;
 use crate::model::Constants;
 
@@ -68,8 +68,8 @@ pub trait SensorStage: Send + Sync + std::fmt::Debug {
 
 /// A quantity as a function of one other; units where it is used.
 pub type Law = Box<dyn Fn(f64) -> f64 + Send + Sync>;
-/// A force on the piston against its motion, N, from its speed, m/s, and the weight's force on it, N.
-pub type FrictionForce = Box<dyn Fn(f64, f64) -> f64 + Send + Sync>;
+/// A force on the piston against its motion, N, from its state and the weight's force on it, N.
+pub type FrictionForce = Box<dyn Fn(&MechanicalState, f64) -> f64 + Send + Sync>;
 
 /// A relief valve whose pressure rises with the flow through it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -341,11 +341,11 @@ impl Sites {
         values.filter(|value| value.is_finite()).sum()
     }
 
-    /// Sum of the friction forces, N, at a piston speed, m/s, under a weight's force, N.
+    /// Sum of the friction forces, N, in a state under a weight's force, N.
     #[must_use]
-    pub fn friction_n(&self, speed_m_s: f64, weight_n: f64) -> f64 {
+    pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {
         let forces = self.friction.iter();
-        forces.map(|force| force(speed_m_s, weight_n)).sum()
+        forces.map(|force| force(state, weight_n)).sum()
     }
 
     /// Force of bristles, N, that are bent so far, m.
