@@ -175,8 +175,9 @@ fn weigh_with(
 /// One sigma of what no number of samples takes away from a parameter of an effect, in its unit.
 ///
 /// A log tells where a ramp of the current bends only to within a sample, and the last of its noise holds a play open:
-/// some 0.9 mA, and as much time as a tenth of a sample. Loads, areas and tables are good to half a percent. What part
-/// of a lag is of which kind is known no better than as much time.
+/// some 0.9 mA, and as much time as a tenth of a sample. Loads, areas and tables are good to half a percent, here and
+/// there, and so is what a shape says of the one against the other. What part of a lag is of which kind is known no
+/// better than as much time.
 pub(super) fn systematic(added: &AddedEffect, parameter: usize) -> f64 {
     let (parameters, values) = (added.effect.parameters(), &added.values);
     let absolute = match (parameters[0].unit, parameters[parameter].unit) {
@@ -185,7 +186,9 @@ pub(super) fn systematic(added: &AddedEffect, parameter: usize) -> f64 {
         ("s", "") if values[0] > 0.0 => SYSTEMATIC_S / values[0],
         _ => 0.0,
     };
-    absolute.hypot(SYSTEMATIC_SHARE * values[parameter])
+    let is_relative = parameter > 0 && parameters[parameter].unit.is_empty();
+    let whole = if is_relative { 1.0 } else { 0.0 };
+    absolute.hypot(SYSTEMATIC_SHARE * values[parameter].abs().max(whole))
 }
 
 /// A parameter's signature, a step of one scale, with all that is free besides it projected out.
