@@ -297,10 +297,12 @@ fn drop_needless(
     None
 }
 
-/// States the steps from the first one on whose effect has another form now as they would have been with that.
+/// States the steps from the first one on whose effect is another now, or has another form, as they would have been
+/// with that.
 fn restate(experiment: &Experiment, model: &Model, after: &Fit, given: usize, steps: &mut [Step]) {
     let effects = &after.estimate.effects[given..];
-    let other = |(added, step): (&AddedEffect, &Step)| added.effect.form() != step.effect.form();
+    let name = |effect: &dyn Effect| (effect.id(), effect.form());
+    let other = |(added, step): (&AddedEffect, &Step)| name(added.effect) != name(step.effect);
     let Some(first) = effects.iter().zip(steps.iter()).position(other) else {
         return;
     };
@@ -374,7 +376,7 @@ fn finish(
         return finish(experiment, model, before, lighter, (steps, swaps));
     }
     if let Some(index) = likelier {
-        let after = swap(experiment, model, given, &mut steps[..=index]).unwrap_or(after);
+        let after = swap(experiment, model, given, &mut steps, index).unwrap_or(after);
         return finish(experiment, model, before, after, (steps, swaps - 1));
     }
     let cells = cells_since(&cells(experiment, &before), experiment, &after);
@@ -410,22 +412,22 @@ fn is_likelier(alternative: &Alternative) -> bool {
     alternative.likelier > LIKELIER
 }
 
-/// Puts what is likelier now in the place of the last of some steps: while a later effect was missing, the one that
-/// could take on a little of it came first. Returns the model after all steps; `None` if there is nothing to put.
-fn swap(experiment: &Experiment, model: &Model, given: usize, steps: &mut [Step]) -> Option<Fit> {
-    let (step, earlier) = steps.split_last_mut()?;
-    let alternatives = std::mem::take(&mut step.indistinguishable).into_iter();
+/// Puts what is likelier now in the place of one of some steps: while a later effect was missing, the one that could
+/// take on a little of it came first. Returns the model after all steps; `None` if there is nothing to put.
+fn swap(
+    experiment: &Experiment,
+    model: &Model,
+    given: usize,
+    steps: &mut [Step],
+    index: usize,
+) -> Option<Fit> {
+    let alternatives = std::mem::take(&mut steps[index].indistinguishable).into_iter();
     let best = alternatives.max_by(|a, b| a.likelier.total_cmp(&b.likelier))?;
-    let place = given + earlier.len();
     let mut estimate = best.fit.estimate.clone();
     let effect = estimate.effects.pop()?;
-    estimate.effects.insert(place, effect);
-    let after = evaluate(experiment, model, estimate.clone());
-    estimate.effects.truncate(place + 1);
-    step.effect = best.effect;
-    step.fit = refine(experiment, model, estimate);
-    step.error_after = step.fit.error();
-    step.held_out_after = held_out(experiment, model, &step.fit);
+    estimate.effects.insert(given + index, effect);
+    let after = evaluate(experiment, model, estimate);
+    restate(experiment, model, &after, given, steps);
     Some(after)
 }
 

@@ -3,6 +3,8 @@
 //! While a second effect is missing, that form of the first comes first which takes on most of it: a leak that seems to
 //! thin with the oil where a compensator droops too. And what a form lacks shows best once nothing else is missing.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::adequacy::{Cell, adequate, cells_since};
@@ -29,14 +31,18 @@ pub(super) fn reformed(
 ) -> Option<Fit> {
     let cells = cells_since(before, experiment, fit);
     let enough = adequate(experiment, &cells, fit);
-    let effects = fit.estimate.effects.len();
+    let last = fit.estimate.effects.len() - 1;
     let mut reformed = all_plain(experiment, model, fit, first);
-    // What one takes back another may have lacked: once more around, if anything changed.
-    for index in (first..effects).chain(first..effects) {
-        let present = reformed.as_ref().unwrap_or(fit);
-        if let Some(likelier) = likelier_form(experiment, model, present, index, enough) {
-            reformed = Some(likelier);
-        }
+    let once_around = |reformed: Option<Fit>, indices: Range<usize>| {
+        indices.fold(reformed, |reformed, index| {
+            let present = reformed.as_ref().unwrap_or(fit);
+            likelier_form(experiment, model, present, index, enough).or(reformed)
+        })
+    };
+    // The forms of the last one have just been tried. But what one takes back another may have lacked.
+    reformed = once_around(reformed, first..last);
+    if reformed.is_some() {
+        reformed = once_around(reformed, first..last + 1);
     }
     reformed
 }
