@@ -43,6 +43,7 @@ pub(super) struct Grid {
 
 /// Sizes with the shape at its upper end: a spool that sticks on a ramp and jumps by the whole band comes to the same
 /// places again and again, so that the smaller a band is, the closer it has to be met.
+#[derive(Clone, Copy)]
 struct Needles {
     /// Smallest and largest size, in typical sizes.
     sizes: [f64; 2],
@@ -51,6 +52,7 @@ struct Needles {
 }
 
 /// How far a size is from the one before.
+#[derive(Clone, Copy)]
 enum Step {
     /// A share of it.
     Share(f64),
@@ -59,6 +61,7 @@ enum Step {
 }
 
 /// The runs that tell most of an effect.
+#[derive(Clone, Copy)]
 enum Telling {
     /// Those that a size changes which is a little off.
     Changed,
@@ -67,7 +70,7 @@ enum Telling {
 }
 
 /// All grids, those first that take least.
-pub(super) static GRIDS: [&Grid; 3] = [&RINGING, &PLACES, &JUMPS];
+pub(super) static GRIDS: [&Grid; 4] = [&RINGING, &PLACES, &PLACES_AT_REST, &JUMPS];
 
 /// For jumps and bounces.
 pub(super) static JUMPS: Grid = Grid {
@@ -116,6 +119,12 @@ pub(super) static PLACES: Grid = Grid {
     closer: &[(0.04, 0.125)],
     quasi_static: false,
     hinted: false,
+};
+
+/// The same where nothing rings: secants see what stands at the place, though not how stiff it is.
+pub(super) static PLACES_AT_REST: Grid = Grid {
+    hinted: true,
+    ..PLACES
 };
 
 /// Sizes of each shape that are looked at more closely, and of all shapes.

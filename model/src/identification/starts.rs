@@ -5,7 +5,7 @@ use super::experiment::Experiment;
 use super::fit::sketch;
 use super::jacobian::huber_residuals;
 use super::lateness::in_place_of_clocks;
-use super::scan::{Grid, JUMPS, PLACES, RINGING, scan};
+use super::scan::{Grid, JUMPS, PLACES, PLACES_AT_REST, RINGING, scan};
 use super::shortlist::{FAR, STARTS, Shortlist};
 use crate::campaign::Channel;
 use crate::effects::{AddedEffect, Effect, Parameter, Search};
@@ -275,8 +275,9 @@ pub(super) fn valleys(experiment: &Experiment, effect: &dyn Effect) -> Option<&'
     match effect.search() {
         Search::Jumps => Some(&JUMPS),
         Search::Places if experiment.ringing => Some(&PLACES),
+        Search::Places => Some(&PLACES_AT_REST),
         Search::Secants if experiment.ringing && pressure_alone => Some(&RINGING),
-        Search::Places | Search::Secants => None,
+        Search::Secants => None,
     }
 }
 
