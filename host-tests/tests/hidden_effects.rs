@@ -161,6 +161,7 @@ fn a_leak_of_thin_oil_leaves_nothing_unknown() {
 fn the_ground_that_a_hitch_rests_on_is_named_and_nothing_beside_it() {
     let questions = [
         (917, "ground-contact", Fidelity::Faithful, false),
+        (901, "ground-contact", Fidelity::Structured, false),
         (903, "ground-contact", Fidelity::Structured, false),
         (906, "ground-contact", Fidelity::Structured, false),
     ];

@@ -39,6 +39,9 @@ pub(super) struct Grid {
     quasi_static: bool,
     /// Whether secants see something of it: what they find next to nothing of is not there.
     pub hinted: bool,
+    /// Share of the telling runs' loss without the effect that it may leave at most to be looked at more closely. While
+    /// loads and clocks stand in for what is missing, the right place may leave nearly all of a loss that is bounded.
+    leaves: f64,
 }
 
 /// Sizes with the shape at its upper end: a spool that sticks on a ramp and jumps by the whole band comes to the same
@@ -88,6 +91,7 @@ pub(super) static JUMPS: Grid = Grid {
     closer: &[(0.01, 0.25), (0.002, 0.05), (0.000_4, 0.01)],
     quasi_static: true,
     hinted: true,
+    leaves: 0.85,
 };
 
 /// For ringing: a valley reaches a seventh of the size to either side, and descending from there needs no closer look.
@@ -103,6 +107,7 @@ pub(super) static RINGING: Grid = Grid {
     closer: &[],
     quasi_static: false,
     hinted: false,
+    leaves: f64::INFINITY,
 };
 
 /// For what is met somewhere: what stands at the place or comes down on it is right within a few millimetres, and what
@@ -119,6 +124,7 @@ pub(super) static PLACES: Grid = Grid {
     closer: &[(0.04, 0.125)],
     quasi_static: false,
     hinted: false,
+    leaves: f64::INFINITY,
 };
 
 /// The same where nothing rings: secants see what stands at the place, though not how stiff it is.
@@ -133,10 +139,6 @@ const LOOKED_AT: usize = 6;
 
 /// Sizes seen without the ringing, the best of them, that are looked at with it.
 const SEEN_RINGING: usize = 60;
-
-/// Share of their loss without the effect that it has to take on the telling runs to be looked at more closely: there is
-/// little else in them.
-const HARDLY: f64 = 0.85;
 
 /// Values of a closer look to either side.
 const TO_EITHER_SIDE: i32 = 5;
@@ -176,7 +178,10 @@ pub(super) fn scan(
     let mut best = apart(ranked, grid.apart);
     best.truncate(looked_at);
     let without: f64 = scan.telling.iter().map(|&run| failed[run]).sum();
-    if grid.hinted && best.first().is_none_or(|first| first.0 > HARDLY * without) {
+    if best
+        .first()
+        .is_none_or(|first| first.0 > grid.leaves * without)
+    {
         return Vec::new();
     }
     for &reach in grid.closer {
