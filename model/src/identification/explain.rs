@@ -179,13 +179,16 @@ pub fn diagnose(
 
 /// Effects that the plant can have and the estimate has not.
 pub(super) fn absent(model: &Model, estimate: &Estimate) -> Vec<&'static dyn Effect> {
-    let dynamics = model.constants().dynamics;
-    model
-        .catalogue()
-        .into_iter()
-        .filter(|effect| effect.needs().is_none_or(|needed| needed == dynamics))
+    possible(model)
         .filter(|effect| !has(estimate, *effect))
         .collect()
+}
+
+/// Effects that the plant can have.
+pub(super) fn possible(model: &Model) -> impl Iterator<Item = &'static dyn Effect> {
+    let dynamics = model.constants().dynamics;
+    let effects = model.catalogue().into_iter();
+    effects.filter(move |effect| effect.needs().is_none_or(|needed| needed == dynamics))
 }
 
 fn has(estimate: &Estimate, effect: &dyn Effect) -> bool {

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::adequacy::{Cell, adequate, cells_since};
 use super::candidate::weigh;
 use super::experiment::Experiment;
-use super::explain::with_last;
+use super::explain::{possible, with_last};
 use super::fit::{Fit, evaluate, refine};
 use super::trials::Odds;
 use crate::effects::Effect;
@@ -120,12 +120,8 @@ fn other_forms(
     effect: &'static dyn Effect,
     enough: bool,
 ) -> Vec<&'static dyn Effect> {
-    let dynamics = model.constants().dynamics;
-    model
-        .catalogue()
-        .into_iter()
+    possible(model)
         .filter(|form| form.id() == effect.id() && form.form() != effect.form())
-        .filter(|form| form.needs().is_none_or(|needed| needed == dynamics))
         .filter(|form| !enough || said(*form) <= said(effect))
         .collect()
 }

@@ -78,19 +78,19 @@ pub fn suggest(
     }
     let last = found.steps.last().map(|step| step.held_out_after);
     let present = last.unwrap_or_else(|| held_out(experiment, model, &found.before));
-    let excess = |left: f64| (left * left - 1.0).max(0.0);
+    let excess = |left: HeldOut| left.excess().max(0.0);
     let mut tried = trials(experiment, model, found, &found.before, progress);
     let least = tried
         .iter()
-        .map(|trial| trial.held_out.loss)
-        .fold(present.loss, f64::min);
-    if !found.steps.is_empty() && excess(least) > SETTLED * excess(present.loss) {
+        .map(|trial| excess(trial.held_out))
+        .fold(excess(present), f64::min);
+    if !found.steps.is_empty() && least > SETTLED * excess(present) {
         tried.extend(trials(experiment, model, found, &found.after, progress));
     }
     let best = tried
         .into_iter()
         .min_by(|a, b| a.score().total_cmp(&b.score()))?;
-    let left = excess(best.held_out.loss) / excess(present.loss);
+    let left = excess(best.held_out) / excess(present);
     (left < 1.0 - WORTH_OFFERING).then(|| best.suggestion(experiment, model, found, present))
 }
 
