@@ -83,7 +83,7 @@ const fn constant(
 
 /// Every number but the characteristics.
 #[rustfmt::skip]
-pub static CONSTANTS: [Constant; 29] = [
+pub static CONSTANTS: [Constant; 27] = [
     constant(("pump", "theoretical_flow_lpm"), M3_S_PER_LPM, 0.1..=1000.0, |c| &mut c.pump.theoretical_flow_m3_s),
     constant(("pump", "volumetric_efficiency"), 1.0, 0.01..=1.0, |c| &mut c.pump.volumetric_efficiency),
     constant(("relief_valve", "set_pressure_bar"), PA_PER_BAR, 1.0..=1000.0, |c| &mut c.relief_valve.set_pressure_pa),
@@ -98,8 +98,6 @@ pub static CONSTANTS: [Constant; 29] = [
     constant(("cylinder", "stroke_mm"), M_PER_MM, 5.0..=5000.0, |c| &mut c.cylinder.stroke_m),
     constant(("cylinder", "dead_volume_l"), M3_PER_L, 0.001..=100.0, |c| &mut c.cylinder.dead_volume_m3),
     constant(("cylinder", "viscous_friction_n_s_m"), 1.0, 0.0..=1e7, |c| &mut c.cylinder.viscous_friction_n_s_m),
-    constant(("cylinder", "stop_stiffness_n_m"), 1.0, 1e4..=1e10, |c| &mut c.cylinder.stop_stiffness_n_m),
-    constant(("cylinder", "stop_damping_n_s_m"), 1.0, 0.0..=1e8, |c| &mut c.cylinder.stop_damping_n_s_m),
     constant(("oil", "density_kg_m3"), 1.0, 500.0..=1500.0, |c| &mut c.oil.density_kg_m3),
     constant(("oil", "bulk_modulus_pa"), 1.0, 1e7..=1e10, |c| &mut c.oil.bulk_modulus_pa),
     constant(("linkage", "rocker_arm_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.rocker_arm_m),
@@ -156,8 +154,6 @@ pub fn unset() -> Constants {
             stroke_m: UNSET,
             dead_volume_m3: UNSET,
             viscous_friction_n_s_m: UNSET,
-            stop_stiffness_n_m: UNSET,
-            stop_damping_n_s_m: UNSET,
         },
         oil: Oil {
             density_kg_m3: UNSET,

@@ -11,10 +11,6 @@ pub struct Cylinder {
     pub dead_volume_m3: f64,
     /// Viscous friction at the piston, N s/m; used by the dynamic plant.
     pub viscous_friction_n_s_m: f64,
-    /// Stiffness of the mechanical end stops, N/m; used by the dynamic plant.
-    pub stop_stiffness_n_m: f64,
-    /// Damping of the mechanical end stops while in contact, N s/m; used by the dynamic plant.
-    pub stop_damping_n_s_m: f64,
 }
 
 impl Cylinder {
@@ -30,17 +26,12 @@ impl Cylinder {
         self.dead_volume_m3 + self.area_m2() * piston_m
     }
 
-    /// Force of the end stops on the piston, N, positive outwards: a spring and damper that can only push.
+    /// Whether an end stop takes what drives a piston at `piston_m` that moves with `speed_m_s` and would be accelerated by
+    /// `acceleration_m_s2`, m, m/s, m/s2.
     #[must_use]
-    pub fn stop_force_n(&self, piston_m: f64, speed_m_s: f64) -> f64 {
-        if piston_m < 0.0 {
-            (-self.stop_stiffness_n_m * piston_m - self.stop_damping_n_s_m * speed_m_s).max(0.0)
-        } else if piston_m > self.stroke_m {
-            (-self.stop_stiffness_n_m * (piston_m - self.stroke_m)
-                - self.stop_damping_n_s_m * speed_m_s)
-                .min(0.0)
-        } else {
-            0.0
-        }
+    pub fn stops(&self, piston_m: f64, speed_m_s: f64, acceleration_m_s2: f64) -> bool {
+        let inwards = speed_m_s <= 0.0 && acceleration_m_s2 <= 0.0;
+        let outwards = speed_m_s >= 0.0 && acceleration_m_s2 >= 0.0;
+        (piston_m <= 0.0 && inwards) || (piston_m >= self.stroke_m && outwards)
     }
 }

@@ -1,13 +1,16 @@
 //! The dynamic plant: oil compressibility, inertia, viscous friction, end stops.
 //!
 //! `p' = (Q_lift - Q_lower - Q_leak - Q_hose - A v) / (V(x)/E + C)`,
-//! `M(x) v' = p A - F_weight(x) - M'(x) v^2 / 2 - b v - F_friction(v) + F_stop(x, v)`, `x' = v` (RIG.md). Classical
+//! `M(x) v' = p A - F_weight(x) - M'(x) v^2 / 2 - b v - F_friction(v)`, `x' = v` (RIG.md). Classical
 //! Runge-Kutta of order four: the ringing at 10 to 40 Hz wants a high order, the noisy measured current makes step
 //! control pointless, and a fixed rhythm keeps the result smooth in the parameters. Where a nearly drained orifice makes
 //! the pressure stiff, the step is cut to stay stable.
 //!
 //! Oil does not pull: a piston that flies on when its valve shuts leaves a void behind, which has to close before the
 //! pressure rises again. Within a step the pressure runs on below the vacuum as the account of that void.
+//!
+//! The end stops are stiff: they take the piston's speed, and what pushes it on. Neither gives way under the 70 kN of a
+//! dead-headed pump by as much as the oil does, so a spring would say nothing but how to step it.
 
 use super::MechanicalState;
 use super::circuit::{Circuit, Openings};
@@ -53,6 +56,9 @@ const STABLE: f64 = 1.5;
 /// To within how much a working compensator keeps its margin in the solution of the circuit, Pa.
 const TOLERANCE_PA: f64 = 100.0;
 
+/// Drop, Pa, under which an orifice's flow no longer counts.
+const SMALLEST_DROP_PA: f64 = 1000.0;
+
 /// A cylinder cannot hold more than a vacuum, Pa gauge.
 const VACUUM_PA: f64 = -1.0e5;
 
@@ -88,8 +94,13 @@ fn derivative(
     let force_n = pressure_pa * area_m2 - weight_n + forces.ground_n(state.piston_m, speed_m_s)
         - slope * speed_m_s * speed_m_s
         - cylinder.viscous_friction_n_s_m * speed_m_s
-        - forces.friction_n(&state, weight_n)
-        + cylinder.stop_force_n(state.piston_m, speed_m_s);
+        - forces.friction_n(&state, weight_n);
+    let stopped = cylinder.stops(state.piston_m, speed_m_s, force_n);
+    let (speed_m_s, force_n) = if stopped {
+        (0.0, 0.0)
+    } else {
+        (speed_m_s, force_n)
+    };
     let gained_m3_s =
         flows.net_m3_s() - hose.creep_m3_s(state.wall_behind_pa) - area_m2 * speed_m_s;
     let rise_pa_s = stiffness_pa_m3(circuit, state.piston_m, pressure_pa) * gained_m3_s;
@@ -136,6 +147,23 @@ fn torn(model: &Model, state: MechanicalState) -> MechanicalState {
     }
 }
 
+/// The state with a piston beyond a stop put back to it, at rest; the oil has less room for it, or more.
+fn within_stops(circuit: &Circuit, state: MechanicalState) -> MechanicalState {
+    let cylinder = &circuit.constants.cylinder;
+    let piston_m = state.piston_m.clamp(0.0, cylinder.stroke_m);
+    let beyond_m = state.piston_m - piston_m;
+    if beyond_m == 0.0 {
+        return state;
+    }
+    let stiffness = stiffness_pa_m3(circuit, piston_m, state.pressure_pa.max(VACUUM_PA));
+    MechanicalState {
+        piston_m,
+        speed_m_s: 0.0,
+        pressure_pa: state.pressure_pa + stiffness * cylinder.area_m2() * beyond_m,
+        ..state
+    }
+}
+
 fn moved(state: MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState {
     MechanicalState {
         piston_m: state.piston_m + dt_s * rate[0],
@@ -146,35 +174,48 @@ fn moved(state: MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState
     }
 }
 
-/// How fast the orifices alone would settle the pressure, 1/s: `E/V dQ/dp`, with `dQ/dp = Q / 2 dp` of each orifice
-/// whose drop hangs on the cylinder pressure.
-fn settling_rate(circuit: &Circuit, openings: Openings, state: MechanicalState) -> f64 {
+/// How fast the orifices alone settle the pressure within a step, 1/s: `E/V dQ/dp`, with `dQ/dp = Q / 2 dp` of each
+/// orifice whose drop hangs on the cylinder pressure. A flow goes with the root of its drop, and ends the more abruptly
+/// the smaller the drop gets: what counts is the drop that the step comes to.
+fn settling_rate(circuit: &Circuit, openings: Openings, state: MechanicalState, dt_s: f64) -> f64 {
     let constants = circuit.constants;
     let flows = circuit.solve(openings, &state);
-    let slope = |flow_m3_s: f64, drop_pa: f64, transition_pa: f64| {
-        0.5 * flow_m3_s / drop_pa.max(0.5 * transition_pa).max(1.0)
+    let stiffness =
+        constants.oil.bulk_modulus_pa / constants.cylinder.volume_m3(state.piston_m.max(0.0));
+    let gained_m3_s = flows.net_m3_s() - constants.cylinder.area_m2() * state.speed_m_s;
+    let rise_pa = stiffness * gained_m3_s * dt_s;
+    let slope = |flow_m3_s: f64, drop_pa: f64, lost_pa: f64, transition_pa: f64| {
+        let least_pa = (0.5 * transition_pa).max(SMALLEST_DROP_PA);
+        let [before_pa, after_pa] =
+            [drop_pa, drop_pa - lost_pa.max(0.0)].map(|pa| pa.max(least_pa));
+        0.5 * flow_m3_s / (before_pa * after_pa).sqrt()
     };
     let lower = slope(
         flows.lower_m3_s,
         state.pressure_pa,
+        -rise_pa,
         constants.lower_valve.transition_drop_pa,
     );
-    // A working compensator keeps the lift valve's drop whatever the cylinder pressure is.
+    // A working compensator keeps the lift valve's drop whatever the cylinder pressure is, up to the relief valve's.
     let drooped_pa = circuit.sites.margin_lost_to_flow_pa_s_m3 * flows.lift_m3_s;
-    let compensated =
-        flows.pump_pressure_pa + drooped_pa >= circuit.lifting_pressure_pa(&state) - TOLERANCE_PA;
-    let lift = if compensated {
+    let wanted_pa = circuit.lifting_pressure_pa(&state);
+    let compensated = flows.pump_pressure_pa + drooped_pa >= wanted_pa - TOLERANCE_PA;
+    let room_pa = match compensated {
+        true => (constants.relief_valve.set_pressure_pa - wanted_pa).max(0.0),
+        false => 0.0,
+    };
+    let lift = if compensated && rise_pa <= room_pa {
         0.0
     } else {
         let drop_pa = circuit.lift_drop_pa(flows.pump_pressure_pa, state.pressure_pa);
         slope(
             flows.lift_m3_s,
             drop_pa,
+            rise_pa - room_pa,
             constants.lift_valve.transition_drop_pa,
         )
     };
-    let volume_m3 = constants.cylinder.volume_m3(state.piston_m.max(0.0));
-    (lower + lift) * constants.oil.bulk_modulus_pa / volume_m3
+    (lower + lift) * stiffness
 }
 
 /// How fast a hose's wall settles the pressure and itself, 1/s.
@@ -233,7 +274,7 @@ pub fn step(
     let widest = if first.wider_than(&last) { first } else { last };
     let settling = match widest.shut() {
         true => 0.0,
-        false => settling_rate(circuit, widest, state),
+        false => settling_rate(circuit, widest, state, dt_s),
     };
     let rate = creeping_rate(circuit, state).max(settling);
     let pieces = (rate * dt_s / STABLE).ceil().clamp(1.0, 64.0) as usize;
@@ -284,7 +325,10 @@ fn runge_kutta(
     let k3 = rate(moved(state, k2, 0.5 * dt_s), openings[1]);
     let k4 = rate(moved(state, k3, dt_s), openings[2]);
     let mean = std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
-    let end = torn(forces.model, moved(state, mean, dt_s));
+    let end = torn(
+        forces.model,
+        within_stops(circuit, moved(state, mean, dt_s)),
+    );
     // A force that no integrator can follow, from a term or from constants far off: the plant stands still.
     if end.is_finite() { end } else { stopped }
 }
