@@ -35,6 +35,7 @@ mod load_arm;
 mod load_inertia;
 mod lowering_leakage;
 mod oil_viscosity;
+mod over_the_stroke;
 mod pin_backlash;
 mod pin_friction;
 mod pressure_sensor_offset;
@@ -95,7 +96,8 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &pin_friction::UNEVEN,
     &pin_backlash::PIN_BACKLASH,
     &load_inertia::LOAD_INERTIA,
-    &load_arm::LOAD_ARM,
+    &load_arm::WITH_WEIGHT,
+    &load_arm::WITH_LOAD,
     &ground_contact::SPRINGY,
     &ground_contact::DAMPED,
     &angle_sensor_gain::ANGLE_SENSOR_GAIN,

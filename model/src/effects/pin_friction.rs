@@ -5,7 +5,7 @@
 //! piston's way, `e = sum mu r |F_pin| |dphi/dx| / F_weight`, and so with the stroke: a slope and a bow over it say how.
 
 use super::described::Described;
-use super::{Parameter, Search};
+use super::{Parameter, Search, over_the_stroke};
 use crate::campaign::Channel;
 
 use super::coulomb_friction::TRANSITION_SPEED_M_S;
@@ -21,19 +21,6 @@ const SHARE: Parameter = Parameter {
     low: 0.0,
     high: 0.5,
 };
-
-const fn over_the_stroke(name: &'static str, meaning: &'static str) -> Parameter {
-    Parameter {
-        name,
-        unit: "",
-        key: name,
-        meaning,
-        null: 0.0,
-        typical: 0.1,
-        low: -1.0,
-        high: 1.0,
-    }
-}
 
 /// Friction in the pins of the linkage.
 pub static EVEN: Described = Described {
@@ -66,23 +53,27 @@ pub static UNEVEN: Described = Described {
          elsewhere in the stroke by another share",
     parameters: &[
         SHARE,
-        over_the_stroke(
+        over_the_stroke::shape(
             "slope",
             "growth of the share from mid stroke to the upper end",
+            1.0,
         ),
-        over_the_stroke("bow", "growth of the share towards both ends of the stroke"),
+        over_the_stroke::shape(
+            "bow",
+            "growth of the share towards both ends of the stroke",
+            1.0,
+        ),
     ],
     refines: true,
     attach: |values, conditions, sites| rub(values[0], [values[1], values[2]], conditions, sites),
     ..EVEN
 };
 
-fn rub(share: f64, [slope, bow]: [f64; 2], conditions: RunConditions<'_>, sites: &mut Sites) {
+fn rub(share: f64, shape: [f64; 2], conditions: RunConditions<'_>, sites: &mut Sites) {
     let stroke_m = conditions.constants.cylinder.stroke_m;
     sites.friction.push(Box::new(move |state, weight_n| {
-        let z = 2.0 * state.piston_m / stroke_m - 1.0;
-        // Legendre's polynomials: the share stays the mean over the stroke. Friction never drives.
-        let there = (1.0 + slope * z + 0.5 * bow * (3.0 * z * z - 1.0)).max(0.0);
+        // Friction never drives.
+        let there = over_the_stroke::over_mean(shape, state.piston_m, stroke_m).max(0.0);
         share * there * weight_n * (state.speed_m_s / TRANSITION_SPEED_M_S).tanh()
     }));
 }

@@ -31,7 +31,8 @@ impl Forces<'_> {
     #[must_use]
     pub fn weight_at_n(&self, dh_dx: f64, state: &MechanicalState) -> f64 {
         let masses = &self.model.constants().masses;
-        let factor = self.sites.weight_factor(state.piston_m);
+        let load_share = masses.load_share(self.rig.load_kg);
+        let factor = self.sites.weight_factor(state.piston_m, load_share);
         masses.weight_force_n(self.rig.load_kg, dh_dx) * factor
             + self.moment.term(Place::Weight, state, |_| ())
     }

@@ -18,6 +18,12 @@ impl Masses {
         (load_kg + self.dead_weight_kg) * GRAVITY_M_S2 * dh_dx
     }
 
+    /// What part of the weight is the load's, in kg; the rest is dead weight.
+    #[must_use]
+    pub fn load_share(&self, load_kg: f64) -> f64 {
+        load_kg / (load_kg + self.dead_weight_kg)
+    }
+
     /// Inertia at the piston, kg.
     #[must_use]
     pub fn inertia_kg(&self, load_kg: f64, dh_dx: f64) -> f64 {

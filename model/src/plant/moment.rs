@@ -86,8 +86,9 @@ impl Moment<'_> {
             signals.travel_m = state.piston_m;
             signals.speed_m_s = state.speed_m_s;
             signals.rocker_angle_rad = posture.rocker_angle_rad;
+            let load_share = masses.load_share(signals.load_kg);
             signals.weight_n = masses.weight_force_n(signals.load_kg, posture.dh_dx)
-                * self.sites.weight_factor(state.piston_m);
+                * self.sites.weight_factor(state.piston_m, load_share);
         }
         signals
     }

@@ -68,6 +68,8 @@ pub trait SensorStage: Send + Sync + std::fmt::Debug {
 
 /// A quantity as a function of one other; units where it is used.
 pub type Law = Box<dyn Fn(f64) -> f64 + Send + Sync>;
+/// A factor on the weight's force, from the piston travel, m, and the load's share in the weight; the rest is the links'.
+pub type WeightFactor = Box<dyn Fn(f64, f64) -> f64 + Send + Sync>;
 /// A force on the piston against its motion, N, from its state and the weight's force on it, N.
 pub type FrictionForce = Box<dyn Fn(&MechanicalState, f64) -> f64 + Send + Sync>;
 
@@ -258,8 +260,8 @@ pub struct Sites {
     pub friction: Vec<FrictionForce>,
     /// Friction at the piston that remembers.
     pub bristles: Option<Bristles>,
-    /// Factors on the weight's force, from the piston travel, m.
-    pub weight_factor: Vec<Law>,
+    /// Factors on the weight's force.
+    pub weight_factor: Vec<WeightFactor>,
     /// Inertia that comes on top of the model's own, as a share of load and dead weight.
     pub inertia_share: f64,
     /// Longest step, s, that follows what is sudden: a pressure that goes with the change of speed over the last step,
@@ -362,10 +364,11 @@ impl Sites {
             .map_or(0.0, |bristles| bristles.bent_m(before_m, moved_m, dt_s))
     }
 
-    /// Factor on the weight's force at a piston travel, m.
+    /// Factor on the weight's force at a piston travel, m, if the load makes so much of the weight.
     #[must_use]
-    pub fn weight_factor(&self, piston_m: f64) -> f64 {
-        product(&self.weight_factor, piston_m)
+    pub fn weight_factor(&self, piston_m: f64, load_share: f64) -> f64 {
+        let factors = self.weight_factor.iter();
+        factors.map(|factor| factor(piston_m, load_share)).product()
     }
 
     /// Pressure behind the lowering valve, Pa, at a flow through it, m3/s.
