@@ -87,8 +87,9 @@ fn derivative(
     let masses = &circuit.constants.masses;
     let load_kg = forces.rig.load_kg;
     let heavier = 1.0 + circuit.sites.inertia_share;
-    let inertia_kg = masses.inertia_kg(load_kg, dh_dx) * heavier;
-    let slope = masses.half_inertia_slope_kg_m(load_kg, dh_dx, d2h_dx2_1_m) * heavier;
+    let (shaft_kg, shaft_kg_m) = forces.shaft_inertia_kg(state.piston_m);
+    let inertia_kg = masses.inertia_kg(load_kg, dh_dx) * heavier + shaft_kg;
+    let slope = masses.half_inertia_slope_kg_m(load_kg, dh_dx, d2h_dx2_1_m) * heavier + shaft_kg_m;
     let speed_m_s = state.speed_m_s;
     let weight_n = forces.weight_at_n(dh_dx, &state);
     let force_n = pressure_pa * area_m2 - weight_n + forces.ground_n(state.piston_m, speed_m_s)

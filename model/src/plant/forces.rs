@@ -37,6 +37,21 @@ impl Forces<'_> {
             + self.moment.term(Place::Weight, state, |_| ())
     }
 
+    /// Inertia at the piston, kg, of what turns with the rocker shaft on top of the model's own, and half its derivative
+    /// over piston travel, kg/m: `J (dphi/dx)^2`.
+    #[must_use]
+    pub fn shaft_inertia_kg(&self, piston_m: f64) -> (f64, f64) {
+        let inertia_kg_m2 = self.sites.shaft_inertia_kg_m2;
+        if inertia_kg_m2 == 0.0 {
+            return (0.0, 0.0);
+        }
+        let (turn_rad_m, bend_rad_m2) = self.model.linkage().shaft_transmission(piston_m);
+        (
+            inertia_kg_m2 * turn_rad_m * turn_rad_m,
+            inertia_kg_m2 * turn_rad_m * bend_rad_m2,
+        )
+    }
+
     /// A state at a piston travel, with speed and pressure of the step before.
     #[must_use]
     pub fn before(&self, piston_m: f64) -> MechanicalState {

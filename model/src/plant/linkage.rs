@@ -169,6 +169,20 @@ impl Linkage {
         )
     }
 
+    /// Turn of the rocker shaft over piston travel, rad/m, and its derivative, rad/m2, at piston travel `piston_m`.
+    #[must_use]
+    pub fn shaft_transmission(&self, piston_m: f64) -> (f64, f64) {
+        let (node, share) = self.cell(piston_m);
+        let node = node.clamp(1, CELLS - 2);
+        let angle_rad = |node: usize| self.nodes[node].rocker_angle_rad;
+        let slope = |node: usize| (angle_rad(node + 1) - angle_rad(node - 1)) / (2.0 * self.step_m);
+        let (before, after) = (slope(node), slope(node + 1));
+        (
+            before + (after - before) * share,
+            (after - before) / self.step_m,
+        )
+    }
+
     /// Piston travel, m, at a rocker angle; angles beyond the swing are held at its end.
     #[must_use]
     pub fn piston_m(&self, rocker_angle_rad: f64) -> f64 {

@@ -264,6 +264,8 @@ pub struct Sites {
     pub weight_factor: Vec<WeightFactor>,
     /// Inertia that comes on top of the model's own, as a share of load and dead weight.
     pub inertia_share: f64,
+    /// Inertia on the rocker shaft that comes on top, kg m2, whatever the load.
+    pub shaft_inertia_kg_m2: f64,
     /// Longest step, s, that follows what is sudden: a pressure that goes with the change of speed over the last step,
     /// or a sensor that remembers; the quasi-static plant only.
     pub longest_step_s: f64,
@@ -300,6 +302,7 @@ impl Default for Sites {
             bristles: None,
             weight_factor: Vec::new(),
             inertia_share: 0.0,
+            shaft_inertia_kg_m2: 0.0,
             longest_step_s: f64::INFINITY,
             largest_change_a: f64::INFINITY,
             ground: None,

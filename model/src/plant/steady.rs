@@ -134,13 +134,16 @@ pub fn balance(
 
 /// Inertia at the piston that the effects give the quasi-static plant, kg.
 fn inertia_kg(forces: &Forces, piston_m: f64) -> f64 {
-    let share = forces.sites.inertia_share;
+    let (share, (shaft_kg, _)) = (
+        forces.sites.inertia_share,
+        forces.shaft_inertia_kg(piston_m),
+    );
     if share == 0.0 {
-        return 0.0;
+        return shaft_kg;
     }
     let dh_dx = forces.model.linkage().dh_dx(piston_m);
     let masses = &forces.model.constants().masses;
-    share * masses.inertia_kg(forces.rig.load_kg, dh_dx)
+    share * masses.inertia_kg(forces.rig.load_kg, dh_dx) + shaft_kg
 }
 
 /// One step of Heun's method from a known balance to the openings at its end; returns the piston's travel there, m.
