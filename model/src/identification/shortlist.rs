@@ -22,8 +22,8 @@ pub(super) const FAR: f64 = 1.3;
 /// from what is right already.
 const ASTRAY: f64 = 2.0;
 
-/// A sketch that leaves less than this share of the cost goes first anyway: other effects with many valleys are looked
-/// through for what it leaves.
+/// A sketch that leaves less than this share of the cost goes first anyway, unless another comes near: other effects with
+/// many valleys are looked through for what it leaves.
 const ARRIVED: f64 = 0.3;
 
 /// A sketch that leaves no more than this error leaves nothing to those that the screen thinks little of, nor to
@@ -152,11 +152,12 @@ impl Shortlist<'_> {
             };
             let arrived = least < ARRIVED * self.base.cost;
             let doubtful = limit(self.base.cost, least, DOUBTFUL);
+            let near = limit(self.base.cost, least, HOPELESS);
             let looked_for = |sketch: &&mut Sketch| {
                 let valleys = valleys(self.experiment, sketch.effect);
                 valleys.is_some_and(|valleys| std::ptr::eq(valleys, grid))
                     && (!grid.hinted || sketch.found.cost < doubtful)
-                    && (!arrived || sketch.effect.id() == leader)
+                    && (!arrived || sketch.effect.id() == leader || sketch.found.cost < near)
             };
             let explained = sketches
                 .par_iter_mut()
