@@ -24,6 +24,10 @@ const TOLERATED_RINGING: f64 = 4.0;
 /// that it works with are good to half a percent, and when a hitch comes down on the ground to within a sample.
 const EXACT: f64 = 0.03;
 
+/// The valves' tables are good to this share of a flow, and so is no model that is made of them any better: a tenth of a
+/// litre in sixty, which a bench's hundred samples would show.
+const TABLES: f64 = 0.002;
+
 /// Standard deviations that the largest of some hundred cells may lie above one.
 const DEVIATIONS: f64 = 6.0;
 
@@ -47,13 +51,15 @@ pub struct Cell {
     pub mean_square: f64,
     /// Mean square that is borne with however small the cell's scatter is.
     pub tolerated: f64,
+    /// Mean square that the tables' own error may add to noise.
+    pub of_tables: f64,
 }
 
 impl Cell {
     /// Mean square that noise alone would hardly exceed.
     #[must_use]
     pub fn limit(&self) -> f64 {
-        limit(self.samples, self.tolerated)
+        limit(self.samples, self.tolerated) + self.of_tables
     }
 
     /// How far the cell is beyond what noise explains; above one it is not noise.
@@ -66,8 +72,9 @@ impl Cell {
 /// Channel, regime, and kind and level of the bench.
 type Key = (usize, Regime, u8, i64);
 
-/// Bench, number of samples, and the sums of their residuals and of the squares.
-type Sums = (Bench, usize, f64, f64);
+/// Bench, number of samples, and the sums of their residuals, of the squares, and of the squares of the readings over the
+/// noise.
+type Sums = (Bench, usize, f64, f64, f64);
 
 /// Mean square of a channel, by its index, that is borne with.
 fn tolerated(experiment: &Experiment, channel: usize) -> f64 {
@@ -127,19 +134,23 @@ pub fn cells(experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
                 let at = channel * run.len() + sample;
                 if weights.scale[at] > 0.0 {
                     let key = (channel, run.regimes[sample], kind, level);
-                    let sum = sums.entry(key).or_insert((run.bench, 0, 0.0, 0.0));
+                    let sum = sums.entry(key).or_insert((run.bench, 0, 0.0, 0.0, 0.0));
+                    let reading = run.measured[channel]
+                        .as_ref()
+                        .map_or(0.0, |all| all[sample]);
                     sum.1 += 1;
                     sum.2 += residual[at];
                     sum.3 += residual[at] * residual[at];
+                    sum.4 += (reading * weights.scale[at]).powi(2);
                 }
             }
         }
     }
     let mut cells: Vec<Cell> = sums
         .into_iter()
-        .filter(|(_, (_, samples, _, _))| *samples >= FEWEST)
+        .filter(|(_, sums)| sums.1 >= FEWEST)
         .map(
-            |((channel, regime, _, _), (bench, samples, sum, square))| Cell {
+            |((channel, regime, _, _), (bench, samples, sum, square, readings))| Cell {
                 channel: Channel::ALL[channel],
                 regime,
                 bench,
@@ -147,6 +158,10 @@ pub fn cells(experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
                 mean: sum / samples as f64,
                 mean_square: square / samples as f64,
                 tolerated: tolerated(experiment, channel),
+                of_tables: match Channel::ALL[channel] {
+                    Channel::Flow => TABLES * TABLES * readings / samples as f64,
+                    _ => 0.0,
+                },
             },
         )
         .collect();
