@@ -76,6 +76,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &oil_viscosity::FLOW_NUMBER,
     &compensator_droop::WITH_LOAD,
     &compensator_droop::WITH_FLOW,
+    &compensator_droop::LAGGING,
     &check_valve_loss::THROTTLING,
     &check_valve_loss::LIFTING,
     &pump_leakage::PUMP_LEAKAGE,

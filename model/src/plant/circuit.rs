@@ -6,6 +6,9 @@ use super::{MechanicalState, OrificeValve, ValveCurve};
 use crate::expression::Place;
 use crate::model::Constants;
 
+/// Within how much of its pressure a lagging compensator is at rest, Pa.
+const AT_REST_PA: f64 = 10.0;
+
 /// How far a valve is open.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Opening {
@@ -244,17 +247,11 @@ impl Circuit<'_> {
     /// Lift flow, m3/s, and pump pressure, Pa.
     fn lift(&self, opening: Opening, state: &MechanicalState) -> (f64, f64) {
         let constants = self.constants;
-        let cylinder_pressure_pa = state.pressure_pa;
+        let wanted_pa = self.compensator_pa(opening, state);
         if opening.shut() {
-            return (0.0, constants.compensator.idle_pressure_pa());
+            return (0.0, wanted_pa);
         }
-        let opening = self.lift_opening(opening, state);
-        let flow_at = |pump_pressure_pa: f64| {
-            let drop_pa = self.lift_drop_pa(pump_pressure_pa, cylinder_pressure_pa);
-            self.lift_valve_m3_s(opening, drop_pa)
-        };
-        let without_flow_pa = self.lifting_pressure_pa(state);
-        let wanted_pa = self.relieved_pa(self.drooped_pa(without_flow_pa, &flow_at), &flow_at);
+        let flow_at = self.lift_flow_at(opening, state);
         let pumped_m3_s = |pump_pressure_pa: f64| {
             constants.pump.flow_m3_s() - self.sites.pump_slip_m3_s(pump_pressure_pa)
         };
@@ -263,7 +260,7 @@ impl Circuit<'_> {
             return (flow_m3_s, wanted_pa);
         }
         // The compensator is shut and still short of its margin: the pump's whole flow sets the drop (equation 5).
-        let drop_pa = self.lift_drop_pa(wanted_pa, cylinder_pressure_pa);
+        let drop_pa = self.lift_drop_pa(wanted_pa, state.pressure_pa);
         let turbulent = self.sites.flow_number_1_a_sqrt_pa.is_none();
         let short_pa = if self.sites.pump_slip.is_empty() && turbulent {
             let ratio = pumped_m3_s(wanted_pa) / flow_m3_s;
@@ -274,6 +271,62 @@ impl Circuit<'_> {
             super::root::rising(spare, 0.0, drop_pa, 10.0)
         };
         (pumped_m3_s(wanted_pa - short_pa), wanted_pa - short_pa)
+    }
+
+    /// Lift flow, m3/s, over pump pressure, Pa.
+    fn lift_flow_at(&self, opening: Opening, state: &MechanicalState) -> impl Fn(f64) -> f64 {
+        let opening = self.lift_opening(opening, state);
+        let cylinder_pressure_pa = state.pressure_pa;
+        move |pump_pressure_pa| {
+            let drop_pa = self.lift_drop_pa(pump_pressure_pa, cylinder_pressure_pa);
+            self.lift_valve_m3_s(opening, drop_pa)
+        }
+    }
+
+    /// Pump pressure, Pa, that compensator and relief valve seek with the lift valve so far open.
+    fn sought_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
+        if opening.shut() {
+            return self.constants.compensator.idle_pressure_pa();
+        }
+        let flow_at = self.lift_flow_at(opening, state);
+        let without_flow_pa = self.lifting_pressure_pa(state);
+        self.relieved_pa(self.drooped_pa(without_flow_pa, &flow_at), &flow_at)
+    }
+
+    /// Whether a lagging compensator has come to rest without a lift, or does not lag.
+    #[must_use]
+    pub fn idles(&self, state: &MechanicalState) -> bool {
+        let idle_pa = self.constants.compensator.idle_pressure_pa();
+        (state.compensator_pa - idle_pa).abs() < AT_REST_PA
+    }
+
+    /// How fast a lagging compensator gets to the pump pressure that it seeks, Pa/s; nothing without a lag.
+    #[must_use]
+    pub fn compensator_pa_s(&self, openings: Openings, state: &MechanicalState) -> f64 {
+        let lag_s = self.sites.compensator_lag_s;
+        match lag_s > 0.0 {
+            true => (self.sought_pa(openings.lift, state) - state.compensator_pa) / lag_s,
+            false => 0.0,
+        }
+    }
+
+    /// Share of what it lacks that a lagging compensator catches up within a time, s.
+    #[must_use]
+    pub fn caught_up(&self, dt_s: f64) -> f64 {
+        -(-dt_s / self.sites.compensator_lag_s).exp_m1()
+    }
+
+    /// Pump pressure that the compensator has got to with the lift valve so far open, Pa.
+    #[must_use]
+    pub fn compensator_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
+        if self.sites.compensator_lag_s == 0.0 {
+            return self.sought_pa(opening, state);
+        }
+        if state.catching_up == 0.0 {
+            return state.compensator_pa;
+        }
+        let lacking_pa = self.sought_pa(opening, state) - state.compensator_pa;
+        state.compensator_pa + state.catching_up * lacking_pa
     }
 
     /// The pump pressure, Pa, that the compensator sets over the lift flow `flow_at` it, where it would set `wanted_pa`

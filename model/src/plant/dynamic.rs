@@ -62,8 +62,8 @@ const SMALLEST_DROP_PA: f64 = 1000.0;
 /// A cylinder cannot hold more than a vacuum, Pa gauge.
 const VACUUM_PA: f64 = -1.0e5;
 
-/// Rates of travel, speed, pressure and of what the hose's wall is behind.
-type Derivative = [f64; 4];
+/// Rates of travel, speed, pressure, of what the hose's wall is behind, and of the compensator's pressure.
+type Derivative = [f64; 5];
 
 /// [`Derivative`] of a state.
 fn derivative(
@@ -111,6 +111,7 @@ fn derivative(
         force_n / inertia_kg,
         rise_pa_s,
         seen_pa_s - hose.catching_up_1_s * state.wall_behind_pa,
+        circuit.compensator_pa_s(openings, &state),
     ]
 }
 
@@ -171,6 +172,7 @@ fn moved(state: MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState
         speed_m_s: state.speed_m_s + dt_s * rate[1],
         pressure_pa: state.pressure_pa + dt_s * rate[2],
         wall_behind_pa: state.wall_behind_pa + dt_s * rate[3],
+        compensator_pa: state.compensator_pa + dt_s * rate[4],
         ..state
     }
 }
@@ -197,16 +199,22 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: MechanicalState, 
         -rise_pa,
         constants.lower_valve.transition_drop_pa,
     );
-    // A working compensator keeps the lift valve's drop whatever the cylinder pressure is, up to the relief valve's.
+    // A working compensator keeps the lift valve's drop whatever the cylinder pressure is, up to the relief valve's,
+    // unless it lags.
     let drooped_pa = circuit.sites.margin_lost_to_flow_pa_s_m3 * flows.lift_m3_s;
     let wanted_pa = circuit.lifting_pressure_pa(&state);
-    let compensated = flows.pump_pressure_pa + drooped_pa >= wanted_pa - TOLERANCE_PA;
+    let lagging = circuit.sites.compensator_lag_s > 0.0;
+    let keeps = flows.pump_pressure_pa + drooped_pa >= wanted_pa - TOLERANCE_PA;
+    let compensated = keeps && !lagging;
     let room_pa = match compensated {
         true => (constants.relief_valve.set_pressure_pa - wanted_pa).max(0.0),
         false => 0.0,
     };
     let lift = if compensated && rise_pa <= room_pa {
         0.0
+    } else if lagging {
+        // The flow sets in at any moment, and while the drop is small it goes by the faster.
+        1.5 * openings.lift.flow_m3_s / constants.lift_valve.reference_drop_pa
     } else {
         let drop_pa = circuit.lift_drop_pa(flows.pump_pressure_pa, state.pressure_pa);
         slope(
@@ -227,6 +235,14 @@ fn creeping_rate(circuit: &Circuit, state: MechanicalState) -> f64 {
     }
     let stiffness = stiffness_pa_m3(circuit, state.piston_m, state.pressure_pa.max(VACUUM_PA));
     hose.catching_up_1_s * (1.0 + hose.creeping_m3_pa * stiffness)
+}
+
+/// How fast a lagging compensator settles, 1/s.
+fn lagging_rate(circuit: &Circuit) -> f64 {
+    match circuit.sites.compensator_lag_s {
+        0.0 => 0.0,
+        lag_s => 1.0 / lag_s,
+    }
 }
 
 /// Longest step, s, that follows the ringing of load and oil where the piston stands.
@@ -258,6 +274,7 @@ pub fn rests(
         && state.void_m3 == 0.0
         && state.speed_m_s.abs() < AT_REST_M_S
         && state.wall_behind_pa.abs() < AT_REST_PA
+        && circuit.idles(&state)
         && derivative(forces, circuit, Openings::default(), state)[1].abs() < AT_REST_M_S2
 }
 
@@ -277,8 +294,10 @@ pub fn step(
         true => 0.0,
         false => settling_rate(circuit, widest, state, dt_s),
     };
-    let rate = creeping_rate(circuit, state).max(settling);
-    let pieces = (rate * dt_s / STABLE).ceil().clamp(1.0, 64.0) as usize;
+    let rate = creeping_rate(circuit, state)
+        .max(lagging_rate(circuit))
+        .max(settling);
+    let pieces = (rate * dt_s / STABLE).ceil().clamp(1.0, 256.0) as usize;
     if pieces == 1 {
         return runge_kutta(forces, circuit, state, openings, dt_s);
     }

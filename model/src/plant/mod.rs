@@ -95,6 +95,10 @@ pub struct MechanicalState {
     pub bristles_m: f64,
     /// How far a hose's creeping wall is behind the pressure, Pa; the dynamic plant only, nothing without any.
     pub wall_behind_pa: f64,
+    /// Pump pressure that a lagging compensator had got to at the step's beginning, Pa; the idle one without a lag.
+    pub compensator_pa: f64,
+    /// Share of what it lacks then that it has caught up since; nothing between steps.
+    pub catching_up: f64,
 }
 
 impl MechanicalState {
@@ -106,6 +110,7 @@ impl MechanicalState {
             self.void_m3,
             self.bristles_m,
             self.wall_behind_pa,
+            self.compensator_pa,
         ]
         .iter()
         .all(|value| value.is_finite())
@@ -297,20 +302,32 @@ impl<'m> Plant<'m> {
         }
     }
 
+    /// Ends the step of a lagging compensator.
+    fn settle(&mut self, end: Openings) {
+        if self.sites.compensator_lag_s > 0.0 {
+            self.state.compensator_pa = self.circuit().compensator_pa(end.lift, &self.state);
+        }
+        self.state.catching_up = 0.0;
+    }
+
     /// One integration step.
     fn integrate(&mut self, currents: Currents, dt_s: f64) {
         let from = self.input;
         self.input = currents;
         match (self.rig, self.model.constants().dynamics) {
             (Rig::Flow { .. }, _) => {
-                self.open(currents, dt_s);
+                let end = self.open(currents, dt_s);
+                self.state.catching_up = self.circuit().caught_up(dt_s);
+                self.settle(end);
             }
             (Rig::Hitch(rig), Dynamics::Steady) => {
                 let start = self.openings;
                 let end = self.open(currents, dt_s);
-                if self.stands && self.sites.holds_still() && start.shut() && end.shut() {
+                let idles = self.circuit().idles(&self.state);
+                if self.stands && self.sites.holds_still() && start.shut() && end.shut() && idles {
                     return;
                 }
+                self.state.catching_up = self.circuit().caught_up(dt_s);
                 let before = steady::Before {
                     speed_m_s: self.state.speed_m_s,
                     dt_s,
@@ -322,6 +339,7 @@ impl<'m> Plant<'m> {
                 self.state.bristles_m = self.sites.bent_m(self.state.bristles_m, moved_m, dt_s);
                 self.state.piston_m = piston_m;
                 self.balance(&rig, Some(before));
+                self.settle(end);
                 self.stands = before.speed_m_s == 0.0 && self.state.speed_m_s == 0.0;
             }
             (Rig::Hitch(rig), Dynamics::Dynamic) => {

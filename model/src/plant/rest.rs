@@ -15,7 +15,7 @@ impl Plant<'_> {
         match self.rig {
             Rig::Flow { port_pressure_pa } => MechanicalState {
                 pressure_pa: port_pressure_pa,
-                ..MechanicalState::default()
+                ..self.idle()
             },
             Rig::Hitch(rig) => {
                 let piston_m = self.piston_at_rest_m(&rig);
@@ -43,6 +43,14 @@ impl Plant<'_> {
             piston_m,
             speed_m_s: 0.0,
             pressure_pa: held_n.max(0.0) / self.model.constants().cylinder.area_m2(),
+            ..self.idle()
+        }
+    }
+
+    /// Nothing moves, and the pump's flow passes the compensator.
+    fn idle(&self) -> MechanicalState {
+        MechanicalState {
+            compensator_pa: self.model.constants().compensator.idle_pressure_pa(),
             ..MechanicalState::default()
         }
     }

@@ -240,6 +240,8 @@ pub struct Sites {
     pub margin: Vec<Law>,
     /// What the compensator's margin loses for each lift flow, Pa/(m3/s).
     pub margin_lost_to_flow_pa_s_m3: f64,
+    /// How long the compensator takes to get to its pressure, s.
+    pub compensator_lag_s: f64,
     /// Added to the check valve's cracking pressure, Pa.
     pub cracking_extra_pa: f64,
     /// What the open check valve takes.
@@ -290,6 +292,7 @@ impl Default for Sites {
             flow_number_1_a_sqrt_pa: None,
             margin: Vec::new(),
             margin_lost_to_flow_pa_s_m3: 0.0,
+            compensator_lag_s: 0.0,
             cracking_extra_pa: 0.0,
             check_valve: Line::default(),
             pump_slip: Vec::new(),

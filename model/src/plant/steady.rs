@@ -74,6 +74,8 @@ pub fn balance(
     MechanicalState {
         piston_m,
         bristles_m,
+        compensator_pa,
+        catching_up,
         ..
     }: MechanicalState,
     before: Option<Before>,
@@ -83,6 +85,8 @@ pub fn balance(
     let held_n = (weight_n - forces.ground_n(piston_m, 0.0)).max(0.0);
     let last = MechanicalState {
         bristles_m,
+        compensator_pa,
+        catching_up,
         ..forces.before(piston_m)
     };
     let at_force = |speed_m_s: f64, force_n: f64| {
