@@ -466,16 +466,16 @@ impl Controller {
             return MicrometrePerSecond::ZERO;
         };
         let excess = MicrometrePerSecond(direction.sign(self.motion.bias().0));
-        let trim = match self.mode {
-            Mode::Jog => self.rate.trim(),
-            _ => MicrometrePerSecond::ZERO,
+        let further = match self.mode {
+            Mode::Jog => -self.rate.trim(),
+            _ => self.motion.damping(direction),
         };
         // Full demand is a fully open valve, whatever it gives; from there on the correction comes in with the ramp.
         let excess = match excess > MicrometrePerSecond::ZERO {
             true => excess.min((self.available - speed).max(MicrometrePerSecond::ZERO)),
             false => excess,
         };
-        let wanted = (speed - excess - trim).limited(MicrometrePerSecond(1), self.available);
+        let wanted = (speed - excess + further).limited(MicrometrePerSecond(1), self.available);
         MicrometrePerSecond(direction.sign(wanted.0))
     }
 

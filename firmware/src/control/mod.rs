@@ -16,6 +16,7 @@ pub mod closing;
 pub mod controller;
 pub mod course;
 pub mod current;
+pub mod damping;
 pub mod design_parameters;
 pub mod drop_scale;
 pub mod fixed;

@@ -16,6 +16,7 @@
 use super::calibration::Calibration;
 use super::closing::ClosingCurve;
 use super::course::Told;
+use super::damping::Damping;
 use super::design_parameters::{HydraulicParameters, MotionParameters};
 use super::drop_scale::DropScale;
 use super::fixed::Divisor;
@@ -72,6 +73,7 @@ pub struct Motion {
     /// How much slower than that the valve in use is, by what this move has told so far.
     further: Eighths,
     swing: Swing,
+    damping: Damping,
     /// How late lift and lowering valve close.
     late: [Late; 2],
     /// Whether that counts: on a move to a set point it does, a correction creeps, and most of its way is still to come
@@ -95,6 +97,7 @@ impl Motion {
             self.started = true;
             self.position_nm = measured_nm;
         }
+        self.damping.step(measured_nm);
         let (time, bias_time) = match self.sinking > MicrometrePerSecond::ZERO {
             true => (parameters.lowering_time, parameters.lowering_time),
             false => (
@@ -219,6 +222,15 @@ impl Motion {
     #[must_use]
     pub fn swings(&self) -> bool {
         self.swing.is_seen()
+    }
+
+    /// What to ask the valve of a `direction` for beyond the speed that is right: it stops a load's swing on its oil.
+    #[must_use]
+    pub fn damping(&self, direction: Direction) -> MicrometrePerSecond {
+        match direction {
+            Direction::Lift if !self.swings() => self.damping.demand(self.speed()),
+            _ => MicrometrePerSecond::ZERO,
+        }
     }
 
     /// What has been learnt of the lags of this machine's spools, lift and lowering.
