@@ -23,7 +23,7 @@ use super::valve_logic::Direction;
 const MOST: MilliAmp = MilliAmp(160);
 /// What a lift valve is taken to open late by before anything was learnt. A curve is the mean of both ways through a
 /// hysteresis, and half of a usual one is 60 mA; closing, of which the calibration knows, makes the most of it good.
-const FIRST_LIFT: MilliAmp = MilliAmp(20);
+pub const FIRST_LIFT: MilliAmp = MilliAmp(20);
 /// Doubt before anything was learnt: spread of thresholds, and half of the hysteresis.
 const FIRST_DOUBT: MilliAmp = MilliAmp(70);
 /// Doubt that stays: coils get warm, and hysteresis hides as much.
@@ -159,6 +159,9 @@ fn square(value: i32) -> u32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::calibration::ValidCalibration;
+    use super::super::teach::Taught;
+    use super::super::units::{MilliDegree, Millisecond};
     use super::*;
 
     /// A lift of `way` um by the curve whose valve is `off_ma` off, and whose flow is wrong by `error`.
@@ -229,6 +232,28 @@ mod tests {
                 });
                 assert!(offsets.lift().magnitude() <= MOST);
             }
+        }
+    }
+
+    #[test]
+    fn a_taught_lift_valve_opens_where_teaching_found() {
+        let nominal = ValidCalibration::nominal();
+        for shift in [-100, 0, 100].map(MilliAmp) {
+            let found = Taught {
+                lift_shift: shift,
+                lower_shift: shift,
+                lift_lag: Millisecond(40),
+                lower_lag: Millisecond(40),
+                lower_end: MilliDegree(44_100),
+                upper_end: MilliDegree(135_900),
+            };
+            let (taught, first) = (found.applied_to(&nominal), Offsets::default());
+            let opens = [
+                taught.lift.threshold() + first.lift(),
+                taught.lower.threshold() + first.lower(),
+            ];
+            let found = [&nominal.lift, &nominal.lower].map(|table| table.threshold() + shift);
+            assert_eq!(opens, found);
         }
     }
 }

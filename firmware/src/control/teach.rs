@@ -22,6 +22,7 @@ use super::drop_scale::DropScale;
 use super::fixed::Divisor;
 use super::lag::known_lags;
 use super::linkage::LinkageTable;
+use super::offset::FIRST_LIFT;
 use super::safety::CoilCurrents;
 use super::teach_lag::{STEP, Way, found};
 use super::teach_twin::Twin;
@@ -74,7 +75,8 @@ impl Taught {
     #[inline(never)]
     pub fn applied_to(&self, calibration: &Calibration) -> Calibration {
         let mut taught = calibration.clone();
-        shift(&mut taught.lift, self.lift_shift);
+        // What an untaught lift valve is taken to open late by has been found with the rest.
+        shift(&mut taught.lift, self.lift_shift - FIRST_LIFT);
         shift(&mut taught.lower, self.lower_shift);
         taught.hydraulics.spool_lag = self.lift_lag;
         taught.hydraulics.lower_spool_lag = self.lower_lag;
