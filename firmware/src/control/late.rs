@@ -19,6 +19,9 @@ use super::units::{Micrometre, MicrometrePerSecond};
 const FIRST_WEIGHT: i32 = 500;
 /// Most that earlier moves count: five at the speed at which coils usually are cut. Oil gets warm.
 const MOST_WEIGHT: i32 = 2_000;
+/// What a valve is taken to close late by before it has told: a hitch that stops a bit short of its set point is
+/// where it should be, one that goes beyond isn't.
+const FIRST: Eighths = Eighths(8 * 2);
 /// What closes this late is no later than others: the band in which a coil is cut has room for it.
 const USUAL: Eighths = Eighths(8 * 4);
 /// Latest that a valve is taken to close: more is a load that swings.
@@ -37,7 +40,7 @@ pub struct Late {
 impl Default for Late {
     fn default() -> Self {
         Self {
-            by: Eighths(0),
+            by: FIRST,
             weight: FIRST_WEIGHT,
         }
     }
@@ -107,8 +110,14 @@ mod tests {
     }
 
     #[test]
+    fn a_valve_is_late_until_it_has_told_that_it_is_not() {
+        assert!(told_ms(0, 60, 0) >= 1.0);
+        assert!(told_ms(0, 60, 2) < 0.3);
+    }
+
+    #[test]
     fn a_slow_move_tells_little() {
-        assert!(told_ms(20, 5, 1) < 2.0);
+        assert!(told_ms(20, 5, 1) - told_ms(20, 5, 0) < 2.0);
     }
 
     #[test]
