@@ -310,10 +310,25 @@ impl Circuit<'_> {
         }
     }
 
-    /// Share of what it lacks that a lagging compensator catches up within a time, s.
+    /// What a lagging compensator starts a step of the quasi-static plant from, Pa, and the share of what that lacks at the
+    /// step's end that it has then caught up: exact for a sought pressure that moves evenly meanwhile,
+    /// `p_1 = e p_0 + b s_0 + (1 - e - b) s_1` with `e = exp(-dt / lag)` and `b = (1 - e) lag / dt - e`.
     #[must_use]
-    pub fn caught_up(&self, dt_s: f64) -> f64 {
-        -(-dt_s / self.sites.compensator_lag_s).exp_m1()
+    pub fn catching_up(
+        &self,
+        openings: Openings,
+        state: &MechanicalState,
+        dt_s: f64,
+    ) -> (f64, f64) {
+        let lag_s = self.sites.compensator_lag_s;
+        if lag_s == 0.0 {
+            return (state.compensator_pa, 0.0);
+        }
+        let left = (-dt_s / lag_s).exp();
+        let before = (1.0 - left) * lag_s / dt_s - left;
+        let reached_pa =
+            left * state.compensator_pa + before * self.sought_pa(openings.lift, state);
+        (reached_pa / (left + before), 1.0 - left - before)
     }
 
     /// Pump pressure that the compensator has got to with the lift valve so far open, Pa.

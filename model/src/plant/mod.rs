@@ -95,9 +95,9 @@ pub struct MechanicalState {
     pub bristles_m: f64,
     /// How far a hose's creeping wall is behind the pressure, Pa; the dynamic plant only, nothing without any.
     pub wall_behind_pa: f64,
-    /// Pump pressure that a lagging compensator had got to at the step's beginning, Pa; the idle one without a lag.
+    /// Pump pressure that a lagging compensator has got to, Pa; the idle one without a lag.
     pub compensator_pa: f64,
-    /// Share of what it lacks then that it has caught up since; nothing between steps.
+    /// Share of what it lacks that it catches up within a step of the quasi-static plant; nothing between steps.
     pub catching_up: f64,
 }
 
@@ -302,7 +302,14 @@ impl<'m> Plant<'m> {
         }
     }
 
-    /// Ends the step of a lagging compensator.
+    /// Begins a step of a lagging compensator on the quasi-static plant.
+    fn catch_up(&mut self, start: Openings, dt_s: f64) {
+        let circuit = self.circuit();
+        let (reached_pa, share) = circuit.catching_up(start, &self.state, dt_s);
+        (self.state.compensator_pa, self.state.catching_up) = (reached_pa, share);
+    }
+
+    /// Ends it.
     fn settle(&mut self, end: Openings) {
         if self.sites.compensator_lag_s > 0.0 {
             self.state.compensator_pa = self.circuit().compensator_pa(end.lift, &self.state);
@@ -316,8 +323,9 @@ impl<'m> Plant<'m> {
         self.input = currents;
         match (self.rig, self.model.constants().dynamics) {
             (Rig::Flow { .. }, _) => {
+                let start = self.openings;
                 let end = self.open(currents, dt_s);
-                self.state.catching_up = self.circuit().caught_up(dt_s);
+                self.catch_up(start, dt_s);
                 self.settle(end);
             }
             (Rig::Hitch(rig), Dynamics::Steady) => {
@@ -327,7 +335,7 @@ impl<'m> Plant<'m> {
                 if self.stands && self.sites.holds_still() && start.shut() && end.shut() && idles {
                     return;
                 }
-                self.state.catching_up = self.circuit().caught_up(dt_s);
+                self.catch_up(start, dt_s);
                 let before = steady::Before {
                     speed_m_s: self.state.speed_m_s,
                     dt_s,
