@@ -53,13 +53,13 @@ fn every_model_comes_back_bit_for_bit() {
     let usual = catalogue().filter(|effect| effect.form().is_none());
     let usual = usual.map(AddedEffect::typical).collect();
     let other_forms = catalogue().filter(|effect| effect.form().is_some());
-    let other_forms = other_forms.map(AddedEffect::typical).collect();
-    for model in [
-        Model::nominal(),
-        Model::dynamic(),
-        with_term.with_effects(usual),
-        with_term.with_effects(other_forms),
-    ] {
+    let other_forms = other_forms.map(|form| vec![AddedEffect::typical(form)]);
+    let with_effects = [usual].into_iter().chain(other_forms);
+    let with_effects = with_effects.map(|effects| with_term.with_effects(effects));
+    for model in [Model::nominal(), Model::dynamic()]
+        .into_iter()
+        .chain(with_effects)
+    {
         let back = read(model.to_toml().as_bytes()).unwrap();
         assert_eq!(back.constants(), model.constants());
         assert_eq!(back.name, model.name);

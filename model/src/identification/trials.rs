@@ -41,12 +41,18 @@ const RARER: f64 = 3.0;
 /// already, and what a faint signature explains of it may as well be the instruments' own.
 const VISIBLE_IN_NOISE: f64 = 0.15;
 
+/// Smallest detectability that is worth a try, sigmas, where a model leaves no more than noise or more.
+fn visible(noise: bool) -> f64 {
+    if noise { VISIBLE_IN_NOISE } else { VISIBLE }
+}
+
 /// Effects tried on one fitted model, the most likely first.
 pub struct Trials<'a> {
     experiment: &'a Experiment,
     model: &'a Model,
     base: &'a Fit,
-    visible: f64,
+    /// Whether the base leaves no more than noise.
+    noise: bool,
     slow: SlowColumns,
     ranked: Vec<Trial>,
 }
@@ -109,13 +115,9 @@ impl<'a> Trials<'a> {
         let slow = slow_columns(experiment, model, base);
         let jacobian = jacobian_by(experiment, model, base, &slow);
         let cells = cells_since(before, experiment, base);
-        let visible = if adequate(experiment, &cells, base) {
-            VISIBLE_IN_NOISE
-        } else {
-            VISIBLE
-        };
+        let noise = adequate(experiment, &cells, base);
         // An effect that is barely visible explains this much.
-        let believed = BELIEVED.max(base.weights.count() as f64 * visible.powi(2));
+        let believed = BELIEVED.max(base.weights.count() as f64 * visible(noise).powi(2));
         let drafted = experiment.drafted(model, &base.estimate);
         let shortlist = Shortlist {
             experiment: &drafted,
@@ -139,7 +141,7 @@ impl<'a> Trials<'a> {
             experiment,
             model,
             base,
-            visible,
+            noise,
             slow,
             ranked,
         };
@@ -177,10 +179,10 @@ impl<'a> Trials<'a> {
         })
     }
 
-    /// Smallest detectability that is believed here, sigmas.
+    /// Smallest detectability that is believed here, sigmas, and whether the base leaves no more than noise.
     #[must_use]
-    pub fn visible(&self) -> f64 {
-        self.visible
+    pub fn visible(&self) -> (f64, bool) {
+        (visible(self.noise), self.noise)
     }
 
     /// All candidates, the most likely first.
