@@ -293,6 +293,111 @@ fn a_compensator_that_droops_with_the_flow_leaves_the_flow_of_a_quadratic() {
     }
 }
 
+/// On its way to the margin over the port and back to idling the pump's pressure loses the same share of what it lacks
+/// in every sample: `exp(-dt / lag)`.
+#[test]
+fn a_late_compensator_gets_to_its_pressure_as_its_equation_says() {
+    const STEP_S: f64 = 0.01;
+    let lag_s = 0.04;
+    let time_s: Vec<f64> = (0..200).map(|k| STEP_S * f64::from(k)).collect();
+    let currents: Vec<Currents> = time_s
+        .iter()
+        .map(|&t| Currents {
+            lift_a: if (0.3..1.0).contains(&t) { 2.0 } else { 0.0 },
+            lower_a: 0.0,
+        })
+        .collect();
+    let rig = Rig::Flow {
+        port_pressure_pa: pa_from_bar(50.0),
+    };
+    let model = model("compensator-droop/lagging", &[lag_s, 0.0, 0.0]);
+    let trace = simulate(&model, rig, 40.0, &time_s, &currents);
+    let pump_bar = trace.channel(Channel::PumpPressure);
+    let left = (-STEP_S / lag_s).exp();
+    for (from, sought_bar) in [(34, 54.0), (104, 4.0)] {
+        for sample in from..from + 8 {
+            let [before, after] = [sample, sample + 1].map(|at| pump_bar[at] - sought_bar);
+            assert!(
+                (after / before - left).abs() < 1e-6,
+                "{sample}: {before} {after}"
+            );
+        }
+    }
+}
+
+/// Virtual work at rest: of what hangs on the hitch the load alone weighs more, and most at both ends.
+#[test]
+fn a_load_that_pitches_weighs_more_and_the_links_do_not() {
+    let (share, slope, bow) = (0.1, 0.2, 0.5);
+    let pitching = model("load-arm/load-only", &[share, slope, bow]);
+    let plain = Model::nominal();
+    let dead_kg = plain.constants().masses.dead_weight_kg;
+    for load_kg in [50.0, 250.0] {
+        for start_angle_deg in [50.0, 90.0, 130.0] {
+            let rig = Rig::Hitch(HitchRig {
+                load_kg,
+                start_angle_rad: f64::to_radians(start_angle_deg),
+            });
+            let held = |model: &Model| {
+                let plant = Plant::new(model, rig, 40.0, Currents::default());
+                (
+                    plant.state().piston_m,
+                    plant.reading().cylinder_pressure_bar,
+                )
+            };
+            let ((piston_m, without_bar), (_, with_bar)) = (held(&plain), held(&pitching));
+            let z = 2.0 * piston_m / plain.constants().cylinder.stroke_m - 1.0;
+            let there = share * (1.0 + slope * z + bow * (1.5 * z * z - 0.5));
+            let expected = 1.0 + there * load_kg / (load_kg + dead_kg);
+            assert!((with_bar / without_bar - expected).abs() < 1e-9);
+        }
+    }
+}
+
+/// What turns with the shaft is stated at 150 kg and mid stroke, where it is as good as inertia of the load; a lighter
+/// load rings the slower for it, as the root of the inertia.
+#[test]
+fn inertia_on_the_shaft_is_the_same_whatever_the_load() {
+    let period_s = |form: &str, shape: &[f64], load_kg: f64| {
+        let values = [&[0.5], shape].concat();
+        let added = AddedEffect {
+            effect: effect(form),
+            values,
+        };
+        let model = Model::dynamic().with_effects(vec![added]);
+        let rig = Rig::Hitch(HitchRig {
+            load_kg,
+            start_angle_rad: f64::to_radians(89.0),
+        });
+        let mut plant = Plant::new(&model, rig, 40.0, Currents::default());
+        let mut at_s = Vec::new();
+        let mut before_m_s = 0.0;
+        for step in 0..3000 {
+            let time_s = 5e-4 * f64::from(step);
+            let lift_a = if time_s < 0.1 { 1.8 } else { 0.0 };
+            plant.step(
+                Currents {
+                    lift_a,
+                    lower_a: 0.0,
+                },
+                5e-4,
+            );
+            let speed_m_s = plant.state().speed_m_s;
+            if time_s > 0.5 && before_m_s < 0.0 && speed_m_s >= 0.0 {
+                at_s.push(time_s - 5e-4 * speed_m_s / (speed_m_s - before_m_s));
+            }
+            before_m_s = speed_m_s;
+        }
+        (at_s[5] - at_s[0]) / 5.0
+    };
+    let plain = |load_kg| period_s("load-inertia", &[], load_kg);
+    let on_shaft = |load_kg| period_s("load-inertia/shaft", &[1.0], load_kg);
+    assert!((on_shaft(150.0) / plain(150.0) - 1.0).abs() < 2e-3);
+    // (80 + 0.5 * 180) / (1.5 * 80), less what the piston's own 20 kg make of it.
+    let expected = (170.0_f64 / 120.0).sqrt();
+    assert!((on_shaft(50.0) / plain(50.0) / expected - 1.0).abs() < 5e-3);
+}
+
 /// Oil is kept: behind shut valves the piston moves by what the oil gives up and the hose takes, of which a share has
 /// followed the recorded pressure late (`W' = (share C p - W) / creep`).
 #[test]
