@@ -6,8 +6,8 @@ use super::{MechanicalState, OrificeValve, ValveCurve};
 use crate::expression::Place;
 use crate::model::Constants;
 
-/// Within how much of its pressure a lagging compensator is at rest, Pa.
-const AT_REST_PA: f64 = 10.0;
+/// Within how much of its pressure a lagging compensator, and a hose's creeping wall, is at rest, Pa.
+pub const AT_REST_PA: f64 = 10.0;
 
 /// How far a valve is open.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

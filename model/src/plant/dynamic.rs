@@ -13,9 +13,9 @@
 //! dead-headed pump by as much as the oil does, so a spring would say nothing but how to step it.
 
 use super::MechanicalState;
-use super::circuit::{Circuit, Openings};
+use super::circuit::{AT_REST_PA, Circuit, Openings};
 use super::forces::Forces;
-use crate::model::Model;
+use crate::model::{Constants, Model};
 
 /// How long the integrator's steps may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,9 +46,6 @@ impl Steps {
 /// is less than a hundredth of any instrument's last digit.
 const AT_REST_M_S: f64 = 5e-7;
 const AT_REST_M_S2: f64 = 4e-5;
-
-/// The same for how far a hose's wall is behind the pressure, Pa.
-const AT_REST_PA: f64 = 10.0;
 
 /// Largest rate times step that the integrator is given; its stability ends at 2.78.
 const STABLE: f64 = 1.5;
@@ -123,15 +120,14 @@ fn stiffness_pa_m3(circuit: &Circuit, piston_m: f64, pressure_pa: f64) -> f64 {
     modulus_pa / (volume_m3 + circuit.sites.hose.at_once_m3_pa * modulus_pa)
 }
 
-/// What a void counts as while the oil column is torn, Pa/m3: the oil's own stiffness.
-fn void_stiffness_pa_m3(model: &Model, piston_m: f64) -> f64 {
-    let constants = model.constants();
+/// The oil's own stiffness, without air and hoses, Pa/m3: what a void counts by while the oil column is torn.
+fn oil_stiffness_pa_m3(constants: &Constants, piston_m: f64) -> f64 {
     constants.oil.bulk_modulus_pa / constants.cylinder.volume_m3(piston_m.max(0.0))
 }
 
 /// The state with its void as pressure below the vacuum.
 fn stretched(model: &Model, state: MechanicalState) -> MechanicalState {
-    let missing_pa = void_stiffness_pa_m3(model, state.piston_m) * state.void_m3;
+    let missing_pa = oil_stiffness_pa_m3(model.constants(), state.piston_m) * state.void_m3;
     MechanicalState {
         pressure_pa: state.pressure_pa - missing_pa,
         void_m3: 0.0,
@@ -144,7 +140,7 @@ fn torn(model: &Model, state: MechanicalState) -> MechanicalState {
     let missing_pa = (VACUUM_PA - state.pressure_pa).max(0.0);
     MechanicalState {
         pressure_pa: state.pressure_pa.max(VACUUM_PA),
-        void_m3: missing_pa / void_stiffness_pa_m3(model, state.piston_m),
+        void_m3: missing_pa / oil_stiffness_pa_m3(model.constants(), state.piston_m),
         ..state
     }
 }
@@ -183,8 +179,7 @@ fn moved(state: MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState
 fn settling_rate(circuit: &Circuit, openings: Openings, state: MechanicalState, dt_s: f64) -> f64 {
     let constants = circuit.constants;
     let flows = circuit.solve(openings, &state);
-    let stiffness =
-        constants.oil.bulk_modulus_pa / constants.cylinder.volume_m3(state.piston_m.max(0.0));
+    let stiffness = oil_stiffness_pa_m3(constants, state.piston_m);
     let gained_m3_s = flows.net_m3_s() - constants.cylinder.area_m2() * state.speed_m_s;
     let rise_pa = stiffness * gained_m3_s * dt_s;
     let slope = |flow_m3_s: f64, drop_pa: f64, lost_pa: f64, transition_pa: f64| {
@@ -255,7 +250,7 @@ pub fn longest_step_s(
 ) -> f64 {
     let dh_dx = forces.model.linkage().dh_dx(state.piston_m);
     let area_m2 = circuit.constants.cylinder.area_m2();
-    let stiffness_n_m = area_m2 * area_m2 * void_stiffness_pa_m3(forces.model, state.piston_m);
+    let stiffness_n_m = area_m2 * area_m2 * oil_stiffness_pa_m3(circuit.constants, state.piston_m);
     let masses = &circuit.constants.masses;
     let ringing_rad_s = (stiffness_n_m / masses.inertia_kg(forces.rig.load_kg, dh_dx)).sqrt();
     (steps.longest_rad / ringing_rad_s).min(steps.longest_s)
