@@ -137,6 +137,10 @@ pub enum Search {
     /// In fine steps: a size that is a few percent off can be worse than none, for what jumps or bounces does so at
     /// another time then.
     Jumps,
+    /// Along secants as well, but the cost comes down to the best size over ledges: whether a spool moves on a step of
+    /// the current is the same for all bands that are less, and slopes over small steps are those of the noise. The
+    /// first shape is a share of the size, and it is the rest of the size that shows.
+    Ledges,
     /// Place by place: the size is where something is met, and nothing tells of it before.
     Places,
 }

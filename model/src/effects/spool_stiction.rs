@@ -74,7 +74,7 @@ pub static FOLLOWING: Described = Described {
     parameters: PARAMETERS,
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    search: Search::Ledges,
     refines: false,
     attach: |values, _, sites| attach(values, sites, Following::default()),
 };

@@ -173,7 +173,7 @@ fn shared_column(
     let step = match estimate.search(parameter) {
         Search::Places => FINE_STEP * scale,
         Search::Secants if experiment.ringing => FINE_STEP * value.abs().max(scale),
-        Search::Secants | Search::Jumps => STEP * value.abs().max(scale),
+        Search::Secants | Search::Jumps | Search::Ledges => STEP * value.abs().max(scale),
     };
     let mut moved = estimate.clone();
     moved.set(parameter, value + step);

@@ -2,27 +2,30 @@
 //!
 //! The size of a spool that sticks is known to a few hundredths of a percent or not at all: a little beside, and the
 //! tenth jump comes at another time. Slopes lead nowhere there, and while the clocks still stood in for what was missing
-//! a look through all sizes met the valley a little off. With a fit beside it the last step is a fine search.
+//! a look through all sizes met the valley a little off. With a fit beside it the last step is a fine search. Where the
+//! cost comes down over ledges it is a wide one: slopes end at the first of them.
 
 use rayon::prelude::*;
 
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate_weighted, refine};
 use super::starts::scaled;
-use crate::effects::Search;
+use crate::effects::{AddedEffect, Search};
 use crate::model::Model;
 
-/// How far to either side sizes are tried, as a share, and how many.
-const REACHES: [f64; 2] = [0.005, 0.000_8];
+/// How far to either side sizes are tried, as powers of e, and how many.
+const BESIDE_JUMPS: [f64; 2] = [0.005, 0.000_8];
+const BESIDE_LEDGES: [f64; 2] = [1.0, 0.1];
 const TO_EITHER_SIDE: i32 = 10;
 
 /// The better of a fit and of the ones that the sizes of its last effect nearby lead to, if that jumps.
 pub(super) fn threaded(experiment: &Experiment, model: &Model, fit: Fit) -> Fit {
     let last = fit.estimate.effects.last();
-    if last.is_none_or(|added| added.effect.search() != Search::Jumps || added.is_null()) {
-        return fit;
-    }
-    REACHES.iter().fold(fit, |fit, &reach| {
+    let reaches = match last.filter(|added| !added.is_null()) {
+        Some(added) => reaches(added.effect.search()),
+        None => &[],
+    };
+    reaches.iter().fold(fit, |fit, &reach| {
         let nearby = nearby(experiment, model, &fit, reach);
         if nearby.cost < fit.cost {
             let refined = refine(experiment, model, nearby.estimate.clone());
@@ -36,6 +39,15 @@ pub(super) fn threaded(experiment: &Experiment, model: &Model, fit: Fit) -> Fit 
     })
 }
 
+/// How far sizes are looked for.
+fn reaches(search: Search) -> &'static [f64] {
+    match search {
+        Search::Jumps => &BESIDE_JUMPS,
+        Search::Ledges => &BESIDE_LEDGES,
+        Search::Secants | Search::Places => &[],
+    }
+}
+
 /// The best of the sizes nearby, all else as it is.
 fn nearby(experiment: &Experiment, model: &Model, fit: &Fit, reach: f64) -> Fit {
     let sizes = (-TO_EITHER_SIDE..=TO_EITHER_SIDE).into_par_iter();
@@ -43,13 +55,22 @@ fn nearby(experiment: &Experiment, model: &Model, fit: &Fit, reach: f64) -> Fit 
         .map(|step| {
             let mut estimate = fit.estimate.clone();
             if let Some(last) = estimate.effects.last_mut() {
-                *last = scaled(
-                    last,
-                    1.0 + reach * f64::from(step) / f64::from(TO_EITHER_SIDE),
-                );
+                let away = reach * f64::from(step) / f64::from(TO_EITHER_SIDE);
+                *last = resized(last, away.exp());
             }
             evaluate_weighted(experiment, model, estimate, fit.weights.clone())
         })
         .min_by(|a, b| a.cost.total_cmp(&b.cost))
         .expect("there are sizes")
+}
+
+/// An effect at a multiple of its size. What its shape leaves of the size over a ledge shows and is known already.
+fn resized(added: &AddedEffect, share: f64) -> AddedEffect {
+    let mut resized = scaled(added, share);
+    let parameters = added.effect.parameters();
+    if let (Search::Ledges, [_, shape, ..]) = (added.effect.search(), parameters) {
+        let left = (1.0 - added.values[1]) / share;
+        resized.values[1] = (1.0 - left).clamp(shape.low, shape.high);
+    }
+    resized
 }

@@ -277,7 +277,7 @@ pub(super) fn valleys(experiment: &Experiment, effect: &dyn Effect) -> Option<&'
         Search::Places if experiment.ringing => Some(&PLACES),
         Search::Places => Some(&PLACES_AT_REST),
         Search::Secants if experiment.ringing && pressure_alone => Some(&RINGING),
-        Search::Secants => None,
+        Search::Secants | Search::Ledges => None,
     }
 }
 
