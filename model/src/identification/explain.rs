@@ -18,6 +18,7 @@ use super::forms::reformed;
 use super::holdout::{HeldOut, held_out};
 use super::regime::Regime;
 use super::scans::Scans;
+use super::swap::{MOST_SWAPS, is_likelier, swap};
 use super::trials::{Trials, VISIBLE};
 use super::twins::twins;
 use super::unseen::{Unseen, unseen};
@@ -38,10 +39,6 @@ const LITTLE_HELP: f64 = 0.8;
 
 /// Most candidates of one round that are tried on held-out runs.
 const MOST_TRIED: usize = 3;
-
-/// Likelihood ratio by which an alternative has to be better to take the named effect's place, and how often one may.
-const LIKELIER: f64 = 2.0;
-const MOST_SWAPS: usize = 3;
 
 /// Most rounds of adding: an effect that was dropped may come back, but not for ever.
 const MOST_ROUNDS: usize = 2 * MOST_STEPS;
@@ -302,7 +299,13 @@ fn drop_needless(
 
 /// States the steps from the first one on whose effect is another now, or has another form, as they would have been
 /// with that.
-fn restate(experiment: &Experiment, model: &Model, after: &Fit, given: usize, steps: &mut [Step]) {
+pub(super) fn restate(
+    experiment: &Experiment,
+    model: &Model,
+    after: &Fit,
+    given: usize,
+    steps: &mut [Step],
+) {
     let effects = &after.estimate.effects[given..];
     let name = |effect: &dyn Effect| (effect.id(), effect.form());
     let other = |(added, step): (&AddedEffect, &Step)| name(added.effect) != name(step.effect);
@@ -379,7 +382,7 @@ fn finish(
         return finish(experiment, model, before, lighter, (steps, swaps));
     }
     if let Some(index) = likelier {
-        let after = swap(experiment, model, given, &mut steps, index).unwrap_or(after);
+        let after = swap(experiment, model, &after, (given, index), &mut steps).unwrap_or(after);
         return finish(experiment, model, before, after, (steps, swaps - 1));
     }
     let cells = cells_since(&cells(experiment, &before), experiment, &after);
@@ -409,29 +412,6 @@ fn finish(
         next_experiment,
         unseen,
     }
-}
-
-fn is_likelier(alternative: &Alternative) -> bool {
-    alternative.likelier > LIKELIER
-}
-
-/// Puts what is likelier now in the place of one of some steps: while a later effect was missing, the one that could
-/// take on a little of it came first. Returns the model after all steps; `None` if there is nothing to put.
-fn swap(
-    experiment: &Experiment,
-    model: &Model,
-    given: usize,
-    steps: &mut [Step],
-    index: usize,
-) -> Option<Fit> {
-    let alternatives = std::mem::take(&mut steps[index].indistinguishable).into_iter();
-    let best = alternatives.max_by(|a, b| a.likelier.total_cmp(&b.likelier))?;
-    let mut estimate = best.fit.estimate.clone();
-    let effect = estimate.effects.pop()?;
-    estimate.effects.insert(given + index, effect);
-    let after = evaluate(experiment, model, estimate);
-    restate(experiment, model, &after, given, steps);
-    Some(after)
 }
 
 /// Every named effect with each that could stand in its place.

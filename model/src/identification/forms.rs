@@ -70,7 +70,7 @@ fn all_plain(experiment: &Experiment, model: &Model, fit: &Fit, first: usize) ->
 }
 
 /// The fit with one effect in another form that is likelier, if there is one; in one that says no more if that is `enough`.
-fn likelier_form(
+pub(super) fn likelier_form(
     experiment: &Experiment,
     model: &Model,
     fit: &Fit,

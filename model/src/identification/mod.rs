@@ -30,6 +30,7 @@ mod shortfall;
 mod shortlist;
 mod starts;
 pub mod suggestion;
+mod swap;
 mod synchronise;
 pub mod traces;
 pub mod trials;

@@ -48,7 +48,7 @@ const MOST_SKETCHED: usize = 8;
 const ALWAYS_SKETCHED: usize = 4;
 
 /// Two costs that differ by no more than this may change places in a fit.
-const CLOSE: f64 = 60.0;
+pub(super) const CLOSE: f64 = 60.0;
 
 /// An effect roughly fitted.
 pub(super) struct Sketch {

@@ -35,7 +35,7 @@ pub(super) const VISIBLE: f64 = 0.1;
 
 /// Logarithm of how much rarer than usual forms those are that say more: where another effect explains as much, it is
 /// that one.
-const RARER: f64 = 3.0;
+pub(super) const RARER: f64 = 3.0;
 
 /// Smallest detectability that is believed where the model is adequate without the effect: what is left is noise
 /// already, and what a faint signature explains of it may as well be the instruments' own.
