@@ -24,6 +24,13 @@ pub const TOLD_APART: f64 = 10.0;
 /// Angle between two signatures under which the one is worth a fit in place of the other, degree.
 const ALIKE_DEG: f64 = 37.0;
 
+/// What the one may leave of the other at such an angle, sigmas: the more an effect explains, the nearer another has to
+/// come before a fit closes the gap. None of 49 that left more came near in a sketch.
+const LEFT_SIGMA: f64 = 1.8;
+
+/// Angle of its typical shape from which no extreme one of an effect is like another either, degree.
+const UNLIKE_DEG: f64 = 70.0;
+
 /// Where a signature changes its form with its size, a third of the typical one is tried as well.
 const SMALL: f64 = 0.3;
 
@@ -46,9 +53,12 @@ pub(super) fn twins(
         return Vec::new();
     };
     let without = whole.cost + place.explained();
+    let seen_sigma = (place.explained() / whole.weights.count() as f64).sqrt();
+    let alike_deg = (LEFT_SIGMA / seen_sigma).min(1.0).asin().to_degrees();
+    let alike_deg = alike_deg.min(ALIKE_DEG);
     let swapped: Vec<Fit> = absent(model, &whole.estimate)
         .into_par_iter()
-        .filter_map(|effect| start(&place, whole, effect))
+        .filter_map(|effect| start(&place, whole, effect, alike_deg))
         .map(|start| sketch(&drafted, model, &whole.weights, start, false))
         .filter(|found| may_catch_up(found, without, whole.cost))
         .map(|found| refine(experiment, model, found.estimate))
@@ -84,21 +94,34 @@ fn last(fit: &Fit) -> Option<&AddedEffect> {
 }
 
 /// A fit with another effect in the place of its last one, in the form and size most like it; `None` if it is like it
-/// in none.
-fn start(place: &Place, whole: &Fit, effect: &'static dyn Effect) -> Option<Estimate> {
-    let typical = AddedEffect::typical(effect);
-    let small = scaled(&typical, SMALL);
-    let mut forms = with_extreme_shapes(&typical);
-    forms.extend([typical, small]);
+/// to less than an angle in none.
+fn start(
+    place: &Place,
+    whole: &Fit,
+    effect: &'static dyn Effect,
+    alike_deg: f64,
+) -> Option<Estimate> {
     let size = &effect.parameters()[0];
-    let likened = forms.into_iter().map(|form| {
+    let likened = |form: AddedEffect| {
         let (angle_deg, share) = place.likeness(&form);
         let mut alike = scaled(&form, share);
         alike.values[0] = alike.values[0].clamp(size.low, size.high);
         (angle_deg, alike)
-    });
-    let (angle_deg, alike) = likened.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let worth_a_try = angle_deg < ALIKE_DEG && !alike.is_null();
+    };
+    let nearest = |forms: Vec<AddedEffect>| {
+        let likened = forms.into_iter().map(likened);
+        likened.min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let typical = AddedEffect::typical(effect);
+    let mut best = nearest(vec![typical.clone(), scaled(&typical, SMALL)])?;
+    if best.0 < UNLIKE_DEG
+        && let Some(extreme) = nearest(with_extreme_shapes(&typical))
+        && extreme.0 < best.0
+    {
+        best = extreme;
+    }
+    let (angle_deg, alike) = best;
+    let worth_a_try = angle_deg < alike_deg && !alike.is_null();
     let mut estimate = whole.estimate.clone();
     *estimate.effects.last_mut()? = alike;
     worth_a_try.then_some(estimate)
