@@ -133,6 +133,6 @@ fn plainness(form: &dyn Effect) -> (usize, bool, bool) {
 }
 
 /// How much a form says of its effect.
-fn said(form: &dyn Effect) -> (usize, bool) {
+pub(super) fn said(form: &dyn Effect) -> (usize, bool) {
     (form.parameters().len(), form.refines())
 }

@@ -15,6 +15,7 @@ use super::candidate::{Candidate, jacobian_by, slow_columns, weigh, weigh_by};
 use super::evidence::{log_odds, shares};
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate_weighted, refine};
+use super::forms::said;
 use super::frame::Frame;
 use super::jacobian::SlowColumns;
 use super::lateness::on_time;
@@ -54,7 +55,10 @@ pub struct Trials<'a> {
     /// Whether the base leaves no more than noise.
     noise: bool,
     slow: SlowColumns,
+    /// Each effect in its likeliest form, the likeliest first.
     ranked: Vec<Trial>,
+    /// The other forms, the likeliest first.
+    other_forms: Vec<Trial>,
 }
 
 /// One effect tried.
@@ -144,6 +148,7 @@ impl<'a> Trials<'a> {
             noise,
             slow,
             ranked,
+            other_forms: Vec::new(),
         };
         trials.rank();
         trials
@@ -165,7 +170,9 @@ impl<'a> Trials<'a> {
         self.ranked
             .sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
         let mut named = HashSet::new();
-        self.ranked.retain(|trial| named.insert(trial.effect.id()));
+        (self.ranked, self.other_forms) = std::mem::take(&mut self.ranked)
+            .into_iter()
+            .partition(|trial| named.insert(trial.effect.id()));
     }
 
     /// Weighs a trial, once.
@@ -213,6 +220,18 @@ impl<'a> Trials<'a> {
             .iter()
             .filter(move |trial| self.base.cost - trial.fit.cost >= believed(trial.effect))
             .map(|trial| self.weighed(trial))
+    }
+
+    /// The likeliest form of a candidate's effect that says less than it, fitted in full, if there is one.
+    pub fn plainer(&self, candidate: &Candidate) -> Option<Candidate> {
+        let mut forms = self.other_forms.iter();
+        let plainer = forms.find(|trial| {
+            let same = trial.effect.id() == candidate.effect.id();
+            same && said(trial.effect) < said(candidate.effect)
+        })?;
+        let (experiment, model) = (self.experiment, self.model);
+        let fit = refine(experiment, model, plainer.fit.estimate.clone());
+        Some(weigh(experiment, model, self.base, plainer.effect, fit))
     }
 }
 
