@@ -20,7 +20,7 @@ parameter_group! {
         spool_lag: Millisecond = 40, 0..=500;
         /// The same of the lowering valve: of one kind, but by 10 ms and more another unit.
         lower_spool_lag: Millisecond = 40, 0..=500;
-        /// Hysteresis of coil and spool: how much further the current has to fall than it rose for the same flow. 2 % of the range, half of what valves have with dither: believing too much of it is worse than too little.
+        /// Hysteresis of coil and spool: how much further the current has to fall than it rose for the same flow. 2 % of the range, half of what valves have with dither, for a machine that hasn't been taught: teaching finds more, and believes it.
         hysteresis: MilliAmp = 80, 0..=1_000;
         /// Pressure drop at which the lowering table was measured.
         reference_drop: MilliBar = 15_000, 1_000..=250_000;

@@ -47,6 +47,7 @@ pub mod signals;
 pub mod sink;
 pub mod swing;
 pub mod teach;
+pub mod teach_hysteresis;
 pub mod teach_lag;
 pub mod teach_twin;
 pub mod units;

@@ -244,6 +244,7 @@ mod tests {
                 lower_shift: shift,
                 lift_lag: Millisecond(40),
                 lower_lag: Millisecond(40),
+                hysteresis: MilliAmp(80),
                 lower_end: MilliDegree(44_100),
                 upper_end: MilliDegree(135_900),
             };

@@ -24,11 +24,12 @@ use super::lag::known_lags;
 use super::linkage::LinkageTable;
 use super::offset::FIRST_LIFT;
 use super::safety::CoilCurrents;
-use super::teach_lag::{STEP, Way, found};
+use super::teach_lag::{STEP, Way};
 use super::teach_twin::Twin;
 use super::units::{Micrometre, MilliAmp, MilliDegree, Millisecond};
 use super::valve_logic::Direction;
 use super::valve_map::ValveTable;
+use super::{teach_hysteresis, teach_lag};
 
 /// Ramps a valve.
 pub const REPEATS: usize = 3;
@@ -62,6 +63,8 @@ pub struct Taught {
     pub lift_lag: Millisecond,
     /// Lag of the lowering valve's spool.
     pub lower_lag: Millisecond,
+    /// Hysteresis of both valves.
+    pub hysteresis: MilliAmp,
     /// Angle at the lower end.
     pub lower_end: MilliDegree,
     /// Angle at the upper end.
@@ -80,6 +83,7 @@ impl Taught {
         shift(&mut taught.lower, self.lower_shift);
         taught.hydraulics.spool_lag = self.lift_lag;
         taught.hydraulics.lower_spool_lag = self.lower_lag;
+        taught.hydraulics.hysteresis = self.hysteresis;
         let offset = mean_offset(self.lower_end, self.upper_end, calibration);
         taught.linkage.first_angle = taught.linkage.first_angle + offset;
         let margin = calibration.teach.end_margin;
@@ -155,6 +159,8 @@ pub struct Teach {
     filtered_udeg: Option<i32>,
     shifts: [[MilliAmp; REPEATS]; 2],
     lags: [Millisecond; 2],
+    /// The narrower one that was found so far.
+    hysteresis: MilliAmp,
     ends: [MilliDegree; 2],
     result: Option<Result<Taught, TeachError>>,
 }
@@ -167,6 +173,7 @@ impl Default for Teach {
             filtered_udeg: None,
             shifts: [[MilliAmp::ZERO; REPEATS]; 2],
             lags: [Millisecond::ZERO; 2],
+            hysteresis: MilliAmp(i32::MAX),
             ends: [MilliDegree::ZERO; 2],
             result: None,
         }
@@ -347,7 +354,7 @@ impl Teach {
         }
     }
 
-    /// One step after a step of current.
+    /// One step after a step of current, which falls again once the hitch goes steadily.
     fn open(
         &mut self,
         mut opening: Opening,
@@ -357,25 +364,41 @@ impl Teach {
         calibration: &Calibration,
     ) -> MilliAmp {
         let valve = self.finished % 2;
-        let on_curve = Self::driving(calibration)[valve];
+        let parameters = &calibration.teach;
+        let falling = (opening.age - STEP).max(Millisecond::ZERO).0;
+        // Milliamperes a second are microamperes a millisecond.
+        let current_ua = Self::driving(calibration)[valve]
+            .0
+            .saturating_mul(1000)
+            .saturating_sub(falling.saturating_mul(parameters.ramp_slope.0));
+        let on_curve = MilliAmp(Divisor::THOUSAND.divide(current_ua));
         let travelled = Micrometre(direction.sign((travel - opening.start).0));
-        let current_ua = on_curve.0.saturating_mul(1000);
         let twin_travelled = opening.twin.step(current_ua, direction, scale, calibration);
         let [real, twin] = &mut opening.ways;
         real.note(opening.age, travelled);
         twin.note(opening.age, twin_travelled);
         opening.age = opening.age.next();
-        if opening.age < STEP {
+        if on_curve > parameters.ramp_start {
             self.step = Step::Open(opening);
             return on_curve + mean(&self.shifts[valve]);
         }
-        let motion = &calibration.motion;
+        let [real, twin] = opening.ways;
+        self.note_opening(&real, &twin, calibration);
+        MilliAmp::ZERO
+    }
+
+    #[inline(never)]
+    fn note_opening(&mut self, real: &Way, twin: &Way, calibration: &Calibration) {
+        let valve = self.finished % 2;
+        let (motion, hydraulics) = (&calibration.motion, &calibration.hydraulics);
         let usual = [motion.lift_trail, motion.lowering_trail][valve];
-        let known = known_lags(&calibration.hydraulics)[valve];
-        self.lags[valve] = found(real, twin, usual, known, motion.lag_limit);
+        let known = known_lags(hydraulics)[valve];
+        self.lags[valve] = teach_lag::found(real, twin, usual, known, motion.lag_limit);
+        let rate = calibration.teach.ramp_slope;
+        let hysteresis = teach_hysteresis::found(real, twin, rate, hydraulics.hysteresis);
+        self.hysteresis = self.hysteresis.min(hysteresis);
         self.finished = self.finished.saturating_add(1);
         self.step = Step::Rest(Millisecond::ZERO);
-        MilliAmp::ZERO
     }
 
     /// Currents that drive the hitch slowly, by the calibration's curves.
@@ -443,6 +466,7 @@ impl Teach {
             lower_shift,
             lift_lag,
             lower_lag,
+            hysteresis: self.hysteresis,
             lower_end,
             upper_end,
         }));

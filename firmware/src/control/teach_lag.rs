@@ -26,32 +26,49 @@ const MIDDLES: (i32, i32) = (EARLY + WINDOW / 2, LATE + WINDOW / 2);
 /// Sums of a hitch that is slower than 4 mm/s tell nothing: it has come to an end.
 const LEAST: i32 = 4 * (LATE - EARLY) * WINDOW;
 
-/// Sums of the way over both windows, in micrometres.
+/// Sums of the way over both windows, in micrometres, and what follows them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Way {
     early: i32,
     late: i32,
+    /// The way when the windows were over, and the last one.
+    steady: Micrometre,
+    last: Micrometre,
 }
 
 impl Way {
     /// The way at an `age` of the step.
+    #[inline(never)]
     pub fn note(&mut self, age: Millisecond, way: Micrometre) {
         if (EARLY..EARLY + WINDOW).contains(&age.0) {
             self.early = self.early.saturating_add(way.0);
         } else if (LATE..LATE + WINDOW).contains(&age.0) {
             self.late = self.late.saturating_add(way.0);
         }
+        if age <= STEP {
+            self.steady = way;
+        }
+        self.last = way;
     }
 
     /// Where the line through the means of both windows begins, ms; `None` if there is no such line.
     fn delay(&self) -> Option<i32> {
+        let later = self.time_for(self.early, MIDDLES.1 - MIDDLES.0)?;
+        Some(MIDDLES.0.saturating_sub(later))
+    }
+
+    /// How long the way since the windows would have taken at the steady speed, ms.
+    #[must_use]
+    pub fn run_on(&self) -> Option<i32> {
+        self.time_for((self.last - self.steady).0, WINDOW * (LATE - EARLY))
+    }
+
+    /// `sum` over the rise between the windows, times `scale`, if that rise is a speed.
+    #[inline(never)]
+    fn time_for(&self, sum: i32, scale: i32) -> Option<i32> {
         let rise = self.late.saturating_sub(self.early);
-        let later = mul_div_seldom(
-            self.early,
-            MIDDLES.1 - MIDDLES.0,
-            Divisor::at_least_one(rise),
-        );
-        (rise >= LEAST).then_some(MIDDLES.0.saturating_sub(later))
+        let time = mul_div_seldom(sum, scale, Divisor::at_least_one(rise));
+        (rise >= LEAST).then_some(time)
     }
 }
 
