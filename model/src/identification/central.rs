@@ -30,7 +30,10 @@ pub(super) fn both_ways(
     let last = fit.estimate.effects.len() - 1;
     let smooth = |shared: Shared| {
         matches!(shared, Shared::Effect(effect, _) if effect == last)
-            && matches!(fit.estimate.search(shared), Search::Secants)
+            && matches!(
+                fit.estimate.search(shared),
+                Search::Secants | Search::Ledges
+            )
     };
     let columns: Vec<(usize, Vec<Vec<f64>>)> = jacobian
         .shared

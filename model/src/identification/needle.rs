@@ -22,7 +22,7 @@ const TO_EITHER_SIDE: i32 = 10;
 pub(super) fn threaded(experiment: &Experiment, model: &Model, fit: Fit) -> Fit {
     let last = fit.estimate.effects.last();
     let reaches = match last.filter(|added| !added.is_null()) {
-        Some(added) => reaches(added.effect.search()),
+        Some(added) => reaches(added.effect.search(), experiment.ringing),
         None => &[],
     };
     reaches.iter().fold(fit, |fit, &reach| {
@@ -39,12 +39,13 @@ pub(super) fn threaded(experiment: &Experiment, model: &Model, fit: Fit) -> Fit 
     })
 }
 
-/// How far sizes are looked for.
-fn reaches(search: Search) -> &'static [f64] {
+/// How far sizes are looked for. Where nothing rings slopes lead there, and a wide search only finds the luckiest ledge:
+/// intervals around that held the truth in 88 % of campaigns, not in 94 %.
+fn reaches(search: Search, ringing: bool) -> &'static [f64] {
     match search {
         Search::Jumps => &BESIDE_JUMPS,
-        Search::Ledges => &BESIDE_LEDGES,
-        Search::Secants | Search::Places => &[],
+        Search::Ledges if ringing => &BESIDE_LEDGES,
+        Search::Ledges | Search::Secants | Search::Places => &[],
     }
 }
 
