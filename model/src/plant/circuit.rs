@@ -118,6 +118,7 @@ const GREATEST_FACTOR: f64 = 10.0;
 
 impl Circuit<'_> {
     /// Opens the valves as far as effective currents, A, tell.
+    #[inline(always)]
     #[must_use]
     pub fn openings(&self, lift_a: f64, lower_a: f64) -> Openings {
         let flow_m3_s = |curve: &ValveCurve, current_a: f64, factor: FlowFactor| {
@@ -173,6 +174,7 @@ impl Circuit<'_> {
     }
 
     /// Solves the circuit with the piston and the oil under it in a state.
+    #[inline]
     #[must_use]
     pub fn solve(&self, openings: Openings, state: &MechanicalState) -> Flows {
         let (lift_m3_s, pump_pressure_pa) = self.lift(openings.lift, state);

@@ -63,11 +63,12 @@ const VACUUM_PA: f64 = -1.0e5;
 type Derivative = [f64; 5];
 
 /// [`Derivative`] of a state.
+#[inline(always)]
 fn derivative(
     forces: &Forces,
     circuit: &Circuit,
-    openings: Openings,
-    state: MechanicalState,
+    openings: &Openings,
+    state: &MechanicalState,
 ) -> Derivative {
     let model = forces.model;
     let cylinder = &circuit.constants.cylinder;
@@ -76,10 +77,10 @@ fn derivative(
     let pressure_pa = state.pressure_pa.max(VACUUM_PA);
     let state = MechanicalState {
         pressure_pa,
-        ..state
+        ..*state
     };
     let hose = &circuit.sites.hose;
-    let flows = circuit.solve(openings, &state);
+    let flows = circuit.solve(*openings, &state);
     let (dh_dx, d2h_dx2_1_m) = model.linkage().transmission(state.piston_m);
     let masses = &circuit.constants.masses;
     let load_kg = forces.rig.load_kg;
@@ -108,7 +109,7 @@ fn derivative(
         force_n / inertia_kg,
         rise_pa_s,
         seen_pa_s - hose.catching_up_1_s * state.wall_behind_pa,
-        circuit.compensator_pa_s(openings, &state),
+        circuit.compensator_pa_s(*openings, &state),
     ]
 }
 
@@ -126,20 +127,29 @@ fn oil_stiffness_pa_m3(constants: &Constants, piston_m: f64) -> f64 {
 }
 
 /// The state with its void as pressure below the vacuum.
-fn stretched(model: &Model, state: MechanicalState) -> MechanicalState {
+fn stretched(model: &Model, state: &MechanicalState) -> MechanicalState {
+    if state.void_m3 == 0.0 {
+        return *state;
+    }
     let missing_pa = oil_stiffness_pa_m3(model.constants(), state.piston_m) * state.void_m3;
     MechanicalState {
         pressure_pa: state.pressure_pa - missing_pa,
         void_m3: 0.0,
-        ..state
+        ..*state
     }
 }
 
 /// The state with pressure below the vacuum as a void.
 fn torn(model: &Model, state: MechanicalState) -> MechanicalState {
-    let missing_pa = (VACUUM_PA - state.pressure_pa).max(0.0);
+    let missing_pa = VACUUM_PA - state.pressure_pa;
+    if missing_pa <= 0.0 {
+        return MechanicalState {
+            void_m3: 0.0,
+            ..state
+        };
+    }
     MechanicalState {
-        pressure_pa: state.pressure_pa.max(VACUUM_PA),
+        pressure_pa: VACUUM_PA,
         void_m3: missing_pa / oil_stiffness_pa_m3(model.constants(), state.piston_m),
         ..state
     }
@@ -162,23 +172,23 @@ fn within_stops(circuit: &Circuit, state: MechanicalState) -> MechanicalState {
     }
 }
 
-fn moved(state: MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState {
+fn moved(state: &MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState {
     MechanicalState {
         piston_m: state.piston_m + dt_s * rate[0],
         speed_m_s: state.speed_m_s + dt_s * rate[1],
         pressure_pa: state.pressure_pa + dt_s * rate[2],
         wall_behind_pa: state.wall_behind_pa + dt_s * rate[3],
         compensator_pa: state.compensator_pa + dt_s * rate[4],
-        ..state
+        ..*state
     }
 }
 
 /// How fast the orifices alone settle the pressure within a step, 1/s: `E/V dQ/dp`, with `dQ/dp = Q / 2 dp` of each
 /// orifice whose drop hangs on the cylinder pressure. A flow goes with the root of its drop, and ends the more abruptly
 /// the smaller the drop gets: what counts is the drop that the step comes to.
-fn settling_rate(circuit: &Circuit, openings: Openings, state: MechanicalState, dt_s: f64) -> f64 {
+fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState, dt_s: f64) -> f64 {
     let constants = circuit.constants;
-    let flows = circuit.solve(openings, &state);
+    let flows = circuit.solve(openings, state);
     let stiffness = oil_stiffness_pa_m3(constants, state.piston_m);
     let gained_m3_s = flows.net_m3_s() - constants.cylinder.area_m2() * state.speed_m_s;
     let rise_pa = stiffness * gained_m3_s * dt_s;
@@ -197,7 +207,7 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: MechanicalState, 
     // A working compensator keeps the lift valve's drop whatever the cylinder pressure is, up to the relief valve's,
     // unless it lags.
     let drooped_pa = circuit.sites.margin_lost_to_flow_pa_s_m3 * flows.lift_m3_s;
-    let wanted_pa = circuit.lifting_pressure_pa(&state);
+    let wanted_pa = circuit.lifting_pressure_pa(state);
     let lagging = circuit.sites.compensator_lag_s > 0.0;
     let keeps = flows.pump_pressure_pa + drooped_pa >= wanted_pa - TOLERANCE_PA;
     let compensated = keeps && !lagging;
@@ -223,7 +233,7 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: MechanicalState, 
 }
 
 /// How fast a hose's wall settles the pressure and itself, 1/s.
-fn creeping_rate(circuit: &Circuit, state: MechanicalState) -> f64 {
+fn creeping_rate(circuit: &Circuit, state: &MechanicalState) -> f64 {
     let hose = &circuit.sites.hose;
     if hose.creeping_m3_pa == 0.0 {
         return 0.0;
@@ -261,16 +271,16 @@ pub fn longest_step_s(
 pub fn rests(
     forces: &Forces,
     circuit: &Circuit,
-    state: MechanicalState,
-    openings: [Openings; 3],
+    state: &MechanicalState,
+    openings: &[Openings; 3],
 ) -> bool {
     circuit.sites.holds_still()
         && openings.iter().all(Openings::shut)
         && state.void_m3 == 0.0
         && state.speed_m_s.abs() < AT_REST_M_S
         && state.wall_behind_pa.abs() < AT_REST_PA
-        && circuit.idles(&state)
-        && derivative(forces, circuit, Openings::default(), state)[1].abs() < AT_REST_M_S2
+        && circuit.idles(state)
+        && derivative(forces, circuit, &Openings::default(), state)[1].abs() < AT_REST_M_S2
 }
 
 /// One step with the openings at its start, middle and end.
@@ -278,36 +288,37 @@ pub fn rests(
 pub fn step(
     forces: &Forces,
     circuit: &Circuit,
-    state: MechanicalState,
-    openings: [Openings; 3],
+    state: &MechanicalState,
+    openings: &[Openings; 3],
     dt_s: f64,
 ) -> MechanicalState {
     // The wider an orifice is open, the faster it settles.
     let [first, _, last] = openings;
-    let widest = if first.wider_than(&last) { first } else { last };
+    let widest = if first.wider_than(last) { first } else { last };
     let settling = match widest.shut() {
         true => 0.0,
-        false => settling_rate(circuit, widest, state, dt_s),
+        false => settling_rate(circuit, *widest, state, dt_s),
     };
     let rate = creeping_rate(circuit, state)
         .max(lagging_rate(circuit))
         .max(settling);
-    let pieces = (rate * dt_s / STABLE).ceil().clamp(1.0, 256.0) as usize;
-    if pieces == 1 {
+    let pieces = rate * dt_s / STABLE;
+    if pieces <= 1.0 || pieces.is_nan() {
         return runge_kutta(forces, circuit, state, openings, dt_s);
     }
+    let pieces = pieces.ceil().min(256.0) as usize;
     let piece_s = dt_s / pieces as f64;
-    let mut state = state;
+    let mut state = *state;
     for piece in 0..pieces {
         let share = |part: f64| (piece as f64 + part) / pieces as f64;
         let ends = [0.0, 0.5, 1.0].map(|part| between(openings, share(part)));
-        state = runge_kutta(forces, circuit, state, ends, piece_s);
+        state = runge_kutta(forces, circuit, &state, &ends, piece_s);
     }
     state
 }
 
 /// Openings at a share of the step, linear between start, middle and end.
-fn between(openings: [Openings; 3], share: f64) -> Openings {
+fn between(openings: &[Openings; 3], share: f64) -> Openings {
     let (from, to, part) = if share <= 0.5 {
         (openings[0], openings[1], 2.0 * share)
     } else {
@@ -319,31 +330,46 @@ fn between(openings: [Openings; 3], share: f64) -> Openings {
 fn runge_kutta(
     forces: &Forces,
     circuit: &Circuit,
-    state: MechanicalState,
-    openings: [Openings; 3],
+    state: &MechanicalState,
+    openings: &[Openings; 3],
     dt_s: f64,
 ) -> MechanicalState {
-    let rate = |state, openings| derivative(forces, circuit, openings, state);
-    let moved = |state: MechanicalState, rate, dt_s| {
+    let moved = |state: &MechanicalState, rate, dt_s| {
         let mut moved = moved(state, rate, dt_s);
-        let travel_m = moved.piston_m - state.piston_m;
-        moved.bristles_m = circuit.sites.bent_m(state.bristles_m, travel_m, dt_s);
+        if circuit.sites.bristles.is_some() {
+            let travel_m = moved.piston_m - state.piston_m;
+            moved.bristles_m = circuit.sites.bent_m(state.bristles_m, travel_m, dt_s);
+        }
         moved
     };
-    let stopped = MechanicalState {
-        speed_m_s: 0.0,
-        ..state
-    };
-    let state = stretched(forces.model, state);
-    let k1 = rate(state, openings[0]);
-    let k2 = rate(moved(state, k1, 0.5 * dt_s), openings[1]);
-    let k3 = rate(moved(state, k2, 0.5 * dt_s), openings[1]);
-    let k4 = rate(moved(state, k3, dt_s), openings[2]);
-    let mean = std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
+    let start = stretched(forces.model, state);
+    let [first, middle, last] = openings;
+    // One place that asks for the rates lets the compiler put them there.
+    let stages = [
+        (0.0, 1.0, first),
+        (0.5, 2.0, middle),
+        (0.5, 2.0, middle),
+        (1.0, 1.0, last),
+    ];
+    let (mut rate, mut sum) = ([0.0; 5], [0.0; 5]);
+    for (share, weight, openings) in stages {
+        rate = derivative(forces, circuit, openings, &moved(&start, rate, share * dt_s));
+        for (sum, rate) in sum.iter_mut().zip(rate) {
+            *sum += weight * rate;
+        }
+    }
+    let mean = sum.map(|sum| sum / 6.0);
     let end = torn(
         forces.model,
-        within_stops(circuit, moved(state, mean, dt_s)),
+        within_stops(circuit, moved(&start, mean, dt_s)),
     );
     // A force that no integrator can follow, from a term or from constants far off: the plant stands still.
-    if end.is_finite() { end } else { stopped }
+    if end.is_finite() {
+        end
+    } else {
+        MechanicalState {
+            speed_m_s: 0.0,
+            ..*state
+        }
+    }
 }

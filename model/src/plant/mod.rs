@@ -206,11 +206,7 @@ impl<'m> Plant<'m> {
         let (from, spools) = (self.input, self.spool_currents);
         for piece in 1..=pieces {
             let share = piece as f64 / pieces as f64;
-            let currents = Currents {
-                lift_a: from.lift_a + (currents.lift_a - from.lift_a) * share,
-                lower_a: from.lower_a + (currents.lower_a - from.lower_a) * share,
-            };
-            self.integrate(currents, dt_s / pieces as f64);
+            self.integrate(from.towards(currents, share), dt_s / pieces as f64);
             if piece == pieces || !self.sites.sensors.is_empty() {
                 self.read(dt_s / pieces as f64);
             }
@@ -221,18 +217,18 @@ impl<'m> Plant<'m> {
     /// Longest step, s, while the coil currents change by so much, A/s.
     fn longest_step_s(&self, driven_a_s: f64) -> f64 {
         let turning_a_s = self.turning_a_s.max(driven_a_s);
-        let own_s = match (self.rig, self.model.constants().dynamics) {
+        match (self.rig, self.model.constants().dynamics) {
             (Rig::Hitch(rig), Dynamics::Dynamic) => {
                 let (forces, circuit) = (self.forces(&rig), self.circuit());
                 dynamic::longest_step_s(&forces, &circuit, self.state, self.steps)
             }
             (Rig::Hitch(rig), Dynamics::Steady) => {
                 let lands = steady::lands(&self.forces(&rig), self.state.piston_m);
-                steady::longest_step_s(&self.sites, turning_a_s, lands)
+                let own_s = steady::longest_step_s(&self.sites, turning_a_s, lands);
+                own_s.min(self.sites.largest_change_a / driven_a_s)
             }
             (Rig::Flow { .. }, _) => steady::longest_step_s(&self.sites, turning_a_s, false),
-        };
-        own_s.min(self.sites.largest_change_a / driven_a_s)
+        }
     }
 
     /// Reads the instruments `dt_s` after the last time.
@@ -324,13 +320,13 @@ impl<'m> Plant<'m> {
         match (self.rig, self.model.constants().dynamics) {
             (Rig::Flow { .. }, _) => {
                 let start = self.openings;
-                let end = self.open(currents, dt_s);
+                let end = self.open(from, currents, dt_s);
                 self.catch_up(start, dt_s);
                 self.settle(end);
             }
             (Rig::Hitch(rig), Dynamics::Steady) => {
                 let start = self.openings;
-                let end = self.open(currents, dt_s);
+                let end = self.open(from, currents, dt_s);
                 let idles = self.circuit().idles(&self.state);
                 if self.stands && self.sites.holds_still() && start.shut() && end.shut() && idles {
                     return;
@@ -351,19 +347,16 @@ impl<'m> Plant<'m> {
                 self.stands = before.speed_m_s == 0.0 && self.state.speed_m_s == 0.0;
             }
             (Rig::Hitch(rig), Dynamics::Dynamic) => {
-                let middle = Currents {
-                    lift_a: 0.5 * (from.lift_a + currents.lift_a),
-                    lower_a: 0.5 * (from.lower_a + currents.lower_a),
-                };
+                let middle = from.towards(currents, 0.5);
                 let start = self.openings;
-                let half = self.open(middle, 0.5 * dt_s);
-                let end = self.open(currents, 0.5 * dt_s);
+                let half = self.open(from, middle, 0.5 * dt_s);
+                let end = self.open(middle, currents, 0.5 * dt_s);
                 let openings = [start, half, end];
                 let (forces, circuit) = (self.forces(&rig), self.circuit());
-                if dynamic::rests(&forces, &circuit, self.state, openings) {
+                if dynamic::rests(&forces, &circuit, &self.state, &openings) {
                     return;
                 }
-                self.state = dynamic::step(&forces, &circuit, self.state, openings, dt_s);
+                self.state = dynamic::step(&forces, &circuit, &self.state, &openings, dt_s);
             }
         }
         if !self.sites.terms.is_empty() {
@@ -372,22 +365,44 @@ impl<'m> Plant<'m> {
         }
     }
 
-    /// Takes the currents through effects and spools to openings.
-    fn open(&mut self, currents: Currents, dt_s: f64) -> Openings {
+    /// Takes the currents through effects and spools to openings while they run linearly from one value to another.
+    ///
+    /// In pieces in which none changes by more than tells when a spool jumps: a load on oil does not mind what happens
+    /// within a step of its own, but whether it happened.
+    #[inline(always)]
+    fn open(&mut self, from: Currents, to: Currents, dt_s: f64) -> Openings {
+        let changes = to.furthest_from_a(from) / self.sites.largest_change_a;
+        if changes > 1.0 {
+            let pieces = changes.ceil();
+            let piece_s = dt_s / pieces;
+            for piece in 1..pieces as usize {
+                self.take_spools(from.towards(to, piece as f64 / pieces), piece_s);
+            }
+            self.take_spools(to, piece_s);
+        } else {
+            self.take_spools(to, dt_s);
+        }
+        let Currents { lift_a, lower_a } = self.spool_currents;
+        self.shift(lift_a, lower_a)
+    }
+
+    /// Takes the spools to where the currents have them after `dt_s`.
+    #[inline(always)]
+    fn take_spools(&mut self, currents: Currents, dt_s: f64) {
         let effective = self
             .sites
             .currents
             .iter_mut()
             .fold(currents, |currents, stage| stage.advance(currents, dt_s));
-        let lift_a = self.spools[0].advance(effective.lift_a, dt_s);
-        let lower_a = self.spools[1].advance(effective.lower_a, dt_s);
-        self.spool_currents = Currents { lift_a, lower_a };
-        self.shift(lift_a, lower_a);
-        self.openings
+        self.spool_currents = Currents {
+            lift_a: self.spools[0].advance(effective.lift_a, dt_s),
+            lower_a: self.spools[1].advance(effective.lower_a, dt_s),
+        };
     }
 
     /// Shifts the spools as far as effective currents, A, and terms of a user's own tell.
-    fn shift(&mut self, lift_a: f64, lower_a: f64) {
+    #[inline(always)]
+    fn shift(&mut self, lift_a: f64, lower_a: f64) -> Openings {
         let (mut lift_a, mut lower_a) = (lift_a, lower_a);
         if !self.sites.terms.is_empty() {
             self.signals.lift_current_a = lift_a;
@@ -397,7 +412,9 @@ impl<'m> Plant<'m> {
             self.signals.lift_current_a = lift_a;
             self.signals.lower_current_a = lower_a;
         }
-        self.openings = self.circuit().openings(lift_a, lower_a);
+        let openings = self.circuit().openings(lift_a, lower_a);
+        self.openings = openings;
+        openings
     }
 
     /// Notes the signals of the present for the terms of the next step.

@@ -38,6 +38,15 @@ impl Currents {
         }
     }
 
+    /// The currents at a share of the way to others.
+    #[must_use]
+    pub fn towards(self, to: Self, share: f64) -> Self {
+        Self {
+            lift_a: self.lift_a + (to.lift_a - self.lift_a) * share,
+            lower_a: self.lower_a + (to.lower_a - self.lower_a) * share,
+        }
+    }
+
     /// By how much the current differs that differs more, A.
     #[must_use]
     pub fn furthest_from_a(self, other: Self) -> f64 {
@@ -271,7 +280,7 @@ pub struct Sites {
     /// Longest step, s, that follows what is sudden: a pressure that goes with the change of speed over the last step,
     /// or a sensor that remembers; the quasi-static plant only.
     pub longest_step_s: f64,
-    /// Largest change of a coil current in a step, A, that tells when a spool jumps.
+    /// Largest change of a coil current in a step of the spools, A, that tells when one jumps.
     pub largest_change_a: f64,
     /// Ground under the hitch.
     pub ground: Option<Ground>,
@@ -336,7 +345,8 @@ impl Sites {
         self.longest_step_s = self.longest_step_s.min(longest_s);
     }
 
-    /// Has the plant take steps in which no current changes by more than `largest_a`, A.
+    /// Has the spools take steps in which no current changes by more than `largest_a`, A, and with them the quasi-static
+    /// plant, whose piston follows at once.
     pub fn limit_change(&mut self, largest_a: f64) {
         self.largest_change_a = self.largest_change_a.min(largest_a);
     }
