@@ -13,7 +13,7 @@ use super::candidate::{Candidate, weigh};
 use super::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
 use super::estimate::Estimate;
 use super::experiment::Experiment;
-use super::fit::{Fit, evaluate, evaluate_weighted, fit, refine};
+use super::fit::{Fit, evaluate, evaluate_weighted, fit, refine, with_last};
 use super::forms::reformed;
 use super::holdout::{HeldOut, held_out};
 use super::regime::Regime;
@@ -98,6 +98,8 @@ pub struct Step {
     pub intervals: Vec<(f64, f64)>,
     /// The model after the step, as it was fitted then.
     pub fit: Fit,
+    /// Effects that explained next to nothing of what this one did when it was found: none is indistinguishable.
+    pub(super) unlike: Vec<&'static str>,
 }
 
 /// The way from a model to one that explains a campaign.
@@ -236,6 +238,7 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
             values: Vec::new(),
             intervals: Vec::new(),
             fit: best.fit.clone(),
+            unlike: trials.unlike(&best),
         });
         present = best.fit;
         present_held_out = left;
@@ -340,14 +343,6 @@ pub(super) fn restate(
     }
 }
 
-/// The same fit with one effect moved to the end of the list.
-pub(super) fn with_last(experiment: &Experiment, model: &Model, fit: &Fit, effect: usize) -> Fit {
-    let mut estimate = fit.estimate.clone();
-    let moved = estimate.effects.remove(effect);
-    estimate.effects.push(moved);
-    evaluate(experiment, model, estimate)
-}
-
 fn finish(
     experiment: &Experiment,
     model: &Model,
@@ -377,7 +372,8 @@ fn finish(
         step.values = weighed.values().to_vec();
         step.intervals = weighed.intervals;
         step.detectability = weighed.detectability;
-        step.indistinguishable = twins(experiment, model, &whole, weighed.inflation);
+        let named = (&whole, weighed.inflation);
+        step.indistinguishable = twins(experiment, model, named, &step.unlike);
         if swaps > 0 && step.indistinguishable.iter().any(is_likelier) {
             likelier = Some(index);
             break;

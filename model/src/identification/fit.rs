@@ -327,3 +327,24 @@ impl Point {
         }
     }
 }
+
+/// The same fit with one effect moved to the end of the list.
+pub(super) fn with_last(experiment: &Experiment, model: &Model, fit: &Fit, effect: usize) -> Fit {
+    let mut estimate = fit.estimate.clone();
+    let moved = estimate.effects.remove(effect);
+    estimate.effects.push(moved);
+    evaluate(experiment, model, estimate)
+}
+
+/// The same fit with its last effect moved to another place in the list.
+pub(super) fn in_place(
+    experiment: &Experiment,
+    model: &Model,
+    fit: &Fit,
+    place: usize,
+) -> Option<Fit> {
+    let mut estimate = fit.estimate.clone();
+    let effect = estimate.effects.pop()?;
+    estimate.effects.insert(place, effect);
+    Some(evaluate(experiment, model, estimate))
+}

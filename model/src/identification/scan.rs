@@ -122,7 +122,7 @@ pub(super) static PLACES: Grid = Grid {
     apart: 0.05,
     best: 2,
     closer: &[(0.04, 0.125)],
-    quasi_static: false,
+    quasi_static: true,
     hinted: false,
     leaves: f64::INFINITY,
 };

@@ -6,7 +6,7 @@
 use super::design::Alternative;
 use super::experiment::Experiment;
 use super::explain::{Step, restate};
-use super::fit::{Fit, evaluate};
+use super::fit::{Fit, in_place};
 use super::forms::likelier_form;
 use super::shortlist::CLOSE;
 use crate::model::Model;
@@ -40,14 +40,7 @@ pub(super) fn swap(
         || in_place(experiment, model, &best.fit, given + index),
         Some,
     )?;
+    steps[index].unlike.clear();
     restate(experiment, model, &after, given, steps);
     Some(after)
-}
-
-/// The same fit with its last effect moved to another place in the list.
-fn in_place(experiment: &Experiment, model: &Model, fit: &Fit, place: usize) -> Option<Fit> {
-    let mut estimate = fit.estimate.clone();
-    let effect = estimate.effects.pop()?;
-    estimate.effects.insert(place, effect);
-    Some(evaluate(experiment, model, estimate))
 }

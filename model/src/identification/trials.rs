@@ -38,6 +38,10 @@ pub(super) const VISIBLE: f64 = 0.1;
 /// that one.
 pub(super) const RARER: f64 = 3.0;
 
+/// Share of what an effect explains that no twin of it explains less of. One at the angle of the least alike that is
+/// tried explains two thirds, were there not what else is missing.
+const UNLIKE: f64 = 0.07;
+
 /// Smallest detectability that is believed where the model is adequate without the effect: what is left is noise
 /// already, and what a faint signature explains of it may as well be the instruments' own.
 const VISIBLE_IN_NOISE: f64 = 0.15;
@@ -65,6 +69,8 @@ pub struct Trials<'a> {
 struct Trial {
     effect: &'static dyn Effect,
     fit: Fit,
+    /// What the sketch left of the cost, or the screen once all else had adapted.
+    sketched_cost: f64,
     pace: Pace,
     /// Logarithm of the odds that the effect is there; not a number before all are tried.
     log_odds: f64,
@@ -222,6 +228,16 @@ impl<'a> Trials<'a> {
             .map(|trial| self.weighed(trial))
     }
 
+    /// Effects that explain next to nothing of what a candidate does in any of their forms.
+    pub fn unlike(&self, candidate: &Candidate) -> Vec<&'static str> {
+        let most = self.base.cost - UNLIKE * (self.base.cost - candidate.fit.cost);
+        let all = || self.ranked.iter().chain(&self.other_forms);
+        let like = all().filter(|trial| trial.sketched_cost.min(trial.fit.cost) < most);
+        let like: HashSet<&str> = like.map(|trial| trial.effect.id()).collect();
+        let ids = self.ranked.iter().map(|trial| trial.effect.id());
+        ids.filter(|id| !like.contains(id)).collect()
+    }
+
     /// The likeliest form of a candidate's effect that says less than it, fitted in full, if there is one.
     pub fn plainer(&self, candidate: &Candidate) -> Option<Candidate> {
         let mut forms = self.other_forms.iter();
@@ -243,7 +259,7 @@ impl Trial {
         sketch: Sketch,
         in_full: bool,
     ) -> Self {
-        let effect = sketch.effect;
+        let (effect, sketched_cost) = (sketch.effect, sketch.found.cost);
         let (pace, fit) = if sketch.is_absent() {
             let estimate = sketch.found.estimate;
             let fit = Fit {
@@ -263,6 +279,7 @@ impl Trial {
         Self {
             effect,
             fit,
+            sketched_cost,
             pace,
             log_odds: f64::NAN,
             weighed: OnceLock::new(),

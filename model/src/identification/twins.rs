@@ -39,14 +39,15 @@ const SMALL: f64 = 0.3;
 /// is one, though a lift valve that passes less looks the same.
 const SAME_DEG: f64 = 2.0;
 
-/// Effects that fit as well in place of the last one, whose variance is inflated by so much.
+/// Effects that fit as well in place of the last one, whose variance is inflated by so much, but for those that are
+/// known to be `unlike` it.
 ///
 /// Each starts from the fit itself, with as much of it in the named effect's place as looks most like that.
 pub(super) fn twins(
     experiment: &Experiment,
     model: &Model,
-    whole: &Fit,
-    inflation: f64,
+    (whole, inflation): (&Fit, f64),
+    unlike: &[&str],
 ) -> Vec<Alternative> {
     let drafted = experiment.drafted(model, &whole.estimate);
     let Some(place) = Place::new(&drafted, model, whole) else {
@@ -58,6 +59,7 @@ pub(super) fn twins(
     let alike_deg = alike_deg.min(ALIKE_DEG);
     let swapped: Vec<Fit> = absent(model, &whole.estimate)
         .into_par_iter()
+        .filter(|effect| !unlike.contains(&effect.id()))
         .filter_map(|effect| start(&place, whole, effect, alike_deg))
         .map(|start| sketch(&drafted, model, &whole.weights, start, false))
         .filter(|found| may_catch_up(found, without, whole.cost))

@@ -353,7 +353,12 @@ fn runge_kutta(
     ];
     let (mut rate, mut sum) = ([0.0; 5], [0.0; 5]);
     for (share, weight, openings) in stages {
-        rate = derivative(forces, circuit, openings, &moved(&start, rate, share * dt_s));
+        rate = derivative(
+            forces,
+            circuit,
+            openings,
+            &moved(&start, rate, share * dt_s),
+        );
         for (sum, rate) in sum.iter_mut().zip(rate) {
             *sum += weight * rate;
         }
