@@ -14,7 +14,7 @@ use crate::plant::sites::{CurrentStage, Currents, Sites, Valve};
 
 /// Largest change of a current in a step, A: a jump is noticed at the end of a step, and what it is late on a fast ramp
 /// would be taken for a wider band.
-const CHANGE_A: f64 = 0.004;
+const CHANGE_A: f64 = 0.002;
 
 /// Change of the current under which it stands still, A/s: a cleaned record holds its plateaus to less.
 const STILL_A_S: f64 = 0.005;

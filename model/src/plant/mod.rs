@@ -59,6 +59,9 @@ use moment::Moment;
 use signals::Signals;
 use sites::{RunConditions, Sites};
 
+/// Steps of the spools within one of the quasi-static piston, at most, while a current runs.
+const SPOOL_STEPS: f64 = 2.0;
+
 /// A hitch with a load on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HitchRig {
@@ -225,7 +228,7 @@ impl<'m> Plant<'m> {
             (Rig::Hitch(rig), Dynamics::Steady) => {
                 let lands = steady::lands(&self.forces(&rig), self.state.piston_m);
                 let own_s = steady::longest_step_s(&self.sites, turning_a_s, lands);
-                own_s.min(self.sites.largest_change_a / driven_a_s)
+                own_s.min(SPOOL_STEPS * self.sites.largest_change_a / driven_a_s)
             }
             (Rig::Flow { .. }, _) => steady::longest_step_s(&self.sites, turning_a_s, false),
         }
