@@ -353,12 +353,11 @@ impl Controller {
         }
         let parameters = &calibration.position;
         let lower_speed = lowering_limit(inputs.lowering_dial, operator, parameters);
-        let demand = PositionControl::demand(
+        let demand = self.position.demand(
             target,
             self.phase,
             &self.motion,
             &self.closing,
-            lower_speed,
             self.scale,
             calibration,
         );

@@ -17,6 +17,11 @@
 //!
 //! A load that swings back before its coil is cut seems to have some way left. A valve that opens for that once more
 //! gives the next swing its flow, and carries the hitch beyond: what has slowed down to its end stays slow.
+//!
+//! A spool whose play was taken up while it slowed down, and that friction then holds back, needs the current of the way
+//! up again to move any further. At its slowest a move isn't worth that: a hitch may stand a tenth of a degree away from
+//! where its coil would be cut, and stay there with the coil on. So the band in which it is cut gets wider when the end
+//! takes long.
 
 use super::calibration::Calibration;
 use super::design_parameters::PositionParameters;
@@ -24,7 +29,8 @@ use super::drop_scale::DropScale;
 use super::fixed::{Divisor, mul_div, square_root};
 use super::motion::{Closing, Motion, RunOn};
 use super::units::{
-    Micrometre, MicrometrePerSecond, MilliDegree, MillimetrePerSecondSquared, PerSecond,
+    Micrometre, MicrometrePerSecond, MilliDegree, MillimetrePerSecondSquared, Millisecond,
+    PerSecond,
 };
 use super::valve_logic::{Demand, Direction, Phase};
 
@@ -32,6 +38,12 @@ use super::valve_logic::{Demand, Direction, Phase};
 const CORRECTION: i32 = 3;
 /// ... and a move that has slowed down so far doesn't get faster again: half of a millimetre is left then.
 const END: i32 = 6;
+/// A move that has been at its end for so long isn't waited for ...
+const PATIENCE: Millisecond = Millisecond(110);
+/// ... each millisecond from then on it is spared so much of its way, um: half of what it should go at its slowest ...
+const SPARED: i32 = 2;
+/// ... but no more than this: with the stop band that makes 0.17 degree.
+const MOST_SPARED: i32 = 130;
 
 /// Follows the lever.
 #[derive(Clone, Copy, Debug, Default)]
@@ -45,8 +57,8 @@ pub struct PositionControl {
     started: bool,
     /// The present move is one, for the move itself ended elsewhere.
     retries: bool,
-    /// The present move has slowed down to its end.
-    ends: bool,
+    /// For how long the present move has been at its end: since it had slowed down to it.
+    ending: Millisecond,
     /// The present place is taken for the set point until the lever moves (end stop).
     accepted: bool,
 }
@@ -124,7 +136,7 @@ impl PositionControl {
         let reason = self.reason();
         self.retries = self.started && !self.arrived;
         self.started = true;
-        self.ends = false;
+        self.ending = Millisecond::ZERO;
         reason
     }
 
@@ -136,15 +148,14 @@ impl PositionControl {
         }
     }
 
-    /// The demand of a hitch that moves, or has a reason to, towards `target`; `lower_speed`: the fastest
-    /// lowering that the operator allows.
+    /// The demand of a hitch that moves, or has a reason to, towards `target`.
     #[must_use]
     pub fn demand(
+        &self,
         target: Micrometre,
         phase: Phase,
         motion: &Motion,
         closing: &Closing,
-        lower_speed: MicrometrePerSecond,
         scale: DropScale,
         calibration: &Calibration,
     ) -> Demand {
@@ -165,7 +176,7 @@ impl PositionControl {
                 parameters.lift_deceleration,
             ),
             Direction::Lower => (
-                lower_speed,
+                parameters.lower_speed,
                 scale.ramp_at_present(parameters.lower_acceleration),
                 scale.ramp_at_present(parameters.lower_deceleration),
             ),
@@ -174,8 +185,9 @@ impl PositionControl {
         let run_on: RunOn = motion.run_on(&calibration.hydraulics);
         let remaining = ahead_of(run_on.resting_point());
         // A cut carries less far than a ramp to zero, so it needn't be looked at before that would do.
-        let cut = remaining <= parameters.stop_band
-            && ahead_of(run_on.cut_point(motion.share_of_cut(closing))) <= parameters.stop_band;
+        let band = parameters.stop_band + self.spared();
+        let cut =
+            remaining <= band && ahead_of(run_on.cut_point(motion.share_of_cut(closing))) <= band;
         let approach = approach_speed(remaining, deceleration, parameters.approach_gain);
         let speed = match cut {
             true => MicrometrePerSecond::ZERO,
@@ -188,6 +200,12 @@ impl PositionControl {
         }
     }
 
+    /// How much of the way the present move is spared, for it has been at its end for long.
+    fn spared(&self) -> Micrometre {
+        let since = (self.ending - PATIENCE).0.clamp(0, MOST_SPARED / SPARED);
+        Micrometre(since.wrapping_mul(SPARED))
+    }
+
     /// The `demand`, but slow once the move has slowed down to its end, and creeping if the last one didn't get there.
     ///
     /// What sent that one elsewhere the estimate doesn't know, and a short way doesn't tell in time: in a hurry this one
@@ -196,22 +214,26 @@ impl PositionControl {
     #[must_use]
     pub fn paced(
         &mut self,
-        demand: Demand,
+        mut demand: Demand,
         lower_speed: MicrometrePerSecond,
         parameters: &PositionParameters,
     ) -> Demand {
         // A dial that is nearly shut is no end: it may be opened during the move.
-        let by_dial = demand.direction == Direction::Lower && demand.speed == lower_speed;
-        self.ends |= !by_dial && demand.speed <= creeping(END, parameters);
-        let times = match (self.retries, self.ends) {
+        let by_dial = demand.direction == Direction::Lower && demand.speed >= lower_speed;
+        if by_dial {
+            demand.speed = lower_speed;
+        }
+        let slow = !by_dial && demand.speed <= creeping(END, parameters);
+        if slow || self.ending > Millisecond::ZERO {
+            self.ending = self.ending.next();
+        }
+        let times = match (self.retries, self.ending > Millisecond::ZERO) {
             (true, _) => CORRECTION,
             (false, true) => END,
             (false, false) => return demand,
         };
-        Demand {
-            speed: demand.speed.min(creeping(times, parameters)),
-            ..demand
-        }
+        demand.speed = demand.speed.min(creeping(times, parameters));
+        demand
     }
 }
 
@@ -243,6 +265,7 @@ pub fn approach_speed(
 
 #[cfg(test)]
 mod tests {
+    use super::super::drop_scale::DropReference;
     use super::*;
 
     #[test]
@@ -329,6 +352,49 @@ mod tests {
         assert_eq!(position.reason_to_move(here, here, &parameters), None);
         position.start();
         assert_eq!(paced(&mut position, fast), fast, "another move");
+    }
+
+    /// For how long a hitch that stands still `short_of` where its coil is cut is waited for, ms.
+    fn waited_for(position: &mut PositionControl, short_of: Micrometre) -> Option<i32> {
+        let calibration = Calibration::nominal();
+        let parameters = &calibration.position;
+        let closing = Closing::of(&calibration);
+        let drop = calibration.hydraulics.reference_drop;
+        let scale = DropScale::new(&DropReference::new(drop), drop);
+        let mut motion = Motion::default();
+        motion.update(Micrometre::ZERO, Phase::Holding, &calibration.motion);
+        let phase = Phase::Moving {
+            direction: Direction::Lift,
+            speed: parameters.creep_speed,
+        };
+        let target = parameters.stop_band + short_of;
+        (0..2_000).find(|_| {
+            let demand = position.demand(target, phase, &motion, &closing, scale, &calibration);
+            let demand = position.paced(demand, parameters.lower_speed, parameters);
+            demand.speed == MicrometrePerSecond::ZERO
+        })
+    }
+
+    #[test]
+    fn a_hitch_that_stands_just_short_of_its_set_point_is_not_waited_for() {
+        let mut position = PositionControl::default();
+        position.start();
+        assert_eq!(waited_for(&mut position, Micrometre::ZERO), Some(0));
+        for (short_of, longest_ms) in [(20, 120), (MOST_SPARED, 180)] {
+            position.start();
+            let waited_ms = waited_for(&mut position, Micrometre(short_of)).unwrap();
+            assert!((100..=longest_ms).contains(&waited_ms), "{waited_ms} ms");
+        }
+    }
+
+    #[test]
+    fn a_hitch_that_goes_on_at_its_slowest_gets_where_it_should() {
+        let way_per_ms = PositionParameters::NOMINAL.creep_speed.0 / 1_000;
+        assert!(SPARED < way_per_ms, "is given up sooner than it goes");
+        let end_mm_per_s = creeping(END, &PositionParameters::NOMINAL).0 / 1_000;
+        let at_end_um = 1_000 * end_mm_per_s / PositionParameters::NOMINAL.approach_gain.0;
+        let slowest_um = at_end_um - PositionParameters::NOMINAL.stop_band.0;
+        assert!(slowest_um / way_per_ms <= PATIENCE.0, "{slowest_um} um");
     }
 
     #[test]
