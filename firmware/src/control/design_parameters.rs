@@ -132,12 +132,12 @@ parameter_group! {
         upper_limit: MilliDegree = 135_400, -360_000..=360_000;
         /// A resting hitch follows the lever only when it moves by more than this: 0.2 % of the range, beyond lever noise.
         lever_deadband: MilliDegree = 200, 0..=5_000;
-        /// The coil is cut when that would bring the hitch this close: 0.15 degree short, so that a load swings about a place with room beyond.
-        stop_band: Micrometre = 250, 0..=5_000;
+        /// The coil is cut when that would bring the hitch this close: 0.1 degree short, so that a load swings about a place with room beyond.
+        stop_band: Micrometre = 170, 0..=5_000;
         /// A resting hitch that is further off than this is corrected: 0.35 degree, inside the 0.5 degree that is asked for.
         restart_band: Micrometre = 600, 20..=10_000;
-        /// Speed per remaining distance at the end of the approach: 9 Hz, about the frequency at which a load swings on its oil, which is damped while it is lifted.
-        approach_gain: PerSecond = 56, 1..=200;
+        /// Speed per remaining distance at the end of the approach: 10 Hz, about the frequency at which a load swings on its oil, which is damped while it is lifted.
+        approach_gain: PerSecond = 60, 1..=200;
         /// Slowest approach: cutting the coil at this speed swings a load on oil with air in it, 5 Hz, by 0.07 degree. Corrections are three times as fast.
         creep_speed: MicrometrePerSecond = 3_700, 0..=100_000;
         /// Fastest lifting: beyond the valve's saturation, so it doesn't limit.
@@ -186,8 +186,8 @@ parameter_group! {
         corrections: Count = 5, 0..=100;
         /// How far a hitch that leaves its place by itself is brought back, all corrections together: each rightful one is less than 1 degree.
         corrected_travel: Micrometre = 4_500, 500..=50_000;
-        /// A correction is forgotten after this time: a seated valve sinks less than a restart band in it.
-        correction_memory: Millisecond = 600_000, 1_000..=86_400_000;
+        /// A correction is forgotten after this time: a seated valve sinks less in it than a correction makes good, 0.25 degree.
+        correction_memory: Millisecond = 740_000, 1_000..=86_400_000;
     }
 }
 
