@@ -1,16 +1,19 @@
 //! Teaching: the firmware finds the threshold currents and the lags of both valves and the ends of travel by itself.
 //!
 //! A service switch and a held button start it from the lock; letting go ends it. Several ramps a valve, up and down in
-//! turn, a step of current each, then once to either end:
+//! turn, then once to either end, and a step of current for each valve:
 //!
 //! ```text
-//! +------+   rested    +------+  moved   +------+        +-------+  stands still  +------+
-//! | Rest | ----------> | Ramp | -------> | Rest | -...-> | Drive | -------------> | Done |
-//! +------+             +------+          +------+        +-------+  (both ends)   +------+
-//!     ^    after the   +------+  over       ^
-//!     +--- ramps ----> | Open | ------------+
-//!                      +------+
+//! +------+   rested    +------+  moved   +------+        +------+  over          +------+
+//! | Rest | ----------> | Ramp | -------> | Rest | -...-> | Open | -------------> | Done |
+//! +------+             +------+          +------+        +------+  (both valves) +------+
+//!     ^    after the   +-------+  stands    ^
+//!     +--- ramps ----> | Drive | -----------+
+//!                      +-------+  still
 //! ```
+//!
+//! Behind a step the hitch goes a fifth of its travel, a heavy one further down than up. An end in its way would look like
+//! another valve. So steps come last, from the lower end, and those in the lowest quarter only take it out of there.
 //!
 //! A ramp rises until the hitch has moved further than noise. By then the current is past the threshold, by how much
 //! depends on ramp, valve, spool and filter. So a *twin* goes up the same ramp on the calibration's own curve: where it
@@ -33,9 +36,9 @@ use super::{teach_hysteresis, teach_lag};
 
 /// Ramps a valve.
 pub const REPEATS: usize = 3;
-/// Ramps of both valves, and a step each.
+/// Ramps of both valves, and a drive to either end.
 const RAMPS: usize = 2 * REPEATS;
-const RAMPS_AND_STEPS: usize = RAMPS + 2;
+const RAMPS_AND_DRIVES: usize = RAMPS + 2;
 
 /// Why a machine could not be taught.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,7 +157,7 @@ struct Drive {
 #[derive(Clone, Copy, Debug)]
 pub struct Teach {
     step: Step,
-    /// Ramps and drives that are over.
+    /// Ramps, drives and steps that are over.
     finished: usize,
     filtered_udeg: Option<i32>,
     shifts: [[MilliAmp; REPEATS]; 2],
@@ -219,16 +222,12 @@ impl Teach {
             self.end(Err(error));
             MilliAmp::ZERO
         });
+        let (mut lift, mut lower) = (MilliAmp::ZERO, MilliAmp::ZERO);
         match direction {
-            Direction::Lift => CoilCurrents {
-                lift: current,
-                ..CoilCurrents::OFF
-            },
-            Direction::Lower => CoilCurrents {
-                lower: current,
-                ..CoilCurrents::OFF
-            },
+            Direction::Lift => lift = current,
+            Direction::Lower => lower = current,
         }
+        CoilCurrents { lift, lower }
     }
 
     /// Up and down in turn.
@@ -266,19 +265,19 @@ impl Teach {
                 moved_at: None,
                 twin_at: None,
             })
-        } else if self.finished < RAMPS_AND_STEPS {
-            Step::Open(Opening {
-                start: travel,
-                age: Millisecond::ZERO,
-                twin: Twin::default(),
-                ways: Default::default(),
-            })
-        } else {
+        } else if self.finished < RAMPS_AND_DRIVES {
             Step::Drive(Drive {
                 looked: travel,
                 // A cylinder that was pressed against its end has to lose 150 bar first.
                 age: -parameters.rest_time,
                 total: Millisecond::ZERO,
+            })
+        } else {
+            Step::Open(Opening {
+                start: travel,
+                age: Millisecond::ZERO,
+                twin: Twin::default(),
+                ways: Default::default(),
             })
         };
         MilliAmp::ZERO
@@ -382,8 +381,11 @@ impl Teach {
             self.step = Step::Open(opening);
             return on_curve + mean(&self.shifts[valve]);
         }
-        let [real, twin] = opening.ways;
-        self.note_opening(&real, &twin, calibration);
+        self.step = Step::Rest(Millisecond::ZERO);
+        if opening.start.0 > parameters.stroke.0 >> 2 {
+            let [real, twin] = opening.ways;
+            self.note_opening(&real, &twin, calibration);
+        }
         MilliAmp::ZERO
     }
 
@@ -398,7 +400,25 @@ impl Teach {
         let hysteresis = teach_hysteresis::found(real, twin, rate, hydraulics.hysteresis);
         self.hysteresis = self.hysteresis.min(hysteresis);
         self.finished = self.finished.saturating_add(1);
-        self.step = Step::Rest(Millisecond::ZERO);
+        if valve == 1 {
+            self.end(Ok(self.taught()));
+        }
+    }
+
+    /// All that was found.
+    fn taught(&self) -> Taught {
+        let [lift_shift, lower_shift] = self.shifts.map(|shifts| mean(&shifts));
+        let [lift_lag, lower_lag] = self.lags;
+        let [lower_end, upper_end] = self.ends;
+        Taught {
+            lift_shift,
+            lower_shift,
+            lift_lag,
+            lower_lag,
+            hysteresis: self.hysteresis,
+            lower_end,
+            upper_end,
+        }
     }
 
     /// Currents that drive the hitch slowly, by the calibration's curves.
@@ -459,17 +479,6 @@ impl Teach {
         if offset.magnitude() > most || stretch > calibration.teach.most_stretch {
             return Err(TeachError::Ends);
         }
-        let [lift_shift, lower_shift] = self.shifts.map(|shifts| mean(&shifts));
-        let [lift_lag, lower_lag] = self.lags;
-        self.end(Ok(Taught {
-            lift_shift,
-            lower_shift,
-            lift_lag,
-            lower_lag,
-            hysteresis: self.hysteresis,
-            lower_end,
-            upper_end,
-        }));
         Ok(())
     }
 }
