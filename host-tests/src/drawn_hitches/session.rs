@@ -1,6 +1,7 @@
 //! One machine from power-up on: the hitch is picked up, moved, and watched for a minute.
 
 use hitch_firmware::control::safety::Trip;
+use hitch_firmware::control::teach::{Taught, TeachError};
 use hitch_firmware::control::units::{MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliVolt};
 use hitch_firmware::control::{Controller, Fault, Inputs, ValidCalibration};
 use rand::SeedableRng;
@@ -92,7 +93,13 @@ impl<'a> Session<'a> {
 
     /// One millisecond with the lever at `lever_deg`.
     pub fn step(&mut self, lever_deg: f64) -> Instant {
-        let inputs = self.inputs(lever_deg);
+        self.step_with(lever_deg, |_| ())
+    }
+
+    /// The same; `tell` changes what the controller is told.
+    pub fn step_with(&mut self, lever_deg: f64, tell: impl FnOnce(&mut Inputs)) -> Instant {
+        let mut inputs = self.inputs(lever_deg);
+        tell(&mut inputs);
         let outputs = self.controller.step(&inputs);
         let ampere = |current: MilliAmp| f64::from(current.0) * 1e-3;
         let instant = Instant {
@@ -106,6 +113,12 @@ impl<'a> Session<'a> {
         };
         self.hitch.step(instant.currents_a);
         instant
+    }
+
+    /// What teaching found, once it is over.
+    #[must_use]
+    pub fn taught(&self) -> Option<Result<Taught, TeachError>> {
+        self.controller.taught()
     }
 
     /// What a line of `hitch controller` says: no measured currents, and only sensors that are there.
