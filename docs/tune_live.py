@@ -13,7 +13,7 @@ from pyxcp.master import Master
 
 FIRMWARE = pathlib.Path(__file__).resolve().parent.parent / "firmware"
 LOW_DEG, HIGH_DEG = 80.0, 105.0
-GAINS_PER_S = [56, 4, 56]
+GAINS_PER_S = [60, 4, 60]
 MOVE_S = 2.0
 
 hitch, *options = sys.argv[1:] or ["target/release/hitch"]
