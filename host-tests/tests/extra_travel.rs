@@ -315,7 +315,7 @@ fn a_drifting_angle_is_followed_by_a_few_degrees_at_most() {
     }
 }
 
-/// A correction is forgotten after ten minutes, and five within them are too many: a drift that asks for fewer is
+/// A correction is forgotten after 12 minutes, and five within them are too many: a drift that asks for fewer is
 /// followed for as long as it lasts.
 #[test]
 fn the_slowest_drift_that_is_noticed() {
