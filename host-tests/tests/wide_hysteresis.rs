@@ -50,7 +50,8 @@ fn the_hysteresis_of_the_valves_is_found() {
             spool_lag_s,
         } = drawn.conditions;
         println!(
-            "machine {:3} at {:3.0} deg: {true_a:.3} A, found {found_a:.3} A; {load_kg:3.0} kg, {oil_temperature_c:2.0} C, pressures {}, spools of {:.0} ms, found {lags:?}",
+            "machine {:3} at {:3.0} deg: {true_a:.3} A, found {found_a:.3} A; {load_kg:3.0} kg, \
+             {oil_temperature_c:2.0} C, pressures {}, spools of {:.0} ms, found {lags:?}",
             drawn.seed,
             drawn.angles_deg[0],
             drawn.readings.pressures,

@@ -18,10 +18,10 @@
 //! A load that swings back before its coil is cut seems to have some way left. A valve that opens for that once more
 //! gives the next swing its flow, and carries the hitch beyond: what has slowed down to its end stays slow.
 //!
-//! A spool whose play was taken up while it slowed down, and that friction then holds back, needs the current of the way
-//! up again to move any further. At its slowest a move isn't worth that: a hitch may stand a tenth of a degree away from
-//! where its coil would be cut, and stay there with the coil on. So the band in which it is cut gets wider when the end
-//! takes long.
+//! A spool whose play was taken up while it slowed down, and that friction then holds back, needs the current of the
+//! way up again to move any further. At its slowest a move isn't worth that: a hitch may stand a tenth of a degree away
+//! from where its coil would be cut, and stay there with the coil on. So the band in which it is cut gets wider when
+//! the end takes long.
 
 use super::calibration::Calibration;
 use super::design_parameters::PositionParameters;

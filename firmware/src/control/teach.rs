@@ -12,8 +12,8 @@
 //!                      +-------+  still
 //! ```
 //!
-//! Behind a step the hitch goes a fifth of its travel, a heavy one further down than up. An end in its way would look like
-//! another valve. So steps come last, from the lower end, and those in the lowest quarter only take it out of there.
+//! Behind a step the hitch goes a fifth of its travel, a heavy one further down than up. An end in its way would look
+//! like another valve. So steps come last, from the lower end; those in the lowest quarter only take it out of there.
 //!
 //! A ramp rises until the hitch has moved further than noise. By then the current is past the threshold, by how much
 //! depends on ramp, valve, spool and filter. So a *twin* goes up the same ramp on the calibration's own curve: where it

@@ -1,5 +1,5 @@
-//! The controller on hitches that it has never met, taught or not: drawn from a seed, driven through what `hitch controller` is
-//! told and answers.
+//! The controller on hitches that it has never met, taught or not: drawn from a seed, driven through what
+//! `hitch controller` is told and answers.
 //!
 //! ```text
 //! draw      a seed -> a machine of the second rig, its sensors, and the moves that are asked of it
