@@ -22,7 +22,7 @@ use super::lateness::on_time;
 use super::needle::threaded;
 use super::scans::Scans;
 use super::shortlist::{Shortlist, Sketch, may_catch_up};
-use crate::effects::Effect;
+use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
 /// Falls of the cost that are worth a sketch and a fit, as shares of the least one that would be believed.
@@ -36,7 +36,13 @@ pub(super) const VISIBLE: f64 = 0.1;
 
 /// Logarithm of how much rarer than usual forms those are that say more: where another effect explains as much, it is
 /// that one.
-pub(super) const RARER: f64 = 3.0;
+const RARER: f64 = 3.0;
+
+/// Logarithm of how much rarer effects in their forms are than in their usual ones.
+pub(super) fn rarity<'a>(effects: impl IntoIterator<Item = &'a AddedEffect>) -> f64 {
+    let rarer = effects.into_iter().filter(|added| added.effect.refines());
+    RARER * rarer.count() as f64
+}
 
 /// Share of what an effect explains that no twin of it explains less of. One at the angle of the least alike that is
 /// tried explains two thirds, were there not what else is missing.
@@ -317,7 +323,6 @@ impl Odds {
         let effects = &fit.estimate.effects;
         let counted = &effects[effects.len().saturating_sub(count)..];
         let parameters = counted.iter().map(|added| added.values.len()).sum();
-        let rarer = counted.iter().filter(|added| added.effect.refines());
-        log_odds(ratio, parameters, self.effective_samples) - RARER * rarer.count() as f64
+        log_odds(ratio, parameters, self.effective_samples) - rarity(counted)
     }
 }

@@ -14,7 +14,7 @@ use super::explain::absent;
 use super::fit::{Fit, refine, sketch};
 use super::shortlist::may_catch_up;
 use super::starts::{scaled, with_extreme_shapes};
-use super::trials::RARER;
+use super::trials::rarity;
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
@@ -74,7 +74,7 @@ pub(super) fn twins(
             let better = (whole.cost - fit.cost) / (variance * inflation);
             let spared = own.values.len() as f64 - other.values.len() as f64;
             let merit = |spared: f64| spared * (compared / inflation).ln();
-            let rarer = RARER * (rarity(other) - rarity(own));
+            let rarer = rarity([other]) - rarity([own]);
             // Fewer parameters are a merit; more are no fault in what cannot be told apart.
             let plain = plain(other).filter(|plain| size_key(plain) == size_key(own));
             let alike = better + merit(spared.max(0.0)) > -TOLD_APART
@@ -127,11 +127,6 @@ fn start(
     let mut estimate = whole.estimate.clone();
     *estimate.effects.last_mut()? = alike;
     worth_a_try.then_some(estimate)
-}
-
-/// One for a form that says more of its effect than its usual one.
-fn rarity(added: &AddedEffect) -> f64 {
-    if added.effect.refines() { 1.0 } else { 0.0 }
 }
 
 /// What the size of an effect is called in a model file.

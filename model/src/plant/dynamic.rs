@@ -62,7 +62,7 @@ const VACUUM_PA: f64 = -1.0e5;
 /// Rates of travel, speed, pressure, of what the hose's wall is behind, and of the compensator's pressure.
 type Derivative = [f64; 5];
 
-/// [`Derivative`] of a state.
+/// [`Derivative`] of a state: the innermost loop, in place, since what is handed over by value waits for its stores.
 #[inline(always)]
 fn derivative(
     forces: &Forces,
@@ -344,7 +344,7 @@ fn runge_kutta(
     };
     let start = stretched(forces.model, state);
     let [first, middle, last] = openings;
-    // One place that asks for the rates lets the compiler put them there.
+    // One place that asks for the rates lets the compiler keep them there.
     let stages = [
         (0.0, 1.0, first),
         (0.5, 2.0, middle),
