@@ -4,9 +4,10 @@ use rayon::prelude::*;
 
 use super::experiment::Experiment;
 use super::fit::{Descent, Fit, sketch};
+use super::forms::said;
 use super::frame::Frame;
 use super::jacobian::Jacobian;
-use super::scan::GRIDS;
+use super::scan::{GRIDS, Grid};
 use super::scans::Scans;
 use super::starts::{Starts, valleys};
 use crate::effects::{AddedEffect, Effect};
@@ -114,7 +115,9 @@ impl Shortlist<'_> {
             sketches.extend(self.sketched(others.by_ref().take(rest).collect()));
         }
         sketches.extend(others.map(|starts| self.unsketched(starts)));
-        if !explained {
+        if explained {
+            self.look_for_plainer(&mut sketches);
+        } else {
             self.look_through(&mut sketches);
         }
         self.refine(&mut sketches, &refining);
@@ -162,22 +165,45 @@ impl Shortlist<'_> {
             let explained = sketches
                 .par_iter_mut()
                 .filter(looked_for)
-                .map(|sketch| {
-                    let starts = self.looked_through(sketch.effect, grid);
-                    let other = if starts.cost < doubtful {
-                        self.sketch(starts)
-                    } else {
-                        self.unsketched(starts)
-                    };
-                    let explains = self.explains(&other);
-                    if other.found.cost < sketch.found.cost {
-                        *sketch = other;
-                    }
-                    explains
-                })
+                .map(|sketch| self.look_for(sketch, grid, doubtful))
                 .reduce(|| false, |one, other| one || other);
             if explained {
                 return;
+            }
+        }
+    }
+
+    /// Looks through one effect and puts what leads on in place of its sketch; whether that explains all.
+    fn look_for(&self, sketch: &mut Sketch, grid: &Grid, doubtful: f64) -> bool {
+        let starts = self.looked_through(sketch.effect, grid);
+        let other = if starts.cost < doubtful {
+            self.sketch(starts)
+        } else {
+            self.unsketched(starts)
+        };
+        let explains = self.explains(&other);
+        if other.found.cost < sketch.found.cost {
+            *sketch = other;
+        }
+        explains
+    }
+
+    /// Looks through those forms of the leading effect that say less than what leads. A form that says more may come
+    /// near from where secants miss the valley of a plainer one.
+    fn look_for_plainer(&self, sketches: &mut [Sketch]) {
+        let leader = sketches
+            .iter()
+            .min_by(|a, b| a.found.cost.total_cmp(&b.found.cost));
+        let Some(leader) = leader.map(|leader| leader.effect) else {
+            return;
+        };
+        for sketch in sketches {
+            let form = sketch.effect;
+            if form.id() == leader.id()
+                && said(form) < said(leader)
+                && let Some(grid) = valleys(self.experiment, form)
+            {
+                self.look_for(sketch, grid, self.base.cost);
             }
         }
     }
