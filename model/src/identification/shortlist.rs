@@ -160,7 +160,7 @@ impl Shortlist<'_> {
                 let valleys = valleys(self.experiment, sketch.effect);
                 valleys.is_some_and(|valleys| std::ptr::eq(valleys, grid))
                     && (!grid.hinted || sketch.found.cost < doubtful)
-                    && (!arrived || sketch.effect.id() == leader || sketch.found.cost < near)
+                    && (!arrived || sketch.effect.id() == leader.id() || sketch.found.cost < near)
             };
             let explained = sketches
                 .par_iter_mut()
@@ -191,10 +191,7 @@ impl Shortlist<'_> {
     /// Looks through those forms of the leading effect that say less than what leads. A form that says more may come
     /// near from where secants miss the valley of a plainer one.
     fn look_for_plainer(&self, sketches: &mut [Sketch]) {
-        let leader = sketches
-            .iter()
-            .min_by(|a, b| a.found.cost.total_cmp(&b.found.cost));
-        let Some(leader) = leader.map(|leader| leader.effect) else {
+        let Some((leader, _)) = leader(sketches) else {
             return;
         };
         for sketch in sketches {
@@ -316,8 +313,8 @@ fn refines_any(effect: &dyn Effect, others: &[&'static dyn Effect]) -> bool {
 }
 
 /// The effect whose sketch leaves the least cost, and that.
-fn leader(sketches: &[Sketch]) -> Option<(&'static str, f64)> {
-    let costs = sketches.iter().map(|s| (s.effect.id(), s.found.cost));
+fn leader(sketches: &[Sketch]) -> Option<(&'static dyn Effect, f64)> {
+    let costs = sketches.iter().map(|s| (s.effect, s.found.cost));
     costs.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
