@@ -4,7 +4,7 @@
 use hitch_model::campaign::Campaign;
 use hitch_model::effects::Effect;
 use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::explain;
+use hitch_model::identification::explain::{Explanation, explain};
 use host_tests::hidden_effects::answer::Method;
 use host_tests::hidden_effects::explaining::Explaining;
 use host_tests::hidden_effects::grade::{Graded, Posed};
@@ -123,10 +123,15 @@ fn an_effect_is_named_where_pressures_ring() {
     assert_eq!(answer.named, ["entrained-air"]);
 }
 
+/// A case explained from where its family starts.
+fn explained(case: &Case) -> Explanation {
+    let model = starting_point(case.family);
+    explain(&Experiment::new(&campaign(case), &model), &model, &|_| {})
+}
+
 /// What is named first, and how large it is over what is hidden.
 fn first_over_truth(case: &Case) -> (&'static dyn Effect, f64) {
-    let model = starting_point(case.family);
-    let found = explain(&Experiment::new(&campaign(case), &model), &model, &|_| {});
+    let found = explained(case);
     let first = found.steps.first().expect("something is found");
     let (id, form) = (first.effect.id(), first.effect.form());
     let (found, hidden) = (first.values[0], case.hidden[0].size);
@@ -218,8 +223,7 @@ fn what_an_effect_has_beyond_its_usual_form_is_no_second_effect() {
 fn a_spool_that_sticks_is_no_hysteresis() {
     let case = anything(Family::Steady, Plan::Lab, 5_227);
     let (hidden, size_a) = (case.hidden[0].what.id, case.hidden[0].size);
-    let model = starting_point(case.family);
-    let found = explain(&Experiment::new(&campaign(&case), &model), &model, &|_| {});
+    let found = explained(&case);
     let first = found.steps.first().expect("something is found");
     println!(
         "{hidden} {size_a} A: {} {:?}",
@@ -244,8 +248,7 @@ fn a_band_is_found_beyond_the_ledges_of_the_cost() {
 fn what_may_be_two_things_is_the_usual_one_first() {
     for seed in [5_220, 5_234] {
         let case = anything(Family::Steady, Plan::Lab, seed);
-        let model = starting_point(case.family);
-        let found = explain(&Experiment::new(&campaign(&case), &model), &model, &|_| {});
+        let found = explained(&case);
         let named = ids(found.steps.iter().map(|step| step.effect.id()));
         println!("{seed}: {named:?}");
         assert_eq!(named, ids(case.hidden.iter().map(|hidden| hidden.what.id)));
@@ -308,8 +311,7 @@ fn two_effects_are_named_though_each_alone_looks_wrong() {
 #[test]
 fn the_form_of_the_first_effect_is_chosen_anew_with_the_second() {
     let case = pair(Family::Steady, Plan::Field, 3_139);
-    let model = starting_point(case.family);
-    let found = explain(&Experiment::new(&campaign(&case), &model), &model, &|_| {});
+    let found = explained(&case);
     for step in &found.steps {
         println!(
             "{:?} {:?}: {:?}",

@@ -337,14 +337,10 @@ pub(super) fn with_last(experiment: &Experiment, model: &Model, fit: &Fit, effec
 }
 
 /// The same fit with its last effect moved to another place in the list.
-pub(super) fn in_place(
-    experiment: &Experiment,
-    model: &Model,
-    fit: &Fit,
-    place: usize,
-) -> Option<Fit> {
+pub(super) fn in_place(experiment: &Experiment, model: &Model, fit: &Fit, place: usize) -> Fit {
     let mut estimate = fit.estimate.clone();
-    let effect = estimate.effects.pop()?;
-    estimate.effects.insert(place, effect);
-    Some(evaluate(experiment, model, estimate))
+    if let Some(last) = estimate.effects.pop() {
+        estimate.effects.insert(place, last);
+    }
+    evaluate(experiment, model, estimate)
 }

@@ -11,7 +11,7 @@ use super::adequacy::{Cell, adequate, cells_since};
 use super::candidate::weigh;
 use super::experiment::Experiment;
 use super::explain::possible;
-use super::fit::{Fit, evaluate, refine, with_last};
+use super::fit::{Fit, evaluate, in_place, refine, with_last};
 use super::trials::Odds;
 use crate::effects::Effect;
 use crate::model::Model;
@@ -94,13 +94,8 @@ pub(super) fn likelier_form(
             (odds.of_last(&fit, 1), fit)
         })
         .max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (best.0 > odds.of_last(&whole, 1) + LIKELIER).then(|| {
-        let mut estimate = best.1.estimate;
-        if let Some(last) = estimate.effects.pop() {
-            estimate.effects.insert(index, last);
-        }
-        evaluate(experiment, model, estimate)
-    })
+    let likelier = best.0 > odds.of_last(&whole, 1) + LIKELIER;
+    likelier.then(|| in_place(experiment, model, &best.1, index))
 }
 
 /// The odds of fits like one, in the units of its last effect.

@@ -36,10 +36,7 @@ pub(super) fn swap(
         .then(|| likelier_form(experiment, model, after, given + index, false))
         .flatten()
         .filter(|own| own.cost < best.fit.cost + CLOSE);
-    let after = own.map_or_else(
-        || in_place(experiment, model, &best.fit, given + index),
-        Some,
-    )?;
+    let after = own.unwrap_or_else(|| in_place(experiment, model, &best.fit, given + index));
     steps[index].unlike.clear();
     restate(experiment, model, &after, given, steps);
     Some(after)

@@ -336,10 +336,8 @@ fn runge_kutta(
 ) -> MechanicalState {
     let moved = |state: &MechanicalState, rate, dt_s| {
         let mut moved = moved(state, rate, dt_s);
-        if circuit.sites.bristles.is_some() {
-            let travel_m = moved.piston_m - state.piston_m;
-            moved.bristles_m = circuit.sites.bent_m(state.bristles_m, travel_m, dt_s);
-        }
+        let travel_m = moved.piston_m - state.piston_m;
+        moved.bristles_m = circuit.sites.bent_m(state.bristles_m, travel_m, dt_s);
         moved
     };
     let start = stretched(forces.model, state);
