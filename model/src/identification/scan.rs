@@ -7,9 +7,10 @@
 
 use rayon::prelude::*;
 
-use super::experiment::Experiment;
+use super::experiment::{Experiment, ReadyRun};
 use super::fit::Fit;
 use super::jacobian::residuals;
+use super::regime::Regime;
 use super::starts::scaled;
 use crate::effects::{AddedEffect, Parameter};
 use crate::model::Model;
@@ -50,8 +51,9 @@ pub(super) struct Grid {
 struct Needles {
     /// Smallest and largest size, in typical sizes.
     sizes: [f64; 2],
-    /// Share by which a size is larger than the one before, for each typical size.
+    /// Share by which a size is larger than the one before, for each typical size, and at most.
     finer: f64,
+    coarsest: f64,
 }
 
 /// How far a size is from the one before.
@@ -81,8 +83,9 @@ pub(super) static JUMPS: Grid = Grid {
     step: Step::Share(0.008),
     telling: Telling::Changed,
     needles: Some(Needles {
-        sizes: [0.25, 1.5],
+        sizes: [0.25, 3.0],
         finer: 0.003,
+        coarsest: 0.004,
     }),
     all_runs: 0.005,
     shapes: 3,
@@ -91,7 +94,7 @@ pub(super) static JUMPS: Grid = Grid {
     closer: &[(0.01, 0.25), (0.002, 0.05), (0.000_4, 0.01)],
     quasi_static: true,
     hinted: true,
-    leaves: 0.85,
+    leaves: 0.92,
 };
 
 /// For ringing: a valley reaches a seventh of the size to either side, and descending from there needs no closer look.
@@ -137,14 +140,16 @@ pub(super) static PLACES_AT_REST: Grid = Grid {
 const PER_SHAPE: usize = 2;
 const LOOKED_AT: usize = 6;
 
-/// Sizes seen without the ringing, the best of them, that are looked at with it.
-const SEEN_RINGING: usize = 60;
+/// How many of the sizes that fit the telling runs best are tried on all: what little tells those apart may tell others
+/// well.
+const SEEN_BY_ALL: usize = 60;
 
 /// Values of a closer look to either side.
 const TO_EITHER_SIDE: i32 = 5;
 
-/// Share of the sizes, the best on the most telling run, that are tried on the others.
+/// Share of the sizes, the best on so many of the most telling runs, that are tried on the others.
 const WINNOWED: f64 = 0.25;
+const MOST_TELLING: usize = 2;
 
 /// The sizes and shapes of an effect around those that fit the runs best which tell them apart; `hint` is any size of
 /// it.
@@ -156,43 +161,38 @@ pub(super) fn scan(
     grid: &Grid,
 ) -> Vec<AddedEffect> {
     let failed = failed(base);
-    let told = match grid.telling {
-        Telling::Changed => changed(experiment, model, base, hint),
-        Telling::Failed => failed.clone(),
+    let telling = match grid.telling {
+        Telling::Changed => {
+            let changed = changed(experiment, model, base, hint);
+            of_each_valve(experiment, &both(&changed, &unexplained(base)))
+        }
+        Telling::Failed => enough(experiment, &failed, ENOUGH),
     };
     let scan = Scan {
         experiment,
         model: model.clone(),
         base,
-        telling: enough(experiment, &told),
+        telling,
     };
-    let coarse = coarse(hint, grid);
-    let (ranked, looked_at) = if grid.quasi_static && experiment.ringing {
-        let mut still = scan.still().winnowed(coarse);
-        still.truncate(SEEN_RINGING);
-        let ringing = scan.ranked(without_losses(still), &scan.telling);
-        (ringing, grid.best)
-    } else {
-        (scan.winnowed(coarse), LOOKED_AT)
-    };
-    let mut best = apart(ranked, grid.apart);
+    let all: Vec<usize> = (0..experiment.runs.len()).collect();
+    let visible = all.iter();
+    let visible: f64 = visible
+        .map(|&run| scan.unlikely(run, grid.leaves * failed[run]))
+        .sum();
+    let ringing = experiment.ringing;
+    let looked_at = if ringing { grid.best } else { LOOKED_AT };
+    let mut best = scan.ranked(scan.better(coarse(hint, grid), grid, &all), &all);
     best.truncate(looked_at);
-    let without: f64 = scan.telling.iter().map(|&run| failed[run]).sum();
-    if best
-        .first()
-        .is_none_or(|first| first.0 > grid.leaves * without)
-    {
-        return Vec::new();
-    }
+    best.retain(|(left, _)| *left < visible);
     for &reach in grid.closer {
-        best = best
-            .into_iter()
-            .map(|(_, added)| {
-                scan.ranked(around(&added, reach), &scan.telling)
-                    .swap_remove(0)
-            })
-            .collect();
-        best.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let closer = best.into_iter().map(|(_, added)| {
+            let nearby = scan.ranked(around(&added, reach), &scan.telling);
+            nearby
+                .into_iter()
+                .next()
+                .map_or(added, |(_, nearest)| nearest)
+        });
+        best = scan.ranked(closer.collect(), &all);
         best.truncate(grid.best);
     }
     best.truncate(grid.best);
@@ -221,8 +221,28 @@ impl Scan<'_> {
         }
     }
 
-    /// Loss that an added effect leaves on some runs.
-    fn loss(&self, added: &AddedEffect, runs: &[usize]) -> f64 {
+    /// A few of many added effects, of every shape those that fit the telling runs best and, where simulating takes
+    /// little, all runs.
+    fn better(&self, added: Vec<AddedEffect>, grid: &Grid, all: &[usize]) -> Vec<AddedEffect> {
+        let rings = self.experiment.ringing;
+        let seen = if grid.quasi_static {
+            self.still()
+        } else {
+            self.clone()
+        };
+        let mut ranked = seen.winnowed(added);
+        if grid.quasi_static {
+            ranked.truncate(SEEN_BY_ALL);
+            ranked = seen.ranked(without_losses(ranked), all);
+            if rings {
+                ranked = self.ranked(without_losses(ranked), &self.telling);
+            }
+        }
+        without_losses(apart(ranked, grid.apart))
+    }
+
+    /// How little likely what an added effect leaves of some runs is.
+    fn left(&self, added: &AddedEffect, runs: &[usize]) -> f64 {
         let mut effects = self.base.estimate.effects.clone();
         effects.push(added.clone());
         let model = self.model.with_effects(effects);
@@ -230,16 +250,24 @@ impl Scan<'_> {
         let left = runs.iter().map(|&run| {
             let ready = &self.experiment.runs[run];
             let trace = ready.simulate(&model, estimate.nuisances[run], &estimate.clocks);
-            self.base.weights.runs[run].whiten(ready, &trace)
+            let whitened = self.base.weights.runs[run].whiten(ready, &trace);
+            self.unlikely(run, whitened.into_iter().map(bounded_loss).sum())
         });
-        left.flatten().map(bounded_loss).sum()
+        left.sum()
+    }
+
+    /// How little likely a loss of a run is whose noise may be of any size: another effect that is missing still, and
+    /// that some runs alone are full of, has no say in those that an effect explains.
+    fn unlikely(&self, run: usize, loss: f64) -> f64 {
+        let samples = self.experiment.runs[run].len() as f64;
+        samples * (loss / samples).ln_1p()
     }
 
     /// Added effects by what they leave on some runs, the best first.
     fn ranked(&self, added: Vec<AddedEffect>, runs: &[usize]) -> Vec<(f64, AddedEffect)> {
         let mut ranked: Vec<(f64, AddedEffect)> = added
             .into_par_iter()
-            .map(|added| (self.loss(&added, runs), added))
+            .map(|added| (self.left(&added, runs), added))
             .collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         ranked
@@ -247,7 +275,7 @@ impl Scan<'_> {
 
     /// The better ones of added effects by what they leave on all telling runs, the best first.
     fn winnowed(&self, added: Vec<AddedEffect>) -> Vec<(f64, AddedEffect)> {
-        let most_telling = &self.telling[..self.telling.len().min(1)];
+        let most_telling = &self.telling[..self.telling.len().min(MOST_TELLING)];
         let mut better = self.ranked(added, most_telling);
         better.truncate((WINNOWED * better.len() as f64).ceil() as usize);
         self.ranked(without_losses(better), &self.telling)
@@ -309,14 +337,53 @@ fn failed(base: &Fit) -> Vec<f64> {
         .collect()
 }
 
-/// Runs that tell enough, the most telling first for their length, by what each tells.
-fn enough(experiment: &Experiment, told: &[f64]) -> Vec<usize> {
+/// Loss of the model without the effect in each run beyond that of noise.
+fn unexplained(base: &Fit) -> Vec<f64> {
+    let runs = failed(base).into_iter().zip(&base.weights.runs);
+    runs.map(|(failed, weights)| {
+        let noise: usize = (0..4).map(|channel| weights.compared(channel)).sum();
+        (failed - noise as f64).max(0.0)
+    })
+    .collect()
+}
+
+/// The geometric mean of two losses in each run: what differs by the size tells nothing where nothing is missing.
+fn both(one: &[f64], other: &[f64]) -> Vec<f64> {
+    let runs = one.iter().zip(other);
+    runs.map(|(one, other)| (one * other).sqrt()).collect()
+}
+
+/// Runs that tell enough, as many of lifting as of lowering if there are runs of the one and of the other, the most
+/// telling ones first: what else is missing may spoil the runs of one valve.
+fn of_each_valve(experiment: &Experiment, told: &[f64]) -> Vec<usize> {
+    let [mut lifting, mut lowering] = [
+        [Regime::Lifting, Regime::Lowering],
+        [Regime::Lowering, Regime::Lifting],
+    ]
+    .map(|[wanted, other]| {
+        let alone = |run: &ReadyRun| run.regimes.contains(&wanted) && !run.regimes.contains(&other);
+        let told = experiment.runs.iter().zip(told);
+        let told = told.map(|(run, &told)| if alone(run) { told } else { 0.0 });
+        enough(experiment, &told.collect::<Vec<_>>(), ENOUGH / 2).into_iter()
+    });
+    if lifting.len().min(lowering.len()) == 0 {
+        return enough(experiment, told, ENOUGH);
+    }
+    let pairs = std::iter::from_fn(|| {
+        let pair = [lowering.next(), lifting.next()];
+        pair.iter().any(Option::is_some).then_some(pair)
+    });
+    pairs.flatten().flatten().collect()
+}
+
+/// Runs with so many samples as are enough, the most telling first for their length, by what each tells.
+fn enough(experiment: &Experiment, told: &[f64], enough: usize) -> Vec<usize> {
     let density = |run: usize| told[run] / experiment.runs[run].regimes.len().max(1) as f64;
-    let mut runs: Vec<usize> = (0..told.len()).collect();
+    let mut runs: Vec<usize> = (0..told.len()).filter(|&run| told[run] > 0.0).collect();
     runs.sort_by(|&a, &b| density(b).total_cmp(&density(a)));
     let mut samples = 0;
     let few = |&run: &usize| {
-        let too_few = samples < ENOUGH;
+        let too_few = samples < enough;
         samples += experiment.runs[run].len();
         too_few
     };
@@ -338,7 +405,7 @@ fn coarse(hint: &AddedEffect, grid: &Grid) -> Vec<AddedEffect> {
         other => vec![hint.values[other]],
     });
     let needles = grid.needles.as_ref().map_or_else(Vec::new, |needles| {
-        let next = |size: f64| size * (1.0 + needles.finer * size);
+        let next = |size: f64| size * (1.0 + (needles.finer * size).min(needles.coarsest));
         combinations(hint, |index, range| match index {
             0 => sizes(range, needles.sizes, next),
             _ => vec![range.high],
