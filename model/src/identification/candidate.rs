@@ -68,6 +68,12 @@ impl Candidate {
         self.fit.weights.count() as f64 / self.inflation
     }
 
+    /// Fall of the cost, under the yardsticks of the model without it.
+    #[must_use]
+    pub fn fallen(&self) -> f64 {
+        self.likelihood_ratio * self.fit.variance() * self.inflation
+    }
+
     /// Fitted values of its parameters, in their units.
     #[must_use]
     pub fn values(&self) -> &[f64] {
@@ -162,9 +168,10 @@ fn weigh_with(
             )
         })
         .collect();
+    let fallen = base.cost - fit.cost_beside(experiment, model, base);
     Candidate {
         effect,
-        likelihood_ratio: (base.cost - fit.cost) / (variance * inflation),
+        likelihood_ratio: fallen / (variance * inflation),
         inflation,
         detectability,
         intervals,

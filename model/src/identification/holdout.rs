@@ -11,6 +11,9 @@ use crate::model::Model;
 /// Number of parts that the runs are dealt into, each held out once.
 const FOLDS: usize = 4;
 
+/// How much more the other fit leaves under stricter yardsticks than under its own.
+const STRICTER: f64 = 1.5;
+
 /// What a model leaves in runs that were not used to fit, sigmas.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeldOut {
@@ -70,6 +73,29 @@ pub fn held_out(experiment: &Experiment, model: &Model, fit: &Fit) -> HeldOut {
         error: ErrorSums::total(&errors).error(),
         loss: ErrorSums::total(&losses).error(),
     }
+}
+
+/// What it leaves under the yardsticks of the fit that it is compared with, if its own are so much stricter that the two
+/// are no measure of each other: a spool that sticks does not follow the noise of the currents.
+#[must_use]
+pub fn held_out_beside(
+    experiment: &Experiment,
+    model: &Model,
+    fit: &Fit,
+    other: &Fit,
+) -> Option<HeldOut> {
+    let stricter = other.cost_beside(experiment, model, fit) > STRICTER * other.cost;
+    stricter.then(|| {
+        let weights = other.weights.clone();
+        held_out(
+            experiment,
+            model,
+            &Fit {
+                weights,
+                ..fit.clone()
+            },
+        )
+    })
 }
 
 /// The runs that `chosen` picks, with their weights and the estimate for them.

@@ -18,6 +18,9 @@ const BESIDE_JUMPS: [f64; 2] = [0.005, 0.000_8];
 const BESIDE_LEDGES: [f64; 2] = [1.0, 0.1];
 const TO_EITHER_SIDE: i32 = 10;
 
+/// How little of the band what all but jumps the whole of it falls short, as a share.
+const SHORT: f64 = 0.01;
+
 /// The better of a fit and of the ones that the sizes of its last effect nearby lead to, if that jumps.
 pub(super) fn threaded(experiment: &Experiment, model: &Model, fit: Fit) -> Fit {
     let last = fit.estimate.effects.last();
@@ -25,18 +28,35 @@ pub(super) fn threaded(experiment: &Experiment, model: &Model, fit: Fit) -> Fit 
         Some(added) => reaches(added.effect.search(), experiment.ringing),
         None => &[],
     };
-    reaches.iter().fold(fit, |fit, &reach| {
-        let nearby = nearby(experiment, model, &fit, reach);
-        if nearby.cost < fit.cost {
-            let refined = refine(experiment, model, nearby.estimate.clone());
-            [fit, nearby, refined]
-                .into_iter()
-                .min_by(|a, b| a.cost.total_cmp(&b.cost))
-                .expect("there are three")
-        } else {
-            fit
-        }
-    })
+    let along = |fit: Fit| {
+        reaches.iter().fold(fit, |fit, &reach| {
+            let nearby = nearby(experiment, model, &fit, reach);
+            if nearby.cost < fit.cost {
+                let refined = refine(experiment, model, nearby.estimate.clone());
+                better(better(fit, nearby), refined)
+            } else {
+                fit
+            }
+        })
+    };
+    let whole = last.and_then(whole).map(|whole| {
+        let mut estimate = fit.estimate.clone();
+        estimate.effects.pop();
+        estimate.effects.push(whole);
+        let whole = evaluate_weighted(experiment, model, estimate, fit.weights.clone());
+        let nearby = nearby(experiment, model, &whole, reaches[0]);
+        along(refine(experiment, model, better(whole, nearby).estimate))
+    });
+    let fit = along(fit);
+    match whole {
+        Some(whole) => better(fit, whole),
+        None => fit,
+    }
+}
+
+/// The one with the smaller cost.
+fn better(one: Fit, other: Fit) -> Fit {
+    if other.cost < one.cost { other } else { one }
 }
 
 /// How far sizes are looked for. Where nothing rings slopes lead there, and a wide search only finds the luckiest ledge:
@@ -63,6 +83,19 @@ fn nearby(experiment: &Experiment, model: &Model, fit: &Fit, reach: f64) -> Fit 
         })
         .min_by(|a, b| a.cost.total_cmp(&b.cost))
         .expect("there are sizes")
+}
+
+/// What all but jumps the whole band, as one that does: the needle is at the end of the range, and slopes stop short
+/// of it.
+fn whole(added: &AddedEffect) -> Option<AddedEffect> {
+    let shape = added.effect.parameters().get(1)?;
+    let short = shape.high - added.values[1];
+    let jumps = added.effect.search() == Search::Jumps;
+    (jumps && short > 0.0 && short < SHORT).then(|| {
+        let mut whole = added.clone();
+        whole.values[1] = shape.high;
+        whole
+    })
 }
 
 /// An effect at a multiple of its size. What its shape leaves of the size over a ledge shows and is known already.

@@ -75,6 +75,8 @@ pub struct Trials<'a> {
 struct Trial {
     effect: &'static dyn Effect,
     fit: Fit,
+    /// What the fit leaves under the yardsticks of the base.
+    cost: f64,
     /// What the sketch left of the cost, or the screen once all else had adapted.
     sketched_cost: f64,
     pace: Pace,
@@ -168,16 +170,13 @@ impl<'a> Trials<'a> {
 
     /// Sorts by the odds, the best first, and keeps of an effect with several forms the likelier one.
     fn rank(&mut self) {
-        let best = self
-            .ranked
-            .iter()
-            .min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
+        let best = self.ranked.iter().min_by(|a, b| a.cost.total_cmp(&b.cost));
         let Some(best) = best else {
             return;
         };
         let odds = Odds::new(self.base, self.weighed(best));
         for trial in &mut self.ranked {
-            trial.log_odds = odds.of(&trial.fit);
+            trial.log_odds = odds.of(last(&trial.fit), trial.cost);
         }
         self.ranked
             .sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
@@ -196,6 +195,12 @@ impl<'a> Trials<'a> {
             Pace::Sketched => weigh_by(experiment, model, base, effect, fit.clone(), &self.slow),
             Pace::Fitted => weigh(experiment, model, base, effect, fit.clone()),
         })
+    }
+
+    /// What the effects are tried on.
+    #[must_use]
+    pub fn base(&self) -> &Fit {
+        self.base
     }
 
     /// Smallest detectability that is believed here, sigmas, and whether the base leaves no more than noise.
@@ -230,15 +235,15 @@ impl<'a> Trials<'a> {
     ) -> impl Iterator<Item = &Candidate> {
         self.ranked
             .iter()
-            .filter(move |trial| self.base.cost - trial.fit.cost >= believed(trial.effect))
+            .filter(move |trial| self.base.cost - trial.cost >= believed(trial.effect))
             .map(|trial| self.weighed(trial))
     }
 
     /// Effects that explain next to nothing of what a candidate does in any of their forms.
     pub fn unlike(&self, candidate: &Candidate) -> Vec<&'static str> {
-        let most = self.base.cost - UNLIKE * (self.base.cost - candidate.fit.cost);
+        let most = self.base.cost - UNLIKE * candidate.fallen();
         let all = || self.ranked.iter().chain(&self.other_forms);
-        let like = all().filter(|trial| trial.sketched_cost.min(trial.fit.cost) < most);
+        let like = all().filter(|trial| trial.sketched_cost.min(trial.cost) < most);
         let like: HashSet<&str> = like.map(|trial| trial.effect.id()).collect();
         let ids = self.ranked.iter().map(|trial| trial.effect.id());
         ids.filter(|id| !like.contains(id)).collect()
@@ -255,6 +260,12 @@ impl<'a> Trials<'a> {
         let fit = refine(experiment, model, plainer.fit.estimate.clone());
         Some(weigh(experiment, model, self.base, plainer.effect, fit))
     }
+}
+
+/// The last effect of a fit.
+fn last(fit: &Fit) -> &[AddedEffect] {
+    let effects = &fit.estimate.effects;
+    &effects[effects.len().saturating_sub(1)..]
 }
 
 impl Trial {
@@ -282,9 +293,14 @@ impl Trial {
             let fit = evaluate_weighted(experiment, model, sketch.found.estimate, weights);
             (Pace::Sketched, fit)
         };
+        let cost = match pace {
+            Pace::Fitted => fit.cost_beside(experiment, model, base),
+            Pace::Absent | Pace::Sketched => fit.cost,
+        };
         Self {
             effect,
             fit,
+            cost,
             sketched_cost,
             pace,
             log_odds: f64::NAN,
@@ -312,17 +328,16 @@ impl Odds {
         }
     }
 
-    /// Logarithm of the odds of the last effect of a fit.
-    fn of(&self, fit: &Fit) -> f64 {
-        self.of_last(fit, 1)
+    /// Logarithm of the odds that some effects, which leave so much of the cost, are there.
+    pub(super) fn of(&self, effects: &[AddedEffect], cost: f64) -> f64 {
+        let ratio = (self.base_cost - cost) / self.unit;
+        let parameters = effects.iter().map(|added| added.values.len()).sum();
+        log_odds(ratio, parameters, self.effective_samples) - rarity(effects)
     }
 
     /// Logarithm of the odds of the last effects of a fit together.
     pub(super) fn of_last(&self, fit: &Fit, count: usize) -> f64 {
-        let ratio = (self.base_cost - fit.cost) / self.unit;
         let effects = &fit.estimate.effects;
-        let counted = &effects[effects.len().saturating_sub(count)..];
-        let parameters = counted.iter().map(|added| added.values.len()).sum();
-        log_odds(ratio, parameters, self.effective_samples) - rarity(counted)
+        self.of(&effects[effects.len().saturating_sub(count)..], fit.cost)
     }
 }
