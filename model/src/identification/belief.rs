@@ -87,7 +87,13 @@ fn surely_there(experiment: &Experiment, candidate: &Candidate) -> bool {
     let held_still_a = HELD_STILL * noise.lift_a.max(noise.lower_a);
     // A spool not surely later than the log knows when its currents jumped stands in for that.
     let is_lag = size.unit == "s" && size.null == 0.0;
-    sure > 0.0 && (!is_width || off > held_still_a) && (!is_lag || sure > experiment.jumps_within_s)
+    // One jump that the noise of a current decided is as much evidence as anybody could ask for, and says nothing.
+    let (low, high) = candidate.intervals[0];
+    let may_be_nothing = candidate.intervals.len() == 1 && low <= size.null && size.null <= high;
+    !may_be_nothing
+        && sure > 0.0
+        && (!is_width || off > held_still_a)
+        && (!is_lag || sure > experiment.jumps_within_s)
 }
 
 /// Likelihood ratio that an effect needs.
