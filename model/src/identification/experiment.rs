@@ -10,6 +10,7 @@ use super::estimate::Estimate;
 use super::noise::from_second_differences;
 use super::regime::{Regime, regimes};
 use super::shortfall::Shortfall;
+use super::start_angle::{likely_deg, measured_deg};
 use super::traces::{CurrentShift, Traces};
 use crate::campaign::{Bench, Campaign, Channel, Run};
 use crate::effects::{AddedEffect, Search};
@@ -24,9 +25,6 @@ const NOISE_FLOOR: [f64; 4] = [0.01, 0.01, 0.01, 0.005];
 
 /// Noise of a current if it is neither declared nor seen, A.
 const CURRENT_NOISE_FLOOR_A: f64 = 1e-4;
-
-/// First samples whose mean is the start angle's first guess.
-const START_SAMPLES: usize = 5;
 
 /// How far, relative to the declared port pressure, a flow bench may be off and still count as set up.
 const PORT_TOLERANCE: f64 = 0.05;
@@ -95,8 +93,9 @@ impl Experiment {
         let slow_share = (persistence - 1.0) / persistence_block(campaign) as f64;
         let runs: Vec<_> = campaign
             .runs
-            .iter()
+            .par_iter()
             .map(|run| ReadyRun::new(run, model, sigma, slow_share))
+            .map(|run| run.started(model, noise))
             .collect();
         let jumps_within_s = jumps_within_s(runs.iter().map(|run| &run.drive));
         Self {
@@ -121,6 +120,13 @@ impl Experiment {
                 .collect(),
             ..self.without_runs()
         }
+    }
+
+    /// Whether any run has a channel.
+    #[must_use]
+    pub fn measures(&self, channel: Channel) -> bool {
+        let mut runs = self.runs.iter();
+        runs.any(|run| run.measured[channel.index()].is_some())
     }
 
     /// Name and noise alone, to be filled with some of the runs.
@@ -157,12 +163,31 @@ impl ReadyRun {
             bench: run.bench,
             oil_temperature_c: run.oil_temperature_c,
             drive,
-            start_angle_deg: start_angle_deg(run, model),
+            start_angle_deg: measured_deg(run).unwrap_or(f64::NAN),
             measured,
             regimes,
             settling_samples,
             traces,
             shortfall: None,
+        }
+    }
+
+    /// The run from where it is likely to have begun if its log does not say.
+    fn started(self, model: &Model, noise: [f64; 4]) -> Self {
+        if self.on_hitch() && self.start_angle_deg.is_nan() {
+            self.started_at(likely_deg(&self, model, noise))
+        } else {
+            self
+        }
+    }
+
+    /// The run from another rocker angle, degree.
+    #[must_use]
+    pub(super) fn started_at(&self, start_angle_deg: f64) -> Self {
+        Self {
+            start_angle_deg,
+            traces: Traces::new(self.len()),
+            ..self.clone()
         }
     }
 
@@ -304,25 +329,6 @@ fn settling_samples(run: &Run) -> usize {
     settled
         .filter(|&samples| samples <= run.time_s.len() / 4)
         .unwrap_or(0)
-}
-
-fn start_angle_deg(run: &Run, model: &Model) -> f64 {
-    if matches!(run.bench, Bench::Flow { .. }) {
-        return f64::NAN;
-    }
-    let (low, high) = model.linkage().swing_rad();
-    let seen: Vec<f64> = run
-        .channel(Channel::RockerAngle)
-        .into_iter()
-        .flatten()
-        .copied()
-        .filter(|angle| angle.is_finite())
-        .take(START_SAMPLES)
-        .collect();
-    if seen.is_empty() {
-        return (0.5 * (low + high)).to_degrees();
-    }
-    seen.iter().sum::<f64>() / seen.len() as f64
 }
 
 /// Declared noise of a channel, else the median of what its runs show, else NaN.

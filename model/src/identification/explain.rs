@@ -15,7 +15,7 @@ use super::estimate::Estimate;
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate, evaluate_weighted, fit, refine, with_last};
 use super::forms::reformed;
-use super::holdout::{HeldOut, held_out};
+use super::holdout::{HeldOut, held_out, held_out_beside};
 use super::regime::Regime;
 use super::scans::Scans;
 use super::swap::{MOST_SWAPS, is_likelier, swap};
@@ -156,7 +156,7 @@ pub fn diagnose(
     base: Fit,
     progress: Progress,
 ) -> Diagnosis {
-    let absent = absent(model, &base.estimate);
+    let absent = showing(experiment, model, &base.estimate);
     let scans = Scans::default();
     let cells = cells(experiment, &base);
     let trials = Trials::new(
@@ -181,6 +181,20 @@ pub(super) fn absent(model: &Model, estimate: &Estimate) -> Vec<&'static dyn Eff
     possible(model)
         .filter(|effect| !has(estimate, *effect))
         .collect()
+}
+
+/// Those of them that show in a channel that the experiment has. An angle sensor that nobody logged is no explanation.
+pub(super) fn showing(
+    experiment: &Experiment,
+    model: &Model,
+    estimate: &Estimate,
+) -> Vec<&'static dyn Effect> {
+    let mut absent = absent(model, estimate);
+    absent.retain(|effect| {
+        let mut channels = effect.channels().iter();
+        channels.any(|channel| experiment.measures(*channel))
+    });
+    absent
 }
 
 /// Effects that the plant can have.
@@ -216,7 +230,7 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
         if !enough(&before) || steps.len() == MOST_STEPS || lost {
             break;
         }
-        let absent = absent(model, &present.estimate);
+        let absent = showing(experiment, model, &present.estimate);
         let base = (cells_before.as_slice(), &present);
         let trials = Trials::new(experiment, model, base, &absent, &scans, progress);
         if present_held_out.error.is_nan() {
@@ -272,7 +286,9 @@ fn proven(
 ) -> Option<(Candidate, HeldOut)> {
     let tested = |candidate: Candidate| {
         let left = held_out(experiment, model, &candidate.fit);
-        proof.admits(left).then_some((candidate, left))
+        let beside = || held_out_beside(experiment, model, &candidate.fit, trials.base());
+        let admitted = proof.admits(left) || beside().is_some_and(|left| proof.admits(left));
+        admitted.then_some((candidate, left))
     };
     trials
         .likely(believed)

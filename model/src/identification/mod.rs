@@ -28,6 +28,7 @@ mod scan;
 pub mod scans;
 mod shortfall;
 mod shortlist;
+mod start_angle;
 mod starts;
 pub mod suggestion;
 mod swap;

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::design::{Alternative, Place};
 use super::estimate::Estimate;
 use super::experiment::Experiment;
-use super::explain::absent;
+use super::explain::showing;
 use super::fit::{Fit, refine, sketch};
 use super::shortlist::may_catch_up;
 use super::starts::{scaled, with_extreme_shapes};
@@ -57,7 +57,7 @@ pub(super) fn twins(
     let seen_sigma = (place.explained() / whole.weights.count() as f64).sqrt();
     let alike_deg = (LEFT_SIGMA / seen_sigma).min(1.0).asin().to_degrees();
     let alike_deg = alike_deg.min(ALIKE_DEG);
-    let swapped: Vec<Fit> = absent(model, &whole.estimate)
+    let swapped: Vec<Fit> = showing(experiment, model, &whole.estimate)
         .into_par_iter()
         .filter(|effect| !unlike.contains(&effect.id()))
         .filter_map(|effect| start(&place, whole, effect, alike_deg))

@@ -57,13 +57,8 @@ pub fn unseen(experiment: &Experiment, model: &Model, fit: &Fit) -> Vec<Unseen> 
 
 /// Channels that an effect shows in and no run has.
 fn missing(experiment: &Experiment, effect: &dyn Effect) -> Vec<Channel> {
-    let unmeasured = |channel: &Channel| {
-        let measured = |channel: &Channel| {
-            let mut runs = experiment.runs.iter();
-            runs.any(|run| run.measured[channel.index()].is_some())
-        };
-        !measured(channel)
-    };
     let channels = effect.channels().iter().copied();
-    channels.filter(unmeasured).collect()
+    channels
+        .filter(|channel| !experiment.measures(*channel))
+        .collect()
 }
