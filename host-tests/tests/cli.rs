@@ -214,6 +214,51 @@ fn add_estimates_and_writes_a_model() {
     assert_eq!(again.status.code(), Some(2));
 }
 
+/// One duty cycle of a rig with a leak and a late sensor: what the leak comes to alone is not what it comes to beside
+/// the lag.
+fn one_duty_cycle() -> TempDir {
+    let known = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("campaigns/known-leak-and-lag");
+    let dir = TempDir::new().unwrap();
+    let manifest = fs::read_to_string(known.join("campaign.toml")).unwrap();
+    let (head, runs) = manifest.split_once("[[run]]").unwrap();
+    let mut runs = runs.split("[[run]]");
+    let run = runs.find(|run| run.contains("duty_150kg_18C")).unwrap();
+    let manifest = format!("{head}[[run]]{run}");
+    fs::write(dir.path().join("campaign.toml"), manifest).unwrap();
+    let log = "duty_150kg_18C.csv";
+    fs::copy(known.join(log), dir.path().join(log)).unwrap();
+    dir
+}
+
+#[test]
+fn add_prints_the_values_that_it_writes() {
+    let dir = one_duty_cycle();
+    let arguments = "add lowering-leakage angle-sensor-lag --campaign . --out m.toml";
+    let output = run(dir.path(), &arguments.split(' ').collect::<Vec<_>>());
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{said}");
+    let model = fs::read_to_string(dir.path().join("m.toml")).unwrap();
+    for (effect, parameter, key) in [
+        (
+            "lowering-leakage",
+            "conductance ",
+            "conductance_lpm_per_bar = ",
+        ),
+        ("angle-sensor-lag", "time_constant ", "time_constant_s = "),
+    ] {
+        let line = said.lines().find(|line| line.contains(effect)).unwrap();
+        let printed = line.split(parameter).nth(1).unwrap();
+        let printed: f64 = printed.split(' ').next().unwrap().parse().unwrap();
+        let written = model.lines().find_map(|line| line.strip_prefix(key));
+        let written: f64 = written
+            .unwrap_or_else(|| panic!("{model}"))
+            .parse()
+            .unwrap();
+        assert!((printed / written - 1.0).abs() < 1e-3, "{said}{model}");
+        assert!(!line.contains("does not ask"), "{said}");
+    }
+}
+
 #[test]
 fn simulate_writes_a_log_that_can_be_read_again() {
     let dir = campaign();

@@ -3,6 +3,7 @@
 pub mod adequacy;
 pub mod attribution;
 pub mod belief;
+pub mod beside;
 pub mod candidate;
 mod central;
 pub mod clocks;

@@ -4,10 +4,12 @@ use std::path::PathBuf;
 
 use hitch_model::Model;
 use hitch_model::campaign::Campaign;
-use hitch_model::effects::Effect;
-use hitch_model::identification::candidate::Candidate;
+use hitch_model::effects::{Effect, full_name};
+use hitch_model::identification::belief::BELIEVED;
+use hitch_model::identification::beside::{Beside, beside};
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::fit_base;
+use hitch_model::identification::fit::{Fit, refine};
 use hitch_model::identification::trials::try_effects;
 
 use super::effects::find;
@@ -47,24 +49,45 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let campaign = Campaign::load(&args.campaign)?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
     let experiment = Experiment::new(&campaign, &model);
-    let mut fit = fit_base(&experiment, &model);
+    let base = fit_base(&experiment, &model);
+    let fit = fit_with(&experiment, &model, base.clone(), &effects, &progress);
+    progress.say("weighing each beside the others");
+    let weighed = beside(&experiment, &model, &fit, model.effects.len());
+    drop(progress);
+    let rebuilt = rebuilt(&model, &fit.estimate.effects, output::stem(&args.out));
+    output::write_file(&args.out, rebuilt.to_toml().as_bytes())?;
     let mut text = format!(
         "Campaign {}, model {}: error {:.2} sigma\n",
         campaign.name,
         model.name,
-        fit.error()
+        base.error()
     );
+    for effect in &weighed {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{}", shown(effect));
+    }
+    let _ = writeln!(text, "With all of them: error {:.2} sigma", fit.error());
+    output::print(&text)
+}
+
+/// The model with the effects, all of them fitted together.
+fn fit_with(
+    experiment: &Experiment,
+    model: &Model,
+    base: Fit,
+    effects: &[&'static dyn Effect],
+    progress: &Progress,
+) -> Fit {
     let say = |what: &str| progress.say(format!("fitting {what}"));
+    let mut fit = base;
     for effect in effects {
-        for candidate in try_effects(&experiment, &model, &fit, &[effect], &say) {
-            let _ = writeln!(text, "{}", shown(&candidate));
+        let tried = try_effects(experiment, model, &fit, &[*effect], &say);
+        if let Some(candidate) = tried.into_iter().next() {
             fit = candidate.fit;
         }
     }
-    drop(progress);
-    let rebuilt = rebuilt(&model, &fit.estimate.effects, output::stem(&args.out));
-    output::write_file(&args.out, rebuilt.to_toml().as_bytes())?;
-    output::print(&text)
+    // What hardly helps is only sketched when it is tried.
+    refine(experiment, model, fit.estimate)
 }
 
 /// The effects of these names, none of which the model may have already.
@@ -90,15 +113,17 @@ fn effects(ids: &[String], model: &Model) -> Result<Vec<&'static dyn Effect>, Er
     Ok(effects)
 }
 
-fn shown(candidate: &Candidate) -> String {
+fn shown(effect: &Beside) -> String {
+    let candidate = &effect.candidate;
     let parameters = parameters(candidate.effect, candidate.values(), &candidate.intervals);
     let parameters: Vec<String> = parameters.iter().map(ToString::to_string).collect();
-    let (id, error) = (candidate.effect.id(), candidate.fit.error());
     let line = format!(
-        "  + {id}: {}; error {error:.2} sigma",
-        parameters.join(", ")
+        "  + {}: {}; error {:.2} sigma without it",
+        full_name(candidate.effect),
+        parameters.join(", "),
+        effect.error_without
     );
-    if candidate.likelihood_ratio < hitch_model::identification::belief::BELIEVED {
+    if candidate.likelihood_ratio < BELIEVED {
         return line + " (the campaign does not ask for it)";
     }
     line
