@@ -5,7 +5,9 @@ use hitch_firmware::control::{Calibration, ValidCalibration};
 use hitch_model::Model;
 use hitch_model::effects::{AddedEffect, find};
 use hitch_workbench::calibrate::calibrate;
+use hitch_workbench::calibration_file::with_settings;
 use hitch_workbench::closed_loop::{ClosedLoop, LoopRun, Scenario, run};
+use hitch_workbench::commands::loop_::text;
 
 fn nominal() -> ValidCalibration {
     Calibration::nominal().validate().unwrap()
@@ -63,6 +65,39 @@ fn nominal_valves_with_the_nominal_calibration_meet_every_bar() {
         run.summary.pressure_swing_ratio_max <= 1.5,
         "{:?}",
         run.summary
+    );
+}
+
+#[test]
+fn a_move_that_never_arrives_has_no_time_and_counts_for_no_ratio() {
+    let weak = with_settings(&nominal(), &["safety.lift_current_limit=1.0".to_owned()]);
+    let run = driven(&Model::dynamic(), &weak.unwrap(), Scenario::Quick);
+    for result in &run.results {
+        let lifts = result.to_deg > result.from_deg;
+        assert_eq!(result.arrived, !lifts, "{result:?}");
+        assert_eq!(result.time_s.is_nan(), lifts, "{result:?}");
+        assert_eq!(result.ratio.is_nan(), lifts, "{result:?}");
+        assert!(result.shortest_s < 1.5, "{result:?}");
+    }
+    assert_eq!((run.summary.moves, run.summary.arrived), (12, 6));
+    assert!(run.summary.ratio_p95 < 2.0, "{:?}", run.summary);
+    let text = text(&run.results, &run.summary);
+    assert!(text.contains("6 of 12 moves never arrived"), "{text}");
+    let document = serde_json::to_value(run.results[0]).unwrap();
+    assert!(document["time_s"].is_null() && document["ratio"].is_null());
+}
+
+#[test]
+fn a_lift_that_the_relief_valve_forbids_has_no_shortest_time() {
+    let moves = Scenario::Quick.moves(Some(2_000.0));
+    let run = run(&Model::dynamic(), &nominal(), &moves).unwrap();
+    let lift = run.results.iter().find(|r| r.to_deg > r.from_deg);
+    let lift = lift.unwrap();
+    assert!(!lift.arrived && lift.shortest_s.is_nan(), "{lift:?}");
+    let text = text(&run.results, &run.summary);
+    assert!(
+        text.contains("impossible") && !text.contains("NaN"),
+        "{text}"
     );
 }
 

@@ -7,7 +7,7 @@ use crate::calibrate::calibrate;
 use crate::closed_loop::{self, LoopRun, MoveResult, Scenario, Summary};
 use crate::error::Error;
 use crate::explanation::Found;
-use crate::text::Table;
+use crate::text::{Table, known};
 
 /// The same moves of the same rig under the nominal and under the rebuilt valve map.
 #[derive(Debug, Clone)]
@@ -70,8 +70,8 @@ impl Rebuild {
         let mut table = Table::new(["", "nominal map", "rebuilt map"]);
         for way in self.ways() {
             let mut row = |name: &str, figure: fn(&Summary) -> f64, digits: usize| {
-                let numbers = [figure(&way.before), figure(&way.after)]
-                    .map(|number| format!("{number:.digits$}"));
+                let numbers =
+                    [figure(&way.before), figure(&way.after)].map(|number| known(number, digits));
                 table.row([format!("{}: {name}", way.name)].into_iter().chain(numbers));
             };
             row(
@@ -134,9 +134,12 @@ impl Rebuild {
 
     /// Index of the move that the rebuilt map shortens most.
     pub fn most_shortened(&self) -> Option<usize> {
-        let gain_s =
-            |index: &usize| self.before.results[*index].time_s - self.after.results[*index].time_s;
+        let gain_s = |index: &usize| {
+            self.before.results[*index].took_s() - self.after.results[*index].took_s()
+        };
         (0..self.before.results.len().min(self.after.results.len()))
+            // One that never arrives with either map is not shortened.
+            .filter(|index| !gain_s(index).is_nan())
             .max_by(|a, b| gain_s(a).total_cmp(&gain_s(b)))
     }
 }

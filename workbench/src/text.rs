@@ -53,6 +53,16 @@ impl std::fmt::Display for Table {
     }
 }
 
+/// A number with so many decimals; a dash if it is none.
+#[must_use]
+pub fn known(value: f64, decimals: usize) -> String {
+    if value.is_finite() {
+        format!("{value:.decimals$}")
+    } else {
+        "-".to_owned()
+    }
+}
+
 /// Breaks a text into lines of at most `width` characters, where a word allows it; all but the first are indented.
 pub fn wrapped(text: &str, width: usize) -> String {
     let mut lines: Vec<String> = vec![String::new()];

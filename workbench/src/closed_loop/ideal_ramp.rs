@@ -1,9 +1,11 @@
-//! The yardstick: the shortest manoeuvre that the plant allows.
+//! The yardstick: the shortest manoeuvre that the plant allows between edges of 100 ms.
 //!
 //! The valve goes from its threshold to saturation in an edge of 100 ms, the shortest of a normal manoeuvre (a step
 //! swings the pressure of a loaded cylinder by 18 to 40 bar), stays open, and closes with the same edge. How long it
 //! stays on is found so that the hitch comes to rest on the set point; short moves don't open fully. It is driven
-//! open loop with perfect knowledge: no controller can be much faster without harder edges.
+//! open loop with perfect knowledge: no controller can be much faster without harder edges. One that opens or closes
+//! its valve more steeply than that can be a little faster, at the price of a larger pressure swing: then its time over
+//! the shortest is below one.
 
 use hitch_model::Model;
 use hitch_model::plant::{Currents, HitchRig, Plant, Rig};
@@ -23,12 +25,13 @@ const LONGEST_S: f64 = 20.0;
 /// Figures of the ideal manoeuvre for one move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IdealRamp {
-    /// Until the angle first comes within half a degree of the set point, s. How the hitch swings afterwards is not
-    /// counted, so that this is a bound: a gentler manoeuvre may rest sooner, but none arrives sooner.
+    /// Until the angle first comes within half a degree of the set point, s; not a number if it never does, as where
+    /// the relief valve forbids it. How the hitch swings afterwards is not counted: a gentler manoeuvre may rest
+    /// sooner, but none between such edges arrives sooner.
     pub time_s: f64,
-    /// Peak-to-peak cylinder pressure, bar.
+    /// Peak-to-peak cylinder pressure, bar; not a number if it never arrives.
     pub pressure_swing_bar: f64,
-    /// Angle of each step until then, degree.
+    /// Angle of each step until then, degree; of all that were tried if it never arrives.
     pub angles_deg: Vec<f64>,
 }
 
@@ -131,11 +134,13 @@ impl Track {
 
     fn figures(&self, order: &Move) -> IdealRamp {
         let near = |&(angle_deg, _): &(f64, f64)| (angle_deg - order.to_deg).abs() <= ARRIVED_DEG;
-        let arrived = self.0.iter().position(near).unwrap_or(self.0.len());
+        let arrived = self.0.iter().position(near);
+        let swing_bar = swing_bar(self.0.iter().map(|&(_, bar)| bar));
+        let steps = arrived.unwrap_or(self.0.len());
         IdealRamp {
-            time_s: (arrived + 1) as f64 * STEP_S,
-            pressure_swing_bar: swing_bar(self.0.iter().map(|&(_, bar)| bar)),
-            angles_deg: self.0.iter().take(arrived).map(|&(deg, _)| deg).collect(),
+            time_s: arrived.map_or(f64::NAN, |at| (at + 1) as f64 * STEP_S),
+            pressure_swing_bar: arrived.map_or(f64::NAN, |_| swing_bar),
+            angles_deg: self.0.iter().take(steps).map(|&(deg, _)| deg).collect(),
         }
     }
 }

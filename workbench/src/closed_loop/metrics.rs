@@ -9,7 +9,7 @@ use super::scenario::Move;
 /// A move has arrived when the angle stays within this of the set point, degree.
 pub const ARRIVED_DEG: f64 = 0.5;
 
-/// Figures of one move.
+/// Figures of one move; in a document what is not a number is `null`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MoveResult {
     /// Where the hitch rested first, degree.
@@ -20,12 +20,15 @@ pub struct MoveResult {
     pub load_kg: f64,
     /// Oil temperature, C.
     pub oil_temperature_c: f64,
-    /// From the step of the set point until the angle stays within 0.5 degree, s; the length of the run if it never
-    /// does.
+    /// Whether the angle stays within 0.5 degree of the set point in the end.
+    pub arrived: bool,
+    /// From the step of the set point until the angle stays within 0.5 degree, s; not a number if it never does.
     pub time_s: f64,
-    /// Shortest time that the plant allows: valve fully open between edges of a normal manoeuvre, s.
+    /// Shortest time that the plant allows between edges of a normal manoeuvre, s: see [`IdealRamp`]. Not a number if
+    /// it does not allow the move at all.
     pub shortest_s: f64,
-    /// `time_s / shortest_s`.
+    /// `time_s / shortest_s`; not a number if either is none. Below one if the valve opened or closed more steeply than
+    /// a normal manoeuvre does.
     pub ratio: f64,
     /// Root mean square of the distance from the angle that the shortest manoeuvre has at the same time, until both
     /// have arrived, degree.
@@ -34,20 +37,25 @@ pub struct MoveResult {
     pub overshoot_deg: f64,
     /// Distance from the set point at the end of the run, degree.
     pub final_error_deg: f64,
-    /// How long a coil was on in the minute after `time_s`, s: the tail of the approach is in it.
+    /// How long a coil was on in the minute after `time_s`, s: the tail of the approach is in it. None if it never
+    /// arrives.
     pub active_after_s: f64,
-    /// How often a coil was switched on in the minute after `time_s`.
+    /// How often a coil was switched on in the minute after `time_s`; never if it never arrives.
     pub switched_on_after: u32,
-    /// Peak-to-peak cylinder pressure during the move over that of the ideal ramp.
+    /// Peak-to-peak cylinder pressure during the move over that of the ideal ramp; not a number if there is none.
     pub pressure_swing_ratio: f64,
 }
 
 /// Figures of a set of moves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Summary {
-    /// Median time ratio.
+    /// How many moves there are.
+    pub moves: usize,
+    /// How many of them arrived.
+    pub arrived: usize,
+    /// Median time ratio of those that arrived; not a number if none did.
     pub ratio_median: f64,
-    /// Time ratio that 95 % of the moves stay below.
+    /// Time ratio that 95 % of those that arrived stay below; not a number if none did.
     pub ratio_p95: f64,
     /// Median of the tracking errors, degree.
     pub tracking_error_median_deg: f64,
@@ -63,6 +71,18 @@ pub struct Summary {
     pub pressure_swing_ratio_max: f64,
 }
 
+impl MoveResult {
+    /// How long it took, s: for ever if it never arrived.
+    #[must_use]
+    pub fn took_s(&self) -> f64 {
+        if self.arrived {
+            self.time_s
+        } else {
+            f64::INFINITY
+        }
+    }
+}
+
 /// Judges a move: `samples` begin with the step of the set point.
 #[must_use]
 pub fn judge(order: &Move, samples: &[Sample], ideal: &IdealRamp) -> MoveResult {
@@ -71,19 +91,25 @@ pub fn judge(order: &Move, samples: &[Sample], ideal: &IdealRamp) -> MoveResult 
     let last_away = samples
         .iter()
         .rposition(|sample| beyond(sample).abs() > ARRIVED_DEG);
-    let arrived = last_away.map_or(0, |at| at + 1);
-    let time_s = arrived as f64 * STEP_S;
-    let minute = &samples[arrived.min(samples.len())..(arrived + 60_000).min(samples.len())];
+    let steps = last_away.map_or(0, |at| at + 1);
+    let arrived = steps < samples.len();
+    let time_s = if arrived {
+        steps as f64 * STEP_S
+    } else {
+        f64::NAN
+    };
+    let minute = &samples[steps..(steps + 60_000).min(samples.len())];
     let on = |sample: &&Sample| is_on(sample);
     MoveResult {
         from_deg: order.from_deg,
         to_deg: order.to_deg,
         load_kg: order.load_kg,
         oil_temperature_c: order.oil_temperature_c,
+        arrived,
         time_s,
         shortest_s: ideal.time_s,
         ratio: time_s / ideal.time_s,
-        tracking_error_deg: tracking_error_deg(order, &samples[..arrived], ideal),
+        tracking_error_deg: tracking_error_deg(order, &samples[..steps], ideal),
         overshoot_deg: samples.iter().map(beyond).fold(0.0, f64::max),
         final_error_deg: samples.last().map_or(f64::NAN, |last| beyond(last).abs()),
         active_after_s: minute.iter().filter(on).count() as f64 * STEP_S,
@@ -134,11 +160,15 @@ impl Summary {
             figures.sort_by(f64::total_cmp);
             figures
         };
-        let ratios = sorted(|result| result.ratio);
+        // A lift that no plant can do has no ratio though a hitch that was there already has arrived.
+        let mut ratios = sorted(|result| result.ratio);
+        ratios.retain(|ratio| ratio.is_finite());
         let largest = |figure: fn(&MoveResult) -> f64| moves.iter().map(figure).fold(0.0, f64::max);
         Some(Self {
-            ratio_median: quantile(&ratios, 0.5)?,
-            ratio_p95: quantile(&ratios, 0.95)?,
+            moves: moves.len(),
+            arrived: moves.iter().filter(|result| result.arrived).count(),
+            ratio_median: quantile(&ratios, 0.5).unwrap_or(f64::NAN),
+            ratio_p95: quantile(&ratios, 0.95).unwrap_or(f64::NAN),
             tracking_error_median_deg: quantile(&sorted(|result| result.tracking_error_deg), 0.5)?,
             overshoot_max_deg: largest(|result| result.overshoot_deg),
             final_error_max_deg: largest(|result| result.final_error_deg),

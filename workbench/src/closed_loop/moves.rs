@@ -90,7 +90,7 @@ pub fn figures(
     courses
         .par_iter()
         .map(|course| {
-            let steps = ((3.0 * course.ideal.time_s + after_s) / STEP_S) as usize;
+            let steps = 3 * (course.ideal.angles_deg.len() + 1) + (after_s / STEP_S) as usize;
             let samples = samples(model, calibration, course, steps);
             judge(&course.order, &samples, &course.ideal)
         })

@@ -11,12 +11,17 @@ use crate::error::Error;
 use crate::output::{self, JsonArg};
 use crate::progress::Progress;
 use crate::report::loop_page;
-use crate::text::Table;
+use crate::text::{Table, known};
 
 /// Arguments of `hitch loop`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Example: hitch loop --model explained.toml --calibration calibration.toml --report loop.html"
+    after_help = "Example: hitch loop --model explained.toml --calibration calibration.toml --report loop.html\n\n\
+    The shortest time is that of an ideal manoeuvre: the valve opens fully in an edge of 100 ms, stays open, and \
+    closes in such an edge, so that the hitch comes to rest on the set point; until it is within half a degree. A \
+    controller that opens or closes its valve more steeply takes less, for a larger pressure swing: a ratio below 1. A \
+    move that never stays within half a degree has not arrived: it has no time and no ratio (JSON: arrived false, \
+    null), and the summary is of the others. What the relief valve forbids has no shortest time either."
 )]
 pub struct Args {
     /// The plant: nominal, dynamic, or the name of a model file
@@ -146,13 +151,21 @@ pub fn row(result: &MoveResult) -> [String; 9] {
     [
         name(result),
         format!("{:.0}", result.load_kg),
-        format!("{:.3}", result.time_s),
-        format!("{:.3}", result.shortest_s),
-        format!("{:.2}", result.ratio),
+        if result.arrived {
+            known(result.time_s, 3)
+        } else {
+            "never arrives".to_owned()
+        },
+        if result.shortest_s.is_finite() {
+            known(result.shortest_s, 3)
+        } else {
+            "impossible".to_owned()
+        },
+        known(result.ratio, 2),
         format!("{:.2}", result.overshoot_deg),
         format!("{:.2}", result.final_error_deg),
         format!("{:.3}", result.active_after_s),
-        format!("{:.2}", result.pressure_swing_ratio),
+        known(result.pressure_swing_ratio, 2),
     ]
 }
 
@@ -166,14 +179,22 @@ pub fn text(moves: &[MoveResult], summary: &Summary) -> String {
     format!("{table}\n{}", summed_up(summary))
 }
 
-/// The summary in two lines.
+/// The summary in two lines, and one more if not every move arrived.
 #[must_use]
 pub fn summed_up(summary: &Summary) -> String {
+    let arrived = match summary.moves - summary.arrived {
+        0 => String::new(),
+        never => format!(
+            "{never} of {} moves never arrived; times are those of the others.\n",
+            summary.moves
+        ),
+    };
     format!(
-        "Time over shortest possible: median {:.2}, 95 % below {:.2}; overshoot at most {:.2} deg, final error at most {:.2} deg.\n\
+        "{arrived}Time over shortest: median {}, 95 % below {}; overshoot at most {:.2} deg, \
+         final error at most {:.2} deg.\n\
          Coils switched on in the minute after arrival: {}; the approach's last {:.3} s at most are in it.\n",
-        summary.ratio_median,
-        summary.ratio_p95,
+        known(summary.ratio_median, 2),
+        known(summary.ratio_p95, 2),
         summary.overshoot_max_deg,
         summary.final_error_max_deg,
         summary.switched_on_after,

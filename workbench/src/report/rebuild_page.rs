@@ -6,6 +6,7 @@ use super::chart::{Chart, Line, Stroke, legend};
 use super::page;
 use crate::closed_loop::{LoopRun, Sample};
 use crate::rebuild::Rebuild;
+use crate::text::known;
 
 /// What is shown after the slower map has arrived, s.
 const AFTER_S: f64 = 0.5;
@@ -73,7 +74,7 @@ fn chart(caption: String, [x_title, y_title]: [&str; 2], lines: &[Drawn]) -> Mar
 /// Angle and lowering current of one move under both maps.
 fn course(rebuild: &Rebuild, index: usize) -> Markup {
     let order = &rebuild.before.results[index];
-    let end_s = order.time_s.max(rebuild.after.results[index].time_s) + AFTER_S;
+    let end_s = order.took_s().max(rebuild.after.results[index].took_s()) + AFTER_S;
     let column = |run: &LoopRun, value: fn(&Sample) -> f64| -> (Vec<f64>, Vec<f64>) {
         let shown = run.traces[index]
             .samples
@@ -129,14 +130,15 @@ fn moves(rebuild: &Rebuild) -> Markup {
         .iter()
         .zip(&rebuild.after.results)
         .map(|(before, after)| {
-            let pair = |before: f64, after: f64| format!("{before:.2} → {after:.2}");
+            let pair =
+                |before: f64, after: f64| format!("{} → {}", known(before, 2), known(after, 2));
             vec![
                 format!(
                     "{:.1} to {:.1} deg, {:.0} kg",
                     before.from_deg, before.to_deg, before.load_kg
                 ),
                 pair(before.time_s, after.time_s),
-                format!("{:.2}", before.shortest_s),
+                known(before.shortest_s, 2),
                 pair(before.ratio, after.ratio),
                 pair(before.overshoot_deg, after.overshoot_deg),
                 pair(before.final_error_deg, after.final_error_deg),

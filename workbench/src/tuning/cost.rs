@@ -7,18 +7,25 @@ const OVERSHOOT_DEG: f64 = 0.25;
 const FINAL_ERROR_DEG: f64 = 0.25;
 const SWING: f64 = 1.4;
 
+/// Time ratio of what takes longer, or does not arrive at all.
+const SLOWEST: f64 = 5.0;
+
 /// Mean time ratio, plus ten times what the slowest twentieth loses, plus penalties for what lies beyond the bars.
 #[must_use]
 pub fn cost(results: &[MoveResult]) -> f64 {
     let count = results.len().max(1) as f64;
     let mean = |of: &dyn Fn(&MoveResult) -> f64| results.iter().map(of).sum::<f64>() / count;
     let beyond = |value: f64, bar: f64| (value - bar).max(0.0);
-    let slow = mean(&|result| beyond(result.ratio, 1.35));
+    let ratio = |result: &MoveResult| {
+        let known = Some(result.ratio).filter(|ratio| ratio.is_finite());
+        known.unwrap_or(SLOWEST)
+    };
+    let slow = mean(&|result| beyond(ratio(result), 1.35));
     let overshoot = mean(&|result| beyond(result.overshoot_deg, OVERSHOOT_DEG));
     let error = mean(&|result| beyond(result.final_error_deg, FINAL_ERROR_DEG));
     let swing = mean(&|result| beyond(result.pressure_swing_ratio, SWING));
     let restarts = mean(&|result| f64::from(result.switched_on_after));
-    mean(&|result| result.ratio.min(5.0))
+    mean(&|result| ratio(result).min(SLOWEST))
         + 10.0 * slow.min(5.0)
         + 100.0 * overshoot
         + 100.0 * error
@@ -35,6 +42,7 @@ mod tests {
         to_deg: 100.0,
         load_kg: 150.0,
         oil_temperature_c: 40.0,
+        arrived: true,
         time_s: 0.5,
         shortest_s: 0.45,
         ratio: 1.1,
@@ -51,6 +59,12 @@ mod tests {
         assert!((cost(&[GOOD]) - 1.1).abs() < 1e-12);
         let worse = [
             MoveResult { ratio: 1.5, ..GOOD },
+            MoveResult {
+                arrived: false,
+                time_s: f64::NAN,
+                ratio: f64::NAN,
+                ..GOOD
+            },
             MoveResult {
                 overshoot_deg: 0.3,
                 ..GOOD

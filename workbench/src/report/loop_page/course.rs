@@ -4,6 +4,7 @@ use maud::{Markup, html};
 use crate::closed_loop::{LoopRun, MoveResult, MoveTrace, Sample};
 use crate::commands::loop_::name;
 use crate::report::chart::{Chart, Line, Stroke, legend};
+use crate::text::known;
 
 /// What is shown after arrival, s.
 const AFTER_S: f64 = 0.6;
@@ -51,7 +52,7 @@ fn shown(results: &[MoveResult]) -> Vec<usize> {
 }
 
 fn course(result: &MoveResult, trace: &MoveTrace) -> Markup {
-    let end_s = result.time_s + AFTER_S;
+    let end_s = result.took_s() + AFTER_S;
     let column = |value: fn(&Sample) -> f64| -> Vec<f64> {
         let samples = trace.samples.iter();
         samples
@@ -109,7 +110,7 @@ fn course(result: &MoveResult, trace: &MoveTrace) -> Markup {
     ];
     html! {
         h3 { (name(result)) " degrees, " (format!("{:.0} kg, {:.0} °C", result.load_kg, result.oil_temperature_c))
-            ": ratio " (format!("{:.2}", result.ratio)) ", overshoot " (format!("{:.2}", result.overshoot_deg)) " deg" }
+            ": ratio " (known(result.ratio, 2)) ", overshoot " (format!("{:.2}", result.overshoot_deg)) " deg" }
         div.grid {
             (chart("Rocker angle", "angle, deg", angles))
             (chart("Coil currents", "current, A", currents))

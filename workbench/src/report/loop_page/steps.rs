@@ -92,7 +92,7 @@ fn lines_of<'a>(run: &'a LoopRun, over: &Over, fixed: f64, way: (f64, f64)) -> V
 fn chart(driven: &[Driven], names: &[String]) -> Markup {
     let slowest_s = driven
         .iter()
-        .map(|(result, _)| result.time_s)
+        .map(|(result, _)| result.took_s())
         .fold(0.0, f64::max);
     let columns: Vec<[Vec<f64>; 3]> = driven
         .iter()

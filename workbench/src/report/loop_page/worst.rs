@@ -17,7 +17,7 @@ struct Figure {
 
 const FIGURES: [Figure; 4] = [
     Figure {
-        name: "Time over the shortest that the plant allows",
+        name: "Time over the shortest between edges of 100 ms",
         of: |result| result.ratio,
         best: 1.0,
         bar: 1.4,
@@ -47,7 +47,8 @@ pub fn section(results: &[MoveResult]) -> Markup {
     html! {
         h2 { "Where it is worst" }
         p { "White is as good as can be, yellow is what moves are held to, orange is as far beyond. \
-             Rows are moves, in degrees; columns are load and oil temperature." }
+             Rows are moves, in degrees; columns are load and oil temperature. A dash: it never arrives, \
+             or no manoeuvre does." }
         @for figure in &FIGURES {
             h3 { (figure.name) }
             (table(results, figure).table())
