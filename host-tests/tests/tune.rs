@@ -90,4 +90,20 @@ fn a_value_set_by_hand_is_left_alone_by_the_search() {
     let nominal = hitch_firmware::control::Calibration::nominal();
     let searched = value("approach_gain").parse::<f64>().unwrap();
     assert_ne!(searched, f64::from(nominal.position.approach_gain.0));
+    // The reason is that of the default.
+    let above = |key: &str| {
+        let (before, _) = tuned.split_once(&format!("\n{key} = ")).unwrap();
+        before.rsplit('\n').next().unwrap().to_owned()
+    };
+    let marked = above("approach_gain_per_s");
+    assert!(
+        marked.starts_with("# tuned (1 to 200); default 60: "),
+        "{marked}"
+    );
+    assert!(
+        above("creep_speed_mm_per_s").starts_with("# changed ("),
+        "set by hand"
+    );
+    assert!(!above("restart_band_mm").contains("default"), "as it was");
+    assert!(value("hysteresis_a").parse::<f64>().unwrap() >= 0.12);
 }

@@ -63,7 +63,9 @@ macro_rules! with_groups {
 }
 
 // Below the macro, which it uses.
+mod scalars;
 mod setting;
+use scalars::write_scalars;
 pub use setting::{Scalar, scalar, set, with_settings};
 
 /// Sections that are not groups of scalars.
@@ -105,6 +107,16 @@ pub fn parse(source: &SourceFile) -> Result<ValidCalibration, InputError> {
 /// The text of a calibration file with everything in it, each scalar with its reason.
 #[must_use]
 pub fn write(calibration: &Calibration) -> String {
+    written(calibration, None)
+}
+
+/// The same of a calibration that was tuned from another one: what was is marked.
+#[must_use]
+pub fn write_tuned(calibration: &Calibration, before: &Calibration) -> String {
+    written(calibration, Some(before))
+}
+
+fn written(calibration: &Calibration, before: Option<&Calibration>) -> String {
     let mut text = format!(
         "# Calibration of a hitch controller; see `hitch calibrate --help`.\nformat = {FORMAT}\n"
     );
@@ -132,15 +144,8 @@ pub fn write(calibration: &Calibration) -> String {
         f64::from(linkage.first_angle.0) / 1e3,
         f64::from(linkage.angle_step.0) / 1e3,
     );
-    let mut groups = calibration.clone();
-    // Writing to a string cannot fail; the visitors share their signature with those that can.
-    let _ = write_groups(&mut groups, &mut text);
+    write_scalars(calibration, before, &mut text);
     text
-}
-
-fn write_groups(calibration: &mut Calibration, text: &mut String) -> Result<(), InputError> {
-    with_groups!(calibration, write_group, text);
-    Ok(())
 }
 
 /// Key of a scalar in a file: its name with the engineering unit.
@@ -170,20 +175,6 @@ fn read_group<G: ParameterGroup>(group: &mut G, file: &TomlTable<'_>) -> Result<
         if let Some(value) = section.number(key, range)? {
             group.set(index, (value * counts).round() as i32);
         }
-    }
-    Ok(())
-}
-
-#[allow(
-    clippy::unnecessary_wraps,
-    reason = "shares its signature with the visitors that can fail"
-)]
-fn write_group<G: ParameterGroup>(group: &mut G, text: &mut String) -> Result<(), InputError> {
-    let _ = write!(text, "\n[{}]\n", G::NAME);
-    for (index, info) in G::INFO.iter().enumerate() {
-        let counts = group.get(index).unwrap_or(info.nominal);
-        let value = f64::from(counts) / f64::from(info.counts_per_unit);
-        let _ = write!(text, "#{}\n{} = {value:?}\n", info.reason, key(info));
     }
     Ok(())
 }

@@ -147,6 +147,18 @@ mod tests {
     }
 
     #[test]
+    fn help_lists_everything_that_is_tuned() {
+        use clap::CommandFactory;
+        let command = Cli::command();
+        let tune = command.find_subcommand("tune").unwrap();
+        let help = tune.get_after_help().unwrap().to_string();
+        for knob in crate::tuning::KNOBS {
+            let (_, name) = knob.split_once('.').unwrap();
+            assert!(help.contains(name), "{knob}: {help}");
+        }
+    }
+
+    #[test]
     fn every_command_has_an_example() {
         use clap::CommandFactory;
         for command in Cli::command().get_subcommands() {

@@ -131,10 +131,10 @@ pub fn scalar(calibration: &Calibration, path: &str) -> Option<Scalar> {
 }
 
 /// What [`visit_scalars`] calls: name of the group, the scalar, and its counts to read or change.
-type Visit<'v> = &'v mut dyn FnMut(&'static str, &ParameterInfo, &mut i32);
+pub(super) type Visit<'v> = &'v mut dyn FnMut(&'static str, &ParameterInfo, &mut i32);
 
 /// Visits every scalar.
-fn visit_scalars(calibration: &mut Calibration, visit: Visit<'_>) {
+pub(super) fn visit_scalars(calibration: &mut Calibration, visit: Visit<'_>) {
     // The visitors share their signature with those that can fail.
     let _ = visit_groups(calibration, visit);
 }

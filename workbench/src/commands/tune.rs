@@ -11,17 +11,20 @@ use crate::commands::loop_::changed;
 use crate::error::Error;
 use crate::output;
 use crate::progress::Progress;
-use crate::text::Table;
+use crate::text::{Table, known};
 use crate::tuning::{Judged, Trial, changes};
 
 /// Arguments of `hitch tune`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Example: hitch tune --model explained.toml --out tuned.toml\n\n\
-    The valve map is the model's; what is searched are ramps, approach, cut-off and filters. Each candidate drives moves both \
-    ways at three loads and temperatures, on the model and on two neighbours: thresholds 0.02 A off, and the usual hysteresis, \
-    friction, air and thick oil where the model has none. A value that is given with --set stays. By hand: hitch \
-    loop --set position.approach_gain=30"
+    The valve map is the model's. What is searched are ramps (position.lift_acceleration, lift_deceleration, \
+    lower_acceleration, lower_deceleration), approach and cut-off (position.approach_gain, creep_speed, stop_band), \
+    filters (motion.position_time, hydraulics.pressure_filter) and how late valves are believed to close \
+    (hydraulics.hysteresis: no less than the model's, or else than the 0.12 A that valves have). Each candidate drives \
+    moves both ways at three loads and temperatures, on the model and on two neighbours: thresholds 0.02 A off, and \
+    the usual hysteresis, friction, air and thick oil where the model has none. A value that is given with --set \
+    stays. By hand: hitch loop --set position.approach_gain=30"
 )]
 pub struct Args {
     /// The plant: nominal, dynamic, or the name of a model file
@@ -75,7 +78,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         })
         .ok_or_else(failed)?;
     drop(progress);
-    let text = calibration_file::write(&after.calibration);
+    let text = calibration_file::write_tuned(&after.calibration, &base);
     output::write_file(&args.out, text.as_bytes())?;
     output::print(&told(&before, &after))
 }
@@ -94,12 +97,7 @@ fn told(before: &Judged, after: &Judged) -> String {
     let (old, new) = (&before.summary, &after.summary);
     let mut figure = |name: &str, bar: Option<f64>, old: f64, new: f64| {
         let bar = bar.map_or_else(String::new, |bar| format!("{bar:.2}"));
-        figures.row([
-            name.to_owned(),
-            bar,
-            format!("{old:.3}"),
-            format!("{new:.3}"),
-        ]);
+        figures.row([name.to_owned(), bar, known(old, 3), known(new, 3)]);
     };
     let mut of = |name: &str, bar: f64, value: fn(&Summary) -> f64| {
         figure(name, Some(bar), value(old), value(new));

@@ -29,14 +29,32 @@ pub fn without(fixed: &[String]) -> Vec<&'static str> {
     KNOBS.into_iter().filter(|knob| !is_fixed(knob)).collect()
 }
 
-/// `base` with the value of each knob times two to the power of its coordinate; `None` if that isn't a valid
-/// calibration.
-pub fn with_values(base: &Calibration, knobs: &[&str], point: &[f64]) -> Option<ValidCalibration> {
+/// A value below which a knob is not turned.
+#[derive(Debug, Clone, Copy)]
+pub struct Least {
+    /// The knob.
+    pub knob: &'static str,
+    /// In its unit.
+    pub value: f64,
+}
+
+/// `base` with the value of each knob times two to the power of its coordinate, and not below its `least` one; `None`
+/// if that isn't a valid calibration.
+pub fn with_values(
+    base: &Calibration,
+    knobs: &[&str],
+    least: Least,
+    point: &[f64],
+) -> Option<ValidCalibration> {
     let mut calibration = base.clone();
     for (key, doublings) in knobs.iter().zip(point) {
         let found = scalar(base, key)?;
         let factor = doublings.clamp(-MOST_DOUBLINGS, MOST_DOUBLINGS).exp2();
-        let value = (found.value * factor).clamp(found.low, found.high);
+        let low = match *key == least.knob {
+            true => least.value.clamp(found.low, found.high),
+            false => found.low,
+        };
+        let value = (found.value * factor).clamp(low, found.high);
         set(&mut calibration, &format!("{key}={value}")).ok()?;
     }
     calibration.sealed().validate().ok()
@@ -55,4 +73,25 @@ pub fn changes(before: &Calibration, after: &Calibration) -> Vec<Change> {
             })
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_knob_is_not_turned_below_its_least_value() {
+        let base = Calibration::nominal();
+        let least = Least {
+            knob: "hydraulics.hysteresis",
+            value: 0.12,
+        };
+        let turned = |doublings: f64| {
+            let knobs = ["hydraulics.hysteresis", "hydraulics.pressure_filter"];
+            with_values(&base, &knobs, least, &[doublings, doublings]).unwrap()
+        };
+        assert_eq!(turned(-2.0).hydraulics.hysteresis.0, 120);
+        assert_eq!(turned(-2.0).hydraulics.pressure_filter.0, 60);
+        assert_eq!(turned(1.0).hydraulics.hysteresis.0, 160);
+    }
 }
