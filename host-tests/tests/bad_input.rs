@@ -402,6 +402,70 @@ fn bad_command_lines_are_refused() {
 }
 
 #[test]
+fn outputs_that_would_destroy_something_are_refused() {
+    let dir = folder();
+    let inputs = log();
+    let same = ["simulate", "--inputs", "log.csv", "--out", "./log.csv"];
+    refused(
+        dir.path(),
+        &same,
+        "is read by this command and would be overwritten",
+    );
+    assert_eq!(
+        fs::read_to_string(dir.path().join("log.csv")).unwrap(),
+        inputs
+    );
+    let manifest = ["explain", "c", "--out", "c/campaign.toml"];
+    refused(
+        dir.path(),
+        &manifest,
+        "c/campaign.toml: is read by this command",
+    );
+    let measured = ["compare", "c", "--report", "c/lift.csv"];
+    refused(dir.path(), &measured, "c/lift.csv: is read by this command");
+    write(&dir, "m.toml", "format = 1\nbase = \"nominal\"\n");
+    let model = ["calibrate", "m.toml", "--out", "m.toml"];
+    refused(dir.path(), &model, "m.toml: is read by this command");
+    let twice = ["explain", "c", "--out", "x", "--report", "x", "--json", "x"];
+    refused(dir.path(), &twice, "x: is named for two results");
+    let both = ["explain", "c", "--out", "-", "--json", "-"];
+    refused(dir.path(), &both, "-: is named for two results");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn outputs_that_cannot_be_written_are_noticed_before_the_work() {
+    let dir = folder();
+    let cases: [&[&str]; 5] = [
+        &["--report", "/proc/r.html"],
+        &["tune", "--out", "/proc/c.toml"],
+        &["explain", "c", "--json", "/proc/x.json"],
+        &["ecu", "--host", "--flash", "/proc/flash"],
+        &["ecu", "--host", "--flash", "nowhere/flash"],
+    ];
+    for arguments in cases {
+        refused(dir.path(), arguments, "cannot be written");
+    }
+    refused(
+        dir.path(),
+        &["ecu", "--host", "--flash", "-"],
+        "--flash -: it has to be read again",
+    );
+    refused(
+        dir.path(),
+        &["controller", "--out", "-"],
+        "--out -: the answers go there",
+    );
+}
+
+#[test]
+fn a_start_beyond_the_stroke_is_refused() {
+    let start = "simulate --inputs log.csv --out out.csv --start-angle 10";
+    let said = "--start-angle 10: the stroke goes from 44.1 to 135.9 degrees; name an angle";
+    refused(folder().path(), &start.split(' ').collect::<Vec<_>>(), said);
+}
+
+#[test]
 fn an_ecu_without_what_it_needs() {
     let dir = folder();
     let folder = dir.path();

@@ -290,6 +290,29 @@ fn simulate_writes_a_log_that_can_be_read_again() {
 }
 
 #[test]
+fn a_document_for_standard_output_is_alone_there() {
+    let dir = campaign();
+    let stdout = |arguments: &str| {
+        let output = run(dir.path(), &arguments.split(' ').collect::<Vec<_>>());
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    for (arguments, end) in [
+        ("add lower-threshold-shift --campaign . --out", "m.toml"),
+        ("explain . --out", "model.toml"),
+        ("calibrate nominal --out", "c.toml"),
+    ] {
+        let document = stdout(&format!("{arguments} -"));
+        assert!(!stdout(&format!("{arguments} {end}")).is_empty());
+        let file = fs::read_to_string(dir.path().join(end)).unwrap();
+        let name = |text: &str| text.replacen("\"m\"", "\"model\"", 1);
+        assert_eq!(name(&document), name(&file), "{arguments}");
+    }
+    assert_self_contained(&stdout("compare . --report -"));
+    assert!(!dir.path().join("-").exists());
+}
+
+#[test]
 fn the_main_job_goes_from_measurements_to_motion() {
     let dir = TempDir::new().unwrap();
     let output = run(dir.path(), &["--report", "r.html"]);

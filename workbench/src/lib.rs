@@ -15,6 +15,7 @@ pub mod explanation;
 pub mod input_stream;
 pub mod model_arg;
 pub mod output;
+pub mod outputs;
 pub mod paper;
 pub mod progress;
 pub mod rebuild;

@@ -1,4 +1,6 @@
 //! The option `--model`.
+use std::path::PathBuf;
+
 use hitch_model::Model;
 
 use crate::error::Error;
@@ -12,6 +14,12 @@ pub struct ModelArg {
 }
 
 impl ModelArg {
+    /// The file that it would be read from.
+    #[must_use]
+    pub fn file(&self) -> PathBuf {
+        PathBuf::from(&self.name)
+    }
+
     /// Reads the model.
     ///
     /// # Errors

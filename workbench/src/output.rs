@@ -12,8 +12,12 @@ use crate::error::Error;
 /// # Errors
 /// If standard output is closed or full.
 pub fn print(text: &str) -> Result<(), Error> {
+    print_bytes(text.as_bytes())
+}
+
+fn print_bytes(bytes: &[u8]) -> Result<(), Error> {
     let mut out = io::stdout().lock();
-    out.write_all(text.as_bytes())
+    out.write_all(bytes)
         .and_then(|()| out.flush())
         .map_err(Error::Stdout)
 }
@@ -27,74 +31,101 @@ pub struct JsonArg {
 }
 
 impl JsonArg {
-    /// Prints the result: as JSON where that is asked for, else (or beside a JSON file) as text.
+    /// Where it goes, if it was asked for.
+    #[must_use]
+    pub fn target(&self) -> Option<&Path> {
+        self.target.as_deref()
+    }
+
+    /// Writes a result as JSON if that is asked for.
     ///
     /// # Errors
     /// If the target cannot be written.
-    pub fn print<T: Serialize>(
-        &self,
-        result: &T,
-        text: impl FnOnce() -> String,
-    ) -> Result<(), Error> {
+    pub fn write<T: Serialize>(&self, result: &T) -> Result<(), Error> {
         let Some(path) = &self.target else {
-            return print(&text());
+            return Ok(());
         };
         let mut document = serde_json::to_string_pretty(result).map_err(|error| {
             Error::Failed(format!("the result cannot be written as JSON: {error}"))
         })?;
         document.push('\n');
-        if path == Path::new("-") {
-            return print(&document);
-        }
-        write_file(path, document.as_bytes())?;
-        print(&text())
+        write_file(path, document.as_bytes())
     }
+}
 
-    /// Checks early that the target can be written.
-    ///
-    /// # Errors
-    /// As [`check_writable`].
-    pub fn check(&self) -> Result<(), Error> {
-        check_writable(
-            self.target
-                .as_deref()
-                .filter(|path| *path != Path::new("-")),
-        )
+/// Whether a name means standard output.
+#[must_use]
+pub fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Refuses standard output for what cannot go there.
+///
+/// # Errors
+/// If it is named; `why` says what is there instead.
+pub fn no_stdout(option: &str, path: Option<&Path>, why: &str) -> Result<(), Error> {
+    match path.is_some_and(is_stdout) {
+        true => Err(Error::Usage(format!("{option} -: {why}; name a file"))),
+        false => Ok(()),
     }
 }
 
 /// Checks that a file can be written, so that nobody waits for a result that then has nowhere to go.
 ///
 /// # Errors
-/// If its folder does not exist, or the name is a folder's.
-pub fn check_writable(path: Option<&Path>) -> Result<(), Error> {
-    let Some(path) = path else { return Ok(()) };
-    let fault = |message: &str| {
-        let source = io::Error::other(message.to_owned());
-        Err(Error::Write {
-            path: path.to_path_buf(),
-            source,
-        })
-    };
-    if path.is_dir() {
-        return fault("it is a folder");
-    }
-    if path.file_name().is_none() || !folder_of(path).is_dir() {
-        return fault("its folder does not exist");
-    }
-    Ok(())
-}
-
-/// Writes a file whole or not at all: beside it first, then in its place.
-///
-/// # Errors
-/// If the file cannot be written; what was there before is then still there.
-pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    check_writable(Some(path))?;
+/// If its folder does not exist or takes no file, or the name is a folder's.
+pub fn check_writable(path: &Path) -> Result<(), Error> {
     let fault = |source: io::Error| Error::Write {
         path: path.to_path_buf(),
         source,
     };
+    if is_stdout(path) || (path.exists() && !path.is_file() && !path.is_dir()) {
+        return Ok(());
+    }
+    check_name(path).map_err(fault)?;
+    // What is made here goes away at once.
+    temporary_file(folder_of(path)).map(drop).map_err(fault)
+}
+
+/// Checks that a folder takes files, or can be made.
+///
+/// # Errors
+/// If the nearest folder of that name that is there takes none.
+pub fn check_folder(path: &Path) -> Result<(), Error> {
+    let there = path.ancestors().find(|folder| folder.exists());
+    let folder = there.unwrap_or(Path::new("."));
+    temporary_file(folder)
+        .map(drop)
+        .map_err(|source| Error::Write {
+            path: path.to_path_buf(),
+            source,
+        })
+}
+
+/// Whether a file may have this name.
+fn check_name(path: &Path) -> io::Result<()> {
+    if path.is_dir() {
+        return Err(io::Error::other("it is a folder"));
+    }
+    if path.file_name().is_none() || !folder_of(path).is_dir() {
+        return Err(io::Error::other("its folder does not exist"));
+    }
+    Ok(())
+}
+
+/// Writes a file whole or not at all: beside it first, then in its place; `-` is standard output.
+///
+/// # Errors
+/// If the file cannot be written; what was there before is then still there.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    if is_stdout(path) {
+        return print_bytes(bytes);
+    }
+    let fault = |source: io::Error| Error::Write {
+        path: path.to_path_buf(),
+        source,
+    };
+    check_name(path).map_err(fault)?;
     if path.exists() && !path.is_file() {
         // A device or a pipe: to put a file in its place would destroy it.
         return fs::write(path, bytes).map_err(fault);
@@ -110,7 +141,8 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
 
 /// A file's name without its extension: what it holds is called so.
 pub fn stem(path: &Path) -> String {
-    path.file_stem().map_or_else(
+    let named = Some(path).filter(|path| !is_stdout(path));
+    named.and_then(Path::file_stem).map_or_else(
         || "model".to_owned(),
         |stem| stem.to_string_lossy().into_owned(),
     )
@@ -149,11 +181,14 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_is_missing_is_noticed_early() {
+    fn what_cannot_be_written_is_noticed_early_and_nothing_is_left() {
         let dir = tempfile::tempdir().unwrap();
-        assert!(check_writable(Some(&dir.path().join("no/out.json"))).is_err());
-        assert!(check_writable(Some(dir.path())).is_err());
-        assert!(check_writable(Some(Path::new("out.json"))).is_ok());
-        assert!(check_writable(None).is_ok());
+        assert!(check_writable(&dir.path().join("no/out.json")).is_err());
+        assert!(check_writable(dir.path()).is_err());
+        assert!(check_writable(&dir.path().join("out.json")).is_ok());
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
+        // A folder that takes no files, even of root.
+        let full = Path::new("/proc");
+        assert!(!full.is_dir() || check_writable(&full.join("out.json")).is_err());
     }
 }

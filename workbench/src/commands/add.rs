@@ -17,6 +17,7 @@ use crate::error::Error;
 use crate::explanation::{parameters, rebuilt};
 use crate::model_arg::ModelArg;
 use crate::output;
+use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
 
 /// Arguments of `hitch add`.
@@ -43,7 +44,9 @@ pub struct Args {
 /// # Errors
 /// If an effect is not known or there already, the campaign or the model file is wrong, or the model cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    output::check_writable(Some(&args.out))?;
+    let mut inputs = campaign_files(&args.campaign);
+    inputs.push(args.model.file());
+    let outputs = Outputs::check([Some(args.out.as_path())], &inputs)?;
     let model = args.model.load()?;
     let effects = effects(&args.effects, &model)?;
     let campaign = Campaign::load(&args.campaign)?;
@@ -67,7 +70,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         let _ = writeln!(text, "{}", shown(effect));
     }
     let _ = writeln!(text, "With all of them: error {:.2} sigma", fit.error());
-    output::print(&text)
+    outputs.say(|| text)
 }
 
 /// The model with the effects, all of them fitted together.

@@ -5,10 +5,12 @@ use hitch_firmware::control::calibration::Calibration;
 use hitch_firmware::control::valve_map::ValveTable;
 use hitch_model::Model;
 
+use super::loop_::read_files;
 use crate::calibrate::calibrate;
 use crate::calibration_file;
 use crate::error::Error;
 use crate::output;
+use crate::outputs::Outputs;
 
 /// Arguments of `hitch calibrate`.
 #[derive(Debug, clap::Args)]
@@ -30,7 +32,8 @@ pub struct Args {
 /// # Errors
 /// If the model or the calibration is wrong, or the result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    output::check_writable(Some(&args.out))?;
+    let inputs = read_files(&args.model, args.calibration.as_ref());
+    let outputs = Outputs::check([Some(args.out.as_path())], &inputs)?;
     let model = Model::named(&args.model)?;
     let base = match &args.calibration {
         Some(path) => (*calibration_file::read(path)?).clone(),
@@ -50,7 +53,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
             described(before)
         );
     }
-    output::print(&text)
+    outputs.say(|| text)
 }
 
 fn described(table: &ValveTable) -> String {

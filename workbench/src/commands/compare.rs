@@ -7,6 +7,7 @@ use crate::comparison::Comparison;
 use crate::error::Error;
 use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
+use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
 use crate::report::comparison_page;
 
@@ -30,8 +31,9 @@ pub struct Args {
 /// # Errors
 /// If the campaign or the model file is wrong, or a result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    args.json.check()?;
-    output::check_writable(args.report.as_deref())?;
+    let mut inputs = campaign_files(&args.campaign);
+    inputs.push(args.model.file());
+    let outputs = Outputs::check([args.report.as_deref(), args.json.target()], &inputs)?;
     let model = args.model.load()?;
     let campaign = Campaign::load(&args.campaign)?;
     let progress = Progress::start(format!("comparing {} with {}", model.name, campaign.name));
@@ -41,5 +43,5 @@ pub fn run(args: &Args) -> Result<(), Error> {
         let page = comparison_page::page(&comparison, &evaluated, &model);
         output::write_file(path, page.as_bytes())?;
     }
-    args.json.print(&comparison, || comparison.to_string())
+    outputs.tell(&args.json, &comparison, || comparison.to_string())
 }

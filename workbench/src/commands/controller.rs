@@ -9,6 +9,7 @@ use super::loop_::calibration;
 use crate::error::Error;
 use crate::input_stream::{Columns, LineError};
 use crate::output;
+use crate::outputs;
 use crate::teaching::{self, Teaching};
 
 /// Header of what the command prints.
@@ -43,7 +44,9 @@ pub struct Args {
 /// # Errors
 /// If the calibration or a line is wrong, or standard output is closed.
 pub fn run(args: &Args) -> Result<(), Error> {
-    output::check_writable(args.out.as_deref())?;
+    output::no_stdout("--out", args.out.as_deref(), "the answers go there")?;
+    let inputs: Vec<PathBuf> = args.calibration.iter().cloned().collect();
+    outputs::Outputs::check([args.out.as_deref()], &inputs)?;
     let controller = Controller::new(calibration(args.calibration.as_ref())?);
     let teaching = Teaching::new(args.out.clone());
     serve(

@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::explanation::Diagnosis;
 use crate::model_arg::ModelArg;
 use crate::output::JsonArg;
+use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
 
 /// Arguments of `hitch diagnose`.
@@ -28,7 +29,9 @@ pub struct Args {
 /// # Errors
 /// If the campaign or the model file is wrong, or the result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    args.json.check()?;
+    let mut inputs = campaign_files(&args.campaign);
+    inputs.push(args.model.file());
+    let outputs = Outputs::check([args.json.target()], &inputs)?;
     let model = args.model.load()?;
     let campaign = Campaign::load(&args.campaign)?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
@@ -39,5 +42,5 @@ pub fn run(args: &Args) -> Result<(), Error> {
     });
     let shown = Diagnosis::new(&experiment, &model, &found);
     drop(progress);
-    args.json.print(&shown, || shown.to_string())
+    outputs.tell(&args.json, &shown, || shown.to_string())
 }

@@ -17,6 +17,7 @@ use crate::ecu::{
     delivered, find_image,
 };
 use crate::error::Error;
+use crate::output::{check_writable, no_stdout, write_file};
 use crate::status_line::StatusLine;
 
 /// Where the hitch is at the start, degree.
@@ -67,6 +68,9 @@ pub struct Args {
 /// # Errors
 /// If something that it needs is wrong or missing, or the emulator ends.
 pub fn run(args: &Args) -> Result<(), Error> {
+    // What is read of it is what it keeps.
+    no_stdout("--flash", args.flash.as_deref(), "it has to be read again")?;
+    args.flash.as_deref().map_or(Ok(()), check_writable)?;
     let model = Model::named(&args.model)?;
     let flash = flash(args)?;
     let door = args.can.as_deref().map(open_door).transpose()?;
@@ -117,7 +121,7 @@ fn flash(args: &Args) -> Result<Vec<u8>, Error> {
 }
 
 fn keep(path: Option<&Path>, flash: &[u8]) -> Result<(), Error> {
-    path.map_or(Ok(()), |path| crate::output::write_file(path, flash))
+    path.map_or(Ok(()), |path| write_file(path, flash))
 }
 
 fn open_door(address: &str) -> Result<CanDoor, Error> {

@@ -7,6 +7,7 @@ use crate::error::Error;
 use crate::explanation::Found;
 use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
+use crate::outputs::{Outputs, campaign_files};
 use crate::report::explanation_page;
 
 /// Arguments of `hitch explain`.
@@ -32,9 +33,14 @@ pub struct Args {
 /// # Errors
 /// If the campaign or the model file is wrong, or a result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    args.json.check()?;
-    output::check_writable(args.report.as_deref())?;
-    output::check_writable(args.out.as_deref())?;
+    let mut inputs = campaign_files(&args.campaign);
+    inputs.push(args.model.file());
+    let wanted = [
+        args.out.as_deref(),
+        args.report.as_deref(),
+        args.json.target(),
+    ];
+    let outputs = Outputs::check(wanted, &inputs)?;
     let model = args.model.load()?;
     let campaign = Campaign::load(&args.campaign)?;
     let found = Found::new(&campaign, model);
@@ -44,5 +50,5 @@ pub fn run(args: &Args) -> Result<(), Error> {
     if let Some(path) = &args.report {
         output::write_file(path, explanation_page::page(&found).as_bytes())?;
     }
-    args.json.print(&found.shown, || found.shown.to_string())
+    outputs.tell(&args.json, &found.shown, || found.shown.to_string())
 }

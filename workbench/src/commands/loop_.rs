@@ -9,6 +9,7 @@ use crate::calibration_file;
 use crate::closed_loop::{self, MoveResult, Scenario, Summary};
 use crate::error::Error;
 use crate::output::{self, JsonArg};
+use crate::outputs::Outputs;
 use crate::progress::Progress;
 use crate::report::loop_page;
 use crate::text::{Table, known};
@@ -58,8 +59,8 @@ struct Document<'a> {
 /// # Errors
 /// If the model or the calibration is wrong, or a result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    args.json.check()?;
-    output::check_writable(args.report.as_deref())?;
+    let inputs = read_files(&args.model, args.calibration.as_ref());
+    let outputs = Outputs::check([args.report.as_deref(), args.json.target()], &inputs)?;
     let model = Model::named(&args.model)?;
     let calibration = changed(&calibration(args.calibration.as_ref())?, &args.set)?;
     let moves = args.scenario.moves(args.load);
@@ -84,8 +85,16 @@ pub fn run(args: &Args) -> Result<(), Error> {
         moves: &driven.results,
         summary: driven.summary,
     };
-    args.json
-        .print(&document, || text(&driven.results, &driven.summary))
+    outputs.tell(&args.json, &document, || {
+        text(&driven.results, &driven.summary)
+    })
+}
+
+/// The files of a model and a calibration, as the command line names them.
+#[must_use]
+pub fn read_files(model: &str, calibration: Option<&PathBuf>) -> Vec<PathBuf> {
+    let model = PathBuf::from(model);
+    calibration.cloned().into_iter().chain([model]).collect()
 }
 
 /// The calibration with settings from the command line.

@@ -10,6 +10,7 @@ use crate::demonstration;
 use crate::error::Error;
 use crate::explanation::Found;
 use crate::output;
+use crate::outputs::Outputs;
 use crate::progress::Progress;
 use crate::rebuild::Rebuild;
 use crate::report::main_page;
@@ -30,18 +31,18 @@ pub struct Args {
 /// # Errors
 /// If the report cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    output::check_writable(Some(&args.report))?;
+    let outputs = Outputs::check([Some(args.report.as_path())], &[])?;
     let campaign = demonstration::campaign()?;
     let model = Model::nominal();
-    output::print(&compared(&campaign, &model))?;
+    outputs.say(|| compared(&campaign, &model))?;
     let found = Found::new(&campaign, model);
-    output::print(&explained(&found))?;
+    outputs.say(|| explained(&found))?;
     let progress = Progress::start("closing the loop with either valve map");
     let rebuild = Rebuild::new(&found, Scenario::Moves)?;
     drop(progress);
-    output::print(&format!("\n{}", rebuild.text()))?;
+    outputs.say(|| format!("\n{}", rebuild.text()))?;
     output::write_file(&args.report, main_page::page(&found, &rebuild).as_bytes())?;
-    output::print(&format!("\nReport: {}\n", args.report.display()))
+    outputs.say(|| format!("\nReport: {}\n", args.report.display()))
 }
 
 fn compared(campaign: &Campaign, model: &Model) -> String {

@@ -2,6 +2,7 @@
 use crate::error::Error;
 use crate::model_arg::ModelArg;
 use crate::output::JsonArg;
+use crate::outputs::Outputs;
 use crate::paper::Paper;
 use crate::progress::Progress;
 
@@ -20,10 +21,10 @@ pub struct Args {
 /// # Errors
 /// If the model file is wrong or the output cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    args.json.check()?;
+    let outputs = Outputs::check([args.json.target()], &[args.model.file()])?;
     let model = args.model.load()?;
     let progress = Progress::start("the paper's tables and figures");
     let paper = Paper::of(&model, &progress);
     drop(progress);
-    args.json.print(&paper, || paper.to_string())
+    outputs.tell(&args.json, &paper, || paper.to_string())
 }

@@ -41,6 +41,8 @@ pub struct Args {
 /// If the ECU can't be reached, or the campaign can't be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let manifest = args.out.join("campaign.toml");
+    output::no_stdout("--out", Some(&args.out), "a campaign is a folder")?;
+    output::check_folder(&args.out)?;
     let so_far = so_far(args, &manifest)?;
     let progress = Progress::start("recording");
     let mut session = connect(&args.can)?;

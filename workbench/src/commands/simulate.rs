@@ -1,6 +1,6 @@
 //! `hitch simulate`: the plant alone, driven by a log's currents.
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use hitch_model::Model;
 use hitch_model::campaign::{Bench, Channel, Run};
@@ -10,6 +10,7 @@ use hitch_model::units::pa_from_bar;
 use crate::error::Error;
 use crate::model_arg::ModelArg;
 use crate::output;
+use crate::outputs::Outputs;
 use crate::progress::Progress;
 
 /// Samples whose mean is the angle at the start.
@@ -48,19 +49,17 @@ pub struct Args {
 /// # Errors
 /// If the model or the log is wrong, or the result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    let to_stdout = args.out == Path::new("-");
-    output::check_writable(Some(&args.out).filter(|_| !to_stdout).map(PathBuf::as_path))?;
+    Outputs::check(
+        [Some(args.out.as_path())],
+        &[args.inputs.clone(), args.model.file()],
+    )?;
     let model = args.model.load()?;
     let log = Run::read(&args.inputs, args.bench(), args.oil_temperature)?;
     let progress = Progress::start(format!("simulating {}", log.file));
-    let rig = args.rig(&model, &log);
+    let rig = args.rig(&model, &log)?;
     let text = simulated(&model, rig, &log);
     drop(progress);
-    if to_stdout {
-        output::print(&text)
-    } else {
-        output::write_file(&args.out, text.as_bytes())
-    }
+    output::write_file(&args.out, text.as_bytes())
 }
 
 impl Args {
@@ -71,22 +70,34 @@ impl Args {
         }
     }
 
-    fn rig(&self, model: &Model, log: &Run) -> Rig {
-        match self.bench() {
+    fn rig(&self, model: &Model, log: &Run) -> Result<Rig, Error> {
+        Ok(match self.bench() {
             Bench::Flow { port_pressure_bar } => Rig::Flow {
                 port_pressure_pa: pa_from_bar(port_pressure_bar),
             },
-            Bench::Hitch { load_kg } => {
-                let (low_rad, high_rad) = model.linkage().swing_rad();
-                let angle_deg = self.start_angle.or_else(|| logged_start_deg(log));
-                let start_angle_rad =
-                    angle_deg.map_or(low_rad, |deg| deg.to_radians().clamp(low_rad, high_rad));
-                Rig::Hitch(HitchRig {
-                    load_kg,
-                    start_angle_rad,
-                })
-            }
+            Bench::Hitch { load_kg } => Rig::Hitch(HitchRig {
+                load_kg,
+                start_angle_rad: self.start_angle_rad(model, log)?,
+            }),
+        })
+    }
+
+    /// Where the hitch begins. A log's first samples may be beyond the ends by the noise of its sensor.
+    fn start_angle_rad(&self, model: &Model, log: &Run) -> Result<f64, Error> {
+        /// What the ends are rounded by where they are said, degrees.
+        const ROUNDED_DEG: f64 = 0.05;
+        let (low_rad, high_rad) = model.linkage().swing_rad();
+        let (low_deg, high_deg) = (low_rad.to_degrees(), high_rad.to_degrees());
+        if let Some(deg) = self.start_angle
+            && !(low_deg - ROUNDED_DEG..=high_deg + ROUNDED_DEG).contains(&deg)
+        {
+            return Err(Error::Usage(format!(
+                "--start-angle {deg}: the stroke goes from {low_deg:.1} to {high_deg:.1} degrees; \
+                 name an angle between them"
+            )));
         }
+        let angle_deg = self.start_angle.or_else(|| logged_start_deg(log));
+        Ok(angle_deg.map_or(low_rad, |deg| deg.to_radians().clamp(low_rad, high_rad)))
     }
 }
 

@@ -7,9 +7,10 @@ use hitch_model::Model;
 use crate::calibrate::calibrate;
 use crate::calibration_file;
 use crate::closed_loop::{Scenario, Summary};
-use crate::commands::loop_::changed;
+use crate::commands::loop_::{changed, read_files};
 use crate::error::Error;
 use crate::output;
+use crate::outputs::Outputs;
 use crate::progress::Progress;
 use crate::text::{Table, known};
 use crate::tuning::{Judged, Trial, changes};
@@ -53,7 +54,8 @@ pub struct Args {
 /// # Errors
 /// If the model or the calibration is wrong, or the result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    output::check_writable(Some(&args.out))?;
+    let inputs = read_files(&args.model, args.calibration.as_ref());
+    let outputs = Outputs::check([Some(args.out.as_path())], &inputs)?;
     let model = Model::named(&args.model)?;
     let base = match &args.calibration {
         Some(path) => calibration_file::read(path)?,
@@ -80,7 +82,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     drop(progress);
     let text = calibration_file::write_tuned(&after.calibration, &base);
     output::write_file(&args.out, text.as_bytes())?;
-    output::print(&told(&before, &after))
+    outputs.say(|| told(&before, &after))
 }
 
 /// Before and after: the values, and what they do.
