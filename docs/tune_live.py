@@ -21,7 +21,7 @@ ecu = subprocess.Popen(
     [hitch, "ecu", "--can", "127.0.0.1:0", *options],
     stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
 )
-port = "socket://" + ecu.stderr.readline().split()[-1]
+port = "socket://" + next(line for line in ecu.stderr if "CAN is open" in line).split()[-1]
 threading.Thread(target=ecu.stderr.read, daemon=True).start()
 
 

@@ -1,8 +1,12 @@
 //! The emulated ECU's image: where it is, or how it comes about.
 
 use std::env;
+use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::thread;
+use std::time::Duration;
 
 use crate::error::Error;
 use crate::progress::Progress;
@@ -30,6 +34,22 @@ pub fn find(given: Option<&Path>) -> Result<PathBuf, Error> {
     }
 }
 
+/// Says what takes so long where no line moves that would show it; nothing if what is returned is dropped within a
+/// moment.
+fn patience() -> Option<Sender<()>> {
+    const MOMENT: Duration = Duration::from_secs(2);
+    if io::stderr().is_terminal() {
+        return None;
+    }
+    let (waiting, over) = mpsc::channel();
+    thread::spawn(move || {
+        if over.recv_timeout(MOMENT) == Err(RecvTimeoutError::Timeout) {
+            eprintln!("building the ECU's image: the first time takes minutes");
+        }
+    });
+    Some(waiting)
+}
+
 /// Has the sources that this program was built from build the image.
 fn build() -> Result<PathBuf, Error> {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -39,6 +59,7 @@ fn build() -> Result<PathBuf, Error> {
         )));
     }
     let progress = Progress::start("building the ECU's image");
+    let patience = patience();
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let built = Command::new(cargo)
         .args(["xtask", "image"])
@@ -46,7 +67,7 @@ fn build() -> Result<PathBuf, Error> {
         .stdin(Stdio::null())
         .output()
         .map_err(|error| Error::Usage(format!("cargo can't be started ({error}): {MEND}")))?;
-    drop(progress);
+    drop((progress, patience));
     let text = String::from_utf8_lossy(&built.stdout);
     match (built.status.success(), text.trim_end().lines().last()) {
         (true, Some(path)) => Ok(PathBuf::from(path)),
