@@ -1,4 +1,6 @@
 //! From the identification's diagnosis to what is shown of it.
+use std::cmp::Ordering;
+
 use hitch_model::Model;
 use hitch_model::identification::adequacy::{adequate, cells};
 use hitch_model::identification::belief::BELIEVED;
@@ -21,6 +23,12 @@ impl Diagnosis {
             .filter(|best| best.likelihood_ratio >= BELIEVED);
         let after = believed.map_or(&found.base, |best| &best.fit);
         let candidates = found.candidates.iter().zip(&found.confidences);
+        let mut candidates: Vec<Candidate> = candidates
+            .map(|(candidate, share)| shown(found, candidate, *share))
+            .collect();
+        // The one that is believed is what head and verdict are about.
+        let settled = usize::from(believed.is_some());
+        candidates[settled..].sort_by(as_shown);
         Self {
             head: Head {
                 campaign: experiment.name.clone(),
@@ -31,12 +39,22 @@ impl Diagnosis {
                 channels: channels(experiment, &found.base, after),
                 verdict: verdict(experiment, found, believed).name(),
             },
-            candidates: candidates
-                .map(|(candidate, share)| shown(found, candidate, *share))
-                .collect(),
+            candidates,
             next: next(experiment, model, found, believed).into(),
         }
     }
+}
+
+/// The order that a reader sees a reason for: by confidence where there is any, else by what is left.
+fn as_shown(a: &Candidate, b: &Candidate) -> Ordering {
+    /// Less is shown as none.
+    const SHOWN: f64 = 0.005;
+    let confidence = |candidate: &Candidate| match candidate.confidence {
+        confidence if confidence >= SHOWN => confidence,
+        _ => 0.0,
+    };
+    let by_error = a.error_after.total_cmp(&b.error_after);
+    confidence(b).total_cmp(&confidence(a)).then(by_error)
 }
 
 /// What one more effect comes to.
@@ -120,4 +138,38 @@ fn twins<'a>(
             && (other.fit.cost - candidate.fit.cost).abs() < TOLD_APART * unit
     };
     found.candidates.iter().filter(as_good).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_has_no_confidence_is_sorted_by_what_is_left() {
+        let candidate = |effect, confidence, error_after| Candidate {
+            effect,
+            form: None,
+            explains: 0.0,
+            error_after,
+            confidence,
+            indistinguishable: Vec::new(),
+            detectability: 0.0,
+            parameters: Vec::new(),
+        };
+        let mut candidates = [
+            candidate("spool-stiction", 1e-80, 11.79),
+            candidate("solenoid-hysteresis", 1e-90, 11.64),
+            candidate("flow-force", 0.2, 12.0),
+            candidate("spool-lag", 0.7, 11.9),
+        ];
+        candidates.sort_by(as_shown);
+        let order = candidates.map(|candidate| candidate.effect);
+        let wanted = [
+            "spool-lag",
+            "flow-force",
+            "solenoid-hysteresis",
+            "spool-stiction",
+        ];
+        assert_eq!(order, wanted);
+    }
 }
