@@ -20,6 +20,9 @@ const TOLERANCE_A: f64 = 0.5e-3;
 /// How far the limits of travel stay from the mechanical ends.
 const END_DISTANCE: MilliDegree = MilliDegree(500);
 
+/// Ends that differ by less are the same: a calibration is rounded.
+const SAME_END: MilliDegree = MilliDegree(20);
+
 /// Why a model gives no calibration.
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrateError {
@@ -101,8 +104,48 @@ fn linkage(model: &Model, calibration: &mut Calibration) {
         let piston_m = model.linkage().piston_m(angle_deg.to_radians());
         *travel = Micrometre((piston_m * 1e6).round() as i32);
     }
-    calibration.position.lower_limit = low + END_DISTANCE;
-    calibration.position.upper_limit = high - END_DISTANCE;
+    let (lower_limit, upper_limit) = (low + END_DISTANCE, high - END_DISTANCE);
+    let position = &mut calibration.position;
+    let before = [position.lower_limit, position.upper_limit];
+    (position.lower_limit, position.upper_limit) = (lower_limit, upper_limit);
+    follow(calibration, before, [lower_limit, upper_limit]);
+    let stroke_m = model.constants().cylinder.stroke_m;
+    calibration.teach.stroke = Micrometre((stroke_m * 1e6).round() as i32);
+}
+
+/// How far a limit of travel has moved.
+fn moved_by(before: MilliDegree, after: MilliDegree) -> MilliDegree {
+    let by = after - before;
+    if by.magnitude() < SAME_END {
+        MilliDegree::ZERO
+    } else {
+        by
+    }
+}
+
+/// Takes what lies near a limit of travel along with it: where the hitch floats, how high it is lifted at a push of the
+/// button, what sensors can say.
+fn follow(calibration: &mut Calibration, before: [MilliDegree; 2], after: [MilliDegree; 2]) {
+    let (operator, sensors) = (&mut calibration.operator, &mut calibration.sensors);
+    let lower = moved_by(before[0], after[0]);
+    let upper = moved_by(before[1], after[1]);
+    for (angle, by) in [
+        (&mut operator.float_lever, lower),
+        (&mut operator.float_exit, lower),
+        (&mut sensors.angle_min, lower),
+        (&mut sensors.lever_min, lower),
+        (&mut sensors.angle_max, upper),
+        (&mut sensors.lever_max, upper),
+    ] {
+        *angle = *angle + by;
+    }
+    // These are shares of the range.
+    let range = f64::from((before[1] - before[0]).0);
+    let stretch = f64::from((upper - lower).0) / range;
+    for angle in [&mut operator.float_angle, &mut operator.quick_lift_angle] {
+        let share = f64::from((*angle - before[0]).0);
+        *angle = *angle + lower + MilliDegree((stretch * share).round() as i32);
+    }
 }
 
 /// The table of a surveyed curve with as few points as its tolerance needs and as fit.
@@ -190,6 +233,49 @@ mod tests {
             flow_lpm: 0.0,
         };
         std::iter::once(threshold).chain(rising).collect()
+    }
+
+    /// The nominal model with another stroke, calibrated.
+    fn with_stroke(stroke_mm: f64) -> ValidCalibration {
+        let source = hitch_model::source_file::SourceFile {
+            path: "m.toml".into(),
+            text: format!("format = 1\nbase = \"nominal\"\n[cylinder]\nstroke_mm = {stroke_mm}\n"),
+        };
+        let model = Model::from_source(&source).unwrap();
+        calibrate(&model, &Calibration::nominal()).unwrap()
+    }
+
+    #[test]
+    fn what_lies_near_an_end_follows_it() {
+        let nominal = Calibration::nominal();
+        let same = with_stroke(158.0);
+        assert_eq!(same.operator, nominal.operator);
+        assert_eq!(same.sensors, nominal.sensors);
+        assert_eq!(same.teach, nominal.teach);
+        let distances = |calibration: &Calibration| {
+            let (position, sensors) = (&calibration.position, &calibration.sensors);
+            [
+                calibration.operator.float_lever - position.lower_limit,
+                calibration.operator.float_exit - position.lower_limit,
+                position.lower_limit - sensors.angle_min,
+                sensors.angle_max - position.upper_limit,
+                sensors.lever_max - position.upper_limit,
+            ]
+        };
+        let shares = |calibration: &Calibration| {
+            let (position, operator) = (&calibration.position, &calibration.operator);
+            let range = f64::from((position.upper_limit - position.lower_limit).0);
+            [operator.float_angle, operator.quick_lift_angle]
+                .map(|angle| f64::from((angle - position.lower_limit).0) / range)
+        };
+        for stroke_mm in [120.0, 180.0] {
+            let other = with_stroke(stroke_mm);
+            assert_eq!(distances(&other), distances(&nominal), "{stroke_mm} mm");
+            for (share, nominal) in shares(&other).into_iter().zip(shares(&nominal)) {
+                assert!((share - nominal).abs() < 1e-3, "{stroke_mm} mm: {share}");
+            }
+            assert_eq!(f64::from(other.teach.stroke.0), stroke_mm * 1e3);
+        }
     }
 
     #[test]
