@@ -10,6 +10,7 @@ pub mod lab;
 pub mod live_ecu;
 pub mod program;
 pub mod recording;
+pub mod refusal;
 pub mod replay;
 pub mod second_rig;
 pub mod simulated_lab;

@@ -1,68 +1,8 @@
 //! Bad input, through the program itself: one clear line, exit code 2, no output file, nothing on standard output.
 use std::fs;
-use std::path::Path;
-use std::process::Output;
 
-use host_tests::program::{hitch, run};
-use tempfile::TempDir;
-
-const MANIFEST: &str = r#"format = 1
-name = "small"
-sample_rate_hz = 50
-
-[[run]]
-file = "lift.csv"
-bench = "hitch"
-load_kg = 150
-"#;
-
-/// A log of a hitch at rest.
-fn log() -> String {
-    let row = |i: usize| format!("{:.2},0.0,0.0,4.0,16.0,0.0,90.0\n", i as f64 * 0.02);
-    let header = "time_s,lift_current_a,lower_current_a,pump_pressure_bar,cylinder_pressure_bar,flow_lpm,rocker_angle_deg";
-    format!("{header}\n{}", (0..100).map(row).collect::<String>())
-}
-
-/// A folder with the campaign `c`, the log `log.csv`, and whatever a case adds.
-fn folder() -> TempDir {
-    let dir = TempDir::new().unwrap();
-    fs::create_dir(dir.path().join("c")).unwrap();
-    fs::create_dir(dir.path().join("empty")).unwrap();
-    write(&dir, "c/campaign.toml", MANIFEST);
-    write(&dir, "c/lift.csv", log());
-    write(&dir, "log.csv", log());
-    dir
-}
-
-fn write(dir: &TempDir, name: &str, text: impl AsRef<[u8]>) {
-    fs::write(dir.path().join(name), text).unwrap();
-}
-
-/// Asserts that the program refused, said so in one line that holds `expected`, and left nothing behind.
-fn refused(dir: &Path, arguments: &[&str], expected: &str) {
-    let before = names(dir);
-    let Output {
-        status,
-        stdout,
-        stderr,
-    } = run(dir, arguments);
-    let said = String::from_utf8(stderr).unwrap();
-    let case = format!("hitch {}: {said}", arguments.join(" "));
-    assert_eq!(status.code(), Some(2), "{case}");
-    assert_eq!(said.lines().count(), 1, "{case}");
-    assert!(said.contains(expected), "expected {expected} of {case}");
-    assert!(stdout.is_empty(), "{case}");
-    assert_eq!(names(dir), before, "{case}");
-}
-
-fn names(dir: &Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(dir)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
-        .collect();
-    names.sort();
-    names
-}
+use host_tests::program::hitch;
+use host_tests::refusal::{MANIFEST, folder, log, refused, write};
 
 /// Every command that reads a campaign, with every output file that it can write.
 const READERS: [&[&str]; 4] = [
@@ -263,6 +203,22 @@ fn bad_models_are_refused_by_line_and_column() {
             format!("{base}[[effect]]\nid = \"lower-threshold-shift\"\nshift_ma = 200\n"),
             "m.toml:5:1: unit ma is not known, this key is shift_a",
         ),
+        (
+            format!("{base}[linkage]\nlift_rod_m = 0.01\n"),
+            "m.toml:4:14: lift_rod_m: the lift rod of 0.01 m cannot join",
+        ),
+        (
+            format!("{base}[cylinder]\nstroke_mm = 1000\n"),
+            "m.toml:4:13: stroke_mm: a rocker arm of 0.11 m",
+        ),
+        (
+            format!("{base}[linkage]\nconnecting_rod_m = 0.01\n"),
+            "m.toml:4:20: connecting_rod_m: the connecting rod of 0.01 m does not reach",
+        ),
+        (
+            format!("{base}[[effect]]\nid = \"no-such-effect\"\n"),
+            "lift-flow-scale, lower-flow-scale, solenoid-hysteresis, ",
+        ),
         ("format = 1\n".to_owned(), "has no dynamics"),
         ("[[[".to_owned(), "m.toml:1:"),
     ];
@@ -399,63 +355,6 @@ fn bad_command_lines_are_refused() {
     for (arguments, expected) in cases {
         refused(dir.path(), arguments, expected);
     }
-}
-
-#[test]
-fn outputs_that_would_destroy_something_are_refused() {
-    let dir = folder();
-    let inputs = log();
-    let same = ["simulate", "--inputs", "log.csv", "--out", "./log.csv"];
-    refused(
-        dir.path(),
-        &same,
-        "is read by this command and would be overwritten",
-    );
-    assert_eq!(
-        fs::read_to_string(dir.path().join("log.csv")).unwrap(),
-        inputs
-    );
-    let manifest = ["explain", "c", "--out", "c/campaign.toml"];
-    refused(
-        dir.path(),
-        &manifest,
-        "c/campaign.toml: is read by this command",
-    );
-    let measured = ["compare", "c", "--report", "c/lift.csv"];
-    refused(dir.path(), &measured, "c/lift.csv: is read by this command");
-    write(&dir, "m.toml", "format = 1\nbase = \"nominal\"\n");
-    let model = ["calibrate", "m.toml", "--out", "m.toml"];
-    refused(dir.path(), &model, "m.toml: is read by this command");
-    let twice = ["explain", "c", "--out", "x", "--report", "x", "--json", "x"];
-    refused(dir.path(), &twice, "x: is named for two results");
-    let both = ["explain", "c", "--out", "-", "--json", "-"];
-    refused(dir.path(), &both, "-: is named for two results");
-}
-
-#[test]
-#[cfg(target_os = "linux")]
-fn outputs_that_cannot_be_written_are_noticed_before_the_work() {
-    let dir = folder();
-    let cases: [&[&str]; 5] = [
-        &["--report", "/proc/r.html"],
-        &["tune", "--out", "/proc/c.toml"],
-        &["explain", "c", "--json", "/proc/x.json"],
-        &["ecu", "--host", "--flash", "/proc/flash"],
-        &["ecu", "--host", "--flash", "nowhere/flash"],
-    ];
-    for arguments in cases {
-        refused(dir.path(), arguments, "cannot be written");
-    }
-    refused(
-        dir.path(),
-        &["ecu", "--host", "--flash", "-"],
-        "--flash -: it has to be read again",
-    );
-    refused(
-        dir.path(),
-        &["controller", "--out", "-"],
-        "--out -: the answers go there",
-    );
 }
 
 #[test]

@@ -39,6 +39,13 @@ impl SourceFile {
             ));
         }
         let bytes = fs::read(path).map_err(unreadable)?;
+        if is_utf16(&bytes) {
+            return Err(InputError::of_file(
+                path,
+                "is UTF-16 text",
+                "save it as UTF-8",
+            ));
+        }
         let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
         match std::str::from_utf8(bytes) {
             Ok(text) => Ok(Self {
@@ -102,6 +109,24 @@ fn unreadable(path: &Path, error: &std::io::Error) -> InputError {
     }
 }
 
+/// Whether it is UTF-16, as editors and spreadsheets on Windows write it: by its mark, or since every other byte of
+/// what is hardly anything but ASCII is zero.
+fn is_utf16(bytes: &[u8]) -> bool {
+    const LOOKED_AT: usize = 4096;
+    let begin = &bytes[..bytes.len().min(LOOKED_AT)];
+    let zeros = |first: usize| {
+        begin
+            .iter()
+            .skip(first)
+            .step_by(2)
+            .filter(|&&byte| byte == 0)
+    };
+    let (even, odd) = (zeros(0).count(), zeros(1).count());
+    let half = begin.len() / 2;
+    let marked = bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF");
+    marked || (half >= 4 && even.max(odd) * 10 >= half * 9 && even.min(odd) * 10 <= half)
+}
+
 fn not_utf8(path: &Path, valid: &[u8]) -> InputError {
     let text = String::from_utf8_lossy(valid);
     InputError::at(
@@ -133,5 +158,23 @@ mod tests {
             Place { line: 4, column: 1 }
         );
         assert_eq!(place(text, 1000).line, 4);
+    }
+
+    #[test]
+    fn utf_16_is_recognised_with_and_without_its_mark() {
+        let text = "format = 1\nname = \"Größe\"\n";
+        let little: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+        assert!(is_utf16(&little) && is_utf16(&big));
+        assert!(is_utf16(b"\xFF\xFEa\0") && is_utf16(b"\xFE\xFF\0a"));
+        for other in [
+            text.as_bytes(),
+            b"",
+            b"\0\0",
+            &[0; 100],
+            b"time_s\0\0\0\0\0\0",
+        ] {
+            assert!(!is_utf16(other), "{other:?}");
+        }
     }
 }

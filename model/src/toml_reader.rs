@@ -26,7 +26,7 @@ impl<'a> TomlTable<'a> {
         let entries = DeTable::parse(&source.text).map_err(|error| {
             let byte = error.span().map_or(0, |span| span.start);
             let what = format!("is not TOML: {}", error.message());
-            source.error_at(byte, what, "write it as key = value")
+            source.error_at(byte, what, mend_of(error.message()))
         })?;
         let name = "the top level".to_owned();
         Ok(Self {
@@ -131,7 +131,7 @@ impl<'a> TomlTable<'a> {
             return Err(self.error_at(
                 key,
                 what,
-                format!("write for example {key} = {}", range.start()),
+                format!("write for example {key} = {}", example(&range)),
             ));
         };
         if range.contains(&number) {
@@ -174,7 +174,7 @@ impl<'a> TomlTable<'a> {
             return Err(self.error_at(
                 key,
                 what,
-                format!("write for example {key} = [{}]", range.start()),
+                format!("write for example {key} = [{}]", example(&range)),
             ));
         };
         let number = |item: &Spanned<DeValue<'_>>| {
@@ -290,6 +290,30 @@ impl<'a> TomlTable<'a> {
     }
 }
 
+/// How to mend what the parser of TOML complains of.
+fn mend_of(message: &str) -> &'static str {
+    if message.contains("duplicate key") {
+        "delete one of the two, or give it another name"
+    } else if message.contains("recurs") {
+        "take brackets and dots out; nothing here nests deeper than lists in tables"
+    } else if message.contains("carriage return") {
+        "save it with line ends of Unix (LF) or Windows (CR LF)"
+    } else {
+        "write it as key = value"
+    }
+}
+
+/// A number of a range that somebody would write.
+fn example(range: &RangeInclusive<f64>) -> f64 {
+    /// Beyond this an end is no choice of anybody.
+    const LARGE: f64 = 1e5;
+    match *range.start() {
+        start if start.abs() <= LARGE => start,
+        _ if range.contains(&1.0) => 1.0,
+        start => start,
+    }
+}
+
 fn as_number(value: &DeValue<'_>) -> Option<f64> {
     let number: f64 = match value {
         DeValue::Float(float) => float.as_str().parse().ok()?,
@@ -350,6 +374,35 @@ mod tests {
             table.numbers("a", 0.0..=5.0).map(drop)
         });
         assert!(list.starts_with("m.toml:1:9:"), "{list}");
+    }
+
+    #[test]
+    fn mends_are_what_somebody_would_do() {
+        let mend = |text: &str| {
+            fault(text, |table| {
+                table.number("a", f64::MIN..=f64::MAX).map(drop)
+            })
+        };
+        for (text, expected) in [
+            ("a = \"1\"", "write for example a = 1"),
+            ("a = nan", "write for example a = 1"),
+            ("a = 1\na = 2", "delete one of the two"),
+            ("a = 1\rb = 2", "save it with line ends"),
+            ("a = = 1", "write it as key = value"),
+        ] {
+            let said = mend(text);
+            assert!(said.contains(expected) && said.len() < 200, "{said}");
+        }
+        for deep in [
+            format!("a = {}", "[".repeat(5_000)),
+            format!("[{}]", ["a"; 5_000].join(".")),
+        ] {
+            assert!(
+                mend(&deep).contains("take brackets and dots out"),
+                "{}",
+                mend(&deep)
+            );
+        }
     }
 
     #[test]

@@ -148,6 +148,11 @@ fn written(calibration: &Calibration, before: Option<&Calibration>) -> String {
     text
 }
 
+/// Whether a scalar may have a value: what is counted is whole; what is measured is rounded.
+fn is_exact(info: &ParameterInfo, value: f64) -> bool {
+    info.suffix != "count" || value.fract() == 0.0
+}
+
 /// Key of a scalar in a file: its name with the engineering unit.
 #[must_use]
 pub fn key(info: &ParameterInfo) -> String {
@@ -173,6 +178,14 @@ fn read_group<G: ParameterGroup>(group: &mut G, file: &TomlTable<'_>) -> Result<
         let counts = f64::from(info.counts_per_unit);
         let range = f64::from(info.min) / counts..=f64::from(info.max) / counts;
         if let Some(value) = section.number(key, range)? {
+            if !is_exact(info, value) {
+                let what = format!("{key} = {value} is no whole number");
+                return Err(section.error_at(
+                    key,
+                    what,
+                    format!("write for example {key} = {value:.0}"),
+                ));
+            }
             group.set(index, (value * counts).round() as i32);
         }
     }
@@ -200,6 +213,16 @@ fn read_valve(file: &TomlTable<'_>, valve: &str, table: &mut ValveTable) -> Resu
         let mend = format!("give as many flows as currents, 2 to {VALVE_POINTS} of them");
         return Err(section.error_at("flow_lpm", what, mend));
     }
+    if let Some(pair) = currents_a
+        .windows(2)
+        .find(|pair| pair[0] < pair[1] && milli(pair[0]) == milli(pair[1]))
+    {
+        let what = format!(
+            "currents {} and {} of [{valve}] are the same to 1 mA",
+            pair[0], pair[1]
+        );
+        return Err(section.error_at("current_a", what, "let them be 1 mA apart, or delete one"));
+    }
     *table = ValveTable {
         count: currents_a.len() as u32,
         points: [ValvePoint::default(); VALVE_POINTS],
@@ -211,10 +234,15 @@ fn read_valve(file: &TomlTable<'_>, valve: &str, table: &mut ValveTable) -> Resu
     {
         *point = ValvePoint {
             flow: MicroLitrePerSecond((flow_lpm * UL_S_PER_LPM).round() as i32),
-            current: MilliAmp((current_a * 1e3).round() as i32),
+            current: MilliAmp(milli(*current_a)),
         };
     }
     Ok(())
+}
+
+/// Thousandths, which tables are kept in.
+fn milli(value: f64) -> i32 {
+    (value * 1e3).round() as i32
 }
 
 fn write_valve(text: &mut String, valve: &str, what: &str, table: &ValveTable) {
@@ -234,7 +262,6 @@ fn read_linkage(file: &TomlTable<'_>, calibration: &mut Calibration) -> Result<(
         return Ok(());
     };
     section.only(&["first_angle_deg", "angle_step_deg", "travel_mm"])?;
-    let milli = |value: f64| (value * 1e3).round() as i32;
     let table = &mut calibration.linkage;
     table.first_angle = MilliDegree(milli(
         section.required_number("first_angle_deg", -360.0..=360.0)?,
@@ -357,6 +384,19 @@ mod tests {
         assert!(
             close.starts_with("c.toml:2:1: point 3 of [lift] is too close to the one before it"),
             "{close}"
+        );
+        let same =
+            fault("format = 1\n[lift]\ncurrent_a = [1.126, 1.1261, 3]\nflow_lpm = [0, 1, 40]\n");
+        assert!(
+            same.starts_with(
+                "c.toml:3:13: currents 1.126 and 1.1261 of [lift] are the same to 1 mA"
+            ),
+            "{same}"
+        );
+        let half = fault("format = 1\n[hold]\ncorrections_count = 5.5\n");
+        assert!(
+            half.starts_with("c.toml:3:21: corrections_count = 5.5 is no whole number"),
+            "{half}"
         );
         let crossed = fault("format = 1\n[position]\nlower_limit_deg = 140\n");
         assert!(

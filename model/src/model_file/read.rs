@@ -1,11 +1,13 @@
 //! Reads a model file.
 use super::constants::{CONSTANTS, CURRENT, CURVES, Constant, Curve, FLOW, TABLES, keys, unset};
 use super::{FORMAT, starting_point, terms};
+use std::collections::HashSet;
+
 use crate::effects::{AddedEffect, Effect, Parameter};
 use crate::input_error::{InputError, quote};
 use crate::model::{Constants, Dynamics, Model};
 use crate::naming::offer_names;
-use crate::plant::ValveCurve;
+use crate::plant::{LinkageError, ValveCurve};
 use crate::source_file::SourceFile;
 use crate::toml_reader::TomlTable;
 use crate::units::m3_s_from_lpm;
@@ -40,8 +42,7 @@ pub fn model(source: &SourceFile) -> Result<Model, InputError> {
     let name = top
         .text("name")?
         .map_or_else(|| file_stem(source), str::to_owned);
-    let model =
-        Model::new(name, constants).map_err(|error| linkage_fault(&top, &error.to_string()))?;
+    let model = Model::new(name, constants).map_err(|error| linkage_fault(&top, &error))?;
     let model = model.with_terms(terms::read(&top)?);
     let effects = added_effects(&top, &model.catalogue())?;
     Ok(model.with_effects(effects))
@@ -184,7 +185,10 @@ fn effect_of(
         .filter(|effect| effect.id() == id)
         .collect();
     if forms.is_empty() {
-        let known: Vec<&str> = catalogue.iter().map(|effect| effect.id()).collect();
+        let mut seen = HashSet::new();
+        let ids = catalogue.iter().map(|effect| effect.id());
+        let known: Vec<&str> = ids.filter(|id| seen.insert(*id)).collect();
+
         let what = format!("effect {} is not known", quote(id));
         return Err(table.error_at("id", what, offer_names(id, &known)));
     }
@@ -202,11 +206,17 @@ fn effect_of(
     })
 }
 
-fn linkage_fault(top: &TomlTable<'_>, fault: &str) -> InputError {
-    match top.table("linkage") {
-        Ok(Some(linkage)) => linkage.error(fault, ""),
-        _ => top.error(fault, ""),
+/// At the likeliest of the constants that it may be about of those that the file has.
+fn linkage_fault(top: &TomlTable<'_>, fault: &LinkageError) -> InputError {
+    let (what, mend) = (fault.to_string(), fault.mend());
+    for (table, key) in fault.keys() {
+        if let Ok(Some(table)) = top.table(table)
+            && table.has(key)
+        {
+            return table.error_at(key, format!("{key}: {what}"), mend);
+        }
     }
+    top.error(what, mend)
 }
 
 fn file_stem(source: &SourceFile) -> String {

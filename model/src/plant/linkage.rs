@@ -3,6 +3,7 @@
 //! Planar, origin in the rocker shaft C, x to the rear, y up (RIG.md; dimensions of the paper's Table 1).
 //! The rocker arm CB and the lift arm CD turn together; the lift rod DE carries the lower link FG at E.
 
+use super::linkage_error::LinkageError;
 use nalgebra::{Point2, Vector2};
 
 /// Dimensions of the linkage, m.
@@ -26,29 +27,6 @@ pub struct LinkageDimensions {
     pub pivot_y_m: f64,
     /// Height of the cylinder axis, y.
     pub cylinder_axis_y_m: f64,
-}
-
-/// Why dimensions make no linkage.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum LinkageError {
-    /// Some joint cannot be closed somewhere on the stroke.
-    #[error(
-        "the linkage cannot be assembled at a rocker angle of {rocker_angle_deg:.1} degrees: check its lengths"
-    )]
-    Open {
-        /// Rocker angle at which the chain does not close, degrees.
-        rocker_angle_deg: f64,
-    },
-    /// The rocker cannot sweep the cylinder's stroke.
-    #[error(
-        "the rocker arm of {rocker_arm_m} m cannot sweep a stroke of {stroke_m} m symmetrically about straight down"
-    )]
-    Stroke {
-        /// Rocker arm, m.
-        rocker_arm_m: f64,
-        /// Stroke, m.
-        stroke_m: f64,
-    },
 }
 
 /// One position of the linkage.
@@ -76,12 +54,21 @@ pub struct Linkage {
 const CELLS: usize = 1024;
 
 impl LinkageDimensions {
-    /// Travel coordinate of the piston pin A, m, and height of G, m, at a rocker angle.
-    fn pin_and_height_m(&self, angle_rad: f64) -> Option<(f64, f64)> {
+    /// Travel coordinate of the piston pin A, m, at a rocker angle.
+    fn pin_m(&self, angle_rad: f64) -> Result<f64, LinkageError> {
         let rocker = Point2::from(self.rocker_arm_m * direction(angle_rad - std::f64::consts::PI));
         let rise = rocker.y - self.cylinder_axis_y_m;
-        let pin_x = rocker.x - square_root(self.connecting_rod_m.powi(2) - rise * rise)?;
+        let along = square_root(self.connecting_rod_m.powi(2) - rise * rise);
+        let along = along.ok_or(LinkageError::ConnectingRod {
+            connecting_rod_m: self.connecting_rod_m,
+            rise_m: rise.abs(),
+            rocker_angle_deg: angle_rad.to_degrees(),
+        })?;
+        Ok(rocker.x - along)
+    }
 
+    /// Height of G, m, at a rocker angle.
+    fn height_m(&self, angle_rad: f64) -> Result<f64, LinkageError> {
         let arm_end =
             Point2::from(self.lift_arm_m * direction(angle_rad - std::f64::consts::FRAC_PI_2));
         let pivot = Point2::new(self.pivot_x_m, self.pivot_y_m);
@@ -89,18 +76,23 @@ impl LinkageDimensions {
         let reach = span.norm();
         let along = (reach * reach + self.lift_rod_joint_m.powi(2) - self.lift_rod_m.powi(2))
             / (2.0 * reach);
-        let across = square_root(self.lift_rod_joint_m.powi(2) - along * along)?;
+        let across = square_root(self.lift_rod_joint_m.powi(2) - along * along);
+        let across = across.ok_or(LinkageError::LiftRod {
+            lift_rod_m: self.lift_rod_m,
+            least_m: (reach - self.lift_rod_joint_m).abs(),
+            most_m: reach + self.lift_rod_joint_m,
+            rocker_angle_deg: angle_rad.to_degrees(),
+        })?;
         let unit = span / reach;
         // Of the two ways to close the triangle F-D-E the one with E below the lift arm.
         let joint = along * unit - across * Vector2::new(-unit.y, unit.x);
         let hitch = pivot + joint * (self.lower_link_m / self.lift_rod_joint_m);
-        Some((pin_x, hitch.y))
+        Ok(hitch.y)
     }
 
-    fn checked_pin_and_height_m(&self, angle_rad: f64) -> Result<(f64, f64), LinkageError> {
-        self.pin_and_height_m(angle_rad).ok_or(LinkageError::Open {
-            rocker_angle_deg: angle_rad.to_degrees(),
-        })
+    /// Travel coordinate of the piston pin A, m, and height of G, m, at a rocker angle.
+    fn pin_and_height_m(&self, angle_rad: f64) -> Result<(f64, f64), LinkageError> {
+        Ok((self.pin_m(angle_rad)?, self.height_m(angle_rad)?))
     }
 }
 
@@ -120,7 +112,7 @@ impl Linkage {
     pub fn new(dimensions: &LinkageDimensions, stroke_m: f64) -> Result<Self, LinkageError> {
         let half_swing_rad = half_swing_rad(dimensions, stroke_m)?;
         let down = std::f64::consts::FRAC_PI_2;
-        let (start_x, _) = dimensions.checked_pin_and_height_m(down - half_swing_rad)?;
+        let (start_x, _) = dimensions.pin_and_height_m(down - half_swing_rad)?;
         let step_m = stroke_m / CELLS as f64;
         let mut angle_rad = down - half_swing_rad;
         let mut nodes = Vec::with_capacity(CELLS + 1);
@@ -221,30 +213,43 @@ impl Linkage {
     }
 }
 
+/// What the pin travels from half a swing before straight down to half a swing behind, m.
+fn sweep_m(dimensions: &LinkageDimensions, half_rad: f64) -> Result<f64, LinkageError> {
+    let down = std::f64::consts::FRAC_PI_2;
+    Ok(dimensions.pin_m(down + half_rad)? - dimensions.pin_m(down - half_rad)?)
+}
+
 /// Half the swing that sweeps `stroke_m`: bisection, the travel grows with the swing.
 fn half_swing_rad(dimensions: &LinkageDimensions, stroke_m: f64) -> Result<f64, LinkageError> {
-    let unreachable = LinkageError::Stroke {
-        rocker_arm_m: dimensions.rocker_arm_m,
-        stroke_m,
-    };
-    let sweep_m = |half_rad: f64| {
-        let down = std::f64::consts::FRAC_PI_2;
-        let (low, _) = dimensions.pin_and_height_m(down - half_rad)?;
-        let (high, _) = dimensions.pin_and_height_m(down + half_rad)?;
-        Some(high - low)
-    };
     let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
-        match sweep_m(middle) {
-            Some(sweep) if sweep < stroke_m => low = middle,
+        match sweep_m(dimensions, middle) {
+            Ok(sweep) if sweep < stroke_m => low = middle,
             _ => high = middle,
         }
     }
     let half = 0.5 * (low + high);
-    match sweep_m(half) {
-        Some(sweep) if (sweep - stroke_m).abs() < 1e-9 => Ok(half),
-        _ => Err(unreachable),
+    match sweep_m(dimensions, half) {
+        Ok(sweep) if (sweep - stroke_m).abs() < 1e-9 => Ok(half),
+        _ => Err(too_long(dimensions, stroke_m)),
+    }
+}
+
+/// Why no swing sweeps `stroke_m`.
+fn too_long(dimensions: &LinkageDimensions, stroke_m: f64) -> LinkageError {
+    const TRIES: i32 = 900;
+    if let Err(open) = sweep_m(dimensions, 0.0) {
+        return open;
+    }
+    let most_rad = std::f64::consts::FRAC_PI_2;
+    let halves = (0..=TRIES).map(|i| most_rad * f64::from(i) / f64::from(TRIES));
+    let swept = halves.map_while(|half_rad| sweep_m(dimensions, half_rad).ok());
+    LinkageError::Stroke {
+        rocker_arm_m: dimensions.rocker_arm_m,
+        connecting_rod_m: dimensions.connecting_rod_m,
+        stroke_m,
+        most_m: swept.fold(0.0, f64::max),
     }
 }
 
@@ -257,9 +262,9 @@ fn angle_at_pin(
     const STEP_RAD: f64 = 1e-6;
     let mut angle_rad = near_rad;
     for _ in 0..20 {
-        let error_m = dimensions.checked_pin_and_height_m(angle_rad)?.0 - pin_x;
-        let ahead = dimensions.checked_pin_and_height_m(angle_rad + STEP_RAD)?.0;
-        let behind = dimensions.checked_pin_and_height_m(angle_rad - STEP_RAD)?.0;
+        let error_m = dimensions.pin_and_height_m(angle_rad)?.0 - pin_x;
+        let ahead = dimensions.pin_and_height_m(angle_rad + STEP_RAD)?.0;
+        let behind = dimensions.pin_and_height_m(angle_rad - STEP_RAD)?.0;
         let correction_rad = error_m * 2.0 * STEP_RAD / (ahead - behind);
         angle_rad -= correction_rad;
         if correction_rad.abs() < 1e-13 {
@@ -272,9 +277,9 @@ fn angle_at_pin(
 /// Derivatives over piston travel by central differences over the rocker angle.
 fn posture(dimensions: &LinkageDimensions, angle_rad: f64) -> Result<Posture, LinkageError> {
     const STEP_RAD: f64 = 2e-4;
-    let (x0, h0) = dimensions.checked_pin_and_height_m(angle_rad)?;
-    let (xa, ha) = dimensions.checked_pin_and_height_m(angle_rad + STEP_RAD)?;
-    let (xb, hb) = dimensions.checked_pin_and_height_m(angle_rad - STEP_RAD)?;
+    let (x0, h0) = dimensions.pin_and_height_m(angle_rad)?;
+    let (xa, ha) = dimensions.pin_and_height_m(angle_rad + STEP_RAD)?;
+    let (xb, hb) = dimensions.pin_and_height_m(angle_rad - STEP_RAD)?;
     let (x1, h1) = ((xa - xb) / (2.0 * STEP_RAD), (ha - hb) / (2.0 * STEP_RAD));
     let square = STEP_RAD * STEP_RAD;
     let (x2, h2) = ((xa - 2.0 * x0 + xb) / square, (ha - 2.0 * h0 + hb) / square);

@@ -5,7 +5,7 @@ use hitch_firmware::control::parameter::{ParameterGroup, ParameterInfo};
 use hitch_model::input_error::{InputError, quote};
 use hitch_model::naming::offer_names;
 
-use super::{key, objection};
+use super::{is_exact, key, objection};
 
 /// A scalar in engineering units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,13 +79,17 @@ pub fn set(calibration: &mut Calibration, setting: &str) -> Result<String, Strin
         if of == group && (info.name == name || key(info) == name) {
             let raw = (value * f64::from(info.counts_per_unit)).round();
             let in_range = (f64::from(info.min)..=f64::from(info.max)).contains(&raw);
-            if in_range {
+            if in_range && is_exact(info, value) {
                 *counts = raw as i32;
             }
             found = Some((*info, in_range));
         }
     });
     match found {
+        Some((info, true)) if !is_exact(&info, value) => Err(format!(
+            "{group}.{} = {value} is no whole number; write for example {value:.0}",
+            key(&info)
+        )),
         Some((info, true)) => Ok(format!("{group}.{}", info.name)),
         Some((info, false)) => {
             let Scalar { low, high, .. } = Scalar::of(&info, info.nominal);
@@ -185,6 +189,10 @@ mod tests {
             (
                 "position.approach_gain=1e9",
                 "position.approach_gain_per_s = 1000000000.0 is out of range; it may be 1 to 200",
+            ),
+            (
+                "hold.corrections=5.5",
+                "hold.corrections_count = 5.5 is no whole number",
             ),
             ("position.approach_gain=NaN", "is out of range"),
             ("position.approach_gain=1e300", "= 1e300 is out of range"),

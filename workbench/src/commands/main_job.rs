@@ -67,16 +67,19 @@ fn explained(found: &Found) -> String {
     let mut text = String::from("\nMissing:\n");
     for step in &shown.steps {
         let parameters: Vec<String> = step.parameters.iter().map(ToString::to_string).collect();
-        text += &format!("  {}: {}\n", step.effect, parameters.join(", "));
+        text += &format!("  {}: {}\n", step.name(), parameters.join(", "));
     }
     let head = &shown.head;
-    let held_out = shown
-        .steps
-        .last()
-        .map_or(f64::NAN, |step| step.held_out_after);
+    let held_out = shown.steps.last().map(|step| step.held_out_after);
+    let held_out = held_out
+        .filter(|error| !error.is_nan())
+        .map(|error| format!(" ({error:.2} on runs that were not used to fit)"));
     text += &format!(
-        "  the error falls from {:.2} to {:.2} sigma ({held_out:.2} on runs that were not used to fit): {}\n",
-        head.error_before, head.error_after, head.verdict
+        "  the error falls from {:.2} to {:.2} sigma{}: {}\n",
+        head.error_before,
+        head.error_after,
+        held_out.unwrap_or_default(),
+        head.verdict
     );
     text
 }

@@ -113,9 +113,9 @@ impl Candidate {
     }
 }
 
-/// An effect's id, with its form in brackets if it has one.
+/// An effect's id, with its form if it has one, as commands take it: see [`hitch_model::effects::full_name`].
 fn with_form(id: &str, form: Option<&str>) -> String {
-    form.map_or_else(|| id.to_owned(), |form| format!("{id} ({form})"))
+    form.map_or_else(|| id.to_owned(), |form| format!("{id}/{form}"))
 }
 
 /// An effect that explains the campaign as well in place of another.

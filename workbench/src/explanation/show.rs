@@ -5,7 +5,7 @@ use super::{
     Alternative, Diagnosis, Explanation, Head, Next, NotVisible, Parameter, Step, Suggested,
     Unexplained,
 };
-use crate::text::{Table, wrapped};
+use crate::text::{Table, known, wrapped};
 
 /// Width of running text, characters.
 const WIDTH: usize = 100;
@@ -135,7 +135,7 @@ impl fmt::Display for Diagnosis {
             writeln!(
                 f,
                 "On these data {} cannot be told from {others}.",
-                candidate.effect
+                candidate.name()
             )?;
         }
         writeln!(
@@ -184,6 +184,20 @@ pub fn late_ms(channel: &serde_json::Value) -> String {
 }
 
 impl Step {
+    /// What it does to runs that were not used to fit.
+    fn on_held_out(&self) -> String {
+        let (before, after) = (self.held_out_before, self.held_out_after);
+        if before.is_nan() && after.is_nan() {
+            return "no runs held out".to_owned();
+        }
+        format!(
+            "on held-out runs {} -> {}{}",
+            known(before, 2),
+            known(after, 2),
+            self.without_outliers()
+        )
+    }
+
     /// Why it was added although the error on held-out runs is no smaller: a few samples make all of that while the next
     /// effect is missing.
     fn without_outliers(&self) -> String {
@@ -204,12 +218,10 @@ impl fmt::Display for Step {
         writeln!(f, "{}: {}", self.name(), values.join(", "))?;
         writeln!(
             f,
-            "     error {:.2} -> {:.2}, on held-out runs {:.2} -> {:.2}{}; confidence {:.2}, detectability {:.2}",
+            "     error {:.2} -> {:.2}, {}; confidence {:.2}, detectability {:.2}",
             self.error_before,
             self.error_after,
-            self.held_out_before,
-            self.held_out_after,
-            self.without_outliers(),
+            self.on_held_out(),
             self.confidence,
             self.detectability
         )?;
@@ -232,13 +244,11 @@ impl fmt::Display for Parameter {
         } = self;
         let space = if unit.is_empty() { "" } else { " " };
         let number = |value: f64| significant(value, 4);
-        write!(
-            f,
-            "{name} {}{space}{unit} ({} to {})",
-            number(*value),
-            number(*low),
-            number(*high)
-        )
+        write!(f, "{name} {}{space}{unit}", number(*value))?;
+        if low.is_nan() || high.is_nan() {
+            return Ok(());
+        }
+        write!(f, " ({} to {})", number(*low), number(*high))
     }
 }
 
@@ -270,8 +280,9 @@ impl fmt::Display for Suggested {
         let parameters: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
         write!(
             f,
-            "\n  A term that would bring the error on held-out runs from {:.2} to {:.2}",
-            self.held_out_before, self.held_out_after
+            "\n  A term that would bring the error on held-out runs from {} to {}",
+            known(self.held_out_before, 2),
+            known(self.held_out_after, 2)
         )?;
         if !self.replaces.is_empty() {
             write!(f, ", in place of {}", self.replaces.join(", "))?;
@@ -312,15 +323,51 @@ mod tests {
         assert_eq!(significant(0.0, 3), "0");
     }
 
+    const PARAMETER: Parameter = Parameter {
+        name: "scale",
+        unit: "",
+        value: -0.05,
+        low: -0.06,
+        high: -0.04,
+    };
+
+    #[test]
+    fn what_is_not_known_is_left_out() {
+        let absent = Parameter {
+            low: f64::NAN,
+            high: f64::NAN,
+            ..PARAMETER
+        };
+        assert_eq!(absent.to_string(), "scale -0.05000");
+        let step = Step {
+            effect: "lowering-leakage",
+            form: Some("thinning"),
+            error_before: 3.0,
+            error_after: 1.0,
+            held_out_before: f64::NAN,
+            held_out_after: f64::NAN,
+            held_out_loss_before: f64::NAN,
+            held_out_loss_after: f64::NAN,
+            confidence: 1.0,
+            indistinguishable: Vec::new(),
+            alternatives: Vec::new(),
+            detectability: 2.0,
+            parameters: vec![PARAMETER],
+        };
+        let text = step.to_string();
+        assert!(
+            text.starts_with("lowering-leakage/thinning: scale"),
+            "{text}"
+        );
+        assert!(
+            text.contains("error 3.00 -> 1.00, no runs held out;"),
+            "{text}"
+        );
+    }
+
     #[test]
     fn a_parameter_without_a_unit_has_no_stray_space() {
-        let parameter = Parameter {
-            name: "scale",
-            unit: "",
-            value: -0.05,
-            low: -0.06,
-            high: -0.04,
-        };
+        let parameter = PARAMETER;
         assert_eq!(
             parameter.to_string(),
             "scale -0.05000 (-0.06000 to -0.04000)"

@@ -9,6 +9,7 @@ use super::runs::runs;
 use super::staircase::{self, staircase};
 use crate::comparison::{Comparison, Evaluated, Grouping};
 use crate::explanation::{Explanation, Found, Step, late_ms};
+use crate::text::known;
 
 /// Groupings that are shown before and after.
 const GROUPINGS: [Grouping; 4] = [
@@ -102,7 +103,11 @@ fn steps(steps: &[Step]) -> Markup {
             step.name(),
             parameters.join("; "),
             format!("{:.2} → {:.2}", step.error_before, step.error_after),
-            format!("{:.2} → {:.2}", step.held_out_before, step.held_out_after),
+            format!(
+                "{} → {}",
+                known(step.held_out_before, 2),
+                known(step.held_out_after, 2)
+            ),
             format!("{:.2}", step.confidence),
             format!("{:.2}", step.detectability),
             if twins.is_empty() {

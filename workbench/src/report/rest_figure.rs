@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use super::chart::{Chart, Line, Stroke};
 use crate::explanation::Suggested;
+use crate::text::known;
 
 /// Residuals of the worst channel along a signal: mean and scatter of every bin.
 pub fn picture(profile: &Profile) -> Markup {
@@ -48,8 +49,8 @@ pub fn suggestion(term: &Suggested) -> Markup {
         p { code { (term.place) " = " (term.formula) } ", " (parameters.join(", ")) }
         p {
             "It would bring the error on held-out runs from "
-            strong { (format!("{:.2}", term.held_out_before)) } " to "
-            strong { (format!("{:.2}", term.held_out_after)) } " sigma"
+            strong { (known(term.held_out_before, 2)) } " to "
+            strong { (known(term.held_out_after, 2)) } " sigma"
             @if !term.replaces.is_empty() { ", in place of " (term.replaces.join(", ")) }
             ". It is a formula that fits, not a cause that was identified. In a model file:"
         }

@@ -1,0 +1,61 @@
+//! Outputs that cannot be, or would destroy something: refused before the work.
+use std::fs;
+
+use host_tests::refusal::{folder, log, refused, write};
+
+#[test]
+fn outputs_that_would_destroy_something_are_refused() {
+    let dir = folder();
+    let inputs = log();
+    let same = ["simulate", "--inputs", "log.csv", "--out", "./log.csv"];
+    refused(
+        dir.path(),
+        &same,
+        "is read by this command and would be overwritten",
+    );
+    assert_eq!(
+        fs::read_to_string(dir.path().join("log.csv")).unwrap(),
+        inputs
+    );
+    let manifest = ["explain", "c", "--out", "c/campaign.toml"];
+    refused(
+        dir.path(),
+        &manifest,
+        "c/campaign.toml: is read by this command",
+    );
+    let measured = ["compare", "c", "--report", "c/lift.csv"];
+    refused(dir.path(), &measured, "c/lift.csv: is read by this command");
+    write(&dir, "m.toml", "format = 1\nbase = \"nominal\"\n");
+    let model = ["calibrate", "m.toml", "--out", "m.toml"];
+    refused(dir.path(), &model, "m.toml: is read by this command");
+    let twice = ["explain", "c", "--out", "x", "--report", "x", "--json", "x"];
+    refused(dir.path(), &twice, "x: is named for two results");
+    let both = ["explain", "c", "--out", "-", "--json", "-"];
+    refused(dir.path(), &both, "-: is named for two results");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn outputs_that_cannot_be_written_are_noticed_before_the_work() {
+    let dir = folder();
+    let cases: [&[&str]; 5] = [
+        &["--report", "/proc/r.html"],
+        &["tune", "--out", "/proc/c.toml"],
+        &["explain", "c", "--json", "/proc/x.json"],
+        &["ecu", "--host", "--flash", "/proc/flash"],
+        &["ecu", "--host", "--flash", "nowhere/flash"],
+    ];
+    for arguments in cases {
+        refused(dir.path(), arguments, "cannot be written");
+    }
+    refused(
+        dir.path(),
+        &["ecu", "--host", "--flash", "-"],
+        "--flash -: it has to be read again",
+    );
+    refused(
+        dir.path(),
+        &["controller", "--out", "-"],
+        "--out -: the answers go there",
+    );
+}

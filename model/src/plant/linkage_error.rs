@@ -1,0 +1,99 @@
+//! What dimensions lack that make no linkage, and which of them would mend it.
+
+/// Why dimensions make no linkage.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum LinkageError {
+    /// The rocker cannot sweep the cylinder's stroke.
+    #[error(
+        "a rocker arm of {rocker_arm_m} m with a connecting rod of {connecting_rod_m} m sweeps {most_m:.3} m at most, \
+         less than the stroke of {stroke_m} m"
+    )]
+    Stroke {
+        /// Rocker arm, m.
+        rocker_arm_m: f64,
+        /// Connecting rod, m.
+        connecting_rod_m: f64,
+        /// Stroke, m.
+        stroke_m: f64,
+        /// What it sweeps at most, symmetrically about straight down, m.
+        most_m: f64,
+    },
+    /// The connecting rod does not reach from the rocker to the cylinder's axis.
+    #[error(
+        "the connecting rod of {connecting_rod_m} m does not reach the cylinder's axis, {rise_m:.3} m from the rocker's \
+         end at an angle of {rocker_angle_deg:.1} degrees"
+    )]
+    ConnectingRod {
+        /// Connecting rod, m.
+        connecting_rod_m: f64,
+        /// What it has to span across at least, m.
+        rise_m: f64,
+        /// Rocker angle at which it doesn't, degrees.
+        rocker_angle_deg: f64,
+    },
+    /// The lift rod does not join the lift arm to the lower link.
+    #[error(
+        "the lift rod of {lift_rod_m} m cannot join the lift arm's end to the lower link's joint at a rocker angle of \
+         {rocker_angle_deg:.1} degrees"
+    )]
+    LiftRod {
+        /// Lift rod, m.
+        lift_rod_m: f64,
+        /// What would do at this angle, m: from so much,
+        least_m: f64,
+        /// to so much.
+        most_m: f64,
+        /// Rocker angle at which it can't, degrees.
+        rocker_angle_deg: f64,
+    },
+}
+
+/// A constant of a model file: its table and its key.
+pub type Key = (&'static str, &'static str);
+
+impl LinkageError {
+    /// The constants that it may be about, the likeliest first.
+    #[must_use]
+    pub const fn keys(&self) -> &'static [Key] {
+        match self {
+            Self::Stroke { .. } => &[
+                ("cylinder", "stroke_mm"),
+                ("linkage", "rocker_arm_m"),
+                ("linkage", "connecting_rod_m"),
+                ("linkage", "cylinder_axis_y_m"),
+            ],
+            Self::ConnectingRod { .. } => &[
+                ("linkage", "connecting_rod_m"),
+                ("linkage", "cylinder_axis_y_m"),
+                ("linkage", "rocker_arm_m"),
+            ],
+            Self::LiftRod { .. } => &[
+                ("linkage", "lift_rod_m"),
+                ("linkage", "lift_rod_joint_m"),
+                ("linkage", "lift_arm_m"),
+                ("linkage", "pivot_x_m"),
+                ("linkage", "pivot_y_m"),
+            ],
+        }
+    }
+
+    /// How to mend it.
+    #[must_use]
+    pub fn mend(&self) -> String {
+        match self {
+            Self::Stroke { most_m, .. } => format!(
+                "let stroke_mm of [cylinder] be less than {:.0}, or rocker_arm_m of [linkage] longer",
+                (1e3 * most_m).floor()
+            ),
+            Self::ConnectingRod { rise_m, .. } => format!(
+                "let connecting_rod_m of [linkage] be more than {rise_m:.3}, or cylinder_axis_y_m nearer to the rocker"
+            ),
+            Self::LiftRod {
+                least_m, most_m, ..
+            } => format!(
+                "let lift_rod_m of [linkage] be between {least_m:.3} and {most_m:.3}, or check its joints: \
+                 lift_rod_joint_m, lift_arm_m, pivot_x_m, pivot_y_m"
+            ),
+        }
+    }
+}
