@@ -126,12 +126,14 @@ impl ErrorSums {
 }
 
 impl Fit {
-    /// Its cost under the yardsticks of another fit, by which the two compare. A spool that sticks does not follow the
-    /// noise of the currents: under its own yardsticks what it leaves weighs four times as much.
+    /// Its cost under the yardsticks of another fit, or its own if that is less, for those compare as well. A spool that
+    /// sticks does not follow the noise of the currents: under its own yardsticks what it leaves weighs four times as
+    /// much. A threshold that is off makes a hitch miss a stop, where under the other's nothing was compared.
     #[must_use]
     pub fn cost_beside(&self, experiment: &Experiment, model: &Model, other: &Self) -> f64 {
         let (estimate, weights) = (self.estimate.clone(), other.weights.clone());
-        evaluate_weighted(experiment, model, estimate, weights).cost
+        let beside = evaluate_weighted(experiment, model, estimate, weights).cost;
+        beside.min(self.cost)
     }
 
     /// Error of one channel by its index: root mean square of its whitened residuals; NaN without samples.

@@ -84,7 +84,9 @@ pub fn held_out_beside(
     fit: &Fit,
     other: &Fit,
 ) -> Option<HeldOut> {
-    let stricter = other.cost_beside(experiment, model, fit) > STRICTER * other.cost;
+    let (estimate, weights) = (other.estimate.clone(), fit.weights.clone());
+    let under_its = evaluate_weighted(experiment, model, estimate, weights).cost;
+    let stricter = under_its > STRICTER * other.cost;
     stricter.then(|| {
         let weights = other.weights.clone();
         held_out(
