@@ -231,28 +231,17 @@ pub fn sketch(
 /// Fits from a start that is already near.
 #[must_use]
 pub fn refine(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
+    let found = |weights: &Weights, start: Estimate| {
+        let start = synchronised(experiment, model, weights, start);
+        let moves = Moves::All;
+        descend(experiment, model, weights, start, moves, FINE_ITERATIONS).estimate
+    };
     let weights = Weights::new(experiment, model, &start);
-    let start = synchronised(experiment, model, &weights, start);
-    let found = descend(
-        experiment,
-        model,
-        &weights,
-        start,
-        Moves::All,
-        FINE_ITERATIONS,
-    );
+    let near = found(&weights, start);
     // The weights belong to the values: once more with those of the values found.
-    let weights = Weights::new(experiment, model, &found.estimate);
-    let start = synchronised(experiment, model, &weights, found.estimate);
-    let found = descend(
-        experiment,
-        model,
-        &weights,
-        start,
-        Moves::All,
-        FINE_ITERATIONS,
-    );
-    evaluate_weighted(experiment, model, found.estimate, weights)
+    let weights = Weights::new(experiment, model, &near);
+    let there = found(&weights, near);
+    evaluate_weighted(experiment, model, there, weights)
 }
 
 /// One round under given weights from a start that is all but there already. The sizes of what jumps stay: a slope that
