@@ -13,22 +13,31 @@ use crate::model::Model;
 pub struct Beside {
     /// The effect, weighed against the model that has all others.
     pub candidate: Candidate,
-    /// Error of that model, in sigma.
-    pub error_without: f64,
+    /// That model, fitted.
+    pub without: Fit,
 }
 
 /// Weighs each effect of a fitted model from the `first` one on beside all others.
 #[must_use]
 pub fn beside(experiment: &Experiment, model: &Model, fit: &Fit, first: usize) -> Vec<Beside> {
-    let effects = fit.estimate.effects.iter().enumerate().skip(first);
+    let effects = first..fit.estimate.effects.len();
     effects
-        .map(|(index, added)| {
-            let without = refine(experiment, model, fit.estimate.without(index));
-            let whole = with_last(experiment, model, fit, index);
-            Beside {
-                error_without: without.error(),
-                candidate: weigh(experiment, model, &without, added.effect, whole),
-            }
-        })
+        .map(|index| beside_others(experiment, model, fit, index))
         .collect()
+}
+
+/// Weighs one effect of a fitted model beside all others.
+pub(super) fn beside_others(
+    experiment: &Experiment,
+    model: &Model,
+    fit: &Fit,
+    index: usize,
+) -> Beside {
+    let without = refine(experiment, model, fit.estimate.without(index));
+    let whole = with_last(experiment, model, fit, index);
+    let effect = fit.estimate.effects[index].effect;
+    Beside {
+        candidate: weigh(experiment, model, &without, effect, whole),
+        without,
+    }
 }

@@ -9,6 +9,7 @@
 use super::adequacy::{Cell, adequate, cells, cells_since};
 use super::attribution::{Attribution, attribute};
 use super::belief::{Proof, believed};
+use super::beside::beside_others;
 use super::candidate::{Candidate, weigh};
 use super::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
 use super::estimate::Estimate;
@@ -312,12 +313,10 @@ fn drop_needless(
     steps: &mut Vec<Step>,
 ) -> Option<Fit> {
     for index in 0..steps.len().saturating_sub(1) {
-        let without = refine(experiment, model, present.estimate.without(given + index));
-        let whole = with_last(experiment, model, present, given + index);
-        let weighed = weigh(experiment, model, &without, steps[index].effect, whole);
-        if weighed.likelihood_ratio < believed(steps[index].effect) {
+        let weighed = beside_others(experiment, model, present, given + index);
+        if weighed.candidate.likelihood_ratio < believed(steps[index].effect) {
             steps.remove(index);
-            return Some(without);
+            return Some(weighed.without);
         }
     }
     None

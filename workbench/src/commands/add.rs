@@ -124,7 +124,7 @@ fn shown(effect: &Beside) -> String {
         "  + {}: {}; error {:.2} sigma without it",
         full_name(candidate.effect),
         parameters.join(", "),
-        effect.error_without
+        effect.without.error()
     );
     if candidate.likelihood_ratio < BELIEVED {
         return line + " (the campaign does not ask for it)";
