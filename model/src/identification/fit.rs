@@ -183,16 +183,20 @@ pub fn evaluate_weighted(
 /// Fits everything that is free, from `start`, coarse to fine.
 #[must_use]
 pub fn fit(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
-    let coarse = Weights::new(experiment, model, &start).scaled(COARSE);
-    let found = descend(
-        experiment,
-        model,
-        &coarse,
-        start,
-        Moves::All,
-        COARSE_ITERATIONS,
-    );
-    refine(experiment, model, found.estimate)
+    let weights = Weights::new(experiment, model, &start);
+    let start = coarsely(experiment, model, &weights, start);
+    refine(experiment, model, start)
+}
+
+/// Where a start leads under weights that look at flow and angle first.
+fn coarsely(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    start: Estimate,
+) -> Estimate {
+    let (coarse, moves) = (weights.clone().scaled(COARSE), Moves::All);
+    descend(experiment, model, &coarse, start, moves, COARSE_ITERATIONS).estimate
 }
 
 /// Fits roughly, under given weights, to see whether an effect deserves a full fit. From `far` away it starts coarse.
@@ -205,16 +209,7 @@ pub fn sketch(
     far: bool,
 ) -> Descent {
     let start = if far {
-        let coarse = weights.clone().scaled(COARSE);
-        descend(
-            experiment,
-            model,
-            &coarse,
-            start,
-            Moves::All,
-            COARSE_ITERATIONS,
-        )
-        .estimate
+        coarsely(experiment, model, weights, start)
     } else {
         start
     };

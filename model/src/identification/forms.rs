@@ -65,7 +65,7 @@ fn all_plain(experiment: &Experiment, model: &Model, fit: &Fit, first: usize) ->
         .then(|| refine(experiment, model, start))
         .filter(|plain| {
             let odds = odds(experiment, model, fit);
-            odds.of_last(plain, count) > odds.of_last(fit, count) + LIKELIER
+            odds.of_last(plain, count, plain.cost) > odds.of_last(fit, count, fit.cost) + LIKELIER
         })
 }
 
@@ -91,10 +91,10 @@ pub(super) fn likelier_form(
                 *last = last.in_form(form);
             }
             let fit = refine(experiment, model, start);
-            (odds.of_last(&fit, 1), fit)
+            (odds.of_last(&fit, 1, fit.cost), fit)
         })
         .max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let likelier = best.0 > odds.of_last(&whole, 1) + LIKELIER;
+    let likelier = best.0 > odds.of_last(&whole, 1, whole.cost) + LIKELIER;
     likelier.then(|| in_place(experiment, model, &best.1, index))
 }
 

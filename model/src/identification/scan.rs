@@ -175,9 +175,9 @@ pub(super) fn scan(
         telling,
     };
     let all: Vec<usize> = (0..experiment.runs.len()).collect();
-    let visible = all.iter();
-    let visible: f64 = visible
-        .map(|&run| scan.unlikely(run, grid.leaves * failed[run]))
+    let without = failed.iter().enumerate();
+    let visible: f64 = without
+        .map(|(run, failed)| scan.unlikely(run, grid.leaves * failed))
         .sum();
     let ringing = experiment.ringing;
     let looked_at = if ringing { grid.best } else { LOOKED_AT };

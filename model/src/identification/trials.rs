@@ -176,7 +176,7 @@ impl<'a> Trials<'a> {
         };
         let odds = Odds::new(self.base, self.weighed(best));
         for trial in &mut self.ranked {
-            trial.log_odds = odds.of(last(&trial.fit), trial.cost);
+            trial.log_odds = odds.of_last(&trial.fit, 1, trial.cost);
         }
         self.ranked
             .sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
@@ -262,12 +262,6 @@ impl<'a> Trials<'a> {
     }
 }
 
-/// The last effect of a fit.
-fn last(fit: &Fit) -> &[AddedEffect] {
-    let effects = &fit.estimate.effects;
-    &effects[effects.len().saturating_sub(1)..]
-}
-
 impl Trial {
     fn new(
         experiment: &Experiment,
@@ -328,16 +322,12 @@ impl Odds {
         }
     }
 
-    /// Logarithm of the odds that some effects, which leave so much of the cost, are there.
-    pub(super) fn of(&self, effects: &[AddedEffect], cost: f64) -> f64 {
+    /// Logarithm of the odds that the last effects of a fit, which leaves so much of the cost, are there together.
+    pub(super) fn of_last(&self, fit: &Fit, count: usize, cost: f64) -> f64 {
         let ratio = (self.base_cost - cost) / self.unit;
-        let parameters = effects.iter().map(|added| added.values.len()).sum();
-        log_odds(ratio, parameters, self.effective_samples) - rarity(effects)
-    }
-
-    /// Logarithm of the odds of the last effects of a fit together.
-    pub(super) fn of_last(&self, fit: &Fit, count: usize) -> f64 {
         let effects = &fit.estimate.effects;
-        self.of(&effects[effects.len().saturating_sub(count)..], fit.cost)
+        let counted = &effects[effects.len().saturating_sub(count)..];
+        let parameters = counted.iter().map(|added| added.values.len()).sum();
+        log_odds(ratio, parameters, self.effective_samples) - rarity(counted)
     }
 }
