@@ -12,7 +12,7 @@ use host_tests::replay;
 use host_tests::trace::{self, Trace};
 
 /// Instructions that a step may take on the ECU: at 168 MHz and some two clocks an instruction, 4 % of a millisecond.
-const MOST_INSTRUCTIONS: u64 = 3_000;
+const MOST_INSTRUCTIONS: u64 = 12_000;
 const RANDOM_SEED: u64 = 20_040_917;
 const RANDOM_STEPS: usize = 100_000;
 

@@ -18,7 +18,7 @@ const SEED: u64 = 20_260_101;
 const MINUTES: u64 = 60;
 /// Instructions from the converters' codes to the drivers' pulses, whatever happens: 4 % of a millisecond at 168 MHz
 /// and two clocks an instruction.
-const MOST_INSTRUCTIONS: u64 = 3_000;
+const MOST_INSTRUCTIONS: u64 = 12_000;
 /// Instructions of a whole millisecond in which nothing is stored: what fits at 168 MHz and two clocks an instruction.
 const MOST_OF_MILLISECOND: u64 = 84_000;
 /// RAM of the ECU that the application may take, its stack included.
