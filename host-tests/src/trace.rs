@@ -116,7 +116,7 @@ fn plausible(random: &mut fastrand::Rng) -> [u8; INPUT_BYTES] {
     // Currents are measured by the board, which isn't here; switches and dials come and go.
     let fitted = 0b1_0000_0111_1101 | (random.i32(0..8) << 7);
     let switches = if random.u8(0..8) == 0 {
-        random.i32(0..8) << 16
+        random.i32(0..8) << 24
     } else {
         0
     };
@@ -136,6 +136,9 @@ fn plausible(random: &mut fastrand::Rng) -> [u8; INPUT_BYTES] {
         random.i32(0..3_500),
         random.i32(0..3_500),
         1_000,
+        random.i32(44_000..136_000),
+        random.i32(4_900..5_100),
+        random.i32(980..1_020),
     ];
     let mut record = [0; INPUT_BYTES];
     for (target, word) in record.as_chunks_mut::<4>().0.iter_mut().zip(words) {

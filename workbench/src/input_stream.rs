@@ -174,8 +174,11 @@ fn inputs_of(values: &[Option<f64>; KNOWN.len()]) -> Inputs {
         engine_speed: scaled(10, 1.0).map(RevolutionPerMinute),
         lift_current: milli(11).map(MilliAmp),
         lower_current: milli(12).map(MilliAmp),
-        // The lines are the clock.
+        // The lines are the clock, and values don't come from converters.
         step_time: None,
+        second_angle: None,
+        sensor_supply: None,
+        reference: None,
         switches: Switches {
             transport_lock: on(13),
             hold: on(14),

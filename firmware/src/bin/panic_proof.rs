@@ -15,8 +15,9 @@ use cortex_m_rt::entry;
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash};
 use hitch_firmware::can::{ExtendedId, Frame};
 use hitch_firmware::control::signals::INPUT_BYTES;
+use hitch_firmware::control::units::{MilliAmp, MilliVolt, PerMille};
 use hitch_firmware::control::{Calibration, Controller, Inputs};
-use hitch_firmware::ecu::{AdcCode, Contacts, Drive, Ecu, Hardware, Panel, Samples};
+use hitch_firmware::ecu::{AdcCode, BoardScaling, Contacts, Drive, Ecu, Hardware, Panel, Samples};
 
 unsafe extern "C" {
     safe fn the_controller_can_panic() -> !;
@@ -43,13 +44,25 @@ fn main() -> ! {
 
 /// Whatever is on the wires, on the bus and in flash.
 fn application() {
-    let mut ecu = Ecu::start(AnyFlash, black_box(0));
+    let scaling = black_box(BoardScaling {
+        pwm_steps: 0,
+        current: MilliAmp(0),
+        supply: MilliVolt(0),
+        signal: MilliVolt(0),
+        sensor_supply: MilliVolt(0),
+        reference: AdcCode::new(0),
+        wire_min: PerMille(0),
+        wire_max: PerMille(0),
+    });
+    let mut ecu = Ecu::start(AnyFlash, black_box(0), scaling);
     while black_box(true) {
         let codes = black_box([0; Samples::CHANNELS]);
         let contacts = Contacts {
             samples: Samples::from_codes(codes.map(AdcCode::new)),
             panel: Panel::from_bits(black_box(0)),
             clock_us: black_box(0),
+            enable_feedback: black_box(None),
+            clock_ratio: black_box(None),
         };
         black_box(ecu.tick(&contacts, &mut AnyHardware).is_some());
     }

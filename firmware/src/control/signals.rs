@@ -22,7 +22,7 @@ pub struct Switches {
 
 impl Switches {
     /// The bit of the first one in the word of validity bits.
-    const FIRST_BIT: u32 = 16;
+    const FIRST_BIT: u32 = 24;
 
     fn to_bits(self) -> u32 {
         [self.transport_lock, self.hold, self.quick_lift, self.teach]
@@ -72,6 +72,12 @@ pub struct Inputs {
     pub lower_current: Option<MilliAmp>,
     /// Time since the last step began, by a clock that isn't the scheduler's.
     pub step_time: Option<Microsecond>,
+    /// Rocker-arm angle by the sensor's second track.
+    pub second_angle: Option<MilliDegree>,
+    /// Supply of the sensors.
+    pub sensor_supply: Option<MilliVolt>,
+    /// Reference of the converters, per mille of its nominal value.
+    pub reference: Option<PerMille>,
     /// What the operator has switched on.
     pub switches: Switches,
 }
@@ -176,12 +182,12 @@ pub struct Outputs {
 /// Size of the image of [`Inputs`].
 pub const INPUT_BYTES: usize = 4 + 4 * INPUT_FIELDS;
 /// Numbers in it, behind the word that says which of them are there.
-const INPUT_FIELDS: usize = 13;
+const INPUT_FIELDS: usize = 16;
 /// Size of the image of [`Outputs`].
 pub const OUTPUT_BYTES: usize = 44;
 
 impl Inputs {
-    /// The first word of the image: a bit for each field that is there, and the switches from bit 16 on.
+    /// The first word of the image: a bit for each field that is there, and the switches from bit 24 on.
     #[must_use]
     pub fn valid_and_switches(&self) -> u32 {
         let fields = self.fields();
@@ -208,10 +214,13 @@ impl Inputs {
             self.lift_current.map(|value| value.0),
             self.lower_current.map(|value| value.0),
             self.step_time.map(|value| value.0),
+            self.second_angle.map(|value| value.0),
+            self.sensor_supply.map(|value| value.0),
+            self.reference.map(|value| value.0),
         ]
     }
 
-    /// A word of validity bits (bit 0: lever, and on in the order of the fields) and switches (bit 16:
+    /// A word of validity bits (bit 0: lever, and on in the order of the fields) and switches (bit 24:
     /// transport lock, and on), then the values.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; INPUT_BYTES] {
@@ -252,6 +261,9 @@ impl Inputs {
             lift_current: field().map(MilliAmp),
             lower_current: field().map(MilliAmp),
             step_time: field().map(Microsecond),
+            second_angle: field().map(MilliDegree),
+            sensor_supply: field().map(MilliVolt),
+            reference: field().map(PerMille),
             switches: Switches::from_bits(first),
         }
     }
@@ -329,8 +341,8 @@ mod tests {
         };
         let bytes = inputs.to_bytes();
         assert_eq!(
-            bytes[..3],
-            [0b1_0101, 0b1_0000, 0b10],
+            bytes[..4],
+            [0b1_0101, 0b1_0000, 0, 0b10],
             "lever, angle, pump pressure and step time are valid; hold is on"
         );
         assert_eq!(Inputs::from_bytes(&bytes), inputs);

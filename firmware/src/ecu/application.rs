@@ -4,11 +4,13 @@ use embedded_storage::nor_flash::NorFlash;
 use heapless::Deque;
 
 use super::arbiter::Arbiter;
+use super::converter::Conversion;
 use super::drive::Drive;
 use super::flow::{FlowMonitor, Kick, Task};
 use super::hardware::{Contacts, Hardware};
 use super::pace::Pace;
 use super::panel::Contact;
+use super::scaling::BoardScaling;
 use super::service::{self, Service, Storing};
 use super::status::status;
 use crate::can::Frame;
@@ -36,6 +38,8 @@ const NO_ADDRESS: u8 = 254;
 #[derive(Debug)]
 pub struct Ecu<F> {
     controller: Controller,
+    conversion: Conversion,
+    pwm_steps: u16,
     arbiter: Arbiter,
     service: Service<F>,
     node: Node,
@@ -53,10 +57,10 @@ pub struct Ecu<F> {
 
 impl<F: NorFlash> Ecu<F> {
     /// The ECU as it is after power-up, with the calibration that `flash` holds. `serial_number` tells its node from
-    /// others on the bus.
+    /// others on the bus; `scaling` is the board's.
     #[must_use]
     #[inline(never)]
-    pub fn start(flash: F, serial_number: u32) -> Self {
+    pub fn start(flash: F, serial_number: u32, scaling: BoardScaling) -> Self {
         let mut store = CalibrationStore::new(flash);
         let (calibration, troubles) = service::load(&mut store);
         let settings = Settings {
@@ -68,6 +72,8 @@ impl<F: NorFlash> Ecu<F> {
         Self {
             service: Service::new(store, &calibration, troubles),
             controller: Controller::new(calibration),
+            conversion: Conversion::new(scaling),
+            pwm_steps: scaling.pwm_steps,
             arbiter: Arbiter::default(),
             node: Node::new(settings),
             measured: MeasuredBroadcast::default(),
@@ -90,7 +96,7 @@ impl<F: NorFlash> Ecu<F> {
         self.flow.passed(Task::Sample);
         self.outputs = self.controller.step(&self.inputs);
         self.flow.passed(Task::Control);
-        hardware.drive(Drive::from(&self.outputs));
+        hardware.drive(Drive::new(&self.outputs, self.pwm_steps));
         self.flow.passed(Task::Drive);
         self.serve_bus(contacts, hardware);
         self.flow.passed(Task::Bus);
@@ -117,7 +123,9 @@ impl<F: NorFlash> Ecu<F> {
     }
 
     fn sample(&mut self, contacts: &Contacts) {
-        let mut inputs = contacts.panel.added_to(contacts.samples.inputs());
+        let mut inputs = contacts
+            .panel
+            .added_to(self.conversion.inputs(&contacts.samples));
         inputs.step_time = self.pace.begin(contacts.clock_us);
         // Many a part stands still while its flash is erased: nothing may move then.
         inputs.switches.transport_lock |= self.service.is_storing();

@@ -1,9 +1,12 @@
 //! From converter codes to quantities.
 //!
-//! Twelve bits over a reference of 3.3 V, behind dividers that bring 5 V to full scale. The sensors are ratiometric and
-//! give 0.5 to 4.5 V, so that a broken wire and a short are outside. Nothing here can be taught: what a machine's
-//! sensor is off by is in the calibration's linkage.
+//! The sensors are ratiometric: they give 10 to 90 % of the sensor supply, so that a broken wire and a short are outside.
+//! Their signals are divided by the measured sensor supply, so neither a drift of that supply nor of the converters'
+//! reference moves them. Currents and voltages are absolute. They are corrected by the internal band gap, whose code
+//! falls when the reference rises. Nothing here can be taught: the error of a machine's sensor is in the
+//! calibration's linkage.
 
+use super::scaling::BoardScaling;
 use crate::control::Inputs;
 use crate::control::units::{MilliAmp, MilliBar, MilliDegree, MilliVolt, PerMille};
 
@@ -32,26 +35,9 @@ impl AdcCode {
     }
 }
 
-/// A ratiometric signal outside 0.25 to 4.75 V: a broken wire or a short, and no sample.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct WireFault;
-
-/// A ratiometric signal in its healthy range: 0 at 0.5 V, 32 768 at 4.5 V.
+/// A ratiometric signal in its healthy range: 0 at 10 % of the sensor supply, 32 768 at 90 %.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Ratio(i32);
-
-impl TryFrom<AdcCode> for Ratio {
-    type Error = WireFault;
-
-    fn try_from(code: AdcCode) -> Result<Self, WireFault> {
-        /// Code at 0.25 and at 4.75 V of 5 V.
-        const HEALTHY: core::ops::RangeInclusive<i32> = 205..=3_890;
-        match HEALTHY.contains(&code.wide()) {
-            true => Ok(Self(code.wide() * 10 - 4_096)),
-            false => Err(WireFault),
-        }
-    }
-}
 
 impl Ratio {
     const ONE: i32 = 32_768;
@@ -60,47 +46,25 @@ impl Ratio {
     const fn between(self, low: i32, high: i32) -> i32 {
         low + ((high - low) * self.0 + Self::ONE / 2) / Self::ONE
     }
-}
 
-/// Angle of rocker or lever: 35 to 145 degrees.
-impl TryFrom<AdcCode> for MilliDegree {
-    type Error = WireFault;
-
-    fn try_from(code: AdcCode) -> Result<Self, WireFault> {
-        // In steps of 5 millidegrees, so that the product fits.
-        Ratio::try_from(code).map(|ratio| Self(ratio.between(7_000, 29_000) * 5))
+    /// Angle of rocker or lever: 35 to 145 degrees, in steps of 5 millidegrees so that the product fits.
+    const fn angle(self) -> MilliDegree {
+        MilliDegree(self.between(7_000, 29_000) * 5)
     }
-}
 
-/// Pressure: 0 to 250 bar.
-impl TryFrom<AdcCode> for MilliBar {
-    type Error = WireFault;
-
-    fn try_from(code: AdcCode) -> Result<Self, WireFault> {
-        Ratio::try_from(code).map(|ratio| Self(ratio.between(0, 50_000) * 5))
+    /// Angle of a track that falls while the angle rises.
+    const fn inverted_angle(self) -> MilliDegree {
+        MilliDegree(self.between(29_000, 7_000) * 5)
     }
-}
 
-/// Dial: shut at 0.5 V, open at 4.5 V.
-impl TryFrom<AdcCode> for PerMille {
-    type Error = WireFault;
-
-    fn try_from(code: AdcCode) -> Result<Self, WireFault> {
-        Ratio::try_from(code).map(|ratio| Self(ratio.between(0, 1_000).clamp(0, 1_000)))
+    /// Pressure: 0 to 250 bar.
+    const fn pressure(self) -> MilliBar {
+        MilliBar(self.between(0, 50_000) * 5)
     }
-}
 
-/// Coil current: a shunt and its amplifier bring 5 A to full scale. Twelve bits of it are never wrong by themselves.
-impl From<AdcCode> for MilliAmp {
-    fn from(code: AdcCode) -> Self {
-        Self((code.wide() * 5_000 + 2_048) / 4_096)
-    }
-}
-
-/// Supply: a divider of 7.448 brings 24.576 V to full scale, 6 mV a code.
-impl From<AdcCode> for MilliVolt {
-    fn from(code: AdcCode) -> Self {
-        Self(code.wide() * 6)
+    /// Dial: shut at 10 %, open at 90 %.
+    fn dial(self) -> PerMille {
+        PerMille(self.between(0, 1_000).clamp(0, 1_000))
     }
 }
 
@@ -125,11 +89,17 @@ pub struct Samples {
     pub cylinder_pressure: AdcCode,
     /// Pump pressure.
     pub pump_pressure: AdcCode,
+    /// Second track of the rocker-arm angle, inverted.
+    pub second_angle: AdcCode,
+    /// Supply of the sensors.
+    pub sensor_supply: AdcCode,
+    /// Internal band gap: its code falls when the converters' reference rises.
+    pub reference: AdcCode,
 }
 
 impl Samples {
     /// Number of converter channels.
-    pub const CHANNELS: usize = 9;
+    pub const CHANNELS: usize = 12;
 
     /// The codes in the order of the fields.
     #[must_use]
@@ -144,6 +114,9 @@ impl Samples {
             self.supply,
             self.cylinder_pressure,
             self.pump_pressure,
+            self.second_angle,
+            self.sensor_supply,
+            self.reference,
         ]
     }
 
@@ -160,6 +133,9 @@ impl Samples {
             supply,
             cylinder_pressure,
             pump_pressure,
+            second_angle,
+            sensor_supply,
+            reference,
         ] = codes;
         Self {
             rocker_angle,
@@ -171,26 +147,131 @@ impl Samples {
             supply,
             cylinder_pressure,
             pump_pressure,
+            second_angle,
+            sensor_supply,
+            reference,
+        }
+    }
+}
+
+/// A reading of 1 with the nominal reference, in the factor that corrects absolute readings.
+const UNCORRECTED: u32 = 1 << 16;
+/// Change of the sensor supply's code that counts. Its last digit flips in a healthy machine, and would make every
+/// ratiometric signal tremble.
+const SUPPLY_STEP: u16 = 2;
+/// Share by which a code may differ from its nominal one and still be used: beyond it the measurement itself is faulty,
+/// and its row of the safety envelope trips.
+const MOST_DEVIATION: u32 = 5;
+
+/// Turns the codes of each millisecond into the inputs of a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Conversion {
+    scaling: BoardScaling,
+    /// Code of the sensor supply that the ratiometric signals are divided by.
+    sensor_supply: u16,
+    /// Ratio of a signal's code to 40 960 times its share of the sensor supply, in 2^-16.
+    signal_factor: u32,
+}
+
+impl Conversion {
+    /// The conversion of a board.
+    #[must_use]
+    pub fn new(scaling: BoardScaling) -> Self {
+        Self {
+            scaling,
+            sensor_supply: 0,
+            signal_factor: 10 << 16,
         }
     }
 
     /// The inputs of a step, as far as converters know them. A dial whose wire is broken counts as its safest
     /// position: no lowering, and no limit beyond the calibration's, for a hitch that can't be raised is stuck.
     #[must_use]
-    pub fn inputs(&self) -> Inputs {
+    pub fn inputs(&mut self, samples: &Samples) -> Inputs {
+        let correction = self.correction(samples.reference);
+        let sensor_supply = absolute(
+            samples.sensor_supply,
+            self.scaling.sensor_supply.0,
+            correction,
+        );
+        self.follow_sensor_supply(samples.sensor_supply, sensor_supply);
+        let ratio = |code| self.ratio(code);
+        let current = |code| MilliAmp(absolute(code, self.scaling.current.0, correction));
         Inputs {
-            lever: self.lever.try_into().ok(),
-            rocker_angle: self.rocker_angle.try_into().ok(),
-            cylinder_pressure: self.cylinder_pressure.try_into().ok(),
-            pump_pressure: self.pump_pressure.try_into().ok(),
-            supply: Some(self.supply.into()),
-            upper_limit: self.upper_limit.try_into().ok(),
-            lowering_dial: Some(self.lowering_dial.try_into().unwrap_or(PerMille::ZERO)),
-            lift_current: Some(self.lift_current.into()),
-            lower_current: Some(self.lower_current.into()),
+            lever: ratio(samples.lever).map(Ratio::angle),
+            rocker_angle: ratio(samples.rocker_angle).map(Ratio::angle),
+            second_angle: ratio(samples.second_angle).map(Ratio::inverted_angle),
+            cylinder_pressure: ratio(samples.cylinder_pressure).map(Ratio::pressure),
+            pump_pressure: ratio(samples.pump_pressure).map(Ratio::pressure),
+            upper_limit: ratio(samples.upper_limit).map(Ratio::angle),
+            lowering_dial: Some(ratio(samples.lowering_dial).map_or(PerMille::ZERO, Ratio::dial)),
+            supply: Some(MilliVolt(absolute(
+                samples.supply,
+                self.scaling.supply.0,
+                correction,
+            ))),
+            lift_current: Some(current(samples.lift_current)),
+            lower_current: Some(current(samples.lower_current)),
+            sensor_supply: Some(MilliVolt(sensor_supply)),
+            reference: Some(self.reference(samples.reference)),
             ..Inputs::default()
         }
     }
+
+    /// The converters' reference by the band gap, per mille of its nominal value; 0 if there is no band gap.
+    fn reference(&self, band_gap: AdcCode) -> PerMille {
+        let nominal = u32::from(self.scaling.reference.get()) * 1_000;
+        let share = nominal
+            .checked_div(u32::from(band_gap.get()))
+            .unwrap_or_default();
+        PerMille(share.cast_signed())
+    }
+
+    /// The factor of absolute readings in 2^-16; 1 if the band gap's code is absurd.
+    fn correction(&self, band_gap: AdcCode) -> u32 {
+        let nominal = u32::from(self.scaling.reference.get());
+        let measured = u32::from(band_gap.get());
+        if measured.abs_diff(nominal) > nominal / MOST_DEVIATION {
+            return UNCORRECTED;
+        }
+        (nominal * UNCORRECTED)
+            .checked_div(measured)
+            .unwrap_or(UNCORRECTED)
+    }
+
+    /// Takes a changed sensor supply for the ratiometric signals, unless it is absurd.
+    fn follow_sensor_supply(&mut self, code: AdcCode, millivolts: i32) {
+        let most = NOMINAL_SENSOR_SUPPLY.0 / MOST_DEVIATION.cast_signed();
+        let absurd = (millivolts - NOMINAL_SENSOR_SUPPLY.0).abs() > most;
+        if absurd || code.get().abs_diff(self.sensor_supply) < SUPPLY_STEP {
+            return;
+        }
+        let full_scale = |value: MilliVolt| u64::from(value.0.unsigned_abs());
+        let signal = full_scale(self.scaling.signal) * (40_960 << 16);
+        let supply = full_scale(self.scaling.sensor_supply) * u64::from(code.get());
+        let factor = signal.checked_div(supply).unwrap_or_default();
+        self.sensor_supply = code.get();
+        self.signal_factor = u32::try_from(factor).unwrap_or(u32::MAX);
+    }
+
+    /// A ratiometric signal; none if its wire is broken or shorted.
+    fn ratio(&self, code: AdcCode) -> Option<Ratio> {
+        let product = u64::from(code.get()) * u64::from(self.signal_factor);
+        let share = i32::try_from(product >> 16).unwrap_or(i32::MAX);
+        let part = |limit: PerMille| limit.0.clamp(0, 1_000) * 40_960 / 1_000;
+        let healthy = part(self.scaling.wire_min)..=part(self.scaling.wire_max);
+        healthy.contains(&share).then(|| Ratio(share - 4_096))
+    }
+}
+
+/// Nominal supply of the sensors.
+const NOMINAL_SENSOR_SUPPLY: MilliVolt = MilliVolt(5_000);
+
+/// An absolute quantity: the share of its full scale, corrected.
+fn absolute(code: AdcCode, full_scale: i32, correction: u32) -> i32 {
+    let share = (i64::from(code.wide()) * i64::from(full_scale) + 2_048) >> 12;
+    let corrected = share.wrapping_mul(i64::from(correction)) >> 16;
+    i32::try_from(corrected).unwrap_or(i32::MAX)
 }
 
 #[cfg(test)]
@@ -199,46 +280,113 @@ mod tests {
 
     use super::*;
 
-    /// The code of a voltage on the 5 V scale.
-    fn code_at(volts: f64) -> AdcCode {
-        AdcCode::new((volts / 5.0 * 4096.0).round() as u16)
+    const SCALING: BoardScaling = BoardScaling {
+        pwm_steps: 5_250,
+        current: MilliAmp(5_000),
+        supply: MilliVolt(24_576),
+        signal: MilliVolt(5_000),
+        sensor_supply: MilliVolt(6_600),
+        reference: AdcCode(1_502),
+        wire_min: PerMille(50),
+        wire_max: PerMille(950),
+    };
+
+    /// Samples with signals at `volts`, a sensor supply of `sensor_supply` volts and a reference that is `share` of its
+    /// nominal value.
+    fn samples(volts: f64, sensor_supply: f64, share: f64) -> Samples {
+        let code = |of_full_scale: f64| AdcCode((of_full_scale / share * 4096.0).round() as u16);
+        Samples {
+            supply: code(12.0 / 24.576),
+            lift_current: code(0.5),
+            sensor_supply: code(sensor_supply / 6.6),
+            reference: code(1_502.0 / 4096.0),
+            ..Samples::from_codes([code(volts / 5.0); Samples::CHANNELS])
+        }
+    }
+
+    fn inputs(samples: &Samples) -> Inputs {
+        Conversion::new(SCALING).inputs(samples)
     }
 
     #[test]
-    fn a_ratiometric_angle_runs_from_half_a_volt_to_four_and_a_half() {
-        let angle = |volts| MilliDegree::try_from(code_at(volts)).map(|angle| angle.0);
+    fn a_ratiometric_angle_runs_from_a_tenth_of_the_sensor_supply_to_nine_tenths() {
         // A code is 34 millidegrees.
         for (volts, millidegrees) in [(0.5, 35_000), (2.5, 90_000), (4.5, 145_000)] {
-            let found = angle(volts).unwrap();
-            assert!((found - millidegrees).abs() <= 17, "{volts} V: {found}");
+            let found = inputs(&samples(volts, 5.0, 1.0));
+            let (first, second) = (found.rocker_angle.unwrap().0, found.second_angle.unwrap().0);
+            assert!((first - millidegrees).abs() <= 20, "{volts} V: {first}");
+            assert!((first + second - 180_000).abs() <= 40, "{first} {second}");
         }
-        assert_eq!(
-            [angle(0.2), angle(4.8)],
-            [Err(WireFault), Err(WireFault)],
-            "a broken wire and a short"
-        );
+        for broken in [0.2, 4.8] {
+            assert_eq!(inputs(&samples(broken, 5.0, 1.0)).rocker_angle, None);
+        }
+    }
+
+    #[test]
+    fn neither_the_reference_nor_the_sensor_supply_moves_a_reading() {
+        for (supply, share) in [(5.0, 0.92), (5.0, 1.06), (4.6, 1.0), (5.3, 0.97)] {
+            let found = inputs(&samples(0.7 * supply, supply, share));
+            let angle = found.rocker_angle.unwrap().0;
+            assert!((angle - 117_500).abs() < 60, "{supply} {share}: {angle}");
+            let (coil, battery) = (found.lift_current.unwrap().0, found.supply.unwrap().0);
+            assert!((coil - 2_500).abs() <= 5, "{coil}");
+            assert!((battery - 12_000).abs() <= 15, "{battery}");
+            let sensors = found.sensor_supply.unwrap().0;
+            assert!(
+                (f64::from(sensors) - supply * 1e3).abs() <= 8.0,
+                "{sensors}"
+            );
+            let reference = found.reference.unwrap().0;
+            assert!(
+                (f64::from(reference) - share * 1e3).abs() <= 1.5,
+                "{reference}"
+            );
+        }
+    }
+
+    #[test]
+    fn absurd_codes_of_reference_and_sensor_supply_divide_nothing() {
+        let mut conversion = Conversion::new(SCALING);
+        let healthy = samples(3.5, 5.0, 1.0);
+        let before = conversion.inputs(&healthy);
+        for absurd in [AdcCode(0), AdcCode(1), AdcCode::MAX] {
+            let found = conversion.inputs(&Samples {
+                sensor_supply: absurd,
+                reference: absurd,
+                ..healthy
+            });
+            assert_eq!(found.rocker_angle, before.rocker_angle);
+            assert_eq!(found.lift_current, before.lift_current);
+            assert_ne!(found.reference, before.reference);
+        }
     }
 
     #[test]
     fn every_code_gives_more_than_the_one_before() {
-        let angles: Vec<_> = (205..=3_890)
-            .map(|code| MilliDegree::try_from(AdcCode::new(code)).unwrap())
+        let mut conversion = Conversion::new(SCALING);
+        let found: Vec<_> = (205..=3_890)
+            .map(|code| {
+                conversion.inputs(&Samples {
+                    rocker_angle: AdcCode(code),
+                    lift_current: AdcCode(code),
+                    ..samples(2.5, 5.0, 1.0)
+                })
+            })
             .collect();
-        assert!(angles.is_sorted_by(|low, high| low < high));
-        let currents: Vec<MilliAmp> = (0..4_096).map(|code| AdcCode::new(code).into()).collect();
-        assert!(currents.is_sorted_by(|low, high| low < high));
-        assert_eq!(currents[2_048], MilliAmp(2_500));
+        assert!(found.is_sorted_by(|low, high| low.rocker_angle < high.rocker_angle));
+        assert!(found.is_sorted_by(|low, high| low.lift_current < high.lift_current));
     }
 
     #[test]
     fn a_broken_dial_lowers_nothing() {
-        let healthy = Samples::from_codes([code_at(2.5); Samples::CHANNELS]);
-        assert_eq!(healthy.inputs().lowering_dial, Some(PerMille(500)));
+        let healthy = samples(2.5, 5.0, 1.0);
+        let dial = |samples| inputs(&samples).lowering_dial.unwrap().0;
+        assert!((dial(healthy) - 500).abs() <= 1);
         let broken = Samples {
             lowering_dial: AdcCode::default(),
             ..healthy
         };
-        assert_eq!(broken.inputs().lowering_dial, Some(PerMille::ZERO));
+        assert_eq!(dial(broken), 0);
     }
 
     #[test]

@@ -3,10 +3,7 @@
 use crate::control::Outputs;
 use crate::control::units::Duty;
 
-/// Steps of the timer in half a pulse: 168 MHz, counted up and down at 16 kHz.
-pub const PWM_STEPS: u16 = 5_250;
-
-/// A compare value of the pulse-width timer: 0 is off, [`PWM_STEPS`] is on throughout.
+/// A compare value of the pulse-width timer: 0 is off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Compare(u16);
 
@@ -17,20 +14,21 @@ impl Compare {
         self.0
     }
 
-    /// The value of a register; beyond [`PWM_STEPS`] it is on throughout.
+    /// The value for a duty on a timer with `pwm_steps` steps ([`BoardScaling::pwm_steps`](super::BoardScaling)).
     #[must_use]
-    pub fn new(register: u16) -> Self {
-        Self(register.min(PWM_STEPS))
+    pub fn of(duty: Duty, pwm_steps: u16) -> Self {
+        let share = duty.limited(Duty::ZERO, WHOLE).0.unsigned_abs();
+        let whole = WHOLE.0.unsigned_abs();
+        let steps = share
+            .saturating_mul(u32::from(pwm_steps))
+            .saturating_add(whole / 2)
+            / whole;
+        Self(u16::try_from(steps).unwrap_or(0).min(pwm_steps))
     }
 }
 
-impl From<Duty> for Compare {
-    fn from(duty: Duty) -> Self {
-        // 5 250 steps are 100 000 thousandths of a percent: 21 of 400.
-        let steps = (duty.limited(Duty::ZERO, Duty(100_000)).0 * 21 + 200) / 400;
-        Self::new(u16::try_from(steps).unwrap_or(0))
-    }
-}
+/// On throughout.
+const WHOLE: Duty = Duty(100_000);
 
 /// Both coils and the line that enables their drivers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,10 +50,12 @@ impl Drive {
     };
 }
 
-impl From<&Outputs> for Drive {
-    /// The line is only up while a coil is meant to have a current and nothing is tripped or faulty.
-    fn from(outputs: &Outputs) -> Self {
-        let (lift, lower) = (outputs.lift_duty.into(), outputs.lower_duty.into());
+impl Drive {
+    /// The values for a timer with `pwm_steps` steps. The line is only up while a coil is meant to have a current and nothing is tripped or faulty.
+    #[must_use]
+    pub fn new(outputs: &Outputs, pwm_steps: u16) -> Self {
+        let lift = Compare::of(outputs.lift_duty, pwm_steps);
+        let lower = Compare::of(outputs.lower_duty, pwm_steps);
         let asked = lift != Compare(0) || lower != Compare(0);
         match asked && outputs.fault.is_none() && outputs.trip.is_none() {
             true => Self {
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn a_duty_is_its_share_of_the_steps() {
-        let compare = |duty| Compare::from(Duty(duty)).get();
+        let compare = |duty| Compare::of(Duty(duty), 5_250).get();
         assert_eq!(
             [compare(0), compare(50_000), compare(100_000)],
             [0, 2_625, 5_250]
@@ -89,12 +89,12 @@ mod tests {
             lift_duty: Duty(40_000),
             ..Outputs::default()
         };
-        assert!(Drive::from(&lifting).enable);
+        assert!(Drive::new(&lifting, 5_250).enable);
         let faulty = Outputs {
             fault: Some(Fault::Angle),
             ..lifting
         };
-        assert_eq!(Drive::from(&faulty), Drive::OFF);
-        assert_eq!(Drive::from(&Outputs::default()), Drive::OFF);
+        assert_eq!(Drive::new(&faulty, 5_250), Drive::OFF);
+        assert_eq!(Drive::new(&Outputs::default(), 5_250), Drive::OFF);
     }
 }

@@ -4,6 +4,7 @@ use super::converter::Samples;
 use super::drive::Drive;
 use super::panel::Panel;
 use crate::can::Frame;
+use crate::control::units::PerMille;
 
 /// What is read at the beginning of a millisecond.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -14,6 +15,10 @@ pub struct Contacts {
     pub panel: Panel,
     /// A free-running clock apart from the one that paces the milliseconds, us; it wraps.
     pub clock_us: u32,
+    /// Read-back of the line that enables the coils' drivers; none if the board has no read-back.
+    pub enable_feedback: Option<bool>,
+    /// Main clock by an independent oscillator, per mille of its rate at the start; none if the board doesn't measure it.
+    pub clock_ratio: Option<PerMille>,
 }
 
 /// Drivers and bus. None of it waits.

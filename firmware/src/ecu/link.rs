@@ -1,15 +1,16 @@
 //! A millisecond of the ECU as bytes, for whoever runs it behind a pipe or a file.
 //!
 //! ```text
-//! request  codes of nine converters  panel  kind  frames  0  clock   frames
-//!          2 each                    1      1     1       1  4 us    16 each
+//! request  codes of twelve channels  panel  kind  frames  enable  clock ratio  0  clock   frames
+//!          2 each                    1      1     1       1       2            2  4 us    16 each
 //! reply    lift  lower  enable  kicked  state  fault  trip  frames  target  lift  lower  frames
 //!          2     2      1       1       1      1      1     1       4 mdeg  2 mA  2 mA   16 each
 //! frame    identifier; bit 31: of 29 bits, bit 30: remote   length  0  bytes
 //!          4                                                1       3  8
 //! ```
 //!
-//! All of it little-endian.
+//! All of it little-endian. `enable` is the read-back of the enable line: 0 none, 1 low, 2 high. A clock ratio of -1 is
+//! none.
 
 use embedded_can::{ExtendedId, Id, StandardId};
 
@@ -17,15 +18,19 @@ use super::converter::{AdcCode, Samples};
 use super::hardware::Contacts;
 use super::panel::Panel;
 use crate::can::Frame;
+use crate::control::units::PerMille;
 
 /// Bytes of a request without its frames.
-pub const REQUEST_BYTES: usize = 2 * Samples::CHANNELS + 8;
+pub const REQUEST_BYTES: usize = 2 * Samples::CHANNELS + 12;
 /// Bytes of a reply without its frames.
 pub const REPLY_BYTES: usize = 18;
 /// Bytes of a frame.
 pub const FRAME_BYTES: usize = 16;
 /// Most frames that come with a request or a reply: more than a bus carries in a millisecond.
 pub const MOST_FRAMES: usize = 8;
+
+/// A clock ratio that isn't there.
+const NO_RATIO: i16 = -1;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,7 +90,16 @@ impl Request {
             *pair = code.get().to_le_bytes();
         }
         let frames = u8::try_from(frames.min(MOST_FRAMES)).unwrap_or(0);
-        rest.copy_from_slice(&[contacts.panel.bits(), kind, frames, 0]);
+        let enable = match contacts.enable_feedback {
+            None => 0,
+            Some(false) => 1,
+            Some(true) => 2,
+        };
+        let ratio = contacts.clock_ratio.map_or(NO_RATIO, |ratio| {
+            i16::try_from(ratio.0.max(0)).unwrap_or(i16::MAX)
+        });
+        let [low, high] = ratio.to_le_bytes();
+        rest.copy_from_slice(&[contacts.panel.bits(), kind, frames, enable, low, high, 0, 0]);
         bytes
     }
 
@@ -97,7 +111,9 @@ impl Request {
         for (code, pair) in codes.iter_mut().zip(pairs) {
             *code = AdcCode::new(u16::from_le_bytes(*pair));
         }
-        let Some([panel, kind, frames, _, a, b, c, d]) = bytes.last_chunk::<8>().copied() else {
+        let Some([panel, kind, frames, enable, low, high, _, _, a, b, c, d]) =
+            bytes.last_chunk::<12>().copied()
+        else {
             return Self::PowerCycle;
         };
         if kind == 1 {
@@ -108,6 +124,14 @@ impl Request {
                 samples: Samples::from_codes(codes),
                 panel: Panel::from_bits(panel),
                 clock_us: u32::from_le_bytes([a, b, c, d]),
+                enable_feedback: match enable {
+                    1 => Some(false),
+                    2 => Some(true),
+                    _ => None,
+                },
+                clock_ratio: Some(i16::from_le_bytes([low, high]))
+                    .filter(|&ratio| ratio != NO_RATIO)
+                    .map(|ratio| PerMille(i32::from(ratio))),
             },
             frames: usize::from(frames).min(MOST_FRAMES),
         }
@@ -230,10 +254,12 @@ mod tests {
     fn requests_and_replies_go_round() {
         let contacts = Contacts {
             samples: Samples::from_codes(core::array::from_fn(|index| {
-                AdcCode::new(index as u16 * 400)
+                AdcCode::new(index as u16 * 300)
             })),
             panel: Panel::FIELD,
             clock_us: 0x1234_5678,
+            enable_feedback: Some(false),
+            clock_ratio: Some(PerMille(1_013)),
         };
         let tick = Request::Tick {
             contacts,

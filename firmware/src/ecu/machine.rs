@@ -7,6 +7,7 @@ use super::application::Ecu;
 use super::drive::Drive;
 use super::hardware::{Contacts, Hardware};
 use super::link::{MOST_FRAMES, Reply};
+use super::scaling::BoardScaling;
 use crate::can::Frame;
 
 /// Watches a millisecond from inside.
@@ -61,9 +62,9 @@ impl<F: NorFlash, P: Probe + Default> Machine<F, P> {
     /// The ECU as it is after power-up.
     #[must_use]
     #[inline(never)]
-    pub fn start(flash: F, serial_number: u32) -> Self {
+    pub fn start(flash: F, serial_number: u32, scaling: BoardScaling) -> Self {
         Self {
-            ecu: Ecu::start(flash, serial_number),
+            ecu: Ecu::start(flash, serial_number, scaling),
             wires: Wires::default(),
         }
     }

@@ -19,13 +19,15 @@ pub mod link;
 mod machine;
 mod pace;
 mod panel;
+mod scaling;
 mod service;
 mod status;
 
 pub use application::Ecu;
-pub use converter::{AdcCode, Samples, WireFault};
-pub use drive::{Compare, Drive, PWM_STEPS};
+pub use converter::{AdcCode, Conversion, Samples};
+pub use drive::{Compare, Drive};
 pub use flow::{FlowMonitor, Kick, Task};
 pub use hardware::{Contacts, Hardware};
 pub use machine::{Machine, Probe};
 pub use panel::{Contact, Panel};
+pub use scaling::BoardScaling;

@@ -1,14 +1,19 @@
 //! The hitch that the ECU sits on: plant, coils, drivers, sensors and operator.
 
 use hitch_firmware::can::Frame;
+use hitch_firmware::control::units::PerMille;
+use hitch_firmware::ecu::Contacts;
 use hitch_firmware::ecu::link::Reply;
-use hitch_firmware::ecu::{Contacts, PWM_STEPS};
 use hitch_model::Model;
 
 use super::converters::{Converters, Signals};
 use super::machine::{EcuMachine, MachineError};
 use super::operator::Operator;
+use super::scaling::SCALING;
 use crate::closed_loop::{DrivenPlant, SUPPLY_V};
+
+/// Supply of the sensors, V.
+const SENSOR_SUPPLY_V: f64 = 5.0;
 
 /// A millisecond as it truly was.
 #[derive(Debug, Clone, Copy)]
@@ -28,6 +33,8 @@ pub struct Bench<'m> {
     plant: DrivenPlant<'m>,
     converters: Converters,
     time_ms: u64,
+    /// Level of the enable line.
+    enabled: bool,
     /// The operator, who may be told what to do between milliseconds.
     pub operator: Operator,
 }
@@ -45,6 +52,7 @@ impl<'m> Bench<'m> {
             plant: DrivenPlant::at_rest(model, load_kg, oil_temperature_c, start_angle_deg),
             converters: Converters::new(seed),
             time_ms: 0,
+            enabled: false,
             operator: Operator::with_lever_at(start_angle_deg - 5.0),
         }
     }
@@ -84,6 +92,8 @@ impl<'m> Bench<'m> {
             samples: self.converters.convert(&signals),
             panel: self.operator.panel,
             clock_us: (self.time_ms * 1_000) as u32,
+            enable_feedback: Some(self.enabled),
+            clock_ratio: Some(PerMille(1_000)),
         };
         tamper(&mut contacts);
         let reply = machine.tick(&contacts, heard, said)?;
@@ -111,6 +121,8 @@ impl<'m> Bench<'m> {
             lift_current_a: currents.lift_a,
             lower_current_a: currents.lower_a,
             supply_v: SUPPLY_V,
+            sensor_supply_v: SENSOR_SUPPLY_V,
+            reference: 1.0,
             cylinder_pressure_bar: truth.cylinder_pressure_bar,
             pump_pressure_bar: truth.pump_pressure_bar,
         }
@@ -119,11 +131,12 @@ impl<'m> Bench<'m> {
     fn move_on(&mut self, reply: &Reply) {
         // Without the enable line the drivers pass nothing.
         let share = |compare: u16| match reply.enable {
-            true => f64::from(compare) / f64::from(PWM_STEPS),
+            true => f64::from(compare) / f64::from(SCALING.pwm_steps),
             false => 0.0,
         };
         self.plant
             .step([reply.lift, reply.lower].map(share), |_| {});
+        self.enabled = reply.enable;
         self.time_ms += 1;
     }
 }

@@ -5,6 +5,7 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
+use super::scaling::SCALING;
 use crate::closed_loop::{ANGLE_NOISE_DEG, CURRENT_NOISE_A, CYLINDER_NOISE_BAR, PUMP_NOISE_BAR};
 
 /// Codes of twelve bits.
@@ -33,6 +34,10 @@ pub struct Signals {
     pub cylinder_pressure_bar: f64,
     /// Pump pressure, bar.
     pub pump_pressure_bar: f64,
+    /// Supply of the sensors, V.
+    pub sensor_supply_v: f64,
+    /// Reference of the converters over its nominal value.
+    pub reference: f64,
 }
 
 /// Sensors, wires and converters; the same noise for the same seed.
@@ -55,21 +60,28 @@ impl Converters {
             let noise: f64 = StandardNormal.sample(&mut self.random);
             value + sigma * noise
         };
-        // Half a volt to four and a half, of five: 35 to 145 degrees, nothing to 250 bar, shut to open.
-        let ratiometric = |share: f64| code(0.1 + 0.8 * share);
+        let code = |of_full_scale: f64| code(of_full_scale / signals.reference);
+        let full_scale = |millivolts: i32| f64::from(millivolts) * 1e-3;
+        let full_scale_a = f64::from(SCALING.current.0) * 1e-3;
+        // A tenth to nine tenths of the sensor supply: 35 to 145 degrees, nothing to 250 bar, shut to open.
+        let signal = signals.sensor_supply_v / full_scale(SCALING.signal.0);
+        let ratiometric = |share: f64| code((0.1 + 0.8 * share) * signal);
         let angle_deg = |angle_deg: f64| ratiometric((angle_deg - 35.0) / 110.0);
         Samples {
             rocker_angle: angle_deg(noisy(signals.rocker_angle_deg, ANGLE_NOISE_DEG)),
             lever: angle_deg(noisy(signals.lever_deg, 110.0 * POTENTIOMETER_NOISE)),
             upper_limit: angle_deg(noisy(signals.upper_limit_deg, 110.0 * POTENTIOMETER_NOISE)),
             lowering_dial: ratiometric(noisy(signals.lowering_dial, POTENTIOMETER_NOISE)),
-            lift_current: code(noisy(signals.lift_current_a, CURRENT_NOISE_A) / 5.0),
-            lower_current: code(noisy(signals.lower_current_a, CURRENT_NOISE_A) / 5.0),
-            supply: code(signals.supply_v / 24.576),
+            lift_current: code(noisy(signals.lift_current_a, CURRENT_NOISE_A) / full_scale_a),
+            lower_current: code(noisy(signals.lower_current_a, CURRENT_NOISE_A) / full_scale_a),
+            supply: code(signals.supply_v / full_scale(SCALING.supply.0)),
             cylinder_pressure: ratiometric(
                 noisy(signals.cylinder_pressure_bar, CYLINDER_NOISE_BAR) / 250.0,
             ),
             pump_pressure: ratiometric(noisy(signals.pump_pressure_bar, PUMP_NOISE_BAR) / 250.0),
+            second_angle: angle_deg(180.0 - noisy(signals.rocker_angle_deg, ANGLE_NOISE_DEG)),
+            sensor_supply: code(signals.sensor_supply_v / full_scale(SCALING.sensor_supply.0)),
+            reference: code(f64::from(SCALING.reference.get()) / CODES),
         }
     }
 }
@@ -81,6 +93,8 @@ fn code(share: f64) -> AdcCode {
 
 #[cfg(test)]
 mod tests {
+    use hitch_firmware::ecu::Conversion;
+
     use super::*;
 
     #[test]
@@ -95,10 +109,13 @@ mod tests {
             supply_v: 13.8,
             cylinder_pressure_bar: 43.0,
             pump_pressure_bar: 154.0,
+            sensor_supply_v: 5.0,
+            reference: 1.0,
         };
         let mut converters = Converters::new(1);
+        let mut conversion = Conversion::new(SCALING);
         let inputs: Vec<_> = (0..2_000)
-            .map(|_| converters.convert(&signals).inputs())
+            .map(|_| conversion.inputs(&converters.convert(&signals)))
             .collect();
         let mean = |of: &dyn Fn(usize) -> i32| {
             (0..inputs.len())

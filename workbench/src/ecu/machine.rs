@@ -7,6 +7,8 @@ use hitch_firmware::can::Frame;
 use hitch_firmware::ecu::link::Reply;
 use hitch_firmware::ecu::{Contacts, Machine};
 
+use super::scaling::SCALING;
+
 /// Why a machine gives no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum MachineError {
@@ -52,7 +54,7 @@ impl<F: NorFlash + Clone> OnHost<F> {
     /// Powers it up. Clones of `flash` have to share what they hold.
     pub fn start(flash: F) -> Self {
         Self {
-            machine: Machine::start(flash.clone(), SERIAL_NUMBER),
+            machine: Machine::start(flash.clone(), SERIAL_NUMBER, SCALING),
             flash,
         }
     }
@@ -76,7 +78,7 @@ impl<F: NorFlash + Clone> EcuMachine for OnHost<F> {
     }
 
     fn power_cycle(&mut self) -> Result<(), MachineError> {
-        self.machine = Machine::start(self.flash.clone(), SERIAL_NUMBER);
+        self.machine = Machine::start(self.flash.clone(), SERIAL_NUMBER, SCALING);
         Ok(())
     }
 }

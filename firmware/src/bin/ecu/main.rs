@@ -55,7 +55,7 @@ fn main() -> ! {
         can: board.can,
     };
     watchdog.kick_at_start();
-    let mut ecu = Ecu::start(board.flash, board::serial_number());
+    let mut ecu = Ecu::start(board.flash, board::serial_number(), board::SCALING);
     watchdog.kick_at_start();
     let mut logged = Logged::default();
     loop {
@@ -84,6 +84,8 @@ fn contacts(samples: Samples, switches: &board::SwitchInputs, clock: &Clock) -> 
         samples,
         panel: switches.read(),
         clock_us: clock.now_us(),
+        enable_feedback: None,
+        clock_ratio: None,
     }
 }
 

@@ -8,6 +8,7 @@ use hitch_firmware::ecu::{Contacts, Machine, Probe};
 
 use crate::flash_file::FlashFile;
 use crate::link::Link;
+use crate::scaling::SCALING;
 use crate::stopwatch::{self, Stopwatch};
 use crate::{Done, Failure};
 
@@ -60,7 +61,7 @@ fn power_up(
     stopwatch: &Stopwatch,
     done: &mut Done,
 ) -> Result<End, Failure> {
-    let mut machine: Machine<FlashFile, Control> = Machine::start(flash, SERIAL_NUMBER);
+    let mut machine: Machine<FlashFile, Control> = Machine::start(flash, SERIAL_NUMBER, SCALING);
     let mut was_storing = false;
     while let Some(record) = link.read::<REQUEST_BYTES>()? {
         let Request::Tick { contacts, frames } = Request::from_bytes(&record) else {

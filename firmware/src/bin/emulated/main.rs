@@ -15,6 +15,8 @@ mod flash_file;
 mod host_file;
 mod link;
 mod parts;
+#[path = "../ecu/board/stm32f405/scaling.rs"]
+mod scaling;
 mod stack;
 mod steps;
 mod stopwatch;

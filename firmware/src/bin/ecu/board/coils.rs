@@ -10,10 +10,11 @@
 //! One timer paces everything, so the controller can't run at another rate than the drivers. Compare values
 //! take effect at once: waiting for the next update would add a millisecond of dead time to the current regulation.
 
-use hitch_firmware::ecu::{Drive, PWM_STEPS};
+use hitch_firmware::ecu::Drive;
 use stm32_metapac::timer::vals::{Cms, Mms, Ocm};
 use stm32_metapac::{GPIOA, GPIOB, TIM1};
 
+use super::part::SCALING;
 use super::pins;
 
 /// Turning points of the counter in a millisecond: two a pulse, 16 pulses.
@@ -30,7 +31,7 @@ impl Coils {
     /// Outputs low, counter stopped. `function` is TIM1's alternate function on PA8 and PA9.
     pub fn start(function: u8) -> Self {
         pins::output(GPIOB, ENABLE_PIN);
-        TIM1.arr().write(|w| w.set_arr(PWM_STEPS));
+        TIM1.arr().write(|w| w.set_arr(SCALING.pwm_steps));
         TIM1.rcr().write(|w| w.set_rep(TURNING_POINTS - 1));
         TIM1.cr1().write(|w| w.set_cms(Cms::CENTER_ALIGNED1));
         TIM1.cr2().write(|w| w.set_mms(Mms::UPDATE));

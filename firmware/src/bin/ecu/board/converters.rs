@@ -40,6 +40,7 @@ impl Converters {
             lowering_dial: code(ADC2, 2),
             cylinder_pressure: code(ADC2, 3),
             pump_pressure: code(ADC3, 0),
+            ..Samples::default()
         })
     }
 }

@@ -28,7 +28,7 @@ pub use clock::Clock;
 pub use coils::{Coils, cut};
 pub use converters::Converters;
 pub use flash::CalibrationFlash;
-pub use part::Can;
+pub use part::{Can, SCALING};
 pub use reset::reset_cause;
 pub use serial_number::serial_number;
 pub use switches::SwitchInputs;

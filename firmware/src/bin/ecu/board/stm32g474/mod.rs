@@ -3,8 +3,10 @@
 mod can;
 pub mod converters;
 pub mod flash;
+mod scaling;
 
 pub use can::Can;
+pub use scaling::SCALING;
 
 use stm32_metapac::flash::vals::Latency;
 use stm32_metapac::rcc::vals::{Fdcansel, Hpre, Pllm, Plln, Pllr, Pllsrc, Sw};
