@@ -1,7 +1,9 @@
 //! How much further a hitch travels for a fault than if both coils had been cut the moment it appeared: measured on
 //! the dynamic plant, both ways, at several loads, in every phase of a long move.
 
-use hitch_firmware::control::units::{Microsecond, MilliAmp, MilliDegree, MilliVolt};
+use hitch_firmware::control::units::{
+    Count, Microsecond, MilliAmp, MilliDegree, MilliVolt, PerMille,
+};
 use hitch_firmware::control::{Calibration, Fault, Inputs, Outputs};
 use hitch_model::Model;
 use hitch_model::plant::Currents;
@@ -18,7 +20,14 @@ enum Trouble {
     LeverLost,
     SupplyLow,
     SupplyHigh,
+    SupplyIntermittent,
     Overrun,
+    Underrun,
+    ReferenceOff,
+    SensorSupplyLow,
+    TracksDiffer,
+    TrackSticks,
+    ClockOff,
     CoilOpen,
     CoilShorted,
     LiftStuck,
@@ -35,14 +44,21 @@ use Trouble::*;
 /// Troubles with the extra travel that each may cause, degree.
 const ELECTRICAL_DEG: f64 = 2.0;
 const ANGLE_DEG: f64 = 5.0;
-const TROUBLES: [(Trouble, f64); 14] = [
+const TROUBLES: [(Trouble, f64); 21] = [
     (AngleLost, ELECTRICAL_DEG),
     (AngleShortedLow, ELECTRICAL_DEG),
     (AngleShortedHigh, ELECTRICAL_DEG),
     (LeverLost, ELECTRICAL_DEG),
     (SupplyLow, ELECTRICAL_DEG),
     (SupplyHigh, ELECTRICAL_DEG),
+    (SupplyIntermittent, ELECTRICAL_DEG),
     (Overrun, ELECTRICAL_DEG),
+    (Underrun, ELECTRICAL_DEG),
+    (SensorSupplyLow, ELECTRICAL_DEG),
+    (ReferenceOff, ANGLE_DEG),
+    (TracksDiffer, ELECTRICAL_DEG),
+    (TrackSticks, ANGLE_DEG),
+    (ClockOff, ANGLE_DEG),
     (CoilOpen, ELECTRICAL_DEG),
     (CoilShorted, ELECTRICAL_DEG),
     (AngleFrozen, ANGLE_DEG),
@@ -84,6 +100,7 @@ fn tell(trouble: Trouble, step: usize, memory: &Memory, inputs: &mut Inputs) {
     let shifted =
         |inputs: &Inputs, by: i32| inputs.rocker_angle.map(|angle| angle + MilliDegree(by));
     inputs.step_time = Some(Microsecond(1_000));
+    inputs.second_angle = inputs.rocker_angle;
     match trouble {
         CutAtOnce | CoilOpen | CoilShorted | LiftStuck | LowerStuck => {}
         AngleLost => inputs.rocker_angle = None,
@@ -92,6 +109,18 @@ fn tell(trouble: Trouble, step: usize, memory: &Memory, inputs: &mut Inputs) {
         LeverLost => inputs.lever = None,
         SupplyLow => inputs.supply = Some(MilliVolt(7_500)),
         SupplyHigh => inputs.supply = Some(MilliVolt(24_000)),
+        SupplyIntermittent if step.is_multiple_of(2) => inputs.supply = Some(MilliVolt(7_000)),
+        SupplyIntermittent => inputs.supply = Some(MilliVolt(13_500)),
+        Underrun => inputs.step_time = Some(Microsecond(400)),
+        ReferenceOff => inputs.reference = Some(PerMille(920)),
+        SensorSupplyLow => inputs.sensor_supply = Some(MilliVolt(4_600)),
+        TracksDiffer => inputs.second_angle = shifted(inputs, 3_000),
+        // Trembles where it sticks, so no other row sees it.
+        TrackSticks => {
+            let stuck = memory.inputs.rocker_angle;
+            inputs.rocker_angle = stuck.map(|angle| angle + MilliDegree(scattered(step, 50)));
+        }
+        ClockOff => inputs.clock_ratio = Some(PerMille(500)),
         Overrun => inputs.step_time = Some(Microsecond(3_000)),
         AngleFrozen => inputs.rocker_angle = memory.inputs.rocker_angle,
         AngleJumpsAhead => inputs.rocker_angle = shifted(inputs, 8_000),
@@ -121,6 +150,18 @@ fn wire(trouble: Trouble, outputs: &Outputs, currents: &mut Currents) {
     }
 }
 
+/// Picks the hitch up with the lever, with both tracks of the angle sensor healthy.
+fn pick_up(closed_loop: &mut ClosedLoop<'_>, at_deg: f64) {
+    for ms in 0..500 {
+        let lever_deg = if ms < 100 { at_deg - 2.0 } else { at_deg };
+        closed_loop.step_with(
+            lever_deg,
+            |inputs| inputs.second_angle = inputs.rocker_angle,
+            |_, _| {},
+        );
+    }
+}
+
 fn run(
     model: &Model,
     trouble: Trouble,
@@ -128,9 +169,12 @@ fn run(
     (from_deg, to_deg): (f64, f64),
     instant_ms: usize,
 ) -> Run {
-    let calibration = Calibration::nominal().validate().unwrap();
+    let mut calibration = Calibration::nominal();
+    let two_tracks = matches!(trouble, TracksDiffer | TrackSticks);
+    calibration.sensors.second_track = Count(i32::from(two_tracks));
+    let calibration = calibration.sealed().validate().unwrap();
     let mut closed_loop = ClosedLoop::new(model, &calibration, load_kg, 40.0, from_deg, 5);
-    closed_loop.pick_up();
+    pick_up(&mut closed_loop, from_deg);
     let mut memory = Memory::default();
     let mut step = |step: usize, trouble: Option<Trouble>| -> Sample {
         let before = memory;

@@ -179,6 +179,9 @@ fn inputs_of(values: &[Option<f64>; KNOWN.len()]) -> Inputs {
         second_angle: None,
         sensor_supply: None,
         reference: None,
+        set_point: None,
+        clock_ratio: None,
+        enable_line_fault: false,
         switches: Switches {
             transport_lock: on(13),
             hold: on(14),

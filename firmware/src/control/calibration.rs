@@ -288,6 +288,13 @@ impl Calibration {
                 self.safety.supply_max.0,
             ),
             (
+                "safety",
+                "sensor_supply_min",
+                self.safety.sensor_supply_min.0,
+                "sensor_supply_max",
+                self.safety.sensor_supply_max.0,
+            ),
+            (
                 "hydraulics",
                 "smallest_drop",
                 hydraulics.smallest_drop.0,

@@ -12,10 +12,10 @@ use super::operator::{ButtonGuard, EngineWatch, Float, QuickLift, lowering_limit
 use super::position::{PositionControl, Reason};
 use super::rate::RateControl;
 use super::rest::RestPosition;
-use super::safety::{CoilCurrents, Envelope, Limits};
+use super::safety::{CoilCurrents, Command, Envelope};
 use super::saturation::{SaturationWatch, goes_no_further};
 use super::sensors::{Sensed, Sensors};
-use super::signals::{Inputs, Outputs};
+use super::signals::Inputs;
 use super::sink::SinkWatch;
 use super::teach::{Taught, Teach, TeachError};
 use super::units::{
@@ -26,6 +26,7 @@ use super::valve_logic::{Demand, Direction, Phase};
 use super::valve_map::ValveCurves;
 
 mod report;
+mod stepping;
 
 /// The controller: a calibration and a state.
 #[derive(Clone, Debug)]
@@ -53,6 +54,10 @@ pub struct Controller {
     sink: SinkWatch,
     saturation: SaturationWatch,
     envelope: Envelope,
+    /// What control asked for last.
+    command: Command,
+    /// Last believable angle.
+    angle: MilliDegree,
     regulation: Regulation,
     rest: RestPosition,
     scale: DropScale,
@@ -99,6 +104,8 @@ impl Controller {
             sink: SinkWatch::default(),
             saturation: SaturationWatch::default(),
             envelope: Envelope::default(),
+            command: Command::default(),
+            angle: MilliDegree::ZERO,
             rest: RestPosition::default(),
             curves,
             scale,
@@ -137,48 +144,6 @@ impl Controller {
         self.teach.result()
     }
 
-    /// One step of 1 ms.
-    pub fn step(&mut self, inputs: &Inputs) -> Outputs {
-        let sensed = self.sensors.judge(inputs, &self.calibration.sensors);
-        let command = match sensed.and_then(|sensed| self.run(&sensed, inputs)) {
-            Ok(command) => command,
-            Err(fault) => self.fail(fault),
-        };
-        let angle = sensed.ok().map(|sensed| sensed.angle);
-        let limits = Limits {
-            safety: &self.calibration.safety,
-            sensors: &self.calibration.sensors,
-        };
-        let currents = self.envelope.pass(Some(command), inputs, limits);
-        if let Some(trip) = self.envelope.objection() {
-            self.fail(trip.fault());
-        }
-        // A button's speed falls with the linkage and stays: what the map gets wrong there does as well.
-        let slowing = self.slack.is_taken() && matches!(self.mode, Mode::Position);
-        self.motion.drive(
-            self.learning.offsets().on_curve(currents),
-            slowing,
-            self.scale,
-            &self.calibration,
-        );
-        let duties = self
-            .regulation
-            .drive(currents, inputs, &self.calibration.current);
-        self.outputs(currents, duties, angle.unwrap_or_default())
-    }
-
-    /// A fault: both coils off at once.
-    fn fail(&mut self, fault: Fault) -> CoilCurrents {
-        if matches!(self.mode, Mode::Teach) {
-            self.teach.abort();
-        }
-        self.mode = Mode::failed(fault);
-        self.button.distrust();
-        self.demanded_flow = MicroLitrePerSecond::ZERO;
-        self.phase = self.phase.cut();
-        CoilCurrents::OFF
-    }
-
     /// A step with believable sensors.
     fn run(&mut self, sensed: &Sensed, inputs: &Inputs) -> Result<CoilCurrents, Fault> {
         self.estimate(sensed);
@@ -189,7 +154,7 @@ impl Controller {
         }
         let demand = match &mut self.mode {
             Mode::Locked(lock) => {
-                if lock.picked_up(sensed.lever, sensed.angle, &self.calibration.lock) {
+                if lock.picked_up(sensed.set_point, sensed.angle, &self.calibration.lock) {
                     self.mode = Mode::Position;
                 }
                 None
@@ -319,7 +284,7 @@ impl Controller {
         let moving = self.phase.is_moving();
         let calibration = &self.calibration;
         let trembles = calibration.position.lever_deadband;
-        let lever = self.lever.follow(sensed.lever, trembles + trembles);
+        let lever = self.lever.follow(sensed.set_point, trembles + trembles);
         let lever = self.quick_lift.set_point(lever, &calibration.operator);
         let highest = upper_limit(inputs.upper_limit, &calibration.position);
         let changed = self

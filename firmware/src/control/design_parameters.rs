@@ -60,6 +60,8 @@ parameter_group! {
         pressure_max: MilliBar = 260_000, 20_000..=600_000;
         /// How long a bad angle or lever sample is bridged by the last good one before it is a fault: at full speed the hitch moves less than 1 degree.
         bridged: Millisecond = 5, 0..=100;
+        /// 1 if the angle sensor has a second, inverted track: then it has to agree with the first.
+        second_track: Count = 0, 0..=1;
     }
 }
 
@@ -300,7 +302,9 @@ parameter_group! {
         sensor_time: Millisecond = 5, 1..=100;
         /// A step that begins later than this after the last is an overrun: half a step of slack.
         longest_step: Microsecond = 1_500, 1_000..=100_000;
-        /// How long steps have to be late: one may be, for a flash page that is written.
+        /// A step that begins sooner than this after the last is one as well: half a step of slack.
+        shortest_step: Microsecond = 500, 0..=999;
+        /// How long steps have to be late or early: one may be, for a flash page that is written.
         overrun_time: Millisecond = 2, 1..=100;
         /// Lowest supply voltage: below it the largest current no longer fits through a hot coil, and converters lose their reference.
         supply_min: MilliVolt = 8_000, 5_000..=24_000;
@@ -335,10 +339,28 @@ parameter_group! {
         /// Current beyond what was asked for that means a short: twice what a controller overshoots.
         excess_current: MilliAmp = 500, 50..=5_000;
         /// How long: longer than a supply step takes to be regulated away, shorter than the spool needs to follow.
-        short_time: Millisecond = 10, 1..=1_000;
+        short_time: Millisecond = 8, 1..=1_000;
         /// Current that may be left in a coil that is off.
         leftover_current: MilliAmp = 200, 20..=1_000;
         /// How long a coil may take to lose its current before that counts: six time constants with a freewheeling diode.
         decay_time: Millisecond = 30, 2..=1_000;
+        /// Largest error of the converters' reference by the band gap. A healthy one shows up to 4.5 %: 2.5 % of the band gap and 2 % of a regulator. Currents and voltages are corrected for it, so their own error stays at the 2.5 %.
+        reference_error: PerMille = 60, 10..=200;
+        /// How long the reference has to be off: its readings are corrected at once, so there is no hurry; one conversion that is disturbed by an edge of a pulse is no fault.
+        reference_time: Millisecond = 20, 1..=1_000;
+        /// Lowest supply of the sensors: 5 % below 5 V, the limit of the sensors' own data.
+        sensor_supply_min: MilliVolt = 4_750, 1_000..=30_000;
+        /// Highest supply of the sensors: 5 % above 5 V.
+        sensor_supply_max: MilliVolt = 5_250, 1_000..=30_000;
+        /// How long the supply of the sensors has to be wrong: shorter than `sensor_time`, since every sensor's signal goes with it and it is the cause to report.
+        sensor_supply_time: Millisecond = 4, 1..=100;
+        /// Largest difference between the tracks of the angle sensor: 1.4 degrees of tolerance, 1 % of the supply over 80 % for 110 degrees, and six sigma of the difference's noise, 0.07 degree.
+        track_difference: MilliDegree = 2_000, 200..=20_000;
+        /// How long the tracks have to disagree: as long as a sample may be missing.
+        track_time: Millisecond = 5, 1..=20;
+        /// Largest change of the main clock by the independent oscillator since the start: that oscillator goes from 29.5 to 34 kHz over temperature and supply, 15 %; a clock that fails is off by half or more.
+        clock_error: PerMille = 200, 20..=500;
+        /// How long the clock has to be off: the step's own clock sees a wrong pace sooner, and this one finds both wrong together.
+        clock_time: Millisecond = 20, 1..=10_000;
     }
 }

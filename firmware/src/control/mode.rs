@@ -51,13 +51,19 @@ pub enum Fault {
     Coil = 7,
     /// The supply voltage is outside its limits.
     Supply = 8,
-    /// The controller isn't called in time.
+    /// The controller isn't called in time, or its clock is off.
     Overrun = 9,
+    /// The converters' reference is off.
+    Reference = 10,
+    /// The supply of the sensors is outside its limits.
+    SensorSupply = 11,
+    /// The line that enables the coils' drivers doesn't do what it is told.
+    EnableLine = 12,
 }
 
 impl Fault {
     /// All of them, in the order of their codes, which begin at 1.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 12] = [
         Self::Lever,
         Self::Angle,
         Self::Sinking,
@@ -67,6 +73,9 @@ impl Fault {
         Self::Coil,
         Self::Supply,
         Self::Overrun,
+        Self::Reference,
+        Self::SensorSupply,
+        Self::EnableLine,
     ];
 
     /// The fault with a code; 0 is none.
@@ -88,6 +97,9 @@ impl Fault {
             Self::Coil => "coil",
             Self::Supply => "supply",
             Self::Overrun => "overrun",
+            Self::Reference => "reference",
+            Self::SensorSupply => "sensor-supply",
+            Self::EnableLine => "enable-line",
         }
     }
 }

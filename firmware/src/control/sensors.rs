@@ -11,8 +11,8 @@ use super::units::{MilliBar, MilliDegree, Millisecond};
 /// Samples that may be believed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sensed {
-    /// Lever set point.
-    pub lever: MilliDegree,
+    /// Set point: the lever's, or an implement's.
+    pub set_point: MilliDegree,
     /// Rocker angle.
     pub angle: MilliDegree,
     /// Cylinder pressure, if there is a believable one.
@@ -57,7 +57,8 @@ impl Sensors {
         let pressure = |sample| in_range(sample, parameters.pressure_min, parameters.pressure_max);
         Ok(Sensed {
             angle: angle?,
-            lever: lever?,
+            // An implement doesn't make up for a broken lever.
+            set_point: lever.map(|lever| inputs.set_point.unwrap_or(lever))?,
             cylinder_pressure: pressure(inputs.cylinder_pressure),
             pump_pressure: pressure(inputs.pump_pressure),
         })

@@ -78,8 +78,14 @@ pub struct Inputs {
     pub sensor_supply: Option<MilliVolt>,
     /// Reference of the converters, per mille of its nominal value.
     pub reference: Option<PerMille>,
+    /// Set point of an implement on the rocker-angle scale: it replaces the lever's.
+    pub set_point: Option<MilliDegree>,
+    /// Main clock by an independent oscillator, per mille of its rate at the start.
+    pub clock_ratio: Option<PerMille>,
     /// What the operator has switched on.
     pub switches: Switches,
+    /// The line that enables the coils' drivers doesn't do what it is told.
+    pub enable_line_fault: bool,
 }
 
 /// State of the controller, with the code it has on links and in traces.
@@ -182,7 +188,9 @@ pub struct Outputs {
 /// Size of the image of [`Inputs`].
 pub const INPUT_BYTES: usize = 4 + 4 * INPUT_FIELDS;
 /// Numbers in it, behind the word that says which of them are there.
-const INPUT_FIELDS: usize = 16;
+const INPUT_FIELDS: usize = 18;
+/// Bit of the first word for a fault of the enable line.
+const ENABLE_LINE_FAULT: u32 = 1 << 30;
 /// Size of the image of [`Outputs`].
 pub const OUTPUT_BYTES: usize = 44;
 
@@ -195,7 +203,11 @@ impl Inputs {
             .iter()
             .rev()
             .fold(0, |bits, field| (bits << 1) | u32::from(field.is_some()));
-        valid | self.switches.to_bits()
+        let line = match self.enable_line_fault {
+            true => ENABLE_LINE_FAULT,
+            false => 0,
+        };
+        valid | self.switches.to_bits() | line
     }
 
     /// The numbers in the order of the image.
@@ -217,11 +229,13 @@ impl Inputs {
             self.second_angle.map(|value| value.0),
             self.sensor_supply.map(|value| value.0),
             self.reference.map(|value| value.0),
+            self.set_point.map(|value| value.0),
+            self.clock_ratio.map(|value| value.0),
         ]
     }
 
     /// A word of validity bits (bit 0: lever, and on in the order of the fields) and switches (bit 24:
-    /// transport lock, and on), then the values.
+    /// transport lock, and on; bit 30: a fault of the enable line), then the values.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; INPUT_BYTES] {
         let mut writer = Writer::new([0; INPUT_BYTES]);
@@ -264,7 +278,10 @@ impl Inputs {
             second_angle: field().map(MilliDegree),
             sensor_supply: field().map(MilliVolt),
             reference: field().map(PerMille),
+            set_point: field().map(MilliDegree),
+            clock_ratio: field().map(PerMille),
             switches: Switches::from_bits(first),
+            enable_line_fault: first & ENABLE_LINE_FAULT != 0,
         }
     }
 }

@@ -172,6 +172,16 @@ quantity!(
     PerSecond, "per_s", 1
 );
 
+impl PerMille {
+    /// The whole.
+    pub const WHOLE: Self = Self(1_000);
+}
+
+impl Duty {
+    /// On throughout.
+    pub const WHOLE: Self = Self(100_000);
+}
+
 impl Millisecond {
     /// One controller step later.
     #[must_use]

@@ -6,6 +6,7 @@ use heapless::Deque;
 use super::arbiter::Arbiter;
 use super::converter::Conversion;
 use super::drive::Drive;
+use super::enable_line::EnableLine;
 use super::flow::{FlowMonitor, Kick, Task};
 use super::hardware::{Contacts, Hardware};
 use super::pace::Pace;
@@ -40,6 +41,7 @@ pub struct Ecu<F> {
     controller: Controller,
     conversion: Conversion,
     pwm_steps: u16,
+    enable_line: EnableLine,
     arbiter: Arbiter,
     service: Service<F>,
     node: Node,
@@ -74,6 +76,7 @@ impl<F: NorFlash> Ecu<F> {
             controller: Controller::new(calibration),
             conversion: Conversion::new(scaling),
             pwm_steps: scaling.pwm_steps,
+            enable_line: EnableLine::default(),
             arbiter: Arbiter::default(),
             node: Node::new(settings),
             measured: MeasuredBroadcast::default(),
@@ -94,9 +97,12 @@ impl<F: NorFlash> Ecu<F> {
     pub fn tick(&mut self, contacts: &Contacts, hardware: &mut impl Hardware) -> Option<Kick> {
         self.sample(contacts);
         self.flow.passed(Task::Sample);
-        self.outputs = self.controller.step(&self.inputs);
+        self.controller.control(&self.inputs);
         self.flow.passed(Task::Control);
-        hardware.drive(Drive::new(&self.outputs, self.pwm_steps));
+        self.outputs = self.controller.protect(&self.inputs);
+        let wanted = Drive::new(&self.outputs, self.pwm_steps);
+        let has_feedback = contacts.enable_feedback.is_some();
+        hardware.drive(self.enable_line.pass(wanted, has_feedback));
         self.flow.passed(Task::Drive);
         self.serve_bus(contacts, hardware);
         self.flow.passed(Task::Bus);
@@ -127,6 +133,8 @@ impl<F: NorFlash> Ecu<F> {
             .panel
             .added_to(self.conversion.inputs(&contacts.samples));
         inputs.step_time = self.pace.begin(contacts.clock_us);
+        inputs.clock_ratio = contacts.clock_ratio;
+        inputs.enable_line_fault = self.enable_line.read(contacts.enable_feedback);
         // Many a part stands still while its flash is erased: nothing may move then.
         inputs.switches.transport_lock |= self.service.is_storing();
         let limits = &self.controller.calibration().position;

@@ -60,7 +60,7 @@ impl Arbiter {
                 match self.overridden {
                     true => held(inputs),
                     false => Inputs {
-                        lever: Some(angle(position, limits)),
+                        set_point: Some(angle(position, limits)),
                         ..inputs
                     },
                 }
@@ -123,10 +123,15 @@ mod tests {
         let mut arbiter = Arbiter::default();
         let remote = Remote::Position(PerMille(1_000));
         let given = arbiter.decide(at(60_000), remote, &LIMITS);
-        assert_eq!(given.lever, Some(LIMITS.upper_limit));
+        assert_eq!(given.set_point, Some(LIMITS.upper_limit));
+        assert_eq!(
+            given.lever,
+            at(60_000).lever,
+            "the lever stays the operator's"
+        );
         let nudged = arbiter.decide(at(60_000 + TAKEN.0), remote, &LIMITS);
         assert_eq!(
-            nudged.lever,
+            nudged.set_point,
             Some(LIMITS.upper_limit),
             "as far as noise goes"
         );
@@ -163,8 +168,8 @@ mod tests {
         let mut arbiter = Arbiter::default();
         let remote = Remote::Position(PerMille(500));
         assert_eq!(
-            arbiter.decide(Inputs::default(), remote, &LIMITS).lever,
-            None
+            arbiter.decide(Inputs::default(), remote, &LIMITS),
+            Inputs::default()
         );
     }
 }

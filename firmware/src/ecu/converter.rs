@@ -44,22 +44,23 @@ impl Ratio {
 
     /// The same share of the way from `low` to `high`, which may be 65 000 apart.
     const fn between(self, low: i32, high: i32) -> i32 {
-        low + ((high - low) * self.0 + Self::ONE / 2) / Self::ONE
+        let part = (high - low).saturating_mul(self.0);
+        low.saturating_add(part.saturating_add(Self::ONE / 2) / Self::ONE)
     }
 
     /// Angle of rocker or lever: 35 to 145 degrees, in steps of 5 millidegrees so that the product fits.
     const fn angle(self) -> MilliDegree {
-        MilliDegree(self.between(7_000, 29_000) * 5)
+        MilliDegree(self.between(7_000, 29_000).saturating_mul(5))
     }
 
     /// Angle of a track that falls while the angle rises.
     const fn inverted_angle(self) -> MilliDegree {
-        MilliDegree(self.between(29_000, 7_000) * 5)
+        MilliDegree(self.between(29_000, 7_000).saturating_mul(5))
     }
 
     /// Pressure: 0 to 250 bar.
     const fn pressure(self) -> MilliBar {
-        MilliBar(self.between(0, 50_000) * 5)
+        MilliBar(self.between(0, 50_000).saturating_mul(5))
     }
 
     /// Dial: shut at 10 %, open at 90 %.
@@ -241,8 +242,8 @@ impl Conversion {
 
     /// Takes a changed sensor supply for the ratiometric signals, unless it is absurd.
     fn follow_sensor_supply(&mut self, code: AdcCode, millivolts: i32) {
-        let most = NOMINAL_SENSOR_SUPPLY.0 / MOST_DEVIATION.cast_signed();
-        let absurd = (millivolts - NOMINAL_SENSOR_SUPPLY.0).abs() > most;
+        let most = MilliVolt(NOMINAL_SENSOR_SUPPLY.0 / MOST_DEVIATION.cast_signed());
+        let absurd = (MilliVolt(millivolts) - NOMINAL_SENSOR_SUPPLY).magnitude() > most;
         if absurd || code.get().abs_diff(self.sensor_supply) < SUPPLY_STEP {
             return;
         }
@@ -260,7 +261,9 @@ impl Conversion {
         let share = i32::try_from(product >> 16).unwrap_or(i32::MAX);
         let part = |limit: PerMille| limit.0.clamp(0, 1_000) * 40_960 / 1_000;
         let healthy = part(self.scaling.wire_min)..=part(self.scaling.wire_max);
-        healthy.contains(&share).then(|| Ratio(share - 4_096))
+        healthy
+            .contains(&share)
+            .then(|| Ratio(share.saturating_sub(4_096)))
     }
 }
 

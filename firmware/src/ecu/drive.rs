@@ -8,6 +8,9 @@ use crate::control::units::Duty;
 pub struct Compare(u16);
 
 impl Compare {
+    /// Off.
+    pub const OFF: Self = Self(0);
+
     /// The register's value.
     #[must_use]
     pub const fn get(self) -> u16 {
@@ -17,8 +20,8 @@ impl Compare {
     /// The value for a duty on a timer with `pwm_steps` steps ([`BoardScaling::pwm_steps`](super::BoardScaling)).
     #[must_use]
     pub fn of(duty: Duty, pwm_steps: u16) -> Self {
-        let share = duty.limited(Duty::ZERO, WHOLE).0.unsigned_abs();
-        let whole = WHOLE.0.unsigned_abs();
+        let share = duty.limited(Duty::ZERO, Duty::WHOLE).0.unsigned_abs();
+        let whole = Duty::WHOLE.0.unsigned_abs();
         let steps = share
             .saturating_mul(u32::from(pwm_steps))
             .saturating_add(whole / 2)
@@ -26,9 +29,6 @@ impl Compare {
         Self(u16::try_from(steps).unwrap_or(0).min(pwm_steps))
     }
 }
-
-/// On throughout.
-const WHOLE: Duty = Duty(100_000);
 
 /// Both coils and the line that enables their drivers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,8 +44,8 @@ pub struct Drive {
 impl Drive {
     /// No current.
     pub const OFF: Self = Self {
-        lift: Compare(0),
-        lower: Compare(0),
+        lift: Compare::OFF,
+        lower: Compare::OFF,
         enable: false,
     };
 }
@@ -56,7 +56,7 @@ impl Drive {
     pub fn new(outputs: &Outputs, pwm_steps: u16) -> Self {
         let lift = Compare::of(outputs.lift_duty, pwm_steps);
         let lower = Compare::of(outputs.lower_duty, pwm_steps);
-        let asked = lift != Compare(0) || lower != Compare(0);
+        let asked = lift != Compare::OFF || lower != Compare::OFF;
         match asked && outputs.fault.is_none() && outputs.trip.is_none() {
             true => Self {
                 lift,

@@ -13,6 +13,7 @@ mod application;
 mod arbiter;
 mod converter;
 mod drive;
+mod enable_line;
 mod flow;
 mod hardware;
 pub mod link;

@@ -2,7 +2,7 @@
 //!
 //! SPNs are those of J1939 where there is one, and else from the range for manufacturers (520 192 on).
 //! FMIs: 2 erratic, 3 voltage high, 4 voltage low, 5 current low or open, 6 current high or grounded,
-//! 7 mechanical system doesn't respond, 9 abnormal update rate, 10 abnormal rate of change, 12 bad unit,
+//! 7 mechanical system doesn't respond, 8 abnormal frequency, 9 abnormal update rate, 10 abnormal rate of change, 12 bad unit,
 //! 13 out of calibration, 31 condition exists.
 
 use crate::control::safety::Trip;
@@ -33,6 +33,11 @@ const CONTROLLER: u32 = OWN + 5;
 const CALIBRATION: u32 = OWN + 6;
 const CYLINDER_PRESSURE: u32 = OWN + 7;
 const PUMP_PRESSURE: u32 = OWN + 8;
+const REFERENCE: u32 = OWN + 9;
+const ANGLE_TRACKS: u32 = OWN + 10;
+const ENABLE_LINE: u32 = OWN + 11;
+/// Sensor supply voltage 1.
+const SENSOR_SUPPLY: u32 = 3509;
 
 macro_rules! troubles {
     ($($(#[$doc:meta])+ $name:ident = $spn:ident / $fmi:literal,)+) => {
@@ -109,6 +114,18 @@ troubles! {
     CylinderPressure = CYLINDER_PRESSURE / 2,
     /// Pump pressure sensor out of range.
     PumpPressure = PUMP_PRESSURE / 2,
+    /// The converters' reference is off.
+    Reference = REFERENCE / 13,
+    /// Supply of the sensors above its limit.
+    SensorSupplyHigh = SENSOR_SUPPLY / 3,
+    /// Supply of the sensors below its limit.
+    SensorSupplyLow = SENSOR_SUPPLY / 4,
+    /// The tracks of the angle sensor disagree.
+    AngleTracks = ANGLE_TRACKS / 2,
+    /// The main clock has another rate than at the start.
+    Clock = CONTROLLER / 8,
+    /// The enable line of the coils' drivers doesn't do what it is told.
+    EnableLine = ENABLE_LINE / 12,
 }
 
 /// A set of troubles.
@@ -227,6 +244,11 @@ impl TroubleFinder {
                 None => Trouble::Coils,
             },
             Trip::CoilShort | Trip::CoilStuck => of_short(inputs),
+            Trip::Reference => Trouble::Reference,
+            Trip::SensorSupply => of_sensor_supply(inputs),
+            Trip::AngleTracks => Trouble::AngleTracks,
+            Trip::Clock => Trouble::Clock,
+            Trip::EnableLine => Trouble::EnableLine,
         }
     }
 }
@@ -238,6 +260,16 @@ fn of_supply(inputs: &Inputs) -> Trouble {
     match inputs.supply {
         Some(supply) if supply > MIDDLE_OF_SUPPLY => Trouble::SupplyHigh,
         _ => Trouble::SupplyLow,
+    }
+}
+
+/// Above it a supply of the sensors out of its limits is too high, else too low.
+const NOMINAL_SENSOR_SUPPLY: MilliVolt = MilliVolt(5_000);
+
+fn of_sensor_supply(inputs: &Inputs) -> Trouble {
+    match inputs.sensor_supply {
+        Some(supply) if supply > NOMINAL_SENSOR_SUPPLY => Trouble::SensorSupplyHigh,
+        _ => Trouble::SensorSupplyLow,
     }
 }
 
@@ -262,5 +294,8 @@ fn of_fault(fault: Fault, inputs: &Inputs) -> Trouble {
         Fault::Coil => Trouble::Coils,
         Fault::Supply => of_supply(inputs),
         Fault::Overrun => Trouble::Overrun,
+        Fault::Reference => Trouble::Reference,
+        Fault::SensorSupply => of_sensor_supply(inputs),
+        Fault::EnableLine => Trouble::EnableLine,
     }
 }

@@ -33,7 +33,7 @@ fn row_13_a_shorted_coil() {
             .filter(|asked| asked.0 > 0)
             .map(|asked| MilliAmp(asked.0 + by))
     };
-    assert_row(Trip::CoilShort, 10, |inputs, _| {
+    assert_row(Trip::CoilShort, 8, |inputs, _| {
         inputs.lift_current = more(inputs.lift_current, 501);
         inputs.lower_current = more(inputs.lower_current, 501);
     });
@@ -41,7 +41,7 @@ fn row_13_a_shorted_coil() {
         inputs.lift_current = more(inputs.lift_current, 500);
         inputs.lower_current = more(inputs.lower_current, 500);
     });
-    assert_bears(9, |inputs| {
+    assert_bears(7, |inputs| {
         inputs.lift_current = more(inputs.lift_current, 2_000);
         inputs.lower_current = more(inputs.lower_current, 2_000);
     });
@@ -50,7 +50,7 @@ fn row_13_a_shorted_coil() {
 #[test]
 fn row_14_a_stuck_driver() {
     for order in [LIFT, LOWER] {
-        for (left, expected) in [(200, None), (201, Some(40))] {
+        for (left, expected) in [(200, None), (201, Some(38))] {
             let mut rig = Rig::moving(order);
             rig.speed = 0;
             // The current of the last step is still the one that was asked for.
@@ -62,7 +62,7 @@ fn row_14_a_stuck_driver() {
                 });
                 rig.envelope.tripped() == Some(Trip::CoilStuck)
             });
-            // 30 ms for the current to decay, and 10 to be sure; the first of both is one step.
+            // 30 ms for the current to decay, and 8 to be sure; the first of both is one step.
             assert_eq!(after, expected.map(|steps| steps - 1), "{order:?}");
             rig.run(Order::Rest, 1_000);
             rig.envelope.reset();
@@ -86,5 +86,5 @@ fn a_driver_that_switches_itself_on_is_noticed_sooner() {
         });
         rig.envelope.tripped() == Some(Trip::CoilStuck)
     });
-    assert_eq!(after, Some(10));
+    assert_eq!(after, Some(8));
 }

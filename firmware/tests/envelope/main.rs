@@ -6,10 +6,12 @@ mod angle;
 mod any_inputs;
 mod bounds;
 mod coils;
+mod measuring;
+mod release;
 mod signals;
 
 use hitch_firmware::control::design_parameters::{SafetyParameters, SensorParameters};
-use hitch_firmware::control::safety::{CoilCurrents, Envelope, Limits, Trip};
+use hitch_firmware::control::safety::{CoilCurrents, Command, Envelope, Limits, Step, Trip};
 use hitch_firmware::control::units::{
     Microsecond, MilliAmp, MilliDegree, MilliDegreePerSecond, MilliVolt,
 };
@@ -115,7 +117,7 @@ impl Rig {
         self.steps += 1;
         let mut inputs = self.inputs();
         alter(&mut inputs);
-        self.passed = self.envelope.pass(Some(order.currents()), &inputs, LIMITS);
+        self.passed = pass(&mut self.envelope, Some(order.currents()), &inputs, LIMITS);
         self.passed
     }
 
@@ -133,6 +135,23 @@ impl Rig {
         assert!(cut.is_none() || self.envelope.tripped().is_some());
         cut
     }
+}
+
+/// A step of the envelope with a command of this step, or with an old one.
+fn pass(
+    envelope: &mut Envelope,
+    currents: Option<CoilCurrents>,
+    inputs: &Inputs,
+    limits: Limits<'_>,
+) -> CoilCurrents {
+    let command = Command {
+        currents: currents.unwrap_or(LIFT.currents()),
+        step: match currents {
+            Some(_) => envelope.step(),
+            None => Step::default(),
+        },
+    };
+    envelope.pass(command, inputs, limits)
 }
 
 const LIFT: Order = Order::Lift(2_500);
@@ -154,7 +173,7 @@ fn assert_row(trip: Trip, time: i32, fault: impl Fn(&mut Inputs, i32)) {
         assert_eq!(rig.envelope.tripped(), Some(trip), "still holds");
         rig.speed = 0;
         rig.run(Order::Rest, 1_000);
-        let is_final = matches!(trip, Trip::CoilShort | Trip::CoilStuck);
+        let is_final = matches!(trip, Trip::CoilShort | Trip::CoilStuck | Trip::EnableLine);
         assert_eq!(rig.envelope.objection(), Some(trip).filter(|_| is_final));
         rig.envelope.reset();
         assert_eq!(rig.envelope.tripped(), Some(trip).filter(|_| is_final));

@@ -7,7 +7,7 @@ fn row_1_a_stale_command() {
     let mut rig = Rig::moving(LIFT);
     let silent = |rig: &mut Rig| {
         let inputs = rig.inputs();
-        rig.envelope.pass(None, &inputs, LIMITS)
+        pass(&mut rig.envelope, None, &inputs, LIMITS)
     };
     for step in 1..SAFETY.command_age.0 {
         assert_eq!(
@@ -36,7 +36,8 @@ fn row_2_both_coils() {
             lift: MilliAmp(lift),
             lower: MilliAmp(lower),
         };
-        let passed = rig.envelope.pass(Some(command), &rig.inputs(), LIMITS);
+        let inputs = rig.inputs();
+        let passed = pass(&mut rig.envelope, Some(command), &inputs, LIMITS);
         assert_eq!(
             rig.envelope.tripped(),
             trips.then_some(Trip::BothCoils),
@@ -51,7 +52,14 @@ fn row_3_overrun() {
     assert_row(Trip::Overrun, 2, |inputs, _| {
         inputs.step_time = Some(Microsecond(1_501))
     });
-    assert_bears(500, |inputs| inputs.step_time = Some(Microsecond(1_500)));
+    assert_row(Trip::Overrun, 2, |inputs, _| {
+        inputs.step_time = Some(Microsecond(499))
+    });
+    for step_time in [500, 1_500] {
+        assert_bears(500, |inputs| {
+            inputs.step_time = Some(Microsecond(step_time))
+        });
+    }
     assert_bears(500, |inputs| inputs.step_time = None);
 }
 
@@ -66,6 +74,24 @@ fn row_4_supply() {
         assert_bears(500, |inputs| inputs.supply = Some(MilliVolt(volt)));
     }
     assert_bears(9, |inputs| inputs.supply = Some(MilliVolt(6_000)));
+    // An intermittent supply counts as bad in its gaps, until it has been good for more than 5 ms.
+    for (good, after) in [(1, 11), (2, 10), (4, 11), (5, 13)] {
+        let mut rig = Rig::moving(LIFT);
+        let cut = rig.cut_after(LIFT, |inputs, step| {
+            if step % (good + 1) == 1 {
+                inputs.supply = Some(MilliVolt(7_000));
+            }
+        });
+        let tripped = (cut, rig.envelope.tripped());
+        assert_eq!(tripped, (Some(after), Some(Trip::Supply)), "{good} ms good");
+    }
+    let mut rig = Rig::moving(LIFT);
+    let cut = rig.cut_after(LIFT, |inputs, step| {
+        if step % 7 == 1 {
+            inputs.supply = Some(MilliVolt(7_000));
+        }
+    });
+    assert_eq!(cut, None, "6 ms good");
     assert_bears(500, |inputs| inputs.supply = None);
 }
 

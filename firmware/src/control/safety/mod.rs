@@ -1,9 +1,11 @@
-//! The safety envelope: last before the coils, and knows nothing of the controller.
+//! The safety envelope: first and last act of a step on the way to the coils. It knows nothing of the controller.
 //!
-//! It takes requested currents and the raw inputs, and lets through what can't hurt: currents inside
-//! the coils' limits, rising no faster than their slope, never both coils, only on a fresh command, only after the
-//! operator has touched lever or button, and only while no row of its table ([`rows`]) holds. Otherwise
-//! both coils are off.
+//! It gets requested currents and the raw inputs, and limits the currents that are regulated ([`Envelope::pass`]): inside
+//! the coils' limits, rising no faster than their slope, never both coils, only on a command of this step, only after the
+//! operator has touched lever or button, and only while no row of its table ([`rows`]) holds. Otherwise both coils are
+//! off. The regulation then makes pulse widths of these currents. They pass through the envelope as well
+//! ([`Envelope::release`]), which sets those of a coil without a current to zero. Nothing comes between that and the
+//! drivers.
 //!
 //! ```text
 //!  power-up   +----------+  lever moved, or button seen released and pressed   +-------+
@@ -12,21 +14,29 @@
 //!                  ^                                                               | a row holds for its time
 //!                  |  reset, once the row no longer holds                          v
 //!                  +---------------------------------------------------------- +---------+
-//!                                         (never, for a short or stuck coil)   | Tripped |
+//!                                         (never, for a final row)        | Tripped |
 //!                                                                              +---------+
 //! ```
 
 mod angle;
+mod arming;
 mod coils;
+mod command;
+mod measuring;
 pub mod rows;
+mod supply;
 
+use super::current::Duties;
 use super::design_parameters::{SafetyParameters, SensorParameters};
 use super::signals::Inputs;
-use super::units::{MilliAmp, MilliDegree};
+use super::units::{Duty, MilliAmp};
 use angle::AngleWatch;
+use arming::Arming;
 use coils::CoilWatch;
+pub use command::{Command, Step};
 pub use rows::Trip;
 use rows::{Debounce, Rows};
+use supply::SupplyWatch;
 
 /// Currents of the two coils.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,6 +55,9 @@ impl CoilCurrents {
     };
 }
 
+/// Rows that hold while the controller bridges a sample of a sensor that it needs.
+const BRIDGED: [Trip; 3] = [Trip::Lever, Trip::AngleMissing, Trip::AngleJumps];
+
 /// What the envelope goes by.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits<'a> {
@@ -60,19 +73,29 @@ pub struct Envelope {
     arming: Arming,
     angle: AngleWatch,
     coils: CoilWatch,
+    supply: SupplyWatch,
     debounce: Debounce,
+    /// Number of the last step.
+    step: Step,
     passed: CoilCurrents,
+    /// Currents whose pulse widths may be released in this step.
+    released: CoilCurrents,
     tripped: Option<Trip>,
 }
 
 impl Envelope {
-    /// One step. `command`: a fresh request, if there is one; `inputs`: what the sensors say, unjudged.
-    pub fn pass(
-        &mut self,
-        command: Option<CoilCurrents>,
-        inputs: &Inputs,
-        limits: Limits<'_>,
-    ) -> CoilCurrents {
+    /// The step that the next [`Self::pass`] is: its command has to carry this.
+    #[must_use]
+    pub const fn step(&self) -> Step {
+        self.step.next()
+    }
+
+    /// One step, whether or not there is a command of it. `inputs`: what the sensors say, unjudged. The currents that
+    /// may be regulated.
+    pub fn pass(&mut self, command: Command, inputs: &Inputs, limits: Limits<'_>) -> CoilCurrents {
+        self.step = self.step.next();
+        let fresh = command.step == self.step;
+        let command = Some(command.currents).filter(|_| fresh);
         let holds = self.rows_that_hold(command, inputs, limits);
         let found = self.debounce.judge(holds, limits.safety);
         // The first trip is the one to report, unless a worse one comes.
@@ -85,13 +108,31 @@ impl Envelope {
         let armed = self
             .arming
             .update(inputs, self.tripped.is_some(), limits.safety);
+        // While a sample is bridged a coil that is on stays on, but none is switched on.
+        let bridged = holds.has_any(&BRIDGED) && self.passed == CoilCurrents::OFF;
         self.passed = match command {
-            Some(command) if armed && self.tripped.is_none() => {
+            Some(command) if armed && self.tripped.is_none() && !bridged => {
                 self.bounded(command, limits.safety)
             }
             _ => CoilCurrents::OFF,
         };
+        self.released = self.passed;
         self.passed
+    }
+
+    /// The last act of a step: the pulse widths that the drivers may get. Zero for a coil that [`Self::pass`] has let no
+    /// current pass to in this step; zero for both if it wasn't called since the last release.
+    #[must_use]
+    pub fn release(&mut self, duties: Duties) -> Duties {
+        let released = core::mem::take(&mut self.released);
+        let width = |current: MilliAmp, duty: Duty| match current > MilliAmp::ZERO {
+            true => duty.limited(Duty::ZERO, Duty::WHOLE),
+            false => Duty::ZERO,
+        };
+        Duties {
+            lift: width(released.lift, duties.lift),
+            lower: width(released.lower, duties.lower),
+        }
     }
 
     /// What has tripped and still keeps it from being reset.
@@ -131,18 +172,14 @@ impl Envelope {
         let lever_bad = inputs
             .lever
             .is_none_or(|lever| outside(lever.0, sensors.lever_min.0, sensors.lever_max.0));
-        let supply_bad = inputs
-            .supply
-            .is_some_and(|supply| outside(supply.0, safety.supply_min.0, safety.supply_max.0));
+        let supply_bad = self.supply.judge(inputs, safety);
+        let measuring = measuring::judge(inputs, sensors, safety);
         let both =
             command.is_some_and(|both| both.lift > MilliAmp::ZERO && both.lower > MilliAmp::ZERO);
-        let late = inputs
-            .step_time
-            .is_some_and(|time| time > safety.longest_step);
         Rows::of([
             command.is_none(),
             both,
-            late,
+            measuring.pace,
             supply_bad,
             lever_bad,
             angle.missing,
@@ -154,6 +191,11 @@ impl Envelope {
             coils.open,
             coils.short,
             coils.stuck,
+            measuring.reference,
+            measuring.sensor_supply,
+            measuring.tracks,
+            measuring.clock,
+            inputs.enable_line_fault,
         ])
     }
 
@@ -180,32 +222,5 @@ impl Envelope {
                 parameters.lower_current_limit,
             ),
         }
-    }
-}
-
-/// Whether the operator has touched anything since power-up or the last trip.
-#[derive(Clone, Copy, Debug, Default)]
-struct Arming {
-    armed: bool,
-    /// Where the lever was first seen.
-    lever: Option<MilliDegree>,
-    released: bool,
-}
-
-impl Arming {
-    fn update(&mut self, inputs: &Inputs, tripped: bool, parameters: &SafetyParameters) -> bool {
-        if tripped {
-            *self = Self::default();
-            return false;
-        }
-        self.lever = self.lever.or(inputs.lever);
-        let moved = self
-            .lever
-            .zip(inputs.lever)
-            .is_some_and(|(first, now)| (now - first).magnitude() >= parameters.arming_movement);
-        let pressed = self.released && inputs.jog.is_some();
-        self.released |= inputs.jog.is_none();
-        self.armed |= moved || pressed;
-        self.armed
     }
 }

@@ -5,7 +5,7 @@ use super::super::mode::Fault;
 use super::super::units::Millisecond;
 
 /// Number of rows.
-pub const ROWS: usize = 14;
+pub const ROWS: usize = 19;
 
 /// What tripped the envelope, with the code it has on links and in traces; the order of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub enum Trip {
     Stale = 1,
     /// Both coils were asked for.
     BothCoils = 2,
-    /// A step began too late.
+    /// A step began too late or too early.
     Overrun = 3,
     /// The supply voltage is outside its limits.
     Supply = 4,
@@ -39,6 +39,16 @@ pub enum Trip {
     CoilShort = 13,
     /// A coil has current although it is off: its driver is stuck.
     CoilStuck = 14,
+    /// The converters' reference is off: currents and voltages can't be trusted.
+    Reference = 15,
+    /// The supply of the sensors is outside its limits.
+    SensorSupply = 16,
+    /// The tracks of the angle sensor disagree, or one of them is missing.
+    AngleTracks = 17,
+    /// The main clock has another rate than at the start.
+    Clock = 18,
+    /// The line that enables the coils' drivers doesn't do what it is told.
+    EnableLine = 19,
 }
 
 impl Trip {
@@ -58,12 +68,17 @@ impl Trip {
         Self::CoilOpen,
         Self::CoilShort,
         Self::CoilStuck,
+        Self::Reference,
+        Self::SensorSupply,
+        Self::AngleTracks,
+        Self::Clock,
+        Self::EnableLine,
     ];
 
     /// True if only a restart clears it: the driver has to be tested before it is trusted again.
     #[must_use]
     pub const fn is_final(self) -> bool {
-        matches!(self, Self::CoilShort | Self::CoilStuck)
+        matches!(self, Self::CoilShort | Self::CoilStuck | Self::EnableLine)
     }
 
     /// How long the row has to hold.
@@ -71,15 +86,21 @@ impl Trip {
         match self {
             Self::Stale => parameters.command_age,
             Self::Overrun => parameters.overrun_time,
-            Self::Supply => parameters.supply_time,
             Self::Lever | Self::AngleMissing | Self::AngleJumps => parameters.sensor_time,
             Self::NotFollowing => parameters.not_following_time,
             Self::CoilOpen => parameters.open_time,
             Self::CoilShort | Self::CoilStuck => parameters.short_time,
-            // Both coils are never right, and the others say by themselves since when they hold.
-            Self::BothCoils | Self::AngleFrozen | Self::AngleNoisy | Self::Against => {
-                Millisecond(1)
-            }
+            Self::Reference => parameters.reference_time,
+            Self::SensorSupply => parameters.sensor_supply_time,
+            Self::AngleTracks => parameters.track_time,
+            Self::Clock => parameters.clock_time,
+            // Both coils are never right, and the watches of the others measure the time themselves.
+            Self::BothCoils
+            | Self::Supply
+            | Self::AngleFrozen
+            | Self::AngleNoisy
+            | Self::Against
+            | Self::EnableLine => Millisecond(1),
         }
     }
 
@@ -88,12 +109,17 @@ impl Trip {
     pub const fn fault(self) -> Fault {
         match self {
             Self::Lever => Fault::Lever,
-            Self::AngleMissing | Self::AngleJumps | Self::AngleFrozen | Self::AngleNoisy => {
-                Fault::Angle
-            }
+            Self::AngleMissing
+            | Self::AngleJumps
+            | Self::AngleFrozen
+            | Self::AngleNoisy
+            | Self::AngleTracks => Fault::Angle,
             Self::NotFollowing => Fault::NotFollowing,
             Self::Stale | Self::BothCoils | Self::Against => Fault::Envelope,
-            Self::Overrun => Fault::Overrun,
+            Self::Overrun | Self::Clock => Fault::Overrun,
+            Self::Reference => Fault::Reference,
+            Self::SensorSupply => Fault::SensorSupply,
+            Self::EnableLine => Fault::EnableLine,
             Self::Supply => Fault::Supply,
             Self::CoilOpen | Self::CoilShort | Self::CoilStuck => Fault::Coil,
         }
@@ -116,6 +142,14 @@ impl Rows {
 
     const fn has(self, row: u32) -> bool {
         self.0 >> (row & 31) & 1 == 1
+    }
+
+    /// True if one of these holds.
+    #[must_use]
+    pub fn has_any(self, rows: &[Trip]) -> bool {
+        // The first row is bit 0.
+        rows.iter()
+            .any(|&row| self.has((row as u32).saturating_sub(1)))
     }
 }
 

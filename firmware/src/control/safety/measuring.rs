@@ -1,0 +1,52 @@
+//! Judges what the other rows rely on: the converters' reference, the supply of the sensors, the angle's second track,
+//! and both clocks.
+
+use super::super::design_parameters::{SafetyParameters, SensorParameters};
+use super::super::signals::Inputs;
+use super::super::units::{MilliDegree, PerMille};
+
+/// What is wrong in this step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MeasuringFaults {
+    /// The converters' reference is off.
+    pub reference: bool,
+    /// The supply of the sensors is out of its limits.
+    pub sensor_supply: bool,
+    /// The tracks of the angle sensor disagree, or one of them is missing.
+    pub tracks: bool,
+    /// A step came too late or too early.
+    pub pace: bool,
+    /// The main clock has another rate than at the start.
+    pub clock: bool,
+}
+
+/// The faults of a step. What isn't measured is healthy, except for a second track that the calibration says is there.
+pub fn judge(
+    inputs: &Inputs,
+    sensors: &SensorParameters,
+    safety: &SafetyParameters,
+) -> MeasuringFaults {
+    MeasuringFaults {
+        reference: differs(inputs.reference, safety.reference_error),
+        sensor_supply: inputs.sensor_supply.is_some_and(|supply| {
+            supply < safety.sensor_supply_min || supply > safety.sensor_supply_max
+        }),
+        tracks: sensors.second_track.0 != 0 && tracks_differ(inputs, safety.track_difference),
+        pace: inputs
+            .step_time
+            .is_some_and(|time| time > safety.longest_step || time < safety.shortest_step),
+        clock: differs(inputs.clock_ratio, safety.clock_error),
+    }
+}
+
+/// True if a share is further from the whole than `most`.
+fn differs(share: Option<PerMille>, most: PerMille) -> bool {
+    share.is_some_and(|share| (share - PerMille::WHOLE).magnitude() > most)
+}
+
+fn tracks_differ(inputs: &Inputs, most: MilliDegree) -> bool {
+    inputs
+        .rocker_angle
+        .zip(inputs.second_angle)
+        .is_none_or(|(first, second)| (first - second).magnitude() > most)
+}
