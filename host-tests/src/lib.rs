@@ -4,6 +4,7 @@ pub mod drawn_hitches;
 pub mod ecu_day;
 pub mod ecu_tool;
 pub mod emulator;
+pub mod frozen_angle;
 pub mod hidden_effects;
 pub mod instruction_counts;
 pub mod lab;

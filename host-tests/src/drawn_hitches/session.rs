@@ -115,6 +115,12 @@ impl<'a> Session<'a> {
         instant
     }
 
+    /// The hitch as it is now.
+    #[must_use]
+    pub fn hitch(&self) -> &DrivenHitch<'a> {
+        &self.hitch
+    }
+
     /// What teaching found, once it is over.
     #[must_use]
     pub fn taught(&self) -> Option<Result<Taught, TeachError>> {
@@ -146,10 +152,15 @@ impl<'a> Session<'a> {
 
     /// Moves the lever through the hitch, as an operator does after power-up, and leaves both at rest.
     pub fn pick_up(&mut self) {
+        self.pick_up_with(|_| ());
+    }
+
+    /// The same; `tell` changes what the controller is told.
+    pub fn pick_up_with(&mut self, tell: impl Fn(&mut Inputs)) {
         let here_deg = self.hitch.rocker_deg();
         for (steps, away_deg) in [(300, -3.0), (500, 0.0)] {
             for _ in 0..steps {
-                self.step(here_deg + away_deg);
+                self.step_with(here_deg + away_deg, &tell);
             }
         }
     }

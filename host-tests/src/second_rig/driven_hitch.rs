@@ -24,7 +24,7 @@ pub struct Conditions {
 }
 
 /// A hitch in motion.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct DrivenHitch<'a> {
     circuit: Circuit<'a>,
     paths: [CurrentPath; 2],

@@ -16,7 +16,7 @@ const FULL_FLOW_M3_S: f64 = 40.0 * LPM;
 const UNSEATED_SHARE: f64 = 0.25;
 
 /// The circuit in one run.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Circuit<'a> {
     physics: &'a Physics,
     viscosity_m2_s: f64,

@@ -41,7 +41,7 @@ pub struct Motion {
 }
 
 /// The machine with a load on it.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Machine<'a> {
     physics: &'a Physics,
     load_kg: f64,
