@@ -64,6 +64,20 @@ fn row_3_overrun() {
 }
 
 #[test]
+fn row_3_counts_the_time_that_a_late_step_has_lost() {
+    // A processor that was halted for the row's time or longer: one step is enough.
+    for step_time in [3_000, 1_000_000, i32::MAX] {
+        assert_row(Trip::Overrun, 1, |inputs, _| {
+            inputs.step_time = Some(Microsecond(step_time))
+        });
+    }
+    // Less than the row's time is borne once, not twice in a row.
+    let late = |inputs: &mut Inputs| inputs.step_time = Some(Microsecond(2_999));
+    assert_bears(1, late);
+    assert_row(Trip::Overrun, 2, |inputs, _| late(inputs));
+}
+
+#[test]
 fn row_4_supply() {
     for volt in [7_999, 16_801, i32::MIN, i32::MAX] {
         assert_row(Trip::Supply, 10, |inputs, _| {

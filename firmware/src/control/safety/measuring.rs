@@ -3,7 +3,7 @@
 
 use super::super::design_parameters::{SafetyParameters, SensorParameters};
 use super::super::signals::Inputs;
-use super::super::units::{MilliDegree, PerMille};
+use super::super::units::{Microsecond, MilliDegree, Millisecond, PerMille};
 
 /// What is wrong in this step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -14,8 +14,8 @@ pub struct MeasuringFaults {
     pub sensor_supply: bool,
     /// The tracks of the angle sensor disagree, or one of them is missing.
     pub tracks: bool,
-    /// A step came too late or too early.
-    pub pace: bool,
+    /// Time that a step too late or too early has lost; zero if it came in time.
+    pub lost: Millisecond,
     /// The main clock has another rate than at the start.
     pub clock: bool,
 }
@@ -32,11 +32,21 @@ pub fn judge(
             supply < safety.sensor_supply_min || supply > safety.sensor_supply_max
         }),
         tracks: sensors.second_track.0 != 0 && tracks_differ(inputs, safety.track_difference),
-        pace: inputs
-            .step_time
-            .is_some_and(|time| time > safety.longest_step || time < safety.shortest_step),
+        lost: lost(inputs.step_time, safety),
         clock: differs(inputs.clock_ratio, safety.clock_error),
     }
+}
+
+/// Whole milliseconds that the coils went without the step that was due, at least one for a step that is out of time.
+fn lost(step_time: Option<Microsecond>, safety: &SafetyParameters) -> Millisecond {
+    const STEP_US: i32 = 1_000;
+    let out_of_time =
+        |time: &Microsecond| *time > safety.longest_step || *time < safety.shortest_step;
+    step_time
+        .filter(out_of_time)
+        .map_or(Millisecond::ZERO, |time| {
+            Millisecond((time.0.saturating_sub(STEP_US) / STEP_US).max(1))
+        })
 }
 
 /// True if a share is further from the whole than `most`.

@@ -29,11 +29,12 @@ mod supply;
 use super::current::Duties;
 use super::design_parameters::{SafetyParameters, SensorParameters};
 use super::signals::Inputs;
-use super::units::{Duty, MilliAmp};
+use super::units::{Duty, MilliAmp, Millisecond};
 use angle::AngleWatch;
 use arming::Arming;
 use coils::CoilWatch;
 pub use command::{Command, Step};
+use measuring::MeasuringFaults;
 pub use rows::Trip;
 use rows::{Debounce, Rows};
 use supply::SupplyWatch;
@@ -96,8 +97,9 @@ impl Envelope {
         self.step = self.step.next();
         let fresh = command.step == self.step;
         let command = Some(command.currents).filter(|_| fresh);
-        let holds = self.rows_that_hold(command, inputs, limits);
-        let found = self.debounce.judge(holds, limits.safety);
+        let measuring = measuring::judge(inputs, limits.sensors, limits.safety);
+        let holds = self.rows_that_hold(command, inputs, measuring, limits);
+        let found = self.debounce.judge(holds, measuring.lost, limits.safety);
         // The first trip is the one to report, unless a worse one comes.
         if self.tripped.is_none_or(|trip| !trip.is_final()) {
             self.tripped = found
@@ -161,6 +163,7 @@ impl Envelope {
         &mut self,
         command: Option<CoilCurrents>,
         inputs: &Inputs,
+        measuring: MeasuringFaults,
         limits: Limits<'_>,
     ) -> Rows {
         let (safety, sensors) = (limits.safety, limits.sensors);
@@ -173,13 +176,12 @@ impl Envelope {
             .lever
             .is_none_or(|lever| outside(lever.0, sensors.lever_min.0, sensors.lever_max.0));
         let supply_bad = self.supply.judge(inputs, safety);
-        let measuring = measuring::judge(inputs, sensors, safety);
         let both =
             command.is_some_and(|both| both.lift > MilliAmp::ZERO && both.lower > MilliAmp::ZERO);
         Rows::of([
             command.is_none(),
             both,
-            measuring.pace,
+            measuring.lost > Millisecond::ZERO,
             supply_bad,
             lever_bad,
             angle.missing,

@@ -156,7 +156,8 @@ impl Rows {
 /// How long each row has been holding.
 ///
 /// A step in which a row holds counts two up, one in which it doesn't counts one down: what comes and goes trips
-/// too, if it is there for more than a third of the time.
+/// too, if it is there for more than a third of the time. A step that is out of time counts as many times as it has lost
+/// milliseconds: no step looked at the machine in them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Debounce {
     counts: [i32; ROWS],
@@ -165,8 +166,13 @@ pub struct Debounce {
 }
 
 impl Debounce {
-    /// One step; the first row that has been holding for its time.
-    pub fn judge(&mut self, holds: Rows, parameters: &SafetyParameters) -> Option<Trip> {
+    /// One step, which has lost `lost` if it is out of time; the first row that has been holding for its time.
+    pub fn judge(
+        &mut self,
+        holds: Rows,
+        lost: Millisecond,
+        parameters: &SafetyParameters,
+    ) -> Option<Trip> {
         let mut found = None;
         // In a healthy machine there is none to do.
         let mut to_do = holds.0 | self.counting.0;
@@ -174,19 +180,31 @@ impl Debounce {
             // The last one looked at is the first of the table.
             let row = 31_u32.saturating_sub(to_do.leading_zeros());
             to_do &= !(1 << (row & 31));
-            found = self.count(row, holds.has(row), parameters).or(found);
+            // There are no more rows than these.
+            let trip = Trip::ALL[row as usize % ROWS];
+            let held = match trip {
+                _ if !holds.has(row) => Millisecond::ZERO,
+                Trip::Overrun => lost,
+                _ => Millisecond(1),
+            };
+            found = self.count(row, held, parameters).or(found);
         }
         found
     }
 
-    /// Counts one row; what it stands for if it has been holding for its time.
-    fn count(&mut self, row: u32, holds: bool, parameters: &SafetyParameters) -> Option<Trip> {
-        // There are no more rows than these.
+    /// Counts one row that has held for `held` since the last step; what it stands for if it has been holding for its
+    /// time.
+    fn count(
+        &mut self,
+        row: u32,
+        held: Millisecond,
+        parameters: &SafetyParameters,
+    ) -> Option<Trip> {
         let index = row as usize % ROWS;
         let (count, trip) = (&mut self.counts[index], Trip::ALL[index]);
         let most = trip.time(parameters).0.max(1).saturating_mul(2);
-        *count = match holds {
-            true => count.saturating_add(2).min(most),
+        *count = match held > Millisecond::ZERO {
+            true => count.saturating_add(held.0.saturating_mul(2)).min(most),
             false => count.saturating_sub(1).max(0),
         };
         let bit = 1 << (row & 31);
