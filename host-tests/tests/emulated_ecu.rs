@@ -143,7 +143,7 @@ fn a_killed_emulator_finds_its_calibration_again_and_stays_locked() {
         machine.cut_power(&last.unwrap(), after).unwrap();
 
         let flash = CutFlash::holding(std::fs::read(&file).unwrap());
-        let loaded = CalibrationStore::new(flash).load().unwrap();
+        let loaded = CalibrationStore::new(flash).load();
         let gain = loaded.calibration.position.approach_gain.0;
         assert!(
             matches!(loaded.source, Source::Stored { .. }) && [present, wanted].contains(&gain),

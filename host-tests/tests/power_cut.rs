@@ -22,7 +22,7 @@ fn bench(model: &Model, seed: u64) -> Bench<'_> {
 
 /// The gain in the calibration that `flash` gives, and where that comes from.
 fn stored_gain(flash: &CutFlash) -> (i32, Source) {
-    let loaded = CalibrationStore::new(flash.clone()).load().unwrap();
+    let loaded = CalibrationStore::new(flash.clone()).load();
     (loaded.calibration.position.approach_gain.0, loaded.source)
 }
 

@@ -34,9 +34,7 @@ pub struct Service<F> {
 
 /// Reads what is stored, and what is wrong with it.
 pub fn load<F: NorFlash>(store: &mut CalibrationStore<F>) -> (ValidCalibration, Troubles) {
-    let Ok(loaded) = store.load() else {
-        return (ValidCalibration::nominal(), Trouble::CalibrationLost.into());
-    };
+    let loaded = store.load();
     let troubles = if loaded.source == Source::Factory {
         Trouble::CalibrationLost.into()
     } else if loaded.copies.contains(&Copy::Damaged) {

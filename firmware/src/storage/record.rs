@@ -75,10 +75,8 @@ pub struct Carried {
     pub unknown: u16,
 }
 
-/// Reads the entries of a record, from whatever firmware.
-///
-/// # Errors
-/// If what they make is no calibration.
+/// Reads the entries of a record, from whatever firmware. `None` if what they make is no calibration, or if none of them
+/// is known: the defaults alone are no stored calibration.
 pub fn decode(mut entries: impl Iterator<Item = u32>) -> Option<(ValidCalibration, Carried)> {
     let mut block = Calibration::nominal().to_words();
     let mut found = 0_u16;
@@ -95,6 +93,9 @@ pub fn decode(mut entries: impl Iterator<Item = u32>) -> Option<(ValidCalibratio
         if take_values(&mut block, item, values) {
             found = found.saturating_add(1);
         }
+    }
+    if found == 0 {
+        return None;
     }
     let all = u16::try_from(ITEM_COUNT).unwrap_or(u16::MAX);
     let carried = Carried {

@@ -30,8 +30,17 @@ pub enum Copy {
     },
     /// Never written, or just erased.
     Blank,
-    /// Neither: a power cut while it was written, or worn-out flash.
+    /// Neither: a power cut while it was written, worn-out flash, or contents that make no calibration.
     Damaged,
+}
+
+impl Copy {
+    const fn sequence(&self) -> Option<u32> {
+        match *self {
+            Self::Good { sequence } => Some(sequence),
+            Self::Blank | Self::Damaged => None,
+        }
+    }
 }
 
 /// Where a calibration came from.
@@ -101,10 +110,19 @@ struct Writing {
     checksum: u32,
 }
 
+/// The copy whose calibration is in use.
+#[derive(Clone, Copy, Debug)]
+struct InUse {
+    copy: usize,
+    sequence: u32,
+}
+
 /// The store.
 #[derive(Debug)]
 pub struct CalibrationStore<F> {
     flash: F,
+    /// The copy that the last [`Self::load`] found or the last storing completed. It is never erased.
+    in_use: Option<InUse>,
     writing: Option<Writing>,
 }
 
@@ -120,6 +138,7 @@ impl<F: NorFlash> CalibrationStore<F> {
         const { Self::CHUNK_FITS };
         Self {
             flash,
+            in_use: None,
             writing: None,
         }
     }
@@ -130,26 +149,30 @@ impl<F: NorFlash> CalibrationStore<F> {
         self.flash
     }
 
-    /// What is stored.
-    ///
-    /// # Errors
-    /// If the flash can't be read.
-    pub fn load(&mut self) -> Result<Loaded, F::Error> {
-        let copies = self.copies()?;
+    /// What is stored: the newest copy that makes a calibration. A copy that can't be read counts as damaged.
+    pub fn load(&mut self) -> Loaded {
+        let mut copies = self.copies();
+        self.in_use = None;
         for copy in newest_first(copies) {
-            if let Some((calibration, source)) = self.decode(copy)? {
-                return Ok(Loaded {
+            let sequence = copies.get(copy).and_then(|copy| copy.sequence());
+            let decoded = self.decode(copy).ok().flatten();
+            if let (Some((calibration, source)), Some(sequence)) = (decoded, sequence) {
+                self.in_use = Some(InUse { copy, sequence });
+                return Loaded {
                     calibration,
                     source,
                     copies,
-                });
+                };
+            }
+            if let Some(useless) = copies.get_mut(copy) {
+                *useless = Copy::Damaged;
             }
         }
-        Ok(Loaded {
+        Loaded {
             calibration: ValidCalibration::nominal(),
             source: Source::Factory,
             copies,
-        })
+        }
     }
 
     /// Begins to store. The application then calls [`Self::step`] until it is done; the hitch has to be at rest,
@@ -164,12 +187,13 @@ impl<F: NorFlash> CalibrationStore<F> {
         if self.copy_bytes() < RECORD_BYTES {
             return Err(StoreError::TooSmall);
         }
-        let copies = self.copies().map_err(StoreError::Flash)?;
-        let newest = newest_first(copies).next();
-        let copy = usize::from(newest == Some(0));
-        let sequence = match newest.and_then(|newest| copies.get(newest)) {
-            Some(Copy::Good { sequence }) => sequence.wrapping_add(1),
-            _ => 1,
+        if self.in_use.is_none() {
+            self.load();
+        }
+        let (copy, sequence) = match self.in_use {
+            // The other copy is erased, so only this one's sequence has to be exceeded.
+            Some(InUse { copy, sequence }) => (usize::from(copy == 0), sequence.wrapping_add(1)),
+            None => self.without_any(),
         };
         let words = calibration.to_words();
         self.writing = Some(Writing {
@@ -244,14 +268,34 @@ impl<F: NorFlash> CalibrationStore<F> {
                 }))
             }
             Job::Verify => match self.examine(writing.copy).map_err(StoreError::Flash)? {
-                Copy::Good { sequence } if sequence == writing.sequence => Ok(None),
+                Copy::Good { sequence } if sequence == writing.sequence => {
+                    let copy = writing.copy;
+                    self.in_use = Some(InUse { copy, sequence });
+                    Ok(None)
+                }
                 _ => Err(StoreError::Verify),
             },
         }
     }
 
-    fn copies(&mut self) -> Result<[Copy; 2], F::Error> {
-        Ok([self.examine(0)?, self.examine(1)?])
+    /// Where to store, and under which number, if no copy makes a calibration: over a damaged copy first, which may be
+    /// one that could be read again later, and else over the older one.
+    fn without_any(&mut self) -> (usize, u32) {
+        let copies = self.copies();
+        let newest = newest_first(copies).next();
+        let sequence = newest
+            .and_then(|newest| copies.get(newest)?.sequence())
+            .unwrap_or(0);
+        let copy = match (newest, copies) {
+            (Some(newest), _) => usize::from(newest == 0),
+            (None, [Copy::Blank, Copy::Damaged]) => 1,
+            (None, _) => 0,
+        };
+        (copy, sequence.wrapping_add(1))
+    }
+
+    fn copies(&mut self) -> [Copy; 2] {
+        [0, 1].map(|copy| self.examine(copy).unwrap_or(Copy::Damaged))
     }
 
     /// What a copy is worth, by its checksum.
@@ -385,7 +429,7 @@ fn newest_first(copies: [Copy; 2]) -> impl Iterator<Item = usize> {
             Copy::Good { sequence: first },
             Copy::Good { sequence: second },
         ] => {
-            // Sequences wrap; they are at most one apart.
+            // Sequences wrap; of two that were stored one after the other, the later one is one further on.
             if first.wrapping_sub(second) < 1 << 31 {
                 [Some(0), Some(1)]
             } else {
