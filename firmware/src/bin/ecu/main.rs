@@ -18,7 +18,7 @@ use hitch_firmware::can::Frame;
 use hitch_firmware::control::{Fault, State};
 use hitch_firmware::ecu::{Contacts, Drive, Ecu, Hardware, Samples};
 
-use board::{Board, Can, Clock, Coils, Converters};
+use board::{Board, Can, Coils, Converters, SlowClock};
 
 /// Coils and bus, as the application sees them.
 struct Outside {
@@ -54,13 +54,20 @@ fn main() -> ! {
         coils: board.coils,
         can: board.can,
     };
-    watchdog.kick_at_start();
-    let mut ecu = Ecu::start(board.flash, board::serial_number(), board::SCALING);
-    watchdog.kick_at_start();
+    let mut slow_clock = board.slow_clock;
+    let mut ecu = Ecu::start(board.flash, board::serial_number(), board::scaling());
     let mut logged = Logged::default();
+    watchdog.begin_operation();
+    outside.coils.run();
     loop {
-        let samples = next_samples(&mut converters, &mut outside.can);
-        let contacts = contacts(samples, &board.switches, &board.clock);
+        let samples = next_samples(&mut converters, &mut outside.can, &mut slow_clock);
+        let contacts = Contacts {
+            samples,
+            panel: board.switches.read(),
+            clock_us: board.clock.now_us(),
+            enable_feedback: Some(outside.coils.enable_feedback()),
+            clock_ratio: slow_clock.ratio(),
+        };
         // Without permission the watchdog isn't kicked, and resets the ECU.
         if let Some(permission) = ecu.tick(&contacts, &mut outside) {
             watchdog.kick(permission);
@@ -69,23 +76,15 @@ fn main() -> ! {
     }
 }
 
-/// Listens to the bus until the converters are done. If they never are, the watchdog ends it.
-fn next_samples(converters: &mut Converters, can: &mut Can) -> Samples {
+/// Listens to the bus and to the slow clock until the converters are done. If they never are, the watchdog resets the
+/// ECU.
+fn next_samples(converters: &mut Converters, can: &mut Can, slow_clock: &mut SlowClock) -> Samples {
     loop {
         can.listen();
+        slow_clock.listen();
         if let Some(samples) = converters.take() {
             return samples;
         }
-    }
-}
-
-fn contacts(samples: Samples, switches: &board::SwitchInputs, clock: &Clock) -> Contacts {
-    Contacts {
-        samples,
-        panel: switches.read(),
-        clock_us: clock.now_us(),
-        enable_feedback: None,
-        clock_ratio: None,
     }
 }
 
@@ -113,7 +112,7 @@ impl Logged {
 fn give_up() -> ! {
     board::cut();
     loop {
-        core::hint::spin_loop();
+        cortex_m::asm::nop();
     }
 }
 
@@ -127,10 +126,13 @@ unsafe fn HardFault(_: &ExceptionFrame) -> ! {
     give_up()
 }
 
-/// The crystal has failed; whatever comes now comes at another pace.
+/// Either a part of the calibration can't be read, as programming it was interrupted: then its copy is damaged, and the
+/// program goes on. Or the crystal has failed, and the timers run at another rate.
 #[exception]
-unsafe fn NonMaskableInt() -> ! {
-    give_up()
+unsafe fn NonMaskableInt() {
+    if !board::note_damaged_read() {
+        give_up();
+    }
 }
 
 /// No interrupt is enabled.

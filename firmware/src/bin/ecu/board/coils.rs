@@ -11,10 +11,11 @@
 //! take effect at once: waiting for the next update would add a millisecond of dead time to the current regulation.
 
 use hitch_firmware::ecu::Drive;
-use stm32_metapac::timer::vals::{Cms, Mms, Ocm};
-use stm32_metapac::{GPIOA, GPIOB, TIM1};
+use stm32_metapac::gpio::vals::Idr;
+use stm32_metapac::timer::vals::{Bkp, Cms, Mms, Ocm, Ossi};
+use stm32_metapac::{DBGMCU, GPIOA, GPIOB, TIM1};
 
-use super::part::SCALING;
+use super::part::scaling::SCALING;
 use super::pins;
 
 /// Turning points of the counter in a millisecond: two a pulse, 16 pulses.
@@ -23,6 +24,8 @@ const LIFT: usize = 0;
 const LOWER: usize = 1;
 /// PB10.
 const ENABLE_PIN: usize = 10;
+/// PB11: the enable line as the drivers see it.
+const FEEDBACK_PIN: usize = 11;
 
 /// The coils' drivers.
 pub struct Coils(());
@@ -30,7 +33,10 @@ pub struct Coils(());
 impl Coils {
     /// Outputs low, counter stopped. `function` is TIM1's alternate function on PA8 and PA9.
     pub fn start(function: u8) -> Self {
+        // A debugger that halts the processor stops the timer and so disables its outputs.
+        DBGMCU.apb2fzr().modify(|w| w.set_tim1(true));
         pins::output(GPIOB, ENABLE_PIN);
+        pins::input(GPIOB, FEEDBACK_PIN);
         TIM1.arr().write(|w| w.set_arr(SCALING.pwm_steps));
         TIM1.rcr().write(|w| w.set_rep(TURNING_POINTS - 1));
         TIM1.cr1().write(|w| w.set_cms(Cms::CENTER_ALIGNED1));
@@ -40,6 +46,13 @@ impl Coils {
                 .modify(|w| w.set_ocm(channel, Ocm::PWM_MODE1));
             TIM1.ccer().modify(|w| w.set_cce(channel, true));
         }
+        // The clock security system is a break source: when the crystal fails, hardware cuts the outputs, which are then
+        // driven to their idle level, low. The pin BKIN isn't used; its input is low.
+        TIM1.bdtr().modify(|w| {
+            w.set_bke(0, true);
+            w.set_bkp(0, Bkp::ACTIVE_HIGH);
+            w.set_ossi(Ossi::IDLE_LEVEL);
+        });
         TIM1.bdtr().modify(|w| w.set_moe(true));
         // Loads the shadow registers.
         TIM1.egr().write(|w| w.set_ug(true));
@@ -51,6 +64,11 @@ impl Coils {
     /// Starts the counter, and with it the conversions.
     pub fn run(&self) {
         TIM1.cr1().modify(|w| w.set_cen(true));
+    }
+
+    /// Level of the enable line, read back at the drivers.
+    pub fn enable_feedback(&self) -> bool {
+        GPIOB.idr().read().idr(FEEDBACK_PIN) == Idr::HIGH
     }
 
     /// Hands the drivers their values.

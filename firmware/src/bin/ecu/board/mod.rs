@@ -6,11 +6,13 @@
 mod clock;
 mod coils;
 mod converters;
+mod factory_reference;
 mod flash;
 mod inbox;
 mod pins;
 mod reset;
 mod serial_number;
+mod slow_clock;
 mod switches;
 mod watchdog;
 
@@ -27,10 +29,13 @@ compile_error!("an image is for one part: choose the feature `stm32f405` or `stm
 pub use clock::Clock;
 pub use coils::{Coils, cut};
 pub use converters::Converters;
+pub use factory_reference::scaling;
 pub use flash::CalibrationFlash;
-pub use part::{Can, SCALING};
+pub use part::Can;
+pub use part::flash::note_damaged_read;
 pub use reset::reset_cause;
 pub use serial_number::serial_number;
+pub use slow_clock::SlowClock;
 pub use switches::SwitchInputs;
 pub use watchdog::Watchdog;
 
@@ -46,6 +51,8 @@ pub struct Board {
     pub switches: SwitchInputs,
     /// The clock that the controller checks its pace by.
     pub clock: Clock,
+    /// Measures the main clock against the watchdog's oscillator.
+    pub slow_clock: SlowClock,
     /// Resets the ECU unless it is kicked.
     pub watchdog: Watchdog,
     /// Where the calibration is kept.
@@ -53,23 +60,21 @@ pub struct Board {
 }
 
 impl Board {
-    /// Sets everything up; the coils are off. The watchdog comes first: a crystal that doesn't start ends in a reset.
+    /// Sets everything up; the coils are off. The watchdog comes first: a crystal that doesn't start leads to a reset.
     pub fn start() -> Self {
         let watchdog = Watchdog::start();
         part::start_clocks();
-        part::set_brown_out_level();
         let coils = Coils::start(part::TIMER_FUNCTION);
         let converters = Converters::start();
-        let board = Self {
+        Self {
             switches: SwitchInputs::start(),
             clock: Clock::start(part::TIMER_HZ),
+            slow_clock: SlowClock::start(),
             can: Can::start(),
             flash: CalibrationFlash::new(),
             coils,
             converters,
             watchdog,
-        };
-        board.coils.run();
-        board
+        }
     }
 }

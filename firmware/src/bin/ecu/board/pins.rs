@@ -28,3 +28,9 @@ pub fn input_with_pull_up(port: Gpio, pin: usize) {
     port.pupdr().modify(|w| w.set_pupdr(pin, Pupdr::PULL_UP));
     port.moder().modify(|w| w.set_moder(pin, Moder::INPUT));
 }
+
+/// A line that something else drives.
+pub fn input(port: Gpio, pin: usize) {
+    port.pupdr().modify(|w| w.set_pupdr(pin, Pupdr::FLOATING));
+    port.moder().modify(|w| w.set_moder(pin, Moder::INPUT));
+}

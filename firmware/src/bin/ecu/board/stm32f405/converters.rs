@@ -1,5 +1,6 @@
 //! Which channels the signals are on the STM32F405, and how its converters are set up and asked.
 
+use hitch_firmware::ecu::{AdcCode, Samples};
 use stm32_metapac::adc::Adc;
 use stm32_metapac::adc::vals::{Exten, SampleTime};
 use stm32_metapac::adccommon::vals::Adcpre;
@@ -9,12 +10,41 @@ use crate::board::pins;
 
 /// TIM1_TRGO (RM0090, table of `JEXTSEL`).
 const TIM1_TRGO: u8 = 1;
-/// Lift current PA2, angle PA0, upper-limit dial PA3, supply PB0.
-pub const FIRST: [u8; 4] = [2, 0, 3, 8];
-/// Lowering current PC0, lever PA1, lowering dial PC1, cylinder pressure PC2.
-pub const SECOND: [u8; 4] = [10, 1, 11, 12];
-/// Pump pressure PC3.
-pub const THIRD: [u8; 1] = [13];
+/// Channels of the three sequences.
+pub const SEQUENCES: [[u8; 4]; 3] = [
+    // Lift current PA2, angle PA0, supply PB0, internal reference.
+    [2, 0, 8, REFERENCE],
+    // Lowering current PC0, lever PA1, second angle PA5, sensor supply PA4.
+    [10, 1, 5, 4],
+    // Pump pressure PC3, upper-limit dial PA3, lowering dial PC1, cylinder pressure PC2.
+    [13, 3, 11, 12],
+];
+
+/// VREFINT, on ADC1 alone.
+const REFERENCE: u8 = 17;
+
+/// The samples of the codes of [`SEQUENCES`].
+pub const fn samples(codes: [[AdcCode; 4]; 3]) -> Samples {
+    let [
+        [lift_current, rocker_angle, supply, reference],
+        [lower_current, lever, second_angle, sensor_supply],
+        [pump_pressure, upper_limit, lowering_dial, cylinder_pressure],
+    ] = codes;
+    Samples {
+        rocker_angle,
+        lever,
+        upper_limit,
+        lowering_dial,
+        lift_current,
+        lower_current,
+        supply,
+        cylinder_pressure,
+        pump_pressure,
+        second_angle,
+        sensor_supply,
+        reference,
+    }
+}
 
 /// Makes the pins analogue and sets the converters' clock.
 pub fn start_pins_and_clocks() {
@@ -22,9 +52,14 @@ pub fn start_pins_and_clocks() {
         pins::analog(GPIOA, pin);
         pins::analog(GPIOC, pin);
     }
+    pins::analog(GPIOA, 4);
+    pins::analog(GPIOA, 5);
     pins::analog(GPIOB, 0);
-    // 84 MHz / 4 = 21 MHz, of 36 MHz allowed.
-    ADC123_COMMON.ccr().modify(|w| w.set_adcpre(Adcpre::DIV4));
+    ADC123_COMMON.ccr().modify(|w| {
+        // 84 MHz / 4 = 21 MHz, of 36 MHz allowed.
+        w.set_adcpre(Adcpre::DIV4);
+        w.set_tsvrefe(true);
+    });
 }
 
 /// True once a sequence has run.
@@ -38,25 +73,23 @@ pub fn clear(adc: Adc) {
     adc.sr().modify(|w| w.set_jeoc(false));
 }
 
-/// Four channels take 4 * (84 + 12) / 21 MHz = 18 us.
-pub fn start_sequence(adc: Adc, channels: &[u8]) {
+/// Four channels take 4 * (84 + 12) / 21 MHz = 18 us; the internal reference has to be sampled for 10 us, and takes 23 us.
+pub fn start_sequence(adc: Adc, channels: &[u8; 4]) {
     for &channel in channels {
+        let time = match channel {
+            REFERENCE => SampleTime::CYCLES480,
+            _ => SampleTime::CYCLES84,
+        };
         let channel = usize::from(channel);
         match channel.checked_sub(10) {
-            Some(high) => adc
-                .smpr1()
-                .modify(|w| w.set_smp(high, SampleTime::CYCLES84)),
-            None => adc
-                .smpr2()
-                .modify(|w| w.set_smp(channel, SampleTime::CYCLES84)),
+            Some(high) => adc.smpr1().modify(|w| w.set_smp(high, time)),
+            None => adc.smpr2().modify(|w| w.set_smp(channel, time)),
         }
     }
     adc.jsqr().write(|w| {
-        w.set_jl(channels.len() as u8 - 1);
-        // A sequence shorter than four ends at the fourth place (RM0090, 13.13.12).
-        let first = 4 - channels.len();
+        w.set_jl(3);
         for (index, &channel) in channels.iter().enumerate() {
-            w.set_jsq(first + index, channel);
+            w.set_jsq(index, channel);
         }
     });
     adc.cr1().modify(|w| w.set_scan(true));

@@ -1,12 +1,12 @@
 //! Sectors 10 and 11, of 128 KiB each.
 //!
-//! The program can't run while a sector is erased (1 to 2 s): the ECU only erases while it is locked, and the
-//! watchdog is given patience for it.
+//! The program can't run from flash while a sector is erased (1 to 2 s): the ECU only erases while it is locked, the
+//! watchdog gets a longer period first, and the loop that waits runs from RAM.
 
 use stm32_metapac::FLASH;
 use stm32_metapac::flash::vals::Psize;
 
-use crate::board::watchdog::with_patience;
+use crate::board::watchdog::with_long_period;
 
 /// First address.
 pub const BASE: usize = 0x080C_0000;
@@ -32,8 +32,7 @@ pub fn erase_piece(number: u8) {
         w.set_ser(true);
         w.set_snb(FIRST_SECTOR + number);
     });
-    FLASH.cr().modify(|w| w.set_strt(true));
-    with_patience(wait);
+    with_long_period(start_and_wait);
     FLASH.cr().modify(|w| w.set_ser(false));
 }
 
@@ -58,10 +57,27 @@ pub fn finish() -> bool {
     !(status.wrperr() || status.pgaerr() || status.pgperr() || status.pgserr())
 }
 
-/// Opens the option bytes (RM0090, 3.7.2).
-pub fn unlock_options() {
-    FLASH.optkeyr().write_value(0x0819_2A3B);
-    FLASH.optkeyr().write_value(0x4C5D_6E7F);
+/// The layout of this flash doesn't depend on option bytes.
+pub const fn is_usable() -> bool {
+    true
+}
+
+/// This flash has no error correction: an interrupt has another cause.
+pub const fn note_damaged_read() -> bool {
+    false
+}
+
+/// This flash has no error correction.
+pub const fn take_damaged_read() -> bool {
+    false
+}
+
+/// Starts what the control register is set to, and waits for its end. Runs from RAM: the flash can't be read meanwhile.
+#[inline(never)]
+#[unsafe(link_section = ".data.start_and_wait")]
+fn start_and_wait() {
+    FLASH.cr().modify(|w| w.set_strt(true));
+    while FLASH.sr().read().bsy() {}
 }
 
 fn wait() {

@@ -1,12 +1,12 @@
-//! STM32F405RG: clocks, brown-out level, and where its converters find their signals.
+//! STM32F405RG: clocks, and where its converters find their signals.
 
 mod can;
 pub mod converters;
 pub mod flash;
-mod scaling;
+pub mod scaling;
+pub mod slow_clock;
 
 pub use can::Can;
-pub use scaling::SCALING;
 
 use stm32_metapac::flash::vals::Latency;
 use stm32_metapac::rcc::vals::{Pllm, Plln, Pllp, Pllq, Pllsrc, Ppre, Sw};
@@ -69,19 +69,4 @@ fn start_peripherals() {
     });
     // Two cycles until a clock has arrived (erratum 2.1.13); reading back takes as long.
     let _ = RCC.apb2enr().read();
-}
-
-/// Holds the part in reset below 2.7 V (level 3), where the flash may still be read at this clock. An option byte,
-/// written once in the life of a part.
-pub fn set_brown_out_level() {
-    /// `BOR_LEV` of level 3, VBOR3.
-    const LEVEL_3: u8 = 0b00;
-    if FLASH.optcr().read().bor_lev() == LEVEL_3 {
-        return;
-    }
-    flash::unlock_options();
-    FLASH.optcr().modify(|w| w.set_bor_lev(LEVEL_3));
-    FLASH.optcr().modify(|w| w.set_optstrt(true));
-    super::watchdog::with_patience(|| while FLASH.sr().read().bsy() {});
-    FLASH.optcr().modify(|w| w.set_optlock(true));
 }

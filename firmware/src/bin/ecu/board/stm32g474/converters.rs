@@ -1,5 +1,6 @@
 //! Which channels the signals are on the STM32G474, and how its converters are set up and asked.
 
+use hitch_firmware::ecu::{AdcCode, Samples};
 use stm32_metapac::adc::Adc;
 use stm32_metapac::adc::vals::{Adcaldif, Exten, SampleTime};
 use stm32_metapac::adccommon::vals::Ckmode;
@@ -9,12 +10,41 @@ use crate::board::pins;
 
 /// TIM1_TRGO for ADC1 and 2 and for ADC3 (RM0440, tables of `JEXTSEL`).
 const TIM1_TRGO: u8 = 0;
-/// Lift current PA2, angle PA0, upper-limit dial PA3, supply PB0.
-pub const FIRST: [u8; 4] = [3, 1, 4, 15];
-/// Lowering current PC0, lever PA1, lowering dial PC1, cylinder pressure PC2.
-pub const SECOND: [u8; 4] = [6, 2, 7, 8];
-/// Pump pressure PB1.
-pub const THIRD: [u8; 1] = [1];
+/// Channels of the three sequences.
+pub const SEQUENCES: [[u8; 4]; 3] = [
+    // Lift current PA2, angle PA0, upper-limit dial PA3, cylinder pressure PC2.
+    [3, 1, 4, 8],
+    // Lowering current PC0, lever PA1, lowering dial PC1, second angle PA5.
+    [6, 2, 7, 13],
+    // Pump pressure PB1, supply PB0, sensor supply PB13, internal reference.
+    [1, 12, 5, REFERENCE],
+];
+
+/// VREFINT, on ADC1 and ADC3.
+const REFERENCE: u8 = 18;
+
+/// The samples of the codes of [`SEQUENCES`].
+pub const fn samples(codes: [[AdcCode; 4]; 3]) -> Samples {
+    let [
+        [lift_current, rocker_angle, upper_limit, cylinder_pressure],
+        [lower_current, lever, lowering_dial, second_angle],
+        [pump_pressure, supply, sensor_supply, reference],
+    ] = codes;
+    Samples {
+        rocker_angle,
+        lever,
+        upper_limit,
+        lowering_dial,
+        lift_current,
+        lower_current,
+        supply,
+        cylinder_pressure,
+        pump_pressure,
+        second_angle,
+        sensor_supply,
+        reference,
+    }
+}
 
 /// Makes the pins analogue and sets the converters' clock.
 pub fn start_pins_and_clocks() {
@@ -24,12 +54,16 @@ pub fn start_pins_and_clocks() {
     for pin in 0..=2 {
         pins::analog(GPIOC, pin);
     }
-    for pin in 0..=1 {
+    for pin in [0, 1, 13] {
         pins::analog(GPIOB, pin);
     }
+    pins::analog(GPIOA, 5);
     // 168 MHz / 4 = 42 MHz, of 60 MHz allowed.
     for common in [ADC12_COMMON, ADC345_COMMON] {
-        common.ccr().modify(|w| w.set_ckmode(Ckmode::SYNC_DIV4));
+        common.ccr().modify(|w| {
+            w.set_ckmode(Ckmode::SYNC_DIV4);
+            w.set_vrefen(true);
+        });
     }
 }
 
@@ -44,18 +78,19 @@ pub fn clear(adc: Adc) {
     adc.isr().write(|w| w.set_jeos(true));
 }
 
-/// Four channels take 4 * (92.5 + 12.5) / 42 MHz = 10 us.
-pub fn start_sequence(adc: Adc, channels: &[u8]) {
+/// Four channels take 4 * (92.5 + 12.5) / 42 MHz = 10 us; the internal reference has to be sampled for 4 us, and takes
+/// 6 us.
+pub fn start_sequence(adc: Adc, channels: &[u8; 4]) {
     wake_and_calibrate(adc);
     for &channel in channels {
+        let time = match channel {
+            REFERENCE => SampleTime::CYCLES247_5,
+            _ => SampleTime::CYCLES92_5,
+        };
         let channel = usize::from(channel);
         match channel.checked_sub(10) {
-            Some(high) => adc
-                .smpr2()
-                .modify(|w| w.set_smp(high, SampleTime::CYCLES92_5)),
-            None => adc
-                .smpr()
-                .modify(|w| w.set_smp(channel, SampleTime::CYCLES92_5)),
+            Some(high) => adc.smpr2().modify(|w| w.set_smp(high, time)),
+            None => adc.smpr().modify(|w| w.set_smp(channel, time)),
         }
     }
     adc.isr().write(|w| w.set_adrdy(true));
@@ -64,7 +99,7 @@ pub fn start_sequence(adc: Adc, channels: &[u8]) {
     // Without the queue of contexts the sequence stays when it has run.
     adc.cfgr().modify(|w| w.set_jqdis(true));
     adc.jsqr().write(|w| {
-        w.set_jl(channels.len() as u8 - 1);
+        w.set_jl(3);
         w.set_jextsel(TIM1_TRGO);
         w.set_jexten(Exten::RISING_EDGE);
         for (index, &channel) in channels.iter().enumerate() {

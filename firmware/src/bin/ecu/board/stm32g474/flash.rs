@@ -1,6 +1,10 @@
 //! The last four pages of the second bank, of 2 KiB each. The program runs on from the first bank meanwhile.
 
+use core::sync::atomic::{AtomicBool, Ordering};
+
 use stm32_metapac::FLASH;
+
+use crate::board::watchdog::with_long_period;
 
 /// First address.
 pub const BASE: usize = 0x0807_E000;
@@ -27,8 +31,11 @@ pub fn erase_piece(number: u8) {
         w.set_bker(true);
         w.set_pnb(FIRST_PAGE + number);
     });
-    FLASH.cr().modify(|w| w.set_strt(true));
-    super::super::watchdog::with_patience(wait);
+    // 22 ms, in which the program goes on in the other bank.
+    with_long_period(|| {
+        FLASH.cr().modify(|w| w.set_strt(true));
+        wait();
+    });
     FLASH.cr().modify(|w| w.set_per(false));
 }
 
@@ -57,10 +64,38 @@ pub fn finish() -> bool {
     !(status.operr() || status.wrperr() || status.pgaerr() || status.pgserr())
 }
 
-/// Opens the option bytes (RM0440, 3.4.2).
-pub fn unlock_options() {
-    FLASH.optkeyr().write_value(0x0819_2A3B);
-    FLASH.optkeyr().write_value(0x4C5D_6E7F);
+/// True if the flash has two banks with pages of 2 KiB (option bit `DBANK`, as delivered). With one bank the pages have
+/// other places, and erasing by these numbers could hit the program.
+pub fn is_usable() -> bool {
+    FLASH.optr().read().dbank()
+}
+
+/// Set by the non-maskable interrupt.
+static DAMAGED: AtomicBool = AtomicBool::new(false);
+
+/// True if something was read since the last call whose error correction fails: programming it was interrupted.
+pub fn take_damaged_read() -> bool {
+    // The interrupt is taken before this has been executed.
+    cortex_m::asm::dsb();
+    cortex_m::asm::isb();
+    let damaged = DAMAGED.load(Ordering::Relaxed);
+    DAMAGED.store(false, Ordering::Relaxed);
+    damaged
+}
+
+/// The cause of a non-maskable interrupt, if it is a failed error correction in the calibration's place: it is noted, and
+/// the flag is cleared.
+pub fn note_damaged_read() -> bool {
+    /// Offset of the calibration in the second bank.
+    const OFFSET: u32 = BASE as u32 - 0x0804_0000;
+    let status = FLASH.eccr().read();
+    if !status.eccd() || !status.bk_ecc() || status.sysf_ecc() || status.addr_ecc() < OFFSET {
+        return false;
+    }
+    DAMAGED.store(true, Ordering::Relaxed);
+    // Writing one clears.
+    FLASH.eccr().write(|w| w.set_eccd(true));
+    true
 }
 
 fn wait() {

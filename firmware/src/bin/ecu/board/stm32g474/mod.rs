@@ -1,12 +1,12 @@
-//! STM32G474RE: clocks, brown-out level, and where its converters find their signals.
+//! STM32G474RE: clocks, and where its converters find their signals.
 
 mod can;
 pub mod converters;
 pub mod flash;
-mod scaling;
+pub mod scaling;
+pub mod slow_clock;
 
 pub use can::Can;
-pub use scaling::SCALING;
 
 use stm32_metapac::flash::vals::Latency;
 use stm32_metapac::rcc::vals::{Fdcansel, Hpre, Pllm, Plln, Pllr, Pllsrc, Sw};
@@ -22,8 +22,8 @@ pub const TIMER_HZ: u32 = 168_000_000;
 pub fn start_clocks() {
     RCC.apb1enr1().modify(|w| w.set_pwren(true));
     let _ = RCC.apb1enr1().read();
-    // Boost, for clocks above 150 MHz (RM0440, 6.1.5).
-    PWR.cr5().modify(|w| w.set_r1mode(false));
+    // Boost, for clocks above 150 MHz (RM0440, 6.1.5): `R1MODE` is bit 8, where stm32-metapac 21 has bit 0.
+    PWR.cr5().modify(|w| w.0 &= !(1 << 8));
     RCC.cr().modify(|w| w.set_hseon(true));
     while !RCC.cr().read().hserdy() {}
     RCC.pllcfgr().write(|w| {
@@ -72,20 +72,4 @@ fn start_peripherals() {
     RCC.apb2enr().modify(|w| w.set_tim1en(true));
     // Two cycles until a clock has arrived; reading back takes as long.
     let _ = RCC.apb2enr().read();
-}
-
-/// Holds the part in reset below 2.8 V (level 4). An option byte, written once in the life of a part.
-pub fn set_brown_out_level() {
-    /// `BOR_LEV` of level 4.
-    const LEVEL_4: u8 = 0b100;
-    if FLASH.optr().read().bor_lev() == LEVEL_4 {
-        return;
-    }
-    flash::unlock();
-    flash::unlock_options();
-    FLASH.optr().modify(|w| w.set_bor_lev(LEVEL_4));
-    FLASH.cr().modify(|w| w.set_optstrt(true));
-    super::watchdog::with_patience(|| while FLASH.sr().read().bsy() {});
-    FLASH.cr().modify(|w| w.set_optlock(true));
-    flash::finish();
 }
