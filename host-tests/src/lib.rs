@@ -1,5 +1,6 @@
 //! Tests across the crates; see `tests/`. Here is what several of them need.
 
+pub mod board;
 pub mod drawn_hitches;
 pub mod ecu_day;
 pub mod ecu_tool;

@@ -1,0 +1,95 @@
+//! Runs scenarios on the images as they are flashed: `board-bench LIBRARY PART IMAGE [SCENARIO...]`.
+//!
+//! The library is Unicorn's, which is GPL: it is loaded here, in a process of its own, and linked nowhere.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+use clap::Parser;
+use host_tests::board::scenarios::{ALL, Scenario, Setup};
+use host_tests::board::{Image, Part};
+
+/// Runs scenarios on an image as it is flashed.
+#[derive(Debug, Parser)]
+struct Arguments {
+    /// Shared library of the CPU emulator Unicorn, `libunicorn.so.2`.
+    library: PathBuf,
+    /// The part: stm32f405 or stm32g474.
+    part: Part,
+    /// ELF file of the image.
+    image: PathBuf,
+    /// Names of scenarios; all of them if there is none.
+    scenarios: Vec<String>,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(0) => ExitCode::SUCCESS,
+        Ok(failed) => {
+            eprintln!("{failed} scenarios failed");
+            ExitCode::FAILURE
+        }
+        Err(error) => {
+            eprintln!("board-bench: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Runs the scenarios; how many failed.
+fn run(arguments: &Arguments) -> Result<usize> {
+    let setup = Setup {
+        library: arguments.library.clone(),
+        part: arguments.part,
+        image: Image::read(Path::new(&arguments.image))?,
+    };
+    let mut failed = 0;
+    for (name, scenario) in chosen(&arguments.scenarios)? {
+        let started = Instant::now();
+        let result = scenario(&setup);
+        let took = started.elapsed().as_secs_f64();
+        match result {
+            Ok(measured) => println!(
+                "{} {name} passed in {took:.1} s\n{}",
+                setup.part,
+                indented(&measured)
+            ),
+            Err(error) => {
+                failed += 1;
+                println!(
+                    "{} {name} FAILED in {took:.1} s\n{}",
+                    setup.part,
+                    indented(&format!("{error:#}"))
+                );
+            }
+        }
+    }
+    Ok(failed)
+}
+
+fn indented(text: &str) -> String {
+    text.lines().map(|line| format!("  {line}\n")).collect()
+}
+
+fn chosen(names: &[String]) -> Result<Vec<(&'static str, Scenario)>> {
+    if names.is_empty() {
+        return Ok(ALL.to_vec());
+    }
+    let find = |name: &String| {
+        let found = ALL.iter().find(|(known, _)| known == name).copied();
+        found.with_context(|| {
+            let known: Vec<&str> = ALL.iter().map(|(name, _)| *name).collect();
+            format!(
+                "there is no scenario `{name}`; there are: {}",
+                known.join(", ")
+            )
+        })
+    };
+    let found = names.iter().map(find).collect::<Result<Vec<_>>>()?;
+    match found.is_empty() {
+        true => bail!("no scenario"),
+        false => Ok(found),
+    }
+}

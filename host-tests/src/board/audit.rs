@@ -1,0 +1,148 @@
+//! What an image has set up, held against the manuals: clocks, wait states, pulses, converters, bus, pins, watchdog.
+
+use super::can;
+use super::chip::Chip;
+use super::part::{DBGMCU, Part, Pin, Port};
+
+/// Shortest and longest time that the watchdog may give, ns: a millisecond is kicked with room to spare, and coils are
+/// off 25 ms after the processor has died.
+const WATCHDOG_NS: [f64; 2] = [4e6, 25e6];
+
+/// What is wrong, a line each.
+pub fn findings(chip: &Chip) -> Vec<String> {
+    let mut findings = clocks(chip);
+    findings.extend(chip.pwm.audit(&chip.registers, chip.timer_hz()[1]));
+    for (converter, clock_hz) in chip.converters.iter().zip(chip.converter_hz()) {
+        findings.extend(converter.audit(&chip.registers, clock_hz, |pin| chip.mode(pin) == 3));
+    }
+    let apb1_hz = chip.clocks.bus_hz(&chip.registers)[0];
+    findings.extend(can::audit(
+        chip.part,
+        &chip.registers,
+        apb1_hz,
+        chip.clocks.crystal_hz(),
+    ));
+    findings.extend(pins(chip));
+    findings.extend(debug_freezes(chip));
+    let period_ns = chip.watchdog.period_ns();
+    if !(WATCHDOG_NS[0]..=WATCHDOG_NS[1]).contains(&period_ns) {
+        findings.push(format!("the watchdog gives {period_ns} ns"));
+    }
+    findings.extend(chip.violations.iter().cloned());
+    findings
+}
+
+fn clocks(chip: &Chip) -> Vec<String> {
+    let registers = &chip.registers;
+    let mut findings = Vec::new();
+    let mut check = |good: bool, what: String| {
+        if !good {
+            findings.push(what);
+        }
+    };
+    let core_hz = chip.clocks.core_hz(registers);
+    check(
+        (core_hz - 168e6).abs() < 1e3,
+        format!("the core runs at {core_hz} Hz"),
+    );
+    let [input_hz, internal_hz] = chip.clocks.pll_internal_hz(registers);
+    let (inputs, internals, buses) = match chip.part {
+        Part::Stm32f405 => (1e6..=2e6, 100e6..=432e6, [42e6, 84e6]),
+        Part::Stm32g474 => (2.66e6..=16e6, 96e6..=344e6, [170e6, 170e6]),
+    };
+    check(
+        inputs.contains(&input_hz),
+        format!("the PLL gets {input_hz} Hz"),
+    );
+    check(
+        internals.contains(&internal_hz),
+        format!("the PLL runs at {internal_hz} Hz"),
+    );
+    for (bus, (hz, most)) in (1..).zip(chip.clocks.bus_hz(registers).into_iter().zip(buses)) {
+        check(hz <= most, format!("APB{bus} runs at {hz} Hz"));
+    }
+    if chip.part == Part::Stm32g474 {
+        check(
+            chip.clocks.is_boosted(registers),
+            "no boost above 150 MHz".into(),
+        );
+    }
+    let flash = chip.part.addresses().flash;
+    let needed = chip.clocks.wait_states_needed(registers);
+    let set = registers.field(flash, 0, 4);
+    check(
+        set >= needed,
+        format!("{set} wait states, where {needed} are needed"),
+    );
+    check(
+        registers.field(flash, 8, 3) == 0b111,
+        "prefetch or a cache is off".into(),
+    );
+    let control = match chip.part {
+        Part::Stm32f405 => 0x10,
+        Part::Stm32g474 => 0x14,
+    };
+    let control = chip.flash.read_register(control, registers, chip.now_ns);
+    check(control >> 31 == 1, "the flash is left unlocked".into());
+    check(
+        chip.registers.bit(chip.part.addresses().rcc, 19),
+        "the clock security system is off".into(),
+    );
+    findings
+}
+
+fn pins(chip: &Chip) -> Vec<String> {
+    let mut findings = Vec::new();
+    let timer = match chip.part {
+        Part::Stm32f405 => 1,
+        Part::Stm32g474 => 6,
+    };
+    for (pin, function) in [
+        (Pin::new(Port::A, 8), timer),
+        (Pin::new(Port::A, 9), timer),
+        (Pin::new(Port::A, 11), 9),
+        (Pin::new(Port::A, 12), 9),
+    ] {
+        let (mode, found) = (chip.mode(pin), chip.function(pin));
+        if (mode, found) != (2, function) {
+            findings.push(format!(
+                "{pin} has mode {mode}, function {found}; it needs 2, {function}"
+            ));
+        }
+    }
+    let enable = Pin::new(Port::B, 10);
+    if chip.mode(enable) != 1 {
+        findings.push(format!("{enable}, the enable line, is no output"));
+    }
+    let base = chip.part.addresses().gpio + 0x800;
+    for number in 6..12 {
+        let pin = Pin::new(Port::C, number);
+        if chip.mode(pin) != 0 || chip.registers.field(base + 0x0C, 2 * number, 2) != 1 {
+            findings.push(format!("{pin}, a contact, isn't pulled up"));
+        }
+    }
+    // The debugger's pins keep their function.
+    for number in [13, 14] {
+        let pin = Pin::new(Port::A, number);
+        if chip.mode(pin) != 2 {
+            findings.push(format!("{pin}, the debugger's, has another mode"));
+        }
+    }
+    findings
+}
+
+fn debug_freezes(chip: &Chip) -> Vec<String> {
+    let (timer, watchdog) = match chip.part {
+        Part::Stm32f405 => ((0x0C, 0), (0x08, 12)),
+        Part::Stm32g474 => ((0x10, 11), (0x08, 12)),
+    };
+    let mut findings = Vec::new();
+    for ((offset, bit), what) in [(timer, "TIM1"), (watchdog, "the watchdog")] {
+        if !chip.registers.bit(DBGMCU + offset, bit) {
+            findings.push(format!(
+                "a debugger that halts the processor doesn't stop {what}"
+            ));
+        }
+    }
+    findings
+}

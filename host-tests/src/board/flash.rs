@@ -1,0 +1,408 @@
+//! The flash that holds the calibration, and its controller: keys, erasing, programming, fetch stalls, error correction
+//! and data cache.
+
+use std::collections::{HashMap, HashSet};
+
+use super::part::Part;
+use super::registers::Registers;
+
+/// Time to erase a sector or page and to program a word or double word, ns (data sheets: 32-bit parallelism, maximum).
+const fn erase_ns(part: Part) -> f64 {
+    match part {
+        Part::Stm32f405 => 2e9,
+        Part::Stm32g474 => 24.5e6,
+    }
+}
+
+const fn program_ns(part: Part) -> f64 {
+    match part {
+        Part::Stm32f405 => 100e3,
+        Part::Stm32g474 => 90e3,
+    }
+}
+
+/// Something that changes what the flash holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Operation {
+    /// A sector or page of the calibration is erased.
+    Erase {
+        /// Its number in the calibration's place.
+        piece: u32,
+    },
+    /// A word or double word is programmed.
+    Program {
+        /// Where.
+        offset: u32,
+        /// What.
+        bytes: Vec<u8>,
+    },
+}
+
+/// How far an operation comes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// All of it is done.
+    Whole,
+    /// Power is cut in the middle: some of the bits have changed, and error correction, where there is one, fails.
+    Half,
+}
+
+/// What the flash holds: this survives a power cut.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Contents {
+    /// Bytes of the calibration's place.
+    pub bytes: Vec<u8>,
+    /// Double words whose error correction fails, by their offset.
+    pub damaged: HashSet<u32>,
+}
+
+impl Contents {
+    /// Erased flash.
+    #[must_use]
+    pub fn erased(part: Part) -> Self {
+        Self {
+            bytes: vec![0xFF; part.calibration().1 as usize],
+            damaged: HashSet::new(),
+        }
+    }
+
+    /// Does an operation, or half of it.
+    pub fn apply(&mut self, part: Part, operation: &Operation, extent: Extent) {
+        let corrects = part == Part::Stm32g474;
+        match operation {
+            Operation::Erase { piece } => {
+                let bytes = part.erase_bytes();
+                let range = (piece * bytes) as usize..((piece + 1) * bytes) as usize;
+                if extent == Extent::Whole {
+                    self.damaged
+                        .retain(|&offset| !range.contains(&(offset as usize)));
+                    self.bytes[range].fill(0xFF);
+                    return;
+                }
+                for at in range {
+                    self.bytes[at] |= (at.wrapping_mul(0x9E37_79B9) >> 13) as u8;
+                    if corrects && at % 24 == 0 {
+                        self.damaged.insert(at as u32 & !7);
+                    }
+                }
+            }
+            Operation::Program { offset, bytes } => {
+                let at = *offset as usize;
+                for (index, (target, &byte)) in self.bytes[at..].iter_mut().zip(bytes).enumerate() {
+                    // Half of the zeros are programmed.
+                    let kept = match extent {
+                        Extent::Whole => 0,
+                        Extent::Half => 0xA5_u8.rotate_left(index as u32),
+                    };
+                    *target &= byte | kept;
+                }
+                if corrects && extent == Extent::Half {
+                    self.damaged.insert(*offset);
+                }
+            }
+        }
+    }
+
+    /// The word at an offset.
+    #[must_use]
+    pub fn word(&self, offset: u32) -> u32 {
+        let at = offset as usize & !3;
+        u32::from_le_bytes([0, 1, 2, 3].map(|index| self.bytes[at + index]))
+    }
+}
+
+/// What a write to the controller or the flash led to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// Nothing out of the ordinary.
+    None,
+    /// The image did what the manual forbids.
+    Violation(String),
+}
+
+/// Flash and its controller.
+#[derive(Clone, Debug)]
+pub struct Flash {
+    part: Part,
+    base: u32,
+    /// What it holds.
+    pub contents: Contents,
+    key: u32,
+    unlocked: bool,
+    option_key: u32,
+    options_unlocked: bool,
+    /// The operation that is going on ends then, ns.
+    busy_until_ns: f64,
+    /// First half of a double word.
+    half: Option<(u32, u32)>,
+    /// Operations since the last reset.
+    pub operations: Vec<Operation>,
+    /// Data that the cache would still give, by word offset.
+    cached: HashMap<u32, u32>,
+    /// Option bytes: the factory's.
+    pub options: u32,
+}
+
+const CR_LOCK: u32 = 31;
+
+impl Flash {
+    /// After a reset.
+    #[must_use]
+    pub fn new(part: Part, contents: Contents) -> Self {
+        Self {
+            part,
+            base: part.addresses().flash,
+            contents,
+            key: 0,
+            unlocked: false,
+            option_key: 0,
+            options_unlocked: false,
+            busy_until_ns: 0.0,
+            half: None,
+            operations: Vec::new(),
+            cached: HashMap::new(),
+            options: match part {
+                Part::Stm32f405 => 0x0FFF_AAED,
+                Part::Stm32g474 => 0xFFEF_F8AA,
+            },
+        }
+    }
+
+    /// Offsets of status and control register.
+    const fn status(&self) -> u32 {
+        match self.part {
+            Part::Stm32f405 => 0x0C,
+            Part::Stm32g474 => 0x10,
+        }
+    }
+
+    const fn control(&self) -> u32 {
+        match self.part {
+            Part::Stm32f405 => 0x10,
+            Part::Stm32g474 => 0x14,
+        }
+    }
+
+    /// Until when fetches from `address` and reads from the calibration wait, ns.
+    #[must_use]
+    pub fn stalls_until_ns(&self, address: u32) -> f64 {
+        let (calibration, bytes) = self.part.calibration();
+        let stalls = match self.part {
+            Part::Stm32f405 => (0x0800_0000..0x0810_0000).contains(&address),
+            // The other bank can be read meanwhile.
+            Part::Stm32g474 => (0x0804_0000..calibration + bytes).contains(&address),
+        };
+        if stalls { self.busy_until_ns } else { 0.0 }
+    }
+
+    /// A read of a register.
+    #[must_use]
+    pub fn read_register(&self, offset: u32, registers: &Registers, now_ns: f64) -> u32 {
+        let stored = registers.get(self.base + offset);
+        if offset == self.status() {
+            return stored | u32::from(now_ns < self.busy_until_ns) << 16;
+        }
+        if offset == self.control() {
+            return stored & !(1 << CR_LOCK | 1 << 16) | u32::from(!self.unlocked) << CR_LOCK;
+        }
+        match (self.part, offset) {
+            (Part::Stm32f405, 0x14) | (Part::Stm32g474, 0x20) => self.options,
+            _ => stored,
+        }
+    }
+
+    /// A write of a register.
+    pub fn write_register(
+        &mut self,
+        offset: u32,
+        value: u32,
+        registers: &mut Registers,
+        now_ns: f64,
+    ) -> Effect {
+        let address = self.base + offset;
+        let (key, option_key) = match self.part {
+            Part::Stm32f405 => (0x04, 0x08),
+            Part::Stm32g474 => (0x08, 0x0C),
+        };
+        if offset == key {
+            return self.take_key(value);
+        }
+        if offset == option_key {
+            self.option_key = self.option_key.wrapping_add(value);
+            self.options_unlocked = true;
+            return Effect::None;
+        }
+        if offset == self.status() {
+            // Writing ones clears.
+            registers.modify(address, value, 0);
+            return Effect::None;
+        }
+        if offset == self.control() {
+            return self.write_control(value, registers, now_ns);
+        }
+        if offset == 0 {
+            // Resetting the data cache is possible while it is off.
+            if value >> 12 & 1 == 1 {
+                if registers.bit(address, 10) || value >> 10 & 1 == 1 {
+                    return Effect::Violation("the data cache is reset while it is on".into());
+                }
+                self.cached.clear();
+            }
+        }
+        let programs_options = match self.part {
+            Part::Stm32f405 => offset == 0x14 && value >> 1 & 1 == 1,
+            Part::Stm32g474 => false,
+        };
+        registers.set(address, value);
+        if programs_options {
+            return self.program_options(now_ns);
+        }
+        Effect::None
+    }
+
+    fn program_options(&mut self, now_ns: f64) -> Effect {
+        self.busy_until_ns = now_ns + 500e6;
+        Effect::Violation("the application programs option bytes".into())
+    }
+
+    fn take_key(&mut self, value: u32) -> Effect {
+        match (self.key, value) {
+            (0, 0x4567_0123) => self.key = 1,
+            (1, 0xCDEF_89AB) => {
+                self.key = 0;
+                self.unlocked = true;
+            }
+            _ => {
+                self.key = 2;
+                return Effect::Violation(
+                    "a wrong key locks the flash until the next reset".into(),
+                );
+            }
+        }
+        Effect::None
+    }
+
+    fn write_control(&mut self, value: u32, registers: &mut Registers, now_ns: f64) -> Effect {
+        let address = self.base + self.control();
+        if !self.unlocked {
+            return Effect::Violation("the locked control register of the flash is written".into());
+        }
+        if now_ns < self.busy_until_ns {
+            return Effect::Violation(
+                "the flash's control register is written while it is busy".into(),
+            );
+        }
+        registers.set(address, value & !(1 << 16));
+        if value >> CR_LOCK & 1 == 1 {
+            self.unlocked = false;
+            return Effect::None;
+        }
+        if self.part == Part::Stm32g474 && value >> 17 & 1 == 1 {
+            return self.program_options(now_ns);
+        }
+        if value >> 16 & 1 == 0 {
+            return Effect::None;
+        }
+        match (self.part, value & 0b111) {
+            (Part::Stm32f405, 0b010) => self.erase_sector(value >> 3 & 0xF, now_ns),
+            (Part::Stm32g474, 0b010) => {
+                self.erase_page(value >> 3 & 0x7F, value >> 11 & 1 == 1, now_ns)
+            }
+            _ => Effect::Violation(format!("the flash is started with {value:#010x}")),
+        }
+    }
+
+    fn erase_sector(&mut self, sector: u32, now_ns: f64) -> Effect {
+        match sector.checked_sub(10) {
+            Some(piece @ 0..=1) => self.erase(piece, now_ns),
+            _ => Effect::Violation(format!("sector {sector} of the program is erased")),
+        }
+    }
+
+    fn erase_page(&mut self, page: u32, second_bank: bool, now_ns: f64) -> Effect {
+        match page.checked_sub(124) {
+            Some(piece @ 0..=3) if second_bank => self.erase(piece, now_ns),
+            _ => Effect::Violation(format!("page {page} of the program is erased")),
+        }
+    }
+
+    fn erase(&mut self, piece: u32, now_ns: f64) -> Effect {
+        self.change(Operation::Erase { piece }, now_ns + erase_ns(self.part))
+    }
+
+    fn change(&mut self, operation: Operation, end_ns: f64) -> Effect {
+        self.contents.apply(self.part, &operation, Extent::Whole);
+        self.operations.push(operation);
+        self.busy_until_ns = end_ns;
+        Effect::None
+    }
+
+    /// A write to the calibration's place.
+    pub fn write(
+        &mut self,
+        offset: u32,
+        size: u32,
+        value: u32,
+        registers: &mut Registers,
+        now_ns: f64,
+    ) -> Effect {
+        let control = registers.get(self.base + self.control());
+        if control & 1 == 0 || !self.unlocked || size != 4 || !offset.is_multiple_of(4) {
+            return Effect::Violation(format!(
+                "flash is written at {offset:#x} without programming"
+            ));
+        }
+        // The write waits for the operation before.
+        let now_ns = now_ns.max(self.busy_until_ns);
+        match self.part {
+            Part::Stm32f405 if control >> 8 & 3 != 2 => {
+                Effect::Violation("words are programmed with another parallelism".into())
+            }
+            Part::Stm32f405 => self.program(offset, &value.to_le_bytes(), now_ns),
+            Part::Stm32g474 => match self.half.take() {
+                None if offset.is_multiple_of(8) => {
+                    self.half = Some((offset, value));
+                    Effect::None
+                }
+                Some((first, low)) if first + 4 == offset => {
+                    let double = u64::from(value) << 32 | u64::from(low);
+                    self.program(first, &double.to_le_bytes(), now_ns)
+                }
+                _ => Effect::Violation("a double word is programmed out of order".into()),
+            },
+        }
+    }
+
+    fn program(&mut self, offset: u32, bytes: &[u8], now_ns: f64) -> Effect {
+        let at = offset as usize;
+        let blank = self.contents.bytes[at..at + bytes.len()]
+            .iter()
+            .all(|&byte| byte == 0xFF);
+        if self.part == Part::Stm32g474 && (!blank || self.contents.damaged.contains(&offset)) {
+            return Effect::Violation(format!(
+                "the double word at {offset:#x} is programmed twice"
+            ));
+        }
+        let bytes = bytes.to_vec();
+        self.change(
+            Operation::Program { offset, bytes },
+            now_ns + program_ns(self.part),
+        )
+    }
+
+    /// A read of a word from the calibration's place: the word, and the address in its bank if error correction fails.
+    pub fn read(&mut self, offset: u32, registers: &Registers) -> (u32, Option<u32>) {
+        let word_offset = offset & !3;
+        let double = offset & !7;
+        if self.contents.damaged.contains(&double) {
+            let address = self.part.calibration().0 + double - 0x0804_0000;
+            return (self.contents.word(word_offset) ^ 0x0101_0101, Some(address));
+        }
+        let word = self.contents.word(word_offset);
+        let is_cached = registers.bit(self.base, 10);
+        match is_cached {
+            true => (*self.cached.entry(word_offset).or_insert(word), None),
+            false => (word, None),
+        }
+    }
+}

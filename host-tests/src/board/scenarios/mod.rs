@@ -1,0 +1,55 @@
+//! What the images have to stand, one function a scenario. Each returns a line of what was measured.
+
+mod bus;
+mod faults;
+mod motion;
+mod processor;
+mod rig;
+mod start;
+mod storage;
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+
+pub use rig::Rig;
+
+use super::image::Image;
+use super::part::Part;
+
+/// The image of a part, and the emulator's library.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// Shared library of the CPU emulator.
+    pub library: PathBuf,
+    /// The part.
+    pub part: Part,
+    /// Its image.
+    pub image: Image,
+}
+
+/// A scenario; an error says what went wrong.
+pub type Scenario = fn(&Setup) -> Result<String>;
+
+/// All of them, by name.
+pub const ALL: [(&str, Scenario); 19] = [
+    ("boot", start::boot),
+    ("factory-fresh", start::factory_fresh),
+    ("slow-crystal", start::slow_crystal),
+    ("dead-crystal", start::dead_crystal),
+    ("slow-clock-tolerance", start::slow_clock_tolerance),
+    ("lift-hold-lower", motion::lift_hold_lower),
+    ("store-and-read-back", storage::store_and_read_back),
+    ("power-cuts", storage::power_cuts),
+    ("electrical-faults", faults::electrical_faults),
+    ("crystal-failure", processor::crystal_failure),
+    ("debugger-halt", processor::debugger_halt),
+    ("stuck-program", processor::stuck_program),
+    ("stack-overflow", processor::stack_overflow),
+    ("flipped-registers", processor::flipped_registers),
+    ("flipped-code", processor::flipped_code),
+    ("wrong-clock", processor::wrong_clock),
+    ("damaged-ram", processor::damaged_ram),
+    ("bus-off", bus::bus_off),
+    ("flooded-bus", bus::flooded),
+];

@@ -1,0 +1,231 @@
+//! Faults of the processor and its clock.
+
+use anyhow::{Result, ensure};
+use hitch_model::Model;
+
+use super::Setup;
+use super::rig::{READY_MS, Rig};
+use crate::board::{Conditions, Contents, Part, Stop};
+
+/// Time within which the watchdog resets a dead program at the slowest oscillator, and the pins are low, ms.
+const WATCHDOG_MS: f64 = 20.0;
+
+/// A hitch that is lifted at full speed.
+fn lifted<'m>(setup: &Setup, model: &'m Model) -> Result<Rig<'m>> {
+    let mut rig = Rig::typical(setup, model)?;
+    rig.pick_up()?;
+    rig.lever(125.0, 700)?;
+    ensure!(rig.is_driven(), "the hitch isn't lifted");
+    Ok(rig)
+}
+
+/// After a reset no coil is driven until the operator has picked the hitch up, and the ECU runs.
+fn stays_off(rig: &mut Rig<'_>, milliseconds: usize) -> Result<()> {
+    for step in 0..milliseconds {
+        rig.tick_with(|_| {})?;
+        ensure!(!rig.is_driven(), "a coil is driven again {step} ms later");
+    }
+    Ok(())
+}
+
+/// The crystal fails: hardware cuts the outputs, the program gives up, and the watchdog resets the part.
+pub fn crystal_failure(setup: &Setup) -> Result<String> {
+    let model = Model::nominal();
+    let mut rig = lifted(setup, &model)?;
+    let fault_ns = rig.now_ns();
+    rig.board.chip().fail_crystal();
+    let took_ms = rig.off_after_ms(fault_ns, 50, |_| {})?;
+    ensure!(took_ms < 0.01, "off after {took_ms} ms: not by hardware");
+    stays_off(&mut rig, READY_MS + 400)?;
+    ensure!(
+        rig.board.resets == [Stop::Watchdog],
+        "{:?}",
+        rig.board.resets
+    );
+    rig.finish_after_resets()?;
+    Ok(format!(
+        "pins low after {took_ms:.3} ms, reset, and ready again"
+    ))
+}
+
+/// A debugger halts the processor for a second in the middle of a move.
+pub fn debugger_halt(setup: &Setup) -> Result<String> {
+    let model = Model::nominal();
+    let mut rig = lifted(setup, &model)?;
+    let fault_ns = rig.now_ns();
+    rig.board.halt(true);
+    let took_ms = rig.off_after_ms(fault_ns, 10, |_| {})?;
+    ensure!(took_ms < 0.01, "off after {took_ms} ms");
+    stays_off(&mut rig, 1_000)?;
+    ensure!(
+        rig.board.resets.is_empty(),
+        "reset while a debugger halts the processor"
+    );
+    rig.board.halt(false);
+    // The step was late by far: that is a fault, and the lever has to pick the hitch up again.
+    rig.run(20)?;
+    stays_off(&mut rig, 1_000)?;
+    Ok(format!("pins low after {took_ms:.3} ms"))
+}
+
+/// The converters stop, so the program waits for ever: the watchdog resets the part.
+pub fn stuck_program(setup: &Setup) -> Result<String> {
+    let model = Model::nominal();
+    let mut worst_ms: f64 = 0.0;
+    for slow_clock_hz in setup.part.slow_clock_hz() {
+        let conditions = Conditions {
+            slow_clock_hz,
+            ..Conditions::typical(setup.part)
+        };
+        let mut rig = Rig::new(setup, &model, Contents::erased(setup.part), conditions)?;
+        rig.pick_up()?;
+        rig.lever(125.0, 700)?;
+        ensure!(rig.is_driven(), "the hitch isn't lifted");
+        let fault_ns = rig.now_ns();
+        rig.board.chip().pwm.next_update_ns = f64::INFINITY;
+        let took_ms = rig.off_after_ms(fault_ns, 50, |_| {})?;
+        ensure!(
+            took_ms < WATCHDOG_MS,
+            "off after {took_ms} ms at {slow_clock_hz} Hz"
+        );
+        worst_ms = worst_ms.max(took_ms);
+        stays_off(&mut rig, READY_MS + 400)?;
+        ensure!(
+            rig.board.resets == [Stop::Watchdog],
+            "{:?}",
+            rig.board.resets
+        );
+        rig.finish_after_resets()?;
+    }
+    Ok(format!(
+        "pins low after at most {worst_ms:.2} ms, reset, and ready again"
+    ))
+}
+
+/// The stack runs out of RAM: the write faults, and the coils are off.
+pub fn stack_overflow(setup: &Setup) -> Result<String> {
+    let model = Model::nominal();
+    let mut rig = lifted(setup, &model)?;
+    let fault_ns = rig.now_ns();
+    rig.board.set_stack_pointer(0x2000_0020);
+    let took_ms = rig.off_after_ms(fault_ns, 50, |_| {})?;
+    ensure!(took_ms < WATCHDOG_MS, "off after {took_ms} ms");
+    stays_off(&mut rig, READY_MS + 400)?;
+    ensure!(
+        rig.board.resets == [Stop::Watchdog],
+        "{:?}",
+        rig.board.resets
+    );
+    Ok(format!(
+        "pins low after {took_ms:.2} ms, reset, and ready again"
+    ))
+}
+
+/// Bits of the peripherals' set-up flip while the hitch is lifted: the program notices and restarts.
+pub fn flipped_registers(setup: &Setup) -> Result<String> {
+    let model = Model::nominal();
+    let places = setup.part.addresses();
+    let sequence = match setup.part {
+        Part::Stm32f405 => 0x38,
+        Part::Stm32g474 => 0x4C,
+    };
+    let registers = [
+        ("TIM1_ARR", places.tim1 + 0x2C, 1 << 4),
+        ("TIM1_CCMR1", places.tim1 + 0x18, 1 << 4),
+        ("TIM1_RCR", places.tim1 + 0x30, 1 << 1),
+        ("GPIOA_MODER", places.gpio, 1 << 17),
+        ("GPIOB_MODER", places.gpio + 0x400, 1 << 20),
+        ("GPIOC_PUPDR", places.gpio + 0x80C, 1 << 16),
+        ("ADC1_JSQR", places.adc[0] + sequence, 1 << 9),
+    ];
+    let mut worst_ms: f64 = 0.0;
+    for (name, address, bit) in registers {
+        let mut rig = lifted(setup, &model)?;
+        let fault_ns = rig.now_ns();
+        let chip = rig.board.chip();
+        let flipped = chip.registers.get(address) ^ bit;
+        chip.registers.set(address, flipped);
+        let took_ms = rig.off_after_ms(fault_ns, 50, |_| {})?;
+        ensure!(took_ms < WATCHDOG_MS, "{name}: off after {took_ms} ms");
+        worst_ms = worst_ms.max(took_ms);
+        stays_off(&mut rig, READY_MS + 400)?;
+        ensure!(
+            rig.board.resets == [Stop::Watchdog],
+            "{name}: {:?}",
+            rig.board.resets
+        );
+        rig.finish_after_resets()?;
+    }
+    Ok(format!(
+        "{} registers: pins low after at most {worst_ms:.2} ms",
+        registers.len()
+    ))
+}
+
+/// A bit of the program flips in flash: it is found within two seconds, and the ECU doesn't come back.
+pub fn flipped_code(setup: &Setup) -> Result<String> {
+    let model = Model::nominal();
+    let mut rig = lifted(setup, &model)?;
+    let last = setup
+        .image
+        .pieces
+        .iter()
+        .map(|(address, bytes)| address + bytes.len() as u32);
+    let last = (last.max().unwrap_or(0) - 64) & !3;
+    let word = rig.board.read_word(last)?;
+    rig.board.write_word(last, word ^ 1 << 7)?;
+    let fault_ns = rig.now_ns();
+    let mut found_ms = None;
+    for _ in 0..3_000 {
+        rig.tick_with(|_| {})?;
+        if !rig.board.resets.is_empty() {
+            found_ms.get_or_insert((rig.now_ns() - fault_ns) * 1e-6);
+        }
+        ensure!(
+            found_ms.is_none() || !rig.is_driven(),
+            "a coil is driven by a damaged program"
+        );
+    }
+    let found_ms = found_ms.ok_or_else(|| anyhow::anyhow!("the damaged program runs on"))?;
+    ensure!(found_ms < 2_000.0, "found after {found_ms} ms");
+    rig.board.write_word(last, word)?;
+    Ok(format!("found after {found_ms:.0} ms"))
+}
+
+/// The main clock runs a tenth too slow, with all timers on it: only the independent oscillator shows it.
+pub fn wrong_clock(setup: &Setup) -> Result<String> {
+    let model = Model::nominal();
+    let mut worst_ms: f64 = 0.0;
+    for factor in [0.9, 1.1] {
+        let mut rig = lifted(setup, &model)?;
+        let fault_ns = rig.now_ns();
+        rig.board.chip().clocks.crystal_factor = factor;
+        rig.board.chip().clocks_changed();
+        let took_ms = rig.off_after_ms(fault_ns, 100, |_| {})?;
+        ensure!(
+            took_ms < 60.0,
+            "off after {took_ms} ms at {factor} of the clock"
+        );
+        worst_ms = worst_ms.max(took_ms);
+    }
+    Ok(format!("pins low after at most {worst_ms:.1} ms"))
+}
+
+/// A bit of RAM is stuck at power-up: the program doesn't start.
+pub fn damaged_ram(setup: &Setup) -> Result<String> {
+    let model = Model::nominal();
+    let conditions = Conditions {
+        stuck_ram: Some(0x2001_1004),
+        ..Conditions::typical(setup.part)
+    };
+    let mut rig = Rig::new(setup, &model, Contents::erased(setup.part), conditions)?;
+    for step in 0..READY_MS + 400 {
+        rig.tick_with(|_| {})?;
+        ensure!(!rig.is_driven(), "a coil is driven after {step} ms");
+    }
+    ensure!(
+        rig.board.chip().pwm.updates == 0,
+        "the ECU starts with damaged RAM"
+    );
+    Ok("the ECU does not start".into())
+}

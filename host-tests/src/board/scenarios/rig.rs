@@ -1,0 +1,136 @@
+//! A board with plant, operator and bus, and the steps that scenarios are made of.
+
+use anyhow::{Result, ensure};
+use hitch_firmware::can::Frame;
+use hitch_firmware::ecu::Contacts;
+use hitch_model::Model;
+use hitch_workbench::ecu::{Bench, Moment, Order};
+
+use super::Setup;
+use crate::board::{Board, Conditions, Contents};
+
+/// Time after power-up within which the ECU is ready, ms.
+pub const READY_MS: usize = 150;
+/// Angle at which the hitch rests at the start, degree.
+const START_DEG: f64 = 80.0;
+
+/// Board and surroundings.
+pub struct Rig<'m> {
+    /// The board.
+    pub board: Board,
+    /// Plant, sensors and operator.
+    pub bench: Bench<'m>,
+    /// Frames that the ECU has sent.
+    pub said: Vec<Frame>,
+}
+
+impl<'m> Rig<'m> {
+    /// A board that is powered up, with the hitch at rest.
+    pub fn new(
+        setup: &Setup,
+        model: &'m Model,
+        contents: Contents,
+        conditions: Conditions,
+    ) -> Result<Self> {
+        let board = Board::new(
+            &setup.library,
+            setup.part,
+            &setup.image,
+            contents,
+            conditions,
+        )?;
+        Ok(Self {
+            board,
+            bench: Bench::new(model, 150.0, 40.0, START_DEG, 1),
+            said: Vec::new(),
+        })
+    }
+
+    /// The same with erased flash and typical conditions.
+    pub fn typical(setup: &Setup, model: &'m Model) -> Result<Self> {
+        Self::new(
+            setup,
+            model,
+            Contents::erased(setup.part),
+            Conditions::typical(setup.part),
+        )
+    }
+
+    /// A millisecond in which `tamper` changes what sensors and wires give.
+    pub fn tick_with(&mut self, tamper: impl FnOnce(&mut Contacts)) -> Result<Moment> {
+        let moment = self
+            .bench
+            .tick_with(&mut self.board, &[], &mut self.said, tamper)?;
+        Ok(moment)
+    }
+
+    /// Some milliseconds.
+    pub fn run(&mut self, milliseconds: usize) -> Result<()> {
+        for _ in 0..milliseconds {
+            self.tick_with(|_| {})?;
+        }
+        Ok(())
+    }
+
+    /// Starts up, and lets the operator pick the hitch up.
+    pub fn pick_up(&mut self) -> Result<()> {
+        self.run(READY_MS + 500)?;
+        let angle_deg = self.bench.angle_deg();
+        self.bench.operator.obey(Order::Lever(angle_deg + 3.0));
+        self.run(600)
+    }
+
+    /// Moves the lever, and lets the hitch follow for some milliseconds.
+    pub fn lever(&mut self, angle_deg: f64, milliseconds: usize) -> Result<()> {
+        self.bench.operator.obey(Order::Lever(angle_deg));
+        self.run(milliseconds)
+    }
+
+    /// True if a coil is driven.
+    pub fn is_driven(&mut self) -> bool {
+        self.board.chip().off_since_ns.is_none()
+    }
+
+    /// Time now, ns.
+    pub fn now_ns(&mut self) -> f64 {
+        self.board.chip().now_ns
+    }
+
+    /// Runs until no coil has been driven since `fault_ns`; how long that took, ms.
+    pub fn off_after_ms(
+        &mut self,
+        fault_ns: f64,
+        most_ms: usize,
+        mut tamper: impl FnMut(&mut Contacts),
+    ) -> Result<f64> {
+        for _ in 0..most_ms {
+            if let Some(off_ns) = self.board.chip().off_since_ns {
+                return Ok((off_ns - fault_ns) * 1e-6);
+            }
+            self.tick_with(&mut tamper)?;
+        }
+        anyhow::bail!("a coil is still driven {most_ms} ms after the fault")
+    }
+
+    /// Ends a scenario: no reset, nothing forbidden, and everything set up as it should be.
+    pub fn finish(&mut self) -> Result<()> {
+        ensure!(
+            self.board.resets.is_empty(),
+            "the ECU was reset: {:?}",
+            self.board.resets
+        );
+        self.finish_after_resets()
+    }
+
+    /// The same after resets that belong to the scenario.
+    pub fn finish_after_resets(&mut self) -> Result<()> {
+        let violations = self.board.violations();
+        ensure!(
+            violations.is_empty(),
+            "the image must not do this: {violations:#?}"
+        );
+        let findings = self.board.chip().audit();
+        ensure!(findings.is_empty(), "the image sets this up: {findings:#?}");
+        Ok(())
+    }
+}

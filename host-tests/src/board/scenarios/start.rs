@@ -1,0 +1,119 @@
+//! Power-up.
+
+use anyhow::{Result, ensure};
+use hitch_model::Model;
+
+use super::Setup;
+use super::rig::{READY_MS, Rig};
+use crate::board::{Conditions, Contents, Part, Stop};
+
+/// Frames of the address claim and the status say that the application runs.
+fn starts(setup: &Setup, conditions: Conditions) -> Result<f64> {
+    let model = Model::nominal();
+    let mut rig = Rig::new(setup, &model, Contents::erased(setup.part), conditions)?;
+    let mut ready_ms = None;
+    for millisecond in 0..READY_MS + 300 {
+        rig.tick_with(|_| {})?;
+        ensure!(
+            !rig.is_driven(),
+            "a coil is driven {millisecond} ms after power-up"
+        );
+        if rig.board.chip().pwm.updates > 0 {
+            ready_ms.get_or_insert(millisecond);
+        }
+    }
+    rig.finish()?;
+    ensure!(!rig.said.is_empty(), "the ECU sends nothing");
+    ready_ms
+        .map(|milliseconds| milliseconds as f64)
+        .ok_or_else(|| anyhow::anyhow!("the ECU never begins its first millisecond"))
+}
+
+/// A part as it is delivered by the programmer, in typical conditions.
+pub fn boot(setup: &Setup) -> Result<String> {
+    let ready_ms = starts(setup, Conditions::typical(setup.part))?;
+    Ok(format!(
+        "the first millisecond begins {ready_ms} ms after power-up"
+    ))
+}
+
+/// A part with the manufacturer's option bytes and nothing in flash but the image.
+pub fn factory_fresh(setup: &Setup) -> Result<String> {
+    let model = Model::nominal();
+    let mut rig = Rig::typical(setup, &model)?;
+    let before = rig.board.chip().flash.options;
+    rig.run(READY_MS + 300)?;
+    rig.finish()?;
+    let chip = rig.board.chip();
+    ensure!(
+        chip.flash.options == before,
+        "the application changes option bytes"
+    );
+    ensure!(
+        chip.flash.operations.is_empty(),
+        "flash is changed before anybody asks for it: {:?}",
+        chip.flash.operations
+    );
+    Ok("no option byte and no flash is changed, no reset".into())
+}
+
+/// A crystal that takes 100 ms, with the fastest oscillator of the watchdog.
+pub fn slow_crystal(setup: &Setup) -> Result<String> {
+    let ready_ms = starts(
+        setup,
+        Conditions {
+            crystal_start_ns: Some(100e6),
+            slow_clock_hz: 47e3,
+            ..Conditions::typical(setup.part)
+        },
+    )?;
+    Ok(format!(
+        "the first millisecond begins {ready_ms} ms after power-up"
+    ))
+}
+
+/// A crystal that never starts: the watchdog resets the part again and again, and no coil is driven.
+pub fn dead_crystal(setup: &Setup) -> Result<String> {
+    let model = Model::nominal();
+    let conditions = Conditions {
+        crystal_start_ns: None,
+        ..Conditions::typical(setup.part)
+    };
+    let mut rig = Rig::new(setup, &model, Contents::erased(setup.part), conditions)?;
+    for _ in 0..1_500 {
+        rig.tick_with(|_| {})?;
+        ensure!(!rig.is_driven(), "a coil is driven without a crystal");
+    }
+    let resets = rig.board.resets.len();
+    ensure!(
+        resets >= 2
+            && rig
+                .board
+                .resets
+                .iter()
+                .all(|&reset| reset == Stop::Watchdog),
+        "{:?} in 1.5 s",
+        rig.board.resets
+    );
+    Ok(format!("{resets} resets in 1.5 s, no coil driven"))
+}
+
+/// The slowest and the fastest oscillator of the watchdog.
+pub fn slow_clock_tolerance(setup: &Setup) -> Result<String> {
+    let [slowest, fastest] = setup.part.slow_clock_hz();
+    let fastest = match setup.part {
+        Part::Stm32f405 => fastest,
+        // Beyond the data sheet's 34 kHz, as the first revisions may be.
+        Part::Stm32g474 => fastest.max(34e3),
+    };
+    for slow_clock_hz in [slowest, 32e3, fastest] {
+        starts(
+            setup,
+            Conditions {
+                slow_clock_hz,
+                ..Conditions::typical(setup.part)
+            },
+        )?;
+    }
+    Ok(format!("starts at {slowest}, 32000 and {fastest} Hz"))
+}
