@@ -117,3 +117,35 @@ fn a_campaign_is_recorded_and_a_calibration_comes_back_from_flash() {
     let stored = CalibrationStore::new(flash).load().calibration;
     assert_eq!(stored.position.approach_gain.0, 33);
 }
+
+#[test]
+fn a_line_that_is_no_text_is_reported_and_the_next_one_is_obeyed() {
+    let mut child = hitch()
+        .args(["ecu", "--host", "--seconds", "60"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut orders = child.stdin.take().unwrap();
+    // Picked up after half a second.
+    sleep(Duration::from_millis(700));
+    orders
+        .write_all(b"lever \xFF80\n\x80\r\nlock on\r\n")
+        .unwrap();
+    sleep(Duration::from_millis(300));
+    orders.write_all(b"quit\n").unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success());
+    let reported = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        reported.contains("`\u{FFFD}80` has to be a number"),
+        "{reported}"
+    );
+    assert!(reported.contains("`\u{FFFD}` is none of"), "{reported}");
+    let shown = String::from_utf8(output.stdout).unwrap();
+    let last = shown.lines().last().unwrap();
+    assert!(last.ends_with("transport-lock"), "{last}");
+    let seconds: f64 = last.split_whitespace().next().unwrap().parse().unwrap();
+    assert!(seconds < 10.0, "`quit` ends it: {last}");
+}

@@ -160,7 +160,9 @@ fn seconds(text: &str) -> Result<f64, String> {
 fn orders() -> Receiver<String> {
     let (sender, receiver) = mpsc::channel();
     thread::spawn(move || {
-        for line in io::stdin().lock().lines().map_while(Result::ok) {
+        for line in io::stdin().lock().split(b'\n').map_while(Result::ok) {
+            // Bytes that are no text become U+FFFD, which is in no order: the line is reported, and the next one obeyed.
+            let line = String::from_utf8_lossy(&line).into_owned();
             if sender.send(line).is_err() {
                 return;
             }
