@@ -18,7 +18,7 @@ use super::valve_map::{VALVE_POINTS, ValveTable};
 use crate::crc32::Crc32;
 
 /// Layout of the block that this firmware reads.
-pub const CALIBRATION_VERSION: u32 = 3;
+pub const CALIBRATION_VERSION: u32 = 4;
 
 /// Largest flow in a table: ten times the pump's, and far from where products saturate.
 pub(super) const FLOW_LIMIT: MicroLitrePerSecond = MicroLitrePerSecond(10_000_000);

@@ -116,6 +116,14 @@ impl Controller {
         }
     }
 
+    /// Takes a calibration that makes it another machine: everything begins anew, but an engine that has told its speed
+    /// still has to.
+    pub fn restart(&mut self, calibration: ValidCalibration) {
+        let engine = self.engine;
+        *self = Self::new(calibration);
+        self.engine = engine;
+    }
+
     /// The calibration in use.
     #[must_use]
     pub fn calibration(&self) -> &ValidCalibration {

@@ -80,6 +80,8 @@ parameter_group! {
         engine_running: RevolutionPerMinute = 400, 0..=2_000;
         /// ... and for this long after the engine has come up: until its supply has settled.
         engine_settling: Millisecond = 500, 0..=10_000;
+        /// 1 if the hitch is locked while no engine speed is known. With 0, a machine that has never told its engine speed since power-up isn't locked for it; one that has told it and falls silent is.
+        engine_required: Count = 0, 0..=1;
     }
 }
 

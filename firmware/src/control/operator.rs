@@ -11,17 +11,22 @@ use super::units::{
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EngineWatch {
     running_for: Millisecond,
+    /// The engine speed has been known: from then on silence counts as a stopped engine.
+    was_known: bool,
 }
 
 impl EngineWatch {
-    /// One step; true if the hitch may be used. A machine that doesn't tell its engine speed may always.
+    /// One step; true if the hitch may be used. A machine that has never told its engine speed may always, unless the
+    /// calibration requires it.
     pub fn permits(
         &mut self,
         speed: Option<RevolutionPerMinute>,
         parameters: &LockParameters,
     ) -> bool {
+        self.was_known |= speed.is_some();
         let Some(speed) = speed else {
-            return true;
+            self.running_for = Millisecond::ZERO;
+            return !self.was_known && parameters.engine_required.0 == 0;
         };
         self.running_for = match speed > parameters.engine_running {
             true => self.running_for.next().min(parameters.engine_settling),
@@ -166,6 +171,7 @@ pub fn lowering_limit(
 
 #[cfg(test)]
 mod tests {
+    use super::super::units::Count;
     use super::*;
 
     const OPERATOR: OperatorParameters = OperatorParameters::NOMINAL;
@@ -199,6 +205,23 @@ mod tests {
         assert_eq!((0..2_000).position(|_| permits(Some(401))), Some(499));
         assert!(!permits(Some(0)), "stalled");
         assert_eq!((0..2_000).position(|_| permits(Some(800))), Some(499));
+        assert!(!permits(None), "silent");
+        assert_eq!((0..2_000).position(|_| permits(Some(800))), Some(499));
+    }
+
+    #[test]
+    fn an_engine_that_is_required_has_to_be_heard_before_the_hitch_is_used() {
+        let parameters = LockParameters {
+            engine_required: Count(1),
+            ..LockParameters::NOMINAL
+        };
+        let mut engine = EngineWatch::default();
+        assert!((0..2_000).all(|_| !engine.permits(None, &parameters)));
+        let speed = Some(RevolutionPerMinute(800));
+        assert_eq!(
+            (0..2_000).position(|_| engine.permits(speed, &parameters)),
+            Some(499)
+        );
     }
 
     #[test]

@@ -134,6 +134,7 @@ impl<F: NorFlash> Ecu<F> {
             .added_to(self.conversion.inputs(&contacts.samples));
         inputs.step_time = self.pace.begin(contacts.clock_us);
         inputs.clock_ratio = contacts.clock_ratio;
+        inputs.engine_speed = self.node.engine_speed(self.pace.now_ms());
         inputs.enable_line_fault = self.enable_line.read(contacts.enable_feedback);
         // Many a part stands still while its flash is erased: nothing may move then.
         inputs.switches.transport_lock |= self.service.is_storing();

@@ -181,6 +181,6 @@ fn apply(calibration: ValidCalibration, controller: &mut Controller) {
     };
     match same_machine == *calibration {
         true => controller.recalibrate(calibration),
-        false => *controller = Controller::new(calibration),
+        false => controller.restart(calibration),
     }
 }

@@ -32,6 +32,8 @@ impl Pgn {
     pub const COMMANDED_ADDRESS: Self = Self(0xFED8);
     /// Rear hitch status.
     pub const REAR_HITCH_STATUS: Self = Self(0xFE45);
+    /// Electronic engine controller 1: engine speed.
+    pub const ENGINE: Self = Self(0xF004);
     /// Hitch and PTO commands.
     pub const HITCH_COMMANDS: Self = Self(0xFE42);
     /// Request for a group to be repeated.

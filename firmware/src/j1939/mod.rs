@@ -10,6 +10,7 @@
 
 pub mod claim;
 pub mod diagnostics;
+pub mod engine;
 pub mod heartbeat;
 pub mod hitch;
 mod id;

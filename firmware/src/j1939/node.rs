@@ -2,6 +2,7 @@
 
 use super::claim::AddressClaim;
 use super::diagnostics::{Diagnostics, LONGEST_MESSAGE, Message, Variant};
+use super::engine::EngineSpeed;
 use super::heartbeat::{self, Heartbeat, Monitor};
 use super::hitch::{FACILITIES, HitchCommand, HitchStatus, StatusMessage};
 use super::id::{GLOBAL, Id, NULL, Pgn};
@@ -12,6 +13,7 @@ use super::request::{Control, Request, Requests, acknowledgement};
 use super::time::since_ms;
 use super::transport::Transport;
 use crate::can::Frame;
+use crate::control::units::RevolutionPerMinute;
 
 /// The rear hitch status is repeated this often, ms.
 const STATUS_PERIOD_MS: u32 = 100;
@@ -55,6 +57,7 @@ pub struct Node {
     requests: Requests,
     transport: Transport,
     reception: Reception,
+    engine: EngineSpeed,
     heartbeat: Heartbeat,
     /// The heartbeat of an implement.
     monitor: Option<Monitor>,
@@ -78,6 +81,7 @@ impl Node {
             requests: Requests::default(),
             transport: Transport::default(),
             reception: Reception::default(),
+            engine: EngineSpeed::default(),
             heartbeat: Heartbeat::default(),
             monitor: None,
             unwatched: None,
@@ -96,6 +100,12 @@ impl Node {
     #[must_use]
     pub fn remote(&self) -> Remote {
         self.remote.remote()
+    }
+
+    /// Engine speed; none while no engine tells it.
+    #[must_use]
+    pub fn engine_speed(&self, now_ms: u32) -> Option<RevolutionPerMinute> {
+        self.engine.speed(now_ms)
     }
 
     /// Takes a frame from the bus. What isn't J1939, isn't for this node or is malformed changes nothing.
@@ -131,6 +141,7 @@ impl Node {
             Pgn::HITCH_COMMANDS => {
                 self.commanded(HitchCommand::from_bytes(bytes), id.source, now_ms);
             }
+            Pgn::ENGINE => self.engine.hear(bytes, id.source, now_ms),
             Pgn::TRANSPORT_CONNECTION if for_us || for_all => {
                 self.reception.manage(bytes, id.source, for_all, now_ms);
                 if for_us {
@@ -193,6 +204,7 @@ impl Node {
     /// The next frame that is due. Called once a millisecond or more, until it gives none.
     pub fn poll(&mut self, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
         self.remote_permitted = status.remote_permitted;
+        self.engine.update(now_ms);
         let owner = self.remote.owner();
         let condemned = owner.is_some_and(|owner| self.is_condemned(owner, now_ms));
         self.remote.update(status, condemned, now_ms);

@@ -3,6 +3,7 @@
 mod bus;
 mod claim;
 mod diagnostics;
+mod engine;
 mod flood;
 mod heartbeat;
 mod measured;

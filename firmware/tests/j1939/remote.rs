@@ -146,10 +146,10 @@ fn a_hitch_whose_position_isnt_known_cant_be_commanded() {
 #[test]
 fn silence_ends_it_after_300_ms_with_its_reason() {
     let mut bus = remote_bus();
-    // The last command is 100 ms old.
-    bus.run(200);
+    // The last command is 100 ms old; 300 ms are borne.
+    bus.run(201);
     assert_ne!(bus.node.remote(), Remote::Idle);
-    bus.run(2);
+    bus.run(1);
     assert_eq!(bus.node.remote(), Remote::Idle);
     bus.run(20);
     assert_eq!(last_status(&bus).exit, ExitCode::Timeout);
@@ -176,6 +176,44 @@ fn the_lock_that_follows_doesnt_hide_the_reason_but_a_fault_does() {
     bus.status.exit = ExitCode::FunctionFault;
     bus.run(100);
     assert_eq!(last_status(&bus).exit, ExitCode::FunctionFault);
+}
+
+#[test]
+fn the_reason_comes_before_the_lock_for_two_seconds() {
+    let mut bus = remote_bus();
+    bus.run(201);
+    bus.status.exit = ExitCode::LockedOut;
+    let ended_ms = bus.now_ms;
+    bus.run(2_500);
+    let statuses = bus.take(Pgn::REAR_HITCH_STATUS);
+    let locked = statuses.iter().find(|sent| {
+        let message = StatusMessage::from_bytes(sent.data().try_into().unwrap());
+        sent.at_ms.wrapping_sub(ended_ms) < 3_000 && message.exit == ExitCode::LockedOut
+    });
+    let after_ms = locked.unwrap().at_ms.wrapping_sub(ended_ms);
+    assert_eq!(after_ms, 2_000);
+}
+
+#[test]
+fn a_command_out_of_range_is_answered_with_its_reason_if_commands_are_permitted() {
+    for (permitted, exit) in [(true, ExitCode::OutOfRange), (false, ExitCode::Clear)] {
+        let mut bus = Bus::claimed(Variant::Iso11783);
+        bus.status.remote_permitted = permitted;
+        bus.run(100);
+        commanded(&mut bus, HitchCommand::OutOfRange, 100);
+        assert_eq!(bus.node.remote(), Remote::Idle);
+        assert_eq!(last_status(&bus).exit, exit, "permitted: {permitted}");
+    }
+}
+
+#[test]
+fn the_same_value_may_be_off_by_one_bit() {
+    for (raw, position) in [(HERE - 1, 616), (HERE, 620), (HERE + 1, 624)] {
+        let mut bus = Bus::claimed(Variant::Iso11783);
+        bus.run(100);
+        command(&mut bus, HitchCommand::Position(raw));
+        assert_eq!(bus.node.remote(), Remote::Position(PerMille(position)));
+    }
 }
 
 #[test]

@@ -1,0 +1,4 @@
+//! The whole application: converter codes, contacts and frames in, pulse widths and frames out.
+
+mod bench;
+mod engine;
