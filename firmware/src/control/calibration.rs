@@ -138,6 +138,18 @@ impl core::ops::Deref for ValidCalibration {
     }
 }
 
+#[cfg(test)]
+impl ValidCalibration {
+    /// Flips a bit, as failing memory does.
+    pub(super) fn flip(&mut self, word: usize, bit: u32) {
+        let mut index = 0;
+        self.0.for_each_word(&mut |value| {
+            *value ^= if index == word { 1 << bit } else { 0 };
+            index += 1;
+        });
+    }
+}
+
 impl ValidCalibration {
     /// The calibration of an untaught machine.
     #[must_use]

@@ -8,11 +8,14 @@ use super::design_parameters::{
 };
 use super::linkage::LINKAGE_POINTS;
 use super::parameter::{OutOfRange, ParameterGroup, ParameterInfo};
-use super::valve_map::VALVE_POINTS;
+use super::valve_map::{VALVE_POINTS, ValveTable};
 use crate::fnv;
 
 /// Words in a block.
 pub const CALIBRATION_WORDS: usize = CALIBRATION_BYTES / 4;
+
+/// The word that holds the checksum.
+const CHECKSUM_WORD: usize = CALIBRATION_WORDS - 1;
 
 /// Words of a valve table: the number of points, then flow and current of each.
 pub const VALVE_WORDS: usize = 1 + 2 * VALVE_POINTS;
@@ -314,6 +317,47 @@ impl Calibration {
         words
     }
 
+    /// Word `index`, if there is such a word.
+    #[must_use]
+    pub(super) fn word(&self, index: usize) -> Option<i32> {
+        match index {
+            0 => Some(self.version.cast_signed()),
+            LIFT_WORD..LOWER_WORD => valve_word(&self.lift, index.saturating_sub(LIFT_WORD)),
+            LOWER_WORD..LINKAGE_WORD => valve_word(&self.lower, index.saturating_sub(LOWER_WORD)),
+            LINKAGE_WORD..SCALARS_WORD => match index.saturating_sub(LINKAGE_WORD) {
+                0 => Some(self.linkage.first_angle.0),
+                1 => Some(self.linkage.angle_step.0),
+                point => Some(self.linkage.travel.get(point.saturating_sub(2))?.0),
+            },
+            CHECKSUM_WORD => Some(self.checksum.cast_signed()),
+            _ => self.scalar(index.checked_sub(SCALARS_WORD)?),
+        }
+    }
+
+    /// Scalar `index`, counted through all groups.
+    fn scalar(&self, index: usize) -> Option<i32> {
+        fn of<G: ParameterGroup>(group: &G, index: &mut usize) -> Option<i32> {
+            let found = group.get(*index);
+            *index = index.wrapping_sub(G::INFO.len());
+            found
+        }
+        // The first group that has it ends the search.
+        let at = &mut { index };
+        of(&self.hydraulics, at)
+            .or_else(|| of(&self.sensors, at))
+            .or_else(|| of(&self.lock, at))
+            .or_else(|| of(&self.operator, at))
+            .or_else(|| of(&self.motion, at))
+            .or_else(|| of(&self.position, at))
+            .or_else(|| of(&self.rate, at))
+            .or_else(|| of(&self.hold, at))
+            .or_else(|| of(&self.saturation, at))
+            .or_else(|| of(&self.teach, at))
+            .or_else(|| of(&self.current, at))
+            .or_else(|| of(&self.bus, at))
+            .or_else(|| of(&self.safety, at))
+    }
+
     /// The block of words; nothing of it is checked.
     #[must_use]
     pub fn from_words(words: &[i32; CALIBRATION_WORDS]) -> Self {
@@ -325,5 +369,31 @@ impl Calibration {
             }
         });
         calibration
+    }
+}
+
+/// Word `index` of a valve table.
+fn valve_word(table: &ValveTable, index: usize) -> Option<i32> {
+    let Some(value) = index.checked_sub(1) else {
+        return Some(table.count.cast_signed());
+    };
+    let point = table.points.get(value / 2)?;
+    Some(match value % 2 {
+        0 => point.flow.0,
+        _ => point.current.0,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_word_is_that_of_the_whole_block() {
+        let block = Calibration::nominal();
+        for (index, word) in block.to_words().into_iter().enumerate() {
+            assert_eq!(block.word(index), Some(word), "{index}");
+        }
+        assert_eq!(block.word(CALIBRATION_WORDS), None);
     }
 }

@@ -6,13 +6,14 @@ use super::drop_scale::DropScale;
 use super::learning::Learning;
 use super::lever::SteadyLever;
 use super::load::LoadEstimate;
+use super::memory_check::MemoryCheck;
 use super::mode::{Fault, Mode};
 use super::motion::{Closing, Motion, Slack, flow, piston_speed};
 use super::operator::{ButtonGuard, EngineWatch, Float, QuickLift, lowering_limit, upper_limit};
 use super::position::{PositionControl, Reason};
 use super::rate::RateControl;
 use super::rest::RestPosition;
-use super::safety::{CoilCurrents, Command, Envelope};
+use super::safety::{CoilCurrents, Command, Envelope, Trip};
 use super::saturation::{SaturationWatch, goes_no_further};
 use super::sensors::{Sensed, Sensors};
 use super::signals::Inputs;
@@ -25,6 +26,8 @@ use super::units::{
 use super::valve_logic::{Demand, Direction, Phase};
 use super::valve_map::ValveCurves;
 
+#[cfg(test)]
+mod damage;
 mod report;
 mod stepping;
 
@@ -54,6 +57,7 @@ pub struct Controller {
     sink: SinkWatch,
     saturation: SaturationWatch,
     envelope: Envelope,
+    memory: MemoryCheck,
     /// What control asked for last.
     command: Command,
     /// Last believable angle.
@@ -104,6 +108,7 @@ impl Controller {
             sink: SinkWatch::default(),
             saturation: SaturationWatch::default(),
             envelope: Envelope::default(),
+            memory: MemoryCheck::default(),
             command: Command::default(),
             angle: MilliDegree::ZERO,
             rest: RestPosition::default(),
@@ -117,11 +122,14 @@ impl Controller {
     }
 
     /// Takes a calibration that makes it another machine: everything begins anew, but an engine that has told its speed
-    /// still has to.
+    /// still has to, and a final trip stays.
     pub fn restart(&mut self, calibration: ValidCalibration) {
-        let engine = self.engine;
+        let (engine, envelope) = (self.engine, self.envelope);
         *self = Self::new(calibration);
         self.engine = engine;
+        if envelope.tripped().is_some_and(Trip::is_final) {
+            self.envelope = envelope;
+        }
     }
 
     /// The calibration in use.
@@ -144,6 +152,7 @@ impl Controller {
             self.curves.fill(&calibration);
         }
         self.calibration = calibration;
+        self.memory.begin_anew();
     }
 
     /// What teaching found, if the machine has been taught since power-up.

@@ -29,6 +29,7 @@ pub mod lever;
 pub mod linkage;
 pub mod load;
 pub mod lock;
+pub mod memory_check;
 pub mod mode;
 pub mod motion;
 pub mod nominal;

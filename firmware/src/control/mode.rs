@@ -59,11 +59,13 @@ pub enum Fault {
     SensorSupply = 11,
     /// The line that enables the coils' drivers doesn't do what it is told.
     EnableLine = 12,
+    /// The calibration in use has changed in memory.
+    Memory = 13,
 }
 
 impl Fault {
     /// All of them, in the order of their codes, which begin at 1.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Lever,
         Self::Angle,
         Self::Sinking,
@@ -76,6 +78,7 @@ impl Fault {
         Self::Reference,
         Self::SensorSupply,
         Self::EnableLine,
+        Self::Memory,
     ];
 
     /// The fault with a code; 0 is none.
@@ -100,6 +103,7 @@ impl Fault {
             Self::Reference => "reference",
             Self::SensorSupply => "sensor-supply",
             Self::EnableLine => "enable-line",
+            Self::Memory => "memory",
         }
     }
 }

@@ -126,6 +126,8 @@ troubles! {
     Clock = CONTROLLER / 8,
     /// The enable line of the coils' drivers doesn't do what it is told.
     EnableLine = ENABLE_LINE / 12,
+    /// The calibration in use has changed in memory.
+    Memory = CALIBRATION / 12,
 }
 
 /// A set of troubles.
@@ -249,6 +251,7 @@ impl TroubleFinder {
             Trip::AngleTracks => Trouble::AngleTracks,
             Trip::Clock => Trouble::Clock,
             Trip::EnableLine => Trouble::EnableLine,
+            Trip::Memory => Trouble::Memory,
         }
     }
 }
@@ -297,5 +300,6 @@ fn of_fault(fault: Fault, inputs: &Inputs) -> Trouble {
         Fault::Reference => Trouble::Reference,
         Fault::SensorSupply => of_sensor_supply(inputs),
         Fault::EnableLine => Trouble::EnableLine,
+        Fault::Memory => Trouble::Memory,
     }
 }

@@ -22,6 +22,18 @@ fn a_worse_trip_replaces_the_first_and_no_other_does() {
 }
 
 #[test]
+fn a_trip_that_holds_does_not_hide_a_final_one() {
+    let mut rig = Rig::moving(LIFT);
+    rig.cut_after(LIFT, |inputs, _| inputs.lever = None);
+    for _ in 0..100 {
+        rig.step_with(LIFT, |inputs| {
+            (inputs.lever, inputs.lower_current) = (None, Some(MilliAmp(1_000)));
+        });
+    }
+    assert_eq!(rig.envelope.tripped(), Some(Trip::CoilStuck));
+}
+
+#[test]
 fn every_trip_is_reported_as_a_fault_of_its_kind() {
     let faults = Trip::ALL.map(Trip::fault);
     assert_eq!(
@@ -46,12 +58,13 @@ fn every_trip_is_reported_as_a_fault_of_its_kind() {
             Fault::Angle,
             Fault::Overrun,
             Fault::EnableLine,
+            Fault::Memory,
         ]
     );
     assert_eq!(
         Trip::ALL.map(|trip| trip as usize),
         [
-            1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19
+            1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20
         ]
     );
 }
@@ -102,6 +115,7 @@ fn limits_bound_each_coil_by_its_own() {
     let limits = Limits {
         safety: &safety,
         sensors: &SENSORS,
+        damaged: false,
     };
     for (order, most) in [
         (Order::Lift(i32::MAX), (1_000, 0)),

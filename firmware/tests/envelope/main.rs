@@ -22,6 +22,7 @@ const SENSORS: SensorParameters = SensorParameters::NOMINAL;
 const LIMITS: Limits<'static> = Limits {
     safety: &SAFETY,
     sensors: &SENSORS,
+    damaged: false,
 };
 /// Rocker speed of the rig below, in thousandths of a degree a millisecond: 60 degrees a second.
 const FULL_SPEED: i32 = 60;
@@ -173,7 +174,10 @@ fn assert_row(trip: Trip, time: i32, fault: impl Fn(&mut Inputs, i32)) {
         assert_eq!(rig.envelope.tripped(), Some(trip), "still holds");
         rig.speed = 0;
         rig.run(Order::Rest, 1_000);
-        let is_final = matches!(trip, Trip::CoilShort | Trip::CoilStuck | Trip::EnableLine);
+        let is_final = matches!(
+            trip,
+            Trip::CoilShort | Trip::CoilStuck | Trip::EnableLine | Trip::Memory
+        );
         assert_eq!(rig.envelope.objection(), Some(trip).filter(|_| is_final));
         rig.envelope.reset();
         assert_eq!(rig.envelope.tripped(), Some(trip).filter(|_| is_final));

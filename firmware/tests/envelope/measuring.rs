@@ -1,4 +1,4 @@
-//! Rows 15 to 19: what the other rows rely on.
+//! Rows 15 to 20: what the other rows rely on.
 
 use hitch_firmware::control::units::{Count, PerMille};
 
@@ -54,6 +54,7 @@ fn tracks(second: impl Fn(i32) -> Option<i32>) -> (Option<i32>, Option<Trip>) {
     let limits = Limits {
         safety: &SAFETY,
         sensors: &sensors,
+        damaged: false,
     };
     let mut rig = Rig::moving(LIFT);
     let cut = (1..=500).find(|_| {
@@ -111,4 +112,23 @@ fn row_19_the_enable_line() {
     assert_row(Trip::EnableLine, 1, |inputs, _| {
         inputs.enable_line_fault = true
     });
+}
+
+#[test]
+fn row_20_a_calibration_that_has_changed_in_memory() {
+    for order in [LIFT, LOWER] {
+        let mut rig = Rig::moving(order);
+        let limits = Limits {
+            damaged: true,
+            ..LIMITS
+        };
+        let inputs = rig.inputs();
+        let passed = pass(&mut rig.envelope, Some(order.currents()), &inputs, limits);
+        let found = (passed, rig.envelope.tripped());
+        assert_eq!(found, (CoilCurrents::OFF, Some(Trip::Memory)));
+        rig.speed = 0;
+        rig.run(Order::Rest, 1_000);
+        rig.envelope.reset();
+        assert_eq!(rig.envelope.tripped(), Some(Trip::Memory), "final");
+    }
 }

@@ -33,6 +33,7 @@ impl Controller {
         let limits = Limits {
             safety: &self.calibration.safety,
             sensors: &self.calibration.sensors,
+            damaged: self.memory.step(&self.calibration),
         };
         let currents = self.envelope.pass(self.command, inputs, limits);
         if let Some(trip) = self.envelope.objection() {

@@ -66,6 +66,8 @@ pub struct Limits<'a> {
     pub safety: &'a SafetyParameters,
     /// What sensors can plausibly say.
     pub sensors: &'a SensorParameters,
+    /// They, or others of their calibration, have changed in memory.
+    pub damaged: bool,
 }
 
 /// The envelope.
@@ -198,6 +200,7 @@ impl Envelope {
             measuring.tracks,
             measuring.clock,
             inputs.enable_line_fault,
+            limits.damaged,
         ])
     }
 

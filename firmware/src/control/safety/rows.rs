@@ -5,7 +5,7 @@ use super::super::mode::Fault;
 use super::super::units::Millisecond;
 
 /// Number of rows.
-pub const ROWS: usize = 19;
+pub const ROWS: usize = 20;
 
 /// What tripped the envelope, with the code it has on links and in traces; the order of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +49,8 @@ pub enum Trip {
     Clock = 18,
     /// The line that enables the coils' drivers doesn't do what it is told.
     EnableLine = 19,
+    /// The calibration in use no longer has its checksum: memory has lost a bit.
+    Memory = 20,
 }
 
 impl Trip {
@@ -73,12 +75,17 @@ impl Trip {
         Self::AngleTracks,
         Self::Clock,
         Self::EnableLine,
+        Self::Memory,
     ];
 
-    /// True if only a restart clears it: the driver has to be tested before it is trusted again.
+    /// True if only a restart clears it: the driver has to be tested, or the calibration read from flash, before it is
+    /// trusted again.
     #[must_use]
     pub const fn is_final(self) -> bool {
-        matches!(self, Self::CoilShort | Self::CoilStuck | Self::EnableLine)
+        matches!(
+            self,
+            Self::CoilShort | Self::CoilStuck | Self::EnableLine | Self::Memory
+        )
     }
 
     /// How long the row has to hold.
@@ -100,7 +107,8 @@ impl Trip {
             | Self::AngleFrozen
             | Self::AngleNoisy
             | Self::Against
-            | Self::EnableLine => Millisecond(1),
+            | Self::EnableLine
+            | Self::Memory => Millisecond(1),
         }
     }
 
@@ -120,6 +128,7 @@ impl Trip {
             Self::Reference => Fault::Reference,
             Self::SensorSupply => Fault::SensorSupply,
             Self::EnableLine => Fault::EnableLine,
+            Self::Memory => Fault::Memory,
             Self::Supply => Fault::Supply,
             Self::CoilOpen | Self::CoilShort | Self::CoilStuck => Fault::Coil,
         }
@@ -166,7 +175,8 @@ pub struct Debounce {
 }
 
 impl Debounce {
-    /// One step, which has lost `lost` if it is out of time; the first row that has been holding for its time.
+    /// One step, which has lost `lost` if it is out of time; the first row that has been holding for its time, a final
+    /// one before all others.
     pub fn judge(
         &mut self,
         holds: Rows,
@@ -187,7 +197,11 @@ impl Debounce {
                 Trip::Overrun => lost,
                 _ => Millisecond(1),
             };
-            found = self.count(row, held, parameters).or(found);
+            let first = self.count(row, held, parameters);
+            found = match found.is_some_and(Trip::is_final) {
+                true => first.filter(|trip| trip.is_final()).or(found),
+                false => first.or(found),
+            };
         }
         found
     }
