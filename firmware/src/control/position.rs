@@ -385,6 +385,8 @@ mod tests {
             let waited_ms = waited_for(&mut position, Micrometre(short_of)).unwrap();
             assert!((100..=longest_ms).contains(&waited_ms), "{waited_ms} ms");
         }
+        position.start();
+        assert_eq!(waited_for(&mut position, Micrometre(MOST_SPARED + 1)), None);
     }
 
     #[test]

@@ -17,8 +17,8 @@ use crate::crc32::Crc32;
 /// Bytes that are read or programmed at a time: a multiple of what any flash takes at once.
 const CHUNK: usize = 32;
 const CHUNK_WORDS: usize = CHUNK / 4;
-/// Bytes of a record of this firmware.
-const RECORD_BYTES: usize = 4 * RECORD_WORDS;
+/// Bytes that a record of this firmware takes, the last chunk filled up.
+const RECORD_BYTES: usize = (4 * RECORD_WORDS).next_multiple_of(CHUNK);
 
 /// One of the two copies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -278,20 +278,15 @@ impl<F: NorFlash> CalibrationStore<F> {
         }
     }
 
-    /// Where to store, and under which number, if no copy makes a calibration: over a damaged copy first, which may be
-    /// one that could be read again later, and else over the older one.
+    /// Where to store, and under which number, if no copy makes a calibration: over a damaged copy before another one,
+    /// for it may be one that could be read again later. The number exceeds that of the copy that stays.
     fn without_any(&mut self) -> (usize, u32) {
-        let copies = self.copies();
-        let newest = newest_first(copies).next();
-        let sequence = newest
-            .and_then(|newest| copies.get(newest)?.sequence())
-            .unwrap_or(0);
-        let copy = match (newest, copies) {
-            (Some(newest), _) => usize::from(newest == 0),
-            (None, [Copy::Blank, Copy::Damaged]) => 1,
-            (None, _) => 0,
+        let [first, second] = self.copies();
+        let (copy, stays) = match second == Copy::Damaged && first != Copy::Damaged {
+            true => (1, first),
+            false => (0, second),
         };
-        (copy, sequence.wrapping_add(1))
+        (copy, stays.sequence().unwrap_or(0).wrapping_add(1))
     }
 
     fn copies(&mut self) -> [Copy; 2] {

@@ -25,6 +25,10 @@ pub struct Flash {
     pub torn: Vec<u8>,
     /// A read that touches these bytes fails.
     pub unreadable: Range<usize>,
+    /// Writing and erasing change nothing, and nobody says so.
+    pub protected: bool,
+    /// How often it was read.
+    pub reads: usize,
 }
 
 /// Power failed, or what was asked for can't be read.
@@ -46,6 +50,8 @@ impl Flash {
             done: 0,
             torn: Vec::new(),
             unreadable: 0..0,
+            protected: false,
+            reads: 0,
         }
     }
 
@@ -59,6 +65,9 @@ impl Flash {
 
     /// Changes a stretch byte by byte, as far as power lasts.
     fn change(&mut self, at: Range<usize>, to: impl Fn(usize, u8) -> u8) -> Result<(), FlashError> {
+        if self.protected {
+            return Ok(());
+        }
         for place in at.clone() {
             let before = self.bytes[place];
             let after = to(place - at.start, before);
@@ -88,6 +97,7 @@ impl ReadNorFlash for Flash {
 
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
         let (from, to) = (offset as usize, offset as usize + bytes.len());
+        self.reads += 1;
         if from < self.unreadable.end && self.unreadable.start < to {
             return Err(FlashError);
         }

@@ -2,6 +2,7 @@
 
 mod flash;
 mod fuzz;
+mod pieces;
 mod spared;
 
 use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};

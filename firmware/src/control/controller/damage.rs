@@ -25,7 +25,7 @@ fn tripped_after(controller: &mut Controller) -> Option<usize> {
 
 #[test]
 fn every_bit_that_flips_is_noticed_within_a_second() {
-    assert!(LONGEST <= 1_000, "{LONGEST} ms");
+    const { assert!(LONGEST <= 1_000) };
     let healthy = controller();
     for word in 0..CALIBRATION_WORDS {
         for bit in [0, 7, 16, 31] {
