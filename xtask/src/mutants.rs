@@ -1,6 +1,6 @@
-//! Mutation test of the safety envelope: every change to its code has to be noticed by its tests.
+//! Mutation test of the parts that have to be right: every change to their code has to be noticed by their tests.
 //!
-//! That takes minutes, so `firmware/mutants.txt` says for which code it was last done. Where a byte of that is
+//! That takes minutes, so `firmware/mutants.txt` says for which code of each part it was last done. Where a byte of that is
 //! different, it is done again.
 
 use std::ffi::OsString;
@@ -13,17 +13,67 @@ use hitch_firmware::control::design_parameters::{SafetyParameters, SensorParamet
 
 use crate::{process, workspace};
 
-/// What decides whether a change is noticed, besides the envelope's limits, from the workspace's root: the envelope,
-/// what it is made of, its tests, and what is changed.
-const DECIDES: [&str; 6] = [
-    "firmware/src/control/safety",
-    "firmware/src/control/mode.rs",
-    "firmware/src/control/signals.rs",
-    "firmware/src/control/units.rs",
-    "firmware/tests/envelope",
-    ".cargo/mutants.toml",
+/// A part of the firmware, and the tests that have to notice every change to it.
+#[derive(Debug)]
+struct Part {
+    name: &'static str,
+    /// What is changed, from the workspace's root.
+    changed: &'static str,
+    /// What else decides whether a change is noticed, its tests included.
+    decides: &'static [&'static str],
+    /// Test of the package `hitch-firmware`.
+    test: &'static str,
+    /// Tests that are left out: random ones whose steps would take most of the time, and that others do without.
+    skipped: Option<&'static str>,
+    /// A change to this function makes a loop endless, which the tests notice by their time, and on the ECU the watchdog.
+    looping: Option<&'static str>,
+}
+
+const PARTS: [Part; 3] = [
+    Part {
+        name: "safety",
+        changed: "firmware/src/control/safety/**/*.rs",
+        decides: &[
+            "firmware/src/control/safety",
+            "firmware/src/control/mode.rs",
+            "firmware/src/control/signals.rs",
+            "firmware/src/control/units.rs",
+            "firmware/tests/envelope",
+        ],
+        test: "envelope",
+        skipped: Some("any_inputs::"),
+        looping: Some("Debounce::judge"),
+    },
+    Part {
+        name: "storage",
+        changed: "firmware/src/storage/store.rs",
+        decides: &[
+            "firmware/src/storage",
+            "firmware/src/control/calibration_words.rs",
+            "firmware/src/crc32.rs",
+            "firmware/tests/storage",
+        ],
+        test: "storage",
+        skipped: None,
+        looping: Some("Reader<'_, F>::entries"),
+    },
+    Part {
+        name: "remote",
+        changed: "firmware/src/j1939/remote.rs",
+        decides: &[
+            "firmware/src/j1939/hitch.rs",
+            "firmware/src/j1939/node.rs",
+            "firmware/src/j1939/remote.rs",
+            "firmware/src/j1939/time.rs",
+            "firmware/tests/j1939",
+        ],
+        test: "j1939",
+        skipped: None,
+        looping: None,
+    },
 ];
-/// Says for which of it every change was noticed.
+
+/// Says for which code of each part every change was noticed.
 const PROVEN: &str = "firmware/mutants.txt";
 /// The version that is installed where there is none; each knows a few changes more.
 const VERSION: &str = "27.1.0";
@@ -31,56 +81,109 @@ const VERSION: &str = "27.1.0";
 const JOBS: &str = "2";
 /// What cargo-mutants ends with if no change went unnoticed, but the tests of some didn't end in time.
 const HANGS: i32 = 3;
-/// Changes here make a loop endless, which on the ECU the watchdog notices; others only take long on a busy machine.
-const LOOP: &str = "Debounce::judge";
+/// Time that tests have at least, s: they take a few, and more on a busy machine.
+const TEST_TIME: &str = "20";
 
-/// Changes the envelope in every way and writes down that its tests have noticed; unless `again`, only if anything of
+/// Changes each part in every way and writes down that its tests have noticed; unless `again`, only if anything of
 /// it is different from what was written down.
 pub fn run(again: bool) -> Result<()> {
-    let code = format!("code {:016x}", code()?);
-    let proven = workspace::root().join(PROVEN);
-    let known = fs::read_to_string(&proven).unwrap_or_default();
-    if !again && known.lines().any(|line| line == code) {
-        println!("{PROVEN}: its tests notice every change to the safety envelope as it is now");
-        return Ok(());
+    let path = workspace::root().join(PROVEN);
+    for part in &PARTS {
+        let code = format!("{} code {:016x}", part.name, part.code()?);
+        let known = fs::read_to_string(&path).unwrap_or_default();
+        if !again && known.lines().any(|line| line.starts_with(&code)) {
+            println!("{PROVEN}: the tests notice every change to {code}");
+            continue;
+        }
+        println!("{PROVEN} does not know {code}");
+        let line = format!("{code} {}", part.prove()?);
+        fs::write(&path, with_line(&known, part.name, &line))
+            .with_context(|| format!("can't write {PROVEN}"))?;
     }
-    println!("{PROVEN} does not know {code}");
-    let folder = workspace::target().join("mutants");
-    mutate(&folder)?;
-    let found = |list: &str| {
-        let path = folder.join("mutants.out").join(list);
-        fs::read_to_string(&path).with_context(|| path.display().to_string())
-    };
-    let hang = found("timeout.txt")?;
-    if let Some(slow) = hang.lines().find(|change| !change.ends_with(LOOP)) {
-        bail!(
-            "the tests took too long to say whether they notice this; try again when there is less to do: {slow}"
-        );
-    }
-    let text = format!(
-        "# Changes to the safety envelope, and how its tests notice them. Written by `cargo xtask mutants`.\n\
-         {code}\nfail {}\nhang {}\ndon't compile {}\n",
-        found("caught.txt")?.lines().count(),
-        hang.lines().count(),
-        found("unviable.txt")?.lines().count()
-    );
-    fs::write(&proven, text).with_context(|| format!("can't write {PROVEN}"))
+    Ok(())
 }
 
-/// A number that is another one if anything that decides is.
-fn code() -> Result<u64> {
-    let crc = Crc::<u64>::new(&CRC_64_XZ);
-    let mut digest = crc.digest();
-    let limits = (SafetyParameters::NOMINAL, SensorParameters::NOMINAL);
-    digest.update(format!("{limits:?}").as_bytes());
-    for path in DECIDES {
-        for file in files(&workspace::root().join(path))? {
-            let name = file.strip_prefix(workspace::root()).unwrap_or(&file);
-            digest.update(name.as_os_str().as_encoded_bytes());
-            digest.update(&fs::read(&file).with_context(|| file.display().to_string())?);
+/// What is written down, with another line for a part.
+fn with_line(known: &str, name: &str, line: &str) -> String {
+    let title = "# Changes to the code of each part, and how its tests notice them. Written by `cargo xtask mutants`.";
+    let lines = PARTS.iter().filter_map(|part| {
+        let prefix = format!("{} ", part.name);
+        match part.name == name {
+            true => Some(line),
+            false => known.lines().find(|line| line.starts_with(&prefix)),
         }
+    });
+    std::iter::once(title)
+        .chain(lines)
+        .map(|line| format!("{line}\n"))
+        .collect()
+}
+
+impl Part {
+    /// A number that is another one if anything that decides is.
+    fn code(&self) -> Result<u64> {
+        let crc = Crc::<u64>::new(&CRC_64_XZ);
+        let mut digest = crc.digest();
+        let limits = (SafetyParameters::NOMINAL, SensorParameters::NOMINAL);
+        digest.update(format!("{self:?} {limits:?}").as_bytes());
+        for path in self.decides {
+            for file in files(&workspace::root().join(path))? {
+                let name = file.strip_prefix(workspace::root()).unwrap_or(&file);
+                digest.update(name.as_os_str().as_encoded_bytes());
+                digest.update(&fs::read(&file).with_context(|| file.display().to_string())?);
+            }
+        }
+        Ok(digest.finalize())
     }
-    Ok(digest.finalize())
+
+    /// Changes it in every way; how many changes there were.
+    fn prove(&self) -> Result<String> {
+        let folder = workspace::target().join("mutants").join(self.name);
+        fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+        self.mutate(&folder)?;
+        let found = |list: &str| {
+            let path = folder.join("mutants.out").join(list);
+            fs::read_to_string(&path).with_context(|| path.display().to_string())
+        };
+        let hang = found("timeout.txt")?;
+        let is_loop = |change: &str| self.looping.is_some_and(|name| change.ends_with(name));
+        if let Some(slow) = hang.lines().find(|change| !is_loop(change)) {
+            bail!(
+                "the tests took too long to say whether they notice this; try again when there is less to do: {slow}"
+            );
+        }
+        Ok(format!(
+            "fail {} hang {} don't compile {}",
+            found("caught.txt")?.lines().count(),
+            hang.lines().count(),
+            found("unviable.txt")?.lines().count()
+        ))
+    }
+
+    /// Runs cargo-mutants.
+    fn mutate(&self, folder: &Path) -> Result<()> {
+        let mut command = process::command(program()?, &["mutants", "--no-config"]);
+        command
+            .args(["--jobs", JOBS, "--minimum-test-timeout", TEST_TIME])
+            .args(["--package", "hitch-firmware", "--file", self.changed])
+            .args(["--cargo-arg=--test", &format!("--cargo-arg={}", self.test)])
+            .arg("--output")
+            .arg(folder)
+            // Each job changes a copy of the sources and builds it there: in a folder that both share, or that the
+            // sources themselves are built in, cargo would take what one copy has built for the other's.
+            .env_remove("CARGO_TARGET_DIR");
+        if let Some(skipped) = self.skipped {
+            let skip = format!("--cargo-test-arg={skipped}");
+            command.args(["--cargo-test-arg=--", "--cargo-test-arg=--skip", &skip]);
+        }
+        process::announce(&command);
+        let status = command.status().context("can't start cargo-mutants")?;
+        ensure!(
+            status.success() || status.code() == Some(HANGS),
+            "cargo-mutants: {status}; either a change goes unnoticed, see above, or the tests could not be run"
+        );
+        Ok(())
+    }
 }
 
 /// The file itself, or the files in the folder, always in the same order.
@@ -94,24 +197,6 @@ fn files(path: &Path) -> Result<Vec<PathBuf>> {
         .collect::<Result<Vec<_>>>()?;
     files.sort();
     Ok(files)
-}
-
-/// Runs cargo-mutants as `.cargo/mutants.toml` says.
-fn mutate(folder: &Path) -> Result<()> {
-    let mut command = process::command(program()?, &["mutants", "--jobs", JOBS]);
-    command
-        .args(["--package", "hitch-firmware", "--output"])
-        .arg(folder)
-        // Each job changes a copy of the sources and builds it there: in a folder that both share, or that the
-        // sources themselves are built in, cargo would take what one copy has built for the other's.
-        .env_remove("CARGO_TARGET_DIR");
-    process::announce(&command);
-    let status = command.status().context("can't start cargo-mutants")?;
-    ensure!(
-        status.success() || status.code() == Some(HANGS),
-        "cargo-mutants: {status}; either a change goes unnoticed, see above, or the tests could not be run"
-    );
-    Ok(())
 }
 
 /// Finds cargo-mutants, or installs it beside what is built.

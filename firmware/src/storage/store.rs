@@ -425,7 +425,7 @@ fn newest_first(copies: [Copy; 2]) -> impl Iterator<Item = usize> {
             Copy::Good { sequence: second },
         ] => {
             // Sequences wrap; of two that were stored one after the other, the later one is one further on.
-            if first.wrapping_sub(second) < 1 << 31 {
+            if first.wrapping_sub(second).cast_signed() >= 0 {
                 [Some(0), Some(1)]
             } else {
                 [Some(1), Some(0)]
