@@ -84,6 +84,8 @@ fn main() -> anyhow::Result<()> {
         })
         .collect();
     print("all", &cases, |_| true);
+    print("textbook", &cases, |case| !case.drawn.structured);
+    print("structured", &cases, |case| case.drawn.structured);
     print("hold the last sample", &cases, |case| {
         case.kind == Kind::HoldsLast
     });
@@ -97,8 +99,9 @@ fn main() -> anyhow::Result<()> {
     for (case, cost) in &cases {
         if cost.extra_deg > arguments.most_deg {
             println!(
-                "seed {}: {:.2} deg, off after {:?} ms, {:?}; {:?} at {} ms of {:.1?}, {:.0} kg, {:.0} degC, pressures {}",
+                "seed {} {}: {:.2} deg, off after {:?} ms, {:?}; {:?} at {} ms of {:.1?}, {:.0} kg, {:.0} degC, pressures {}",
                 cost.seed,
+                kind_of(case.drawn.structured),
                 cost.extra_deg,
                 cost.off_after_ms,
                 cost.fault,
@@ -120,10 +123,27 @@ fn main() -> anyhow::Result<()> {
         "{machines} healthy machines, {MACHINE_MS} ms each: {} faults",
         faults.len()
     );
+    for structured in [false, true] {
+        println!(
+            "{}: {} faults",
+            kind_of(structured),
+            faults
+                .iter()
+                .filter(|fault| fault.structured == structured)
+                .count()
+        );
+    }
     for fault in faults {
         println!("{fault:?}");
     }
     Ok(())
+}
+
+fn kind_of(structured: bool) -> &'static str {
+    match structured {
+        true => "structured",
+        false => "textbook",
+    }
 }
 
 fn lifts(case: &Case) -> bool {

@@ -21,6 +21,8 @@ pub const MACHINE_MS: usize = 60_000;
 pub struct FalseTrip {
     /// Seed of the machine.
     pub seed: u64,
+    /// Whether its effects have more structure than textbooks give them.
+    pub structured: bool,
     /// When, ms.
     pub at_ms: usize,
     /// Where the hitch was and the lever, degree.
@@ -175,6 +177,7 @@ pub fn first_fault_watched(
         if instant.fault.is_some() || stops_short {
             return Some(FalseTrip {
                 seed,
+                structured: surroundings.drawn.structured,
                 at_ms,
                 place_deg: [instant.rocker_deg, lever_deg],
                 fault: instant.fault,
