@@ -18,7 +18,7 @@ use hitch_firmware::can::Frame;
 use hitch_firmware::control::{Fault, State};
 use hitch_firmware::ecu::{Contacts, Drive, Ecu, Hardware, Samples};
 
-use board::{Board, Can, Coils, Converters, SlowClock};
+use board::{Board, Can, Coils, Converters, ImageCheck, RegisterCheck, SlowClock};
 
 /// Coils and bus, as the application sees them.
 struct Outside {
@@ -55,10 +55,14 @@ fn main() -> ! {
         can: board.can,
     };
     let mut slow_clock = board.slow_clock;
+    let Some(mut image) = ImageCheck::start() else {
+        give_up();
+    };
     let mut ecu = Ecu::start(board.flash, board::serial_number(), board::scaling());
     let mut logged = Logged::default();
     watchdog.begin_operation();
     outside.coils.run();
+    let registers = RegisterCheck::seal();
     loop {
         let samples = next_samples(&mut converters, &mut outside.can, &mut slow_clock);
         let contacts = Contacts {
@@ -68,9 +72,15 @@ fn main() -> ! {
             enable_feedback: Some(outside.coils.enable_feedback()),
             clock_ratio: slow_clock.ratio(),
         };
+        if !registers.holds() {
+            give_up();
+        }
         // Without permission the watchdog isn't kicked, and resets the ECU.
         if let Some(permission) = ecu.tick(&contacts, &mut outside) {
             watchdog.kick(permission);
+        }
+        if !image.step() {
+            give_up();
         }
         logged.update(ecu.outputs().state, ecu.outputs().fault);
     }

@@ -24,8 +24,13 @@ impl Inbox {
     /// Takes a frame; if there is no room it is dropped and counted.
     pub fn put(&mut self, frame: Frame) {
         if self.frames.push_back(frame).is_err() {
-            self.dropped = self.dropped.saturating_add(1);
+            self.count_dropped();
         }
+    }
+
+    /// Counts a frame, or several in a row, that the controller's own queue had no room for.
+    pub fn count_dropped(&mut self) {
+        self.dropped = self.dropped.saturating_add(1);
     }
 
     /// The oldest frame.

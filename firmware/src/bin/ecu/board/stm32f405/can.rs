@@ -53,6 +53,11 @@ impl Can {
         while let Some(frame) = received() {
             self.inbox.put(frame);
         }
+        if CAN1.rfr(0).read().fovr() {
+            // Writing one clears.
+            CAN1.rfr(0).write(|w| w.set_fovr(true));
+            self.inbox.count_dropped();
+        }
     }
 
     /// The oldest frame that was heard.

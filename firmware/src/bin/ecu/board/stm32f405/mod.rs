@@ -3,6 +3,7 @@
 mod can;
 pub mod converters;
 pub mod flash;
+pub mod register_check;
 pub mod scaling;
 pub mod slow_clock;
 

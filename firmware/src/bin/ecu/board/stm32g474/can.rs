@@ -57,6 +57,11 @@ impl Can {
         while let Some(frame) = received() {
             self.inbox.put(frame);
         }
+        if FDCAN1.rxfs(0).read().rfl() {
+            // Writing one clears.
+            FDCAN1.ir().write(|w| w.set_rfl(0, true));
+            self.inbox.count_dropped();
+        }
     }
 
     /// The oldest frame that was heard.

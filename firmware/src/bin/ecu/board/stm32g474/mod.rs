@@ -3,6 +3,7 @@
 mod can;
 pub mod converters;
 pub mod flash;
+pub mod register_check;
 pub mod scaling;
 pub mod slow_clock;
 
@@ -10,7 +11,7 @@ pub use can::Can;
 
 use stm32_metapac::flash::vals::Latency;
 use stm32_metapac::rcc::vals::{Fdcansel, Hpre, Pllm, Plln, Pllr, Pllsrc, Sw};
-use stm32_metapac::{FLASH, PWR, RCC};
+use stm32_metapac::{FLASH, PWR, RCC, SYSCFG};
 
 /// TIM1 on PA8 and PA9 (data sheet, table 13).
 pub const TIMER_FUNCTION: u8 = 6;
@@ -69,7 +70,12 @@ fn start_peripherals() {
         w.set_tim2en(true);
         w.set_fdcanen(true);
     });
-    RCC.apb2enr().modify(|w| w.set_tim1en(true));
+    RCC.apb2enr().modify(|w| {
+        w.set_tim1en(true);
+        w.set_syscfgen(true);
+    });
     // Two cycles until a clock has arrived; reading back takes as long.
     let _ = RCC.apb2enr().read();
+    // A lockup of the core cuts the outputs, as a fault inside a fault does.
+    SYSCFG.cfgr2().modify(|w| w.set_cll(true));
 }
