@@ -10,7 +10,7 @@ use hitch_workbench::ecu::{Bench, EcuMachine};
 /// Milliseconds after which an ECU has its address: it waits 250 after its claim.
 const CLAIMED_MS: u32 = 300;
 /// Milliseconds within which an answer has to come.
-const ANSWER_MS: u32 = 20;
+const ANSWER_MS: u32 = 100;
 
 /// From the tool to the ECU.
 const COMMANDS: u32 = 0x18EF_80F9;

@@ -11,6 +11,7 @@ pub mod instruction_counts;
 pub mod lab;
 pub mod live_ecu;
 pub mod program;
+pub mod python;
 pub mod recording;
 pub mod refusal;
 pub mod replay;

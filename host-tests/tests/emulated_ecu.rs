@@ -22,7 +22,7 @@ const MOST_INSTRUCTIONS: u64 = 12_000;
 /// Instructions of a whole millisecond in which nothing is stored: what fits at 168 MHz and two clocks an instruction.
 const MOST_OF_MILLISECOND: u64 = 84_000;
 /// RAM of the ECU that the application may take, its stack included.
-const MOST_RAM_BYTES: u64 = 32 * 1024;
+const MOST_RAM_BYTES: u64 = 48 * 1024;
 
 #[test]
 #[ignore = "needs the ARM image: run by `cargo xtask test`"]

@@ -10,30 +10,15 @@ use std::process::Command;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hitch_firmware::crc32::Crc32;
 use hitch_model::campaign::{Campaign, Channel, Run};
 use hitch_workbench::can_door::CanDoor;
 use hitch_workbench::ecu::{CutFlash, EcuMachine, Emulator, FLASH_BYTES, OnHost, find_image};
 use host_tests::live_ecu::{self, Operator};
 use host_tests::program::hitch;
+use host_tests::python::{environment, run};
 
 fn scripts() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("python")
-}
-
-/// Runs a command; what it said, if it failed.
-fn run(command: &mut Command) -> Result<String, String> {
-    let output = command
-        .output()
-        .map_err(|error| format!("{command:?}: {error}"))?;
-    let said =
-        [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
-    let said = said.concat();
-    if output.status.success() {
-        Ok(said)
-    } else {
-        Err(format!("{command:?}: {}\n{said}", output.status))
-    }
 }
 
 /// The Python that has the packages, or why there is none.
@@ -43,32 +28,10 @@ fn python() -> Result<&'static Path, &'static str> {
     python.as_deref().map_err(String::as_str)
 }
 
-/// Makes an environment with the packages, unless there is one with just these.
 fn install() -> Result<PathBuf, String> {
-    let requirements = scripts().join("requirements.txt");
-    let wanted = fs::read(&requirements).map_err(|error| error.to_string())?;
-    let name = format!("python-{:08x}", Crc32::of(&wanted));
-    let environment = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let python = environment.join("bin").join("python");
-    let complete = environment.join("complete");
-    if !complete.exists() {
-        run(Command::new("python3")
-            .args(["-m", "venv", "--clear"])
-            .arg(&environment))?;
-        run(Command::new(&python)
-            .args([
-                "-m",
-                "pip",
-                "install",
-                "--quiet",
-                "--no-compile",
-                "--disable-pip-version-check",
-            ])
-            .arg("--requirement")
-            .arg(&requirements))?;
-        fs::write(&complete, "").map_err(|error| error.to_string())?;
-    }
-    Ok(python)
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let python = environment(&scripts().join("requirements.txt"), folder);
+    python.map_err(|error| format!("{error:#}"))
 }
 
 /// The same, or nothing on a machine where that may be.

@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use crate::budget::{self, Entry};
 use crate::stack::{self, Bound};
 use crate::toolchain::{TARGET, Way};
-use crate::{process, programming, size};
+use crate::{process, programming, seal, size};
 
 /// The profile that images are built with: optimised, and arithmetic that overflows is caught.
 const PROFILE: &str = "firmware";
@@ -87,6 +87,7 @@ fn build_images(way: Way) -> Result<(Vec<Image>, Emulated)> {
         let path = folder.join(&name);
         fs::copy(folder.join("ecu"), &path)
             .with_context(|| format!("can't write {}", path.display()))?;
+        seal::write(&path)?;
         programming::write(&path)?;
         images.push(Image::measured(name, &path)?);
     }
@@ -103,7 +104,8 @@ pub fn build_emulated(way: Way) -> Result<PathBuf> {
     Ok(folder(way).join("emulated"))
 }
 
-fn folder(way: Way) -> PathBuf {
+/// Where the images are.
+pub fn folder(way: Way) -> PathBuf {
     way.target_dir().join(TARGET).join(PROFILE)
 }
 

@@ -8,6 +8,7 @@ mod image;
 mod mutants;
 mod process;
 mod programming;
+mod seal;
 mod setup;
 mod size;
 mod stack;

@@ -28,7 +28,7 @@ pub fn write(image: &Path) -> Result<()> {
 }
 
 /// What the image puts into flash, gaps filled as erased flash is, and where it begins.
-fn flash(file: &[u8]) -> Result<(u32, Vec<u8>)> {
+pub fn flash(file: &[u8]) -> Result<(u32, Vec<u8>)> {
     let elf = ElfFile32::<LittleEndian>::parse(file)?;
     let mut pieces = Vec::new();
     for header in elf.elf_program_headers() {

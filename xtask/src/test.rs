@@ -15,8 +15,11 @@ const IMAGE_VARIABLE: &str = "HITCH_EMULATED_IMAGE";
 /// Tells them how deep its stack can get, in bytes.
 const STACK_VARIABLE: &str = "HITCH_STACK_BOUND";
 
-/// Tests that need the image.
-const ON_TARGET: [&str; 3] = ["emulated", "emulated_ecu", "python_clients"];
+/// Names the folder with the images for the parts.
+const IMAGES_VARIABLE: &str = "HITCH_BOARD_IMAGES";
+
+/// Tests that need images.
+const ON_TARGET: [&str; 4] = ["board_bench", "emulated", "emulated_ecu", "python_clients"];
 
 /// How many tests ended how.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,6 +53,7 @@ pub fn run(way: Option<Way>) -> Result<()> {
         .args(ON_TARGET.into_iter().flat_map(|name| ["--test", name]))
         .args(["--", "--ignored", "--nocapture"])
         .env(IMAGE_VARIABLE, &image.path)
+        .env(IMAGES_VARIABLE, image::folder(way))
         .env(STACK_VARIABLE, image.stack.bytes().to_string());
     let target = run_group(&mut on_target)?;
 

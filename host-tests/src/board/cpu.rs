@@ -41,10 +41,49 @@ pub enum Register {
     R2 = 68,
     /// Fourth argument.
     R3 = 69,
+    /// Saved by who is called, and so are those up to R11.
+    R4 = 70,
+    /// See R4.
+    R5 = 71,
+    /// See R4.
+    R6 = 72,
+    /// See R4.
+    R7 = 73,
+    /// See R4.
+    R8 = 74,
+    /// See R4.
+    R9 = 75,
+    /// See R4.
+    R10 = 76,
+    /// See R4.
+    R11 = 77,
     /// Scratch register.
     R12 = 78,
     /// Program status.
     Xpsr = 120,
+}
+
+impl Register {
+    /// All but the program counter.
+    pub const ALL: [Self; 16] = [
+        // The program status first: it says which stack pointer there is.
+        Self::Xpsr,
+        Self::R0,
+        Self::R1,
+        Self::R2,
+        Self::R3,
+        Self::R4,
+        Self::R5,
+        Self::R6,
+        Self::R7,
+        Self::R8,
+        Self::R9,
+        Self::R10,
+        Self::R11,
+        Self::R12,
+        Self::Sp,
+        Self::Lr,
+    ];
 }
 
 /// What the processor is connected to.

@@ -60,6 +60,15 @@ pub const ENABLE: Pin = Pin::new(Port::B, 10);
 /// See [`ENABLE`].
 pub const ENABLE_READ_BACK: Pin = Pin::new(Port::B, 11);
 
+/// A board at some time.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    chip: Chip,
+    registers: [u32; Register::ALL.len()],
+    pc: u32,
+    ram: Vec<u8>,
+}
+
 /// The board.
 pub struct Board {
     cpu: Cpu<Chip>,
@@ -123,6 +132,9 @@ impl Board {
     }
 
     fn program(&mut self) -> Result<()> {
+        let (calibration, _) = self.cpu.bus().part.calibration();
+        let erased = vec![0xFF; (calibration - FLASH) as usize];
+        self.cpu.write_memory(FLASH, &erased)?;
         for (address, bytes) in &self.image.pieces {
             self.cpu
                 .write_memory(*address, bytes)
@@ -221,9 +233,12 @@ impl Board {
         let (contents, conditions) = (chip.flash.contents.clone(), chip.conditions.clone());
         let until_ns = chip.until_ns;
         let options = chip.flash.options;
+        let off_since_ns = chip.off_since_ns;
         let mut fresh = Chip::new(chip.part, contents, conditions, chip.now_ns, flags);
         fresh.until_ns = until_ns;
         fresh.flash.options = options;
+        // A reset lets go of all outputs.
+        fresh.off_since_ns = off_since_ns.or(fresh.off_since_ns);
         fresh.schedule();
         *chip = fresh;
         self.start()
@@ -238,13 +253,34 @@ impl Board {
         self.reset(POWER_FLAGS)
     }
 
-    /// Switches power off and on, with other contents of the calibration's flash.
+    /// Part, registers and RAM as they are now.
+    ///
+    /// # Errors
+    /// If memory can't be read.
+    pub fn snapshot(&mut self) -> Result<Snapshot> {
+        let mut ram = vec![0; RAM_BYTES as usize];
+        self.cpu.read_memory(RAM, &mut ram)?;
+        Ok(Snapshot {
+            chip: self.cpu.bus().clone(),
+            registers: Register::ALL.map(|register| self.cpu.register(register)),
+            pc: self.pc,
+            ram,
+        })
+    }
+
+    /// Goes on from a snapshot.
     ///
     /// # Errors
     /// If memory can't be written.
-    pub fn power_up_with(&mut self, contents: Contents) -> Result<()> {
-        self.cpu.bus().flash.contents = contents;
-        self.cycle_power()
+    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
+        *self.cpu.bus() = snapshot.chip.clone();
+        self.cpu.write_memory(RAM, &snapshot.ram)?;
+        for (register, value) in Register::ALL.into_iter().zip(snapshot.registers) {
+            self.cpu.set_register(register, value);
+        }
+        self.pc = snapshot.pc;
+        self.halted = false;
+        Ok(())
     }
 
     /// A debugger halts the processor, or lets it go on.

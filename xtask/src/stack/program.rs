@@ -190,7 +190,7 @@ impl<'a> Program<'a> {
                     let inside_code = symbol.section_index().is_some_and(|section| {
                         self.file
                             .section_by_index(section)
-                            .is_ok_and(|section| section.kind() == SectionKind::Text)
+                            .is_ok_and(|section| is_code(&section))
                     });
                     ensure!(
                         !(inside_code && symbol.kind() == SymbolKind::Section),
@@ -212,6 +212,15 @@ impl<'a> Program<'a> {
 }
 
 /// Calls and jumps to a fixed address (ELF for the Arm architecture, table 5.6.1.6).
+/// Whether a section holds code alone: functions that run from RAM are among the variables.
+fn is_code<'a>(section: &impl ObjectSection<'a>) -> bool {
+    let writable = matches!(
+        section.flags(),
+        object::SectionFlags::Elf { sh_flags, .. } if sh_flags.contains(object::elf::SHF_WRITE)
+    );
+    section.kind() == SectionKind::Text && !writable
+}
+
 fn is_branch(flags: object::RelocationFlags) -> bool {
     use object::elf::{R_ARM_THM_JUMP24, R_ARM_THM_PC22};
     matches!(flags, object::RelocationFlags::Elf { r_type } if r_type == R_ARM_THM_PC22 || r_type == R_ARM_THM_JUMP24)

@@ -6,6 +6,7 @@ use crate::board::part::{CAN, FDCAN_RAM, FLASH, IWDG, PWR, Part, Pin, Port, TIM2
 
 impl Chip {
     fn read_calibration(&mut self, address: u32, size: u32) -> u32 {
+        self.calibration_read_ns.get_or_insert(self.now_ns);
         let stalled = self.flash.stalls_until_ns(address);
         if stalled > self.now_ns {
             self.pass(stalled);

@@ -46,7 +46,7 @@ pub enum Stop {
 }
 
 /// The part.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Chip {
     /// Which one.
     pub part: Part,
@@ -79,6 +79,8 @@ pub struct Chip {
     sampled_at: Option<u64>,
     /// The page of RAM that has a stuck bit.
     stuck_page: Vec<u8>,
+    /// When the calibration was read for the first time since the reset, ns.
+    pub calibration_read_ns: Option<f64>,
     /// Since when no coil has been driven, ns; `None` while one is.
     pub off_since_ns: Option<f64>,
     tim2: Counter,
@@ -122,6 +124,7 @@ impl Chip {
             instructions_to_drive: 0,
             sampled_at: None,
             stuck_page: vec![0; 0x1000],
+            calibration_read_ns: None,
             off_since_ns: Some(now_ns),
             tim2: Counter::new(TIM2, u32::MAX),
             slow_clock: SlowClockCapture::new(part),
@@ -188,6 +191,12 @@ impl Chip {
             2 => self.pwm.duty(channel, &self.registers),
             _ => 0.0,
         }
+    }
+
+    /// Since when no coil has been driven, ns; none while one is.
+    #[must_use]
+    pub const fn last_off_ns(&self) -> Option<f64> {
+        self.off_since_ns
     }
 
     /// Notes whether a coil is driven after something has changed at the outputs.

@@ -4,6 +4,7 @@ mod bus;
 mod faults;
 mod motion;
 mod processor;
+mod random;
 mod rig;
 mod start;
 mod storage;
@@ -32,7 +33,7 @@ pub struct Setup {
 pub type Scenario = fn(&Setup) -> Result<String>;
 
 /// All of them, by name.
-pub const ALL: [(&str, Scenario); 19] = [
+pub const ALL: [(&str, Scenario); 20] = [
     ("boot", start::boot),
     ("factory-fresh", start::factory_fresh),
     ("slow-crystal", start::slow_crystal),
@@ -52,4 +53,5 @@ pub const ALL: [(&str, Scenario); 19] = [
     ("damaged-ram", processor::damaged_ram),
     ("bus-off", bus::bus_off),
     ("flooded-bus", bus::flooded),
+    ("random-operation", random::operation),
 ];

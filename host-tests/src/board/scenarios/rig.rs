@@ -10,7 +10,7 @@ use super::Setup;
 use crate::board::{Board, Conditions, Contents};
 
 /// Time after power-up within which the ECU is ready, ms.
-pub const READY_MS: usize = 150;
+pub const READY_MS: usize = 250;
 /// Angle at which the hitch rests at the start, degree.
 const START_DEG: f64 = 80.0;
 
@@ -74,7 +74,7 @@ impl<'m> Rig<'m> {
 
     /// Starts up, and lets the operator pick the hitch up.
     pub fn pick_up(&mut self) -> Result<()> {
-        self.run(READY_MS + 500)?;
+        self.run(READY_MS)?;
         let angle_deg = self.bench.angle_deg();
         self.bench.operator.obey(Order::Lever(angle_deg + 3.0));
         self.run(600)
@@ -96,20 +96,21 @@ impl<'m> Rig<'m> {
         self.board.chip().now_ns
     }
 
-    /// Runs until no coil has been driven since `fault_ns`; how long that took, ms.
+    /// How long after `fault_ns` a coil was driven for the last time, ms; what happens within `watched_ms` counts.
     pub fn off_after_ms(
         &mut self,
         fault_ns: f64,
-        most_ms: usize,
+        watched_ms: usize,
         mut tamper: impl FnMut(&mut Contacts),
     ) -> Result<f64> {
-        for _ in 0..most_ms {
-            if let Some(off_ns) = self.board.chip().off_since_ns {
-                return Ok((off_ns - fault_ns) * 1e-6);
-            }
+        for _ in 0..watched_ms {
             self.tick_with(&mut tamper)?;
         }
-        anyhow::bail!("a coil is still driven {most_ms} ms after the fault")
+        let off_ns = self.board.chip().last_off_ns();
+        let off_ns = off_ns.ok_or_else(|| {
+            anyhow::anyhow!("a coil is still driven {watched_ms} ms after the fault")
+        })?;
+        Ok((off_ns - fault_ns).max(0.0) * 1e-6)
     }
 
     /// Ends a scenario: no reset, nothing forbidden, and everything set up as it should be.

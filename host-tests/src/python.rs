@@ -1,0 +1,48 @@
+//! Python environments with pinned packages, made once under the target folder.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, bail};
+use hitch_firmware::crc32::Crc32;
+
+/// Runs a command; what it said.
+///
+/// # Errors
+/// If it can't be run or fails; with what it said.
+pub fn run(command: &mut Command) -> Result<String> {
+    let output = command
+        .output()
+        .with_context(|| format!("can't run {command:?}"))?;
+    let said =
+        [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+    let said = said.concat();
+    match output.status.success() {
+        true => Ok(said),
+        false => bail!("{command:?}: {}\n{said}", output.status),
+    }
+}
+
+/// The interpreter of an environment with just the packages of `requirements`, made in `folder` if it isn't there.
+///
+/// # Errors
+/// If there is no Python, or a package can't be had.
+pub fn environment(requirements: &Path, folder: &Path) -> Result<PathBuf> {
+    let wanted =
+        fs::read(requirements).with_context(|| format!("can't read {}", requirements.display()))?;
+    let environment = folder.join(format!("python-{:08x}", Crc32::of(&wanted)));
+    let python = environment.join("bin").join("python");
+    let complete = environment.join("complete");
+    if !complete.exists() {
+        run(Command::new("python3")
+            .args(["-m", "venv", "--clear"])
+            .arg(&environment))?;
+        run(Command::new(&python)
+            .args(["-m", "pip", "install", "--quiet", "--no-compile"])
+            .args(["--disable-pip-version-check", "--requirement"])
+            .arg(requirements))?;
+        fs::write(&complete, "")?;
+    }
+    Ok(python)
+}

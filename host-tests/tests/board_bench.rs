@@ -1,0 +1,92 @@
+//! The images as they are flashed, on models of both parts with the plant attached: each scenario of
+//! [`host_tests::board::scenarios`], in a process of its own.
+//!
+//! They need images for ARM: `cargo xtask test` builds them and runs these tests. `HITCH_BOARD_MINUTES` makes the random
+//! operation longer, for a release.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+use host_tests::python::{environment, run};
+
+/// Names the folder with the images.
+const IMAGES_VARIABLE: &str = "HITCH_BOARD_IMAGES";
+
+/// The emulator's shared library, from its pinned Python package.
+fn library() -> &'static Path {
+    static LIBRARY: OnceLock<PathBuf> = OnceLock::new();
+    LIBRARY.get_or_init(|| {
+        let requirements = Path::new(env!("CARGO_MANIFEST_DIR")).join("python/unicorn.txt");
+        let python = environment(&requirements, Path::new(env!("CARGO_TARGET_TMPDIR"))).unwrap();
+        let script = "import os, unicorn; print(os.path.dirname(unicorn.__file__))";
+        let folder = run(Command::new(python).args(["-c", script])).unwrap();
+        Path::new(folder.trim()).join("lib/libunicorn.so.2")
+    })
+}
+
+fn scenario(part: &str, name: &str) {
+    let folder = std::env::var_os(IMAGES_VARIABLE).expect("the folder with the images");
+    let image = PathBuf::from(folder).join(format!("ecu-{part}"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_board-bench"));
+    command.arg(library()).arg(part).arg(image).arg(name);
+    match run(&mut command) {
+        Ok(said) => println!("{said}"),
+        Err(error) => panic!("{error:#}"),
+    }
+}
+
+/// A test a scenario and part.
+macro_rules! scenarios {
+    ($($function:ident: $name:literal,)*) => {
+        const NAMES: &[&str] = &[$($name),*];
+
+        mod stm32f405 {
+            $(#[test]
+            #[ignore = "needs the ARM images: run by `cargo xtask test`"]
+            fn $function() {
+                super::scenario("stm32f405", $name);
+            })*
+        }
+
+        mod stm32g474 {
+            $(#[test]
+            #[ignore = "needs the ARM images: run by `cargo xtask test`"]
+            fn $function() {
+                super::scenario("stm32g474", $name);
+            })*
+        }
+    };
+}
+
+scenarios! {
+    boot: "boot",
+    factory_fresh: "factory-fresh",
+    slow_crystal: "slow-crystal",
+    dead_crystal: "dead-crystal",
+    slow_clock_tolerance: "slow-clock-tolerance",
+    lift_hold_lower: "lift-hold-lower",
+    store_and_read_back: "store-and-read-back",
+    power_cuts: "power-cuts",
+    electrical_faults: "electrical-faults",
+    crystal_failure: "crystal-failure",
+    debugger_halt: "debugger-halt",
+    stuck_program: "stuck-program",
+    stack_overflow: "stack-overflow",
+    flipped_registers: "flipped-registers",
+    flipped_code: "flipped-code",
+    wrong_clock: "wrong-clock",
+    damaged_ram: "damaged-ram",
+    bus_off: "bus-off",
+    flooded_bus: "flooded-bus",
+    random_operation: "random-operation",
+}
+
+#[test]
+fn no_scenario_is_left_out() {
+    let known: Vec<&str> = host_tests::board::scenarios::ALL
+        .iter()
+        .map(|(name, _)| *name)
+        .collect();
+    assert_eq!(NAMES, known);
+}
