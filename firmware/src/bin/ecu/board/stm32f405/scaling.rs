@@ -21,8 +21,3 @@ pub const SCALING: BoardScaling = BoardScaling {
     wire_min: PerMille(50),
     wire_max: PerMille(950),
 };
-
-/// Where the maker has stored the code of the internal reference (data sheet, table of internal reference calibration).
-pub const FACTORY_REFERENCE: usize = 0x1FFF_7A2A;
-/// Voltage of the converters' reference at that time, mV.
-pub const FACTORY_REFERENCE_MV: u32 = 3_300;

@@ -2,6 +2,7 @@
 
 mod can;
 pub mod converters;
+pub mod factory_reference;
 pub mod flash;
 pub mod register_check;
 pub mod scaling;
