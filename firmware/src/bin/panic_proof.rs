@@ -53,6 +53,7 @@ fn application() {
         reference: AdcCode::new(0),
         wire_min: PerMille(0),
         wire_max: PerMille(0),
+        second_track: false,
     });
     let mut ecu = Ecu::start(AnyFlash, black_box(0), scaling);
     while black_box(true) {

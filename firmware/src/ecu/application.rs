@@ -64,7 +64,7 @@ impl<F: NorFlash> Ecu<F> {
     #[inline(never)]
     pub fn start(flash: F, serial_number: u32, scaling: BoardScaling) -> Self {
         let mut store = CalibrationStore::new(flash);
-        let (calibration, troubles) = service::load(&mut store);
+        let (calibration, troubles) = service::load(&mut store, scaling.second_track);
         let settings = Settings {
             name: NameFields::rear_hitch(serial_number).into(),
             preferred_address: PREFERRED_ADDRESS,

@@ -292,6 +292,7 @@ mod tests {
         reference: AdcCode(1_502),
         wire_min: PerMille(50),
         wire_max: PerMille(950),
+        second_track: false,
     };
 
     /// Samples with signals at `volts`, a sensor supply of `sensor_supply` volts and a reference that is `share` of its

@@ -22,4 +22,6 @@ pub struct BoardScaling {
     pub wire_min: PerMille,
     /// Largest share.
     pub wire_max: PerMille,
+    /// Whether the board's rocker-angle sensor has a second, inverted track: the factory's calibration then watches it.
+    pub second_track: bool,
 }

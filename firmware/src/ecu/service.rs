@@ -2,6 +2,7 @@
 
 use embedded_storage::nor_flash::NorFlash;
 
+use crate::control::units::Count;
 use crate::control::{Calibration, Controller, ValidCalibration};
 use crate::j1939::{Trouble, Troubles};
 use crate::storage::{CalibrationStore, Copy, Progress, Source};
@@ -33,7 +34,12 @@ pub struct Service<F> {
 }
 
 /// Reads what is stored, and what is wrong with it.
-pub fn load<F: NorFlash>(store: &mut CalibrationStore<F>) -> (ValidCalibration, Troubles) {
+///
+/// Without anything stored, the factory's calibration watches the angle's second track where there is one.
+pub fn load<F: NorFlash>(
+    store: &mut CalibrationStore<F>,
+    second_track: bool,
+) -> (ValidCalibration, Troubles) {
     let loaded = store.load();
     let troubles = if loaded.source == Source::Factory {
         Trouble::CalibrationLost.into()
@@ -42,7 +48,17 @@ pub fn load<F: NorFlash>(store: &mut CalibrationStore<F>) -> (ValidCalibration, 
     } else {
         Troubles::NONE
     };
-    (loaded.calibration, troubles)
+    let calibration = match loaded.source {
+        Source::Factory => factory(loaded.calibration, second_track),
+        Source::Stored { .. } => loaded.calibration,
+    };
+    (calibration, troubles)
+}
+
+fn factory(nominal: ValidCalibration, second_track: bool) -> ValidCalibration {
+    let mut calibration: Calibration = (*nominal).clone();
+    calibration.sensors.second_track = Count(i32::from(second_track));
+    calibration.seal().unwrap_or(nominal)
 }
 
 impl<F: NorFlash> Service<F> {

@@ -26,6 +26,7 @@ const SCALING: BoardScaling = BoardScaling {
     reference: AdcCode::new(1_502),
     wire_min: PerMille(50),
     wire_max: PerMille(950),
+    second_track: false,
 };
 
 /// Power failed.

@@ -4,7 +4,7 @@ use hitch_firmware::can::Frame;
 use hitch_firmware::ecu::link::{
     FRAME_BYTES, MOST_FRAMES, REQUEST_BYTES, Reply, Request, frame_from_bytes, frame_to_bytes,
 };
-use hitch_firmware::ecu::{Contacts, Machine, Probe};
+use hitch_firmware::ecu::{BoardScaling, Contacts, Machine, Probe};
 
 use crate::flash_file::FlashFile;
 use crate::link::Link;
@@ -14,6 +14,12 @@ use crate::{Done, Failure};
 
 /// Serial number of the emulated part.
 const SERIAL_NUMBER: u32 = 1;
+
+/// The board's scaling without its second angle track: the host's bench has one track, like most machines.
+const ONE_TRACK: BoardScaling = BoardScaling {
+    second_track: false,
+    ..SCALING
+};
 
 /// Runs until the requests end.
 pub fn run(link: &mut Link, stopwatch: &Stopwatch) -> Result<Done, Failure> {
@@ -61,7 +67,7 @@ fn power_up(
     stopwatch: &Stopwatch,
     done: &mut Done,
 ) -> Result<End, Failure> {
-    let mut machine: Machine<FlashFile, Control> = Machine::start(flash, SERIAL_NUMBER, SCALING);
+    let mut machine: Machine<FlashFile, Control> = Machine::start(flash, SERIAL_NUMBER, ONE_TRACK);
     let mut was_storing = false;
     while let Some(record) = link.read::<REQUEST_BYTES>()? {
         let Request::Tick { contacts, frames } = Request::from_bytes(&record) else {

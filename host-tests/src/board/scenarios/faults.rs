@@ -29,7 +29,7 @@ const LOW: AdcCode = code(0);
 const HIGH: AdcCode = code(4095);
 
 /// The faults.
-pub const FAULTS: [Fault; 14] = [
+pub const FAULTS: [Fault; 17] = [
     Fault {
         name: "supply below 8 V",
         most_ms: 12.0,
@@ -75,6 +75,30 @@ pub const FAULTS: [Fault; 14] = [
         most_ms: 7.0,
         always_shows: true,
         inject: |contacts, _| contacts.samples.rocker_angle = HIGH,
+    },
+    Fault {
+        name: "second angle track shorted to ground",
+        most_ms: 7.0,
+        always_shows: true,
+        inject: |contacts, _| contacts.samples.second_angle = LOW,
+    },
+    Fault {
+        name: "second angle track 4 degrees off",
+        most_ms: 22.0,
+        always_shows: true,
+        inject: |contacts, _| {
+            let off = contacts.samples.second_angle.get() + 119;
+            contacts.samples.second_angle = code(off);
+        },
+    },
+    Fault {
+        name: "both angle tracks lost",
+        most_ms: 7.0,
+        always_shows: true,
+        inject: |contacts, _| {
+            contacts.samples.rocker_angle = LOW;
+            contacts.samples.second_angle = LOW;
+        },
     },
     Fault {
         name: "angle jumps by 8 degrees",

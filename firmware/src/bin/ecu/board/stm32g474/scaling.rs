@@ -20,4 +20,6 @@ pub const SCALING: BoardScaling = BoardScaling {
     // 0.25 to 4.75 V of 5 V: the sensors give 0.5 to 4.5 V.
     wire_min: PerMille(50),
     wire_max: PerMille(950),
+    // On PA5.
+    second_track: true,
 };
