@@ -13,6 +13,14 @@ const PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../firmware/instruction
 const HEADING: &str = "\
 # Instructions on the emulated Cortex-M4. Written by `HITCH_WRITE_INSTRUCTIONS=1 cargo xtask test`.
 ";
+const IMAGES_PATH: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../firmware/instructions-images.txt"
+);
+const IMAGES_HEADING: &str = "\
+# Instructions from the converters' codes to the pulses, at most, in the images as they are flashed, on the models of both
+# parts. Written by `HITCH_WRITE_INSTRUCTIONS=1 cargo xtask test`.
+";
 /// Growth that isn't worth a line in a review, per mille: changes elsewhere move what the compiler merges.
 const GROWTH_PER_MILLE: u64 = 60;
 /// Another compiler may do with so much less.
@@ -44,16 +52,32 @@ pub fn check(counts: &[(&str, u64)]) -> Result<()> {
             "{name} takes {count} instructions, more than {bar}"
         );
     }
+    compare(PATH, HEADING, counts)
+}
+
+/// Compares the counts of the images as they are flashed with their lines, or writes them down.
+///
+/// # Errors
+/// If one is missing or has moved.
+pub fn check_images(counts: &[(&str, u64)]) -> Result<()> {
+    compare(IMAGES_PATH, IMAGES_HEADING, counts)
+}
+
+fn compare(path: &str, heading: &str, counts: &[(&str, u64)]) -> Result<()> {
     if env::var_os(WRITE).is_some() {
-        return fs::write(PATH, format!("{HEADING}{}", lines.concat()))
-            .with_context(|| format!("can't write {PATH}"));
+        let lines: String = counts
+            .iter()
+            .map(|(name, count)| format!("{name} {count}\n"))
+            .collect();
+        return fs::write(path, format!("{heading}{lines}"))
+            .with_context(|| format!("can't write {path}"));
     }
-    let golden = fs::read_to_string(PATH).with_context(|| format!("can't read {PATH}"))?;
+    let golden = fs::read_to_string(path).with_context(|| format!("can't read {path}"))?;
     counts.iter().try_for_each(|&(name, count)| {
         let line = golden.lines().find_map(|line| line.strip_prefix(name));
         let known: u64 = line
             .and_then(|rest| rest.trim().parse().ok())
-            .with_context(|| format!("{PATH} knows no {name}: write it with {WRITE}=1"))?;
+            .with_context(|| format!("{path} knows no {name}: write it with {WRITE}=1"))?;
         let (least, most) = (
             known - known * SHRINKAGE_PER_MILLE / 1000,
             known + known * GROWTH_PER_MILLE / 1000 + 1,

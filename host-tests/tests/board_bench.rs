@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
+use host_tests::instruction_counts;
 use host_tests::python::{environment, run};
 
 /// Names the folder with the images.
@@ -25,13 +26,17 @@ fn library() -> &'static Path {
     })
 }
 
-fn scenario(part: &str, name: &str) {
+/// Runs a scenario; what it says.
+fn scenario(part: &str, name: &str) -> String {
     let folder = std::env::var_os(IMAGES_VARIABLE).expect("the folder with the images");
     let image = PathBuf::from(folder).join(format!("ecu-{part}"));
     let mut command = Command::new(env!("CARGO_BIN_EXE_board-bench"));
     command.arg(library()).arg(part).arg(image).arg(name);
     match run(&mut command) {
-        Ok(said) => println!("{said}"),
+        Ok(said) => {
+            println!("{said}");
+            said
+        }
         Err(error) => panic!("{error:#}"),
     }
 }
@@ -80,6 +85,21 @@ scenarios! {
     bus_off: "bus-off",
     flooded_bus: "flooded-bus",
     random_operation: "random-operation",
+}
+
+#[test]
+#[ignore = "needs the ARM images: run by `cargo xtask test`"]
+fn instructions_from_samples_to_pulses_are_those_that_are_written_down() {
+    let counted = |part| {
+        let said = scenario(part, "lift-hold-lower");
+        let number = said
+            .split_once("at most ")
+            .and_then(|(_, rest)| rest.split_once(" instructions"))
+            .and_then(|(number, _)| number.parse().ok());
+        (part, number.expect("the scenario counts instructions"))
+    };
+    let counts = ["stm32f405", "stm32g474"].map(counted);
+    instruction_counts::check_images(&counts).unwrap();
 }
 
 #[test]
