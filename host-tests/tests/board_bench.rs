@@ -74,6 +74,8 @@ scenarios! {
     store_and_read_back: "store-and-read-back",
     power_cuts: "power-cuts",
     electrical_faults: "electrical-faults",
+    frozen_track: "frozen-track",
+    enable_line: "enable-line",
     crystal_failure: "crystal-failure",
     debugger_halt: "debugger-halt",
     stuck_program: "stuck-program",

@@ -32,5 +32,5 @@ pub use chip::{Chip, Stop};
 pub use conditions::Conditions;
 pub use flash::{Contents, Extent, Operation};
 pub use image::Image;
-pub use machine::{Board, Snapshot};
+pub use machine::{Board, ENABLE_READ_BACK, Snapshot};
 pub use part::{Part, Pin, Port};

@@ -46,18 +46,15 @@ impl Chip {
         if self.mode(pin) == 1 {
             return self.output(pin);
         }
+        if let Some(&level) = self.conditions.levels.get(&pin) {
+            return level;
+        }
         if let Some((from, _)) = self.conditions.wires.iter().find(|(_, to)| *to == pin) {
             return self.output(*from);
         }
-        let pulled_up = self
-            .registers
+        self.registers
             .field(self.port(pin.port) + 0x0C, 2 * pin.number, 2)
-            == 1;
-        self.conditions
-            .levels
-            .get(&pin)
-            .copied()
-            .unwrap_or(pulled_up)
+            == 1
     }
 
     fn write_port(&mut self, base: u32, offset: u32, value: u32) {

@@ -3,9 +3,11 @@
 use anyhow::{Context, Result, ensure};
 use hitch_firmware::ecu::{AdcCode, Contacts};
 use hitch_model::Model;
+use hitch_workbench::ecu::Order;
 
 use super::Setup;
 use super::rig::Rig;
+use crate::board::ENABLE_READ_BACK;
 
 /// A fault of wires, sensors and coils.
 #[derive(Clone, Copy)]
@@ -192,4 +194,74 @@ fn react(setup: &Setup, inject: fn(&mut Contacts, usize)) -> Result<f64> {
     }
     ensure!(rig.board.resets.is_empty(), "the ECU was reset");
     Ok(took_ms)
+}
+
+/// The first angle track freezes while the hitch is lifted at full speed, to the last bit or with its noise: the second
+/// one goes on, and their difference trips.
+pub fn frozen_track(setup: &Setup) -> Result<String> {
+    /// 2 degrees at 40 deg/s or more, the row's time, and two milliseconds.
+    const MOST_MS: f64 = 60.0;
+    let model = Model::nominal();
+    let mut worst_ms: f64 = 0.0;
+    for trembles in [false, true] {
+        let mut rig = Rig::typical(setup, &model)?;
+        rig.pick_up()?;
+        rig.lever(125.0, 700)?;
+        let mut random = fastrand::Rng::with_seed(17);
+        let mut frozen = None;
+        let fault_ns = rig.now_ns();
+        let took_ms = rig.off_after_ms(fault_ns, 300, |contacts| {
+            let held = *frozen.get_or_insert(contacts.samples.rocker_angle.get());
+            let noise = if trembles { random.u16(0..4) } else { 0 };
+            contacts.samples.rocker_angle = code(held + noise);
+        })?;
+        ensure!(
+            took_ms <= MOST_MS,
+            "off after {took_ms} ms, {MOST_MS} ms allowed"
+        );
+        worst_ms = worst_ms.max(took_ms);
+    }
+    Ok(format!("pins low after at most {worst_ms:.1} ms"))
+}
+
+/// The enable line's read-back is stuck high or low from power-up on, or goes low in the middle of a move.
+pub fn enable_line(setup: &Setup) -> Result<String> {
+    let model = Model::nominal();
+    for stuck in [true, false] {
+        let mut rig = Rig::typical(setup, &model)?;
+        rig.board
+            .chip()
+            .conditions
+            .levels
+            .insert(ENABLE_READ_BACK, stuck);
+        rig.pick_up()?;
+        rig.bench.operator.obey(Order::Lever(110.0));
+        for step in 0..1_000 {
+            rig.tick_with(|_| {})?;
+            ensure!(
+                !rig.is_driven(),
+                "stuck at {stuck}: a coil is driven after {step} ms"
+            );
+        }
+        ensure!(
+            rig.board.resets.is_empty(),
+            "stuck at {stuck}: {:?}",
+            rig.board.resets
+        );
+    }
+    let mut rig = Rig::typical(setup, &model)?;
+    rig.pick_up()?;
+    rig.lever(125.0, 700)?;
+    ensure!(rig.is_driven(), "the hitch isn't lifted");
+    let fault_ns = rig.now_ns();
+    rig.board
+        .chip()
+        .conditions
+        .levels
+        .insert(ENABLE_READ_BACK, false);
+    let took_ms = rig.off_after_ms(fault_ns, 200, |_| {})?;
+    ensure!(took_ms <= 8.0, "off after {took_ms} ms");
+    Ok(format!(
+        "no coil is driven with a stuck line; pins low after {took_ms:.1} ms in a move"
+    ))
 }

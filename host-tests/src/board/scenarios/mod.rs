@@ -33,7 +33,7 @@ pub struct Setup {
 pub type Scenario = fn(&Setup) -> Result<String>;
 
 /// All of them, by name.
-pub const ALL: [(&str, Scenario); 20] = [
+pub const ALL: [(&str, Scenario); 22] = [
     ("boot", start::boot),
     ("factory-fresh", start::factory_fresh),
     ("slow-crystal", start::slow_crystal),
@@ -43,6 +43,8 @@ pub const ALL: [(&str, Scenario); 20] = [
     ("store-and-read-back", storage::store_and_read_back),
     ("power-cuts", storage::power_cuts),
     ("electrical-faults", faults::electrical_faults),
+    ("frozen-track", faults::frozen_track),
+    ("enable-line", faults::enable_line),
     ("crystal-failure", processor::crystal_failure),
     ("debugger-halt", processor::debugger_halt),
     ("stuck-program", processor::stuck_program),
