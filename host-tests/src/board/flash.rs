@@ -406,3 +406,88 @@ impl Flash {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
+
+    fn flash(part: Part) -> (Flash, Registers) {
+        let mut registers = Registers::default();
+        // Both caches on.
+        registers.set(part.addresses().flash, 0x600);
+        (Flash::new(part, Contents::erased(part)), registers)
+    }
+
+    fn unlock(flash: &mut Flash, registers: &mut Registers, key: u32) {
+        for value in KEYS {
+            assert_eq!(
+                flash.write_register(key, value, registers, 0.0),
+                Effect::None
+            );
+        }
+    }
+
+    #[test]
+    fn a_locked_flash_refuses_and_a_wrong_key_keeps_it_locked() {
+        let (mut flash, mut registers) = flash(Part::Stm32f405);
+        let refused = flash.write_register(0x10, 1, &mut registers, 0.0);
+        assert!(matches!(refused, Effect::Violation(_)));
+        let wrong = flash.write_register(0x04, 1, &mut registers, 0.0);
+        assert!(matches!(wrong, Effect::Violation(_)));
+        let after = flash.write_register(0x04, KEYS[0], &mut registers, 0.0);
+        assert!(matches!(after, Effect::Violation(_)));
+    }
+
+    #[test]
+    fn the_data_cache_gives_old_data_until_it_is_reset() {
+        let part = Part::Stm32f405;
+        let (mut flash, mut registers) = flash(part);
+        assert_eq!(flash.read(0, &registers), (u32::MAX, None));
+        unlock(&mut flash, &mut registers, 0x04);
+        // Programming by words of 32 bits.
+        flash.write_register(0x10, 0x201, &mut registers, 0.0);
+        assert_eq!(
+            flash.write(0, 4, 0x1234_5678, &mut registers, 0.0),
+            Effect::None
+        );
+        assert_eq!(flash.read(0, &registers), (u32::MAX, None), "stale");
+        flash.write_register(0, 0x200, &mut registers, 0.0);
+        flash.write_register(0, 0x1200, &mut registers, 0.0);
+        flash.write_register(0, 0x600, &mut registers, 0.0);
+        assert_eq!(flash.read(0, &registers), (0x1234_5678, None));
+    }
+
+    #[test]
+    fn half_a_double_word_fails_its_error_correction_until_it_is_erased() {
+        let part = Part::Stm32g474;
+        let mut contents = Contents::erased(part);
+        let program = Operation::Program {
+            offset: 8,
+            bytes: vec![0; 8],
+        };
+        contents.apply(part, &program, Extent::Half);
+        let (mut flash, registers) = flash(part);
+        flash.contents = contents;
+        let (_, failed_at) = flash.read(12, &registers);
+        assert_eq!(failed_at, Some(0x3_E008));
+        let erase = Operation::Erase { piece: 0 };
+        flash.contents.apply(part, &erase, Extent::Whole);
+        assert_eq!(flash.read(12, &registers), (u32::MAX, None));
+    }
+
+    #[test]
+    fn the_other_bank_can_be_read_while_one_is_busy() {
+        let (mut flash, mut registers) = flash(Part::Stm32g474);
+        unlock(&mut flash, &mut registers, 0x08);
+        // Page 124 of the second bank.
+        let erase = 1 << 1 | 124 << 3 | 1 << 11 | 1 << 16;
+        assert_eq!(
+            flash.write_register(0x14, erase, &mut registers, 0.0),
+            Effect::None
+        );
+        assert_eq!(flash.stalls_until_ns(0x0800_1000), 0.0);
+        assert!(flash.stalls_until_ns(0x0807_E000) > 20e6);
+    }
+}
