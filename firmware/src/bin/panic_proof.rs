@@ -12,12 +12,16 @@ use core::hint::black_box;
 use core::panic::PanicInfo;
 
 use cortex_m_rt::entry;
+use embedded_hal::digital::{self, InputPin, OutputPin};
+use embedded_hal::pwm::{self, SetDutyCycle};
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash};
 use hitch_firmware::can::{ExtendedId, Frame};
 use hitch_firmware::control::signals::INPUT_BYTES;
 use hitch_firmware::control::units::{MilliAmp, MilliVolt, PerMille};
 use hitch_firmware::control::{Calibration, Controller, Inputs};
-use hitch_firmware::ecu::{AdcCode, BoardScaling, Contacts, Drive, Ecu, Hardware, Panel, Samples};
+use hitch_firmware::ecu::{
+    AdcCode, BoardScaling, CoilDriver, Contacts, Drive, Ecu, Hardware, PanelInputs, Samples,
+};
 
 unsafe extern "C" {
     safe fn the_controller_can_panic() -> !;
@@ -56,24 +60,26 @@ fn application() {
         second_track: false,
     });
     let mut ecu = Ecu::start(AnyFlash, black_box(0), scaling);
+    let mut hardware = AnyHardware(CoilDriver::new(AnyPin, AnyPin, AnyPin, AnyPin));
+    let mut panel = PanelInputs::new([AnyPin; 6]);
     while black_box(true) {
         let codes = black_box([0; Samples::CHANNELS]);
         let contacts = Contacts {
             samples: Samples::from_codes(codes.map(AdcCode::new)),
-            panel: Panel::from_bits(black_box(0)),
+            panel: panel.read(),
             clock_us: black_box(0),
-            enable_feedback: black_box(None),
+            enable_feedback: black_box(true).then(|| hardware.0.enable_feedback()),
             clock_ratio: black_box(None),
         };
-        black_box(ecu.tick(&contacts, &mut AnyHardware).is_some());
+        black_box(ecu.tick(&contacts, &mut hardware).is_some());
     }
 }
 
-struct AnyHardware;
+struct AnyHardware(CoilDriver<AnyPin, AnyPin, AnyPin, AnyPin>);
 
 impl Hardware for AnyHardware {
     fn drive(&mut self, drive: Drive) {
-        black_box(drive);
+        black_box(self.0.drive(drive).is_ok());
     }
 
     fn receive(&mut self) -> Option<Frame> {
@@ -89,6 +95,50 @@ impl Hardware for AnyHardware {
 
     fn frames_dropped(&self) -> u16 {
         black_box(0)
+    }
+}
+
+/// A pin or a pulse-width output that works or doesn't.
+#[derive(Clone, Copy)]
+struct AnyPin;
+
+impl digital::ErrorType for AnyPin {
+    type Error = digital::ErrorKind;
+}
+
+impl OutputPin for AnyPin {
+    fn set_low(&mut self) -> Result<(), digital::ErrorKind> {
+        perhaps().map_err(|_| digital::ErrorKind::Other)
+    }
+
+    fn set_high(&mut self) -> Result<(), digital::ErrorKind> {
+        perhaps().map_err(|_| digital::ErrorKind::Other)
+    }
+}
+
+impl InputPin for AnyPin {
+    fn is_high(&mut self) -> Result<bool, digital::ErrorKind> {
+        perhaps().map_err(|_| digital::ErrorKind::Other)?;
+        Ok(black_box(true))
+    }
+
+    fn is_low(&mut self) -> Result<bool, digital::ErrorKind> {
+        self.is_high()
+    }
+}
+
+impl pwm::ErrorType for AnyPin {
+    type Error = pwm::ErrorKind;
+}
+
+impl SetDutyCycle for AnyPin {
+    fn max_duty_cycle(&self) -> u16 {
+        black_box(0)
+    }
+
+    fn set_duty_cycle(&mut self, duty: u16) -> Result<(), pwm::ErrorKind> {
+        black_box(duty);
+        perhaps().map_err(|_| pwm::ErrorKind::Other)
     }
 }
 

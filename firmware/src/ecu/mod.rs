@@ -11,6 +11,7 @@
 
 mod application;
 mod arbiter;
+mod coil_driver;
 mod converter;
 mod drive;
 mod enable_line;
@@ -20,15 +21,18 @@ pub mod link;
 mod machine;
 mod pace;
 mod panel;
+mod panel_inputs;
 mod scaling;
 mod service;
 mod status;
 
 pub use application::Ecu;
+pub use coil_driver::{CoilDriver, CoilDriverError};
 pub use converter::{AdcCode, Conversion, Samples};
 pub use drive::{Compare, Drive};
 pub use flow::{FlowMonitor, Kick, Task};
 pub use hardware::{Contacts, Hardware};
 pub use machine::{Machine, Probe};
 pub use panel::{Contact, Panel};
+pub use panel_inputs::PanelInputs;
 pub use scaling::BoardScaling;

@@ -30,7 +30,7 @@ mod part;
 compile_error!("an image is for one part: choose the feature `stm32f405` or `stm32g474`");
 
 pub use clock::Clock;
-pub use coils::{Coils, cut};
+pub use coils::{Coils, cut, run};
 pub use converters::Converters;
 pub use factory_reference::scaling;
 pub use flash::CalibrationFlash;
@@ -41,7 +41,7 @@ pub use register_check::RegisterCheck;
 pub use reset::reset_cause;
 pub use serial_number::serial_number;
 pub use slow_clock::SlowClock;
-pub use switches::SwitchInputs;
+pub use switches::Switches;
 pub use watchdog::Watchdog;
 
 /// Everything that the ECU's board has.
@@ -53,7 +53,7 @@ pub struct Board {
     /// The bus.
     pub can: Can,
     /// The operator's contacts.
-    pub switches: SwitchInputs,
+    pub switches: Switches,
     /// The clock that the controller checks its pace by.
     pub clock: Clock,
     /// Measures the main clock against the watchdog's oscillator.
@@ -69,10 +69,10 @@ impl Board {
     pub fn start() -> Self {
         let watchdog = Watchdog::start();
         part::start_clocks();
-        let coils = Coils::start(part::TIMER_FUNCTION);
+        let coils = coils::start(part::TIMER_FUNCTION);
         let converters = Converters::start();
         Self {
-            switches: SwitchInputs::start(),
+            switches: switches::start(),
             clock: Clock::start(part::TIMER_HZ),
             slow_clock: SlowClock::start(),
             can: Can::start(),

@@ -1,7 +1,10 @@
 //! What a pin is for.
 
+use core::convert::Infallible;
+
+use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use stm32_metapac::gpio::Gpio;
-use stm32_metapac::gpio::vals::{Moder, Ospeedr, Pupdr};
+use stm32_metapac::gpio::vals::{Idr, Moder, Ospeedr, Pupdr};
 
 /// A converter's input.
 pub fn analog(port: Gpio, pin: usize) {
@@ -33,4 +36,43 @@ pub fn input_with_pull_up(port: Gpio, pin: usize) {
 pub fn input(port: Gpio, pin: usize) {
     port.pupdr().modify(|w| w.set_pupdr(pin, Pupdr::FLOATING));
     port.moder().modify(|w| w.set_moder(pin, Moder::INPUT));
+}
+
+/// A pin that has been made an input or an output.
+pub struct Pin {
+    port: Gpio,
+    pin: usize,
+}
+
+impl Pin {
+    /// The pin with a number of a port.
+    pub const fn new(port: Gpio, pin: usize) -> Self {
+        Self { port, pin }
+    }
+}
+
+impl ErrorType for Pin {
+    type Error = Infallible;
+}
+
+impl OutputPin for Pin {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.port.bsrr().write(|w| w.set_br(self.pin, true));
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.port.bsrr().write(|w| w.set_bs(self.pin, true));
+        Ok(())
+    }
+}
+
+impl InputPin for Pin {
+    fn is_high(&mut self) -> Result<bool, Infallible> {
+        Ok(self.port.idr().read().idr(self.pin) == Idr::HIGH)
+    }
+
+    fn is_low(&mut self) -> Result<bool, Infallible> {
+        Ok(!self.is_high()?)
+    }
 }

@@ -1,11 +1,13 @@
 //! Which channels the signals are on the STM32G474, and how its converters are set up and asked.
 
+use embedded_hal::delay::DelayNs;
 use hitch_firmware::ecu::{AdcCode, Samples};
 use stm32_metapac::adc::Adc;
 use stm32_metapac::adc::vals::{Adcaldif, Exten, SampleTime};
 use stm32_metapac::adccommon::vals::Ckmode;
 use stm32_metapac::{ADC12_COMMON, ADC345_COMMON, GPIOA, GPIOB, GPIOC};
 
+use super::delay::CycleDelay;
 use crate::board::pins;
 
 /// TIM1_TRGO for ADC1 and 2 and for ADC3 (RM0440, tables of `JEXTSEL`).
@@ -113,7 +115,7 @@ pub fn start_sequence(adc: Adc, channels: &[u8; 4]) {
 fn wake_and_calibrate(adc: Adc) {
     adc.cr().write(|w| w.set_advregen(true));
     // 20 us for the regulator.
-    cortex_m::asm::delay(20 * 168);
+    CycleDelay.delay_us(20);
     adc.cr().write(|w| {
         w.set_advregen(true);
         w.set_adcaldif(Adcaldif::SINGLE_ENDED);

@@ -2,6 +2,7 @@
 
 mod can;
 pub mod converters;
+mod delay;
 pub mod factory_reference;
 pub mod flash;
 pub mod register_check;

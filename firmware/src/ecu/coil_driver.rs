@@ -1,0 +1,108 @@
+//! The coils' drivers on any part: two pulse-width outputs, the line that enables the drivers, and its read-back.
+//!
+//! The order of writes is part of it. To off, the line drops first: it acts on both coils, whatever the pulses do. To on,
+//! the pulses are set first: the line never enables a pulse width of an earlier millisecond.
+
+use embedded_hal::digital::{InputPin, OutputPin};
+use embedded_hal::pwm::SetDutyCycle;
+
+use super::drive::{Compare, Drive};
+
+/// An output did not take its value. Both coils have been cut, and stay off until a restart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CoilDriverError;
+
+/// The drivers. The largest duty of both pulse-width outputs has to be
+/// [`BoardScaling::pwm_steps`](super::BoardScaling::pwm_steps).
+#[derive(Debug)]
+pub struct CoilDriver<Lift, Lower, Enable, Feedback> {
+    lift: Lift,
+    lower: Lower,
+    enable: Enable,
+    feedback: Feedback,
+    /// Level of the line that was asked for last.
+    asked: bool,
+    /// An output has failed.
+    failed: bool,
+}
+
+impl<Lift, Lower, Enable, Feedback> CoilDriver<Lift, Lower, Enable, Feedback>
+where
+    Lift: SetDutyCycle,
+    Lower: SetDutyCycle,
+    Enable: OutputPin,
+    Feedback: InputPin,
+{
+    /// The drivers on outputs that are off.
+    #[must_use]
+    pub const fn new(lift: Lift, lower: Lower, enable: Enable, feedback: Feedback) -> Self {
+        Self {
+            lift,
+            lower,
+            enable,
+            feedback,
+            asked: false,
+            failed: false,
+        }
+    }
+
+    /// Hands the drivers their values.
+    ///
+    /// # Errors
+    /// If an output fails or has failed before; then both coils are cut.
+    pub fn drive(&mut self, drive: Drive) -> Result<(), CoilDriverError> {
+        if self.failed {
+            return self.cut().and(Err(CoilDriverError));
+        }
+        if !drive.enable {
+            return self.cut();
+        }
+        let set = self
+            .set_pulses(drive.lift, drive.lower)
+            .and_then(|()| self.enable.set_high().map_err(|_| CoilDriverError));
+        match set {
+            Ok(()) => {
+                self.asked = true;
+                Ok(())
+            }
+            Err(error) => {
+                self.failed = true;
+                self.cut().and(Err(error))
+            }
+        }
+    }
+
+    /// Cuts both coils: the line, then the pulses. Every output is written, even if one before it fails.
+    ///
+    /// # Errors
+    /// If an output fails; the drivers then stay off.
+    pub fn cut(&mut self) -> Result<(), CoilDriverError> {
+        self.asked = false;
+        let line = self.enable.set_low().map_err(|_| CoilDriverError);
+        let pulses = self.set_pulses(Compare::OFF, Compare::OFF);
+        let cut = line.and(pulses);
+        self.failed |= cut.is_err();
+        cut
+    }
+
+    /// Level of the enable line, read back at the drivers. A read-back that fails differs from the level asked for, so
+    /// the application treats the line as faulty.
+    pub fn enable_feedback(&mut self) -> bool {
+        self.feedback.is_high().unwrap_or(!self.asked)
+    }
+
+    /// Gives the outputs back, in the order of [`Self::new`].
+    #[must_use]
+    pub fn release(self) -> (Lift, Lower, Enable, Feedback) {
+        (self.lift, self.lower, self.enable, self.feedback)
+    }
+
+    fn set_pulses(&mut self, lift: Compare, lower: Compare) -> Result<(), CoilDriverError> {
+        let lift = self.lift.set_duty_cycle(lift.get());
+        let lower = self.lower.set_duty_cycle(lower.get());
+        match lift.is_ok() && lower.is_ok() {
+            true => Ok(()),
+            false => Err(CoilDriverError),
+        }
+    }
+}
