@@ -166,7 +166,8 @@ impl Calibration {
         Self::unsealed_nominal().sealed()
     }
 
-    /// The same without a checksum, to be filled with something else.
+    /// The same without a checksum, to be filled with something else. Not inlined: the block would take its place on the
+    /// stack of every caller.
     #[inline(never)]
     pub(super) fn unsealed_nominal() -> Self {
         Self {
@@ -355,7 +356,8 @@ impl Calibration {
         digest.value()
     }
 
-    /// Visits every word in the order of the memory image. One copy of this code serves all visitors: it is long.
+    /// Visits every word in the order of the memory image. Not inlined: it is long and
+    /// has many callers.
     #[inline(never)]
     pub(super) fn for_each_word(&mut self, visit: &mut dyn FnMut(&mut i32)) {
         visit_unsigned(&mut self.version, visit);
@@ -398,7 +400,6 @@ fn visit_valve(table: &mut ValveTable, visit: &mut dyn FnMut(&mut i32)) {
     }
 }
 
-#[inline(never)]
 fn check_valve(valve: &'static str, table: &ValveTable) -> Result<(), CalibrationError> {
     let points = table.used();
     if points.len() < 2 || usize::try_from(table.count) != Ok(points.len()) {

@@ -10,7 +10,7 @@
 //! `share` depends on the curve alone, so it is worked out once for each of its points. A valve with a metering notch
 //! has a small one: its flow is gone long before its threshold is reached.
 
-use super::fixed::{Divisor, interpolate, mul_div_seldom};
+use super::fixed::{Divisor, interpolate, mul_div};
 use super::units::MilliAmp;
 use super::valve_map::{VALVE_POINTS, ValvePoint, ValveTable};
 
@@ -63,7 +63,7 @@ impl ClosingCurve {
 fn between(from: &ValvePoint, to: &ValvePoint, hysteresis: MilliAmp) -> i32 {
     let ratio = |flow: i32, current: i32| {
         let above = current.saturating_sub(hysteresis.0);
-        mul_div_seldom(flow, 1000, Divisor::at_least_one(above))
+        mul_div(flow, 1000, Divisor::at_least_one(above))
     };
     let middle_flow = from.flow.0.saturating_add(to.flow.0) / 2;
     let middle_current = from.current.0.saturating_add(to.current.0) / 2;
@@ -71,7 +71,7 @@ fn between(from: &ValvePoint, to: &ValvePoint, hysteresis: MilliAmp) -> i32 {
         .saturating_add(ratio(middle_flow, middle_current).saturating_mul(4))
         .saturating_add(ratio(to.flow.0, to.current.0));
     let width = to.current.0.saturating_sub(from.current.0);
-    mul_div_seldom(sum, width, Divisor::at_least_one(6))
+    mul_div(sum, width, Divisor::at_least_one(6))
 }
 
 #[cfg(test)]

@@ -76,7 +76,8 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// A controller as it is after power-up: locked.
+    /// A controller as it is after power-up: locked. Not inlined: a copy of the controller would take its place on the
+    /// stack of the caller for good.
     #[must_use]
     #[inline(never)]
     pub fn new(calibration: ValidCalibration) -> Self {

@@ -78,7 +78,6 @@ impl Course {
 
     /// What a move told that ended at `rest`, through a valve with this `scale` and into a cylinder of this `area`.
     #[must_use]
-    #[inline(never)]
     pub fn told(&self, rest: Micrometre, scale: DropScale, area: SquareMillimetre) -> Told {
         let along = |way: i32| Micrometre(self.direction.sign(way));
         // nl over mm2 are um: a scale takes ways, where it would cut the volume short.

@@ -54,7 +54,7 @@ pub fn mul_div(a: i32, b: i32, c: Divisor) -> i32 {
     }
 }
 
-/// The same for a long product.
+/// The same for a long product. Not inlined: every product and quotient of the controller has this path.
 #[inline(never)]
 fn mul_div_long(a: i32, b: i32, c: Divisor) -> i32 {
     let product = u64::from(a.unsigned_abs()) * u64::from(b.unsigned_abs());
@@ -64,14 +64,6 @@ fn mul_div_long(a: i32, b: i32, c: Divisor) -> i32 {
         quotient(product.wrapping_add(half), c.0),
         (a < 0) != (b < 0),
     )
-}
-
-/// [`mul_div`] for what is reckoned once a move or once a calibration: a call takes longer and less flash than its
-/// body.
-#[must_use]
-#[inline(never)]
-pub fn mul_div_seldom(a: i32, b: i32, c: Divisor) -> i32 {
-    mul_div(a, b, c)
 }
 
 /// `dividend / divisor`.
@@ -85,7 +77,7 @@ fn quotient(dividend: u64, divisor: NonZeroU32) -> u64 {
     }
 }
 
-/// The same for a long dividend; kept in one place, for it is long itself.
+/// The same for a long dividend; not inlined, for it is long and has many callers.
 #[inline(never)]
 fn long_quotient(dividend: u64, divisor: NonZeroU32) -> u64 {
     match NonZeroU16::try_from(divisor) {

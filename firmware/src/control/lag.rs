@@ -17,7 +17,7 @@
 
 use super::course::Told;
 use super::design_parameters::HydraulicParameters;
-use super::fixed::{Divisor, mul_div_seldom};
+use super::fixed::{Divisor, mul_div};
 use super::units::{
     MicroLitrePerSecond, Micrometre, MicrometrePerSecond, Microsecond, Millisecond,
 };
@@ -114,7 +114,6 @@ impl Lag {
     }
 
     /// Takes in a `trail` that is over; `limit`: furthest that a spool may be slower or faster.
-    #[inline(never)]
     pub fn learn(&mut self, trail: &Trail, limit: Eighths) {
         self.further = (self.further + trail.further(*self, limit)).limited(limit);
         self.weight = self
@@ -206,7 +205,7 @@ impl Trail {
         let way = way.saturating_abs();
         let of_flow = told.missing - of_offset;
         // Eighths of every other step, halved.
-        let grown = mul_div_seldom(of_flow.0, way, Divisor::at_least_one(told.expected.0));
+        let grown = mul_div(of_flow.0, way, Divisor::at_least_one(told.expected.0));
         let by_flow = grown.saturating_mul(way).saturating_mul(2);
         // Some thousand um/ms: what is rounded away is no part of a millisecond.
         let weighted =

@@ -330,7 +330,6 @@ impl Motion {
 
     /// How far the piston still goes.
     #[must_use]
-    #[inline(never)]
     pub fn run_on(&self, hydraulics: &HydraulicParameters) -> RunOn {
         let speed = self.opening_speed + self.bias;
         let [lift, lower] = self.lags(hydraulics);
@@ -426,7 +425,6 @@ impl Slack {
 
 /// Way at a speed in the time that a valve may take to close. A word holds the product: no hitch is faster than this,
 /// and no lag that a calibration may have, with all that a machine may add to it, is longer than 0.7 s.
-#[inline(never)]
 fn way_in(time: Eighths, speed: MicrometrePerSecond) -> Micrometre {
     const FASTEST: MicrometrePerSecond = MicrometrePerSecond(380_000);
     let speed = speed.limited(-FASTEST, FASTEST);
@@ -450,7 +448,6 @@ pub fn flow(speed: MicrometrePerSecond, area: SquareMillimetre) -> MicroLitrePer
 
 /// Piston speed that a flow gives.
 #[must_use]
-#[inline(never)]
 pub fn piston_speed(flow: MicroLitrePerSecond, area: SquareMillimetre) -> MicrometrePerSecond {
     // One of the valves always is shut.
     if flow == MicroLitrePerSecond::ZERO {

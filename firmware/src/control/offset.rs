@@ -14,7 +14,7 @@
 //! was believed is wrong, and all doubt is back.
 
 use super::course::Told;
-use super::fixed::{Divisor, mul_div_seldom, square_root};
+use super::fixed::{Divisor, mul_div, square_root};
 use super::safety::CoilCurrents;
 use super::units::{Micrometre, MilliAmp};
 use super::valve_logic::Direction;
@@ -110,15 +110,10 @@ impl Belief {
     }
 
     /// Share of what is missing that the present doubt makes of it, in thousandths; none of what no offset makes.
-    #[inline(never)]
     fn share(&self, told: &Told, flow_error: i32) -> i32 {
         let sensitivity = told.sensitivity.0;
-        let of_doubt = square(mul_div_seldom(sensitivity, self.doubt.0, Divisor::THOUSAND));
-        let of_flow = square(mul_div_seldom(
-            told.expected.0,
-            flow_error,
-            Divisor::THOUSAND,
-        ));
+        let of_doubt = square(mul_div(sensitivity, self.doubt.0, Divisor::THOUSAND));
+        let of_flow = square(mul_div(told.expected.0, flow_error, Divisor::THOUSAND));
         let all = of_doubt
             .saturating_add(of_flow)
             .saturating_add(square(NOISE.0));
@@ -130,7 +125,6 @@ impl Belief {
         share.cast_signed()
     }
 
-    #[inline(never)]
     fn learn(&mut self, told: &Told, flow_error: i32) {
         let mut share = self.share(told, flow_error);
         if share == 0 && told.missing < Micrometre::ZERO {
@@ -139,15 +133,11 @@ impl Belief {
         }
         let sensitivity = told.sensitivity.0;
         // um * 1/1000 over um/A is mA.
-        let further = mul_div_seldom(told.missing.0, share, Divisor::at_least_one(sensitivity));
+        let further = mul_div(told.missing.0, share, Divisor::at_least_one(sensitivity));
         self.offset = (self.offset + MilliAmp(further)).limited(-MOST, MOST);
         let left = u64::from(1000_u32.saturating_sub(share.cast_unsigned())).saturating_mul(1000);
-        self.doubt = MilliAmp(mul_div_seldom(
-            self.doubt.0,
-            square_root(left),
-            Divisor::THOUSAND,
-        ))
-        .max(LEAST_DOUBT);
+        self.doubt =
+            MilliAmp(mul_div(self.doubt.0, square_root(left), Divisor::THOUSAND)).max(LEAST_DOUBT);
     }
 }
 

@@ -78,7 +78,6 @@ impl Taught {
     /// The calibration with what was found in it, sealed: curves shifted, linkage moved to the sensor, limits inside
     /// the ends.
     #[must_use]
-    #[inline(never)]
     pub fn applied_to(&self, calibration: &Calibration) -> Calibration {
         let mut taught = calibration.clone();
         // What an untaught lift valve is taken to open late by has been found with the rest.
@@ -389,7 +388,6 @@ impl Teach {
         MilliAmp::ZERO
     }
 
-    #[inline(never)]
     fn note_opening(&mut self, real: &Way, twin: &Way, calibration: &Calibration) {
         let valve = self.finished % 2;
         let (motion, hydraulics) = (&calibration.motion, &calibration.hydraulics);
@@ -483,7 +481,6 @@ impl Teach {
     }
 }
 
-#[inline(never)]
 fn mean(shifts: &[MilliAmp; REPEATS]) -> MilliAmp {
     const COUNT: Divisor = Divisor::at_least_one(REPEATS as i32);
     let sum = shifts
@@ -492,7 +489,6 @@ fn mean(shifts: &[MilliAmp; REPEATS]) -> MilliAmp {
     MilliAmp(COUNT.divide(sum.0))
 }
 
-#[inline(never)]
 fn spread(shifts: &[MilliAmp; REPEATS]) -> MilliAmp {
     let most = shifts.iter().max().copied().unwrap_or_default();
     let least = shifts.iter().min().copied().unwrap_or_default();

@@ -12,7 +12,7 @@
 //! Load and oil change `v`, of which `t0` is free. The twin takes the same step on the calibration's curve and spool,
 //! through the same filter. Means over two windows leave little of sensor's noise and load's swing.
 
-use super::fixed::{Divisor, mul_div_seldom};
+use super::fixed::{Divisor, mul_div};
 use super::units::{Micrometre, Microsecond, Millisecond};
 
 /// How long the current is on.
@@ -38,7 +38,6 @@ pub struct Way {
 
 impl Way {
     /// The way at an `age` of the step.
-    #[inline(never)]
     pub fn note(&mut self, age: Millisecond, way: Micrometre) {
         if (EARLY..EARLY + WINDOW).contains(&age.0) {
             self.early = self.early.saturating_add(way.0);
@@ -64,10 +63,9 @@ impl Way {
     }
 
     /// `sum` over the rise between the windows, times `scale`, if that rise is a speed.
-    #[inline(never)]
     fn time_for(&self, sum: i32, scale: i32) -> Option<i32> {
         let rise = self.late.saturating_sub(self.early);
-        let time = mul_div_seldom(sum, scale, Divisor::at_least_one(rise));
+        let time = mul_div(sum, scale, Divisor::at_least_one(rise));
         (rise >= LEAST).then_some(time)
     }
 }
@@ -86,7 +84,7 @@ pub fn found(
         return known;
     };
     let delay = real.saturating_sub(usual.0.saturating_mul(3) / 2_000);
-    let lag = Millisecond(mul_div_seldom(known.0, delay, Divisor::at_least_one(twin)));
+    let lag = Millisecond(mul_div(known.0, delay, Divisor::at_least_one(twin)));
     match (lag - known).magnitude() > limit {
         true => known,
         false => lag,

@@ -18,7 +18,6 @@ pub struct Twin {
 
 impl Twin {
     /// One step with a current; how far it has moved, through the filter that the hitch's angle goes through.
-    #[inline(never)]
     pub fn step(
         &mut self,
         current_ua: i32,

@@ -97,7 +97,6 @@ impl ValveTable {
 
     /// The same flow, and its slope: how much more an ampere more would let through.
     #[must_use]
-    #[inline(never)]
     pub fn flow_and_slope(&self, current: MilliAmp) -> (MicroLitrePerSecond, MicroLitrePerSecond) {
         if current <= self.threshold() {
             return (MicroLitrePerSecond::ZERO, MicroLitrePerSecond::ZERO);
@@ -150,7 +149,7 @@ impl ValveCurves {
         curves
     }
 
-    /// Makes these the curves of a calibration, in their place.
+    /// Makes these the curves of a calibration, in their place. Not inlined: it would add to the stack of a step.
     #[inline(never)]
     pub fn fill(&mut self, calibration: &Calibration) {
         self.reference = DropReference::new(calibration.hydraulics.reference_drop);

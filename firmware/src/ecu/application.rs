@@ -59,7 +59,7 @@ pub struct Ecu<F> {
 
 impl<F: NorFlash> Ecu<F> {
     /// The ECU as it is after power-up, with the calibration that `flash` holds. `serial_number` tells its node from
-    /// others on the bus; `scaling` is the board's.
+    /// others on the bus; `scaling` is the board's. Not inlined: its stack is free again when the loop begins.
     #[must_use]
     #[inline(never)]
     pub fn start(flash: F, serial_number: u32, scaling: BoardScaling) -> Self {
@@ -93,6 +93,7 @@ impl<F: NorFlash> Ecu<F> {
     }
 
     /// One millisecond. The watchdog may be kicked with what it gives; it gives nothing unless every task has run.
+    /// Not inlined: the depth of its stack is counted apart from that of the start.
     #[inline(never)]
     pub fn tick(&mut self, contacts: &Contacts, hardware: &mut impl Hardware) -> Option<Kick> {
         self.sample(contacts);

@@ -59,7 +59,7 @@ impl<P: Probe> Hardware for Wires<P> {
 }
 
 impl<F: NorFlash, P: Probe + Default> Machine<F, P> {
-    /// The ECU as it is after power-up.
+    /// The ECU as it is after power-up. Not inlined, as [`Ecu::start`].
     #[must_use]
     #[inline(never)]
     pub fn start(flash: F, serial_number: u32, scaling: BoardScaling) -> Self {

@@ -92,10 +92,6 @@ impl<F: NorFlash> Service<F> {
     }
 
     /// The keeper's part of a millisecond. `at_rest`: both coils are off and the lock is shut.
-    ///
-    /// Not merged into its caller, and neither is what a teaching ends with: copies of that in the tick would cost a
-    /// kilobyte of flash and 200 bytes of the deepest stack.
-    #[inline(never)]
     pub fn update(
         &mut self,
         controller: &mut Controller,
@@ -127,7 +123,6 @@ impl<F: NorFlash> Service<F> {
     }
 
     /// Puts what teaching found on the working page, once; true if there was something.
-    #[inline(never)]
     fn take_taught(&mut self, controller: &Controller) -> bool {
         let Some(result) = controller.taught() else {
             self.taught_seen = false;

@@ -294,7 +294,6 @@ impl<F: NorFlash> CalibrationStore<F> {
     }
 
     /// What a copy is worth, by its checksum.
-    #[inline(never)]
     fn examine(&mut self, copy: usize) -> Result<Copy, F::Error> {
         let mut reader = self.reader(copy);
         let first = reader.header()?;
@@ -399,7 +398,6 @@ impl<F: NorFlash> Reader<'_, F> {
     }
 
     /// The next word; an erased one beyond the end.
-    #[inline(never)]
     fn word(&mut self) -> Result<u32, F::Error> {
         if self.next >= CHUNK_WORDS {
             let next = self.at.saturating_add(CHUNK);
