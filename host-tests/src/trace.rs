@@ -78,10 +78,11 @@ pub fn random(seed: u64, steps: usize) -> Trace {
     let mut record = [0; INPUT_BYTES];
     let mut held = 0_u32;
     (0..steps)
-        .map(|_| {
+        .map(|step| {
             if held == 0 {
+                let is_near_end = step > steps / 5 * 4;
                 record = match random.u8(0..4) {
-                    0 => any_bits(&mut random),
+                    0 => any_bits(&mut random, is_near_end),
                     1 => spoiled(&mut random),
                     _ => plausible(&mut random),
                 };
@@ -94,11 +95,16 @@ pub fn random(seed: u64, steps: usize) -> Trace {
         .collect()
 }
 
-/// Any bits, but for a fault of the enable line (bit 30): it lasts until restart, and there is none in a trace.
-fn any_bits(random: &mut fastrand::Rng) -> [u8; INPUT_BYTES] {
+/// Any bits. Faults of a coil last until restart, and there is none in a trace: measured currents only come `with_currents`,
+/// and a fault of the enable line (bit 30) never.
+fn any_bits(random: &mut fastrand::Rng, with_currents: bool) -> [u8; INPUT_BYTES] {
     let mut record = [0; INPUT_BYTES];
     random.fill(&mut record);
     record[3] &= !(1 << 6);
+    if !with_currents {
+        // Validity of the 11th and 12th field.
+        record[1] &= !(0b11 << 2);
+    }
     record
 }
 
