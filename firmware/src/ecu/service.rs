@@ -8,6 +8,9 @@ use crate::j1939::{Trouble, Troubles};
 use crate::storage::{CalibrationStore, Copy, Progress, Source};
 use crate::xcp::{CalibrationPages, Slave};
 
+/// Time in which the bus takes the answer to whoever wants to store: many a processor stands still for seconds then.
+const ANSWER_MS: u8 = 20;
+
 /// What became of a step of storing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Storing {
@@ -24,6 +27,8 @@ pub struct Service<F> {
     pub pages: CalibrationPages,
     store: CalibrationStore<F>,
     storing: bool,
+    /// Milliseconds until storing begins to change the flash.
+    until_change: u8,
     /// A tool waits for the end of storing.
     tool_waits: bool,
     /// What teaching found has been looked at.
@@ -72,6 +77,7 @@ impl<F: NorFlash> Service<F> {
             pages: CalibrationPages::new(calibration),
             store,
             storing: false,
+            until_change: 0,
             tool_waits: false,
             taught_seen: false,
             taught_waits: false,
@@ -98,6 +104,10 @@ impl<F: NorFlash> Service<F> {
         slave: &mut Slave,
         at_rest: bool,
     ) -> Storing {
+        if self.storing && self.until_change > 0 {
+            self.until_change = self.until_change.saturating_sub(1);
+            return Storing::Idle;
+        }
         if self.storing {
             return self.store_on(slave);
         }
@@ -148,6 +158,7 @@ impl<F: NorFlash> Service<F> {
             _ => false,
         };
         self.storing = begun;
+        self.until_change = ANSWER_MS;
         if !begun {
             self.end(slave, false);
         }
