@@ -161,7 +161,8 @@ pub fn first_fault_watched(
             stays_ms = random.random_range(100..6_000);
         }
         stays_ms -= 1;
-        lever_deg += (target_deg - lever_deg).clamp(-slope_deg, slope_deg);
+        let step_deg = (target_deg - lever_deg).clamp(-slope_deg, slope_deg);
+        lever_deg += step_deg;
         let instant = session.step_with(lever_deg, |inputs| {
             inputs.rocker_angle = inputs.rocker_angle.map(|angle| angle + turned);
             inputs.lowering_dial = surroundings.dial;
@@ -169,7 +170,7 @@ pub fn first_fault_watched(
         watch(lever_deg, &instant);
         let shown_deg = instant.rocker_deg + surroundings.turned_deg;
         let far_deg = lever_deg.clamp(44.6, 135.4) - shown_deg;
-        let rests = instant.currents_a == [0.0; 2] && lever_deg == target_deg;
+        let rests = instant.currents_a == [0.0; 2] && step_deg == 0.0;
         rested_ms = if rests { rested_ms + 1 } else { 0 };
         let stops_short = rested_ms > RESTED_MS
             && far_deg.abs() > FAR_DEG
