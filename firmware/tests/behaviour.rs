@@ -230,10 +230,25 @@ fn a_moved_lever_is_no_leak() {
     }
 }
 
+/// It can't be told from a hitch that is lifted behind a frozen sensor.
 #[test]
-fn a_stuck_hitch_is_tried_a_few_times_and_then_reported() {
+fn a_hitch_that_is_stuck_when_it_should_rise_is_reported_and_not_tried_again() {
     let mut hitch = Hitch::picked_up();
     hitch.stuck = true;
+    hitch.lever = 110_000;
+    let fault = (0..500).find_map(|_| hitch.run(1).fault);
+    assert!(
+        matches!(fault, Some(Fault::Angle | Fault::NotFollowing)),
+        "{fault:?}"
+    );
+    assert!((0..5_000).all(|_| off(&hitch.run(1))));
+}
+
+#[test]
+fn a_load_that_the_pump_cannot_lift_is_tried_a_few_times_and_then_reported() {
+    let mut hitch = Hitch::picked_up();
+    hitch.stuck = true;
+    hitch.pump_pressure = Some(MilliBar(154_000));
     hitch.lever = 110_000;
     let stalled = hitch.until(State::Stalled, 1_000);
     assert!(stalled <= 500, "noticed after {stalled} ms");

@@ -373,6 +373,10 @@ impl Controller {
             &calibration.position,
             &calibration.hold,
         );
+        let next = match self.envelope.holds_back() {
+            true => next.no_faster_than(self.phase),
+            false => next,
+        };
         if next.is_moving() && !self.phase.is_moving() {
             self.motion.forget_bias();
             self.begin(next)?;
@@ -421,15 +425,20 @@ impl Controller {
         ) {
             return Ok(());
         }
-        self.phase = phase.cut();
-        self.learning.obstruct();
-        self.motion.obstruct();
+        self.stop_where_it_is();
         let lifts = phase.speed() > MicrometrePerSecond::ZERO;
-        if goes_no_further(lifts, sensed, calibration) {
+        if goes_no_further(lifts, sensed, &self.calibration) {
             self.position.accept();
             return Ok(());
         }
-        self.saturation.rest(&calibration.saturation)
+        self.saturation.rest(&self.calibration.saturation)
+    }
+
+    /// Cuts the coil of a hitch that stands still: nothing is learnt of this move.
+    fn stop_where_it_is(&mut self) {
+        self.phase = self.phase.cut();
+        self.learning.obstruct();
+        self.motion.obstruct();
     }
 
     /// Fastest speed that the valve of a direction can give now.

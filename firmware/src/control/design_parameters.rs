@@ -314,24 +314,36 @@ parameter_group! {
         supply_max: MilliVolt = 16_800, 9_000..=36_000;
         /// How long the supply has to be wrong: longer than the swing as a relay switches, and at full speed less than 2 degrees.
         supply_time: Millisecond = 10, 1..=1_000;
-        /// A sample that stays the same to the last bit for this long is suspicious: eight throws of noise.
+        /// A sample that has been the same to the last bit for this long when travel is missing is called frozen: eight throws of noise.
         frozen_time: Millisecond = 8, 2..=1_000;
-        /// ... if the hitch was at least this fast, at a current that hasn't been reduced since: slower ones may stick.
-        frozen_speed: MilliDegreePerSecond = 15_000, 1_000..=200_000;
-        /// ... and if the hitch should have moved this far meanwhile: twenty converter steps.
-        frozen_travel: MilliDegree = 750, 50..=20_000;
-        /// A sensor that trembles at rest is frozen once it is still for this long: a healthy one is by chance once in a million years.
+        /// A sensor that shows noise at rest is frozen once it is still for this long: a healthy one is by chance once in a million years.
         still_time: Millisecond = 20, 5..=1_000;
         /// Mean second difference from which a sensor is too noisy: six times that of a healthy one, whose sigma of 0.05 degree gives 0.1 degree.
         noise_limit: MilliDegree = 600, 50..=20_000;
-        /// Speed from which a stop is telling: eight times the noise of its measurement, and faster than the way to an end stop in teaching.
-        telling_speed: MilliDegreePerSecond = 40_000, 5_000..=200_000;
-        /// A current that was reduced by more than this explains why the hitch got slower.
-        unchanged_current: MilliAmp = 100, 10..=1_000;
-        /// ... for this long: six lags of the spool, and the time in which a wrong map is made up for.
-        following_time: Millisecond = 300, 10..=2_000;
-        /// How long a hitch has to stand still: longer than half a swing of a load on its oil.
-        not_following_time: Millisecond = 50, 5..=1_000;
+        /// Current above the threshold that may do nothing in a hitch that starts: 0.1 A that a threshold is off, and half of 0.2 A of hysteresis. Half of it in one that moves.
+        following_margin: MilliAmp = 200, 0..=1_000;
+        /// Each of the two lags behind which a hitch in motion follows a rising current: together a slow spool.
+        following_lag: Millisecond = 20, 1..=500;
+        /// Each of the two lags behind which a hitch follows its current that has just started: the first motion is seen before a slow spool is open.
+        started_lag: Millisecond = 40, 1..=500;
+        /// Lift speed by the valve curve that the current is limited to when the onset budget is spent: a hitch on the ground still starts with it.
+        lift_onset_speed: MicrometrePerSecond = 20_000, 1_000..=1_000_000;
+        /// The same of lowering.
+        lower_onset_speed: MicrometrePerSecond = 15_000, 1_000..=1_000_000;
+        /// Travel that a hitch is given by the valve curve before motion has been seen and its current is limited. A healthy one is given about 3 degrees by the controller's ramp, one that is heavy, late and off by 0.1 A more than 5: less than 8 makes such moves overshoot.
+        onset_budget: MilliDegree = 8_000, 0..=100_000;
+        /// Time constant with which the rest of the budget may be given, so that the current falls back smoothly.
+        onset_time: Millisecond = 25, 1..=1_000;
+        /// Travel along the coil's way that is motion, on top of the sensor's mean second difference: five sigmas of averaged noise of 0.05 degree.
+        onset_travel: MilliDegree = 100, 0..=20_000;
+        /// Travel given by currents above threshold and margin after which a hitch that shows no motion is a fault: what the budget and 0.2 s of the onset speed give.
+        onset_debt: MilliDegree = 10_000, 10..=100_000;
+        /// Share of the calibration's speed that a starting hitch owes: behind the lowering valve 50 kg reach 70 % of it, cold oil and a slow pump half of that.
+        following_share: PerMille = 250, 10..=1_000;
+        /// Travel that is owed when a standstill is a fault, 0.5 degree; a quarter of it, five sigmas of averaged noise of 0.1 degree, is motion.
+        following_allowance: Micrometre = 1_000, 50..=20_000;
+        /// Within this of the ends no travel towards them is owed: the end stop itself, of a sensor that is turned by as much as teaching accepts.
+        end_zone: MilliDegree = 4_000, 0..=20_000;
         /// Movement against the energised coil that trips: above noise and the swing at a start.
         contradiction: MilliDegree = 4_000, 500..=45_000;
         /// Current from which a broken wire can be told.

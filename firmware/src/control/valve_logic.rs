@@ -101,6 +101,18 @@ impl Phase {
         }
     }
 
+    /// The same, but no faster than `before`: a ramp that waits.
+    #[must_use]
+    pub fn no_faster_than(self, before: Self) -> Self {
+        match (self, before) {
+            (Self::Moving { direction, speed }, Self::Moving { speed: most, .. }) => Self::Moving {
+                direction,
+                speed: speed.min(most),
+            },
+            (phase, _) => phase,
+        }
+    }
+
     /// Cuts the coils at once.
     #[must_use]
     pub fn cut(self) -> Self {

@@ -116,6 +116,24 @@ impl ValveTable {
         )
     }
 
+    /// Least current that lets `flow` through, or the saturation's.
+    #[must_use]
+    pub fn current(&self, flow: MicroLitrePerSecond) -> MilliAmp {
+        let points = self.used();
+        let above = points.partition_point(|point| point.flow < flow);
+        let Some(right) = points.get(above) else {
+            return points.last().map_or(MilliAmp::ZERO, |point| point.current);
+        };
+        let Some(left) = above.checked_sub(1).and_then(|below| points.get(below)) else {
+            return right.current;
+        };
+        let run = Divisor::at_least_one((right.flow - left.flow).0);
+        let share = (flow - left.flow)
+            .0
+            .saturating_mul((right.current - left.current).0);
+        left.current + MilliAmp(run.divide(share))
+    }
+
     /// The piece of the curve that `current` is in, if it is in one.
     fn piece(&self, current: MilliAmp) -> Option<(&ValvePoint, &ValvePoint)> {
         let points = self.used();

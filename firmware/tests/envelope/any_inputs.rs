@@ -94,7 +94,7 @@ fn whatever_happens_no_current_passes_that_must_not() {
                 command = random.command();
             }
             let was_tripped = rig.envelope.tripped().is_some();
-            let passed = pass(&mut rig.envelope, command, &inputs, LIMITS);
+            let passed = pass(&mut rig.envelope, command, &inputs, limits());
             touched |= inputs.lever != first_lever || inputs.jog.is_some();
             let both = passed.lift > MilliAmp(0) && passed.lower > MilliAmp(0);
             assert!(
@@ -168,7 +168,7 @@ fn whatever_went_before_a_command_that_stops_coming_cuts_at_once_and_trips_in_ti
             if random.below(8) == 0 {
                 command = random.command();
             }
-            rig.passed = pass(&mut rig.envelope, command, &inputs, LIMITS);
+            rig.passed = pass(&mut rig.envelope, command, &inputs, limits());
         }
         let counter = match rig.passed {
             CoilCurrents::OFF => &mut from_rest,
@@ -178,13 +178,13 @@ fn whatever_went_before_a_command_that_stops_coming_cuts_at_once_and_trips_in_ti
         *counter += 1;
         for step in 1..=SAFETY.command_age.0 {
             random_inputs(&mut random, &mut inputs);
-            let passed = pass(&mut rig.envelope, None, &inputs, LIMITS);
+            let passed = pass(&mut rig.envelope, None, &inputs, limits());
             assert_eq!(passed, CoilCurrents::OFF, "seed {seed}, step {step}");
         }
         assert!(rig.envelope.tripped().is_some(), "seed {seed}: not in time");
         for _ in 0..50 {
             random_inputs(&mut random, &mut inputs);
-            let passed = pass(&mut rig.envelope, random.command(), &inputs, LIMITS);
+            let passed = pass(&mut rig.envelope, random.command(), &inputs, limits());
             assert_eq!(
                 passed,
                 CoilCurrents::OFF,

@@ -95,8 +95,9 @@ fn nothing_passes_until_lever_or_button_is_touched() {
 
 #[test]
 fn currents_rise_along_the_slope_and_fall_at_once() {
-    for full in [Order::Lift(3_500), Order::Lower(3_500)] {
+    for (full, way) in [(Order::Lift(3_500), 1), (Order::Lower(3_500), -1)] {
         let mut rig = Rig::armed();
+        rig.speed = way * FULL_SPEED;
         let sum = |passed: CoilCurrents| passed.lift.0 + passed.lower.0;
         let rise: Vec<i32> = (0..60).map(|_| sum(rig.run(full, 1))).collect();
         assert_eq!(rise[..3], [1_540, 1_580, 1_620]);
@@ -115,7 +116,7 @@ fn limits_bound_each_coil_by_its_own() {
     let limits = Limits {
         safety: &safety,
         sensors: &SENSORS,
-        damaged: false,
+        ..limits()
     };
     for (order, most) in [
         (Order::Lift(i32::MAX), (1_000, 0)),

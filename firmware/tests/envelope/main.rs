@@ -7,23 +7,37 @@ mod any_inputs;
 mod bounds;
 mod coils;
 mod measuring;
+mod recovery;
 mod release;
 mod signals;
+mod standstill;
+mod tremble;
+
+use std::sync::LazyLock;
 
 use hitch_firmware::control::design_parameters::{SafetyParameters, SensorParameters};
-use hitch_firmware::control::safety::{CoilCurrents, Command, Envelope, Limits, Step, Trip};
+use hitch_firmware::control::safety::{
+    CoilCurrents, Command, Envelope, Limits, Machine, Step, Trip,
+};
 use hitch_firmware::control::units::{
     Microsecond, MilliAmp, MilliDegree, MilliDegreePerSecond, MilliVolt,
 };
-use hitch_firmware::control::{Fault, Inputs};
+use hitch_firmware::control::{Calibration, Fault, Inputs};
 
 const SAFETY: SafetyParameters = SafetyParameters::NOMINAL;
 const SENSORS: SensorParameters = SensorParameters::NOMINAL;
-const LIMITS: Limits<'static> = Limits {
-    safety: &SAFETY,
-    sensors: &SENSORS,
-    damaged: false,
-};
+static NOMINAL: LazyLock<Calibration> = LazyLock::new(Calibration::nominal);
+
+fn limits() -> Limits<'static> {
+    Limits {
+        safety: &SAFETY,
+        sensors: &SENSORS,
+        damaged: false,
+        slow_start: false,
+        machine: Machine::of(&NOMINAL),
+    }
+}
+
 /// Rocker speed of the rig below, in thousandths of a degree a millisecond: 60 degrees a second.
 const FULL_SPEED: i32 = 60;
 
@@ -118,7 +132,12 @@ impl Rig {
         self.steps += 1;
         let mut inputs = self.inputs();
         alter(&mut inputs);
-        self.passed = pass(&mut self.envelope, Some(order.currents()), &inputs, LIMITS);
+        self.passed = pass(
+            &mut self.envelope,
+            Some(order.currents()),
+            &inputs,
+            limits(),
+        );
         self.passed
     }
 
@@ -153,6 +172,13 @@ fn pass(
         },
     };
     envelope.pass(command, inputs, limits)
+}
+
+impl Rig {
+    /// Steps without any fault until both coils are off.
+    fn cut_after_landing(&mut self, order: Order) -> Option<i32> {
+        (1..=500).find(|_| self.step_with(order, |_| {}) == CoilCurrents::OFF)
+    }
 }
 
 const LIFT: Order = Order::Lift(2_500);

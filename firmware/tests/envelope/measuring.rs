@@ -52,9 +52,11 @@ fn tracks(second: impl Fn(i32) -> Option<i32>) -> (Option<i32>, Option<Trip>) {
         ..SENSORS
     };
     let limits = Limits {
+        machine: limits().machine,
         safety: &SAFETY,
         sensors: &sensors,
         damaged: false,
+        slow_start: false,
     };
     let mut rig = Rig::moving(LIFT);
     let cut = (1..=500).find(|_| {
@@ -120,7 +122,7 @@ fn row_20_a_calibration_that_has_changed_in_memory() {
         let mut rig = Rig::moving(order);
         let limits = Limits {
             damaged: true,
-            ..LIMITS
+            ..limits()
         };
         let inputs = rig.inputs();
         let passed = pass(&mut rig.envelope, Some(order.currents()), &inputs, limits);

@@ -53,9 +53,9 @@ fn no_width_is_released_unarmed_tripped_or_stale() {
         currents: LIFT.currents(),
         step: stale.envelope.step(),
     };
-    stale.envelope.pass(command, &inputs, LIMITS);
+    stale.envelope.pass(command, &inputs, limits());
     assert_eq!(stale.envelope.release(WIDTHS).lift, WIDTHS.lift);
-    stale.envelope.pass(command, &inputs, LIMITS);
+    stale.envelope.pass(command, &inputs, limits());
     assert_eq!(stale.envelope.release(WIDTHS), Duties::default());
     assert_eq!(stale.envelope.tripped(), None, "not yet");
 }

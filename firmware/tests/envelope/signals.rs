@@ -7,7 +7,7 @@ fn row_1_a_stale_command() {
     let mut rig = Rig::moving(LIFT);
     let silent = |rig: &mut Rig| {
         let inputs = rig.inputs();
-        pass(&mut rig.envelope, None, &inputs, LIMITS)
+        pass(&mut rig.envelope, None, &inputs, limits())
     };
     for step in 1..SAFETY.command_age.0 {
         assert_eq!(
@@ -37,7 +37,7 @@ fn row_2_both_coils() {
             lower: MilliAmp(lower),
         };
         let inputs = rig.inputs();
-        let passed = pass(&mut rig.envelope, Some(command), &inputs, LIMITS);
+        let passed = pass(&mut rig.envelope, Some(command), &inputs, limits());
         assert_eq!(
             rig.envelope.tripped(),
             trips.then_some(Trip::BothCoils),

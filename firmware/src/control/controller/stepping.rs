@@ -1,7 +1,7 @@
 //! A step in two parts: control asks for currents, protection decides what the coils get.
 
 use super::super::mode::{Fault, Mode};
-use super::super::safety::{CoilCurrents, Command, Limits};
+use super::super::safety::{CoilCurrents, Command, Limits, Machine};
 use super::super::signals::{Inputs, Outputs};
 use super::super::units::MicroLitrePerSecond;
 use super::Controller;
@@ -34,10 +34,16 @@ impl Controller {
             safety: &self.calibration.safety,
             sensors: &self.calibration.sensors,
             damaged: self.memory.step(&self.calibration),
+            machine: Machine::of(&self.calibration),
+            slow_start: matches!(self.mode, Mode::Teach),
         };
         let currents = self.envelope.pass(self.command, inputs, limits);
         if let Some(trip) = self.envelope.objection() {
             self.fail(trip.fault());
+        }
+        if self.envelope.has_landed() {
+            self.stop_where_it_is();
+            self.position.accept();
         }
         // A button's speed falls with the linkage and stays: what the map gets wrong there does as well.
         let slowing = self.slack.is_taken() && matches!(self.mode, Mode::Position);

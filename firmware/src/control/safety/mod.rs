@@ -22,9 +22,11 @@ mod angle;
 mod arming;
 mod coils;
 mod command;
+mod following;
 mod measuring;
 pub mod rows;
 mod supply;
+mod tremble;
 
 use super::current::Duties;
 use super::design_parameters::{SafetyParameters, SensorParameters};
@@ -34,6 +36,7 @@ use angle::AngleWatch;
 use arming::Arming;
 use coils::CoilWatch;
 pub use command::{Command, Step};
+pub use following::Machine;
 use measuring::MeasuringFaults;
 pub use rows::Trip;
 use rows::{Debounce, Rows};
@@ -68,6 +71,11 @@ pub struct Limits<'a> {
     pub sensors: &'a SensorParameters,
     /// They, or others of their calibration, have changed in memory.
     pub damaged: bool,
+    /// What currents do to the hitch.
+    pub machine: Machine<'a>,
+    /// The command's currents rise slowly from below any threshold, as in teaching. Then the thresholds needn't be those
+    /// of the calibration: nothing is owed, and nothing is held back, before motion is seen.
+    pub slow_start: bool,
 }
 
 /// The envelope.
@@ -84,6 +92,8 @@ pub struct Envelope {
     /// Currents whose pulse widths may be released in this step.
     released: CoilCurrents,
     tripped: Option<Trip>,
+    /// The command was more than a hitch gets that has yet to start.
+    holds_back: bool,
 }
 
 impl Envelope {
@@ -114,9 +124,11 @@ impl Envelope {
             .update(inputs, self.tripped.is_some(), limits.safety);
         // While a sample is bridged a coil that is on stays on, but none is switched on.
         let bridged = holds.has_any(&BRIDGED) && self.passed == CoilCurrents::OFF;
+        self.holds_back = false;
         self.passed = match command {
             Some(command) if armed && self.tripped.is_none() && !bridged => {
-                self.bounded(command, limits.safety)
+                let command = self.angle.withhold(command);
+                self.bounded(command, limits)
             }
             _ => CoilCurrents::OFF,
         };
@@ -152,6 +164,18 @@ impl Envelope {
         self.tripped
     }
 
+    /// True while the lowering coil is cut, since the hitch stands still and may lie on the ground.
+    #[must_use]
+    pub const fn has_landed(&self) -> bool {
+        self.angle.has_landed()
+    }
+
+    /// True if the command was more than a hitch gets that has yet to start: its ramp has to wait.
+    #[must_use]
+    pub const fn holds_back(&self) -> bool {
+        self.holds_back
+    }
+
     /// Clears a trip, if it may be cleared; lever or button have to be touched anew. The watches go on.
     pub fn reset(&mut self) {
         if self.objection().is_none() {
@@ -169,9 +193,7 @@ impl Envelope {
         limits: Limits<'_>,
     ) -> Rows {
         let (safety, sensors) = (limits.safety, limits.sensors);
-        let angle = self
-            .angle
-            .judge(inputs.rocker_angle, self.passed, sensors, safety);
+        let angle = self.angle.judge(inputs, self.passed, limits);
         let coils = self.coils.judge(self.passed, inputs, safety);
         let outside = |value: i32, low: i32, high: i32| value < low || value > high;
         let lever_bad = inputs
@@ -204,13 +226,19 @@ impl Envelope {
         ])
     }
 
-    fn bounded(&self, command: CoilCurrents, parameters: &SafetyParameters) -> CoilCurrents {
+    fn bounded(&mut self, command: CoilCurrents, limits: Limits<'_>) -> CoilCurrents {
+        let parameters = limits.safety;
         let changes_over = (self.passed.lift > MilliAmp::ZERO && command.lower > MilliAmp::ZERO)
             || (self.passed.lower > MilliAmp::ZERO && command.lift > MilliAmp::ZERO);
         if changes_over {
             // A step with both coils off, so that the angle watch starts anew.
             return CoilCurrents::OFF;
         }
+        let gentle = self.angle.gentle(limits).unwrap_or(CoilCurrents {
+            lift: parameters.lift_current_limit,
+            lower: parameters.lower_current_limit,
+        });
+        self.holds_back = command.lift > gentle.lift || command.lower > gentle.lower;
         let bound = |command: MilliAmp, passed: MilliAmp, limit: MilliAmp| {
             let rising = passed.max(parameters.free_current) + MilliAmp(parameters.current_slope.0);
             command.max(MilliAmp::ZERO).min(limit).min(rising)
@@ -219,12 +247,12 @@ impl Envelope {
             lift: bound(
                 command.lift,
                 self.passed.lift,
-                parameters.lift_current_limit,
+                parameters.lift_current_limit.min(gentle.lift),
             ),
             lower: bound(
                 command.lower,
                 self.passed.lower,
-                parameters.lower_current_limit,
+                parameters.lower_current_limit.min(gentle.lower),
             ),
         }
     }

@@ -25,11 +25,11 @@ pub enum Trip {
     AngleMissing = 6,
     /// The angle signal jumps further than a hitch can move.
     AngleJumps = 7,
-    /// The angle signal stands still to the last bit although the hitch was moving, or its sensor trembles.
+    /// The angle signal stands still to the last bit although the coil's current must have moved the hitch.
     AngleFrozen = 8,
     /// The angle signal is far noisier than its sensor.
     AngleNoisy = 9,
-    /// The hitch was moving and seems to have stopped, at an unchanged current.
+    /// The angle signal shows less travel than the coil's current must have caused.
     NotFollowing = 10,
     /// The hitch moves against the energised coil: coils or sensor are swapped.
     Against = 11,
@@ -94,7 +94,6 @@ impl Trip {
             Self::Stale => parameters.command_age,
             Self::Overrun => parameters.overrun_time,
             Self::Lever | Self::AngleMissing | Self::AngleJumps => parameters.sensor_time,
-            Self::NotFollowing => parameters.not_following_time,
             Self::CoilOpen => parameters.open_time,
             Self::CoilShort | Self::CoilStuck => parameters.short_time,
             Self::Reference => parameters.reference_time,
@@ -106,6 +105,7 @@ impl Trip {
             | Self::Supply
             | Self::AngleFrozen
             | Self::AngleNoisy
+            | Self::NotFollowing
             | Self::Against
             | Self::EnableLine
             | Self::Memory => Millisecond(1),

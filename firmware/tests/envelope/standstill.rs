@@ -1,0 +1,195 @@
+//! Rows 8 and 10: an angle that stands still although a coil must have moved the hitch.
+
+use hitch_firmware::control::motion::piston_speed;
+use hitch_firmware::control::units::MilliBar;
+
+use super::*;
+
+/// Longest from a freeze at 60 degrees a second until both coils are off, ms: 3.6 degrees.
+const IN_MOTION_MS: i32 = 60;
+/// The same of a sensor that was frozen before the coil came on, at a slow speed.
+const AT_THE_START_MS: usize = 4_000;
+
+/// A sensor of pressure shows that the load hangs.
+fn hangs(inputs: &mut Inputs) {
+    inputs.cylinder_pressure = Some(MilliBar(15_000));
+}
+
+/// Still from the start, at an angle and an order: what trips within so many steps, and whether both coils went off.
+fn still(
+    angle: i32,
+    order: Order,
+    steps: usize,
+    tell: impl Fn(&mut Inputs),
+) -> (Option<Trip>, bool) {
+    let mut rig = Rig::armed_at(angle);
+    let off = (0..steps)
+        .map(|_| rig.step_with(order, &tell) == CoilCurrents::OFF)
+        .last();
+    (rig.envelope.tripped(), off == Some(true))
+}
+
+#[test]
+fn row_8_a_sensor_that_holds_its_last_sample_in_motion() {
+    for order in [LIFT, LOWER] {
+        let mut rig = Rig::moving(order);
+        let mut held = None;
+        let cut = rig.cut_after(order, |inputs, _| {
+            held = held.or(inputs.rocker_angle);
+            inputs.rocker_angle = held;
+            hangs(inputs);
+        });
+        assert_eq!(rig.envelope.tripped(), Some(Trip::AngleFrozen), "{order:?}");
+        assert!(
+            cut.is_some_and(|cut| cut <= IN_MOTION_MS),
+            "{order:?}: {cut:?}"
+        );
+    }
+}
+
+#[test]
+fn row_10_a_sensor_that_sticks_in_motion_and_keeps_its_noise() {
+    for order in [LIFT, LOWER] {
+        let mut rig = Rig::moving(order);
+        rig.speed = 0;
+        let cut = rig.cut_after(order, |inputs, _| hangs(inputs));
+        assert_eq!(
+            rig.envelope.tripped(),
+            Some(Trip::NotFollowing),
+            "{order:?}"
+        );
+        assert!(
+            cut.is_some_and(|cut| cut <= IN_MOTION_MS),
+            "{order:?}: {cut:?}"
+        );
+    }
+}
+
+#[test]
+fn a_controller_that_takes_back_current_does_not_hide_a_frozen_sensor() {
+    let mut rig = Rig::moving(LIFT);
+    rig.speed = 0;
+    let cut = (1..=IN_MOTION_MS + 10)
+        .find(|&step| rig.step_with(Order::Lift(2_500 - 15 * step), |_| {}) == CoilCurrents::OFF);
+    assert!(cut.is_some());
+    assert_eq!(rig.envelope.tripped(), Some(Trip::NotFollowing));
+}
+
+/// Travel that a hitch of the nominal calibration is given at 90 degrees by a current in a step, degree.
+fn given_deg(passed: CoilCurrents) -> f64 {
+    let (table, current) = match passed.lift > MilliAmp(0) {
+        true => (&NOMINAL.lift, passed.lift),
+        false => (&NOMINAL.lower, passed.lower),
+    };
+    let piston = piston_speed(table.flow(current), NOMINAL.hydraulics.piston_area);
+    f64::from(piston.0) * 1e-3 / um_per_deg()
+}
+
+/// Piston travel for a degree at 90 degrees, micrometre.
+fn um_per_deg() -> f64 {
+    let travel = |angle| f64::from(NOMINAL.linkage.travel(MilliDegree(angle)).0);
+    (travel(91_000) - travel(89_000)) / 2.0
+}
+
+/// Given so much by the currents until it trips, whatever is asked for.
+#[test]
+fn a_sensor_that_was_frozen_before_the_coil_came_on_trips() {
+    for order in [
+        LIFT,
+        LOWER,
+        Order::Lift(3_500),
+        Order::Lower(3_500),
+        Order::Lift(1_500),
+        Order::Lower(1_400),
+    ] {
+        let mut rig = Rig::armed();
+        let mut travel_deg = 0.0;
+        for _ in 0..AT_THE_START_MS {
+            let passed = rig.step_with(order, |inputs| {
+                inputs.rocker_angle = Some(MilliDegree(90_000));
+                hangs(inputs);
+            });
+            travel_deg += given_deg(passed);
+        }
+        assert_eq!(rig.envelope.tripped(), Some(Trip::AngleFrozen), "{order:?}");
+        let most_deg = f64::from(SAFETY.onset_debt.0) * 1e-3 + 0.5;
+        assert!(travel_deg <= most_deg, "{order:?}: {travel_deg} deg");
+    }
+}
+
+/// Before motion is seen the currents spend a budget of travel; then they give the onset speed and no more.
+#[test]
+fn a_hitch_that_has_yet_to_start_gets_no_more_than_the_onset_speed() {
+    for (order, onset) in [
+        (Order::Lift(3_500), SAFETY.lift_onset_speed),
+        (Order::Lower(3_500), SAFETY.lower_onset_speed),
+    ] {
+        let mut rig = Rig::armed();
+        let (mut travel_deg, mut limited_steps) = (0.0, 0);
+        let budget_deg = f64::from(SAFETY.onset_budget.0) * 1e-3;
+        while rig.envelope.tripped().is_none() {
+            let spent = travel_deg >= budget_deg;
+            let step_deg = given_deg(rig.step_with(order, hangs));
+            travel_deg += step_deg;
+            if spent {
+                let most_deg = f64::from(onset.0) * 1e-3 / um_per_deg();
+                assert!(step_deg <= 1.02 * most_deg, "{order:?}: {step_deg} deg");
+                assert!(rig.envelope.holds_back() || step_deg == 0.0);
+                limited_steps += 1;
+            }
+        }
+        assert!(limited_steps > 0, "{order:?}");
+    }
+}
+
+#[test]
+fn a_coil_that_need_not_move_the_hitch_owes_nothing() {
+    // 0.2 A above the thresholds of the calibration.
+    for order in [Order::Rest, Order::Lift(1_326), Order::Lower(1_199)] {
+        assert_eq!(still(90_000, order, 10_000, hangs).0, None, "{order:?}");
+    }
+}
+
+#[test]
+fn a_hitch_at_an_end_of_its_travel_owes_nothing() {
+    assert_eq!(still(132_000, LIFT, 5_000, hangs).0, None);
+    assert_eq!(still(48_000, LOWER, 5_000, hangs), (None, false));
+    assert_eq!(
+        still(132_000, LOWER, 5_000, hangs).0,
+        Some(Trip::NotFollowing)
+    );
+    assert_eq!(
+        still(48_000, LIFT, 5_000, hangs).0,
+        Some(Trip::NotFollowing)
+    );
+}
+
+#[test]
+fn a_hitch_on_the_ground_or_behind_the_relief_valve_owes_nothing() {
+    let lies = |inputs: &mut Inputs| inputs.cylinder_pressure = Some(MilliBar(500));
+    assert_eq!(still(90_000, LOWER, 5_000, lies), (None, false));
+    let overloaded = |inputs: &mut Inputs| inputs.pump_pressure = Some(MilliBar(154_000));
+    assert_eq!(still(90_000, LIFT, 5_000, overloaded), (None, false));
+}
+
+#[test]
+fn without_a_pressure_a_hitch_that_may_have_landed_is_cut_off_without_a_fault() {
+    let mut rig = Rig::moving(LOWER);
+    rig.speed = 0;
+    let cut = rig.cut_after_landing(LOWER);
+    assert!(cut.is_some_and(|cut| cut <= IN_MOTION_MS), "{cut:?}");
+    assert_eq!(rig.run(LOWER, 5_000), CoilCurrents::OFF, "stays off");
+    assert_eq!(rig.envelope.tripped(), None);
+    rig.run(Order::Rest, 1);
+    assert_ne!(rig.run(LOWER, 1), CoilCurrents::OFF, "the command was off");
+}
+
+#[test]
+fn a_load_that_swings_shows_a_sensor_that_lives() {
+    let mut rig = Rig::moving(LIFT);
+    // To and fro by a degree within 100 ms, and no further.
+    for step in 0..2_000 {
+        rig.speed = if step % 100 < 50 { -20 } else { 20 };
+        assert_ne!(rig.step_with(LIFT, |_| {}), CoilCurrents::OFF, "{step}");
+    }
+}
