@@ -205,7 +205,7 @@ impl Envelope {
         Rows::of([
             command.is_none(),
             both,
-            measuring.lost > Millisecond::ZERO,
+            measuring.lost != Millisecond::ZERO,
             supply_bad,
             lever_bad,
             angle.missing,
