@@ -55,9 +55,9 @@ fn sample_pins(part: Part) -> [Option<Pin>; Samples::CHANNELS] {
 /// Steps of the timer in half a pulse on both boards: 168 MHz, counted up and down at 16 kHz.
 const PWM_STEPS: u16 = 5_250;
 
-/// Output of the enable line, and the input that reads it back.
+/// Output of the enable line.
 pub const ENABLE: Pin = Pin::new(Port::B, 10);
-/// See [`ENABLE`].
+/// Input that reads the enable line back at the drivers.
 pub const ENABLE_READ_BACK: Pin = Pin::new(Port::B, 11);
 
 /// A board at some time.
