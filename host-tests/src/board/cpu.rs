@@ -3,13 +3,14 @@
 //! Unicorn is licensed under GPL-2.0. It is a test tool: nothing in this workspace links against it, and only the
 //! program `board-bench` loads it, in a process of its own.
 
-use std::collections::HashMap;
 use std::ffi::{c_int, c_uint, c_void};
 use std::path::Path;
 use std::ptr;
 
 use anyhow::{Context, Result, ensure};
 use libloading::Library;
+
+use super::block_counts::{BlockCounts, instructions};
 
 /// Unicorn's constants (`unicorn.h`, `arm.h`, version 2.1).
 const ARCHITECTURE_ARM: c_uint = 1;
@@ -494,46 +495,4 @@ unsafe extern "C" fn on_write<B: Bus>(
         (window.base, &mut *window.attached)
     };
     attached.bus.write(base + offset as u32, size, value as u32);
-}
-
-/// How many instructions the blocks have that were met so far: by address, which is even, and size in bytes.
-#[derive(Default)]
-struct BlockCounts {
-    known: HashMap<(u32, u32), u32>,
-}
-
-impl BlockCounts {
-    fn known(&self, address: u32, size: u32) -> Option<u32> {
-        self.known.get(&(address, size)).copied()
-    }
-
-    fn learn(&mut self, address: u32, size: u32, count: u32) {
-        self.known.insert((address, size), count);
-    }
-}
-
-/// Number of instructions in a piece of Thumb code.
-fn instructions(code: &[u8]) -> u32 {
-    let mut halfwords = code.as_chunks::<2>().0.iter();
-    let mut count = 0;
-    while let Some(&[_, high]) = halfwords.next() {
-        // 0b11101, 0b11110 and 0b11111 begin an instruction of 32 bits (ARMv7-M, A5.1).
-        if high >> 3 >= 0b11101 {
-            halfwords.next();
-        }
-        count += 1;
-    }
-    count
-}
-
-#[cfg(test)]
-mod tests {
-    use super::instructions;
-
-    #[test]
-    fn wide_instructions_count_once() {
-        // nop; movw r0, #1; bx lr
-        let code = [0x00, 0xBF, 0x40, 0xF2, 0x01, 0x00, 0x70, 0x47];
-        assert_eq!(instructions(&code), 3);
-    }
 }

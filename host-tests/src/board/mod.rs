@@ -13,6 +13,7 @@
 
 mod adc;
 mod audit;
+mod block_counts;
 mod can;
 mod chip;
 mod clocks;
