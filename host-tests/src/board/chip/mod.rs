@@ -193,12 +193,6 @@ impl Chip {
         }
     }
 
-    /// Since when no coil has been driven, ns; none while one is.
-    #[must_use]
-    pub const fn last_off_ns(&self) -> Option<f64> {
-        self.off_since_ns
-    }
-
     /// Notes whether a coil is driven after something has changed at the outputs.
     fn watch_outputs(&mut self) {
         let driven = self.output(ENABLE) && (self.duty(0) > 0.0 || self.duty(1) > 0.0);

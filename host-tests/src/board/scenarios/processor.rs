@@ -10,9 +10,14 @@ use crate::board::{Conditions, Contents, Part, Stop};
 /// Time within which the watchdog resets a dead program at the slowest oscillator, and the pins are low, ms.
 const WATCHDOG_MS: f64 = 20.0;
 
-/// A hitch that is lifted at full speed.
+/// A hitch that is lifted at full speed, in typical conditions.
 fn lifted<'m>(setup: &Setup, model: &'m Model) -> Result<Rig<'m>> {
-    let mut rig = Rig::typical(setup, model)?;
+    lifted_in(setup, model, Conditions::typical(setup.part))
+}
+
+/// A hitch that is lifted at full speed.
+fn lifted_in<'m>(setup: &Setup, model: &'m Model, conditions: Conditions) -> Result<Rig<'m>> {
+    let mut rig = Rig::new(setup, model, Contents::erased(setup.part), conditions)?;
     rig.pick_up()?;
     rig.lever(125.0, 700)?;
     ensure!(rig.is_driven(), "the hitch isn't lifted");
@@ -77,10 +82,7 @@ pub fn stuck_program(setup: &Setup) -> Result<String> {
             slow_clock_hz,
             ..Conditions::typical(setup.part)
         };
-        let mut rig = Rig::new(setup, &model, Contents::erased(setup.part), conditions)?;
-        rig.pick_up()?;
-        rig.lever(125.0, 700)?;
-        ensure!(rig.is_driven(), "the hitch isn't lifted");
+        let mut rig = lifted_in(setup, &model, conditions)?;
         let fault_ns = rig.now_ns();
         rig.board.chip().pwm.next_update_ns = f64::INFINITY;
         let took_ms = rig.off_after_ms(fault_ns, 60, |_| {})?;

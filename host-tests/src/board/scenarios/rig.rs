@@ -106,7 +106,7 @@ impl<'m> Rig<'m> {
         for _ in 0..watched_ms {
             self.tick_with(&mut tamper)?;
         }
-        let off_ns = self.board.chip().last_off_ns();
+        let off_ns = self.board.chip().off_since_ns;
         let off_ns = off_ns.ok_or_else(|| {
             anyhow::anyhow!("a coil is still driven {watched_ms} ms after the fault")
         })?;

@@ -5,7 +5,7 @@ use hitch_model::Model;
 
 use super::Setup;
 use super::rig::{READY_MS, Rig};
-use crate::board::{Conditions, Contents, Part, Stop};
+use crate::board::{Conditions, Contents, Stop};
 
 /// Frames of the address claim and the status say that the application runs.
 fn starts(setup: &Setup, conditions: Conditions) -> Result<f64> {
@@ -101,11 +101,6 @@ pub fn dead_crystal(setup: &Setup) -> Result<String> {
 /// The slowest and the fastest oscillator of the watchdog.
 pub fn slow_clock_tolerance(setup: &Setup) -> Result<String> {
     let [slowest, fastest] = setup.part.slow_clock_hz();
-    let fastest = match setup.part {
-        Part::Stm32f405 => fastest,
-        // Beyond the data sheet's 34 kHz, as the first revisions may be.
-        Part::Stm32g474 => fastest.max(34e3),
-    };
     for slow_clock_hz in [slowest, 32e3, fastest] {
         starts(
             setup,
