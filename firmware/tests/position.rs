@@ -129,6 +129,20 @@ fn ramps_of_lowering_go_with_the_root_of_the_pressure_drop_and_those_of_lifting_
 }
 
 #[test]
+fn a_load_that_swings_is_lifted_with_gentle_ramps_and_lowered_as_any_other() {
+    let (steady, mut swinging) = (resting(), resting());
+    swinging.overshot();
+    let lifted = |motion: &Motion| demand(motion, 20_000, Phase::Holding, 100);
+    let (usual, gentle) = (lifted(&steady), lifted(&swinging));
+    assert_eq!(usual.acceleration, PARAMETERS.lift_acceleration);
+    assert_eq!(gentle.acceleration, PARAMETERS.swinging_acceleration);
+    // The speed at a distance goes with the root of the deceleration.
+    assert!(gentle.speed < usual.speed, "{gentle:?}, {usual:?}");
+    let lowered = |motion: &Motion| demand(motion, -20_000, Phase::Holding, 100);
+    assert_eq!(lowered(&swinging), lowered(&steady));
+}
+
+#[test]
 fn the_coil_is_cut_where_the_closing_valve_carries_the_hitch_to_its_set_point() {
     let calibration = Calibration::nominal();
     let reference = calibration.hydraulics.reference_drop;

@@ -390,6 +390,26 @@ mod tests {
     }
 
     #[test]
+    fn a_load_that_swings_back_at_the_end_of_a_move_is_waited_for_no_longer() {
+        let parameters = PositionParameters::NOMINAL;
+        let demand = |speed| Demand {
+            direction: Direction::Lift,
+            speed,
+            acceleration: parameters.lift_acceleration,
+        };
+        let mut position = PositionControl::default();
+        position.start();
+        let end = creeping(END, &parameters);
+        let _ = position.paced(demand(end), parameters.lower_speed, &parameters);
+        for _ in 0..PATIENCE.0 {
+            let fast = demand(parameters.lift_speed);
+            let _ = position.paced(fast, parameters.lower_speed, &parameters);
+        }
+        let waited_ms = waited_for(&mut position, Micrometre(20)).unwrap();
+        assert!(waited_ms <= 10, "{waited_ms} ms more");
+    }
+
+    #[test]
     fn a_hitch_that_goes_on_at_its_slowest_gets_where_it_should() {
         let way_per_ms = PositionParameters::NOMINAL.creep_speed.0 / 1_000;
         assert!(SPARED < way_per_ms, "is given up sooner than it goes");

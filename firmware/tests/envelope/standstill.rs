@@ -145,6 +145,83 @@ fn a_hitch_that_has_yet_to_start_gets_no_more_than_the_onset_speed() {
     }
 }
 
+/// White noise of 0.1 degree, one sigma, on every sample: that of a coarse sensor that is still healthy.
+fn with_noise(random: &mut fastrand::Rng, inputs: &mut Inputs) {
+    // A sum of twelve is as good as normal here.
+    let normal: f64 = (0..12).map(|_| random.f64()).sum::<f64>() - 6.0;
+    let noise = MilliDegree((100.0 * normal) as i32);
+    inputs.rocker_angle = inputs.rocker_angle.map(|angle| angle + noise);
+}
+
+#[test]
+fn noise_of_a_sensor_is_no_motion() {
+    for (order, onset) in [
+        (Order::Lift(3_500), SAFETY.lift_onset_speed),
+        (Order::Lower(3_500), SAFETY.lower_onset_speed),
+    ] {
+        for seed in 1..=50 {
+            let mut random = fastrand::Rng::with_seed(seed);
+            let mut rig = Rig::armed();
+            let mut last_deg = 0.0;
+            while rig.envelope.tripped().is_none() {
+                let passed = rig.step_with(order, |inputs| {
+                    with_noise(&mut random, inputs);
+                    hangs(inputs);
+                });
+                if passed != CoilCurrents::OFF {
+                    last_deg = given_deg(passed);
+                }
+            }
+            let most_deg = f64::from(onset.0) * 1e-3 / um_per_deg();
+            let case = format!("{order:?}, seed {seed}: {last_deg} deg");
+            assert!(last_deg <= 1.1 * most_deg, "{case}");
+            assert_eq!(rig.envelope.tripped(), Some(Trip::NotFollowing), "{case}");
+        }
+    }
+}
+
+#[test]
+fn noise_of_a_sensor_hides_no_motion_of_two_degrees() {
+    for (order, way) in [(Order::Lift(3_500), 1), (Order::Lower(3_500), -1)] {
+        for seed in 1..=50 {
+            let mut random = fastrand::Rng::with_seed(seed);
+            let mut rig = Rig::armed();
+            // Slow enough that what the current gives would spend the onset budget.
+            rig.speed = way * 20;
+            for step in 1..=400 {
+                rig.step_with(order, |inputs| {
+                    with_noise(&mut random, inputs);
+                    hangs(inputs);
+                });
+                let held_back = rig.envelope.holds_back() && 20 * step > 2_000;
+                assert!(!held_back, "{order:?}, seed {seed}: after {step} ms");
+            }
+            assert_eq!(rig.passed, order.currents(), "{order:?}, seed {seed}");
+        }
+    }
+}
+
+#[test]
+fn a_command_within_its_limits_is_not_held_back() {
+    for order in [LIFT, LOWER] {
+        let mut rig = Rig::armed();
+        assert!(!rig.envelope.holds_back(), "no command");
+        rig.run(order, 1);
+        assert!(!rig.envelope.holds_back(), "{order:?}, within the budget");
+    }
+    let (lift, lower) = (SAFETY.lift_current_limit.0, SAFETY.lower_current_limit.0);
+    for (full, more) in [
+        (Order::Lift(lift), Order::Lift(lift + 1)),
+        (Order::Lower(lower), Order::Lower(lower + 1)),
+    ] {
+        let mut rig = Rig::moving(full);
+        rig.run(full, 1);
+        assert!(!rig.envelope.holds_back(), "{full:?}");
+        rig.run(more, 1);
+        assert!(rig.envelope.holds_back(), "{more:?}");
+    }
+}
+
 #[test]
 fn a_coil_that_need_not_move_the_hitch_owes_nothing() {
     // 0.2 A above the thresholds of the calibration.
@@ -181,9 +258,12 @@ fn without_a_pressure_a_hitch_that_may_have_landed_is_cut_off_without_a_fault() 
     rig.speed = 0;
     let cut = rig.cut_after_landing(LOWER);
     assert!(cut.is_some_and(|cut| cut <= IN_MOTION_MS), "{cut:?}");
+    assert!(rig.envelope.has_landed());
     assert_eq!(rig.run(LOWER, 5_000), CoilCurrents::OFF, "stays off");
     assert_eq!(rig.envelope.tripped(), None);
+    assert!(rig.envelope.has_landed());
     rig.run(Order::Rest, 1);
+    assert!(!rig.envelope.has_landed());
     assert_ne!(rig.run(LOWER, 1), CoilCurrents::OFF, "the command was off");
 }
 
