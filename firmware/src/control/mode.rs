@@ -57,7 +57,7 @@ pub enum Fault {
     Reference = 10,
     /// The supply of the sensors is outside its limits.
     SensorSupply = 11,
-    /// The line that enables the coils' drivers doesn't do what it is told.
+    /// The enable line of the coils' drivers: its read-back differs from its command.
     EnableLine = 12,
     /// The calibration in use has changed in memory.
     Memory = 13,

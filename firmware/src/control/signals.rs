@@ -84,7 +84,7 @@ pub struct Inputs {
     pub clock_ratio: Option<PerMille>,
     /// What the operator has switched on.
     pub switches: Switches,
-    /// The line that enables the coils' drivers doesn't do what it is told.
+    /// The enable line of the coils' drivers: its read-back differs from its command.
     pub enable_line_fault: bool,
 }
 

@@ -34,7 +34,7 @@ enum State {
     Raised,
     /// Has been both.
     Proven,
-    /// Doesn't do what it is told.
+    /// Its read-back differs from its command.
     Faulty,
 }
 

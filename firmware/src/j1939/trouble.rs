@@ -124,7 +124,7 @@ troubles! {
     AngleTracks = ANGLE_TRACKS / 2,
     /// The main clock has another rate than at the start.
     Clock = CONTROLLER / 8,
-    /// The enable line of the coils' drivers doesn't do what it is told.
+    /// The enable line of the coils' drivers: its read-back differs from its command.
     EnableLine = ENABLE_LINE / 12,
     /// The calibration in use has changed in memory.
     Memory = CALIBRATION / 12,

@@ -47,7 +47,7 @@ pub enum Trip {
     AngleTracks = 17,
     /// The main clock has another rate than at the start.
     Clock = 18,
-    /// The line that enables the coils' drivers doesn't do what it is told.
+    /// The enable line of the coils' drivers: its read-back differs from its command.
     EnableLine = 19,
     /// The calibration in use no longer has its checksum: memory has lost a bit.
     Memory = 20,
