@@ -69,6 +69,36 @@ impl Ratio {
     }
 }
 
+/// What a converter channel measures, in the order of [`Samples::codes`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Signal {
+    /// [`Samples::rocker_angle`].
+    RockerAngle,
+    /// [`Samples::lever`].
+    Lever,
+    /// [`Samples::upper_limit`].
+    UpperLimit,
+    /// [`Samples::lowering_dial`].
+    LoweringDial,
+    /// [`Samples::lift_current`].
+    LiftCurrent,
+    /// [`Samples::lower_current`].
+    LowerCurrent,
+    /// [`Samples::supply`].
+    Supply,
+    /// [`Samples::cylinder_pressure`].
+    CylinderPressure,
+    /// [`Samples::pump_pressure`].
+    PumpPressure,
+    /// [`Samples::second_angle`].
+    SecondAngle,
+    /// [`Samples::sensor_supply`].
+    SensorSupply,
+    /// [`Samples::reference`].
+    Reference,
+}
+
 /// What the converters give in a millisecond.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Samples {
@@ -397,5 +427,32 @@ mod tests {
     fn codes_go_round() {
         let codes = core::array::from_fn(|index| AdcCode::new(index as u16 * 100));
         assert_eq!(Samples::from_codes(codes).codes(), codes);
+    }
+
+    #[test]
+    fn the_code_of_a_signal_is_its_sample() {
+        const CODE: AdcCode = AdcCode::new(1_000);
+        let none = Samples::default();
+        #[rustfmt::skip]
+        let samples = [
+            (Signal::RockerAngle, Samples { rocker_angle: CODE, ..none }),
+            (Signal::Lever, Samples { lever: CODE, ..none }),
+            (Signal::UpperLimit, Samples { upper_limit: CODE, ..none }),
+            (Signal::LoweringDial, Samples { lowering_dial: CODE, ..none }),
+            (Signal::LiftCurrent, Samples { lift_current: CODE, ..none }),
+            (Signal::LowerCurrent, Samples { lower_current: CODE, ..none }),
+            (Signal::Supply, Samples { supply: CODE, ..none }),
+            (Signal::CylinderPressure, Samples { cylinder_pressure: CODE, ..none }),
+            (Signal::PumpPressure, Samples { pump_pressure: CODE, ..none }),
+            (Signal::SecondAngle, Samples { second_angle: CODE, ..none }),
+            (Signal::SensorSupply, Samples { sensor_supply: CODE, ..none }),
+            (Signal::Reference, Samples { reference: CODE, ..none }),
+        ];
+        assert_eq!(samples.len(), Samples::CHANNELS);
+        for (signal, expected) in samples {
+            let mut codes = none.codes();
+            codes[signal as usize] = CODE;
+            assert_eq!(Samples::from_codes(codes), expected, "{signal:?}");
+        }
     }
 }

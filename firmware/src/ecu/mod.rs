@@ -28,7 +28,7 @@ mod status;
 
 pub use application::Ecu;
 pub use coil_driver::{CoilDriver, CoilDriverError};
-pub use converter::{AdcCode, Conversion, Samples};
+pub use converter::{AdcCode, Conversion, Samples, Signal};
 pub use drive::{Compare, Drive};
 pub use flow::{FlowMonitor, Kick, Task};
 pub use hardware::{Contacts, Hardware};

@@ -28,12 +28,12 @@ impl Converters {
             return None;
         }
         converters.into_iter().for_each(part::clear);
-        let codes = |converter: usize| {
-            [0, 1, 2, 3].map(|index| {
-                let register = converters[converter].jdr(index).read();
-                AdcCode::new(register.jdata())
-            })
-        };
-        Some(part::samples([codes(0), codes(1), codes(2)]))
+        let mut codes = [AdcCode::default(); Samples::CHANNELS];
+        for (adc, sequence) in converters.into_iter().zip(&part::SEQUENCES) {
+            for (index, &(_, signal)) in sequence.iter().enumerate() {
+                codes[signal as usize] = AdcCode::new(adc.jdr(index).read().jdata());
+            }
+        }
+        Some(Samples::from_codes(codes))
     }
 }

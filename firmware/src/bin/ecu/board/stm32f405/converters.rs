@@ -1,6 +1,6 @@
 //! Which channels the signals are on the STM32F405, and how its converters are set up and asked.
 
-use hitch_firmware::ecu::{AdcCode, Samples};
+use hitch_firmware::ecu::Signal;
 use stm32_metapac::adc::Adc;
 use stm32_metapac::adc::vals::{Exten, SampleTime};
 use stm32_metapac::adccommon::vals::Adcpre;
@@ -10,41 +10,30 @@ use crate::board::pins;
 
 /// TIM1_TRGO (RM0090, table of `JEXTSEL`).
 const TIM1_TRGO: u8 = 1;
-/// Channels of the three sequences.
-pub const SEQUENCES: [[u8; 4]; 3] = [
-    // Lift current PA2, angle PA0, supply PB0, internal reference.
-    [2, 0, 8, REFERENCE],
-    // Lowering current PC0, lever PA1, second angle PA5, sensor supply PA4.
-    [10, 1, 5, 4],
-    // Pump pressure PC3, upper-limit dial PA3, lowering dial PC1, cylinder pressure PC2.
-    [13, 3, 11, 12],
+/// The channels of the three sequences in the order of their ranks, and what they measure.
+pub const SEQUENCES: [[(u8, Signal); 4]; 3] = [
+    [
+        (2, Signal::LiftCurrent), // PA2
+        (0, Signal::RockerAngle), // PA0
+        (8, Signal::Supply),      // PB0
+        (REFERENCE, Signal::Reference),
+    ],
+    [
+        (10, Signal::LowerCurrent), // PC0
+        (1, Signal::Lever),         // PA1
+        (5, Signal::SecondAngle),   // PA5
+        (4, Signal::SensorSupply),  // PA4
+    ],
+    [
+        (13, Signal::PumpPressure),     // PC3
+        (3, Signal::UpperLimit),        // PA3
+        (11, Signal::LoweringDial),     // PC1
+        (12, Signal::CylinderPressure), // PC2
+    ],
 ];
 
 /// VREFINT, on ADC1 alone.
 const REFERENCE: u8 = 17;
-
-/// The samples of the codes of [`SEQUENCES`].
-pub const fn samples(codes: [[AdcCode; 4]; 3]) -> Samples {
-    let [
-        [lift_current, rocker_angle, supply, reference],
-        [lower_current, lever, second_angle, sensor_supply],
-        [pump_pressure, upper_limit, lowering_dial, cylinder_pressure],
-    ] = codes;
-    Samples {
-        rocker_angle,
-        lever,
-        upper_limit,
-        lowering_dial,
-        lift_current,
-        lower_current,
-        supply,
-        cylinder_pressure,
-        pump_pressure,
-        second_angle,
-        sensor_supply,
-        reference,
-    }
-}
 
 /// Makes the pins analogue and sets the converters' clock.
 pub fn start_pins_and_clocks() {
@@ -74,8 +63,8 @@ pub fn clear(adc: Adc) {
 }
 
 /// Four channels take 4 * (84 + 12) / 21 MHz = 18 us; the internal reference has to be sampled for 10 us, and takes 23 us.
-pub fn start_sequence(adc: Adc, channels: &[u8; 4]) {
-    for &channel in channels {
+pub fn start_sequence(adc: Adc, sequence: &[(u8, Signal); 4]) {
+    for &(channel, _) in sequence {
         let time = match channel {
             REFERENCE => SampleTime::CYCLES480,
             _ => SampleTime::CYCLES84,
@@ -88,7 +77,7 @@ pub fn start_sequence(adc: Adc, channels: &[u8; 4]) {
     }
     adc.jsqr().write(|w| {
         w.set_jl(3);
-        for (index, &channel) in channels.iter().enumerate() {
+        for (index, &(channel, _)) in sequence.iter().enumerate() {
             w.set_jsq(index, channel);
         }
     });

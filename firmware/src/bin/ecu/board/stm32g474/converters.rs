@@ -1,7 +1,7 @@
 //! Which channels the signals are on the STM32G474, and how its converters are set up and asked.
 
 use embedded_hal::delay::DelayNs;
-use hitch_firmware::ecu::{AdcCode, Samples};
+use hitch_firmware::ecu::Signal;
 use stm32_metapac::adc::Adc;
 use stm32_metapac::adc::vals::{Adcaldif, Exten, SampleTime};
 use stm32_metapac::adccommon::vals::Ckmode;
@@ -12,41 +12,30 @@ use crate::board::pins;
 
 /// TIM1_TRGO for ADC1 and 2 and for ADC3 (RM0440, tables of `JEXTSEL`).
 const TIM1_TRGO: u8 = 0;
-/// Channels of the three sequences.
-pub const SEQUENCES: [[u8; 4]; 3] = [
-    // Lift current PA2, angle PA0, upper-limit dial PA3, cylinder pressure PC2.
-    [3, 1, 4, 8],
-    // Lowering current PC0, lever PA1, lowering dial PC1, second angle PA5.
-    [6, 2, 7, 13],
-    // Pump pressure PB1, supply PB0, sensor supply PB13, internal reference.
-    [1, 12, 5, REFERENCE],
+/// The channels of the three sequences in the order of their ranks, and what they measure.
+pub const SEQUENCES: [[(u8, Signal); 4]; 3] = [
+    [
+        (3, Signal::LiftCurrent),      // PA2
+        (1, Signal::RockerAngle),      // PA0
+        (4, Signal::UpperLimit),       // PA3
+        (8, Signal::CylinderPressure), // PC2
+    ],
+    [
+        (6, Signal::LowerCurrent), // PC0
+        (2, Signal::Lever),        // PA1
+        (7, Signal::LoweringDial), // PC1
+        (13, Signal::SecondAngle), // PA5
+    ],
+    [
+        (1, Signal::PumpPressure), // PB1
+        (12, Signal::Supply),      // PB0
+        (5, Signal::SensorSupply), // PB13
+        (REFERENCE, Signal::Reference),
+    ],
 ];
 
 /// VREFINT, on ADC1 and ADC3.
 const REFERENCE: u8 = 18;
-
-/// The samples of the codes of [`SEQUENCES`].
-pub const fn samples(codes: [[AdcCode; 4]; 3]) -> Samples {
-    let [
-        [lift_current, rocker_angle, upper_limit, cylinder_pressure],
-        [lower_current, lever, lowering_dial, second_angle],
-        [pump_pressure, supply, sensor_supply, reference],
-    ] = codes;
-    Samples {
-        rocker_angle,
-        lever,
-        upper_limit,
-        lowering_dial,
-        lift_current,
-        lower_current,
-        supply,
-        cylinder_pressure,
-        pump_pressure,
-        second_angle,
-        sensor_supply,
-        reference,
-    }
-}
 
 /// Makes the pins analogue and sets the converters' clock.
 pub fn start_pins_and_clocks() {
@@ -82,9 +71,9 @@ pub fn clear(adc: Adc) {
 
 /// Four channels take 4 * (92.5 + 12.5) / 42 MHz = 10 us; the internal reference has to be sampled for 4 us, and takes
 /// 6 us.
-pub fn start_sequence(adc: Adc, channels: &[u8; 4]) {
+pub fn start_sequence(adc: Adc, sequence: &[(u8, Signal); 4]) {
     wake_and_calibrate(adc);
-    for &channel in channels {
+    for &(channel, _) in sequence {
         let time = match channel {
             REFERENCE => SampleTime::CYCLES247_5,
             _ => SampleTime::CYCLES92_5,
@@ -104,7 +93,7 @@ pub fn start_sequence(adc: Adc, channels: &[u8; 4]) {
         w.set_jl(3);
         w.set_jextsel(TIM1_TRGO);
         w.set_jexten(Exten::RISING_EDGE);
-        for (index, &channel) in channels.iter().enumerate() {
+        for (index, &(channel, _)) in sequence.iter().enumerate() {
             w.set_jsq(index, channel);
         }
     });
