@@ -313,18 +313,6 @@ mod tests {
 
     use super::*;
 
-    const SCALING: BoardScaling = BoardScaling {
-        pwm_steps: 5_250,
-        current: MilliAmp(5_000),
-        supply: MilliVolt(24_576),
-        signal: MilliVolt(5_000),
-        sensor_supply: MilliVolt(6_600),
-        reference: AdcCode(1_502),
-        wire_min: PerMille(50),
-        wire_max: PerMille(950),
-        second_track: false,
-    };
-
     /// Samples with signals at `volts`, a sensor supply of `sensor_supply` volts and a reference that is `share` of its
     /// nominal value.
     fn samples(volts: f64, sensor_supply: f64, share: f64) -> Samples {
@@ -339,7 +327,7 @@ mod tests {
     }
 
     fn inputs(samples: &Samples) -> Inputs {
-        Conversion::new(SCALING).inputs(samples)
+        Conversion::new(BoardScaling::NOMINAL).inputs(samples)
     }
 
     #[test]
@@ -380,7 +368,7 @@ mod tests {
 
     #[test]
     fn absurd_codes_of_reference_and_sensor_supply_divide_nothing() {
-        let mut conversion = Conversion::new(SCALING);
+        let mut conversion = Conversion::new(BoardScaling::NOMINAL);
         let healthy = samples(3.5, 5.0, 1.0);
         let before = conversion.inputs(&healthy);
         for absurd in [AdcCode(0), AdcCode(1), AdcCode::MAX] {
@@ -397,7 +385,7 @@ mod tests {
 
     #[test]
     fn every_code_gives_more_than_the_one_before() {
-        let mut conversion = Conversion::new(SCALING);
+        let mut conversion = Conversion::new(BoardScaling::NOMINAL);
         let found: Vec<_> = (205..=3_890)
             .map(|code| {
                 conversion.inputs(&Samples {

@@ -8,26 +8,13 @@ use embedded_storage::nor_flash::{
 };
 use hitch_firmware::can::Frame;
 use hitch_firmware::control::State;
-use hitch_firmware::control::units::{MilliAmp, MilliVolt, PerMille};
+use hitch_firmware::control::units::PerMille;
 use hitch_firmware::ecu::link::Reply;
 use hitch_firmware::ecu::{AdcCode, BoardScaling, Contacts, Machine, Panel, Samples};
 use hitch_firmware::j1939::{Id, Pgn};
 
 const PAGE: usize = 2_048;
 const PAGES: usize = 4;
-
-/// Twelve bits over a reference of 3.3 V.
-const SCALING: BoardScaling = BoardScaling {
-    pwm_steps: 5_250,
-    current: MilliAmp(5_000),
-    supply: MilliVolt(24_576),
-    signal: MilliVolt(5_000),
-    sensor_supply: MilliVolt(6_600),
-    reference: AdcCode::new(1_502),
-    wire_min: PerMille(50),
-    wire_max: PerMille(950),
-    second_track: false,
-};
 
 /// Power failed.
 #[derive(Debug)]
@@ -111,7 +98,7 @@ impl Bench {
     /// Powered up at 90 degrees with the lever elsewhere.
     pub fn start(flash: Flash) -> Self {
         Self {
-            machine: Machine::start(flash, 1, SCALING),
+            machine: Machine::start(flash, 1, BoardScaling::NOMINAL),
             panel: Panel::FIELD,
             lever: 100_000,
             angle_micro: 90_000_000,
@@ -208,6 +195,6 @@ fn samples(angle: i32, lever: i32, reply: &Reply) -> Samples {
         pump_pressure: ratiometric(4.0 / 250.0),
         second_angle: of_angle(180_000 - angle),
         sensor_supply: code(5_000.0 / 6_600.0),
-        reference: AdcCode::new(1_502),
+        reference: BoardScaling::NOMINAL.reference,
     }
 }

@@ -2,14 +2,13 @@
 
 use hitch_firmware::can::Frame;
 use hitch_firmware::control::units::PerMille;
-use hitch_firmware::ecu::Contacts;
 use hitch_firmware::ecu::link::Reply;
+use hitch_firmware::ecu::{BoardScaling, Contacts};
 use hitch_model::Model;
 
 use super::converters::{Converters, Signals};
 use super::machine::{EcuMachine, MachineError};
 use super::operator::Operator;
-use super::scaling::SCALING;
 use crate::closed_loop::{DrivenPlant, SUPPLY_V};
 
 /// Supply of the sensors, V.
@@ -131,7 +130,7 @@ impl<'m> Bench<'m> {
     fn move_on(&mut self, reply: &Reply) {
         // Without the enable line the drivers pass nothing.
         let share = |compare: u16| match reply.enable {
-            true => f64::from(compare) / f64::from(SCALING.pwm_steps),
+            true => f64::from(compare) / f64::from(BoardScaling::NOMINAL.pwm_steps),
             false => 0.0,
         };
         self.plant

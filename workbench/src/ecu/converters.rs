@@ -1,11 +1,10 @@
 //! From quantities to the converters' codes, with the noise that sensors and wires add.
 
-use hitch_firmware::ecu::{AdcCode, Samples};
+use hitch_firmware::ecu::{AdcCode, BoardScaling, Samples};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
-use super::scaling::SCALING;
 use crate::closed_loop::{ANGLE_NOISE_DEG, CURRENT_NOISE_A, CYLINDER_NOISE_BAR, PUMP_NOISE_BAR};
 
 /// Codes of twelve bits.
@@ -62,9 +61,9 @@ impl Converters {
         };
         let code = |of_full_scale: f64| code(of_full_scale / signals.reference);
         let full_scale = |millivolts: i32| f64::from(millivolts) * 1e-3;
-        let full_scale_a = f64::from(SCALING.current.0) * 1e-3;
+        let full_scale_a = f64::from(BoardScaling::NOMINAL.current.0) * 1e-3;
         // A tenth to nine tenths of the sensor supply: 35 to 145 degrees, nothing to 250 bar, shut to open.
-        let signal = signals.sensor_supply_v / full_scale(SCALING.signal.0);
+        let signal = signals.sensor_supply_v / full_scale(BoardScaling::NOMINAL.signal.0);
         let ratiometric = |share: f64| code((0.1 + 0.8 * share) * signal);
         let angle_deg = |angle_deg: f64| ratiometric((angle_deg - 35.0) / 110.0);
         Samples {
@@ -74,14 +73,16 @@ impl Converters {
             lowering_dial: ratiometric(noisy(signals.lowering_dial, POTENTIOMETER_NOISE)),
             lift_current: code(noisy(signals.lift_current_a, CURRENT_NOISE_A) / full_scale_a),
             lower_current: code(noisy(signals.lower_current_a, CURRENT_NOISE_A) / full_scale_a),
-            supply: code(signals.supply_v / full_scale(SCALING.supply.0)),
+            supply: code(signals.supply_v / full_scale(BoardScaling::NOMINAL.supply.0)),
             cylinder_pressure: ratiometric(
                 noisy(signals.cylinder_pressure_bar, CYLINDER_NOISE_BAR) / 250.0,
             ),
             pump_pressure: ratiometric(noisy(signals.pump_pressure_bar, PUMP_NOISE_BAR) / 250.0),
             second_angle: angle_deg(180.0 - noisy(signals.rocker_angle_deg, ANGLE_NOISE_DEG)),
-            sensor_supply: code(signals.sensor_supply_v / full_scale(SCALING.sensor_supply.0)),
-            reference: code(f64::from(SCALING.reference.get()) / CODES),
+            sensor_supply: code(
+                signals.sensor_supply_v / full_scale(BoardScaling::NOMINAL.sensor_supply.0),
+            ),
+            reference: code(f64::from(BoardScaling::NOMINAL.reference.get()) / CODES),
         }
     }
 }
@@ -113,7 +114,7 @@ mod tests {
             reference: 1.0,
         };
         let mut converters = Converters::new(1);
-        let mut conversion = Conversion::new(SCALING);
+        let mut conversion = Conversion::new(BoardScaling::NOMINAL);
         let inputs: Vec<_> = (0..2_000)
             .map(|_| conversion.inputs(&converters.convert(&signals)))
             .collect();

@@ -5,9 +5,7 @@ use std::io;
 use embedded_storage::nor_flash::NorFlash;
 use hitch_firmware::can::Frame;
 use hitch_firmware::ecu::link::Reply;
-use hitch_firmware::ecu::{Contacts, Machine};
-
-use super::scaling::SCALING;
+use hitch_firmware::ecu::{BoardScaling, Contacts, Machine};
 
 /// Why a machine gives no answer.
 #[derive(Debug, thiserror::Error)]
@@ -54,7 +52,7 @@ impl<F: NorFlash + Clone> OnHost<F> {
     /// Powers it up. Clones of `flash` have to share what they hold.
     pub fn start(flash: F) -> Self {
         Self {
-            machine: Machine::start(flash.clone(), SERIAL_NUMBER, SCALING),
+            machine: Machine::start(flash.clone(), SERIAL_NUMBER, BoardScaling::NOMINAL),
             flash,
         }
     }
@@ -78,7 +76,7 @@ impl<F: NorFlash + Clone> EcuMachine for OnHost<F> {
     }
 
     fn power_cycle(&mut self) -> Result<(), MachineError> {
-        self.machine = Machine::start(self.flash.clone(), SERIAL_NUMBER, SCALING);
+        self.machine = Machine::start(self.flash.clone(), SERIAL_NUMBER, BoardScaling::NOMINAL);
         Ok(())
     }
 }

@@ -8,7 +8,6 @@ mod flash;
 mod image;
 mod machine;
 mod operator;
-mod scaling;
 
 pub use bench::{Bench, Moment};
 pub use bus::Bus;
@@ -18,4 +17,3 @@ pub use flash::{CutFlash, FLASH_BYTES, delivered};
 pub use image::{IMAGE_VARIABLE, find as find_image};
 pub use machine::{EcuMachine, MachineError, OnHost};
 pub use operator::{Operator, Order};
-pub use scaling::SCALING;

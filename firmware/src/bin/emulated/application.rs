@@ -8,18 +8,11 @@ use hitch_firmware::ecu::{BoardScaling, Contacts, Machine, Probe};
 
 use crate::flash_file::FlashFile;
 use crate::link::Link;
-use crate::scaling::SCALING;
 use crate::stopwatch::{self, Stopwatch};
 use crate::{Done, Failure};
 
 /// Serial number of the emulated part.
 const SERIAL_NUMBER: u32 = 1;
-
-/// The board's scaling without its second angle track: the host's bench has one track, like most machines.
-const ONE_TRACK: BoardScaling = BoardScaling {
-    second_track: false,
-    ..SCALING
-};
 
 /// Runs until the requests end.
 pub fn run(link: &mut Link, stopwatch: &Stopwatch) -> Result<Done, Failure> {
@@ -67,7 +60,8 @@ fn power_up(
     stopwatch: &Stopwatch,
     done: &mut Done,
 ) -> Result<End, Failure> {
-    let mut machine: Machine<FlashFile, Control> = Machine::start(flash, SERIAL_NUMBER, ONE_TRACK);
+    let mut machine: Machine<FlashFile, Control> =
+        Machine::start(flash, SERIAL_NUMBER, BoardScaling::NOMINAL);
     let mut was_storing = false;
     while let Some(record) = link.read::<REQUEST_BYTES>()? {
         let Request::Tick { contacts, frames } = Request::from_bytes(&record) else {

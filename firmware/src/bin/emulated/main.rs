@@ -15,8 +15,6 @@ mod flash_file;
 mod host_file;
 mod link;
 mod parts;
-#[path = "../ecu/board/stm32f405/scaling.rs"]
-mod scaling;
 mod stack;
 mod steps;
 mod stopwatch;
