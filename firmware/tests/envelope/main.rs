@@ -7,6 +7,7 @@ mod any_inputs;
 mod bounds;
 mod coils;
 mod measuring;
+mod onset;
 mod recovery;
 mod release;
 mod signals;

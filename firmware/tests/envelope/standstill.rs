@@ -65,6 +65,67 @@ fn row_10_a_sensor_that_sticks_in_motion_and_keeps_its_noise() {
     }
 }
 
+/// A hitch in motion owes half of its speed, and so more than one that has just started.
+#[test]
+fn a_hitch_that_stops_is_cut_sooner_than_one_that_has_just_started() {
+    let margin = SAFETY.following_margin.0;
+    for (order, less, way) in [
+        (Order::Lift(1_900), Order::Lift(1_900 - margin), 1),
+        (Order::Lower(1_800), Order::Lower(1_800 - margin), -1),
+    ] {
+        let mut rig = Rig::armed_at(90_000 - way * 25_000);
+        rig.speed = way * (given_deg(order.currents()) * 1e3) as i32;
+        while (90_000 - rig.angle) * way > 0 {
+            rig.step_with(order, hangs);
+        }
+        rig.speed = 0;
+        let cut = rig.cut_after(order, |inputs, _| hangs(inputs));
+        assert_eq!(rig.envelope.tripped(), Some(Trip::NotFollowing));
+        let share = f64::from(SAFETY.following_share.0) * 1e-3;
+        let owed_um_per_ms = share * given_deg(less.currents()) * um_per_deg();
+        let started_ms = f64::from(SAFETY.following_allowance.0) / owed_um_per_ms;
+        let cut_ms = f64::from(cut.unwrap());
+        assert!(
+            cut_ms < 0.9 * started_ms,
+            "{order:?}: {cut_ms}, {started_ms} ms"
+        );
+    }
+}
+
+/// What its valve gives it is given behind the lags of a slow spool.
+#[test]
+fn a_hitch_that_has_just_started_may_stand_for_as_long_as_its_spool_is_slow() {
+    for order in [LIFT, LOWER] {
+        let way = if order == LIFT { 1 } else { -1 };
+        let mut rig = Rig::armed();
+        let slow = if way > 0 {
+            Order::Lift(1_326)
+        } else {
+            Order::Lower(1_199)
+        };
+        rig.speed = way * 2;
+        rig.run(slow, 300);
+        rig.speed = 0;
+        rig.run(slow, 100);
+        let cut = rig.cut_after(order, |inputs, _| hangs(inputs));
+        let (lift, lower) = (order.currents().lift, order.currents().lower);
+        let less = |current: MilliAmp| MilliAmp((current - SAFETY.following_margin).0.max(0));
+        let less = CoilCurrents {
+            lift: less(lift),
+            lower: less(lower),
+        };
+        let share = f64::from(SAFETY.following_share.0) * 1e-3;
+        let owed_ms =
+            f64::from(SAFETY.following_allowance.0) / (share * given_deg(less) * um_per_deg());
+        // A tenth: it owes a bit while they rise.
+        let least_ms = 0.9 * (owed_ms + 2.0 * f64::from(SAFETY.started_lag.0));
+        assert!(
+            f64::from(cut.unwrap()) >= least_ms,
+            "{order:?}: {cut:?}, {least_ms} ms"
+        );
+    }
+}
+
 #[test]
 fn a_controller_that_takes_back_current_does_not_hide_a_frozen_sensor() {
     let mut rig = Rig::moving(LIFT);

@@ -198,11 +198,12 @@ impl Following {
                 };
                 let most = shown.noise + safety.onset_travel;
                 self.started = shift > most;
-                if shift < -most {
+                let backwards = shift < -most;
+                if backwards {
                     self.rest = None;
                 }
                 let held = held || limits.slow_start;
-                self.starts(shift < -most, held, passed, machine, safety)
+                self.starts(backwards, held, passed, machine, safety)
             }
             true => self.follows(moved, along, held, passed, machine, safety),
         };
