@@ -16,7 +16,7 @@ const LEFT: f64 = 0.92;
 
 struct Machine<'m> {
     bench: Bench<'m>,
-    ecu: OnHost<CutFlash>,
+    ecu: OnHost,
 }
 
 impl<'m> Machine<'m> {

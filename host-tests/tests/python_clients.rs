@@ -82,7 +82,7 @@ fn client<M: EcuMachine>(
 }
 
 /// The application on this machine. Its flash is blank, so it runs on the factory's calibration and says so.
-fn here() -> OnHost<CutFlash> {
+fn here() -> OnHost {
     OnHost::start(CutFlash::blank())
 }
 

@@ -13,7 +13,7 @@ const IDLE_MS: u32 = 2_000;
 /// A hitch and an ECU that has just been switched on.
 struct Machine<'m> {
     bench: Bench<'m>,
-    ecu: OnHost<CutFlash>,
+    ecu: OnHost,
 }
 
 impl<'m> Machine<'m> {

@@ -20,7 +20,8 @@ use hitch_firmware::control::signals::INPUT_BYTES;
 use hitch_firmware::control::units::{MilliAmp, MilliVolt, PerMille};
 use hitch_firmware::control::{Calibration, Controller, Inputs};
 use hitch_firmware::ecu::{
-    AdcCode, BoardScaling, CoilDriver, Contacts, Drive, Ecu, Hardware, PanelInputs, Samples,
+    AdcCode, BoardScaling, CoilDriver, Contacts, Drive, Ecu, FlashRegions, Hardware, PanelInputs,
+    Samples,
 };
 
 unsafe extern "C" {
@@ -59,7 +60,11 @@ fn application() {
         wire_max: PerMille(0),
         second_track: false,
     });
-    let mut ecu = Ecu::start(AnyFlash, black_box(0), scaling);
+    let flash = FlashRegions {
+        calibration: AnyFlash,
+        fault_log: AnyFlash,
+    };
+    let mut ecu = Ecu::start(flash, black_box(0), scaling);
     let mut hardware = AnyHardware(CoilDriver::new(AnyPin, AnyPin, AnyPin, AnyPin));
     let mut panel = PanelInputs::new([AnyPin; 6]);
     while black_box(true) {

@@ -7,8 +7,9 @@ use super::arbiter::Arbiter;
 use super::converter::Conversion;
 use super::drive::Drive;
 use super::enable_line::EnableLine;
+use super::fault_history::FaultHistory;
 use super::flow::{FlowMonitor, Kick, Task};
-use super::hardware::{Contacts, Hardware};
+use super::hardware::{Contacts, FlashRegions, Hardware};
 use super::pace::Pace;
 use super::panel::Contact;
 use super::scaling::BoardScaling;
@@ -44,6 +45,7 @@ pub struct Ecu<F> {
     enable_line: EnableLine,
     arbiter: Arbiter,
     service: Service<F>,
+    history: FaultHistory<F>,
     node: Node,
     measured: MeasuredBroadcast,
     trouble_finder: TroubleFinder,
@@ -58,21 +60,25 @@ pub struct Ecu<F> {
 }
 
 impl<F: NorFlash> Ecu<F> {
-    /// The ECU as it is after power-up, with the calibration that `flash` holds. `serial_number` tells its node from
-    /// others on the bus; `scaling` is the board's. Not inlined: its stack is free again when the loop begins.
+    /// The ECU as it is after power-up, with the calibration and the fault history that `flash` holds. `serial_number`
+    /// tells its node from others on the bus; `scaling` is the board's. Not inlined: its stack is free again when the
+    /// loop begins.
     #[must_use]
     #[inline(never)]
-    pub fn start(flash: F, serial_number: u32, scaling: BoardScaling) -> Self {
-        let mut store = CalibrationStore::new(flash);
+    pub fn start(flash: FlashRegions<F>, serial_number: u32, scaling: BoardScaling) -> Self {
+        let mut store = CalibrationStore::new(flash.calibration);
         let (calibration, troubles) = service::load(&mut store, scaling.second_track);
+        let history = FaultHistory::open(flash.fault_log);
         let settings = Settings {
             name: NameFields::rear_hitch(serial_number).into(),
             preferred_address: PREFERRED_ADDRESS,
             variant: Variant::J1939,
+            occurrences: *history.stored(),
             software: &IDENTITY,
         };
         Self {
             service: Service::new(store, &calibration, troubles),
+            history,
             controller: Controller::new(calibration),
             conversion: Conversion::new(scaling),
             pwm_steps: scaling.pwm_steps,
@@ -152,10 +158,23 @@ impl<F: NorFlash> Ecu<F> {
         let stored = self
             .service
             .update(&mut self.controller, &mut self.slave, at_rest);
-        if stored == Storing::Busy {
+        self.say(hardware);
+        // One change of the flash a millisecond.
+        let kept = stored == Storing::Idle && at_rest && self.keep_history();
+        if stored == Storing::Busy || kept {
             self.pace.forgive();
         }
-        self.say(hardware);
+    }
+
+    /// Writes what the fault history lacks; true if flash was programmed. Not while the supply is out of its limits: it
+    /// may be going away, which the low supply's own code must neither tear nor count at each power-off.
+    fn keep_history(&mut self) -> bool {
+        let limits = &self.controller.calibration().safety;
+        let is_supplied = self
+            .inputs
+            .supply
+            .is_some_and(|supply| (limits.supply_min..=limits.supply_max).contains(&supply));
+        is_supplied && !self.service.is_storing() && self.history.update(self.node.occurrences())
     }
 
     /// What a tool may write: nothing unless somebody at the machine has switched service on.

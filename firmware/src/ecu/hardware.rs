@@ -21,6 +21,15 @@ pub struct Contacts {
     pub clock_ratio: Option<PerMille>,
 }
 
+/// The flash that the application has.
+#[derive(Clone, Debug)]
+pub struct FlashRegions<F> {
+    /// Two copies of the calibration.
+    pub calibration: F,
+    /// Two pages of the log of faults.
+    pub fault_log: F,
+}
+
 /// Drivers and bus. None of it waits.
 pub trait Hardware {
     /// Hands the coils' drivers their values.

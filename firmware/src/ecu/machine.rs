@@ -5,7 +5,7 @@ use heapless::{Deque, Vec};
 
 use super::application::Ecu;
 use super::drive::Drive;
-use super::hardware::{Contacts, Hardware};
+use super::hardware::{Contacts, FlashRegions, Hardware};
 use super::link::{MOST_FRAMES, Reply};
 use super::scaling::BoardScaling;
 use crate::can::Frame;
@@ -62,7 +62,7 @@ impl<F: NorFlash, P: Probe + Default> Machine<F, P> {
     /// The ECU as it is after power-up. Not inlined, as [`Ecu::start`].
     #[must_use]
     #[inline(never)]
-    pub fn start(flash: F, serial_number: u32, scaling: BoardScaling) -> Self {
+    pub fn start(flash: FlashRegions<F>, serial_number: u32, scaling: BoardScaling) -> Self {
         Self {
             ecu: Ecu::start(flash, serial_number, scaling),
             wires: Wires::default(),

@@ -15,11 +15,14 @@ use super::trouble::{Trouble, Troubles};
 /// DM1 comes no more often than this, ms; while something is active it comes this often.
 pub const DM1_PERIOD_MS: u32 = 1_000;
 /// How many there can be.
-const KINDS: usize = Trouble::ALL.len();
+pub const KINDS: usize = Trouble::ALL.len();
 /// Longest message: the lamps, and a code for each trouble.
 pub const LONGEST_MESSAGE: usize = 2 + 4 * KINDS;
 /// Occurrences are counted up to here; 127 says that there is no count.
 const MOST_OCCURRENCES: u8 = 126;
+
+/// How often each trouble has occurred, in the order of [`Trouble::ALL`]; 0: never, or cleared since.
+pub type Occurrences = [u8; KINDS];
 
 /// A message of trouble codes.
 pub type Message = Vec<u8, LONGEST_MESSAGE>;
@@ -40,21 +43,33 @@ pub struct Diagnostics {
     variant: Variant,
     active: Troubles,
     previous: Troubles,
-    occurrences: [u8; KINDS],
+    occurrences: Occurrences,
     sent_ms: Option<u32>,
 }
 
 impl Diagnostics {
-    /// Nothing has happened yet.
+    /// Nothing is active yet; what has occurred before the start was active before.
     #[must_use]
-    pub const fn new(variant: Variant) -> Self {
+    pub fn new(variant: Variant, before: &Occurrences) -> Self {
+        let mut previous = Troubles::NONE;
+        for (&trouble, &count) in Trouble::ALL.iter().zip(before) {
+            if count > 0 {
+                previous.insert(trouble);
+            }
+        }
         Self {
             variant,
             active: Troubles::NONE,
-            previous: Troubles::NONE,
-            occurrences: [0; KINDS],
+            previous,
+            occurrences: before.map(|count| count.min(MOST_OCCURRENCES)),
             sent_ms: None,
         }
+    }
+
+    /// How often each trouble has occurred.
+    #[must_use]
+    pub const fn occurrences(&self) -> &Occurrences {
+        &self.occurrences
     }
 
     /// Takes in what is wrong now.

@@ -1,7 +1,7 @@
 //! The hitch as a node on the bus: what it hears, and what it says when.
 
 use super::claim::AddressClaim;
-use super::diagnostics::{Diagnostics, LONGEST_MESSAGE, Message, Variant};
+use super::diagnostics::{Diagnostics, LONGEST_MESSAGE, Message, Occurrences, Variant};
 use super::engine::EngineSpeed;
 use super::heartbeat::{self, Heartbeat, Monitor};
 use super::hitch::{FACILITIES, HitchCommand, HitchStatus, StatusMessage};
@@ -42,6 +42,8 @@ pub struct Settings {
     pub preferred_address: u8,
     /// How trouble codes are reported.
     pub variant: Variant,
+    /// How often each trouble has occurred before this start.
+    pub occurrences: Occurrences,
     /// What answers a request for the software's identification, at most 40 characters and no `*`.
     pub software: &'static [u8],
 }
@@ -76,7 +78,7 @@ impl Node {
             claim: AddressClaim::new(settings.name, settings.preferred_address),
             remote: RemoteControl::default(),
             remote_permitted: false,
-            diagnostics: Diagnostics::new(settings.variant),
+            diagnostics: Diagnostics::new(settings.variant, &settings.occurrences),
             software: settings.software,
             requests: Requests::default(),
             transport: Transport::default(),
@@ -106,6 +108,12 @@ impl Node {
     #[must_use]
     pub fn engine_speed(&self, now_ms: u32) -> Option<RevolutionPerMinute> {
         self.engine.speed(now_ms)
+    }
+
+    /// How often each trouble has occurred.
+    #[must_use]
+    pub const fn occurrences(&self) -> &Occurrences {
+        self.diagnostics.occurrences()
     }
 
     /// Takes a frame from the bus. What isn't J1939, isn't for this node or is malformed changes nothing.

@@ -1,9 +1,11 @@
-//! The calibration in flash: two copies, of which the newer good one counts.
+//! What is kept in flash: two copies of the calibration, of which the newer good one counts, and a log of faults.
 //!
 //! [`store`] writes the copy that doesn't count, so whatever power does in the middle of it, the other one stays as
 //! it was; a copy counts once its last byte is right. [`record`] is what a copy looks like: every value stands there
 //! under a key, so firmware with another layout finds what it knows and takes its own defaults for the rest.
+//! [`fault_log`] has flash of its own, so nothing that it does touches a calibration.
 
+pub mod fault_log;
 pub mod record;
 pub mod store;
 

@@ -1,6 +1,7 @@
 //! An ECU with flash in RAM on a hitch that follows its coils without lag.
 
 use std::cell::RefCell;
+use std::ops::Range;
 use std::rc::Rc;
 
 use embedded_storage::nor_flash::{
@@ -10,11 +11,12 @@ use hitch_firmware::can::Frame;
 use hitch_firmware::control::State;
 use hitch_firmware::control::units::PerMille;
 use hitch_firmware::ecu::link::Reply;
-use hitch_firmware::ecu::{AdcCode, BoardScaling, Contacts, Machine, Panel, Samples};
+use hitch_firmware::ecu::{AdcCode, BoardScaling, Contacts, FlashRegions, Machine, Panel, Samples};
 use hitch_firmware::j1939::{Id, Pgn};
 
 const PAGE: usize = 2_048;
 const PAGES: usize = 4;
+const LOG_PAGES: usize = 2;
 
 /// Power failed.
 #[derive(Debug)]
@@ -26,17 +28,43 @@ impl NorFlashError for PowerCut {
     }
 }
 
-/// Flash with error correction: each 8 bytes can be programmed once after they were erased. Clones share it.
+/// Flash with error correction: each 8 bytes can be programmed once after they were erased. Clones share it. What is read
+/// and written is the calibration's region; the log of faults is behind it.
 #[derive(Clone)]
 pub struct Flash {
     bytes: Rc<RefCell<Vec<u8>>>,
+    region: Range<usize>,
 }
 
 impl Flash {
     pub fn blank() -> Self {
         Self {
-            bytes: Rc::new(RefCell::new(vec![0xFF; PAGE * PAGES])),
+            bytes: Rc::new(RefCell::new(vec![0xFF; PAGE * (PAGES + LOG_PAGES)])),
+            region: 0..PAGE * PAGES,
         }
+    }
+
+    /// What both regions hold.
+    pub fn all_bytes(&self) -> Vec<u8> {
+        self.bytes.borrow().clone()
+    }
+
+    /// The regions of an ECU.
+    fn regions(self) -> FlashRegions<Self> {
+        let fault_log = Self {
+            bytes: Rc::clone(&self.bytes),
+            region: PAGE * PAGES..PAGE * (PAGES + LOG_PAGES),
+        };
+        FlashRegions {
+            calibration: self,
+            fault_log,
+        }
+    }
+
+    fn place(&self, from: u32, length: usize) -> Range<usize> {
+        let start = self.region.start + from as usize;
+        assert!(start + length <= self.region.end, "outside its region");
+        start..start + length
     }
 }
 
@@ -48,13 +76,12 @@ impl ReadNorFlash for Flash {
     const READ_SIZE: usize = 1;
 
     fn read(&mut self, offset: u32, target: &mut [u8]) -> Result<(), PowerCut> {
-        let from = offset as usize;
-        target.copy_from_slice(&self.bytes.borrow()[from..from + target.len()]);
+        target.copy_from_slice(&self.bytes.borrow()[self.place(offset, target.len())]);
         Ok(())
     }
 
     fn capacity(&self) -> usize {
-        PAGE * PAGES
+        self.region.len()
     }
 }
 
@@ -63,16 +90,15 @@ impl NorFlash for Flash {
     const ERASE_SIZE: usize = PAGE;
 
     fn erase(&mut self, from: u32, to: u32) -> Result<(), PowerCut> {
-        self.bytes.borrow_mut()[from as usize..to as usize].fill(0xFF);
+        self.bytes.borrow_mut()[self.place(from, (to - from) as usize)].fill(0xFF);
         Ok(())
     }
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), PowerCut> {
-        let from = offset as usize;
-        let target = &mut self.bytes.borrow_mut()[from..from + bytes.len()];
+        let target = &mut self.bytes.borrow_mut()[self.place(offset, bytes.len())];
         assert!(
             target.iter().all(|&byte| byte == 0xFF),
-            "programmed twice at {from}"
+            "programmed twice at {offset}"
         );
         target.copy_from_slice(bytes);
         Ok(())
@@ -98,7 +124,7 @@ impl Bench {
     /// Powered up at 90 degrees with the lever elsewhere.
     pub fn start(flash: Flash) -> Self {
         Self {
-            machine: Machine::start(flash, 1, BoardScaling::NOMINAL),
+            machine: Machine::start(flash.regions(), 1, BoardScaling::NOMINAL),
             panel: Panel::FIELD,
             lever: 100_000,
             angle_micro: 90_000_000,

@@ -2,6 +2,7 @@
 
 use hitch_firmware::can::Frame;
 use hitch_firmware::control::units::PerMille;
+use hitch_firmware::j1939::diagnostics::KINDS;
 use hitch_firmware::j1939::{
     ExitCode, HitchStatus, Id, Name, NameFields, Node, Pgn, Settings, Variant,
 };
@@ -40,6 +41,7 @@ impl Bus {
             name: name(1),
             preferred_address: OURS,
             variant,
+            occurrences: [0; KINDS],
             software: b"hitch 1",
         };
         Self {

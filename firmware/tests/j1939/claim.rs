@@ -1,6 +1,7 @@
 //! Claiming an address: who wins, who moves, who is silent.
 
 use crate::bus::{Bus, OURS, Sent, name};
+use hitch_firmware::j1939::diagnostics::KINDS;
 use hitch_firmware::j1939::{Name, NameFields, Node, Pgn, Settings, Trouble, Variant};
 
 /// Wins against ours.
@@ -122,6 +123,7 @@ fn a_node_that_isnt_self_configurable_gives_up_at_once() {
         name: fields.into(),
         preferred_address: OURS,
         variant: Variant::Iso11783,
+        occurrences: [0; KINDS],
         software: b"",
     });
     bus.run(300);
@@ -145,6 +147,7 @@ fn losers_wait_differently_long() {
             name: fields.into(),
             preferred_address: OURS,
             variant: Variant::Iso11783,
+            occurrences: [0; KINDS],
             software: b"",
         });
         bus.run(300);

@@ -170,6 +170,10 @@ impl NorFlash for Shared {
     }
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
-        self.flash().write(offset, bytes)
+        let mut flash = self.flash();
+        let place = offset as usize..offset as usize + bytes.len();
+        let blank = flash.bytes[place].iter().all(|&byte| byte == 0xFF);
+        assert!(blank || flash.protected, "programmed twice at {offset}");
+        flash.write(offset, bytes)
     }
 }

@@ -1,5 +1,6 @@
 //! The calibration in flash: power cuts, damage, and firmware that comes and goes.
 
+mod fault_log;
 mod flash;
 mod fuzz;
 mod pieces;

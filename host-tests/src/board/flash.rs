@@ -1,4 +1,4 @@
-//! The flash that holds the calibration, and its controller: keys, erasing, programming, fetch stalls, error correction
+//! The flash that holds the calibration and the log of faults, and its controller: keys, erasing, programming, fetch stalls, error correction
 //! and data cache.
 
 use std::collections::{HashMap, HashSet};
@@ -24,9 +24,9 @@ const fn program_ns(part: Part) -> f64 {
 /// Something that changes what the flash holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Operation {
-    /// A sector or page of the calibration is erased.
+    /// A sector or page of the data is erased.
     Erase {
-        /// Its number in the calibration's place.
+        /// Its number in the data's place.
         piece: u32,
     },
     /// A word or double word is programmed.
@@ -50,7 +50,7 @@ pub enum Extent {
 /// What the flash holds: this survives a power cut.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contents {
-    /// Bytes of the calibration's place.
+    /// Bytes of the data's place.
     pub bytes: Vec<u8>,
     /// Double words whose error correction fails, by their offset.
     pub damaged: HashSet<u32>,
@@ -61,7 +61,7 @@ impl Contents {
     #[must_use]
     pub fn erased(part: Part) -> Self {
         Self {
-            bytes: vec![0xFF; part.calibration().1 as usize],
+            bytes: vec![0xFF; part.data().1 as usize],
             damaged: HashSet::new(),
         }
     }
@@ -183,14 +183,14 @@ impl Flash {
         }
     }
 
-    /// Until when fetches from `address` and reads from the calibration wait, ns.
+    /// Until when fetches from `address` and reads from the data wait, ns.
     #[must_use]
     pub fn stalls_until_ns(&self, address: u32) -> f64 {
-        let (calibration, bytes) = self.part.calibration();
+        let (data, bytes) = self.part.data();
         let stalls = match self.part {
             Part::Stm32f405 => (0x0800_0000..0x0810_0000).contains(&address),
             // The other bank can be read meanwhile.
-            Part::Stm32g474 => (0x0804_0000..calibration + bytes).contains(&address),
+            Part::Stm32g474 => (0x0804_0000..data + bytes).contains(&address),
         };
         if stalls { self.busy_until_ns } else { 0.0 }
     }
@@ -313,15 +313,15 @@ impl Flash {
     }
 
     fn erase_sector(&mut self, sector: u32, now_ns: f64) -> Effect {
-        match sector.checked_sub(10) {
-            Some(piece @ 0..=1) => self.erase(piece, now_ns),
+        match sector.checked_sub(8) {
+            Some(piece @ 0..=3) => self.erase(piece, now_ns),
             _ => Effect::Violation(format!("sector {sector} of the program is erased")),
         }
     }
 
     fn erase_page(&mut self, page: u32, second_bank: bool, now_ns: f64) -> Effect {
-        match page.checked_sub(124) {
-            Some(piece @ 0..=3) if second_bank => self.erase(piece, now_ns),
+        match page.checked_sub(122) {
+            Some(piece @ 0..=5) if second_bank => self.erase(piece, now_ns),
             _ => Effect::Violation(format!("page {page} of the program is erased")),
         }
     }
@@ -337,7 +337,7 @@ impl Flash {
         Effect::None
     }
 
-    /// A write to the calibration's place.
+    /// A write to the data's place.
     pub fn write(
         &mut self,
         offset: u32,
@@ -390,12 +390,12 @@ impl Flash {
         )
     }
 
-    /// A read of a word from the calibration's place: the word, and the address in its bank if error correction fails.
+    /// A read of a word from the data's place: the word, and the address in its bank if error correction fails.
     pub fn read(&mut self, offset: u32, registers: &Registers) -> (u32, Option<u32>) {
         let word_offset = offset & !3;
         let double = offset & !7;
         if self.contents.damaged.contains(&double) {
-            let address = self.part.calibration().0 + double - 0x0804_0000;
+            let address = self.part.data().0 + double - 0x0804_0000;
             return (self.contents.word(word_offset) ^ 0x0101_0101, Some(address));
         }
         let word = self.contents.word(word_offset);
@@ -471,7 +471,7 @@ mod tests {
         let (mut flash, registers) = flash(part);
         flash.contents = contents;
         let (_, failed_at) = flash.read(12, &registers);
-        assert_eq!(failed_at, Some(0x3_E008));
+        assert_eq!(failed_at, Some(0x3_D008));
         let erase = Operation::Erase { piece: 0 };
         flash.contents.apply(part, &erase, Extent::Whole);
         assert_eq!(flash.read(12, &registers), (u32::MAX, None));

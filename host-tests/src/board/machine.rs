@@ -97,8 +97,8 @@ impl Board {
         conditions.wires.push((ENABLE, ENABLE_READ_BACK));
         let chip = Chip::new(part, contents, conditions, 0.0, POWER_FLAGS);
         let mut cpu = Cpu::new(library, chip)?;
-        let (calibration, _) = part.calibration();
-        cpu.map_memory(FLASH, calibration - FLASH, false)?;
+        let (data, _) = part.data();
+        cpu.map_memory(FLASH, data - FLASH, false)?;
         match cpu.bus().conditions.stuck_ram.map(|stuck| stuck & !0xFFF) {
             None => cpu.map_memory(RAM, RAM_BYTES, true)?,
             Some(page) => {
@@ -107,7 +107,7 @@ impl Board {
                 cpu.map_memory(page + 0x1000, RAM + RAM_BYTES - page - 0x1000, true)?;
             }
         }
-        cpu.map_bus(calibration & !0xFFF, part.calibration().1)?;
+        cpu.map_bus(data & !0xFFF, part.data().1)?;
         for (address, bytes) in [
             (0x1FFF_7000, 0x1000),
             (0x4000_0000, 0x3_0000),
@@ -132,8 +132,8 @@ impl Board {
     }
 
     fn program(&mut self) -> Result<()> {
-        let (calibration, _) = self.cpu.bus().part.calibration();
-        let erased = vec![0xFF; (calibration - FLASH) as usize];
+        let (data, _) = self.cpu.bus().part.data();
+        let erased = vec![0xFF; (data - FLASH) as usize];
         self.cpu.write_memory(FLASH, &erased)?;
         for (address, bytes) in &self.image.pieces {
             self.cpu

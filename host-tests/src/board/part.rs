@@ -67,16 +67,22 @@ impl Part {
         }
     }
 
-    /// Where the calibration is in flash: first address and bytes.
+    /// Where the image keeps its data in flash, the log of faults and then the calibration: first address and bytes.
     #[must_use]
-    pub const fn calibration(self) -> (u32, u32) {
+    pub const fn data(self) -> (u32, u32) {
         match self {
-            Self::Stm32f405 => (0x080C_0000, 256 * 1024),
-            Self::Stm32g474 => (0x0807_E000, 8 * 1024),
+            Self::Stm32f405 => (0x0808_0000, 512 * 1024),
+            Self::Stm32g474 => (0x0807_D000, 12 * 1024),
         }
     }
 
-    /// Bytes of a sector or page of the calibration.
+    /// Bytes of the log of faults: two sectors or pages.
+    #[must_use]
+    pub const fn log_bytes(self) -> u32 {
+        2 * self.erase_bytes()
+    }
+
+    /// Bytes of a sector or page of the data.
     #[must_use]
     pub const fn erase_bytes(self) -> u32 {
         match self {

@@ -1,22 +1,30 @@
 //! Flash for the ECU on this machine, and what is in it when the ECU is delivered.
 
 use std::cell::RefCell;
+use std::ops::Range;
 use std::rc::Rc;
 
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 use hitch_firmware::control::ValidCalibration;
+use hitch_firmware::ecu::FlashRegions;
 use hitch_firmware::storage::CalibrationStore;
 
-/// Size of the emulated ECU's flash for calibrations.
-pub const FLASH_BYTES: usize = 8_192;
+/// Size of the emulated ECU's flash: two copies of the calibration, then two pages of the log of faults.
+pub const FLASH_BYTES: usize = CALIBRATION_BYTES + 2 * PAGE_BYTES;
+/// What the two copies of the calibration take of it, from its begin.
+pub const CALIBRATION_BYTES: usize = 8_192;
 const PAGE_BYTES: usize = 2_048;
 const WORD_BYTES: usize = 8;
 
-/// Flash in memory, whose power can be cut at any word. Clones share what they hold.
+/// Flash in memory, whose power can be cut at any word. Clones share what they hold. What is read and written is the
+/// calibration's region, unless it is another of [`Self::regions`].
 #[derive(Debug, Clone)]
-pub struct CutFlash(Rc<RefCell<Cells>>);
+pub struct CutFlash {
+    cells: Rc<RefCell<Cells>>,
+    region: Range<usize>,
+}
 
 #[derive(Debug)]
 struct Cells {
@@ -38,10 +46,13 @@ impl NorFlashError for CutFlashError {
 impl CutFlash {
     /// Flash with these contents.
     pub fn holding(bytes: Vec<u8>) -> Self {
-        Self(Rc::new(RefCell::new(Cells {
-            bytes,
-            words_left: None,
-        })))
+        Self {
+            cells: Rc::new(RefCell::new(Cells {
+                bytes,
+                words_left: None,
+            })),
+            region: 0..CALIBRATION_BYTES,
+        }
     }
 
     /// Erased flash.
@@ -49,19 +60,31 @@ impl CutFlash {
         Self::holding(vec![u8::MAX; FLASH_BYTES])
     }
 
-    /// What it holds.
+    /// The regions of an ECU.
+    pub fn regions(&self) -> FlashRegions<Self> {
+        let region = |region: Range<usize>| Self {
+            cells: Rc::clone(&self.cells),
+            region,
+        };
+        FlashRegions {
+            calibration: region(0..CALIBRATION_BYTES),
+            fault_log: region(CALIBRATION_BYTES..FLASH_BYTES),
+        }
+    }
+
+    /// What all of it holds.
     pub fn bytes(&self) -> Vec<u8> {
-        self.0.borrow().bytes.clone()
+        self.cells.borrow().bytes.clone()
     }
 
     /// Cuts the power after this many more words; `None`: not at all, or no longer.
     pub fn cut_after(&self, words: Option<u64>) {
-        self.0.borrow_mut().words_left = words;
+        self.cells.borrow_mut().words_left = words;
     }
 
     /// True if the power is gone.
     pub fn is_cut(&self) -> bool {
-        self.0.borrow().words_left == Some(0)
+        self.cells.borrow().words_left == Some(0)
     }
 
     fn each_word(
@@ -70,14 +93,15 @@ impl CutFlash {
         to: usize,
         mut change: impl FnMut(usize, &mut [u8]),
     ) -> Result<(), CutFlashError> {
-        let mut cells = self.0.borrow_mut();
+        let mut cells = self.cells.borrow_mut();
         for place in (from..to).step_by(WORD_BYTES) {
             match &mut cells.words_left {
                 Some(0) => return Err(CutFlashError),
                 Some(left) => *left -= 1,
                 None => {}
             }
-            let word = cells.bytes.get_mut(place..place + WORD_BYTES);
+            let region = cells.bytes.get_mut(self.region.clone());
+            let word = region.and_then(|bytes| bytes.get_mut(place..place + WORD_BYTES));
             change(place, word.ok_or(CutFlashError)?);
         }
         Ok(())
@@ -92,16 +116,16 @@ impl ReadNorFlash for CutFlash {
     const READ_SIZE: usize = 1;
 
     fn read(&mut self, offset: u32, target: &mut [u8]) -> Result<(), CutFlashError> {
-        let cells = self.0.borrow();
-        let source = cells
-            .bytes
-            .get(offset as usize..offset as usize + target.len());
+        let cells = self.cells.borrow();
+        let region = cells.bytes.get(self.region.clone());
+        let source =
+            region.and_then(|bytes| bytes.get(offset as usize..offset as usize + target.len()));
         target.copy_from_slice(source.ok_or(CutFlashError)?);
         Ok(())
     }
 
     fn capacity(&self) -> usize {
-        self.0.borrow().bytes.len()
+        self.region.len()
     }
 }
 

@@ -2,10 +2,11 @@
 
 use std::io;
 
-use embedded_storage::nor_flash::NorFlash;
 use hitch_firmware::can::Frame;
 use hitch_firmware::ecu::link::Reply;
 use hitch_firmware::ecu::{BoardScaling, Contacts, Machine};
+
+use super::flash::CutFlash;
 
 /// Why a machine gives no answer.
 #[derive(Debug, thiserror::Error)]
@@ -43,27 +44,27 @@ const SERIAL_NUMBER: u32 = 1;
 
 /// The application compiled for this machine.
 #[derive(Debug)]
-pub struct OnHost<F> {
-    flash: F,
-    machine: Machine<F>,
+pub struct OnHost {
+    flash: CutFlash,
+    machine: Machine<CutFlash>,
 }
 
-impl<F: NorFlash + Clone> OnHost<F> {
-    /// Powers it up. Clones of `flash` have to share what they hold.
-    pub fn start(flash: F) -> Self {
+impl OnHost {
+    /// Powers it up.
+    pub fn start(flash: CutFlash) -> Self {
         Self {
-            machine: Machine::start(flash.clone(), SERIAL_NUMBER, BoardScaling::NOMINAL),
+            machine: Machine::start(flash.regions(), SERIAL_NUMBER, BoardScaling::NOMINAL),
             flash,
         }
     }
 
     /// The application.
-    pub const fn machine(&self) -> &Machine<F> {
+    pub const fn machine(&self) -> &Machine<CutFlash> {
         &self.machine
     }
 }
 
-impl<F: NorFlash + Clone> EcuMachine for OnHost<F> {
+impl EcuMachine for OnHost {
     fn tick(
         &mut self,
         contacts: &Contacts,
@@ -76,7 +77,7 @@ impl<F: NorFlash + Clone> EcuMachine for OnHost<F> {
     }
 
     fn power_cycle(&mut self) -> Result<(), MachineError> {
-        self.machine = Machine::start(self.flash.clone(), SERIAL_NUMBER, BoardScaling::NOMINAL);
+        self.machine = Machine::start(self.flash.regions(), SERIAL_NUMBER, BoardScaling::NOMINAL);
         Ok(())
     }
 }

@@ -13,7 +13,7 @@ pub use bench::{Bench, Moment};
 pub use bus::Bus;
 pub use converters::Signals;
 pub use emulator::{Emulator, Mode, QEMU, command as emulator_command};
-pub use flash::{CutFlash, FLASH_BYTES, delivered};
+pub use flash::{CALIBRATION_BYTES, CutFlash, FLASH_BYTES, delivered};
 pub use image::{IMAGE_VARIABLE, find as find_image};
 pub use machine::{EcuMachine, MachineError, OnHost};
 pub use operator::{Operator, Order};

@@ -138,8 +138,8 @@ unsafe fn HardFault(_: &ExceptionFrame) -> ! {
     give_up()
 }
 
-/// Either a part of the calibration can't be read, as programming it was interrupted: then its copy is damaged, and the
-/// program goes on. Or the crystal has failed, and the timers run at another rate.
+/// Either a part of the calibration or of the log of faults can't be read, as programming it was interrupted: then its copy
+/// or entry is damaged, and the program goes on. Or the crystal has failed, and the timers run at another rate.
 #[exception]
 unsafe fn NonMaskableInt() {
     if !board::note_damaged_read() {

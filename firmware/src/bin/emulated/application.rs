@@ -4,7 +4,7 @@ use hitch_firmware::can::Frame;
 use hitch_firmware::ecu::link::{
     FRAME_BYTES, MOST_FRAMES, REQUEST_BYTES, Reply, Request, frame_from_bytes, frame_to_bytes,
 };
-use hitch_firmware::ecu::{BoardScaling, Contacts, Machine, Probe};
+use hitch_firmware::ecu::{BoardScaling, Contacts, FlashRegions, Machine, Probe};
 
 use crate::flash_file::FlashFile;
 use crate::link::Link;
@@ -18,7 +18,7 @@ const SERIAL_NUMBER: u32 = 1;
 pub fn run(link: &mut Link, stopwatch: &Stopwatch) -> Result<Done, Failure> {
     let flash = FlashFile::open()?;
     let mut done = Done::default();
-    while power_up(flash, link, stopwatch, &mut done)? == End::PowerCut {}
+    while power_up(flash.clone(), link, stopwatch, &mut done)? == End::PowerCut {}
     Ok(done)
 }
 
@@ -55,7 +55,7 @@ enum End {
 /// The life of a machine.
 #[inline(never)]
 fn power_up(
-    flash: FlashFile,
+    flash: FlashRegions<FlashFile>,
     link: &mut Link,
     stopwatch: &Stopwatch,
     done: &mut Done,

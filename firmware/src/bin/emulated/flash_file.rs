@@ -4,27 +4,38 @@ use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 
+use hitch_firmware::ecu::FlashRegions;
+
 use crate::host_file::{HostFile, HostFileError};
 
-/// As many pages, and as large, as the STM32G474 sets aside.
-const CAPACITY: usize = 8_192;
+/// Bytes for the calibration, from the file's begin: as many pages, and as large, as the STM32G474 sets aside.
+const CALIBRATION_BYTES: usize = 8_192;
+/// Bytes for the log of faults behind it.
+const LOG_BYTES: usize = 2 * PAGE_BYTES;
 const PAGE_BYTES: usize = 2_048;
 const WORD_BYTES: usize = 8;
 
-/// The flash.
+/// A region of the flash.
 #[derive(Clone, Copy)]
 pub struct FlashFile {
     file: HostFile,
+    start: usize,
+    bytes: usize,
 }
 
 impl FlashFile {
     /// Opens the file, which has to have the flash's size.
-    pub fn open() -> Result<Self, HostFileError> {
-        HostFile::open_for_both(c"flash").map(|file| Self { file })
+    pub fn open() -> Result<FlashRegions<Self>, HostFileError> {
+        let file = HostFile::open_for_both(c"flash")?;
+        let region = |start, bytes| Self { file, start, bytes };
+        Ok(FlashRegions {
+            calibration: region(0, CALIBRATION_BYTES),
+            fault_log: region(CALIBRATION_BYTES, LOG_BYTES),
+        })
     }
 
     fn read_at(&mut self, offset: usize, target: &mut [u8]) -> Result<(), HostFileError> {
-        self.file.seek(offset)?;
+        self.file.seek(self.start + offset)?;
         match self.file.read(target) == target.len() {
             true => Ok(()),
             false => Err(HostFileError::Access),
@@ -32,7 +43,7 @@ impl FlashFile {
     }
 
     fn write_at(&mut self, offset: usize, bytes: &[u8]) -> Result<(), HostFileError> {
-        self.file.seek(offset)?;
+        self.file.seek(self.start + offset)?;
         self.file.write_all(bytes)
     }
 }
@@ -55,7 +66,7 @@ impl ReadNorFlash for FlashFile {
     }
 
     fn capacity(&self) -> usize {
-        CAPACITY
+        self.bytes
     }
 }
 

@@ -11,7 +11,7 @@ impl Chip {
         if stalled > self.now_ns {
             self.pass(stalled);
         }
-        let offset = address - self.part.calibration().0;
+        let offset = address - self.part.data().0;
         let (word, damaged) = self.flash.read(offset, &self.registers);
         if let Some(place) = damaged {
             let eccr = self.part.addresses().flash + ECCR;
@@ -236,8 +236,8 @@ impl Chip {
 
 impl Bus for Chip {
     fn read(&mut self, address: u32, size: u32) -> u32 {
-        let (calibration, bytes) = self.part.calibration();
-        if (calibration..calibration + bytes).contains(&address) {
+        let (data, bytes) = self.part.data();
+        if (data..data + bytes).contains(&address) {
             return self.read_calibration(address, size);
         }
         let word = match self.stuck_at(address) {
@@ -253,9 +253,9 @@ impl Bus for Chip {
     }
 
     fn write(&mut self, address: u32, size: u32, value: u32) {
-        let (calibration, bytes) = self.part.calibration();
-        if (calibration..calibration + bytes).contains(&address) {
-            let offset = address - calibration;
+        let (data, bytes) = self.part.data();
+        if (data..data + bytes).contains(&address) {
+            let offset = address - data;
             let effect = self
                 .flash
                 .write(offset, size, value, &mut self.registers, self.now_ns);

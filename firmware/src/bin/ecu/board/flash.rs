@@ -1,17 +1,21 @@
-//! Where the calibration is kept: the part's last sectors or pages, far from the program.
+//! Where the calibration and the log of faults are kept: the part's last sectors or pages, far from the program.
 
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
+use hitch_firmware::ecu::FlashRegions;
 use stm32_metapac::FLASH;
 
 use super::part::flash::{
-    BASE, PIECE_BYTES, PIECES, WORD_BYTES, erase_piece, finish, is_usable, program,
-    take_damaged_read, unlock,
+    BASE, CALIBRATION_PIECES, LOG_PIECES, PIECE_BYTES, WORD_BYTES, erase_piece, finish, is_usable,
+    program, take_damaged_read, unlock,
 };
 
-/// The calibration's place in the flash.
-pub struct CalibrationFlash(());
+/// A region of the flash.
+pub struct DataFlash {
+    first_piece: usize,
+    pieces: usize,
+}
 
 /// The flash refused, or was asked for what it can't do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,26 +27,55 @@ impl NorFlashError for FlashError {
     }
 }
 
-impl CalibrationFlash {
-    /// The place, which nothing else in the program touches.
-    pub fn new() -> Self {
-        Self(())
+/// The regions, which nothing else in the program touches: the log of faults, and the calibration behind it.
+pub fn regions() -> FlashRegions<DataFlash> {
+    FlashRegions {
+        calibration: DataFlash {
+            first_piece: LOG_PIECES,
+            pieces: CALIBRATION_PIECES,
+        },
+        fault_log: DataFlash {
+            first_piece: 0,
+            pieces: LOG_PIECES,
+        },
     }
 }
 
-impl ErrorType for CalibrationFlash {
+impl DataFlash {
+    const fn capacity_bytes(&self) -> usize {
+        self.pieces * PIECE_BYTES
+    }
+
+    const fn address(&self, offset: u32) -> usize {
+        BASE + self.first_piece * PIECE_BYTES + offset as usize
+    }
+
+    fn check(&self, offset: u32, length: usize, unit: usize) -> Result<(), FlashError> {
+        let offset = offset as usize;
+        if !offset.is_multiple_of(unit) || !length.is_multiple_of(unit) {
+            return Err(FlashError(NorFlashErrorKind::NotAligned));
+        }
+        let capacity = self.capacity_bytes();
+        match offset <= capacity && length <= capacity - offset {
+            true => Ok(()),
+            false => Err(FlashError(NorFlashErrorKind::OutOfBounds)),
+        }
+    }
+}
+
+impl ErrorType for DataFlash {
     type Error = FlashError;
 }
 
-impl ReadNorFlash for CalibrationFlash {
+impl ReadNorFlash for DataFlash {
     const READ_SIZE: usize = 1;
 
-    /// Bytes whose error correction fails read as zeros: the record's checksum then marks the copy as damaged.
+    /// Bytes whose error correction fails read as zeros: the checksum then marks the copy or the entry as damaged.
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
-        check(offset, bytes.len(), 1)?;
-        let first = BASE + offset as usize;
+        self.check(offset, bytes.len(), 1)?;
+        let first = self.address(offset);
         for (index, byte) in bytes.iter_mut().enumerate() {
-            // SAFETY: inside the place, as checked above; volatile, for the flash changes under the compiler.
+            // SAFETY: inside the region, as checked above; volatile, for the flash changes under the compiler.
             *byte = unsafe { ((first + index) as *const u8).read_volatile() };
         }
         if take_damaged_read() {
@@ -52,45 +85,32 @@ impl ReadNorFlash for CalibrationFlash {
     }
 
     fn capacity(&self) -> usize {
-        CAPACITY
+        self.capacity_bytes()
     }
 }
 
-impl NorFlash for CalibrationFlash {
+impl NorFlash for DataFlash {
     const WRITE_SIZE: usize = WORD_BYTES;
     const ERASE_SIZE: usize = PIECE_BYTES;
 
     fn erase(&mut self, from: u32, to: u32) -> Result<(), FlashError> {
-        check(from, to.saturating_sub(from) as usize, PIECE_BYTES)?;
+        self.check(from, to.saturating_sub(from) as usize, PIECE_BYTES)?;
         changed(|| {
             for piece in from as usize / PIECE_BYTES..to as usize / PIECE_BYTES {
-                erase_piece(piece as u8);
+                erase_piece((self.first_piece + piece) as u8);
             }
         })
     }
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
-        check(offset, bytes.len(), WORD_BYTES)?;
+        self.check(offset, bytes.len(), WORD_BYTES)?;
         changed(|| {
-            let first = BASE + offset as usize;
+            let first = self.address(offset);
             for (index, word) in bytes.as_chunks().0.iter().enumerate() {
-                // SAFETY: an aligned word inside the place, as checked above.
+                // SAFETY: an aligned word inside the region, as checked above.
                 unsafe { program(first + index * WORD_BYTES, word) };
             }
         })
-    }
-}
-
-const CAPACITY: usize = PIECES * PIECE_BYTES;
-
-fn check(offset: u32, length: usize, unit: usize) -> Result<(), FlashError> {
-    let offset = offset as usize;
-    if !offset.is_multiple_of(unit) || !length.is_multiple_of(unit) {
-        return Err(FlashError(NorFlashErrorKind::NotAligned));
-    }
-    match offset <= CAPACITY && length <= CAPACITY - offset {
-        true => Ok(()),
-        false => Err(FlashError(NorFlashErrorKind::OutOfBounds)),
     }
 }
 

@@ -29,11 +29,13 @@ mod part;
 #[cfg(all(feature = "stm32f405", feature = "stm32g474"))]
 compile_error!("an image is for one part: choose the feature `stm32f405` or `stm32g474`");
 
+use hitch_firmware::ecu::FlashRegions;
+
 pub use clock::Clock;
 pub use coils::{Coils, cut, run};
 pub use converters::Converters;
 pub use factory_reference::scaling;
-pub use flash::CalibrationFlash;
+pub use flash::DataFlash;
 pub use image_check::ImageCheck;
 pub use part::Can;
 pub use part::flash::note_damaged_read;
@@ -60,8 +62,8 @@ pub struct Board {
     pub slow_clock: SlowClock,
     /// Resets the ECU unless it is kicked.
     pub watchdog: Watchdog,
-    /// Where the calibration is kept.
-    pub flash: CalibrationFlash,
+    /// Where the calibration and the log of faults are kept.
+    pub flash: FlashRegions<DataFlash>,
 }
 
 impl Board {
@@ -76,7 +78,7 @@ impl Board {
             clock: Clock::start(part::TIMER_HZ),
             slow_clock: SlowClock::start(),
             can: Can::start(),
-            flash: CalibrationFlash::new(),
+            flash: flash::regions(),
             coils,
             converters,
             watchdog,

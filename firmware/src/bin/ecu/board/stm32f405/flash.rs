@@ -1,6 +1,6 @@
-//! Sectors 10 and 11, of 128 KiB each.
+//! Sectors 8 to 11, of 128 KiB each: two for the log of faults, two for the calibration.
 //!
-//! The program can't run from flash while a sector is erased (1 to 2 s): the ECU only erases while it is locked, the
+//! The program can't run from flash while a sector is erased (1 to 2 s): the ECU only erases while it is locked or starts, the
 //! watchdog gets a longer period first, and the loop that waits runs from RAM.
 
 use stm32_metapac::FLASH;
@@ -9,15 +9,17 @@ use stm32_metapac::flash::vals::Psize;
 use crate::board::watchdog::with_long_period;
 
 /// First address.
-pub const BASE: usize = 0x080C_0000;
-/// Sectors.
-pub const PIECES: usize = 2;
+pub const BASE: usize = 0x0808_0000;
+/// Sectors of the log of faults, which come first.
+pub const LOG_PIECES: usize = 2;
+/// Sectors of the calibration.
+pub const CALIBRATION_PIECES: usize = 2;
 /// Bytes of a sector.
 pub const PIECE_BYTES: usize = 128 * 1024;
 /// Bytes that are programmed together.
 pub const WORD_BYTES: usize = 4;
 
-const FIRST_SECTOR: u8 = 10;
+const FIRST_SECTOR: u8 = 8;
 
 /// Lets the flash be changed (RM0090, 3.6.1).
 pub fn unlock() {
@@ -26,7 +28,7 @@ pub fn unlock() {
     FLASH.cr().modify(|w| w.set_psize(Psize::PSIZE32));
 }
 
-/// Erases a sector, by its number in the calibration's place.
+/// Erases a sector, by its number from [`BASE`] on.
 pub fn erase_piece(number: u8) {
     FLASH.cr().modify(|w| {
         w.set_ser(true);
@@ -39,7 +41,7 @@ pub fn erase_piece(number: u8) {
 /// Programs a word.
 ///
 /// # Safety
-/// `address` is that of an aligned word that belongs to the calibration.
+/// `address` is that of an aligned word from [`BASE`] on.
 pub unsafe fn program(address: usize, word: &[u8; WORD_BYTES]) {
     FLASH.cr().modify(|w| w.set_pg(true));
     // SAFETY: the caller's promise; programming is switched on, so the write ends in the flash.

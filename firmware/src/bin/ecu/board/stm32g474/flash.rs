@@ -1,4 +1,4 @@
-//! The last four pages of the second bank, of 2 KiB each. The program runs on from the first bank meanwhile.
+//! The last six pages of the second bank, of 2 KiB each: two for the log of faults, four for the calibration. The program runs on from the first bank meanwhile.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
@@ -7,16 +7,18 @@ use stm32_metapac::FLASH;
 use crate::board::watchdog::with_long_period;
 
 /// First address.
-pub const BASE: usize = 0x0807_E000;
-/// Pages.
-pub const PIECES: usize = 4;
+pub const BASE: usize = 0x0807_D000;
+/// Pages of the log of faults, which come first.
+pub const LOG_PIECES: usize = 2;
+/// Pages of the calibration.
+pub const CALIBRATION_PIECES: usize = 4;
 /// Bytes of a page.
 pub const PIECE_BYTES: usize = 2 * 1024;
 /// Bytes that are programmed together.
 pub const WORD_BYTES: usize = 8;
 
 /// Of 128 pages in the bank.
-const FIRST_PAGE: u8 = 124;
+const FIRST_PAGE: u8 = 122;
 
 /// Lets the flash be changed (RM0440, 3.3.5).
 pub fn unlock() {
@@ -24,7 +26,7 @@ pub fn unlock() {
     FLASH.keyr().write_value(0xCDEF_89AB);
 }
 
-/// Erases a page, by its number in the calibration's place.
+/// Erases a page, by its number from [`BASE`] on.
 pub fn erase_piece(number: u8) {
     FLASH.cr().modify(|w| {
         w.set_per(true);
@@ -42,7 +44,7 @@ pub fn erase_piece(number: u8) {
 /// Programs a double word.
 ///
 /// # Safety
-/// `address` is that of an aligned double word that belongs to the calibration.
+/// `address` is that of an aligned double word from [`BASE`] on.
 pub unsafe fn program(address: usize, word: &[u8; WORD_BYTES]) {
     let [a, b, c, d, e, f, g, h] = *word;
     FLASH.cr().modify(|w| w.set_pg(true));
@@ -83,10 +85,10 @@ pub fn take_damaged_read() -> bool {
     damaged
 }
 
-/// The cause of a non-maskable interrupt, if it is a failed error correction in the calibration's place: it is noted, and
+/// The cause of a non-maskable interrupt, if it is a failed error correction from [`BASE`] on: it is noted, and
 /// the flag is cleared.
 pub fn note_damaged_read() -> bool {
-    /// Offset of the calibration in the second bank.
+    /// Offset of the data in the second bank.
     const OFFSET: u32 = BASE as u32 - 0x0804_0000;
     let status = FLASH.eccr().read();
     if !status.eccd() || !status.bk_ecc() || status.sysf_ecc() || status.addr_ecc() < OFFSET {
