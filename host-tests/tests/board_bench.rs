@@ -73,6 +73,7 @@ scenarios! {
     lift_hold_lower: "lift-hold-lower",
     store_and_read_back: "store-and-read-back",
     power_cuts: "power-cuts",
+    fault_history: "fault-history",
     electrical_faults: "electrical-faults",
     frozen_track: "frozen-track",
     enable_line: "enable-line",

@@ -2,6 +2,7 @@
 
 mod bus;
 mod faults;
+mod history;
 mod motion;
 mod processor;
 mod random;
@@ -33,7 +34,7 @@ pub struct Setup {
 pub type Scenario = fn(&Setup) -> Result<String>;
 
 /// All of them, by name.
-pub const ALL: [(&str, Scenario); 22] = [
+pub const ALL: [(&str, Scenario); 23] = [
     ("boot", start::boot),
     ("factory-fresh", start::factory_fresh),
     ("slow-crystal", start::slow_crystal),
@@ -42,6 +43,7 @@ pub const ALL: [(&str, Scenario); 22] = [
     ("lift-hold-lower", motion::lift_hold_lower),
     ("store-and-read-back", storage::store_and_read_back),
     ("power-cuts", storage::power_cuts),
+    ("fault-history", history::fault_history),
     ("electrical-faults", faults::electrical_faults),
     ("frozen-track", faults::frozen_track),
     ("enable-line", faults::enable_line),
