@@ -74,6 +74,7 @@ scenarios! {
     store_and_read_back: "store-and-read-back",
     power_cuts: "power-cuts",
     fault_history: "fault-history",
+    log_compaction: "log-compaction",
     electrical_faults: "electrical-faults",
     frozen_track: "frozen-track",
     enable_line: "enable-line",

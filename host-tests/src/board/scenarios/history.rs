@@ -1,13 +1,16 @@
 //! The fault history in flash.
 
 use anyhow::{Context, Result, ensure};
+use hitch_firmware::ecu::fault_history::MOST_WRITES;
 use hitch_firmware::ecu::{AdcCode, Contacts};
 use hitch_firmware::j1939::{Id, Pgn, Trouble};
+use hitch_firmware::storage::fault_log::{Entry, FaultLog, MOST_SLOTS};
 use hitch_model::Model;
+use hitch_workbench::ecu::{CALIBRATION_BYTES, CutFlash, FLASH_BYTES};
 
 use super::Setup;
 use super::rig::Rig;
-use crate::board::{Contents, Extent, Operation};
+use crate::board::{Conditions, Contents, Extent, Operation};
 
 /// Time after which the ECU has its address, ms.
 const CLAIMED_MS: usize = 600;
@@ -133,5 +136,105 @@ pub fn fault_history(setup: &Setup) -> Result<String> {
     Ok(format!(
         "a fault stored by {} operations, previously active after power-up, and cleared by DM3; cut before and within each: lost",
         operations.len()
+    ))
+}
+
+/// Time within which a start with a compaction is over, ms: the slower part erases for 2 s.
+const COMPACTED_MS: usize = 2_600;
+/// Bytes of a page that slots take.
+const PAGE_BYTES: usize = 8 * MOST_SLOTS;
+
+/// The log's pages as the ECU's flash on this machine has them.
+fn log_in(setup: &Setup, contents: &Contents) -> FaultLog<CutFlash> {
+    let mut bytes = vec![0xFF; FLASH_BYTES];
+    for page in [0, 1] {
+        let from = page * setup.part.erase_bytes() as usize;
+        let to = CALIBRATION_BYTES + page * PAGE_BYTES;
+        bytes[to..to + PAGE_BYTES].copy_from_slice(&contents.bytes[from..from + PAGE_BYTES]);
+    }
+    FaultLog::open(CutFlash::holding(bytes).regions().fault_log)
+}
+
+/// Flash whose log has an entry of each of these troubles, again and again until it is to be compacted.
+fn nearly_full(setup: &Setup, troubles: &[Trouble]) -> Result<Contents> {
+    let flash = CutFlash::blank();
+    let mut log = FaultLog::open(flash.regions().fault_log);
+    for &trouble in troubles.iter().cycle() {
+        let code = trouble.code();
+        let appended = log.append(Entry { code, count: 1 });
+        ensure!(appended.is_ok(), "{appended:?}");
+        if log.room() < MOST_WRITES {
+            break;
+        }
+    }
+    let mut contents = Contents::erased(setup.part);
+    let page = &flash.bytes()[CALIBRATION_BYTES..CALIBRATION_BYTES + PAGE_BYTES];
+    contents.bytes[..PAGE_BYTES].copy_from_slice(page);
+    Ok(contents)
+}
+
+/// Powers up with these contents until the log is compacted; each of the troubles has to be there once.
+fn compacts(setup: &Setup, rig: &mut Rig<'_>, contents: &Contents, all: &[Trouble]) -> Result<()> {
+    rig.board.cycle_power()?;
+    rig.board.chip().flash.contents = contents.clone();
+    rig.run(COMPACTED_MS)?;
+    ensure!(rig.board.resets.is_empty(), "{:?}", rig.board.resets);
+    let mut log = log_in(setup, &rig.board.chip().flash.contents);
+    let entries: Vec<Entry> = log.entries().collect();
+    for trouble in all {
+        let found = entries.iter().filter(|entry| entry.code == trouble.code());
+        let count = found.clone().count();
+        // That there is no calibration is counted on at each start.
+        let expected = 1 + usize::from(*trouble == Trouble::CalibrationLost);
+        ensure!(
+            count == expected,
+            "{trouble:?} {count} times in {entries:?}"
+        );
+    }
+    ensure!(
+        rig.board.chip().pwm.updates > 0,
+        "the ECU does not begin its first millisecond"
+    );
+    ensure!(rig.board.chip().off_since_ns.is_some(), "a coil is driven");
+    Ok(())
+}
+
+/// Starts with a log that is to be compacted, with all codes and the fastest oscillator of the watchdog; and with a few, cut
+/// before and within each operation.
+pub fn compaction(setup: &Setup) -> Result<String> {
+    let model = Model::nominal();
+    let [_, fastest_hz] = setup.part.slow_clock_hz();
+    let conditions = Conditions {
+        slow_clock_hz: fastest_hz,
+        ..Conditions::typical(setup.part)
+    };
+    let mut rig = Rig::new(setup, &model, Contents::erased(setup.part), conditions)?;
+    compacts(
+        setup,
+        &mut rig,
+        &nearly_full(setup, Trouble::ALL)?,
+        Trouble::ALL,
+    )?;
+    let few = [
+        Trouble::LeverMissing,
+        Trouble::AngleJumps,
+        Trouble::SupplyLow,
+    ];
+    let mut contents = nearly_full(setup, &few)?;
+    compacts(setup, &mut rig, &contents, &few)?;
+    let operations = rig.board.chip().flash.operations.clone();
+    for (number, operation) in operations.iter().enumerate() {
+        let mut half = contents.clone();
+        half.apply(setup.part, operation, Extent::Half);
+        compacts(setup, &mut rig, &half, &few)
+            .with_context(|| format!("power cut in operation {number}: {operation:?}"))?;
+        contents.apply(setup.part, operation, Extent::Whole);
+    }
+    rig.finish()?;
+    Ok(format!(
+        "a log of {} codes compacted at the start without a reset; {} operations for {} codes, cut within each: nothing lost",
+        Trouble::ALL.len(),
+        operations.len(),
+        few.len()
     ))
 }

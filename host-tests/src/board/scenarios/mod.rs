@@ -34,7 +34,7 @@ pub struct Setup {
 pub type Scenario = fn(&Setup) -> Result<String>;
 
 /// All of them, by name.
-pub const ALL: [(&str, Scenario); 23] = [
+pub const ALL: [(&str, Scenario); 24] = [
     ("boot", start::boot),
     ("factory-fresh", start::factory_fresh),
     ("slow-crystal", start::slow_crystal),
@@ -44,6 +44,7 @@ pub const ALL: [(&str, Scenario); 23] = [
     ("store-and-read-back", storage::store_and_read_back),
     ("power-cuts", storage::power_cuts),
     ("fault-history", history::fault_history),
+    ("log-compaction", history::compaction),
     ("electrical-faults", faults::electrical_faults),
     ("frozen-track", faults::frozen_track),
     ("enable-line", faults::enable_line),

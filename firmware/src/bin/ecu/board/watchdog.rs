@@ -34,12 +34,14 @@ impl Watchdog {
 }
 
 /// Runs `work` that stalls the processor for up to 4 s, such as erasing the flash that the program runs from. The longer
-/// period is in effect before `work` begins. The coils have to be off.
+/// period is in effect before `work` begins, and that of before comes back afterwards: the one of the start is longer than
+/// the one of operation. The coils have to be off.
 pub fn with_long_period<R>(work: impl FnOnce() -> R) -> R {
     // 4 096 * 64 / 47 kHz = 5.6 s at the fastest.
+    let (divider, reload) = (IWDG.pr().read().pr(), IWDG.rlr().read().rl());
     set_period(Pr::DIVIDE_BY64, 4_095);
     let result = work();
-    set_period(Pr::DIVIDE_BY4, RELOAD);
+    set_period(divider, reload);
     result
 }
 
