@@ -6,6 +6,7 @@ mod angle;
 mod any_inputs;
 mod bounds;
 mod coils;
+mod debt;
 mod measuring;
 mod onset;
 mod recovery;
@@ -129,16 +130,21 @@ impl Rig {
     }
 
     fn step_with(&mut self, order: Order, alter: impl FnOnce(&mut Inputs)) -> CoilCurrents {
+        self.step_within(limits(), order, alter)
+    }
+
+    /// One step with other limits than the nominal ones.
+    fn step_within(
+        &mut self,
+        limits: Limits<'_>,
+        order: Order,
+        alter: impl FnOnce(&mut Inputs),
+    ) -> CoilCurrents {
         self.angle += self.speed;
         self.steps += 1;
         let mut inputs = self.inputs();
         alter(&mut inputs);
-        self.passed = pass(
-            &mut self.envelope,
-            Some(order.currents()),
-            &inputs,
-            limits(),
-        );
+        self.passed = pass(&mut self.envelope, Some(order.currents()), &inputs, limits);
         self.passed
     }
 

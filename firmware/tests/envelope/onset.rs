@@ -65,6 +65,18 @@ fn more_travel_along_the_way_than_the_onset_travel_is_a_start() {
     }
 }
 
+/// Half of the samples whose mean is compared with the owed travel show a start: 8 ms.
+#[test]
+fn half_more_than_the_onset_travel_is_a_start_after_8_ms() {
+    let along = SAFETY.onset_travel.0 * 3 / 2;
+    for way in [1, -1] {
+        let mut onset = Onset::new(way);
+        let order = onset.order(1_326, 1_199);
+        (0..7).for_each(|_| onset.step(order, along));
+        assert!(onset.has_started(along), "{way}");
+    }
+}
+
 #[test]
 fn a_hitch_that_creeps_along_has_started() {
     for way in [1, -1] {

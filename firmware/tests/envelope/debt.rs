@@ -1,0 +1,119 @@
+//! How much travel a hitch may owe, to the step.
+
+use hitch_firmware::control::motion::piston_speed;
+use hitch_firmware::control::units::{Micrometre, MilliBar, Millisecond, PerMille};
+
+use super::*;
+
+/// Mean of the rig's angle at 90 degrees: its noise is not symmetric.
+const MEAN: i32 = 90_005;
+/// Samples that the mean is of.
+const MEAN_STEPS: i32 = 16;
+
+/// A sensor of pressure shows that the load hangs.
+fn hangs(inputs: &mut Inputs) {
+    inputs.cylinder_pressure = Some(MilliBar(15_000));
+}
+
+fn within(safety: &SafetyParameters) -> Limits<'_> {
+    Limits { safety, ..limits() }
+}
+
+/// Piston speed by the valve curve, um/s.
+fn speed(order: Order) -> i32 {
+    let flow = match order {
+        Order::Rest => return 0,
+        Order::Lift(current) => NOMINAL.lift.flow(MilliAmp(current)),
+        Order::Lower(current) => NOMINAL.lower.flow(MilliAmp(current)),
+    };
+    piston_speed(flow, NOMINAL.hydraulics.piston_area).0
+}
+
+/// Travel of a step before motion is seen, at the rig's mean angle, millionths of a degree.
+fn step_udeg(order: Order) -> i32 {
+    let travel = |angle| NOMINAL.linkage.travel(MilliDegree(angle)).0;
+    let um = travel(MEAN + 1_000) - travel(MEAN - 1_000);
+    speed(order) * (2_000_000 / um) / 1_000
+}
+
+/// For how many steps a coil stays on, of a hitch whose angle stands still from now on.
+fn standing(rig: &mut Rig, safety: &SafetyParameters, order: Order) -> i32 {
+    rig.speed = 0;
+    let cut = (0..2_000)
+        .find(|_| rig.step_within(within(safety), order, hangs) == CoilCurrents::OFF)
+        .expect("it owes travel");
+    assert_eq!(rig.envelope.tripped(), Some(Trip::NotFollowing));
+    cut
+}
+
+#[test]
+fn the_onset_debt_may_be_owed_and_no_more() {
+    const STEPS: i32 = 50;
+    for order in [Order::Lift(1_500), Order::Lower(1_400)] {
+        let safety = SafetyParameters {
+            onset_budget: MilliDegree(100_000),
+            onset_debt: MilliDegree(STEPS * step_udeg(order) / 1_000),
+            ..SAFETY
+        };
+        let steps = standing(&mut Rig::armed(), &safety, order);
+        assert_eq!(steps, STEPS + 1, "{order:?}");
+    }
+}
+
+/// A hitch in motion that owes all that the valve curve gives, and gets going at once.
+fn owing_all(allowance_um: i32) -> SafetyParameters {
+    SafetyParameters {
+        following_margin: MilliAmp(0),
+        started_lag: Millisecond(1),
+        following_share: PerMille(1_000),
+        following_allowance: Micrometre(allowance_um),
+        ..SAFETY
+    }
+}
+
+/// At 90 degrees, 18 degrees into a stroke at full speed.
+fn under_way(safety: &SafetyParameters, order: Order) -> Rig {
+    let mut rig = Rig::armed();
+    rig.speed = match order {
+        Order::Lower(_) => -FULL_SPEED,
+        _ => FULL_SPEED,
+    };
+    for _ in 0..300 {
+        rig.step_within(within(safety), order, hangs);
+    }
+    assert_eq!(rig.passed, order.currents());
+    rig
+}
+
+#[test]
+fn the_allowance_may_be_owed_and_no_more() {
+    const STEPS: i32 = 50;
+    for order in [Order::Lift(1_500), Order::Lower(1_400)] {
+        let owed_um = STEPS * speed(order) / 1_000;
+        let steps = |allowance_um| {
+            let safety = owing_all(allowance_um);
+            standing(&mut under_way(&safety, order), &safety, order)
+        };
+        let at_limit = steps(owed_um);
+        // Half a step's travel more makes no difference, a micrometre less makes a step.
+        assert_eq!(at_limit, steps(owed_um + speed(order) / 2_000), "{order:?}");
+        assert_eq!(at_limit, steps(owed_um - 1) + 1, "{order:?}");
+    }
+}
+
+#[test]
+fn a_hitch_faster_than_its_valve_owes_half_of_what_the_current_less_half_the_margin_gives() {
+    let half = SAFETY.following_margin.0 / 2;
+    for (order, less) in [
+        (Order::Lift(1_500), Order::Lift(1_500 - half)),
+        (Order::Lower(1_700), Order::Lower(1_700 - half)),
+    ] {
+        let ms = standing(&mut under_way(&SAFETY, order), &SAFETY, order);
+        let owed_ms = SAFETY.following_allowance.0 * 1_000 / (speed(less) / 2);
+        let seen_ms = ms - owed_ms;
+        assert!(
+            (0..=MEAN_STEPS).contains(&seen_ms),
+            "{order:?}: {ms} ms, owed in {owed_ms} ms"
+        );
+    }
+}
