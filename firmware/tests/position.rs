@@ -58,7 +58,34 @@ fn a_small_movement_of_the_lever_counts_on_the_way_and_nowhere_else() {
     assert_eq!(set_point(&position), near, "brought back");
 }
 
-/// Demand of a hitch at 0 towards `target`, with the reference's pressure drop times `drop_percent`.
+#[test]
+fn a_hitch_within_the_restart_band_of_its_set_point_stays() {
+    let band = PARAMETERS.restart_band.0;
+    for target in [-300_000, 0, 300_000] {
+        for (off, stays) in [(0, true), (band, true), (band + 1, false)] {
+            for off in [off, -off] {
+                let rest = Micrometre(target + off);
+                let reason = asked().reason_to_move(Micrometre(target), rest, &PARAMETERS);
+                assert_eq!(reason.is_none(), stays, "{target} um, {off} um off");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_place_that_was_accepted_is_kept_until_the_lever_moves() {
+    let far = (Micrometre(0), Micrometre(50_000));
+    let mut position = asked();
+    assert_ne!(position.reason_to_move(far.0, far.1, &PARAMETERS), None);
+    position.accept();
+    assert_eq!(position.reason_to_move(far.0, far.1, &PARAMETERS), None);
+    follow(&mut position, ASKED + PARAMETERS.lever_deadband.0, false);
+    assert_eq!(position.reason_to_move(far.0, far.1, &PARAMETERS), None);
+    assert!(follow(&mut position, ASKED + 10_000, false));
+    assert_ne!(position.reason_to_move(far.0, far.1, &PARAMETERS), None);
+}
+
+/// Demand of a hitch towards `target`, with the reference's pressure drop times `drop_percent`.
 fn demand(motion: &Motion, target: i32, phase: Phase, drop_percent: i32) -> Demand {
     let calibration = Calibration::nominal();
     let reference = calibration.hydraulics.reference_drop;
@@ -71,13 +98,30 @@ fn demand(motion: &Motion, target: i32, phase: Phase, drop_percent: i32) -> Dema
 
 /// At 0 and at rest.
 fn resting() -> Motion {
+    resting_at(0)
+}
+
+/// At rest.
+fn resting_at(at_um: i32) -> Motion {
     let mut motion = Motion::default();
     motion.update(
-        Micrometre(0),
+        Micrometre(at_um),
         Phase::Holding,
         &Calibration::nominal().motion,
     );
     motion
+}
+
+#[test]
+fn a_demand_is_the_same_wherever_the_way_begins() {
+    for way in [-200_000, -20_000, -2_000, 2_000, 20_000, 200_000] {
+        let from = |at| demand(&resting_at(at), at + way, Phase::Holding, 100);
+        let direction = Direction::of(way);
+        assert_eq!(from(0).direction, direction);
+        for at in [-300_000, 300_000] {
+            assert_eq!(from(at), from(0), "{way} um from {at} um");
+        }
+    }
 }
 
 #[test]
