@@ -21,8 +21,8 @@ struct Part {
     changed: &'static [&'static str],
     /// What else decides whether a change is noticed, its tests included.
     decides: &'static [&'static str],
-    /// Test of the package `hitch-firmware`.
-    test: &'static str,
+    /// Tests of the package `hitch-firmware`, as options of cargo.
+    tests: &'static [&'static str],
     /// Tests that are left out: random ones whose steps would take most of the time, and that others do without.
     skipped: Option<&'static str>,
     /// A change to this function makes a loop endless, which the tests notice by their time, and on the ECU the watchdog.
@@ -43,7 +43,7 @@ const PARTS: [Part; 3] = [
             "firmware/src/crc32.rs",
             "firmware/tests/storage",
         ],
-        test: "storage",
+        tests: &["--test=storage"],
         skipped: None,
         looping: Some("Reader<'_, F>::entries"),
     },
@@ -57,19 +57,18 @@ const PARTS: [Part; 3] = [
             "firmware/src/j1939/time.rs",
             "firmware/tests/j1939",
         ],
-        test: "j1939",
+        tests: &["--test=j1939"],
         skipped: None,
         looping: None,
     },
     Part {
         name: SAFETY,
-        // Not yet: the watch of the angle (`angle.rs`) and the travel that a hitch owes (`following.rs`). Unnoticed go
-        // over how many samples the latest mean is, that the margin on the current is halved in motion, and two limits
-        // that would hold a micrometre or a thousandth of a degree sooner.
         changed: &[
+            "firmware/src/control/safety/angle.rs",
             "firmware/src/control/safety/arming.rs",
             "firmware/src/control/safety/coils.rs",
             "firmware/src/control/safety/command.rs",
+            "firmware/src/control/safety/following.rs",
             "firmware/src/control/safety/measuring.rs",
             "firmware/src/control/safety/mod.rs",
             "firmware/src/control/safety/rows.rs",
@@ -78,12 +77,14 @@ const PARTS: [Part; 3] = [
         ],
         decides: &[
             "firmware/src/control/safety",
+            "firmware/src/control/linkage.rs",
             "firmware/src/control/mode.rs",
             "firmware/src/control/signals.rs",
             "firmware/src/control/units.rs",
+            "firmware/src/control/valve_map.rs",
             "firmware/tests/envelope",
         ],
-        test: "envelope",
+        tests: &["--test=envelope"],
         skipped: Some("any_inputs::"),
         looping: Some("Debounce::judge"),
     },
@@ -194,7 +195,7 @@ impl Part {
             .args(["--jobs", JOBS, "--minimum-test-timeout", TEST_TIME])
             .args(["--package", "hitch-firmware"])
             .args(self.changed.iter().flat_map(|file| ["--file", file]))
-            .args(["--cargo-arg=--test", &format!("--cargo-arg={}", self.test)])
+            .args(self.tests.iter().map(|test| format!("--cargo-arg={test}")))
             .arg("--output")
             .arg(folder)
             // Each job changes a copy of the sources and builds it there: in a folder that both share, or that the
