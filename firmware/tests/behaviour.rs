@@ -230,7 +230,7 @@ fn a_moved_lever_is_no_leak() {
     }
 }
 
-/// It can't be told from a hitch that is lifted behind a frozen sensor.
+/// The angle of a hitch that is stuck while it is lifted looks like that of a frozen sensor.
 #[test]
 fn a_hitch_that_is_stuck_when_it_should_rise_is_reported_and_not_tried_again() {
     let mut hitch = Hitch::picked_up();

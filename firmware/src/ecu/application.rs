@@ -61,8 +61,8 @@ pub struct Ecu<F> {
 
 impl<F: NorFlash> Ecu<F> {
     /// The ECU as it is after power-up, with the calibration and the fault history that `flash` holds. `serial_number`
-    /// tells its node from others on the bus; `scaling` is the board's. Not inlined: its stack is free again when the
-    /// loop begins.
+    /// tells its node from others on the bus; `scaling` is the board's. The function is not inlined, so that its
+    /// stack is released before the loop begins.
     #[must_use]
     #[inline(never)]
     pub fn start(flash: FlashRegions<F>, serial_number: u32, scaling: BoardScaling) -> Self {
@@ -166,8 +166,9 @@ impl<F: NorFlash> Ecu<F> {
         }
     }
 
-    /// Writes what the fault history lacks; true if flash was programmed. Not while the supply is out of its limits: it
-    /// may be going away, which the low supply's own code must neither tear nor count at each power-off.
+    /// Brings the fault history in flash up to date and returns whether flash was programmed. Nothing is written while
+    /// the supply is out of its limits: power may be failing, which would tear the entry, and each power-off would be
+    /// counted as a low supply.
     fn keep_history(&mut self) -> bool {
         let limits = &self.controller.calibration().safety;
         let is_supplied = self

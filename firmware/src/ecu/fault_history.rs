@@ -1,6 +1,7 @@
 //! Which trouble codes are kept over a power cut, and when they are written.
 //!
-//! The bus knows how often each code has occurred; what the log lacks of that is appended, one entry at a time. A code is
+//! The node counts how often each code has occurred. The log is compared with these counts, and one entry at a time is
+//! appended for a code whose logged count is out of date. A code is
 //! written when it occurs for the first time since the start or since it was cleared, and when it is cleared (DM3). Further
 //! occurrences in the same start are not counted in flash.
 //!
@@ -8,7 +9,7 @@
 //!
 //! A start writes at most [`MOST_WRITES`] entries, so a bus that clears the codes again and again doesn't wear the flash
 //! out; what comes after these is lost at power-off. A count ends at 126, and so does the writing of a code that occurs at
-//! each start. The log is compacted only at the start, when it lacks room for these writes: that takes at least
+//! each start. The log is compacted only at the start, if fewer slots are free than these writes need: that takes at least
 //! [`WRITES_PER_ERASE`] entries, and each page is erased every other time. Flash that can be erased 10 000 times (data
 //! sheets of both parts) so takes 2.5 million entries, 26 000 starts with the most writes.
 
@@ -37,7 +38,7 @@ pub struct FaultHistory<F> {
 }
 
 impl<F: NorFlash> FaultHistory<F> {
-    /// Reads the log, and compacts it if it lacks room for what this start may write. Both coils have to be off.
+    /// Reads the log, and compacts it if fewer slots are free than this start may write. Both coils have to be off.
     pub fn open(flash: F) -> Self {
         let mut history = Self {
             log: FaultLog::open(flash),
@@ -71,8 +72,8 @@ impl<F: NorFlash> FaultHistory<F> {
         &self.stored
     }
 
-    /// Appends an entry of what the log lacks, if there is anything; true if flash was programmed, which takes 0.2 ms at
-    /// most. Both coils have to be off, and the supply has to be good.
+    /// Appends one entry for a code whose logged count is out of date, if there is one. Returns whether flash was
+    /// programmed, which takes 0.2 ms at most. Both coils have to be off, and the supply has to be good.
     pub fn update(&mut self, occurrences: &Occurrences) -> bool {
         if self.writes_left == 0 {
             return false;
