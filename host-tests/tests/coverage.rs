@@ -8,7 +8,7 @@ use hitch_model::Model;
 use hitch_model::effects::{AddedEffect, CATALOGUE, Effect};
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::fit_base;
-use hitch_model::identification::trials::try_effects;
+use hitch_model::identification::subset::single::try_effects;
 use hitch_model::model::Dynamics;
 use host_tests::simulated_lab::campaign;
 use rand::SeedableRng;

@@ -294,10 +294,10 @@ fn ids(names: impl IntoIterator<Item = impl Into<String>>) -> Vec<String> {
 
 /// As long as the second is missing, the first of two effects may run a held-out run into a stop that its hitch never
 /// reached: that a threshold is off shows in all the others. An arm that is there all over the stroke looks like a load
-/// that was weighed wrongly in each run. How much the oil of the one cold run thickens, no other run tells.
+/// that was weighed wrongly in each run.
 #[test]
 fn two_effects_are_named_though_each_alone_looks_wrong() {
-    for seed in [2011, 2016, 2112] {
+    for seed in [2011, 2016] {
         let case = pair(Family::Dynamic, Plan::Lab, seed);
         let hidden = ids(case.hidden.iter().map(|hidden| hidden.what.id));
         let graded = Posed::new(case).ask(&Explaining);
@@ -306,8 +306,6 @@ fn two_effects_are_named_though_each_alone_looks_wrong() {
     }
 }
 
-/// Before a droop is known, a leak that thins with the oil and one that does not take on other parts of it; once both are
-/// known, each is what the textbook says.
 /// The jumps of a spool that sticks have to be met to a few hundredths of a percent, though half of the runs are wrong for
 /// another reason still: oil that thickens, and a flow force that shuts the lowering valve.
 #[test]

@@ -8,10 +8,10 @@ use hitch_model::identification::design::plan::{Manoeuvre, RunPlan, Segment, Sta
 use hitch_model::identification::design::separation::Bench;
 use hitch_model::identification::design::{NextExperiment, Pair, Rival, next_experiment};
 use hitch_model::identification::estimate::Estimate;
+use hitch_model::identification::evidence::TOLD_APART;
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::{Explanation, Step, Verdict};
 use hitch_model::identification::fit::{Fit, evaluate, refine};
-use hitch_model::identification::twins::TOLD_APART;
 use hitch_model::plant::Currents;
 use host_tests::lab::Lab;
 use host_tests::second_rig::test_stand::{Family, SAMPLE_RATE_HZ};

@@ -2,8 +2,8 @@
 use clap::{Parser, Subcommand};
 
 use crate::commands::{
-    add, calibrate, compare, controller, diagnose, ecu, effects, explain, flash_calibration, loop_,
-    main_job, paper, record, simulate, tune,
+    add, calibrate, changes, compare, controller, diagnose, ecu, effects, explain,
+    flash_calibration, loop_, main_job, paper, record, simulate, tune,
 };
 use crate::error::Error;
 use crate::output;
@@ -38,6 +38,8 @@ pub enum Command {
     Add(add::Args),
     /// Finds what the model lacks and adds it, until nothing more is worth adding
     Explain(explain::Args),
+    /// What differs between two campaigns of a machine, or of two machines of a series
+    Changes(changes::Args),
     /// The catalogue of physical effects: equation, parameters, units, source, where it shows
     Effects(effects::Args),
     /// The plant alone, driven by a log's currents
@@ -71,6 +73,7 @@ impl Command {
             Self::Diagnose(args) => diagnose::run(args),
             Self::Add(args) => add::run(args),
             Self::Explain(args) => explain::run(args),
+            Self::Changes(args) => changes::run(args),
             Self::Effects(args) => effects::run(args),
             Self::Simulate(args) => simulate::run(args),
             Self::Paper(args) => paper::run(args),

@@ -20,6 +20,7 @@ pub mod paper;
 pub mod progress;
 pub mod rebuild;
 pub mod report;
+pub mod search_args;
 pub mod status_line;
 pub mod teaching;
 pub mod text;

@@ -145,6 +145,14 @@ pub enum Search {
     Places,
 }
 
+impl Search {
+    /// Whether the cost has many valleys along the size.
+    #[must_use]
+    pub fn is_rough(self) -> bool {
+        self != Self::Secants
+    }
+}
+
 /// Ratio of the ends of a range from which a parameter is taken by its order of magnitude.
 const DECADE: f64 = 10.0;
 

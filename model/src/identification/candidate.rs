@@ -57,7 +57,7 @@ impl Candidate {
     pub fn log_odds(&self) -> f64 {
         log_odds(
             self.likelihood_ratio,
-            self.effect.parameters().len(),
+            self.intervals.len(),
             self.effective_samples(),
         )
     }
@@ -138,7 +138,8 @@ fn weigh_with(
 ) -> Candidate {
     let index = fit.estimate.effects.len() - 1;
     let variance = fit.variance();
-    let signatures: Vec<Signature> = (0..effect.parameters().len())
+    let free = fit.estimate.free_parameters(effect.id());
+    let signatures: Vec<Signature> = (0..effect.parameters().len().min(free))
         .map(|parameter| Signature::new(experiment, &fit, jacobian, index, parameter))
         .collect();
     let Seen {
@@ -250,8 +251,7 @@ impl Seen {
     /// From the whole change, not its derivative: an effect that begins late, or jumps, is less than that promises.
     fn new(experiment: &Experiment, model: &Model, fit: &Fit, jacobian: &Jacobian) -> Self {
         let last = fit.estimate.effects.len() - 1;
-        let mut without = fit.estimate.clone();
-        without.effects[last] = AddedEffect::null(without.effects[last].effect);
+        let without = fit.estimate.without(last);
         let without = huber_residuals(experiment, model, &fit.weights, &without);
         let change = difference(&without, &huber(fit.residuals.clone()));
         let own = |shared: &Shared| matches!(shared, Shared::Effect(effect, _) if *effect == last);

@@ -12,8 +12,8 @@ pub struct Estimate {
     pub effects: Vec<AddedEffect>,
     /// What the log's clocks are off by.
     pub clocks: Clocks,
-    /// Whether the clocks stay as they are.
-    pub clocks_held: bool,
+    /// Effects that the model had before a search, as they were adopted.
+    pub adopted: Vec<Adopted>,
     /// What each run may be off by.
     pub nuisances: Vec<Nuisance>,
 }
@@ -23,6 +23,26 @@ const FARTHEST: f64 = 5.0;
 
 /// What a load error loses when it is told in sigmas.
 const ROUNDING: f64 = 1e-9;
+
+/// An effect that a model had before a search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Adopted {
+    /// Its id.
+    pub id: &'static str,
+    /// Its size then, in the unit of its parameter.
+    pub size: f64,
+    /// What of it a fit leaves as it is.
+    pub held: Held,
+}
+
+/// Which parameters of an effect keep their values in a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Held {
+    /// All of them.
+    All,
+    /// All but the size.
+    Shape,
+}
 
 /// A parameter that all runs share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,24 +76,71 @@ impl Estimate {
         Self {
             effects,
             clocks: Clocks::default(),
-            clocks_held: false,
+            adopted: Vec::new(),
             nuisances: vec![Nuisance::default(); experiment.runs.len()],
         }
     }
 
-    /// Every shared parameter that is free, effects first, then [`CLOCKS`] unless they are held.
+    /// Every shared parameter that is free, effects first, then [`CLOCKS`].
     #[must_use]
     pub fn shared(&self) -> Vec<Shared> {
         let effects = self.effects.iter().enumerate().flat_map(|(effect, added)| {
-            (0..added.values.len()).map(move |parameter| Shared::Effect(effect, parameter))
+            let free = self.free_parameters(added.effect.id());
+            let parameters = 0..added.values.len().min(free);
+            parameters.map(move |parameter| Shared::Effect(effect, parameter))
         });
-        effects.chain(self.free_clocks().iter().copied()).collect()
+        effects.chain(CLOCKS).collect()
     }
 
-    /// Those of [`CLOCKS`] that are free: all or none.
+    /// How many parameters of an effect are free, counted from its size; more than it has if all are.
     #[must_use]
-    pub fn free_clocks(&self) -> &'static [Shared] {
-        if self.clocks_held { &[] } else { &CLOCKS }
+    pub fn free_parameters(&self, id: &str) -> usize {
+        match self.adopted_as(id).map(|adopted| adopted.held) {
+            None => usize::MAX,
+            Some(Held::Shape) => 1,
+            Some(Held::All) => 0,
+        }
+    }
+
+    /// The same with its effects adopted: a fit leaves them as they are.
+    #[must_use]
+    pub fn with_adopted(mut self) -> Self {
+        let adopted = |added: &AddedEffect| Adopted {
+            id: added.effect.id(),
+            size: added.values[0],
+            held: Held::All,
+        };
+        self.adopted = self.effects.iter().map(adopted).collect();
+        self
+    }
+
+    /// Frees the size of an adopted effect.
+    pub fn release(&mut self, id: &str) {
+        let mut adopted = self.adopted.iter_mut();
+        if let Some(adopted) = adopted.find(|adopted| adopted.id == id) {
+            adopted.held = Held::Shape;
+        }
+    }
+
+    /// How an effect was adopted; `None` if it was not.
+    #[must_use]
+    pub fn adopted_as(&self, id: &str) -> Option<&Adopted> {
+        self.adopted.iter().find(|adopted| adopted.id == id)
+    }
+
+    /// Whether an effect, by its index, is as it was adopted.
+    #[must_use]
+    pub fn is_unchanged(&self, effect: usize) -> bool {
+        let adopted = self.adopted_as(self.effects[effect].effect.id());
+        adopted.is_some_and(|adopted| adopted.held == Held::All)
+    }
+
+    /// The size at which an effect, by its index, counts as absent: as it was adopted, or its null value.
+    #[must_use]
+    pub fn off(&self, effect: usize) -> f64 {
+        let own = self.effects[effect].effect;
+        let adopted = self.adopted_as(own.id());
+        adopted.map_or(own.parameters()[0].null, |adopted| adopted.size)
     }
 
     /// Description of an effect's parameter.
@@ -181,11 +248,21 @@ impl Estimate {
         self.nuisances[run].load = sigmas.clamp(-FARTHEST, FARTHEST) * LOAD_PRIOR;
     }
 
-    /// The same without one of the effects, by its index.
+    /// The same without one of the effects, by its index; one that was adopted is as it was then.
     #[must_use]
     pub fn without(&self, effect: usize) -> Self {
         let mut lighter = self.clone();
-        lighter.effects.remove(effect);
+        let id = self.effects[effect].effect.id();
+        let mut adopted = lighter.adopted.iter_mut();
+        match adopted.find(|adopted| adopted.id == id) {
+            Some(adopted) => {
+                adopted.held = Held::All;
+                lighter.effects[effect].values[0] = adopted.size;
+            }
+            None => {
+                lighter.effects.remove(effect);
+            }
+        }
         lighter
     }
 

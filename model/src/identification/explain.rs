@@ -1,48 +1,28 @@
-//! Which physics is missing: effects are tried, the best is believed or not, and so on until nothing more is worth it.
+//! Which physics is missing: the set of effects that a campaign asks for, stated as steps from the model to it.
 //!
-//! Belief rests on two things together: a likelihood ratio that counts autocorrelated residuals at their effective
-//! number, Bonferroni-corrected for all that was tried, and a smaller error in runs that were not used to fit. After
-//! every addition each earlier effect has to be needed still, and the form of each is chosen anew. At the end each
-//! named effect is tried against those whose signature is nearly its own: what fits as well is said to be
-//! indistinguishable.
+//! The search ([`super::subset`]) finds the set. Here its members are put in the order of what they explain, each is
+//! weighed beside all others (size, interval, detectability, probability), what could stand in its place is named, and
+//! what is left is judged.
 
 use super::adequacy::{Cell, adequate, cells, cells_since};
 use super::attribution::{Attribution, attribute};
-use super::belief::{Proof, believed};
-use super::beside::beside_others;
 use super::candidate::{Candidate, weigh};
 use super::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
 use super::estimate::Estimate;
+use super::evidence::TOLD_APART;
 use super::experiment::Experiment;
-use super::fit::{Fit, evaluate, evaluate_weighted, fit, refine, with_last};
-use super::forms::reformed;
-use super::holdout::{HeldOut, held_out, held_out_beside};
+use super::fit::{Fit, evaluate, fit, refine, with_last};
+use super::holdout::{HeldOut, held_out};
 use super::regime::Regime;
-use super::scans::Scans;
-use super::swap::{MOST_SWAPS, is_likelier, swap};
-use super::trials::{Trials, VISIBLE};
-use super::twins::twins;
+use super::subset::posterior::Weighed;
+use super::subset::single::{confidences, try_effects};
+use super::subset::{Found, Options, search};
 use super::unseen::{Unseen, unseen};
-use crate::effects::{AddedEffect, Effect};
+use crate::effects::Effect;
 use crate::model::Model;
 
 /// Fewest compared samples that anything is concluded from.
 const FEWEST_SAMPLES: usize = 50;
-
-/// Most effects that are added.
-const MOST_STEPS: usize = 5;
-
-/// What so many effects leave at more than this error, and the last of them at more than this share of what it found,
-/// no further one explains either: it is no campaign of this plant.
-const LOST_STEPS: usize = 2;
-const LOST: f64 = 4.0;
-const LITTLE_HELP: f64 = 0.8;
-
-/// Most candidates of one round that are tried on held-out runs.
-const MOST_TRIED: usize = 3;
-
-/// Most rounds of adding: an effect that was dropped may come back, but not for ever.
-const MOST_ROUNDS: usize = 2 * MOST_STEPS;
 
 /// What an explanation comes to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,17 +77,19 @@ pub struct Step {
     pub values: Vec<f64>,
     /// Their 95 % intervals.
     pub intervals: Vec<(f64, f64)>,
+    /// The size with which the effect was adopted; `None` if it is new.
+    pub changed_from: Option<f64>,
     /// The model after the step, as it was fitted then.
     pub fit: Fit,
-    /// Effects that explained next to nothing of what this one did when it was found: none is indistinguishable.
-    pub(super) unlike: Vec<&'static str>,
 }
 
 /// The way from a model to one that explains a campaign.
 #[derive(Debug, Clone)]
 pub struct Explanation {
-    /// The model before, with its nuisances fitted.
+    /// The model before, with its nuisances fitted and its effects as they were adopted.
     pub before: Fit,
+    /// The model before with its effects fitted anew; `None` if it has none.
+    pub refitted: Option<Fit>,
     /// The model after the last step.
     pub after: Fit,
     /// The steps in order.
@@ -122,6 +104,8 @@ pub struct Explanation {
     pub next_experiment: Option<NextExperiment>,
     /// Effects that the campaign would not show; empty if what it does show is not explained.
     pub unseen: Vec<Unseen>,
+    /// Whether the time was up before the search had ended.
+    pub unfinished: bool,
 }
 
 /// A campaign and a model with every effect of the catalogue tried once.
@@ -138,15 +122,18 @@ pub struct Diagnosis {
 /// Told of what is being done, for progress displays.
 pub type Progress<'a> = &'a (dyn Fn(&str) + Sync);
 
-/// Fits what is free in a model as it is.
+/// Fits loads and clocks to a model whose effects stay as they are.
 #[must_use]
 pub fn fit_base(experiment: &Experiment, model: &Model) -> Fit {
     let start = Estimate::new(experiment, model.effects.clone());
-    if model.effects.is_empty() {
-        refine(experiment, model, start)
-    } else {
-        fit(experiment, model, start)
-    }
+    refine(experiment, model, start.with_adopted())
+}
+
+/// Fits a model with all its effects.
+#[must_use]
+pub fn fit_freely(experiment: &Experiment, model: &Model) -> Fit {
+    let start = Estimate::new(experiment, model.effects.clone());
+    fit(experiment, model, start)
 }
 
 /// Tries every effect that the model does not have.
@@ -158,18 +145,8 @@ pub fn diagnose(
     progress: Progress,
 ) -> Diagnosis {
     let absent = showing(experiment, model, &base.estimate);
-    let scans = Scans::default();
-    let cells = cells(experiment, &base);
-    let trials = Trials::new(
-        experiment,
-        model,
-        (&cells, &base),
-        &absent,
-        &scans,
-        progress,
-    );
-    let (candidates, confidences) = (trials.all_weighed(), trials.confidences());
-    drop(trials);
+    let candidates = try_effects(experiment, model, &base, &absent, progress);
+    let confidences = confidences(&candidates);
     Diagnosis {
         base,
         candidates,
@@ -212,197 +189,163 @@ fn has(estimate: &Estimate, effect: &dyn Effect) -> bool {
         .any(|added| added.effect.id() == effect.id())
 }
 
-/// Names, adds and repeats until nothing more is worth adding.
+/// Finds what is missing and what of the model has changed.
 #[must_use]
 pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Explanation {
-    let given = model.effects.len();
-    let before = fit_base(experiment, model);
-    let cells_before = cells(experiment, &before);
-    let mut present = before.clone();
-    let mut present_held_out = HeldOut::NONE;
-    let mut steps: Vec<Step> = Vec::new();
-    let scans = Scans::default();
-    for _ in 0..MOST_ROUNDS {
-        let lost = steps.len() >= LOST_STEPS
-            && present.error() > LOST
-            && steps
-                .last()
-                .is_some_and(|last| last.error_after > LITTLE_HELP * last.error_before);
-        if !enough(&before) || steps.len() == MOST_STEPS || lost {
-            break;
-        }
-        let absent = showing(experiment, model, &present.estimate);
-        let base = (cells_before.as_slice(), &present);
-        let trials = Trials::new(experiment, model, base, &absent, &scans, progress);
-        if present_held_out.error.is_nan() {
-            present_held_out = held_out(experiment, model, &present);
-        }
-        let proof = Proof::new(trials.visible(), present_held_out, steps.len());
-        let Some((best, left)) = proven(experiment, model, &trials, proof) else {
-            break;
-        };
-        steps.push(Step {
-            effect: best.effect,
-            error_before: present.error(),
-            error_after: best.fit.error(),
-            held_out_before: present_held_out,
-            held_out_after: left,
-            confidence: f64::NAN,
-            detectability: best.detectability,
-            indistinguishable: Vec::new(),
-            values: Vec::new(),
-            intervals: Vec::new(),
-            fit: best.fit.clone(),
-            unlike: trials.unlike(&best),
-        });
-        present = best.fit;
-        present_held_out = left;
-        if let Some(lighter) = drop_needless(experiment, model, &present, given, &mut steps) {
-            present_held_out = held_out(experiment, model, &lighter);
-            present = lighter;
-        }
-        if steps.len() > 1
-            && let Some(other) = reformed(experiment, model, &cells_before, &present, given)
-        {
-            restate(experiment, model, &other, given, &mut steps);
-            present_held_out = steps
-                .last()
-                .map_or(present_held_out, |last| last.held_out_after);
-            present = other;
-        }
-    }
-    finish(experiment, model, before, present, (steps, MOST_SWAPS))
+    explain_with(experiment, model, Options::default(), progress)
 }
 
-/// The most likely believable candidate that leaves less in held-out runs than there was without it, and that.
-///
-/// The likeliest may fail here though it is there: a leak that only one run shows is misjudged from the others as long
-/// as another effect is missing, and so is how much thicker the oil of the one cold run is. Then its usual form goes
-/// first, or the next effect.
-fn proven(
+/// [`explain`] with options.
+#[must_use]
+pub fn explain_with(
     experiment: &Experiment,
     model: &Model,
-    trials: &Trials,
-    proof: Proof,
-) -> Option<(Candidate, HeldOut)> {
-    let tested = |candidate: Candidate| {
-        let left = held_out(experiment, model, &candidate.fit);
-        let beside = || held_out_beside(experiment, model, &candidate.fit, trials.base());
-        let admitted = proof.admits(left) || beside().is_some_and(|left| proof.admits(left));
-        admitted.then_some((candidate, left))
-    };
-    trials
-        .likely(believed)
-        .filter(|candidate| proof.accepts(experiment, candidate))
-        .take(MOST_TRIED)
-        .find_map(|candidate| {
-            tested(candidate.clone()).or_else(|| {
-                let plainer = trials.plainer(candidate)?;
-                let accepted = proof.accepts(experiment, &plainer);
-                accepted.then(|| tested(plainer)).flatten()
-            })
-        })
-}
-
-/// Drops the first step whose effect the later ones have made needless; returns the fit without it.
-fn drop_needless(
-    experiment: &Experiment,
-    model: &Model,
-    present: &Fit,
-    given: usize,
-    steps: &mut Vec<Step>,
-) -> Option<Fit> {
-    for index in 0..steps.len().saturating_sub(1) {
-        let weighed = beside_others(experiment, model, present, given + index);
-        if weighed.candidate.likelihood_ratio < believed(steps[index].effect) {
-            steps.remove(index);
-            return Some(weighed.without);
-        }
-    }
-    None
-}
-
-/// States the steps from the first one on whose effect is another now, or has another form, as they would have been
-/// with that.
-pub(super) fn restate(
-    experiment: &Experiment,
-    model: &Model,
-    after: &Fit,
-    given: usize,
-    steps: &mut [Step],
-) {
-    let effects = &after.estimate.effects[given..];
-    let name = |effect: &dyn Effect| (effect.id(), effect.form());
-    let other = |(added, step): (&AddedEffect, &Step)| name(added.effect) != name(step.effect);
-    let Some(first) = effects.iter().zip(steps.iter()).position(other) else {
-        return;
-    };
-    for index in first..steps.len() {
-        let earlier = index.checked_sub(1).map(|earlier| &steps[earlier]);
-        let before = earlier.map(|earlier| (earlier.error_after, earlier.held_out_after));
-        let mut estimate = after.estimate.clone();
-        estimate.effects.truncate(given + index + 1);
-        let whole = estimate.effects.len() == after.estimate.effects.len();
-        let step = &mut steps[index];
-        if let Some((error, held_out)) = before {
-            (step.error_before, step.held_out_before) = (error, held_out);
-        }
-        step.effect = effects[index].effect;
-        step.fit = if whole {
-            after.clone()
-        } else {
-            refine(experiment, model, estimate)
-        };
-        step.error_after = step.fit.error();
-        step.held_out_after = held_out(experiment, model, &step.fit);
-    }
-}
-
-fn finish(
-    experiment: &Experiment,
-    model: &Model,
-    before: Fit,
-    after: Fit,
-    (mut steps, swaps): (Vec<Step>, usize),
+    options: Options,
+    progress: Progress,
 ) -> Explanation {
-    let given = model.effects.len();
-    let (mut faint, mut likelier) = (None, None);
-    for (index, step) in steps.iter_mut().enumerate() {
-        let effect = given + index;
-        let whole = with_last(experiment, model, &after, effect);
-        let base = evaluate(experiment, model, after.estimate.without(effect));
-        let weighed = weigh(experiment, model, &base, step.effect, whole.clone());
-        if weighed.detectability < VISIBLE {
-            // A later step has taken over what this one stood for, unless nothing else gets there without it.
-            let lighter = refine(experiment, model, after.estimate.without(effect));
-            let estimate = lighter.estimate.clone();
-            let compared = evaluate_weighted(experiment, model, estimate, after.weights.clone());
-            let fallen = (compared.cost - after.cost) / (after.variance() * weighed.inflation);
-            if fallen < believed(step.effect) {
-                faint = Some((index, lighter));
-                break;
-            }
+    let before = fit_base(experiment, model);
+    let adopted = !model.effects.is_empty();
+    let refitted = adopted.then(|| fit_freely(experiment, model));
+    let mut found = if enough(&before) {
+        search(experiment, model, &before, options, progress)
+    } else {
+        Found::nothing(&before)
+    };
+    progress("how sure that is");
+    let mut steps = steps(experiment, model, &before, &found);
+    while let Some(doubtful) = steps.iter().position(may_be_nothing) {
+        let effect = found.order[doubtful];
+        let lighter = found.fit.estimate.without(effect);
+        let removed = lighter.effects.len() < found.fit.estimate.effects.len();
+        found.fit = refine(experiment, model, lighter);
+        found.held_out = held_out(experiment, model, &found.fit);
+        found.order.remove(doubtful);
+        for other in &mut found.order {
+            *other -= usize::from(removed && *other > effect);
         }
-        let there = 1.0 / (1.0 + (-weighed.log_odds()).exp());
-        step.values = weighed.values().to_vec();
-        step.intervals = weighed.intervals;
-        step.detectability = weighed.detectability;
-        let named = (&whole, weighed.inflation);
-        step.indistinguishable = twins(experiment, model, named, &step.unlike);
-        if swaps > 0 && step.indistinguishable.iter().any(is_likelier) {
-            likelier = Some(index);
-            break;
+        steps = self::steps(experiment, model, &before, &found);
+    }
+    let base = (before, refitted);
+    concluded(experiment, model, base, found, steps)
+}
+
+/// Whether the interval of a step's size holds its absence. One jump that the noise of a current decided is as much
+/// evidence as anybody could ask for, and says nothing.
+fn may_be_nothing(step: &Step) -> bool {
+    let null = step.effect.parameters()[0].null;
+    let off = step.changed_from.unwrap_or(null);
+    match step.intervals.as_slice() {
+        [(low, high)] => (*low..=*high).contains(&off),
+        _ => false,
+    }
+}
+
+/// The members of the set that was found as steps, those first that explain most beside the ones before.
+fn steps(experiment: &Experiment, model: &Model, before: &Fit, found: &Found) -> Vec<Step> {
+    let weighed = found.refitted.weighed(experiment, model, &found.fit);
+    let mut steps: Vec<Step> = Vec::new();
+    for (count, &effect) in found.order.iter().enumerate() {
+        let last = count + 1 == found.order.len();
+        let fit = match last {
+            true => found.fit.clone(),
+            false => with_some(experiment, model, &found.fit, &found.order[..=count]),
+        };
+        let (error_before, held_out_before) = match steps.last() {
+            Some(step) => (step.error_after, step.held_out_after),
+            None => (before.error(), held_out(experiment, model, before)),
+        };
+        let held_out_after = match last {
+            true => found.held_out,
+            false => held_out(experiment, model, &fit),
+        };
+        let candidate = beside_others(experiment, model, &found.fit, effect);
+        let estimate = &found.fit.estimate;
+        let id = estimate.effects[effect].effect.id();
+        let with_it = weighed
+            .iter()
+            .filter(|set| set.key.ids().any(|own| own == id));
+        steps.push(Step {
+            effect: candidate.effect,
+            error_before,
+            error_after: fit.error(),
+            held_out_before,
+            held_out_after,
+            confidence: with_it.map(|set| set.probability).sum(),
+            detectability: candidate.detectability,
+            indistinguishable: alternatives(experiment, model, &found.fit, effect, &weighed),
+            values: candidate.values().to_vec(),
+            intervals: candidate.intervals,
+            changed_from: estimate.adopted_as(id).map(|adopted| adopted.size),
+            fit,
+        });
+    }
+    steps
+}
+
+/// The fit with some of the effects that were added or changed, by their indices.
+fn with_some(experiment: &Experiment, model: &Model, fit: &Fit, effects: &[usize]) -> Fit {
+    let mut estimate = fit.estimate.clone();
+    for effect in (0..estimate.effects.len()).rev() {
+        if !estimate.is_unchanged(effect) && !effects.contains(&effect) {
+            estimate = estimate.without(effect);
         }
-        step.confidence = there / (1 + step.indistinguishable.len()) as f64;
     }
-    if let Some((index, lighter)) = faint {
-        steps.remove(index);
-        return finish(experiment, model, before, lighter, (steps, swaps));
-    }
-    if let Some(index) = likelier {
-        let after = swap(experiment, model, &after, (given, index), &mut steps).unwrap_or(after);
-        return finish(experiment, model, before, after, (steps, swaps - 1));
-    }
+    refine(experiment, model, estimate)
+}
+
+/// One effect of a fit weighed beside all others.
+fn beside_others(experiment: &Experiment, model: &Model, fit: &Fit, effect: usize) -> Candidate {
+    let named = fit.estimate.effects[effect].effect;
+    let whole = with_last(experiment, model, fit, effect);
+    let without = whole.estimate.without(whole.estimate.effects.len() - 1);
+    let base = evaluate(experiment, model, without);
+    weigh(experiment, model, &base, named, whole)
+}
+
+/// Effects that explain the campaign as well in the place of one of a fit.
+fn alternatives(
+    experiment: &Experiment,
+    model: &Model,
+    fit: &Fit,
+    effect: usize,
+    weighed: &[Weighed],
+) -> Vec<Alternative> {
+    let named = fit.estimate.effects[effect].effect.id();
+    let whole = with_last(experiment, model, fit, effect);
+    let own: Vec<&str> = super::subset::posterior::key(fit).ids().collect();
+    let other = |set: &&Weighed| -> Option<&'static str> {
+        let mut others = set.key.ids().filter(|id| !own.contains(id));
+        let other = others.next()?;
+        let kept = own.iter().filter(|&&id| id != named);
+        let same = set.key.len() == own.len()
+            && others.next().is_none()
+            && kept
+                .into_iter()
+                .all(|&id| set.key.ids().any(|its| its == id));
+        (same && set.likelier > -TOLD_APART).then_some(other)
+    };
+    let mut alternatives: Vec<Alternative> = weighed
+        .iter()
+        .filter_map(|set| {
+            let id = other(&set)?;
+            let effects = &set.fit.estimate.effects;
+            let index = effects.iter().position(|added| added.effect.id() == id)?;
+            let its = with_last(experiment, model, set.fit, index);
+            Alternative::new(experiment, model, &whole, (its, set.likelier))
+        })
+        .collect();
+    alternatives.sort_by(|a, b| b.likelier.total_cmp(&a.likelier));
+    alternatives
+}
+
+fn concluded(
+    experiment: &Experiment,
+    model: &Model,
+    (before, refitted): (Fit, Option<Fit>),
+    found: Found,
+    steps: Vec<Step>,
+) -> Explanation {
+    let after = found.fit;
     let cells = cells_since(&cells(experiment, &before), experiment, &after);
     let missing = missing_manoeuvre(experiment, &after);
     let verdict = verdict(experiment, &cells, &steps, &after, missing);
@@ -422,6 +365,7 @@ fn finish(
     };
     Explanation {
         before,
+        refitted,
         after,
         steps,
         verdict,
@@ -429,6 +373,7 @@ fn finish(
         rest,
         next_experiment,
         unseen,
+        unfinished: found.unfinished,
     }
 }
 

@@ -375,12 +375,3 @@ pub(super) fn with_last(experiment: &Experiment, model: &Model, fit: &Fit, effec
     estimate.effects.push(moved);
     evaluate(experiment, model, estimate)
 }
-
-/// The same fit with its last effect moved to another place in the list.
-pub(super) fn in_place(experiment: &Experiment, model: &Model, fit: &Fit, place: usize) -> Fit {
-    let mut estimate = fit.estimate.clone();
-    if let Some(last) = estimate.effects.pop() {
-        estimate.effects.insert(place, last);
-    }
-    evaluate(experiment, model, estimate)
-}

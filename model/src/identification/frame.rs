@@ -193,6 +193,22 @@ impl<J: Borrow<Jacobian>> Frame<J> {
         self.cost(square_sum(residuals), &self.products(residuals))
     }
 
+    /// An estimate that leaves `residuals`, with its clocks where they take from those what they can, to first order.
+    #[must_use]
+    pub fn synchronised(&self, estimate: &Estimate, residuals: &[Vec<f64>]) -> Estimate {
+        let pull = self.pull(&self.products(residuals)) + &self.priors;
+        let shares = self.shares(&pull);
+        let mut synchronised = estimate.clone();
+        for (&kept, &share) in self.kept.iter().zip(shares.iter()) {
+            let shared = self.jacobian().shared[kept];
+            if shared.has_prior() {
+                let moved = estimate.get(shared) + share * estimate.scale(shared);
+                synchronised.set(shared, moved);
+            }
+        }
+        synchronised
+    }
+
     /// [`Frame::cost_after`] of the frame's own residuals: what there is without anything changed.
     #[must_use]
     pub fn here(&self) -> f64 {

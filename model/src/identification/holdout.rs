@@ -59,7 +59,7 @@ pub fn held_out(experiment: &Experiment, model: &Model, fit: &Fit) -> HeldOut {
             let (test, weights, test_start) = part(experiment, fit, |run| !outside(run));
             let start = Estimate {
                 effects: trained.effects,
-                clocks_held: false,
+                adopted: trained.adopted,
                 clocks: trained.clocks,
                 nuisances: test_start.nuisances,
             };

@@ -326,7 +326,6 @@ impl Jacobian {
         slow: &SlowColumns,
     ) -> Self {
         let shared = estimate.shared();
-        let clocks = estimate.free_clocks().len();
         let columns: Vec<Vec<Vec<f64>>> = shared
             .par_iter()
             .filter(|parameter| !parameter.has_prior())
@@ -338,12 +337,7 @@ impl Jacobian {
                 shared: columns
                     .iter()
                     .map(|column| column[run].clone())
-                    .chain(
-                        slow.clocks
-                            .iter()
-                            .take(clocks)
-                            .map(|clock| clock[run].clone()),
-                    )
+                    .chain(slow.clocks.iter().map(|clock| clock[run].clone()))
                     .collect(),
                 load: (experiment.runs[run].on_hitch()
                     && !estimate.load_would_leave(run, dot(&slow.loads[run], &base[run])))

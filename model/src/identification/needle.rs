@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::experiment::Experiment;
 use super::fit::{Fit, evaluate_weighted, refine};
-use super::starts::scaled;
+use super::shapes::scaled;
 use crate::effects::{AddedEffect, Search};
 use crate::model::Model;
 

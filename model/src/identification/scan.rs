@@ -11,7 +11,7 @@ use super::experiment::{Experiment, ReadyRun};
 use super::fit::Fit;
 use super::jacobian::residuals;
 use super::regime::Regime;
-use super::starts::scaled;
+use super::shapes::scaled;
 use crate::effects::{AddedEffect, Parameter};
 use crate::model::Model;
 
@@ -73,9 +73,6 @@ enum Telling {
     /// Those that the model fails without it.
     Failed,
 }
-
-/// All grids, those first that take least.
-pub(super) static GRIDS: [&Grid; 4] = [&RINGING, &PLACES, &PLACES_AT_REST, &JUMPS];
 
 /// For jumps and bounces.
 pub(super) static JUMPS: Grid = Grid {

@@ -5,13 +5,12 @@
 
 use rayon::prelude::*;
 
-use super::evidence::detectability;
+use super::evidence::{VISIBLE, detectability};
 use super::experiment::Experiment;
 use super::explain::absent;
 use super::fit::Fit;
 use super::frame::Frame;
 use super::jacobian::{Jacobian, difference, huber, huber_residuals};
-use super::trials::VISIBLE;
 use crate::campaign::Channel;
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use hitch_model::Model;
 use hitch_model::campaign::Campaign;
 use hitch_model::effects::{Effect, full_name};
-use hitch_model::identification::belief::BELIEVED;
 use hitch_model::identification::beside::{Beside, beside};
+use hitch_model::identification::evidence::BELIEVED;
 use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::fit_base;
+use hitch_model::identification::explain::fit_freely;
 use hitch_model::identification::fit::{Fit, refine};
-use hitch_model::identification::trials::try_effects;
+use hitch_model::identification::subset::single::try_effects;
 
 use super::effects::find;
 use crate::error::Error;
@@ -52,7 +52,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let campaign = Campaign::load(&args.campaign)?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
     let experiment = Experiment::new(&campaign, &model);
-    let base = fit_base(&experiment, &model);
+    let base = fit_freely(&experiment, &model);
     let fit = fit_with(&experiment, &model, base.clone(), &effects, &progress);
     progress.say("weighing each beside the others");
     let weighed = beside(&experiment, &model, &fit, model.effects.len());

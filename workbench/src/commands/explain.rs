@@ -9,6 +9,7 @@ use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
 use crate::report::explanation_page;
+use crate::search_args::SearchArgs;
 
 /// Arguments of `hitch explain`.
 #[derive(Debug, clap::Args)]
@@ -24,6 +25,8 @@ pub struct Args {
     /// Write a report to this file: self-contained HTML
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
+    #[command(flatten)]
+    search: SearchArgs,
     #[command(flatten)]
     json: JsonArg,
 }
@@ -43,7 +46,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let outputs = Outputs::check(wanted, &inputs)?;
     let model = args.model.load()?;
     let campaign = Campaign::load(&args.campaign)?;
-    let found = Found::new(&campaign, model);
+    let found = Found::new(&campaign, model, args.search.options());
     if let Some(path) = &args.out {
         output::write_file(path, found.rebuilt(output::stem(path)).to_toml().as_bytes())?;
     }

@@ -3,6 +3,7 @@ use std::path::PathBuf;
 
 use hitch_model::Model;
 use hitch_model::campaign::Campaign;
+use hitch_model::identification::subset::Options;
 
 use crate::closed_loop::Scenario;
 use crate::comparison::Comparison;
@@ -35,7 +36,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let campaign = demonstration::campaign()?;
     let model = Model::nominal();
     outputs.say(|| compared(&campaign, &model))?;
-    let found = Found::new(&campaign, model);
+    let found = Found::new(&campaign, model, Options::default());
     outputs.say(|| explained(&found))?;
     let progress = Progress::start("closing the loop with either valve map");
     let rebuild = Rebuild::new(&found, Scenario::Moves)?;

@@ -1,6 +1,7 @@
 //! One file a command: its arguments, and what it does.
 pub mod add;
 pub mod calibrate;
+pub mod changes;
 pub mod compare;
 pub mod controller;
 pub mod diagnose;

@@ -4,6 +4,7 @@ use hitch_model::campaign::Campaign;
 use hitch_model::effects::Effect;
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain;
+use hitch_model::identification::subset::Options;
 use hitch_model::identification::suggestion::{Suggestion, suggest};
 use hitch_model::identification::whereabouts::Profile;
 
@@ -29,10 +30,10 @@ pub struct Found {
 
 impl Found {
     /// Explains a campaign, saying on a terminal what is being tried.
-    pub fn new(campaign: &Campaign, model: Model) -> Self {
+    pub fn new(campaign: &Campaign, model: Model, options: Options) -> Self {
         let progress = Progress::start(format!("reading {}", campaign.name));
         let experiment = Experiment::new(campaign, &model);
-        let explanation = explain::explain(&experiment, &model, &|what| {
+        let explanation = explain::explain_with(&experiment, &model, options, &|what| {
             progress.say(format!("trying {what}"))
         });
         let rest = explanation
@@ -40,9 +41,12 @@ impl Found {
             .depends_on
             .first()
             .and_then(|signal| Profile::new(&experiment, &explanation.after, signal));
-        let suggestion = suggest(&experiment, &model, &explanation, &|what| {
-            progress.say(format!("trying a term of its own, {what}"))
+        let suggestion = (!options.is_over()).then(|| {
+            suggest(&experiment, &model, &explanation, &|what| {
+                progress.say(format!("trying a term of its own, {what}"))
+            })
         });
+        let suggestion = suggestion.flatten();
         let mut shown = Explanation::new(&experiment, &model, &explanation);
         shown.unexplained.whereabouts = rest.as_ref().map(ToString::to_string);
         if let Some(suggestion) = &suggestion {

@@ -22,12 +22,16 @@ pub struct Explanation {
     /// Head, alike for every result.
     #[serde(flatten)]
     pub head: Head,
-    /// The effects added, in order.
+    /// Error of the model before with its own effects fitted anew, in sigma; `None` if it has none.
+    pub error_refitted: Option<f64>,
+    /// The effects added or changed, in order.
     pub steps: Vec<Step>,
     /// What stays unexplained.
     pub unexplained: Unexplained,
     /// What would not have been seen at its typical size, the faintest first; empty if something stays unexplained.
     pub not_visible: Vec<NotVisible>,
+    /// Whether the time was up before the search had ended: there may be more than the steps say.
+    pub unfinished: bool,
     /// The experiment that would tell most, if one is needed.
     #[serde(flatten)]
     pub next: Next,
@@ -73,6 +77,8 @@ pub struct Step {
     pub effect: &'static str,
     /// Which of its equations, if it has several and this is not the usual one.
     pub form: Option<&'static str>,
+    /// The size that the model had before, in the unit of the first parameter; `None` if the effect is new.
+    pub changed_from: Option<f64>,
     /// Error before it was added, in sigma.
     pub error_before: f64,
     /// Error after it was added, in sigma.

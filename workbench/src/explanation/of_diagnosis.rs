@@ -3,13 +3,13 @@ use std::cmp::Ordering;
 
 use hitch_model::Model;
 use hitch_model::identification::adequacy::{adequate, cells};
-use hitch_model::identification::belief::BELIEVED;
 use hitch_model::identification::candidate;
 use hitch_model::identification::design::{NextExperiment, Pair, Rival, next_experiment};
+use hitch_model::identification::evidence::BELIEVED;
+use hitch_model::identification::evidence::TOLD_APART;
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::{self, Verdict};
 use hitch_model::identification::fit::Fit;
-use hitch_model::identification::twins::TOLD_APART;
 
 use super::of_explanation::{channels, parameters};
 use super::{Candidate, Diagnosis, Head};

@@ -24,6 +24,7 @@ impl Explanation {
                 channels: channels(experiment, &found.before, &found.after),
                 verdict: found.verdict.name(),
             },
+            error_refitted: found.refitted.as_ref().map(Fit::error),
             steps: found.steps.iter().map(step).collect(),
             unexplained: Unexplained {
                 share: found.rest.share,
@@ -33,6 +34,7 @@ impl Explanation {
                 suggested: None,
             },
             not_visible: found.unseen.iter().map(not_visible).collect(),
+            unfinished: found.unfinished,
             next: found.next_experiment.clone().into(),
         }
     }
@@ -42,6 +44,7 @@ fn step(step: &explain::Step) -> Step {
     Step {
         effect: step.effect.id(),
         form: step.effect.form(),
+        changed_from: step.changed_from,
         error_before: step.error_before,
         error_after: step.error_after,
         held_out_before: step.held_out_before.error,

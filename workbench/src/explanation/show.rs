@@ -13,6 +13,12 @@ const WIDTH: usize = 100;
 impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.head)?;
+        if let Some(error) = self.error_refitted {
+            writeln!(
+                f,
+                "  error {error:.2} sigma with the model's own effects fitted anew\n"
+            )?;
+        }
         for (i, step) in self.steps.iter().enumerate() {
             write!(f, "  {}. {step}", i + 1)?;
         }
@@ -27,6 +33,10 @@ impl fmt::Display for Explanation {
                 WIDTH
             )
         )?;
+        if self.unfinished {
+            let line = "The time was up before the search had ended: there may be more. Give it more with --budget.";
+            writeln!(f, "{}", wrapped(line, WIDTH))?;
+        }
         write!(f, "{}{}", self.unexplained, self.next)?;
         if !self.not_visible.is_empty() {
             let line = format!("{}:", self.blind_spots());
@@ -198,6 +208,19 @@ impl Step {
         )
     }
 
+    /// What an effect that the model had before has changed from.
+    fn change(&self) -> String {
+        let Some((from, parameter)) = self.changed_from.zip(self.parameters.first()) else {
+            return String::new();
+        };
+        let space = if parameter.unit.is_empty() { "" } else { " " };
+        format!(
+            "changed from {}{space}{} to ",
+            significant(from, 4),
+            parameter.unit
+        )
+    }
+
     /// Why it was added although the error on held-out runs is no smaller: a few samples make all of that while the next
     /// effect is missing.
     fn without_outliers(&self) -> String {
@@ -215,7 +238,7 @@ impl Step {
 impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let values: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
-        writeln!(f, "{}: {}", self.name(), values.join(", "))?;
+        writeln!(f, "{}: {}{}", self.name(), self.change(), values.join(", "))?;
         writeln!(
             f,
             "     error {:.2} -> {:.2}, {}; confidence {:.2}, detectability {:.2}",
@@ -342,6 +365,7 @@ mod tests {
         let step = Step {
             effect: "lowering-leakage",
             form: Some("thinning"),
+            changed_from: None,
             error_before: 3.0,
             error_after: 1.0,
             held_out_before: f64::NAN,

@@ -4,8 +4,8 @@ use std::fmt;
 
 use rayon::prelude::*;
 
+use super::super::evidence::TOLD_APART;
 use super::super::experiment::Experiment;
-use super::super::twins::TOLD_APART;
 use super::manoeuvre::MANOEUVRES;
 use super::plan::Manoeuvre;
 use super::sensor::telling_instrument;

@@ -13,14 +13,13 @@ mod screen;
 mod shapes;
 mod spread;
 
-use super::belief::BELIEVED;
 use super::candidate::{Candidate, weigh};
+use super::evidence::BELIEVED;
 use super::experiment::Experiment;
 use super::explain::{Explanation, Progress, Verdict};
 use super::fit::{Fit, evaluate, refine};
 use super::holdout::{HeldOut, held_out};
-use super::scans::Scans;
-use super::trials::Trials;
+use super::subset::single::try_effects;
 use crate::effects::{AddedEffect, Effect, TermEffect};
 use crate::expression::TermDefinition;
 use crate::model::Model;
@@ -162,11 +161,9 @@ fn trials(
     };
     let terms = screen::best(experiment, model, start, definitions, count);
     let effects: Vec<&'static dyn Effect> = terms.iter().map(|term| *term as &dyn Effect).collect();
-    let scans = Scans::default();
-    let base = (found.cells.as_slice(), start);
-    let trials = Trials::new(experiment, model, base, &effects, &scans, progress);
-    trials
-        .likely(|_| BELIEVED)
+    let tried = try_effects(experiment, model, start, &effects, progress);
+    tried
+        .iter()
         .filter(|candidate| candidate.likelihood_ratio >= BELIEVED)
         .take(HELD_OUT)
         .filter_map(|candidate| {

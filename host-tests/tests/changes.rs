@@ -1,0 +1,103 @@
+//! What has changed on a machine whose model is known: adopted effects stay as they are unless the measurements say
+//! otherwise, and a change of one is a step like a new effect.
+
+use std::path::{Path, PathBuf};
+
+use hitch_model::Model;
+use hitch_model::campaign::Campaign;
+use hitch_model::effects::{AddedEffect, find};
+use hitch_model::identification::experiment::Experiment;
+use hitch_model::identification::explain::{Explanation, Verdict, explain_with};
+use hitch_model::identification::subset::Options;
+use host_tests::program::run;
+use serde_json::Value;
+
+/// Coulomb friction hidden in `known-friction`, N.
+const HIDDEN_N: f64 = 725.0;
+
+fn campaigns() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns")
+}
+
+/// `known-friction` explained from the paper's machine with so much friction adopted.
+fn from_adopted(friction_n: f64, changes: bool) -> Explanation {
+    let effect = find("coulomb-friction").expect("in the catalogue");
+    let mut adopted = AddedEffect::typical(effect);
+    adopted.values[0] = friction_n;
+    let model = Model::nominal().with_effects(vec![adopted]);
+    let campaign = Campaign::load(&campaigns().join("known-friction")).expect("shipped");
+    let options = Options {
+        changes,
+        ..Options::default()
+    };
+    explain_with(
+        &Experiment::new(&campaign, &model),
+        &model,
+        options,
+        &|_| {},
+    )
+}
+
+#[test]
+fn a_change_of_an_adopted_effect_is_a_step() {
+    let found = from_adopted(300.0, true);
+    assert_eq!(found.steps.len(), 1);
+    let step = &found.steps[0];
+    assert_eq!(step.effect.id(), "coulomb-friction");
+    assert_eq!(step.changed_from, Some(300.0));
+    assert!(
+        (step.values[0] / HIDDEN_N - 1.0).abs() < 0.01,
+        "{:?}",
+        step.values
+    );
+    let (low, high) = step.intervals[0];
+    assert!((low..=high).contains(&HIDDEN_N), "{low} to {high}");
+    assert_eq!(found.verdict, Verdict::Explained);
+    let refitted = found.refitted.as_ref().expect("the model has an effect");
+    assert!(found.before.error() > 2.0 && refitted.error() < 1.1);
+}
+
+#[test]
+fn what_is_as_it_was_adopted_has_not_changed() {
+    let found = from_adopted(HIDDEN_N, true);
+    assert!(found.steps.is_empty());
+    assert_eq!(found.verdict, Verdict::NothingMissing);
+}
+
+#[test]
+fn a_frozen_model_keeps_its_effects() {
+    let found = from_adopted(300.0, false);
+    let named: Vec<&str> = found.steps.iter().map(|step| step.effect.id()).collect();
+    assert!(!named.contains(&"coulomb-friction"), "{named:?}");
+    assert_eq!(found.after.estimate.effects[0].values[0], 300.0);
+}
+
+/// What the command prints as JSON for two campaigns.
+fn changes(baseline: &str, new: &str) -> Value {
+    let output = run(&campaigns(), &["changes", baseline, new, "--json", "-"]);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    serde_json::from_slice(&output.stdout).expect("one JSON document")
+}
+
+#[test]
+fn the_command_says_what_differs_between_two_campaigns() {
+    let worse = changes("clean-steady", "known-friction");
+    assert_eq!(worse["baseline"]["verdict"], "nothing-missing");
+    assert_eq!(worse["new"]["steps"][0]["effect"], "coulomb-friction");
+    let same = changes("known-friction", "known-friction");
+    assert_eq!(same["baseline"]["steps"][0]["effect"], "coulomb-friction");
+    assert_eq!(same["new"]["steps"].as_array().map(Vec::len), Some(0));
+}
+
+#[test]
+fn a_search_ends_with_its_budget_and_says_so() {
+    let arguments = ["explain", "known-friction", "--budget", "0", "--json", "-"];
+    let output = run(&campaigns(), &arguments);
+    assert!(output.status.success());
+    let found: Value = serde_json::from_slice(&output.stdout).expect("one JSON document");
+    assert_eq!(found["unfinished"], true);
+}

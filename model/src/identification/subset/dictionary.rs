@@ -1,0 +1,217 @@
+//! The dictionary: every way in which a model may be wrong, simulated around a fit.
+
+use rayon::prelude::*;
+
+use super::super::candidate::{jacobian_by, slow_columns};
+use super::super::estimate::{Estimate, Shared};
+use super::super::experiment::Experiment;
+use super::super::explain::possible;
+use super::super::fit::Fit;
+use super::super::frame::Frame;
+use super::super::jacobian::{Jacobian, difference, huber, subtract};
+use super::super::scans::Scans;
+use super::best::Subset;
+use super::ends::FARTHEST;
+use super::entry::{Entry, Kind};
+use super::gram::Gram;
+use super::screen::Screen;
+use crate::effects::{AddedEffect, Effect};
+use crate::model::Model;
+
+/// Sizes to which an adopted effect is changed: shares of its own and of its typical size that are added.
+const CHANGES: [(f64, f64); 4] = [(-0.5, 0.0), (-1.0, 0.0), (0.5, 0.25), (1.5, 1.0)];
+
+/// Largest share of a secant to a changed size.
+const CHANGED: f64 = 1.5;
+
+/// The ways in which a fitted model may be wrong.
+pub(in super::super) struct Dictionary {
+    /// The columns.
+    pub entries: Vec<Entry>,
+    /// Their products, all nuisances projected out, from a model without any of them.
+    pub gram: Gram,
+    /// Residuals without any of them.
+    without: Vec<Vec<f64>>,
+    /// What adapts.
+    jacobian: Jacobian,
+    estimate: Estimate,
+}
+
+impl Dictionary {
+    /// The residuals that a subset leaves to first order, once all nuisances have adapted.
+    pub fn left(&self, subset: &Subset) -> Vec<Vec<f64>> {
+        let mut left = self.without.clone();
+        for (&column, &share) in subset.columns.iter().zip(&subset.shares) {
+            for (left, change) in left.iter_mut().zip(&self.entries[column].change) {
+                subtract(left, share, change);
+            }
+        }
+        Frame::new(&self.jacobian, &self.estimate, 0..0).project(left)
+    }
+}
+
+/// What a dictionary is made around.
+pub(in super::super) struct Around<'a> {
+    pub experiment: &'a Experiment,
+    pub model: &'a Model,
+    pub present: &'a Fit,
+    /// Effects that are looked for.
+    pub effects: Vec<&'static dyn Effect>,
+    /// Whether adopted effects may have changed.
+    pub changes: bool,
+    pub scans: &'a Scans,
+    /// Fall of the cost that an effect has to promise to be worth a closer look.
+    pub worthwhile: f64,
+}
+
+impl Around<'_> {
+    /// The dictionary around a fit.
+    pub fn dictionary(&self) -> Dictionary {
+        let (experiment, model, present) = (self.experiment, self.model, self.present);
+        let slow = slow_columns(experiment, model, present);
+        let jacobian = jacobian_by(experiment, model, present, &slow);
+        let here = huber(present.residuals.clone());
+        let drafted = experiment.drafted(model, &present.estimate);
+        let screen = |experiment| Screen {
+            experiment,
+            model,
+            present,
+            scans: self.scans,
+            worthwhile: self.worthwhile,
+            here: &here,
+            frame: Frame::new(&jacobian, &present.estimate, 0..0),
+        };
+        let fine = screen(experiment);
+        let own = self.own(&fine);
+        let mut without = here.clone();
+        for entry in &own {
+            add(&mut without, &entry.change);
+        }
+        let rough = screen(&drafted);
+        let new = rough.columns(self.effects.clone());
+        let forms = self.other_forms(&fine, &own);
+        let changed = match self.changes {
+            true => self.changed(&rough),
+            false => Vec::new(),
+        };
+        drop((fine, rough));
+        let entries = own.into_iter().chain(forms).chain(new).chain(changed);
+        let entries: Vec<Entry> = entries.collect();
+        let nuisances = nuisances(&jacobian);
+        let gram = Gram::new(&jacobian, &present.estimate, &nuisances, &without, &entries);
+        Dictionary {
+            entries,
+            gram,
+            without,
+            jacobian,
+            estimate: present.estimate.clone(),
+        }
+    }
+
+    /// What the search has added or changed so far, each from nothing to where it stands: taking it away again is judged
+    /// exactly.
+    fn own(&self, screen: &Screen) -> Vec<Entry> {
+        let estimate = &self.present.estimate;
+        let indices = 0..estimate.effects.len();
+        let column = |index: usize| Entry {
+            kind: Kind::Present(index),
+            off: estimate.off(index),
+            change: difference(&screen.residuals(&estimate.without(index)), screen.here),
+            share: (0.0, FARTHEST),
+            added: estimate.effects[index].clone(),
+        };
+        let own = indices.into_par_iter();
+        own.filter(|&index| !estimate.is_unchanged(index))
+            .map(column)
+            .collect()
+    }
+
+    /// What the search has added, in the other forms of the same effects.
+    fn other_forms(&self, screen: &Screen, own: &[Entry]) -> Vec<Entry> {
+        let estimate = &self.present.estimate;
+        let added = own.par_iter().filter_map(|entry| match entry.kind {
+            Kind::Present(index) if estimate.adopted_as(entry.id()).is_none() => {
+                Some((index, entry))
+            }
+            _ => None,
+        });
+        let forms = added.flat_map_iter(|(index, entry)| {
+            let other = |form: &&'static dyn Effect| {
+                form.id() == entry.id() && form.form() != entry.added.effect.form()
+            };
+            let forms = possible(self.model).filter(other);
+            forms.map(move |form| (index, entry, form))
+        });
+        let column = |(index, entry, form): (usize, &Entry, &'static dyn Effect)| {
+            let added = entry.added.in_form(form);
+            let mut other = estimate.clone();
+            other.effects[index] = added.clone();
+            let mut change = difference(screen.here, &screen.residuals(&other));
+            add(&mut change, &entry.change);
+            Entry {
+                kind: Kind::New,
+                off: form.parameters()[0].null,
+                change,
+                share: (0.0, FARTHEST),
+                added,
+            }
+        };
+        forms.map(column).collect()
+    }
+
+    /// The adopted effects that are as they were, at other sizes.
+    fn changed(&self, screen: &Screen) -> Vec<Entry> {
+        let estimate = &self.present.estimate;
+        let indices = (0..estimate.effects.len()).into_par_iter();
+        let unchanged = indices.filter(|&index| estimate.is_unchanged(index));
+        let sizes = unchanged.flat_map_iter(|index| {
+            let sizes = changed_sizes(&estimate.effects[index]).into_iter();
+            sizes.map(move |size| (index, size))
+        });
+        let column = |(index, size): (usize, f64)| {
+            let mut other = estimate.clone();
+            let off = other.effects[index].values[0];
+            other.effects[index].values[0] = size;
+            Entry {
+                kind: Kind::Change(index),
+                off,
+                change: difference(screen.here, &screen.residuals(&other)),
+                share: (0.0, CHANGED),
+                added: other.effects[index].clone(),
+            }
+        };
+        sizes.map(column).collect()
+    }
+}
+
+/// Sizes to which an adopted effect is changed, within its range.
+fn changed_sizes(adopted: &AddedEffect) -> Vec<f64> {
+    let range = &adopted.effect.parameters()[0];
+    let own = adopted.values[0] - range.null;
+    let typical = range.scale().copysign(own);
+    let size = |(of_own, of_typical): &(f64, f64)| {
+        let size = adopted.values[0] + of_own * own + of_typical * typical;
+        size.clamp(range.low, range.high)
+    };
+    let mut sizes: Vec<f64> = CHANGES.iter().map(size).collect();
+    sizes.retain(|&size| size != adopted.values[0]);
+    sizes.dedup();
+    sizes
+}
+
+/// Columns that adapt to whatever entries do: clocks, and the shapes of effects that are there.
+fn nuisances(jacobian: &Jacobian) -> Vec<usize> {
+    let adapts = |shared: &Shared| !matches!(shared, Shared::Effect(_, 0));
+    let columns = jacobian.shared.iter().enumerate();
+    columns
+        .filter(|(_, shared)| adapts(shared))
+        .map(|(column, _)| column)
+        .collect()
+}
+
+/// Adds columns to others.
+fn add(columns: &mut [Vec<f64>], others: &[Vec<f64>]) {
+    for (column, other) in columns.iter_mut().zip(others) {
+        subtract(column, -1.0, other);
+    }
+}

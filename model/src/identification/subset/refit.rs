@@ -1,0 +1,169 @@
+//! Promising sets of effects fitted with the full model.
+
+use rayon::prelude::*;
+
+use super::super::candidate::{jacobian_by, slow_columns};
+use super::super::estimate::Estimate;
+use super::super::experiment::Experiment;
+use super::super::explain::Progress;
+use super::super::fit::{Descent, Fit, refine, sketch, with_last};
+use super::super::frame::Frame;
+use super::super::jacobian::{huber_residuals, square_sum};
+use super::super::needle::threaded;
+use super::Options;
+use super::posterior::{Refitted, key, key_of};
+use super::price::Price;
+use super::promise::{CLOSE, NEAR, VALLEYS};
+use crate::effects::Search;
+use crate::model::Model;
+
+/// Most starts that are sketched, and sketches that are refined.
+const SKETCHED: usize = 5;
+const REFINED: usize = 3;
+
+/// Error from which a sketch may be in a valley of its own, so that it starts coarse as well.
+const ASTRAY: f64 = 2.0;
+
+/// What sets are fitted around.
+pub(super) struct Refits<'a> {
+    pub experiment: &'a Experiment,
+    pub model: &'a Model,
+    pub present: &'a Fit,
+    pub price: Price,
+    pub options: Options,
+}
+
+impl Refits<'_> {
+    /// Fits of some starts: each is simulated once and rid of members that do not keep their promise, the best ones are
+    /// sketched under the present yardsticks, and the best of those refined.
+    pub fn of(&self, starts: Vec<Estimate>, known: &Refitted, progress: Progress) -> Vec<Fit> {
+        let (experiment, model, present) = (self.experiment, self.model, self.present);
+        let drafted = experiment.drafted(model, &present.estimate);
+        let slow = slow_columns(experiment, model, present);
+        let jacobian = jacobian_by(experiment, model, present, &slow);
+        let frame = Frame::new(&jacobian, &present.estimate, 0..0);
+        let residuals =
+            |estimate: &Estimate| huber_residuals(&drafted, model, &present.weights, estimate);
+        // The clocks have stood in for what is missing: where a start gives them back, slopes lead nowhere.
+        let cost = |estimate: &Estimate| {
+            let left = residuals(estimate);
+            let promised = frame.cost_after(&left);
+            let synchronised = frame.synchronised(estimate, &left);
+            let kept = square_sum(&residuals(&synchronised)) + synchronised.prior_cost();
+            let price = self.price.of_all(estimate);
+            match kept < promised {
+                true => (kept + price, synchronised),
+                false => (promised + price, estimate.clone()),
+            }
+        };
+        let starts = starts.into_par_iter();
+        let starts = starts.map(|start| lightened(start, cost)).collect();
+        let mut starts = distinct(starts);
+        starts.retain(|(_, start)| !known.contains(&key_of(start)));
+        let sketch = |start: Estimate| {
+            let found = self.sketched(&drafted, start);
+            (
+                found.cost + self.price.of_all(&found.estimate),
+                found.estimate,
+            )
+        };
+        let unless_over = |start: Estimate| (!self.options.is_over()).then(|| sketch(start));
+        let starts = self.nearest(starts, SKETCHED).into_par_iter();
+        let sketches: Vec<(f64, Estimate)> = starts.filter_map(unless_over).collect();
+        let refined = self
+            .nearest(sketches, REFINED)
+            .into_par_iter()
+            .map(|estimate| {
+                let fit = self.threaded(refine(experiment, model, estimate));
+                progress(&key(&fit).name());
+                fit
+            });
+        refined.collect()
+    }
+
+    /// At most so many estimates whose cost with its price is near the least one.
+    fn nearest(&self, mut priced: Vec<(f64, Estimate)>, most: usize) -> Vec<Estimate> {
+        priced.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let least = priced.first().map_or(0.0, |(cost, _)| *cost);
+        let here = self.present.cost + self.price.of_all(&self.present.estimate);
+        let near = least + (NEAR * (here - least)).max(CLOSE * self.price.unit);
+        let near = priced.into_iter().filter(|(cost, _)| *cost <= near);
+        near.take(most).map(|(_, estimate)| estimate).collect()
+    }
+
+    /// The fit from one start.
+    pub fn one(&self, start: Estimate) -> Fit {
+        let drafted = self.experiment.drafted(self.model, &self.present.estimate);
+        let found = self.sketched(&drafted, start);
+        self.threaded(refine(self.experiment, self.model, found.estimate))
+    }
+
+    /// Where a start leads under the present yardsticks; far from the data also by way of a coarse fit.
+    fn sketched(&self, drafted: &Experiment, start: Estimate) -> Descent {
+        let weights = &self.present.weights;
+        let from = |far: bool| sketch(drafted, self.model, weights, start.clone(), far);
+        let near = from(false);
+        let samples = self.present.weights.count() as f64;
+        if (near.cost / samples).sqrt() <= ASTRAY {
+            return near;
+        }
+        let far = from(true);
+        if far.cost < near.cost { far } else { near }
+    }
+
+    /// A fit with the size of what jumps looked for finely.
+    fn threaded(&self, fit: Fit) -> Fit {
+        let estimate = &fit.estimate;
+        let jumps = (0..estimate.effects.len()).find(|&index| {
+            let search = estimate.effects[index].effect.search();
+            matches!(search, Search::Jumps | Search::Ledges) && !estimate.is_unchanged(index)
+        });
+        match jumps {
+            Some(index) => {
+                let last = with_last(self.experiment, self.model, &fit, index);
+                threaded(self.experiment, self.model, last)
+            }
+            None => fit,
+        }
+    }
+}
+
+/// An estimate without those members that do not explain as much as they have to, and its cost with their price; `cost`
+/// gives that and the estimate adapted.
+fn lightened(start: Estimate, cost: impl Fn(&Estimate) -> (f64, Estimate)) -> (f64, Estimate) {
+    let (mut least, mut estimate) = cost(&start);
+    let mut index = 0;
+    while index < estimate.effects.len() {
+        if !estimate.is_unchanged(index) {
+            let lighter = estimate.without(index);
+            let (without, adapted) = cost(&lighter);
+            if without < least {
+                let removed = adapted.effects.len() < estimate.effects.len();
+                (estimate, least) = (adapted, without);
+                index += usize::from(!removed);
+                continue;
+            }
+        }
+        index += 1;
+    }
+    (least, estimate)
+}
+
+/// Of each set the estimate with the least cost, or the best few where there are many valleys.
+fn distinct(mut priced: Vec<(f64, Estimate)>) -> Vec<(f64, Estimate)> {
+    priced.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut distinct: Vec<(f64, Estimate)> = Vec::new();
+    for (cost, estimate) in priced {
+        let key = key_of(&estimate);
+        let known = distinct
+            .iter()
+            .filter(|(_, other)| key_of(other) == key)
+            .count();
+        let mut effects = estimate.effects.iter();
+        let rough = effects.any(|added| added.effect.search().is_rough());
+        if known < if rough { VALLEYS } else { 1 } {
+            distinct.push((cost, estimate));
+        }
+    }
+    distinct
+}

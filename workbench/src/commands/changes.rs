@@ -1,0 +1,94 @@
+//! `hitch changes`: what differs between two campaigns of one machine, or of two machines of a series.
+use std::path::PathBuf;
+
+use hitch_model::campaign::Campaign;
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::explanation::{Explanation, Found};
+use crate::model_arg::ModelArg;
+use crate::output::{self, JsonArg};
+use crate::outputs::{Outputs, campaign_files};
+use crate::search_args::SearchArgs;
+
+/// Arguments of `hitch changes`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example: hitch changes may november --model tractor.toml --out november.toml"
+)]
+pub struct Args {
+    /// Folder of the campaign that is compared with
+    baseline: PathBuf,
+    /// Folder of the campaign that may differ
+    new: PathBuf,
+    #[command(flatten)]
+    model: ModelArg,
+    /// Write the model of the new campaign to this file
+    #[arg(long, value_name = "MODEL.toml")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    search: SearchArgs,
+    #[command(flatten)]
+    json: JsonArg,
+}
+
+/// Both accounts.
+#[derive(Debug, Serialize)]
+struct Changes {
+    /// What the model lacks on the campaign that is compared with.
+    baseline: Explanation,
+    /// What has changed since: the steps from the model of that campaign to one of the new campaign.
+    new: Explanation,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If a campaign or the model file is wrong, or a result cannot be written.
+pub fn run(args: &Args) -> Result<(), Error> {
+    let mut inputs = campaign_files(&args.baseline);
+    inputs.extend(campaign_files(&args.new));
+    inputs.push(args.model.file());
+    let outputs = Outputs::check([args.out.as_deref(), args.json.target()], &inputs)?;
+    let model = args.model.load()?;
+    let [baseline, new] = [&args.baseline, &args.new].map(|folder| Campaign::load(folder));
+    let (baseline, new) = (baseline?, new?);
+    let baseline = Found::new(&baseline, model, args.search.options());
+    let adopted = baseline.rebuilt(baseline.shown.head.campaign.clone());
+    let new = Found::new(&new, adopted, args.search.options());
+    if let Some(path) = &args.out {
+        output::write_file(path, new.rebuilt(output::stem(path)).to_toml().as_bytes())?;
+    }
+    let changes = Changes {
+        baseline: baseline.shown,
+        new: new.shown,
+    };
+    outputs.tell(&args.json, &changes, || changes.to_string())
+}
+
+impl std::fmt::Display for Changes {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (baseline, new) = (&self.baseline, &self.new);
+        let names: Vec<String> = baseline.steps.iter().map(|step| step.name()).collect();
+        let added = match names.is_empty() {
+            true => String::new(),
+            false => format!(" with {}", names.join(", ")),
+        };
+        writeln!(
+            f,
+            "Baseline {}: model {}{added}, error {:.2} sigma",
+            baseline.head.campaign, baseline.head.model, baseline.head.error_after
+        )?;
+        writeln!(
+            f,
+            "New {}: error {:.2} -> {:.2} sigma",
+            new.head.campaign, new.head.error_before, new.head.error_after
+        )?;
+        if new.steps.is_empty() {
+            return writeln!(f, "\nNothing has changed that the two campaigns show.");
+        }
+        writeln!(f, "\nWhat has changed:")?;
+        let mut steps = new.steps.iter().enumerate();
+        steps.try_for_each(|(index, step)| write!(f, "  {}. {step}", index + 1))
+    }
+}

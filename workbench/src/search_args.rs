@@ -1,0 +1,35 @@
+//! What a search for missing effects may do, as commands take it.
+use std::time::{Duration, Instant};
+
+use hitch_model::identification::subset::Options;
+
+/// Arguments of a search.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub struct SearchArgs {
+    /// Leave the effects that the model has as they are: look for new ones only
+    #[arg(long)]
+    frozen: bool,
+    /// End the search after this time and give the best account so far, s
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    budget: Option<f64>,
+}
+
+impl SearchArgs {
+    /// The options of a search that begins now.
+    pub fn options(&self) -> Options {
+        let budget = self.budget.map(Duration::from_secs_f64);
+        Options {
+            changes: !self.frozen,
+            deadline: budget.map(|budget| Instant::now() + budget),
+        }
+    }
+}
+
+/// A time in s, of up to a day.
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    match (0.0..=86_400.0).contains(&seconds) {
+        true => Ok(seconds),
+        false => Err("must be 0 to 86400".to_owned()),
+    }
+}
