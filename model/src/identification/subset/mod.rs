@@ -15,6 +15,7 @@ mod dictionary;
 mod ends;
 mod entry;
 mod gram;
+mod late;
 mod limits;
 pub(super) mod posterior;
 mod price;

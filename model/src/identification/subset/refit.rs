@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::super::candidate::{jacobian_by, slow_columns};
+use super::super::clocks::{Clocks, OFFSET_PRIOR_S};
 use super::super::estimate::Estimate;
 use super::super::experiment::Experiment;
 use super::super::explain::Progress;
@@ -11,6 +12,7 @@ use super::super::frame::Frame;
 use super::super::jacobian::{huber_residuals, square_sum};
 use super::super::needle::threaded;
 use super::Options;
+use super::late::on_time;
 use super::posterior::{Refitted, key, key_of};
 use super::price::Price;
 use super::promise::{CLOSE, NEAR, VALLEYS};
@@ -74,7 +76,8 @@ impl Refits<'_> {
             .nearest(sketches, REFINED)
             .into_par_iter()
             .map(|estimate| {
-                let fit = self.threaded(refine(experiment, model, estimate));
+                let fit = on_time(experiment, model, refine(experiment, model, estimate));
+                let fit = self.threaded(fit);
                 progress(&key(&fit).name());
                 fit
             });
@@ -91,11 +94,31 @@ impl Refits<'_> {
         near.take(most).map(|(_, estimate)| estimate).collect()
     }
 
-    /// The fit from one start.
+    /// The fit from one start. Where the clocks are off, one with all in step is tried as well: what is late may be the
+    /// effect, and between two valleys no slope leads.
     pub fn one(&self, start: Estimate) -> Fit {
         let drafted = self.experiment.drafted(self.model, &self.present.estimate);
-        let found = self.sketched(&drafted, start);
-        self.threaded(refine(self.experiment, self.model, found.estimate))
+        let from = |start: Estimate| {
+            let found = self.sketched(&drafted, start);
+            let fit = refine(self.experiment, self.model, found.estimate);
+            self.threaded(on_time(self.experiment, self.model, fit))
+        };
+        let offsets_s = start.clocks.offsets_s;
+        let off = offsets_s
+            .iter()
+            .any(|offset_s| offset_s.abs() > OFFSET_PRIOR_S);
+        let in_step = off.then(|| {
+            let clocks = Clocks::default();
+            from(Estimate {
+                clocks,
+                ..start.clone()
+            })
+        });
+        let fit = from(start);
+        match in_step {
+            Some(other) if other.cost < fit.cost => other,
+            _ => fit,
+        }
     }
 
     /// Where a start leads under the present yardsticks; far from the data also by way of a coarse fit.
