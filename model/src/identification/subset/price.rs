@@ -4,6 +4,7 @@ use super::super::estimate::Estimate;
 use super::super::evidence::{VISIBLE, variance_inflation};
 use super::super::experiment::Experiment;
 use super::super::fit::Fit;
+use super::super::jacobian::square_sum;
 use crate::effects::AddedEffect;
 
 /// Number of effects, in their forms, that are tried: the best of so many has that much luck.
@@ -12,6 +13,14 @@ const TRIED: f64 = 50.0;
 /// Logarithm of how much rarer than usual forms those are that say more: where another effect explains as much, it is
 /// that one.
 const RARER: f64 = 3.0;
+
+/// Mean square up to which a model leaves no more than noise.
+const NOISE: f64 = 1.0;
+
+/// Smallest detectability that is believed where a model leaves no more than noise: what a faint signature explains of it
+/// may as well be the instruments' own. And the same where no runs can be held out to refute it.
+const VISIBLE_IN_NOISE: f64 = 0.15;
+const VISIBLE_UNREFUTED: f64 = 0.3;
 
 /// The price of effects beside a fit, in units of its cost.
 ///
@@ -22,6 +31,8 @@ const RARER: f64 = 3.0;
 pub(in super::super) struct Price {
     samples: f64,
     variance: f64,
+    /// Smallest detectability that is believed, sigmas.
+    visible: f64,
     /// What the cost falls by for a likelihood ratio of one.
     pub unit: f64,
 }
@@ -34,8 +45,14 @@ impl Price {
         variance: f64,
         residuals: &[Vec<f64>],
     ) -> Self {
+        let visible = match variance > NOISE {
+            true => VISIBLE,
+            false if experiment.runs.len() < 2 => VISIBLE_UNREFUTED,
+            false => VISIBLE_IN_NOISE,
+        };
         let variance = variance.max(1.0);
         Self {
+            visible,
             samples: samples as f64,
             variance,
             unit: variance * variance_inflation(experiment, residuals, residuals),
@@ -45,7 +62,8 @@ impl Price {
     /// The price beside a fit.
     pub fn beside(experiment: &Experiment, fit: &Fit) -> Self {
         let samples = fit.weights.count();
-        Self::new(experiment, samples, fit.variance(), &fit.residuals)
+        let variance = square_sum(&fit.residuals) / samples as f64;
+        Self::new(experiment, samples, variance, &fit.residuals)
     }
 
     /// What an effect with so many free parameters has to explain.
@@ -71,7 +89,7 @@ impl Price {
 
     /// What the smallest detectability that is believed explains.
     fn seen(&self) -> f64 {
-        VISIBLE * VISIBLE * self.samples * self.variance
+        self.visible * self.visible * self.samples * self.variance
     }
 
     /// Twice the logarithm of the odds against an effect before anything is seen.
