@@ -62,13 +62,19 @@ impl<J: Borrow<Jacobian>> Frame<J> {
     /// range: a clock that cannot move on absorbs nothing.
     #[must_use]
     pub fn new(owner: J, estimate: &Estimate, left_out: Range<usize>) -> Self {
+        Self::keeping(owner, estimate, |column| !left_out.contains(&column))
+    }
+
+    /// The columns that `keeps` says by their index, but those that stand at an end of their range.
+    #[must_use]
+    pub fn keeping(owner: J, estimate: &Estimate, keeps: impl Fn(usize) -> bool) -> Self {
         let jacobian: &Jacobian = owner.borrow();
         let (mut matrix, right) = jacobian.reduced(estimate);
         for k in 0..matrix.nrows() {
             matrix[(k, k)] += 1e-9;
         }
         let kept: Vec<usize> = (0..jacobian.shared.len())
-            .filter(|column| !left_out.contains(column))
+            .filter(|&column| keeps(column))
             .filter(|&column| !estimate.is_at_an_end(jacobian.shared[column]))
             .collect();
         let matrix = matrix.select_rows(&kept).select_columns(&kept);

@@ -14,6 +14,7 @@ mod best;
 mod dictionary;
 mod ends;
 mod entry;
+mod frames;
 mod gram;
 mod late;
 mod limits;
@@ -29,7 +30,7 @@ use std::time::Instant;
 use super::clocks::{Clocks, OFFSET_PRIOR_S};
 use super::experiment::Experiment;
 use super::explain::{Progress, showing};
-use super::fit::{Fit, evaluate};
+use super::fit::{Fit, evaluate, evaluate_weighted};
 use super::holdout::{HeldOut, held_out};
 use super::scans::Scans;
 use crate::model::Model;
@@ -42,6 +43,9 @@ use screen::EXPLAINED;
 
 /// Most dictionaries that are made.
 const ROUNDS: usize = 6;
+
+/// How many effects more than the present ones a set may have that a dictionary leads to.
+const MORE: usize = 2;
 
 /// Sets that are tried on held-out runs in one round.
 const TRIED: usize = 3;
@@ -108,76 +112,147 @@ pub(super) fn search(
     options: Options,
     progress: Progress,
 ) -> Found {
-    let scans = Scans::default();
-    let mut refitted = Refitted::new(base);
-    let mut present = base.clone();
-    let mut left = held_out(experiment, model, base);
-    let mut order = Vec::new();
+    let mut search = Search {
+        experiment,
+        model,
+        options,
+        progress,
+        scans: Scans::default(),
+        refitted: Refitted::new(base),
+        present: base.clone(),
+        left: held_out(experiment, model, base),
+        order: Vec::new(),
+    };
     let mut unfinished = true;
     for _ in 0..ROUNDS {
         if options.is_over() {
             break;
         }
-        let name = key(&present).name();
-        progress(&format!("what is missing beside {name}"));
-        let synchronous = synchronous(experiment, model, &present);
-        for (turn, center) in [Some(&present), synchronous.as_ref()]
-            .into_iter()
-            .flatten()
-            .enumerate()
-        {
-            let around = Around {
-                experiment,
-                model,
-                present: center,
-                effects: showing(experiment, model, &center.estimate),
-                changes: options.changes,
-                scans: &scans,
-                worthwhile: 0.5 * Price::beside(experiment, center).of_nothing(),
-            };
-            let dictionary = around.dictionary();
-            if turn == 0 {
-                order = in_order(&dictionary);
+        if search.looks_further() || search.looks_for_rivals() {
+            let added = base.estimate.effects.len()..search.present.estimate.effects.len();
+            search.order = added.collect();
+        } else {
+            unfinished = options.is_over();
+            break;
+        }
+    }
+    search.found(unfinished)
+}
+
+/// A search under way.
+struct Search<'a> {
+    experiment: &'a Experiment,
+    model: &'a Model,
+    options: Options,
+    progress: Progress<'a>,
+    scans: Scans,
+    refitted: Refitted,
+    /// The best fit so far, and what it leaves in held-out runs.
+    present: Fit,
+    left: HeldOut,
+    /// Its effects, those first that explain most.
+    order: Vec<usize>,
+}
+
+impl Search<'_> {
+    /// Makes a dictionary around the present fit and goes on to the best set that it leads to; whether there is one.
+    fn looks_further(&mut self) -> bool {
+        let name = key(&self.present).name();
+        (self.progress)(&format!("what is missing beside {name}"));
+        let present = self.present.clone();
+        let dictionary = self.tries(&present, MORE);
+        self.order = in_order(&dictionary);
+        if let Some(in_step) = synchronous(self.experiment, self.model, &present) {
+            self.tries(&in_step, MORE);
+        }
+        self.goes_on()
+    }
+
+    /// Looks for what stands in the place of each effect of the present fit, and goes on to it if it is better; whether
+    /// there is one. What explains the same does not show beside it.
+    fn looks_for_rivals(&mut self) -> bool {
+        let estimate = self.present.estimate.clone();
+        let own = (0..estimate.effects.len()).filter(|&index| !estimate.is_unchanged(index));
+        let own: Vec<usize> = own.collect();
+        // Of a single effect, the first dictionary has shown them.
+        if own.len() < 2 {
+            return false;
+        }
+        for index in own {
+            if self.options.is_over() {
+                break;
             }
-            let starts = starts(experiment, &dictionary, center, model, &refitted);
-            let refits = Refits {
-                experiment,
-                model,
-                present: center,
-                price: starts.price,
-                options,
-            };
-            for fit in refits.of(starts.estimates, &refitted, progress) {
-                if limits::is_told(experiment, &fit.estimate) {
-                    refitted.insert(fit);
-                }
+            let id = estimate.effects[index].effect.id();
+            (self.progress)(&format!("what is there in place of {id}"));
+            let weights = self.present.weights.clone();
+            let without = estimate.without(index);
+            let center = evaluate_weighted(self.experiment, self.model, without, weights);
+            self.tries(&center, 1);
+        }
+        self.goes_on()
+    }
+
+    /// Fits the most promising sets of a dictionary around a fit, with at most so many effects more than that.
+    fn tries(&mut self, center: &Fit, more: usize) -> Dictionary {
+        let (experiment, model) = (self.experiment, self.model);
+        let around = Around {
+            experiment,
+            model,
+            present: center,
+            effects: showing(experiment, model, &center.estimate),
+            changes: self.options.changes,
+            scans: &self.scans,
+            worthwhile: 0.5 * Price::beside(experiment, center).of_nothing(),
+        };
+        let dictionary = around.dictionary();
+        let starts = starts(experiment, &dictionary, center, model, &self.refitted, more);
+        let refits = Refits {
+            experiment,
+            model,
+            present: center,
+            price: starts.price,
+            options: self.options,
+        };
+        for fit in refits.of(starts.estimates, &self.refitted, self.progress) {
+            if limits::is_told(experiment, &fit.estimate) {
+                self.refitted.insert(fit);
             }
         }
-        let better = refitted.better(experiment, model, &present);
+        dictionary
+    }
+
+    /// Goes on to the best set that is better than the present one and leaves less in held-out runs; whether there is one.
+    fn goes_on(&mut self) -> bool {
+        let (experiment, model) = (self.experiment, self.model);
+        let better = self.refitted.better(experiment, model, &self.present);
         let admitted = better.into_iter().take(TRIED).find_map(|fit| {
             let its = held_out(experiment, model, fit);
-            let fewer = key(fit).len() < key(&present).len();
-            let gain = left.excess() - its.excess();
+            let fewer = key(fit).len() < key(&self.present).len();
+            let gain = self.left.excess() - its.excess();
             // A campaign of one run has no held-out runs; it is not held against what explains it.
             (fewer || gain.is_nan() || gain > 0.0).then(|| (fit.clone(), its))
         });
-        let Some((fit, its)) = admitted else {
-            unfinished = options.is_over();
-            break;
-        };
-        order = (base.estimate.effects.len()..fit.estimate.effects.len()).collect();
-        (present, left) = (fit, its);
+        let found = admitted.is_some();
+        if let Some((fit, its)) = admitted {
+            (self.present, self.left) = (fit, its);
+        }
+        found
     }
-    let effects = 0..present.estimate.effects.len();
-    let missing = effects.filter(|&effect| !present.estimate.is_unchanged(effect));
-    let missing: Vec<usize> = missing.filter(|effect| !order.contains(effect)).collect();
-    order.extend(missing);
-    Found {
-        fit: present,
-        held_out: left,
-        refitted,
-        order,
-        unfinished,
+
+    fn found(self, unfinished: bool) -> Found {
+        let present = self.present;
+        let effects = 0..present.estimate.effects.len();
+        let missing = effects.filter(|&effect| !present.estimate.is_unchanged(effect));
+        let mut order = self.order;
+        let missing: Vec<usize> = missing.filter(|effect| !order.contains(effect)).collect();
+        order.extend(missing);
+        Found {
+            fit: present,
+            held_out: self.left,
+            refitted: self.refitted,
+            order,
+            unfinished,
+        }
     }
 }
 

@@ -10,9 +10,6 @@ use super::posterior::{Key, Refitted, key};
 use super::price::Price;
 use crate::model::Model;
 
-/// How many effects more than the present ones a subset may have.
-const MORE: usize = 2;
-
 /// Subsets of each size that are looked at, and how many of all are fitted.
 const LOOKED_AT: usize = 40;
 const FITTED: usize = 12;
@@ -20,8 +17,8 @@ const FITTED: usize = 12;
 /// Starts of one set of effects where the cost of one of them has many valleys.
 pub(super) const VALLEYS: usize = 2;
 
-/// Share of the fall of the cost that a secant's promise may be off by: a further effect that promises less is left to
-/// the next dictionary.
+/// Share of the fall of the cost, or of what an effect explains that is replaced, that a secant's promise may be off by:
+/// a further effect that promises less is left to the next dictionary.
 const INEXACT: f64 = 0.04;
 
 /// A subset is fitted if it leaves at most this share of what it has not in common with the most promising one
@@ -35,16 +32,18 @@ pub(super) struct Starts {
     pub price: Price,
 }
 
-/// Starts of the subsets that promise as much as the best one, or nearly, and were not fitted yet.
+/// Starts of the subsets that promise as much as the best one, or nearly, were not fitted yet, and have at most so many
+/// effects more than the present ones.
 pub(super) fn starts(
     experiment: &Experiment,
     dictionary: &Dictionary,
     present: &Fit,
     model: &Model,
     refitted: &Refitted,
+    more: usize,
 ) -> Starts {
     let own = key(present);
-    let largest = (own.len() + MORE).min(MOST);
+    let largest = (own.len() + more).min(MOST);
     let sizes = best_subsets(&dictionary.gram, &dictionary.entries, largest);
     let firsts = sizes.iter().filter_map(|subsets| subsets.first());
     let lowest = firsts.min_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -52,8 +51,10 @@ pub(super) fn starts(
     let samples = present.weights.count();
     let left = dictionary.left(lowest);
     let price = Price::new(experiment, samples, lowest.cost / samples as f64, &left);
-    let inexact = INEXACT * (present.cost - lowest.cost).max(0.0);
+    let whole = with_all_present(dictionary);
     let promise = |subset: &Subset| {
+        let explained = (present.cost - lowest.cost).max(apart(dictionary, subset, &whole));
+        let inexact = INEXACT * explained.max(0.0);
         let members = subset
             .columns
             .iter()
@@ -100,6 +101,14 @@ pub(super) fn starts(
         }
     }
     Starts { estimates, price }
+}
+
+/// The subset of all effects that are there.
+fn with_all_present(dictionary: &Dictionary) -> Subset {
+    let columns = dictionary.entries.iter().enumerate();
+    let present = columns.filter(|(_, entry)| matches!(entry.kind, Kind::Present(_)));
+    let present = present.map(|(column, _)| column).collect();
+    fitted(&dictionary.gram, &dictionary.entries, present)
 }
 
 /// What the leading subset explains beyond what another has in common with it.

@@ -8,10 +8,10 @@ use super::super::estimate::Estimate;
 use super::super::experiment::Experiment;
 use super::super::explain::Progress;
 use super::super::fit::{Descent, Fit, refine, sketch, with_last};
-use super::super::frame::Frame;
 use super::super::jacobian::{huber_residuals, square_sum};
 use super::super::needle::threaded;
 use super::Options;
+use super::frames::Frames;
 use super::late::on_time;
 use super::posterior::{Refitted, key, key_of};
 use super::price::Price;
@@ -43,11 +43,12 @@ impl Refits<'_> {
         let drafted = experiment.drafted(model, &present.estimate);
         let slow = slow_columns(experiment, model, present);
         let jacobian = jacobian_by(experiment, model, present, &slow);
-        let frame = Frame::new(&jacobian, &present.estimate, 0..0);
+        let frames = Frames::new(&jacobian, &present.estimate);
         let residuals =
             |estimate: &Estimate| huber_residuals(&drafted, model, &present.weights, estimate);
         // The clocks have stood in for what is missing: where a start gives them back, slopes lead nowhere.
         let cost = |estimate: &Estimate| {
+            let frame = frames.of(estimate);
             let left = residuals(estimate);
             let promised = frame.cost_after(&left);
             let synchronised = frame.synchronised(estimate, &left);

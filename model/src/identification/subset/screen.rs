@@ -24,6 +24,9 @@ use crate::model::Model;
 const SMOOTH: &[f64] = &[0.3, 2.0];
 const ROUGH: &[f64] = &[0.3, 1.0, 2.0];
 
+/// One more size, in typical sizes, of an effect that may have either sign.
+const OPPOSITE: f64 = -1.0;
+
 /// A form is looked at closely if it promises at least this share of what the best one does.
 const PROMISING: f64 = 0.2;
 
@@ -91,11 +94,14 @@ impl Screen<'_> {
             Search::Secants => SMOOTH,
             Search::Jumps | Search::Ledges | Search::Places => ROUGH,
         };
-        let sizes = sizes.iter().map(|&share| scaled(&typical, share));
-        let within = |added: &AddedEffect| (range.low..=range.high).contains(&added.values[0]);
-        let sizes = sizes.filter(within).collect();
-        let mut ends = self.ends(sizes, true);
+        let at = |sizes: &[f64]| {
+            let sizes = sizes.iter().map(|&share| scaled(&typical, share));
+            let within = |added: &AddedEffect| (range.low..=range.high).contains(&added.values[0]);
+            self.ends(sizes.filter(within).collect(), true)
+        };
+        let mut ends = at(sizes);
         self.begin(&mut ends);
+        ends.extend(at(&[OPPOSITE]));
         ends.extend(self.ends(with_opposite_shapes(effect), false));
         ends
     }
