@@ -160,10 +160,12 @@ impl Search<'_> {
         let name = key(&self.present).name();
         (self.progress)(&format!("what is missing beside {name}"));
         let present = self.present.clone();
-        let dictionary = self.tries(&present, MORE);
+        let dictionary = self.dictionary(&present);
+        self.tries(&present, &dictionary, MORE);
         self.order = in_order(&dictionary);
         if let Some(in_step) = synchronous(self.experiment, self.model, &present) {
-            self.tries(&in_step, MORE);
+            let dictionary = self.dictionary(&in_step);
+            self.tries(&in_step, &dictionary, MORE);
         }
         self.goes_on()
     }
@@ -174,10 +176,6 @@ impl Search<'_> {
         let estimate = self.present.estimate.clone();
         let own = (0..estimate.effects.len()).filter(|&index| !estimate.is_unchanged(index));
         let own: Vec<usize> = own.collect();
-        // Of a single effect, the first dictionary has shown them.
-        if own.len() < 2 {
-            return false;
-        }
         for index in own {
             if self.options.is_over() {
                 break;
@@ -187,13 +185,13 @@ impl Search<'_> {
             let weights = self.present.weights.clone();
             let without = estimate.without(index);
             let center = evaluate_weighted(self.experiment, self.model, without, weights);
-            self.tries(&center, 1);
+            let dictionary = self.dictionary(&center);
+            self.tries(&center, &dictionary, 1);
         }
         self.goes_on()
     }
 
-    /// Fits the most promising sets of a dictionary around a fit, with at most so many effects more than that.
-    fn tries(&mut self, center: &Fit, more: usize) -> Dictionary {
+    fn dictionary(&self, center: &Fit) -> Dictionary {
         let (experiment, model) = (self.experiment, self.model);
         let around = Around {
             experiment,
@@ -204,8 +202,13 @@ impl Search<'_> {
             scans: &self.scans,
             worthwhile: 0.5 * Price::beside(experiment, center).of_nothing(),
         };
-        let dictionary = around.dictionary();
-        let starts = starts(experiment, &dictionary, center, model, &self.refitted, more);
+        around.dictionary()
+    }
+
+    /// Fits the most promising sets of a dictionary around a fit, with at most so many effects more than that.
+    fn tries(&mut self, center: &Fit, dictionary: &Dictionary, more: usize) {
+        let (experiment, model) = (self.experiment, self.model);
+        let starts = starts(experiment, dictionary, center, model, &self.refitted, more);
         let refits = Refits {
             experiment,
             model,
@@ -218,7 +221,6 @@ impl Search<'_> {
                 self.refitted.insert(fit);
             }
         }
-        dictionary
     }
 
     /// Goes on to the best set that is better than the present one and leaves less in held-out runs; whether there is one.

@@ -17,9 +17,8 @@ const RARER: f64 = 3.0;
 /// Mean square up to which a model leaves no more than noise.
 const NOISE: f64 = 1.0;
 
-/// Smallest detectability that is believed where a model leaves no more than noise: what a faint signature explains of it
-/// may as well be the instruments' own. And the same where no runs can be held out to refute it.
-const VISIBLE_IN_NOISE: f64 = 0.15;
+/// Smallest detectability that is believed where a model leaves no more than noise and no runs can be held out: nothing
+/// refutes a faint signature there.
 const VISIBLE_UNREFUTED: f64 = 0.3;
 
 /// The price of effects beside a fit, in units of its cost.
@@ -45,10 +44,9 @@ impl Price {
         variance: f64,
         residuals: &[Vec<f64>],
     ) -> Self {
-        let visible = match variance > NOISE {
-            true => VISIBLE,
-            false if experiment.runs.len() < 2 => VISIBLE_UNREFUTED,
-            false => VISIBLE_IN_NOISE,
+        let visible = match variance <= NOISE && experiment.runs.len() < 2 {
+            true => VISIBLE_UNREFUTED,
+            false => VISIBLE,
         };
         let variance = variance.max(1.0);
         Self {
