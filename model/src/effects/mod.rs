@@ -22,8 +22,10 @@
 
 mod angle_sensor_gain;
 mod angle_sensor_lag;
+mod bulk_modulus;
 mod check_valve_loss;
 mod compensator_droop;
+mod compensator_margin;
 mod coulomb_friction;
 mod described;
 mod entrained_air;
@@ -39,6 +41,7 @@ mod over_the_stroke;
 mod pin_backlash;
 mod pin_friction;
 mod pressure_sensor_offset;
+mod pump_flow;
 mod pump_leakage;
 mod relief_override;
 mod return_line_loss;
@@ -77,15 +80,18 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &compensator_droop::WITH_LOAD,
     &compensator_droop::WITH_FLOW,
     &compensator_droop::LAGGING,
+    &compensator_margin::COMPENSATOR_MARGIN,
     &check_valve_loss::THROTTLING,
     &check_valve_loss::LIFTING,
     &pump_leakage::PUMP_LEAKAGE,
+    &pump_flow::PUMP_FLOW,
     &relief_override::RELIEF_OVERRIDE,
     &return_line_loss::TURBULENT,
     &return_line_loss::LAMINAR,
     &lowering_leakage::EVEN,
     &lowering_leakage::THINNING,
     &entrained_air::ENTRAINED_AIR,
+    &bulk_modulus::BULK_MODULUS,
     &hose_compliance::ELASTIC,
     &hose_compliance::CREEPING,
     &coulomb_friction::SMOOTH,

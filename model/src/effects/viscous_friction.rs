@@ -2,11 +2,13 @@
 //!
 //! `F = f v`, oil sheared in seals and guides; 500 to 5000 N s/m, several times that when cold. In a guide's gap it goes
 //! with the viscosity, under a seal that floats on a film that grows with it with about its root (Jelali & Kroll 4.3). On
-//! the dynamic starting point it comes on top of the 12 000 N s/m declared there.
+//! the dynamic starting point it comes on top of the 12 000 N s/m declared there, and may take from them: together they
+//! are never less than none.
 
 use super::described::Described;
 use super::{Parameter, Search};
 use crate::campaign::Channel;
+use crate::model::Dynamics;
 use crate::plant::oil::viscosity_m2_s;
 use crate::plant::sites::Sites;
 
@@ -40,12 +42,21 @@ pub static EVEN: Described = Described {
     source: "Jelali & Kroll 4.3; 500 to 5000 N s/m for seals of a 76 mm cylinder",
     shows: "cylinder pressure higher while lifting and lower while lowering, the more the faster; \
          slower lowering at high currents",
-    parameters: &[COEFFICIENT],
+    parameters: &[Parameter {
+        low: -100000.0,
+        ..COEFFICIENT
+    }],
     channels: CHANNELS,
     needs: None,
     search: Search::Secants,
     refines: false,
-    attach: |values, _, sites| oppose(values[0], sites),
+    attach: |values, conditions, sites| {
+        let declared_n_s_m = match conditions.constants.dynamics {
+            Dynamics::Steady => 0.0,
+            Dynamics::Dynamic => conditions.constants.cylinder.viscous_friction_n_s_m,
+        };
+        oppose(values[0].max(-declared_n_s_m), sites);
+    },
 };
 
 /// Viscous friction of cold, thick oil.

@@ -1,6 +1,8 @@
 //! The same results as text.
 use std::fmt;
 
+use hitch_model::identification::explain::Verdict;
+
 use super::{
     Alternative, Diagnosis, Explanation, Head, Next, NotVisible, Parameter, Step, Suggested,
     Unexplained,
@@ -153,6 +155,11 @@ impl fmt::Display for Diagnosis {
             "Verdict with the best candidate alone: {}.",
             self.head.verdict
         )?;
+        if self.head.verdict == Verdict::Unexplained.name() {
+            let hint = "No single effect explains this campaign, so several differences are likely, and the confidences, \
+                        which compare single effects, say little: use hitch explain, which looks for a set of effects.";
+            writeln!(f, "{}", wrapped(hint, WIDTH))?;
+        }
         write!(f, "{}", self.next)
     }
 }
