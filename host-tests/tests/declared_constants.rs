@@ -1,0 +1,59 @@
+//! A constant that is declared too large or too small is found like a missing effect, with its size: the campaigns are
+//! of the machine as the paper declares it, and the model declares something else.
+
+use std::path::Path;
+
+use hitch_model::Model;
+use hitch_model::campaign::Campaign;
+use hitch_model::identification::experiment::Experiment;
+use hitch_model::identification::explain::{Explanation, Verdict, explain};
+use hitch_model::model::Constants;
+
+/// The clean campaign of the dynamic machine explained from a model with other constants.
+fn explained(declare: fn(&mut Constants)) -> Explanation {
+    let campaigns = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns");
+    let campaign = Campaign::load(&campaigns.join("clean-dynamic")).expect("shipped");
+    let mut constants = Model::dynamic().constants().clone();
+    declare(&mut constants);
+    let model = Model::new("misdeclared", constants).expect("the linkage is the paper's");
+    explain(&Experiment::new(&campaign, &model), &model, &|_| {})
+}
+
+/// Asserts that one effect is named, with a size to within a share of it.
+fn assert_named(found: &Explanation, effect: &str, size: f64, within: f64) {
+    let named: Vec<(&str, &[f64])> = found
+        .steps
+        .iter()
+        .map(|step| (step.effect.id(), step.values.as_slice()))
+        .collect();
+    assert_eq!(named.len(), 1, "{named:?}");
+    assert_eq!(named[0].0, effect, "{named:?}");
+    let value = named[0].1[0];
+    assert!((value / size - 1.0).abs() < within, "{value} for {size}");
+    let adequate = [Verdict::Explained, Verdict::Ambiguous];
+    assert!(adequate.contains(&found.verdict), "{:?}", found.verdict);
+}
+
+#[test]
+fn oil_softer_than_declared() {
+    let found = explained(|constants| {
+        constants.oil.bulk_modulus_pa /= 0.7;
+    });
+    assert_named(&found, "bulk-modulus", -0.3, 0.05);
+}
+
+#[test]
+fn oil_stiffer_than_declared() {
+    let found = explained(|constants| {
+        constants.oil.bulk_modulus_pa /= 1.3;
+    });
+    assert_named(&found, "bulk-modulus", 0.3, 0.05);
+}
+
+#[test]
+fn less_viscous_friction_than_declared() {
+    let found = explained(|constants| {
+        constants.cylinder.viscous_friction_n_s_m += 6000.0;
+    });
+    assert_named(&found, "viscous-friction", -6000.0, 0.1);
+}
