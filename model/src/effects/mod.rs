@@ -25,7 +25,6 @@ mod angle_sensor_lag;
 mod bulk_modulus;
 mod check_valve_loss;
 mod compensator_droop;
-mod compensator_margin;
 mod coulomb_friction;
 mod described;
 mod entrained_air;
@@ -80,7 +79,6 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &compensator_droop::WITH_LOAD,
     &compensator_droop::WITH_FLOW,
     &compensator_droop::LAGGING,
-    &compensator_margin::COMPENSATOR_MARGIN,
     &check_valve_loss::THROTTLING,
     &check_valve_loss::LIFTING,
     &pump_leakage::PUMP_LEAKAGE,
