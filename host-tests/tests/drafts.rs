@@ -1,4 +1,4 @@
-//! What a search learns from drafts is what it would learn from fine simulations.
+//! What a search learns from drafts and condensed runs is what it would learn from fine simulations of all samples.
 
 use std::path::Path;
 
@@ -7,6 +7,8 @@ use hitch_model::campaign::Campaign;
 use hitch_model::effects::{AddedEffect, Effect};
 use hitch_model::identification::estimate::Estimate;
 use hitch_model::identification::experiment::Experiment;
+use hitch_model::identification::explain::fit_base;
+use hitch_model::identification::fit::evaluate;
 use hitch_model::identification::jacobian::{difference, residuals, square_sum};
 use hitch_model::identification::residual::Weights;
 
@@ -82,4 +84,56 @@ fn a_draft_shows_what_an_effect_changes() {
         }
     }
     assert!(otherwise.is_empty(), "{otherwise:?}");
+}
+
+/// Least and largest part of an effect's signature that a condensed experiment may show of it, as the sum of squares.
+const SHOWN: std::ops::RangeInclusive<f64> = 0.8..=1.2;
+
+/// Sum of squares of what an effect of typical size changes under the yardsticks of some runs.
+fn shown(
+    runs: &Experiment,
+    model: &Model,
+    estimate: &Estimate,
+    effect: &'static dyn Effect,
+) -> f64 {
+    let weights = Weights::new(runs, model, estimate);
+    let mut with = estimate.clone();
+    with.effects.push(AddedEffect::typical(effect));
+    let [with, without] =
+        [&with, estimate].map(|estimate| residuals(runs, model, &weights, estimate));
+    square_sum(&difference(&with, &without))
+}
+
+#[test]
+fn a_condensed_experiment_shows_what_an_effect_changes() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/clean-steady");
+    let campaign = Campaign::load(&folder).expect("a campaign");
+    let model = Model::nominal();
+    let experiment = Experiment::new(&campaign, &model);
+    let estimate = Estimate::new(&experiment, Vec::new());
+    let condensed = experiment.condensed(&model, &estimate);
+    assert!(2 * condensed.samples() < experiment.samples());
+    let visible = NO_SIGNATURE * NO_SIGNATURE * experiment.samples() as f64;
+    let mut otherwise = Vec::new();
+    for effect in model.catalogue() {
+        let [all, few] =
+            [&experiment, &condensed].map(|runs| shown(runs, &model, &estimate, effect));
+        if all > visible && !SHOWN.contains(&(few / all)) {
+            otherwise.push((effect.id(), effect.form(), few, all));
+        }
+    }
+    assert!(otherwise.is_empty(), "{otherwise:?}");
+}
+
+#[test]
+fn a_condensed_experiment_leaves_what_noise_leaves() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/clean-steady");
+    let campaign = Campaign::load(&folder).expect("a campaign");
+    let model = Model::nominal();
+    let experiment = Experiment::new(&campaign, &model);
+    let base = fit_base(&experiment, &model);
+    let condensed = experiment.condensed(&model, &base.estimate);
+    let seen = evaluate(&condensed, &model, base.estimate);
+    let variance = square_sum(&seen.residuals) / seen.weights.count() as f64;
+    assert!((0.85..1.15).contains(&variance), "{variance}");
 }

@@ -8,6 +8,7 @@
 //! A ramp rarely begins on a sample. Where the lines of two neighbouring samples cross between them, the current turned
 //! there: such a corner becomes a point of its own, since a straight line from sample to sample would cut it off.
 
+use super::condense::Stretches;
 use crate::plant::Currents;
 
 /// Reach of a window to either side of the sample, samples.
@@ -90,6 +91,42 @@ impl Drive {
         &self.course.samples
     }
 
+    /// Whether a current turns between a sample and the one before it.
+    #[must_use]
+    pub fn turns_before(&self, sample: usize) -> bool {
+        let at = &self.course.samples;
+        sample > 0 && at[sample] > at[sample - 1] + 1
+    }
+
+    /// The drive on the means over stretches of samples; corners between them stay.
+    #[must_use]
+    pub(super) fn condensed(&self, stretches: &Stretches) -> Self {
+        let time_s = stretches.means(&self.time_s);
+        let currents = stretches.mean_currents(&self.currents);
+        let spread = stretches.mean_currents(&self.spread);
+        let mut course = Course::with_capacity(time_s.len());
+        for (index, first) in stretches.firsts().enumerate() {
+            if self.turns_before(first) {
+                let corner = self.course.samples[first] - 1;
+                let Course {
+                    time_s,
+                    currents,
+                    spread,
+                    ..
+                } = &self.course;
+                course.push(time_s[corner], currents[corner], spread[corner]);
+            }
+            course.samples.push(course.time_s.len());
+            course.push(time_s[index], currents[index], spread[index]);
+        }
+        Self {
+            time_s,
+            currents,
+            spread,
+            course,
+        }
+    }
+
     /// The currents at the points of [`Drive::course_s`] as the valves felt them if the log's clock was ahead by
     /// `skew_s`, moved by `spreads` sigmas.
     #[must_use]
@@ -155,18 +192,22 @@ fn between(from: Currents, to: Currents, share: f64) -> Currents {
 }
 
 impl Course {
+    fn with_capacity(points: usize) -> Self {
+        Self {
+            time_s: Vec::with_capacity(points),
+            currents: Vec::with_capacity(points),
+            spread: Vec::with_capacity(points),
+            samples: Vec::with_capacity(points),
+        }
+    }
+
     fn new(
         time_s: &[f64],
         currents: &[Currents],
         spread: &[Currents],
         cleaned: [&Cleaned; 2],
     ) -> Self {
-        let mut course = Self {
-            time_s: Vec::with_capacity(time_s.len()),
-            currents: Vec::with_capacity(time_s.len()),
-            spread: Vec::with_capacity(time_s.len()),
-            samples: Vec::with_capacity(time_s.len()),
-        };
+        let mut course = Self::with_capacity(time_s.len());
         for sample in 0..time_s.len() {
             course.samples.push(course.time_s.len());
             course.push(time_s[sample], currents[sample], spread[sample]);

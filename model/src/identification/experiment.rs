@@ -5,6 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::clocks::Clocks;
+use super::condense::Stretches;
 use super::conditioning::{Drive, jumps_within_s};
 use super::estimate::Estimate;
 use super::noise::from_second_differences;
@@ -56,6 +57,8 @@ pub struct ReadyRun {
     pub regimes: Vec<Regime>,
     /// Rocker angle at the start, degree; NaN on a flow bench.
     pub start_angle_deg: f64,
+    /// Number of samples of the log that each sample is the mean of: one, but in a condensed run.
+    pub averaged: Vec<f64>,
     /// Samples left out because a flow bench had not reached its pressure yet.
     pub settling_samples: usize,
     traces: Traces,
@@ -122,6 +125,34 @@ impl Experiment {
         }
     }
 
+    /// The experiment with its runs condensed around an estimate, where that takes away most of the samples and nothing
+    /// rings between those that are left; the same experiment where not.
+    #[must_use]
+    pub fn condensed(&self, model: &Model, estimate: &Estimate) -> Self {
+        if self.ringing {
+            return self.clone();
+        }
+        let model = model.with_effects(estimate.effects.clone());
+        let runs = self.runs.par_iter().zip(&estimate.nuisances);
+        let runs: Vec<ReadyRun> = runs
+            .map(|(run, &nuisance)| run.condensed(&model, nuisance, self.current_noise))
+            .collect();
+        let condensed = Self {
+            runs,
+            ..self.without_runs()
+        };
+        match 2 * condensed.samples() < self.samples() {
+            true => condensed,
+            false => self.clone(),
+        }
+    }
+
+    /// Number of samples of all runs.
+    #[must_use]
+    pub fn samples(&self) -> usize {
+        self.runs.iter().map(ReadyRun::len).sum()
+    }
+
     /// Whether any run has a channel.
     #[must_use]
     pub fn measures(&self, channel: Channel) -> bool {
@@ -157,7 +188,7 @@ impl ReadyRun {
             }
         }
         let regimes = regimes(model, &drive, run.channel(Channel::RockerAngle));
-        let traces = Traces::new(run.time_s.len());
+        let samples = run.time_s.len();
         Self {
             file: run.file.clone(),
             bench: run.bench,
@@ -167,7 +198,8 @@ impl ReadyRun {
             measured,
             regimes,
             settling_samples,
-            traces,
+            averaged: vec![1.0; samples],
+            traces: Traces::new(samples),
             shortfall: None,
         }
     }
@@ -193,7 +225,9 @@ impl ReadyRun {
 
     /// The run drafted around a model and a nuisance; as it is if there are no drafts of it.
     fn drafted(&self, model: &Model, nuisance: Nuisance) -> Self {
-        if !self.on_hitch() || !can_be_drafted(model) {
+        // A model without inertia takes long steps already.
+        let rings = model.constants().dynamics == Dynamics::Dynamic;
+        if !self.on_hitch() || !rings || bounces(model) {
             return self.clone();
         }
         let in_step = CurrentShift::default();
@@ -204,6 +238,37 @@ impl ReadyRun {
             shortfall: Some(Arc::new(Shortfall::new(&fine, &drafted))),
             ..self.clone()
         }
+    }
+
+    /// The run condensed around a model and a nuisance.
+    fn condensed(&self, model: &Model, nuisance: Nuisance, noise: Currents) -> Self {
+        let stretches = Stretches::of(self, noise);
+        let measured = self.measured.each_ref();
+        let mut condensed = Self {
+            file: self.file.clone(),
+            drive: self.drive.condensed(&stretches),
+            measured: measured.map(|values| values.as_ref().map(|all| stretches.means(all))),
+            regimes: stretches
+                .firsts()
+                .map(|first| self.regimes[first])
+                .collect(),
+            averaged: stretches.sizes(),
+            traces: Traces::new(stretches.len()),
+            shortfall: None,
+            ..*self
+        };
+        let in_step = CurrentShift::default();
+        let all = stretches.mean_trace(&self.trace(model, nuisance, in_step));
+        let few = condensed.driven(Steps::DRAFT, model, nuisance, in_step);
+        condensed.shortfall = Some(Arc::new(Shortfall::new(&all, &few)));
+        condensed
+    }
+
+    /// Whether two samples have the same channels to compare.
+    #[must_use]
+    pub(super) fn compares_alike(&self, one: usize, other: usize) -> bool {
+        let mut channels = self.measured.iter().flatten();
+        channels.all(|values| values[one].is_finite() == values[other].is_finite())
     }
 
     /// Number of samples.
@@ -255,7 +320,7 @@ impl ReadyRun {
     #[must_use]
     pub fn simulated(&self, model: &Model, nuisance: Nuisance, shift: CurrentShift) -> Trace {
         match &self.shortfall {
-            Some(shortfall) if can_be_drafted(model) => {
+            Some(shortfall) if !bounces(model) => {
                 shortfall.added_to(self.driven(Steps::DRAFT, model, nuisance, shift))
             }
             _ => self.driven(Steps::FINE, model, nuisance, shift),
@@ -301,11 +366,10 @@ impl ReadyRun {
     }
 }
 
-/// Whether there are drafts of a model. One without inertia takes long steps already, and steps that are twice as long
-/// follow the ringing of load on oil, not that of a hitch that comes down on stiff ground.
-fn can_be_drafted(model: &Model) -> bool {
+/// Whether a hitch bounces on stiff ground: steps that are twice as long follow the ringing of load on oil, not that.
+fn bounces(model: &Model) -> bool {
     let lands = |added: &AddedEffect| added.effect.search() == Search::Places && !added.is_null();
-    model.constants().dynamics == Dynamics::Dynamic && !model.effects.iter().any(lands)
+    model.constants().dynamics == Dynamics::Dynamic && model.effects.iter().any(lands)
 }
 
 /// Samples at the start of a flow-bench run before the port has the pressure that it then keeps: by the gauge, which

@@ -6,6 +6,7 @@ pub mod beside;
 pub mod candidate;
 mod central;
 pub mod clocks;
+mod condense;
 pub mod conditioning;
 pub mod design;
 pub mod estimate;

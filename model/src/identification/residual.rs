@@ -160,7 +160,8 @@ impl RunWeights {
                 let spread =
                     0.5 * (above.channel(channel)[sample] - below.channel(channel)[sample]);
                 let shift = 0.5 * (late.channel(channel)[sample] - early.channel(channel)[sample]);
-                let yardstick = sigma.hypot(spread).hypot(shift).hypot(tolerance[sample]);
+                let noise = sigma / run.averaged[sample].sqrt();
+                let yardstick = noise.hypot(spread).hypot(shift).hypot(tolerance[sample]);
                 let known = yardstick <= UNKNOWABLE * sigma
                     && !hangs_on_a_hair(sample)
                     && !(channel == Channel::PumpPressure && at_an_edge(sample));
@@ -184,13 +185,14 @@ impl RunWeights {
         let Some(measured) = &run.measured[Channel::RockerAngle.index()] else {
             return;
         };
-        let noise = experiment.noise[Channel::RockerAngle.index()].powi(2);
+        let of_sample = experiment.noise[Channel::RockerAngle.index()].powi(2);
         let offset = Channel::RockerAngle.index() * run.len();
         let steps = walk_steps_deg(experiment, run, model, traces);
         // The first guess of the start angle is good to one sigma of the sensor.
-        let mut variance = noise;
+        let mut variance = of_sample;
         for (sample, value) in measured.iter().enumerate() {
             variance += steps[sample] * steps[sample];
+            let noise = of_sample / run.averaged[sample];
             if value.is_finite() {
                 let total = variance + noise;
                 self.scale[offset + sample] = 1.0 / total.sqrt();
@@ -334,7 +336,8 @@ fn walk_steps_deg(
             let angle_deg = above.channel(Channel::RockerAngle)[sample];
             let travel_m = units::m3_s_from_lpm(flow_lpm * share) / area_m2
                 * (time_s[sample] - time_s[sample - 1]);
-            travel_m
+            // Of independent steps the squares add up.
+            travel_m / run.averaged[sample].sqrt()
                 * linkage
                     .angle_slope_rad_m(angle_deg.to_radians())
                     .to_degrees()

@@ -24,6 +24,13 @@ pub struct Steps {
     longest_rad: f64,
     /// In s, however slow the ringing: the spools' lag bends the openings.
     longest_s: f64,
+    /// In s, of the quasi-static plant while the spools stand or follow a ramp.
+    pub(super) quasi_static_s: f64,
+    /// The same while a current jumps or a spool lags behind one that did, and where the hitch comes down on the ground:
+    /// the flow is no straight line then.
+    pub(super) jump_s: f64,
+    /// How much longer they may be than the effects ask for.
+    pub(super) longer: f64,
 }
 
 impl Steps {
@@ -32,6 +39,10 @@ impl Steps {
     pub const FINE: Self = Self {
         longest_rad: 0.55,
         longest_s: 0.004,
+        // A sample of a 50 Hz log.
+        quasi_static_s: 0.02,
+        jump_s: 0.005,
+        longer: 1.0,
     };
 
     /// For differences between simulations in the same steps. The amplitude is off by 4e-2 a period and the phase by
@@ -39,6 +50,9 @@ impl Steps {
     pub const DRAFT: Self = Self {
         longest_rad: 1.0,
         longest_s: 0.008,
+        quasi_static_s: 0.1,
+        jump_s: 0.02,
+        longer: 4.0,
     };
 }
 

@@ -229,10 +229,16 @@ impl<'m> Plant<'m> {
             }
             (Rig::Hitch(rig), Dynamics::Steady) => {
                 let lands = steady::lands(&self.forces(&rig), self.state.piston_m);
-                let own_s = steady::longest_step_s(&self.sites, turning_a_s, lands);
-                own_s.min(SPOOL_STEPS * self.sites.largest_change_a / driven_a_s)
+                let own_s = steady::longest_step_s(self.steps, &self.sites, turning_a_s, lands);
+                // A spool that is driven fast does not stick.
+                match driven_a_s <= steady::JUMP_A_S {
+                    true => own_s.min(SPOOL_STEPS * self.sites.largest_change_a / driven_a_s),
+                    false => own_s,
+                }
             }
-            (Rig::Flow { .. }, _) => steady::longest_step_s(&self.sites, turning_a_s, false),
+            (Rig::Flow { .. }, _) => {
+                steady::longest_step_s(self.steps, &self.sites, turning_a_s, false)
+            }
         }
     }
 

@@ -8,19 +8,13 @@
 
 use super::MechanicalState;
 use super::circuit::{Circuit, Flows, Openings};
+use super::dynamic::Steps;
 use super::forces::Forces;
 use super::sites::Sites;
 use crate::expression::Place;
 
-/// Longest step, s, while the spools stand or follow a ramp: a sample of a 50 Hz log.
-const LONGEST_STEP_S: f64 = 0.02;
-
-/// Longest step, s, while a current jumps or a spool lags behind one that did, and where the hitch comes down on the
-/// ground: the flow is no straight line then.
-const LONGEST_STEP_OF_A_JUMP_S: f64 = 0.005;
-
 /// Currents that change faster than this jump, A/s.
-const JUMP_A_S: f64 = 2.5;
+pub(super) const JUMP_A_S: f64 = 2.5;
 
 /// Travel that the piston may sink by in a step, m.
 const STEP_M: f64 = 0.003;
@@ -36,13 +30,13 @@ pub fn lands(forces: &Forces, piston_m: f64) -> bool {
 
 /// Longest step, s, with what the effects attach, while the spools' currents change by so much, A/s, or the hitch lands.
 #[must_use]
-pub fn longest_step_s(sites: &Sites, turning_a_s: f64, lands: bool) -> f64 {
+pub fn longest_step_s(steps: Steps, sites: &Sites, turning_a_s: f64, lands: bool) -> f64 {
     let own_s = if turning_a_s > JUMP_A_S || lands {
-        LONGEST_STEP_OF_A_JUMP_S
+        steps.jump_s
     } else {
-        LONGEST_STEP_S
+        steps.quasi_static_s
     };
-    own_s.min(sites.longest_step_s)
+    own_s.min(steps.longer * sites.longest_step_s)
 }
 
 /// What the balances give at one instant.

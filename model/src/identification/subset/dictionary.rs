@@ -4,19 +4,17 @@ use rayon::prelude::*;
 
 use super::super::candidate::{jacobian_by, slow_columns};
 use super::super::estimate::{Estimate, Shared};
-use super::super::experiment::Experiment;
 use super::super::explain::possible;
-use super::super::fit::Fit;
 use super::super::frame::Frame;
 use super::super::jacobian::{Jacobian, difference, huber, subtract};
 use super::super::scans::Scans;
 use super::best::Subset;
+use super::coarse::Coarse;
 use super::ends::FARTHEST;
 use super::entry::{Entry, Kind};
 use super::gram::Gram;
 use super::screen::Screen;
 use crate::effects::{AddedEffect, Effect};
-use crate::model::Model;
 
 /// Sizes to which an adopted effect is changed: shares of its own and of its typical size that are added.
 const CHANGES: [(f64, f64); 4] = [(-0.5, 0.0), (-1.0, 0.0), (0.5, 0.25), (1.5, 1.0)];
@@ -52,9 +50,7 @@ impl Dictionary {
 
 /// What a dictionary is made around.
 pub(in super::super) struct Around<'a> {
-    pub experiment: &'a Experiment,
-    pub model: &'a Model,
-    pub present: &'a Fit,
+    pub coarse: &'a Coarse<'a>,
     /// Effects that are looked for.
     pub effects: Vec<&'static dyn Effect>,
     /// Whether adopted effects may have changed.
@@ -67,15 +63,19 @@ pub(in super::super) struct Around<'a> {
 impl Around<'_> {
     /// The dictionary around a fit.
     pub fn dictionary(&self) -> Dictionary {
-        let (experiment, model, present) = (self.experiment, self.model, self.present);
+        let Coarse {
+            few: experiment,
+            model,
+            seen: present,
+            ..
+        } = self.coarse;
         let slow = slow_columns(experiment, model, present);
         let jacobian = jacobian_by(experiment, model, present, &slow);
         let here = huber(present.residuals.clone());
         let drafted = experiment.drafted(model, &present.estimate);
         let screen = |experiment| Screen {
             experiment,
-            model,
-            present,
+            coarse: self.coarse,
             scans: self.scans,
             worthwhile: self.worthwhile,
             here: &here,
@@ -111,7 +111,7 @@ impl Around<'_> {
     /// What the search has added or changed so far, each from nothing to where it stands: taking it away again is judged
     /// exactly.
     fn own(&self, screen: &Screen) -> Vec<Entry> {
-        let estimate = &self.present.estimate;
+        let estimate = &self.coarse.present.estimate;
         let indices = 0..estimate.effects.len();
         let column = |index: usize| Entry {
             kind: Kind::Present(index),
@@ -128,7 +128,7 @@ impl Around<'_> {
 
     /// What the search has added, in the other forms of the same effects.
     fn other_forms(&self, screen: &Screen, own: &[Entry]) -> Vec<Entry> {
-        let estimate = &self.present.estimate;
+        let estimate = &self.coarse.present.estimate;
         let added = own.par_iter().filter_map(|entry| match entry.kind {
             Kind::Present(index) if estimate.adopted_as(entry.id()).is_none() => {
                 Some((index, entry))
@@ -139,7 +139,7 @@ impl Around<'_> {
             let other = |form: &&'static dyn Effect| {
                 form.id() == entry.id() && form.form() != entry.added.effect.form()
             };
-            let forms = possible(self.model).filter(other);
+            let forms = possible(self.coarse.model).filter(other);
             forms.map(move |form| (index, entry, form))
         });
         let column = |(index, entry, form): (usize, &Entry, &'static dyn Effect)| {
@@ -161,7 +161,7 @@ impl Around<'_> {
 
     /// The adopted effects that are as they were, at other sizes.
     fn changed(&self, screen: &Screen) -> Vec<Entry> {
-        let estimate = &self.present.estimate;
+        let estimate = &self.coarse.present.estimate;
         let indices = (0..estimate.effects.len()).into_par_iter();
         let unchanged = indices.filter(|&index| estimate.is_unchanged(index));
         let sizes = unchanged.flat_map_iter(|index| {

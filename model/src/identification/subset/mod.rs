@@ -11,6 +11,7 @@
 //! it again. A subset is judged with all its members at once.
 
 mod best;
+mod coarse;
 mod dictionary;
 mod ends;
 mod entry;
@@ -22,6 +23,7 @@ pub(super) mod posterior;
 mod price;
 mod promise;
 mod refit;
+mod rivals;
 mod screen;
 pub mod single;
 
@@ -34,11 +36,13 @@ use super::fit::{Fit, evaluate, evaluate_weighted};
 use super::holdout::{HeldOut, held_out};
 use super::scans::Scans;
 use crate::model::Model;
+use coarse::Coarse;
 use dictionary::{Around, Dictionary};
 use posterior::{Refitted, key};
 use price::Price;
 use promise::starts;
 use refit::Refits;
+use rivals::rivals;
 use screen::EXPLAINED;
 
 /// Most dictionaries that are made.
@@ -122,6 +126,7 @@ pub(super) fn search(
         present: base.clone(),
         left: held_out(experiment, model, base),
         order: Vec::new(),
+        rivals: Vec::new(),
     };
     let mut unfinished = true;
     for _ in 0..ROUNDS {
@@ -152,6 +157,8 @@ struct Search<'a> {
     left: HeldOut,
     /// Its effects, those first that explain most.
     order: Vec<usize>,
+    /// Its effects with the ids of those that may stand in the place of each.
+    rivals: Vec<(usize, Vec<&'static str>)>,
 }
 
 impl Search<'_> {
@@ -160,12 +167,20 @@ impl Search<'_> {
         let name = key(&self.present).name();
         (self.progress)(&format!("what is missing beside {name}"));
         let present = self.present.clone();
-        let dictionary = self.dictionary(&present);
-        self.tries(&present, &dictionary, MORE);
+        let coarse = Coarse::new(self.experiment, self.model, &present);
+        let dictionary = self.dictionary(&coarse, |_| true);
+        self.tries(&coarse, &dictionary, MORE);
+        let effects = 0..present.estimate.effects.len();
+        let own = effects.filter(|&index| !present.estimate.is_unchanged(index));
+        self.rivals = own
+            .map(|index| (index, rivals(&dictionary, index)))
+            .collect();
         self.order = in_order(&dictionary);
-        if let Some(in_step) = synchronous(self.experiment, self.model, &present) {
-            let dictionary = self.dictionary(&in_step);
-            self.tries(&in_step, &dictionary, MORE);
+        let unexplained = self.refitted.least_error() > EXPLAINED;
+        if unexplained && let Some(in_step) = synchronous(self.experiment, self.model, &present) {
+            let coarse = Coarse::new(self.experiment, self.model, &in_step);
+            let dictionary = self.dictionary(&coarse, |_| true);
+            self.tries(&coarse, &dictionary, MORE);
         }
         self.goes_on()
     }
@@ -174,50 +189,48 @@ impl Search<'_> {
     /// there is one. What explains the same does not show beside it.
     fn looks_for_rivals(&mut self) -> bool {
         let estimate = self.present.estimate.clone();
-        let own = (0..estimate.effects.len()).filter(|&index| !estimate.is_unchanged(index));
-        let own: Vec<usize> = own.collect();
-        for index in own {
-            if self.options.is_over() {
-                break;
+        for (index, rivals) in std::mem::take(&mut self.rivals) {
+            if rivals.is_empty() || self.options.is_over() {
+                continue;
             }
             let id = estimate.effects[index].effect.id();
             (self.progress)(&format!("what is there in place of {id}"));
             let weights = self.present.weights.clone();
             let without = estimate.without(index);
             let center = evaluate_weighted(self.experiment, self.model, without, weights);
-            let dictionary = self.dictionary(&center);
-            self.tries(&center, &dictionary, 1);
+            let coarse = Coarse::new(self.experiment, self.model, &center);
+            let dictionary = self.dictionary(&coarse, |id| rivals.contains(&id));
+            self.tries(&coarse, &dictionary, 1);
         }
         self.goes_on()
     }
 
-    fn dictionary(&self, center: &Fit) -> Dictionary {
+    /// The dictionary around a fit, of the effects whose ids are wanted.
+    fn dictionary(&self, coarse: &Coarse, wanted: impl Fn(&str) -> bool) -> Dictionary {
         let (experiment, model) = (self.experiment, self.model);
+        let mut effects = showing(experiment, model, &coarse.present.estimate);
+        effects.retain(|effect| wanted(effect.id()));
         let around = Around {
-            experiment,
-            model,
-            present: center,
-            effects: showing(experiment, model, &center.estimate),
+            coarse,
+            effects,
             changes: self.options.changes,
             scans: &self.scans,
-            worthwhile: 0.5 * Price::beside(experiment, center).of_nothing(),
+            worthwhile: 0.5 * Price::beside(experiment, coarse.present).of_nothing(),
         };
         around.dictionary()
     }
 
     /// Fits the most promising sets of a dictionary around a fit, with at most so many effects more than that.
-    fn tries(&mut self, center: &Fit, dictionary: &Dictionary, more: usize) {
-        let (experiment, model) = (self.experiment, self.model);
-        let starts = starts(experiment, dictionary, center, model, &self.refitted, more);
+    fn tries(&mut self, coarse: &Coarse, dictionary: &Dictionary, more: usize) {
+        let starts = starts(coarse, dictionary, &self.refitted, more);
         let refits = Refits {
-            experiment,
-            model,
-            present: center,
+            coarse,
+            best: coarse.cost(&self.present) + starts.price.of_all(&self.present.estimate),
             price: starts.price,
             options: self.options,
         };
         for fit in refits.of(starts.estimates, &self.refitted, self.progress) {
-            if limits::is_told(experiment, &fit.estimate) {
+            if limits::is_told(self.experiment, &fit.estimate) {
                 self.refitted.insert(fit);
             }
         }
@@ -258,14 +271,14 @@ impl Search<'_> {
     }
 }
 
-/// A fit with its clocks in step, if they are off and it leaves more than noise: what is missing may be late, and while
-/// clocks stand in for that no secant shows it.
+/// A fit with its clocks in step, if they are off: what is missing may be late, and while clocks stand in for that no
+/// secant shows it.
 fn synchronous(experiment: &Experiment, model: &Model, fit: &Fit) -> Option<Fit> {
     let offsets_s = fit.estimate.clocks.offsets_s;
     let off = offsets_s
         .iter()
         .any(|offset_s| offset_s.abs() > OFFSET_PRIOR_S);
-    (off && fit.error() > EXPLAINED).then(|| {
+    off.then(|| {
         let mut estimate = fit.estimate.clone();
         estimate.clocks = Clocks::default();
         evaluate(experiment, model, estimate)

@@ -80,6 +80,12 @@ impl Refitted {
         self.fits.contains_key(key)
     }
 
+    /// The least error that a set leaves.
+    pub fn least_error(&self) -> f64 {
+        let errors = self.fits.values().map(Fit::error);
+        errors.fold(f64::INFINITY, f64::min)
+    }
+
     /// Adds a fit, unless there is a better one of the same set.
     pub fn insert(&mut self, fit: Fit) {
         let key = key(&fit);

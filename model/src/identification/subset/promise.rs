@@ -1,9 +1,9 @@
 //! Which subsets of a dictionary are worth a fit with the full model.
 
 use super::super::estimate::Estimate;
-use super::super::experiment::Experiment;
 use super::super::fit::Fit;
 use super::best::{MOST, Subset, best_subsets, fitted};
+use super::coarse::Coarse;
 use super::dictionary::Dictionary;
 use super::entry::{Entry, Kind, with_entries};
 use super::posterior::{Key, Refitted, key};
@@ -35,25 +35,30 @@ pub(super) struct Starts {
 /// Starts of the subsets that promise as much as the best one, or nearly, were not fitted yet, and have at most so many
 /// effects more than the present ones.
 pub(super) fn starts(
-    experiment: &Experiment,
+    coarse: &Coarse,
     dictionary: &Dictionary,
-    present: &Fit,
-    model: &Model,
     refitted: &Refitted,
     more: usize,
 ) -> Starts {
+    let Coarse {
+        model,
+        present,
+        few,
+        seen,
+        ..
+    } = coarse;
     let own = key(present);
     let largest = (own.len() + more).min(MOST);
     let sizes = best_subsets(&dictionary.gram, &dictionary.entries, largest);
     let firsts = sizes.iter().filter_map(|subsets| subsets.first());
     let lowest = firsts.min_by(|a, b| a.cost.total_cmp(&b.cost));
     let lowest = lowest.expect("the empty subset is there");
-    let samples = present.weights.count();
     let left = dictionary.left(lowest);
-    let price = Price::new(experiment, samples, lowest.cost / samples as f64, &left);
+    let variance = lowest.cost / seen.weights.count() as f64;
+    let price = Price::new(few, present.weights.count(), variance, &left);
     let whole = with_all_present(dictionary);
     let promise = |subset: &Subset| {
-        let explained = (present.cost - lowest.cost).max(apart(dictionary, subset, &whole));
+        let explained = (seen.cost - lowest.cost).max(apart(dictionary, subset, &whole));
         let inexact = INEXACT * explained.max(0.0);
         let members = subset
             .columns

@@ -7,17 +7,17 @@ use super::super::clocks::{Clocks, OFFSET_PRIOR_S};
 use super::super::estimate::Estimate;
 use super::super::experiment::Experiment;
 use super::super::explain::Progress;
-use super::super::fit::{Descent, Fit, refine, sketch, with_last};
+use super::super::fit::{Descent, Fit, evaluate_weighted, refine, sketch, with_last};
 use super::super::jacobian::{huber_residuals, square_sum};
 use super::super::needle::threaded;
 use super::Options;
+use super::coarse::Coarse;
 use super::frames::Frames;
 use super::late::on_time;
 use super::posterior::{Refitted, key, key_of};
 use super::price::Price;
 use super::promise::{CLOSE, NEAR, VALLEYS};
 use crate::effects::Search;
-use crate::model::Model;
 
 /// Most starts that are sketched, and sketches that are refined.
 const SKETCHED: usize = 5;
@@ -26,23 +26,32 @@ const REFINED: usize = 3;
 /// Error from which a sketch may be in a valley of its own, so that it starts coarse as well.
 const ASTRAY: f64 = 2.0;
 
+/// How many times the least cost what jumps may leave on fewer samples and still be the best on all.
+const MISSED: f64 = 2.0;
+
 /// What sets are fitted around.
 pub(super) struct Refits<'a> {
-    pub experiment: &'a Experiment,
-    pub model: &'a Model,
-    pub present: &'a Fit,
+    pub coarse: &'a Coarse<'a>,
+    /// The cost of the best fit so far with its price, seen as coarsely.
+    pub best: f64,
     pub price: Price,
     pub options: Options,
 }
 
 impl Refits<'_> {
     /// Fits of some starts: each is simulated once and rid of members that do not keep their promise, the best ones are
-    /// sketched under the present yardsticks, and the best of those refined.
+    /// sketched under the present yardsticks, the best of those fitted coarsely, and the likely ones to all samples.
     pub fn of(&self, starts: Vec<Estimate>, known: &Refitted, progress: Progress) -> Vec<Fit> {
-        let (experiment, model, present) = (self.experiment, self.model, self.present);
-        let drafted = experiment.drafted(model, &present.estimate);
-        let slow = slow_columns(experiment, model, present);
-        let jacobian = jacobian_by(experiment, model, present, &slow);
+        let Coarse {
+            experiment,
+            model,
+            few,
+            seen: present,
+            ..
+        } = self.coarse;
+        let drafted = few.drafted(model, &present.estimate);
+        let slow = slow_columns(few, model, present);
+        let jacobian = jacobian_by(few, model, present, &slow);
         let frames = Frames::new(&jacobian, &present.estimate);
         let residuals =
             |estimate: &Estimate| huber_residuals(&drafted, model, &present.weights, estimate);
@@ -73,23 +82,52 @@ impl Refits<'_> {
         let unless_over = |start: Estimate| (!self.options.is_over()).then(|| sketch(start));
         let starts = self.nearest(starts, SKETCHED).into_par_iter();
         let sketches: Vec<(f64, Estimate)> = starts.filter_map(unless_over).collect();
-        let refined = self
-            .nearest(sketches, REFINED)
-            .into_par_iter()
-            .map(|estimate| {
-                let fit = on_time(experiment, model, refine(experiment, model, estimate));
-                let fit = self.threaded(fit);
-                progress(&key(&fit).name());
-                fit
-            });
+        let nearest = self.nearest(sketches, REFINED).into_par_iter();
+        let approached: Vec<(f64, Fit)> = nearest
+            .map(|start| {
+                let fit = on_time(&drafted, model, refine(&drafted, model, start));
+                let (estimate, weights) = (fit.estimate.clone(), present.weights.clone());
+                let under_present = evaluate_weighted(&drafted, model, estimate, weights).cost;
+                let cost = fit.cost.min(under_present) + self.price.of_all(&fit.estimate);
+                (cost, fit)
+            })
+            .collect();
+        let likely = self.likely(&drafted, approached).into_par_iter();
+        let refined = likely.map(|estimate| {
+            let fit = on_time(experiment, model, refine(experiment, model, estimate));
+            let fit = self.threaded(fit);
+            progress(&key(&fit).name());
+            fit
+        });
         refined.collect()
+    }
+
+    /// Those of some coarse fits that may be the best to all samples: whose cost with its price is near the least one.
+    /// What jumps is met less exactly on fewer samples.
+    fn likely(&self, drafted: &Experiment, approached: Vec<(f64, Fit)>) -> Vec<Estimate> {
+        let Some((least, best)) = approached.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else {
+            return Vec::new();
+        };
+        let least = least.min(self.best);
+        let near = least + CLOSE * Price::beside(drafted, best).unit;
+        let near_for_jumps = MISSED * least;
+        let is_near = |(cost, fit): &(f64, Fit)| {
+            let mut effects = fit.estimate.effects.iter();
+            let is_rough = effects.any(|added| added.effect.search().is_rough());
+            *cost <= near || (is_rough && *cost <= near_for_jumps)
+        };
+        let near = approached.iter().filter(|approached| is_near(approached));
+        near.map(|(_, fit)| fit.estimate.clone()).collect()
     }
 
     /// At most so many estimates whose cost with its price is near the least one.
     fn nearest(&self, mut priced: Vec<(f64, Estimate)>, most: usize) -> Vec<Estimate> {
         priced.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let least = priced.first().map_or(0.0, |(cost, _)| *cost);
-        let here = self.present.cost + self.price.of_all(&self.present.estimate);
+        let least = priced
+            .first()
+            .map_or(self.best, |(cost, _)| cost.min(self.best));
+        let present = &self.coarse.seen;
+        let here = present.cost + self.price.of_all(&present.estimate);
         let near = least + (NEAR * (here - least)).max(CLOSE * self.price.unit);
         let near = priced.into_iter().filter(|(cost, _)| *cost <= near);
         near.take(most).map(|(_, estimate)| estimate).collect()
@@ -98,11 +136,18 @@ impl Refits<'_> {
     /// The fit from one start. Where the clocks are off, one with all in step is tried as well: what is late may be the
     /// effect, and between two valleys no slope leads.
     pub fn one(&self, start: Estimate) -> Fit {
-        let drafted = self.experiment.drafted(self.model, &self.present.estimate);
+        let Coarse {
+            experiment,
+            model,
+            present,
+            few,
+            ..
+        } = self.coarse;
+        let drafted = few.drafted(model, &present.estimate);
         let from = |start: Estimate| {
             let found = self.sketched(&drafted, start);
-            let fit = refine(self.experiment, self.model, found.estimate);
-            self.threaded(on_time(self.experiment, self.model, fit))
+            let fit = refine(experiment, model, found.estimate);
+            self.threaded(on_time(experiment, model, fit))
         };
         let offsets_s = start.clocks.offsets_s;
         let off = offsets_s
@@ -124,10 +169,10 @@ impl Refits<'_> {
 
     /// Where a start leads under the present yardsticks; far from the data also by way of a coarse fit.
     fn sketched(&self, drafted: &Experiment, start: Estimate) -> Descent {
-        let weights = &self.present.weights;
-        let from = |far: bool| sketch(drafted, self.model, weights, start.clone(), far);
+        let weights = &self.coarse.seen.weights;
+        let from = |far: bool| sketch(drafted, self.coarse.model, weights, start.clone(), far);
         let near = from(false);
-        let samples = self.present.weights.count() as f64;
+        let samples = weights.count() as f64;
         if (near.cost / samples).sqrt() <= ASTRAY {
             return near;
         }
@@ -144,8 +189,11 @@ impl Refits<'_> {
         });
         match jumps {
             Some(index) => {
-                let last = with_last(self.experiment, self.model, &fit, index);
-                threaded(self.experiment, self.model, last)
+                let Coarse {
+                    experiment, model, ..
+                } = self.coarse;
+                let last = with_last(experiment, model, &fit, index);
+                threaded(experiment, model, last)
             }
             None => fit,
         }

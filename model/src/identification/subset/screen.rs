@@ -8,16 +8,15 @@ use rayon::prelude::*;
 
 use super::super::estimate::Estimate;
 use super::super::experiment::Experiment;
-use super::super::fit::Fit;
 use super::super::frame::Frame;
 use super::super::jacobian::{Jacobian, huber_residuals};
 use super::super::scan::scan;
 use super::super::scans::Scans;
 use super::super::shapes::{scaled, valleys, with_extreme_shapes, with_opposite_shapes};
+use super::coarse::Coarse;
 use super::ends::{End, best, columns, trusted};
 use super::entry::Entry;
 use crate::effects::{AddedEffect, Effect, Search};
-use crate::model::Model;
 
 /// Sizes of the first secants, in typical sizes: of an effect along whose size the cost falls smoothly, and of one that
 /// jumps or is met at a place.
@@ -42,11 +41,14 @@ const SECTIONS: usize = 5;
 /// Error above which a model leaves enough for a fine search for what secants see nothing of.
 pub(super) const EXPLAINED: f64 = 1.05;
 
+/// Share of what a model leaves beyond noise that is next to nothing.
+const REST: f64 = 0.01;
+
 /// Effects looked for one by one.
 pub(super) struct Screen<'a> {
+    /// What effects are simulated on.
     pub experiment: &'a Experiment,
-    pub model: &'a Model,
-    pub present: &'a Fit,
+    pub coarse: &'a Coarse<'a>,
     pub scans: &'a Scans,
     /// Fall of the cost that an effect has to promise to be worth a closer look.
     pub worthwhile: f64,
@@ -66,14 +68,31 @@ impl Screen<'_> {
         let least = promised.iter().copied().fold(here, f64::min);
         let worthwhile = (PROMISING * (here - least)).max(self.worthwhile);
         let looked_at = forms.par_iter_mut().zip(&promised);
-        looked_at.for_each(|(ends, promised)| self.closely(ends, here - promised > worthwhile));
+        let promising: Vec<bool> = looked_at
+            .map(|(ends, promised)| {
+                let promising = here - promised > worthwhile;
+                if promising {
+                    self.closely(ends);
+                }
+                promising
+            })
+            .collect();
+        let ends = forms.iter().flatten();
+        let least = ends.map(|end| end.cost).fold(least, f64::min);
+        let samples = self.coarse.seen.weights.count() as f64;
+        let explained = (EXPLAINED * EXPLAINED * samples).max(samples + REST * (here - samples));
+        // Where one effect leaves next to nothing, others are looked for in its place, once it is there.
+        if least > explained {
+            let looked_through = forms.par_iter_mut().zip(&promising);
+            looked_through.for_each(|(ends, &promising)| self.finely(ends, promising));
+        }
         let columns = |ends: Vec<End>| columns(ends, self.here);
         forms.into_iter().flat_map(columns).collect()
     }
 
     /// The cost without any effect, once what is free has adapted.
     fn cost(&self) -> f64 {
-        self.present.cost.min(self.frame.here())
+        self.coarse.seen.cost.min(self.frame.here())
     }
 
     /// The least cost that the secants of a form promise.
@@ -106,24 +125,31 @@ impl Screen<'_> {
         ends
     }
 
-    /// More ends of a form: where its secants lead, the ends of its shapes, and what a fine search finds.
-    fn closely(&self, ends: &mut Vec<End>, promising: bool) {
-        if promising {
+    /// More ends of a form: where its secants lead, and the ends of its shapes.
+    fn closely(&self, ends: &mut Vec<End>) {
+        self.follow(ends);
+        if let Some(best) = best(ends) {
+            let shapes = with_extreme_shapes(&best.added);
+            ends.extend(self.ends(shapes, false));
             self.follow(ends);
-            if let Some(best) = best(ends) {
-                let shapes = with_extreme_shapes(&best.added);
-                ends.extend(self.ends(shapes, false));
-                self.follow(ends);
-            }
         }
+    }
+
+    /// More ends of a form: what a fine search finds, if its cost has many valleys.
+    fn finely(&self, ends: &mut Vec<End>, promising: bool) {
         let Some(hint) = best(ends).map(|best| best.added.clone()) else {
             return;
         };
-        let astray = self.present.error() > EXPLAINED;
-        if let Some(grid) = valleys(self.experiment, hint.effect)
+        let Coarse {
+            experiment,
+            model,
+            present,
+            ..
+        } = self.coarse;
+        let astray = present.error() > EXPLAINED;
+        if let Some(grid) = valleys(experiment, hint.effect)
             && (promising || (astray && !grid.hinted))
         {
-            let (experiment, model, present) = (self.experiment, self.model, self.present);
             let look = || scan(experiment, model, present, &hint, grid);
             let found = self.scans.of(hint.effect, present.cost, look);
             ends.extend(self.ends(found, false));
@@ -133,7 +159,7 @@ impl Screen<'_> {
     /// Looks between a size that does nothing and the next larger one, which does too much: no secant leads to the best
     /// size of what begins late, like the slip of a pump with flow to spare (golden section search).
     fn begin(&self, ends: &mut Vec<End>) {
-        let does = |end: &End| (end.cost - self.present.cost).abs() > self.worthwhile;
+        let does = |end: &End| (end.cost - self.coarse.seen.cost).abs() > self.worthwhile;
         let Some(begun) = ends.iter().position(does).filter(|&begun| begun > 0) else {
             return;
         };
@@ -191,7 +217,7 @@ impl Screen<'_> {
     }
 
     fn end(&self, added: AddedEffect, first: bool) -> End {
-        let mut estimate = self.present.estimate.clone();
+        let mut estimate = self.coarse.present.estimate.clone();
         estimate.effects.push(added.clone());
         let residuals = self.residuals(&estimate);
         End {
@@ -204,6 +230,7 @@ impl Screen<'_> {
 
     /// Residuals of an estimate as a fit sees them, under the present yardsticks.
     pub fn residuals(&self, estimate: &Estimate) -> Vec<Vec<f64>> {
-        huber_residuals(self.experiment, self.model, &self.present.weights, estimate)
+        let Coarse { model, seen, .. } = self.coarse;
+        huber_residuals(self.experiment, model, &seen.weights, estimate)
     }
 }

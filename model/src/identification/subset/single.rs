@@ -11,6 +11,7 @@ use super::super::fit::{Fit, evaluate_weighted};
 use super::super::scans::Scans;
 use super::Options;
 use super::best::fitted;
+use super::coarse::Coarse;
 use super::dictionary::Around;
 use super::entry::Kind;
 use super::price::Price;
@@ -32,10 +33,9 @@ pub fn try_effects(
 ) -> Vec<Candidate> {
     let scans = Scans::default();
     let price = Price::beside(experiment, base);
+    let coarse = Coarse::new(experiment, model, base);
     let around = Around {
-        experiment,
-        model,
-        present: base,
+        coarse: &coarse,
         effects: effects.to_vec(),
         changes: false,
         scans: &scans,
@@ -66,14 +66,13 @@ pub fn try_effects(
         .collect();
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
     let refits = Refits {
-        experiment,
-        model,
-        present: base,
+        coarse: &coarse,
+        best: coarse.seen.cost,
         price,
         options: Options::default(),
     };
     let slow = slow_columns(experiment, model, base);
-    let promising = |cost: f64| base.cost - cost > around.worthwhile || effects.len() == 1;
+    let promising = |cost: f64| coarse.seen.cost - cost > around.worthwhile || effects.len() == 1;
     let tried = starts.into_par_iter().enumerate();
     let tried = tried.map(|(rank, (cost, effect, estimate))| {
         progress(effect.id());
