@@ -241,6 +241,12 @@ pub fn full_name(effect: &dyn Effect) -> String {
         .map_or_else(|| id.to_owned(), |form| format!("{id}/{form}"))
 }
 
+/// Whether two effects are the same in the same form.
+#[must_use]
+pub fn is_same(one: &dyn Effect, other: &dyn Effect) -> bool {
+    one.id() == other.id() && one.form() == other.form()
+}
+
 /// Looks an effect up by its id, in its usual form.
 #[must_use]
 pub fn find(id: &str) -> Option<&'static dyn Effect> {

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::super::candidate::{jacobian_by, slow_columns};
 use super::super::estimate::{Estimate, Shared};
+use super::super::experiment::Experiment;
 use super::super::explain::possible;
 use super::super::frame::Frame;
 use super::super::jacobian::{Jacobian, difference, huber, subtract};
@@ -36,6 +37,23 @@ pub(in super::super) struct Dictionary {
 }
 
 impl Dictionary {
+    fn new(
+        entries: Vec<Entry>,
+        without: Vec<Vec<f64>>,
+        jacobian: Jacobian,
+        estimate: &Estimate,
+    ) -> Self {
+        let nuisances = nuisances(&jacobian);
+        let gram = Gram::new(&jacobian, estimate, &nuisances, &without, &entries);
+        Self {
+            entries,
+            gram,
+            without,
+            jacobian,
+            estimate: estimate.clone(),
+        }
+    }
+
     /// The residuals that a subset leaves to first order, once all nuisances have adapted.
     pub fn left(&self, subset: &Subset) -> Vec<Vec<f64>> {
         let mut left = self.without.clone();
@@ -64,30 +82,19 @@ impl Around<'_> {
     /// The dictionary around a fit.
     pub fn dictionary(&self) -> Dictionary {
         let Coarse {
-            few: experiment,
-            model,
-            seen: present,
-            ..
+            few, model, seen, ..
         } = self.coarse;
-        let slow = slow_columns(experiment, model, present);
-        let jacobian = jacobian_by(experiment, model, present, &slow);
-        let here = huber(present.residuals.clone());
-        let drafted = experiment.drafted(model, &present.estimate);
-        let screen = |experiment| Screen {
-            experiment,
-            coarse: self.coarse,
-            scans: self.scans,
-            worthwhile: self.worthwhile,
-            here: &here,
-            frame: Frame::new(&jacobian, &present.estimate, 0..0),
-        };
-        let fine = screen(experiment);
+        let slow = slow_columns(few, model, seen);
+        let jacobian = jacobian_by(few, model, seen, &slow);
+        let here = huber(seen.residuals.clone());
+        let drafted = few.drafted(model, &seen.estimate);
+        let fine = self.screen(few, &jacobian, &here);
         let own = self.own(&fine);
         let mut without = here.clone();
         for entry in &own {
             add(&mut without, &entry.change);
         }
-        let rough = screen(&drafted);
+        let rough = self.screen(&drafted, &jacobian, &here);
         let new = rough.columns(self.effects.clone());
         let forms = self.other_forms(&fine, &own);
         let changed = match self.changes {
@@ -96,15 +103,41 @@ impl Around<'_> {
         };
         drop((fine, rough));
         let entries = own.into_iter().chain(forms).chain(new).chain(changed);
-        let entries: Vec<Entry> = entries.collect();
-        let nuisances = nuisances(&jacobian);
-        let gram = Gram::new(&jacobian, &present.estimate, &nuisances, &without, &entries);
-        Dictionary {
+        Dictionary::new(entries.collect(), without, jacobian, &seen.estimate)
+    }
+
+    /// A dictionary with what fine searches find of effects whose cost has many valleys.
+    pub fn thorough(&self, dictionary: Dictionary) -> Dictionary {
+        let Coarse {
+            few, model, seen, ..
+        } = self.coarse;
+        let Dictionary {
             entries,
-            gram,
             without,
             jacobian,
-            estimate: present.estimate.clone(),
+            ..
+        } = dictionary;
+        let here = huber(seen.residuals.clone());
+        let drafted = few.drafted(model, &seen.estimate);
+        let entries = self
+            .screen(&drafted, &jacobian, &here)
+            .fine_columns(entries);
+        Dictionary::new(entries, without, jacobian, &seen.estimate)
+    }
+
+    fn screen<'s>(
+        &'s self,
+        experiment: &'s Experiment,
+        jacobian: &'s Jacobian,
+        here: &'s [Vec<f64>],
+    ) -> Screen<'s> {
+        Screen {
+            experiment,
+            coarse: self.coarse,
+            scans: self.scans,
+            worthwhile: self.worthwhile,
+            here,
+            frame: Frame::new(jacobian, &self.coarse.seen.estimate, 0..0),
         }
     }
 

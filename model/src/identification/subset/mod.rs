@@ -51,6 +51,10 @@ const ROUNDS: usize = 6;
 /// How many effects more than the present ones a set may have that a dictionary leads to.
 const MORE: usize = 2;
 
+/// Error without an effect up to which what jumps may explain as much in its place: beyond, where it jumps tells them
+/// apart.
+const FAINT: f64 = 1.5;
+
 /// Sets that are tried on held-out runs in one round.
 const TRIED: usize = 3;
 
@@ -168,7 +172,8 @@ impl Search<'_> {
         (self.progress)(&format!("what is missing beside {name}"));
         let present = self.present.clone();
         let coarse = Coarse::new(self.experiment, self.model, &present);
-        let dictionary = self.dictionary(&coarse, |_| true);
+        let around = self.around(&coarse, |_| true);
+        let dictionary = around.dictionary();
         self.tries(&coarse, &dictionary, MORE);
         let effects = 0..present.estimate.effects.len();
         let own = effects.filter(|&index| !present.estimate.is_unchanged(index));
@@ -176,13 +181,25 @@ impl Search<'_> {
             .map(|index| (index, rivals(&dictionary, index)))
             .collect();
         self.order = in_order(&dictionary);
-        let unexplained = self.refitted.least_error() > EXPLAINED;
-        if unexplained && let Some(in_step) = synchronous(self.experiment, self.model, &present) {
-            let coarse = Coarse::new(self.experiment, self.model, &in_step);
-            let dictionary = self.dictionary(&coarse, |_| true);
+        if self.refitted.least_error() > EXPLAINED {
+            let dictionary = self.around(&coarse, |_| true).thorough(dictionary);
             self.tries(&coarse, &dictionary, MORE);
+            self.looks_in_step(&present);
         }
         self.goes_on()
+    }
+
+    /// Tries what is late while clocks stand in for it.
+    fn looks_in_step(&mut self, present: &Fit) {
+        let in_step = synchronous(self.experiment, self.model, present);
+        if let Some(in_step) = in_step
+            && self.refitted.least_error() > EXPLAINED
+        {
+            let coarse = Coarse::new(self.experiment, self.model, &in_step);
+            let around = self.around(&coarse, |_| true);
+            let dictionary = around.thorough(around.dictionary());
+            self.tries(&coarse, &dictionary, MORE);
+        }
     }
 
     /// Looks for what stands in the place of each effect of the present fit, and goes on to it if it is better; whether
@@ -199,25 +216,28 @@ impl Search<'_> {
             let without = estimate.without(index);
             let center = evaluate_weighted(self.experiment, self.model, without, weights);
             let coarse = Coarse::new(self.experiment, self.model, &center);
-            let dictionary = self.dictionary(&coarse, |id| rivals.contains(&id));
+            let around = self.around(&coarse, |id| rivals.contains(&id));
+            let dictionary = match center.error() < FAINT {
+                true => around.thorough(around.dictionary()),
+                false => around.dictionary(),
+            };
             self.tries(&coarse, &dictionary, 1);
         }
         self.goes_on()
     }
 
-    /// The dictionary around a fit, of the effects whose ids are wanted.
-    fn dictionary(&self, coarse: &Coarse, wanted: impl Fn(&str) -> bool) -> Dictionary {
+    /// What a dictionary is made of around a fit, of the effects whose ids are wanted.
+    fn around<'a>(&'a self, coarse: &'a Coarse, wanted: impl Fn(&str) -> bool) -> Around<'a> {
         let (experiment, model) = (self.experiment, self.model);
         let mut effects = showing(experiment, model, &coarse.present.estimate);
         effects.retain(|effect| wanted(effect.id()));
-        let around = Around {
+        Around {
             coarse,
             effects,
             changes: self.options.changes,
             scans: &self.scans,
             worthwhile: 0.5 * Price::beside(experiment, coarse.present).of_nothing(),
-        };
-        around.dictionary()
+        }
     }
 
     /// Fits the most promising sets of a dictionary around a fit, with at most so many effects more than that.

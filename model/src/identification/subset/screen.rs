@@ -2,21 +2,21 @@
 //!
 //! A secant at one size misses what saturates, jumps, or begins late, so each form of an effect is simulated at two
 //! sizes, and those that promise most also where their secants lead, at the ends of their shapes, and where a fine
-//! search finds a valley.
+//! search finds a valley if one is asked for.
 
 use rayon::prelude::*;
 
 use super::super::estimate::Estimate;
 use super::super::experiment::Experiment;
 use super::super::frame::Frame;
-use super::super::jacobian::{Jacobian, huber_residuals};
+use super::super::jacobian::{Jacobian, difference, huber_residuals};
 use super::super::scan::scan;
 use super::super::scans::Scans;
 use super::super::shapes::{scaled, valleys, with_extreme_shapes, with_opposite_shapes};
 use super::coarse::Coarse;
 use super::ends::{End, best, columns, trusted};
-use super::entry::Entry;
-use crate::effects::{AddedEffect, Effect, Search};
+use super::entry::{Entry, Kind};
+use crate::effects::{AddedEffect, Effect, Search, is_same};
 
 /// Sizes of the first secants, in typical sizes: of an effect along whose size the cost falls smoothly, and of one that
 /// jumps or is met at a place.
@@ -40,9 +40,6 @@ const SECTIONS: usize = 5;
 
 /// Error above which a model leaves enough for a fine search for what secants see nothing of.
 pub(super) const EXPLAINED: f64 = 1.05;
-
-/// Share of what a model leaves beyond noise that is next to nothing.
-const REST: f64 = 0.01;
 
 /// Effects looked for one by one.
 pub(super) struct Screen<'a> {
@@ -68,26 +65,50 @@ impl Screen<'_> {
         let least = promised.iter().copied().fold(here, f64::min);
         let worthwhile = (PROMISING * (here - least)).max(self.worthwhile);
         let looked_at = forms.par_iter_mut().zip(&promised);
-        let promising: Vec<bool> = looked_at
-            .map(|(ends, promised)| {
-                let promising = here - promised > worthwhile;
-                if promising {
-                    self.closely(ends);
-                }
-                promising
-            })
-            .collect();
-        let ends = forms.iter().flatten();
-        let least = ends.map(|end| end.cost).fold(least, f64::min);
-        let samples = self.coarse.seen.weights.count() as f64;
-        let explained = (EXPLAINED * EXPLAINED * samples).max(samples + REST * (here - samples));
-        // Where one effect leaves next to nothing, others are looked for in its place, once it is there.
-        if least > explained {
-            let looked_through = forms.par_iter_mut().zip(&promising);
-            looked_through.for_each(|(ends, &promising)| self.finely(ends, promising));
-        }
+        looked_at.for_each(|(ends, promised)| {
+            if here - promised > worthwhile {
+                self.closely(ends);
+            }
+        });
         let columns = |ends: Vec<End>| columns(ends, self.here);
         forms.into_iter().flat_map(columns).collect()
+    }
+
+    /// Columns with those that fine searches find of effects whose cost has many valleys.
+    pub fn fine_columns(&self, entries: Vec<Entry>) -> Vec<Entry> {
+        let has_valleys = |entry: &Entry| {
+            let effect = entry.added.effect;
+            entry.kind == Kind::New && valleys(self.coarse.experiment, effect).is_some()
+        };
+        let (searched, mut entries): (Vec<Entry>, Vec<Entry>) =
+            entries.into_iter().partition(has_valleys);
+        let mut forms: Vec<Vec<End>> = Vec::new();
+        for entry in &searched {
+            let end = self.end_of(entry);
+            let same = |ends: &&mut Vec<End>| is_same(ends[0].added.effect, end.added.effect);
+            match forms.iter_mut().find(same) {
+                Some(form) => form.push(end),
+                None => forms.push(vec![end]),
+            }
+        }
+        let found = forms.into_par_iter().flat_map_iter(|mut ends| {
+            let promising = self.cost() - self.promised(&ends) > self.worthwhile;
+            self.finely(&mut ends, promising);
+            columns(ends, self.here)
+        });
+        entries.par_extend(found);
+        entries
+    }
+
+    /// The end of a column's secant.
+    fn end_of(&self, entry: &Entry) -> End {
+        let residuals = difference(self.here, &entry.change);
+        End {
+            cost: self.frame.cost_after(&residuals),
+            added: entry.added.clone(),
+            residuals,
+            first: true,
+        }
     }
 
     /// The cost without any effect, once what is free has adapted.

@@ -41,7 +41,7 @@ pub fn try_effects(
         scans: &scans,
         worthwhile: 0.5 * price.of_nothing(),
     };
-    let dictionary = around.dictionary();
+    let dictionary = around.thorough(around.dictionary());
     let (gram, entries) = (&dictionary.gram, dictionary.entries.as_slice());
     let start = |effect: &'static dyn Effect| -> Option<(f64, Estimate)> {
         let own = |&column: &usize| {
