@@ -4,6 +4,7 @@ use super::clocks::{Clocks, FARTHEST_S, OFFSET_PRIOR_S};
 use super::experiment::{Experiment, LOAD_PRIOR, Nuisance};
 use super::jacobian::Step;
 use crate::effects::{AddedEffect, Parameter, Search};
+use nalgebra::DVector;
 
 /// Values of everything that is free: the effects' parameters, and the nuisances with a prior.
 #[derive(Debug, Clone)]
@@ -227,6 +228,19 @@ impl Estimate {
             moved.set_load(run, self.load(run) + sigmas);
         }
         moved
+    }
+
+    /// The step that leads here from another estimate: less than was asked for where a range ends.
+    #[must_use]
+    pub fn step_from(&self, from: &Self, parameters: &[Shared]) -> Step {
+        let shared = parameters
+            .iter()
+            .map(|&shared| (self.get(shared) - from.get(shared)) / self.scale(shared));
+        let loads = (0..self.nuisances.len()).map(|run| self.load(run) - from.load(run));
+        Step {
+            shared: DVector::from_iterator(parameters.len(), shared),
+            loads: loads.collect(),
+        }
     }
 
     /// Load error of a run, in prior sigmas.

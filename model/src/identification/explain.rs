@@ -14,7 +14,7 @@ use super::experiment::Experiment;
 use super::fit::{Fit, evaluate, fit, refine, with_last};
 use super::holdout::{HeldOut, held_out};
 use super::regime::Regime;
-use super::subset::posterior::Weighed;
+use super::subset::posterior::{Weighed, key_of};
 use super::subset::single::{confidences, try_effects};
 use super::subset::{Found, Options, search};
 use super::unseen::{Unseen, unseen};
@@ -248,7 +248,7 @@ fn steps(experiment: &Experiment, model: &Model, before: &Fit, found: &Found) ->
         let last = count + 1 == found.order.len();
         let fit = match last {
             true => found.fit.clone(),
-            false => with_some(experiment, model, &found.fit, &found.order[..=count]),
+            false => with_some(experiment, model, found, &found.order[..=count]),
         };
         let (error_before, held_out_before) = match steps.last() {
             Some(step) => (step.error_after, step.held_out_after),
@@ -283,14 +283,17 @@ fn steps(experiment: &Experiment, model: &Model, before: &Fit, found: &Found) ->
 }
 
 /// The fit with some of the effects that were added or changed, by their indices.
-fn with_some(experiment: &Experiment, model: &Model, fit: &Fit, effects: &[usize]) -> Fit {
-    let mut estimate = fit.estimate.clone();
+fn with_some(experiment: &Experiment, model: &Model, found: &Found, effects: &[usize]) -> Fit {
+    let mut estimate = found.fit.estimate.clone();
     for effect in (0..estimate.effects.len()).rev() {
         if !estimate.is_unchanged(effect) && !effects.contains(&effect) {
             estimate = estimate.without(effect);
         }
     }
-    refine(experiment, model, estimate)
+    match found.refitted.fit_of(&key_of(&estimate)) {
+        Some(fit) => fit.clone(),
+        None => refine(experiment, model, estimate),
+    }
 }
 
 /// One effect of a fit weighed beside all others.

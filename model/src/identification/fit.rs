@@ -1,17 +1,14 @@
-//! Bounded Levenberg-Marquardt over effects, skew and each run's nuisances, output error throughout.
+//! Fits of effects, clocks and each run's nuisances, output error throughout.
 //!
-//! The general crates have no bounds and know nothing of the arrow shape of the normal equations (see
-//! [`super::jacobian`]), which makes a fit of 45 parameters cost as much as one of five. Simulated trajectories are
-//! compared, never one-step predictions: those feed the measured pressure back and hide leakage and friction.
+//! Simulated trajectories are compared, never one-step predictions: those feed the measured pressure back and hide
+//! leakage and friction.
 
-use super::estimate::{Estimate, Shared};
+use super::descent::{Descent, Moves, descend};
+use super::estimate::Estimate;
 use super::experiment::Experiment;
-use super::jacobian::{
-    Jacobian, SlowColumns, huber, huber_residuals, load_steps, residuals, square_sum,
-};
+use super::jacobian::{huber, load_steps, residuals, square_sum};
 use super::residual::Weights;
 use super::synchronise::synchronised;
-use crate::effects::Search;
 use crate::model::Model;
 
 /// Coarse weights of the channels (pump pressure, cylinder pressure, flow, angle): ringing pressures make valleys
@@ -25,17 +22,6 @@ const FINE_ITERATIONS: usize = 12;
 /// Iterations from a start that is all but there.
 const LAST_ITERATIONS: usize = 2;
 
-/// Iterations after which the columns of skew and loads, which hardly change, are computed anew.
-const SLOW_EVERY: usize = 4;
-
-/// Dampings tried for one step, the first of a descent, and how much larger each is than the one before.
-const TRIES: usize = 4;
-const FIRST_DAMPING: f64 = 1e-3;
-const DAMPED_MORE: f64 = 30.0;
-
-/// Relative fall of the cost that is still worth an iteration.
-const WORTHWHILE: f64 = 1e-5;
-
 /// A fitted model.
 #[derive(Debug, Clone)]
 pub struct Fit {
@@ -47,17 +33,6 @@ pub struct Fit {
     pub residuals: Vec<Vec<f64>>,
     /// Sum of Huber's losses plus the cost of the priors.
     pub cost: f64,
-}
-
-/// Where a descent came to.
-#[derive(Debug, Clone)]
-pub struct Descent {
-    /// The values found.
-    pub estimate: Estimate,
-    /// Sum of Huber's losses plus the cost of the priors.
-    pub cost: f64,
-    /// What the cost fell by in the last iteration.
-    pub falling: f64,
 }
 
 /// Sums of squares of whitened residuals and numbers of samples, by channel.
@@ -268,104 +243,6 @@ pub fn fit_loads(
         }
     }
     estimate
-}
-
-/// What a descent moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Moves {
-    All,
-    AllButJumps,
-}
-
-fn descend(
-    experiment: &Experiment,
-    model: &Model,
-    weights: &Weights,
-    start: Estimate,
-    moves: Moves,
-    iterations: usize,
-) -> Descent {
-    let mut point = Point::new(experiment, model, weights, start);
-    let mut damping = FIRST_DAMPING;
-    let mut slow = None;
-    let mut falling = 0.0;
-    for iteration in 0..iterations {
-        if iteration % SLOW_EVERY == 0 {
-            slow = None;
-        }
-        let columns = slow.take().unwrap_or_else(|| {
-            SlowColumns::new(
-                experiment,
-                model,
-                weights,
-                &point.estimate,
-                &point.residuals,
-            )
-        });
-        let jacobian = Jacobian::with_slow_columns(
-            experiment,
-            model,
-            weights,
-            &point.estimate,
-            &point.residuals,
-            &columns,
-        );
-        slow = Some(columns);
-        let before = point.cost;
-        let better = |held: &dyn Fn(Shared) -> bool, damping: f64| {
-            let step = jacobian.step(&point.estimate, damping, held)?;
-            let moved = point.estimate.moved(&jacobian.shared, &step);
-            let trial = Point::new(experiment, model, weights, moved);
-            (trial.cost < point.cost).then_some((trial, damping))
-        };
-        // The slope of what jumps says little of where a step of it leads, and spoils that of all the others.
-        let jumps = |shared| point.estimate.search(shared) == Search::Jumps;
-        let jumping = jacobian.shared.iter().any(|&shared| jumps(shared));
-        let all = || dampings(damping).find_map(|damping| better(&|_| false, damping));
-        let all_but_jumps = || dampings(FIRST_DAMPING).find_map(|damping| better(&jumps, damping));
-        let found = match moves {
-            _ if !jumping => all(),
-            Moves::All => all().or_else(all_but_jumps),
-            Moves::AllButJumps => all_but_jumps(),
-        };
-        if let Some((trial, damped)) = found {
-            point = trial;
-            damping = (damped * 0.1).max(1e-9);
-        }
-        falling = before - point.cost;
-        if falling <= WORTHWHILE * before {
-            break;
-        }
-    }
-    Descent {
-        estimate: point.estimate,
-        cost: point.cost,
-        falling,
-    }
-}
-
-/// Dampings to try one after the other.
-fn dampings(first: f64) -> impl Iterator<Item = f64> {
-    std::iter::successors(Some(first), |&damping| Some(DAMPED_MORE * damping)).take(TRIES)
-}
-
-/// An estimate with what it leaves.
-struct Point {
-    estimate: Estimate,
-    residuals: Vec<Vec<f64>>,
-    cost: f64,
-}
-
-impl Point {
-    fn new(experiment: &Experiment, model: &Model, weights: &Weights, estimate: Estimate) -> Self {
-        let residuals = huber_residuals(experiment, model, weights, &estimate);
-        let cost = square_sum(&residuals) + estimate.prior_cost();
-        Self {
-            estimate,
-            residuals,
-            cost,
-        }
-    }
 }
 
 /// The same fit with one effect moved to the end of the list.

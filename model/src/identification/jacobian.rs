@@ -398,18 +398,45 @@ impl Jacobian {
             };
             hold(&mut matrix, &mut right, leaving);
         };
-        let loads = self
-            .runs
-            .iter()
-            .map(|run| {
-                let mut left = run.residual.clone();
-                for (column, &step) in run.shared.iter().zip(shared.iter()) {
-                    subtract(&mut left, step, column);
-                }
-                run.load_step(&left)
-            })
+        let runs = self.runs.iter();
+        let loads = runs
+            .map(|run| run.load_step(&run.left(&shared, 0.0)))
             .collect();
         Some(Step { shared, loads })
+    }
+}
+
+impl Jacobian {
+    /// Sum of squares of the residuals that a step leaves, to first order.
+    #[must_use]
+    pub fn promised(&self, step: &Step) -> f64 {
+        let runs = self.runs.iter().zip(&step.loads);
+        runs.map(|(run, &load)| {
+            let left = run.left(&step.shared, load);
+            dot(&left, &left)
+        })
+        .sum()
+    }
+
+    /// Goes on to where a step led, with the sensitivities corrected so that they would have led there (Broyden 1965).
+    pub fn correct(&mut self, step: &Step, residuals: &[Vec<f64>], estimate: &Estimate) {
+        for (index, run) in self.runs.iter_mut().enumerate() {
+            let load = run.load.as_ref().map_or(0.0, |_| step.loads[index]);
+            let square = step.shared.norm_squared() + load * load;
+            if square > 0.0 {
+                // What the step left is more than was promised by so much.
+                let mut missed = residuals[index].clone();
+                subtract(&mut missed, 1.0, &run.left(&step.shared, load));
+                for (column, &own) in run.shared.iter_mut().zip(step.shared.iter()) {
+                    subtract(column, own / square, &missed);
+                }
+                if let Some(column) = &mut run.load {
+                    subtract(column, load / square, &missed);
+                }
+            }
+            run.residual.clone_from(&residuals[index]);
+            run.load_value = estimate.load(index);
+        }
     }
 }
 
@@ -428,6 +455,18 @@ impl RunJacobian {
         let load = self.load.as_deref()?;
         let pull = dot(load, residual) - self.load_value;
         Some((load, dot(load, load) + 1.0, pull))
+    }
+
+    /// Residuals that steps of the shared parameters and of the load error leave, to first order.
+    fn left(&self, shared: &DVector<f64>, load: f64) -> Vec<f64> {
+        let mut left = self.residual.clone();
+        for (column, &step) in self.shared.iter().zip(shared.iter()) {
+            subtract(&mut left, step, column);
+        }
+        if let Some(column) = &self.load {
+            subtract(&mut left, load, column);
+        }
+        left
     }
 
     /// Step of the load error, in prior sigmas, that fits `residual` best.

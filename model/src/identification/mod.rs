@@ -8,6 +8,7 @@ mod central;
 pub mod clocks;
 mod condense;
 pub mod conditioning;
+pub mod descent;
 pub mod design;
 pub mod estimate;
 pub mod evidence;

@@ -35,6 +35,7 @@ use super::explain::{Progress, showing};
 use super::fit::{Fit, evaluate, evaluate_weighted};
 use super::holdout::{HeldOut, held_out};
 use super::scans::Scans;
+use crate::effects::Effect;
 use crate::model::Model;
 use coarse::Coarse;
 use dictionary::{Around, Dictionary};
@@ -181,6 +182,10 @@ impl Search<'_> {
             .map(|index| (index, rivals(&dictionary, index)))
             .collect();
         self.order = in_order(&dictionary);
+        // Beside an effect that was found already, a plain dictionary goes on as long as it leads anywhere.
+        if key(&present).len() > 0 && self.goes_on() {
+            return true;
+        }
         if self.refitted.least_error() > EXPLAINED {
             let dictionary = self.around(&coarse, |_| true).thorough(dictionary);
             self.tries(&coarse, &dictionary, MORE);
@@ -196,8 +201,7 @@ impl Search<'_> {
             && self.refitted.least_error() > EXPLAINED
         {
             let coarse = Coarse::new(self.experiment, self.model, &in_step);
-            let around = self.around(&coarse, |_| true);
-            let dictionary = around.thorough(around.dictionary());
+            let dictionary = self.around(&coarse, is_late).dictionary();
             self.tries(&coarse, &dictionary, MORE);
         }
     }
@@ -216,7 +220,7 @@ impl Search<'_> {
             let without = estimate.without(index);
             let center = evaluate_weighted(self.experiment, self.model, without, weights);
             let coarse = Coarse::new(self.experiment, self.model, &center);
-            let around = self.around(&coarse, |id| rivals.contains(&id));
+            let around = self.around(&coarse, |effect| rivals.contains(&effect.id()));
             let dictionary = match center.error() < FAINT {
                 true => around.thorough(around.dictionary()),
                 false => around.dictionary(),
@@ -227,10 +231,14 @@ impl Search<'_> {
     }
 
     /// What a dictionary is made of around a fit, of the effects whose ids are wanted.
-    fn around<'a>(&'a self, coarse: &'a Coarse, wanted: impl Fn(&str) -> bool) -> Around<'a> {
+    fn around<'a>(
+        &'a self,
+        coarse: &'a Coarse,
+        wanted: impl Fn(&dyn Effect) -> bool,
+    ) -> Around<'a> {
         let (experiment, model) = (self.experiment, self.model);
         let mut effects = showing(experiment, model, &coarse.present.estimate);
-        effects.retain(|effect| wanted(effect.id()));
+        effects.retain(|effect| wanted(*effect));
         Around {
             coarse,
             effects,
@@ -289,6 +297,11 @@ impl Search<'_> {
             unfinished,
         }
     }
+}
+
+/// Whether an effect, in some form, delays what a channel shows.
+fn is_late(effect: &dyn Effect) -> bool {
+    effect.parameters()[0].unit == "s"
 }
 
 /// A fit with its clocks in step, if they are off: what is missing may be late, and while clocks stand in for that no

@@ -80,6 +80,11 @@ impl Refitted {
         self.fits.contains_key(key)
     }
 
+    /// The fit of a set, if it was fitted.
+    pub fn fit_of(&self, key: &Key) -> Option<&Fit> {
+        self.fits.get(key)
+    }
+
     /// The least error that a set leaves.
     pub fn least_error(&self) -> f64 {
         let errors = self.fits.values().map(Fit::error);

@@ -4,10 +4,11 @@ use rayon::prelude::*;
 
 use super::super::candidate::{jacobian_by, slow_columns};
 use super::super::clocks::{Clocks, OFFSET_PRIOR_S};
+use super::super::descent::Descent;
 use super::super::estimate::Estimate;
 use super::super::experiment::Experiment;
 use super::super::explain::Progress;
-use super::super::fit::{Descent, Fit, evaluate_weighted, refine, sketch, with_last};
+use super::super::fit::{Fit, evaluate_weighted, refine, sketch, with_last};
 use super::super::jacobian::{huber_residuals, square_sum};
 use super::super::needle::threaded;
 use super::Options;
