@@ -94,6 +94,7 @@ impl Lab {
             name: "lab".to_owned(),
             description: String::new(),
             sample_rate_hz: SAMPLE_RATE_HZ,
+            synchronous: false,
             noise: Noise {
                 lift_current_a: current_sigma_a,
                 lower_current_a: current_sigma_a,

@@ -29,6 +29,7 @@ pub fn campaign(rig: &Model, random: &mut Pcg64) -> Campaign {
         name: "simulated".to_owned(),
         description: String::new(),
         sample_rate_hz: SAMPLE_RATE_HZ,
+        synchronous: false,
         noise: Noise {
             lift_current_a: noise,
             lower_current_a: noise,

@@ -79,6 +79,7 @@ pub fn campaign(case: &Case) -> Campaign {
         name: format!("drawn-{}", case.seed),
         description: "Hitch test bench campaign".to_owned(),
         sample_rate_hz: SAMPLE_RATE_HZ,
+        synchronous: false,
         noise: Noise {
             lift_current_a: Some(current_sigma_a),
             lower_current_a: Some(current_sigma_a),

@@ -33,11 +33,13 @@ pub fn load(dir: &Path) -> Result<Campaign, CampaignError> {
         "name",
         "description",
         "sample_rate_hz",
+        "clocks",
         "noise",
         "can",
         "run",
     ])?;
     let noise = noise(&top)?;
+    let synchronous = synchronous(&top)?;
     let declared_rate_hz = top.number("sample_rate_hz", SAMPLE_RATE_HZ)?;
     let name = top
         .text("name")?
@@ -49,9 +51,23 @@ pub fn load(dir: &Path) -> Result<Campaign, CampaignError> {
         name,
         description,
         sample_rate_hz,
+        synchronous,
         noise,
         runs,
     })
+}
+
+/// Whether the campaign says that one clock stamps all channels.
+fn synchronous(top: &TomlTable) -> Result<bool, CampaignError> {
+    match top.text("clocks")? {
+        None | Some("independent") => Ok(false),
+        Some("synchronous") => Ok(true),
+        Some(other) => {
+            let what = format!("clocks {} are not known", quote(other));
+            let mend = "they are \"synchronous\" or \"independent\"";
+            Err(top.error_at("clocks", what, mend))
+        }
+    }
 }
 
 fn manifest_path(dir: &Path) -> Result<PathBuf, CampaignError> {

@@ -35,6 +35,8 @@ pub struct Campaign {
     pub description: String,
     /// Sample rate, Hz; taken from the first run's time column if the campaign does not say.
     pub sample_rate_hz: f64,
+    /// Whether one clock stamps the currents and all channels: no channel is late because of the logger.
+    pub synchronous: bool,
     /// Noise of the instruments.
     pub noise: Noise,
     /// The runs, in the order of `campaign.toml`; at least one.

@@ -1,6 +1,6 @@
 //! What a fit may change, and its scaling.
 
-use super::clocks::{Clocks, FARTHEST_S, OFFSET_PRIOR_S};
+use super::clocks::{Clocks, OFFSET_PRIOR_S};
 use super::experiment::{Experiment, LOAD_PRIOR, Nuisance};
 use super::jacobian::Step;
 use crate::effects::{AddedEffect, Parameter, Search};
@@ -17,6 +17,8 @@ pub struct Estimate {
     pub adopted: Vec<Adopted>,
     /// What each run may be off by.
     pub nuisances: Vec<Nuisance>,
+    /// How far a channel may be stamped off the currents, s.
+    pub clocks_within_s: f64,
 }
 
 /// A nuisance is never believed to be further off than this many prior sigmas.
@@ -79,6 +81,7 @@ impl Estimate {
             clocks: Clocks::default(),
             adopted: Vec::new(),
             nuisances: vec![Nuisance::default(); experiment.runs.len()],
+            clocks_within_s: experiment.clocks_within_s,
         }
     }
 
@@ -196,7 +199,7 @@ impl Estimate {
                 let range = self.parameter(effect, parameter);
                 (range.low, range.high)
             }
-            Shared::Offset(_) => (-FARTHEST_S, FARTHEST_S),
+            Shared::Offset(_) => (-self.clocks_within_s, self.clocks_within_s),
         }
     }
 

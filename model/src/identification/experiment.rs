@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::clocks::Clocks;
+use super::clocks::{Clocks, FARTHEST_S};
 use super::condense::Stretches;
 use super::conditioning::{Drive, jumps_within_s};
 use super::estimate::Estimate;
@@ -81,6 +81,8 @@ pub struct Experiment {
     pub jumps_within_s: f64,
     /// Variance of the mean of the currents' noise over half a second, in that of white noise: one and up.
     pub current_persistence: f64,
+    /// How far a channel may be stamped off the currents, s; nothing where one clock stamps all.
+    pub clocks_within_s: f64,
     /// Whether the model's pressures ring, so that phase and size of the ringing are to be borne with.
     pub ringing: bool,
 }
@@ -108,6 +110,10 @@ impl Experiment {
             current_noise: sigma,
             jumps_within_s,
             current_persistence: persistence,
+            clocks_within_s: match campaign.synchronous {
+                true => 0.0,
+                false => FARTHEST_S,
+            },
             ringing: model.constants().dynamics == Dynamics::Dynamic,
         }
     }

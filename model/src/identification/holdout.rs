@@ -62,6 +62,7 @@ pub fn held_out(experiment: &Experiment, model: &Model, fit: &Fit) -> HeldOut {
                 adopted: trained.adopted,
                 clocks: trained.clocks,
                 nuisances: test_start.nuisances,
+                clocks_within_s: test_start.clocks_within_s,
             };
             let loaded = fit_loads(&test, model, &weights, start);
             let tested = evaluate_weighted(&test, model, loaded, weights);

@@ -16,14 +16,15 @@ use crate::model::Model;
 /// From one offset to the next, s: a tenth of the fastest period that a sample of 20 ms still shows.
 const STEP_S: f64 = 0.004;
 
-/// The estimate with the clocks that fit best as everything else is; on a campaign that does not ring as it is.
+/// The estimate with the clocks that fit best as everything else is; as it is where nothing rings or the clocks are
+/// known.
 pub(super) fn synchronised(
     experiment: &Experiment,
     model: &Model,
     weights: &Weights,
     estimate: Estimate,
 ) -> Estimate {
-    if !experiment.ringing {
+    if !experiment.ringing || experiment.clocks_within_s == 0.0 {
         return estimate;
     }
     let steps = (FARTHEST_S / STEP_S).round() as i32;

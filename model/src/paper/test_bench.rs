@@ -102,6 +102,7 @@ pub fn campaign() -> Campaign {
         name: "paper-flow-test".to_owned(),
         description: "Flow test of both valves, from Tables 2 and 5".to_owned(),
         sample_rate_hz: SAMPLE_RATE_HZ,
+        synchronous: false,
         noise,
         runs,
     }

@@ -158,6 +158,7 @@ impl<'a> Bench<'a> {
             name: manoeuvre.name.to_owned(),
             description: String::new(),
             sample_rate_hz: self.rate_hz,
+            synchronous: self.experiment.clocks_within_s == 0.0,
             noise: Noise {
                 lift_current_a: Some(sigma.lift_a),
                 lower_current_a: Some(sigma.lower_a),

@@ -171,7 +171,12 @@ impl Screen<'_> {
         if let Some(grid) = valleys(experiment, hint.effect)
             && (promising || (astray && !grid.hinted))
         {
-            let look = || scan(experiment, model, present, &hint, grid);
+            // Condensed runs do not show when a spool jumps; drafts show how a pressure rings.
+            let runs = match experiment.ringing {
+                true => self.experiment,
+                false => *experiment,
+            };
+            let look = || scan(runs, model, present, &hint, grid);
             let found = self.scans.of(hint.effect, present.cost, look);
             ends.extend(self.ends(found, false));
         }

@@ -1,0 +1,43 @@
+//! A channel that is late by a sample: with clocks of their own it may be the logger's, with one clock for all it is the
+//! sensor's.
+
+use std::path::Path;
+
+use hitch_model::Model;
+use hitch_model::campaign::{Campaign, Channel};
+use hitch_model::identification::experiment::Experiment;
+use hitch_model::identification::explain::{Explanation, Verdict, explain};
+
+/// The clean campaign with its angle a sample late, explained.
+fn explained(synchronous: bool) -> Explanation {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/clean-steady");
+    let mut campaign = Campaign::load(&folder).expect("a campaign");
+    campaign.synchronous = synchronous;
+    for run in &mut campaign.runs {
+        if let Some(angle_deg) = &mut run.channels[Channel::RockerAngle.index()] {
+            angle_deg.pop();
+            angle_deg.insert(0, angle_deg[0]);
+        }
+    }
+    let model = Model::nominal();
+    explain(&Experiment::new(&campaign, &model), &model, &|_| ())
+}
+
+#[test]
+fn clocks_of_their_own_may_be_late() {
+    let explanation = explained(false);
+    assert_eq!(explanation.verdict, Verdict::NothingMissing);
+    let late_s = explanation.after.estimate.clocks.offsets_s[Channel::RockerAngle.index()];
+    assert!((late_s - 0.02).abs() < 0.002, "{late_s}");
+}
+
+#[test]
+fn behind_one_clock_the_sensor_is_late() {
+    let explanation = explained(true);
+    assert_eq!(explanation.after.estimate.clocks.offsets_s, [0.0; 4]);
+    let [step] = explanation.steps.as_slice() else {
+        panic!("{:?}", explanation.steps);
+    };
+    assert_eq!(step.effect.id(), "angle-sensor-lag");
+    assert!((step.values[0] - 0.02).abs() < 0.002, "{:?}", step.values);
+}
