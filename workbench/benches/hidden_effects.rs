@@ -123,10 +123,30 @@ fn show(
     println!("\n## {family:?} rig, {plan:?} plan\n");
     println!("{}\n", table(methods, answers));
     for (method, answers) in methods.iter().zip(answers) {
+        show_reliability(method.as_ref(), answers);
         if method.abilities().unknown {
             show_misses(arguments, answers, family, plan);
         }
     }
+}
+
+/// How often what a method states with some probability is so.
+fn show_reliability(method: &dyn Method, answers: &[Graded]) {
+    let reliability = Tally(answers.iter().collect()).reliability();
+    if reliability.is_empty() {
+        return;
+    }
+    println!(
+        "Effects that {} names, by the probability that it states:\n",
+        method.name()
+    );
+    let mut table = Table::new();
+    table.load_preset(presets::ASCII_MARKDOWN);
+    table.set_header(["stated, mean", "there"]);
+    for (stated, there) in reliability {
+        table.add_row([format!("{stated:.2}"), there.to_string()]);
+    }
+    println!("{table}\n");
 }
 
 fn table(methods: &[Box<dyn Method>], answers: &[Vec<Graded>]) -> Table {

@@ -14,6 +14,8 @@ pub struct Answer {
     pub unknown: bool,
     /// 95 % interval of the size of each effect that it names.
     pub intervals: Vec<(String, f64, f64)>,
+    /// Probability that it states for each effect that it names.
+    pub confidences: Vec<(String, f64)>,
     /// Error on runs that it was not fitted to, before and after, in sigmas.
     pub held_out: Option<(f64, f64)>,
 }

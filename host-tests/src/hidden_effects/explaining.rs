@@ -44,6 +44,10 @@ impl Method for Explaining {
                     Some((id(step.effect), low, high))
                 })
                 .collect(),
+            confidences: steps
+                .iter()
+                .map(|step| (id(step.effect), step.confidence))
+                .collect(),
             // What it leaves alone is no better on other runs than before.
             held_out: Some(steps.first().zip(steps.last()).map_or_else(
                 || (explanation.before.error(), explanation.before.error()),

@@ -123,6 +123,13 @@ impl Graded {
             .collect()
     }
 
+    /// Probabilities that were stated for effects, and whether each of those is there.
+    pub fn stated(&self) -> impl Iterator<Item = (f64, bool)> {
+        let truth = self.truth();
+        let stated = self.answer.confidences.iter();
+        stated.map(move |(id, confidence)| (*confidence, truth.contains(id.as_str())))
+    }
+
     /// True sizes with the intervals stated for them.
     fn judged_intervals(&self) -> impl Iterator<Item = (f64, &(String, f64, f64))> {
         let case = &self.posed.case;

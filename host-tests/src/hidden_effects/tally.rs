@@ -109,6 +109,21 @@ impl<'a> Tally<'a> {
         Some((median(|e| e.0)?, median(|e| e.1)?))
     }
 
+    /// Stated probabilities in ten bins of equal width: their mean, and how many of the effects are there. Bins without
+    /// any are left out.
+    #[must_use]
+    pub fn reliability(&self) -> Vec<(f64, Rate)> {
+        let stated: Vec<(f64, bool)> = self.0.iter().flat_map(|graded| graded.stated()).collect();
+        let bin = |confidence: f64| ((10.0 * confidence) as usize).min(9);
+        let bins = (0..10).filter_map(|index| {
+            let own = stated.iter().filter(|(stated, _)| bin(*stated) == index);
+            let rate = Rate::count(own.clone().map(|(_, there)| *there));
+            let mean = own.map(|(stated, _)| stated).sum::<f64>() / rate.of as f64;
+            (rate.of > 0).then_some((mean, rate))
+        });
+        bins.collect()
+    }
+
     /// A quantile of the times, s.
     #[must_use]
     pub fn seconds(&self, share: f64) -> Option<f64> {

@@ -73,6 +73,8 @@ pub struct Step {
     pub detectability: f64,
     /// Effects that would explain the campaign as well in its place.
     pub indistinguishable: Vec<Alternative>,
+    /// Other forms of it that would explain the campaign as well; `None` is the usual one.
+    pub other_forms: Vec<Option<&'static str>>,
     /// Values of its parameters in the final model.
     pub values: Vec<f64>,
     /// Their 95 % intervals.
@@ -272,6 +274,7 @@ fn steps(experiment: &Experiment, model: &Model, before: &Fit, found: &Found) ->
             held_out_after,
             confidence: with_it.map(|set| set.probability).sum(),
             detectability: candidate.detectability,
+            other_forms: other_forms(&found.fit, id, &weighed),
             indistinguishable: alternatives(experiment, model, &found.fit, effect, &weighed),
             values: candidate.values().to_vec(),
             intervals: candidate.intervals,
@@ -303,6 +306,14 @@ fn beside_others(experiment: &Experiment, model: &Model, fit: &Fit, effect: usiz
     let without = whole.estimate.without(whole.estimate.effects.len() - 1);
     let base = evaluate(experiment, model, without);
     weigh(experiment, model, &base, named, whole)
+}
+
+/// Forms of an effect of a fit that explain the campaign as well in the place of its own.
+fn other_forms(fit: &Fit, id: &str, weighed: &[Weighed]) -> Vec<Option<&'static str>> {
+    let own = key_of(&fit.estimate);
+    let near = weighed.iter().filter(|set| set.likelier > -TOLD_APART);
+    near.filter_map(|set| own.form_in_place(set.key, id))
+        .collect()
 }
 
 /// Effects that explain the campaign as well in the place of one of a fit.

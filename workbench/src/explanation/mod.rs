@@ -77,6 +77,10 @@ pub struct Step {
     pub effect: &'static str,
     /// Which of its equations, if it has several and this is not the usual one.
     pub form: Option<&'static str>,
+    /// Whether another of its equations would explain the campaign as well.
+    pub form_undetermined: bool,
+    /// Those; `null` is the usual one.
+    pub other_forms: Vec<Option<&'static str>>,
     /// The size that the model had before, in the unit of the first parameter; `None` if the effect is new.
     pub changed_from: Option<f64>,
     /// Error before it was added, in sigma.

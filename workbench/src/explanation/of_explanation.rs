@@ -44,6 +44,8 @@ fn step(step: &explain::Step) -> Step {
     Step {
         effect: step.effect.id(),
         form: step.effect.form(),
+        form_undetermined: !step.other_forms.is_empty(),
+        other_forms: step.other_forms.clone(),
         changed_from: step.changed_from,
         error_before: step.error_before,
         error_after: step.error_after,

@@ -255,6 +255,15 @@ impl fmt::Display for Step {
             self.confidence,
             self.detectability
         )?;
+        if self.form_undetermined {
+            let forms = self.other_forms.iter();
+            let forms: Vec<&str> = forms.map(|form| form.unwrap_or("usual")).collect();
+            writeln!(
+                f,
+                "     form undetermined: {} explains as well",
+                forms.join(", ")
+            )?;
+        }
         if !self.alternatives.is_empty() {
             let others: Vec<String> = self.alternatives.iter().map(ToString::to_string).collect();
             writeln!(f, "     cannot be told from: {}", others.join(", "))?;

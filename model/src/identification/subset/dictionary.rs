@@ -9,16 +9,20 @@ use super::super::explain::possible;
 use super::super::frame::Frame;
 use super::super::jacobian::{Jacobian, difference, huber, subtract};
 use super::super::scans::Scans;
+use super::super::shapes::scaled;
 use super::best::Subset;
 use super::coarse::Coarse;
 use super::ends::FARTHEST;
 use super::entry::{Entry, Kind};
 use super::gram::Gram;
 use super::screen::Screen;
-use crate::effects::{AddedEffect, Effect};
+use crate::effects::{AddedEffect, Effect, Search};
 
 /// Sizes to which an adopted effect is changed: shares of its own and of its typical size that are added.
 const CHANGES: [(f64, f64); 4] = [(-0.5, 0.0), (-1.0, 0.0), (0.5, 0.25), (1.5, 1.0)];
+
+/// Sizes of a form that has another beside it, in typical ones.
+const BESIDE: [f64; 3] = [0.1, 0.3, 1.0];
 
 /// Largest share of a secant to a changed size.
 const CHANGED: f64 = 1.5;
@@ -29,6 +33,8 @@ pub(in super::super) struct Dictionary {
     pub entries: Vec<Entry>,
     /// Their products, all nuisances projected out, from a model without any of them.
     pub gram: Gram,
+    /// Whether it has what fine searches find of effects whose cost has many valleys.
+    pub is_thorough: bool,
     /// Residuals without any of them.
     without: Vec<Vec<f64>>,
     /// What adapts.
@@ -48,10 +54,20 @@ impl Dictionary {
         Self {
             entries,
             gram,
+            is_thorough: false,
             without,
             jacobian,
             estimate: estimate.clone(),
         }
+    }
+
+    /// Whether a column is at a size that a fit can start from: what jumps or is met at a place does so where a fine
+    /// search has found it.
+    pub fn is_start(&self, column: usize) -> bool {
+        let entry = &self.entries[column];
+        let search = entry.added.effect.search();
+        let is_sought = matches!(search, Search::Jumps | Search::Places);
+        self.is_thorough || entry.kind != Kind::New || !is_sought
     }
 
     /// The residuals that a subset leaves to first order, once all nuisances have adapted.
@@ -122,7 +138,10 @@ impl Around<'_> {
         let entries = self
             .screen(&drafted, &jacobian, &here)
             .fine_columns(entries);
-        Dictionary::new(entries, without, jacobian, &seen.estimate)
+        Dictionary {
+            is_thorough: true,
+            ..Dictionary::new(entries, without, jacobian, &seen.estimate)
+        }
     }
 
     fn screen<'s>(
@@ -173,10 +192,11 @@ impl Around<'_> {
                 form.id() == entry.id() && form.form() != entry.added.effect.form()
             };
             let forms = possible(self.coarse.model).filter(other);
-            forms.map(move |form| (index, entry, form))
+            let forms = forms.flat_map(|form| in_form(&entry.added, form));
+            forms.map(move |added| (index, entry, added))
         });
-        let column = |(index, entry, form): (usize, &Entry, &'static dyn Effect)| {
-            let added = entry.added.in_form(form);
+        let column = |(index, entry, added): (usize, &Entry, AddedEffect)| {
+            let form = added.effect;
             let mut other = estimate.clone();
             other.effects[index] = added.clone();
             let mut change = difference(screen.here, &screen.residuals(&other));
@@ -214,6 +234,18 @@ impl Around<'_> {
             }
         };
         sizes.map(column).collect()
+    }
+}
+
+/// An effect in another form. Where the size of that is no parameter of its own form, it has all of that beside it, and a
+/// little is tried as well: from much of it no share of the whole leads back.
+fn in_form(added: &AddedEffect, form: &'static dyn Effect) -> Vec<AddedEffect> {
+    let other = added.in_form(form);
+    let size = &form.parameters()[0];
+    let mut own = added.effect.parameters().iter();
+    match own.any(|parameter| parameter.name == size.name) {
+        true => vec![other],
+        false => BESIDE.map(|share| scaled(&other, share)).to_vec(),
     }
 }
 

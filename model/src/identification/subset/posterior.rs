@@ -33,6 +33,19 @@ impl Key {
         self.0.iter().map(|(id, _)| *id)
     }
 
+    /// The members: their ids and forms.
+    pub fn members(&self) -> impl Iterator<Item = (&'static str, Option<&'static str>)> {
+        self.0.iter().copied()
+    }
+
+    /// The form in which a member differs from the one of the same id in another key that has all other members alike.
+    pub fn form_in_place(&self, other: &Self, id: &str) -> Option<Option<&'static str>> {
+        let others = |key: &Self| -> Vec<_> { key.members().filter(|own| own.0 != id).collect() };
+        let form = |key: &Self| key.members().find(|own| own.0 == id).map(|own| own.1);
+        let (own, its) = (form(self)?, form(other)?);
+        (own != its && others(self) == others(other)).then_some(its)
+    }
+
     /// The names of the members.
     pub fn name(&self) -> String {
         let names = self.0.iter().map(|(id, form)| match form {

@@ -97,7 +97,8 @@ pub(super) fn starts(
         if promise > near || is_more(subset, leader) || known >= most {
             continue;
         }
-        if !refitted.contains(&key) {
+        let starts = |&column: &usize| dictionary.is_start(column);
+        if !refitted.contains(&key) && subset.columns.iter().all(starts) {
             estimates.push(start(dictionary, present, model, subset));
         }
         taken.push(key);
