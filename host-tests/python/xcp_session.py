@@ -16,7 +16,7 @@ TOOL = 0xF9
 EXTENDED = 1 << 31
 WORKING, REFERENCE = 0, 1
 FOR_TOOL = 2
-A2L_TYPES = {"UBYTE": "U8", "UWORD": "U16", "SWORD": "I16", "ULONG": "U32", "SLONG": "I32"}
+A2L_TYPES = {"UBYTE": "U8", "UWORD": "U16", "SWORD": "I16", "ULONG": "U32", "SLONG": "I32", "FLOAT32_IEEE": "F32"}
 
 
 class Description:
@@ -169,6 +169,9 @@ def check_measuring(master, samples, description):
     # The tool packs values as they fit.
     column = [name for name, _ in samples.daq_lists[0].headers].index("rocker_angle")
     assert all(abs(row[2][column] / 1e3 - angle_deg) < 0.5 for row in fast), fast[-1]
+    column = [name for name, _ in samples.daq_lists[1].headers].index("angle_noise")
+    noises_deg = [row[2][column] for row in slow]
+    assert all(0 <= noise_deg < 0.5 for noise_deg in noises_deg), noises_deg
     print(f"measured: {len(fast)} and {len(slow)} rows, none missing")
 
 
@@ -195,7 +198,7 @@ def main():
             event_num=2,
             stim=False,
             enable_timestamps=False,
-            measurements=measured("supply", "cylinder_pressure"),
+            measurements=measured("supply", "cylinder_pressure", "angle_noise"),
             priority=0,
             prescaler=1,
         ),

@@ -23,8 +23,9 @@ fn assert_as_good(run: &LoopRun, right: &LoopRun) {
         "{summary:?}, not {right:?}"
     );
     assert_eq!(summary.switched_on_after, 0, "{summary:?}");
+    // A spool passes a threshold that is 0.25 A higher some 10 ms later: 0.024 of the shortest time of the median lift.
     assert!(
-        summary.ratio_median <= right.ratio_median + 0.02,
+        summary.ratio_median <= right.ratio_median + 0.025,
         "{summary:?}, not {right:?}"
     );
     assert!(

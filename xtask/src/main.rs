@@ -34,9 +34,9 @@ usage: cargo xtask <task> [--arm rustup|debian]
   image   build the image for the emulator alone; the last line is its path
   coverage run the safety envelope's tests; each piece of its code has to be reached
   mutants [--again]
-          change the safety envelope, storage and remote control in every way that cargo-mutants knows; their tests
-          have to notice. Only if their code is not the one for which firmware/mutants.txt says that they do, or with
-          --again
+          change the safety envelope, position control, storage and remote control in every way that cargo-mutants
+          knows; their tests have to notice. Only if their code is not the one for which firmware/mutants.txt says
+          that they do, or with --again
   a2l     write firmware/hitch.a2l, the description of parameters and measurements for tuning tools
   setup   find or install the ARM toolchain and the emulator
 

@@ -9,7 +9,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use crc::{CRC_64_XZ, Crc};
-use hitch_firmware::control::design_parameters::{SafetyParameters, SensorParameters};
+use hitch_firmware::control::design_parameters::{
+    PositionParameters, SafetyParameters, SensorParameters,
+};
 
 use crate::{process, workspace};
 
@@ -23,17 +25,19 @@ struct Part {
     decides: &'static [&'static str],
     /// Tests of the package `hitch-firmware`, as options of cargo.
     tests: &'static [&'static str],
-    /// Tests that are left out: random ones whose steps would take most of the time, and that others do without.
+    /// Tests that are left out: random ones whose steps would take most of the time, and those of the whole controller,
+    /// for much more decides about them than the part.
     skipped: Option<&'static str>,
     /// A change to this function makes a loop endless, which the tests notice by their time, and on the ECU the watchdog.
     looping: Option<&'static str>,
 }
 
-/// The part whose tests also depend on the limits in the calibration.
+/// The parts whose tests also depend on values in the calibration.
+const POSITION: &str = "position";
 const SAFETY: &str = "safety";
 
 /// The quicker ones first.
-const PARTS: [Part; 3] = [
+const PARTS: [Part; 4] = [
     Part {
         name: "storage",
         changed: &["firmware/src/storage/store.rs"],
@@ -59,6 +63,23 @@ const PARTS: [Part; 3] = [
         ],
         tests: &["--test=j1939"],
         skipped: None,
+        looping: None,
+    },
+    Part {
+        name: POSITION,
+        changed: &["firmware/src/control/position.rs"],
+        decides: &[
+            "firmware/src/control/closing.rs",
+            "firmware/src/control/drop_scale.rs",
+            "firmware/src/control/fixed.rs",
+            "firmware/src/control/motion.rs",
+            "firmware/src/control/position.rs",
+            "firmware/src/control/units.rs",
+            "firmware/src/control/valve_logic.rs",
+            "firmware/tests/position.rs",
+        ],
+        tests: &["--lib", "--test=position"],
+        skipped: Some("controller::damage::"),
         looping: None,
     },
     Part {
@@ -144,10 +165,15 @@ impl Part {
         let crc = Crc::<u64>::new(&CRC_64_XZ);
         let mut digest = crc.digest();
         digest.update(format!("{self:?}").as_bytes());
-        if self.name == SAFETY {
-            let limits = (SafetyParameters::NOMINAL, SensorParameters::NOMINAL);
-            digest.update(format!("{limits:?}").as_bytes());
-        }
+        let values = match self.name {
+            POSITION => format!("{:?}", PositionParameters::NOMINAL),
+            SAFETY => {
+                let limits = (SafetyParameters::NOMINAL, SensorParameters::NOMINAL);
+                format!("{limits:?}")
+            }
+            _ => String::new(),
+        };
+        digest.update(values.as_bytes());
         for path in self.decides {
             for file in files(&workspace::root().join(path))? {
                 let name = file.strip_prefix(workspace::root()).unwrap_or(&file);

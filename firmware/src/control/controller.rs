@@ -50,9 +50,6 @@ pub struct Controller {
     /// Set point and its travel: looked up when it changes.
     target: (MilliDegree, Micrometre),
     load: LoadEstimate,
-    /// Steps take turns: one learns the lag and looks up what the valve can give, or how far a move went, the next learns
-    /// the load. All of it in one would take too long.
-    turn: bool,
     phase: Phase,
     sink: SinkWatch,
     saturation: SaturationWatch,
@@ -104,7 +101,6 @@ impl Controller {
             slack: Slack::default(),
             target: (MilliDegree::ZERO, origin),
             load,
-            turn: false,
             phase: Phase::default(),
             sink: SinkWatch::default(),
             saturation: SaturationWatch::default(),
@@ -193,21 +189,15 @@ impl Controller {
         let measured = calibration.linkage.travel(sensed.angle);
         self.motion
             .update(measured, self.phase, &calibration.motion);
-        self.turn = !self.turn;
-        match self.turn {
-            true => self
-                .motion
-                .follow_trail(measured, self.phase, &calibration.motion),
-            false => {
-                self.load.update(
-                    sensed.cylinder_pressure,
-                    self.phase,
-                    &self.motion,
-                    &calibration.hydraulics,
-                );
-                self.scale = self.curves.scale(self.load.drop());
-            }
-        }
+        self.motion
+            .follow_trail(measured, self.phase, &calibration.motion);
+        self.load.update(
+            sensed.cylinder_pressure,
+            self.phase,
+            &self.motion,
+            &calibration.hydraulics,
+        );
+        self.scale = self.curves.scale(self.load.drop());
         self.rest
             .update(self.motion.position(), self.phase, &calibration.hold);
         self.sink.tick(&calibration.hold);
@@ -216,20 +206,18 @@ impl Controller {
 
     /// Learns from where the hitch is on its way from rest to rest.
     fn learn(&mut self) {
-        if self.turn
-            && let Some((told, of_offset)) = self.learning.over()
-        {
-            let parameters = &self.calibration.motion;
-            let rest = self.rest.position();
-            if self.motion.learn_lag(&told, of_offset, rest, parameters) {
-                self.learning.learn(told);
-            }
+        let Some(course) = self.learning.follow(self.phase, &self.motion) else {
             return;
-        }
-        if let Some(course) = self.learning.follow(self.phase, &self.motion, self.turn) {
-            let area = self.calibration.hydraulics.piston_area;
-            let told = course.told(self.rest.position(), self.scale, area);
-            self.learning.end(told);
+        };
+        let calibration = &self.calibration;
+        let rest = self.rest.position();
+        let told = course.told(rest, self.scale, calibration.hydraulics.piston_area);
+        let of_offset = self.learning.offsets().blamed(&told);
+        if self
+            .motion
+            .learn_lag(&told, of_offset, rest, &calibration.motion)
+        {
+            self.learning.learn(&told);
         }
     }
 
@@ -360,11 +348,9 @@ impl Controller {
             Phase::Moving { direction, .. } => Some(direction),
             _ => demand.map(|demand| demand.direction),
         };
-        if self.turn || !self.phase.is_moving() {
-            self.available = direction.map_or(MicrometrePerSecond::ZERO, |direction| {
-                self.available(direction)
-            });
-        }
+        self.available = direction.map_or(MicrometrePerSecond::ZERO, |direction| {
+            self.available(direction)
+        });
         let still = self.motion.model_speed() == MicrometrePerSecond::ZERO;
         let next = self.phase.step(
             demand,

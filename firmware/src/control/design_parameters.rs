@@ -115,9 +115,9 @@ parameter_group! {
         /// The same while lowering, where load and oil make the map more wrong than the swing does.
         lowering_time: Millisecond = 17, 1..=500;
         /// By how much a hitch trails its lift valve beyond the lag of its spool: its load has to be accelerated on its oil.
-        lift_trail: Microsecond = 7_000, 0..=100_000;
+        lift_trail: Microsecond = 6_500, 0..=100_000;
         /// The same of the lowering valve: oil, friction and the load's own fall.
-        lowering_trail: Microsecond = 12_000, 0..=100_000;
+        lowering_trail: Microsecond = 11_500, 0..=100_000;
         /// Furthest that a machine's spools may be slower or faster than the calibration says.
         lag_limit: Millisecond = 30, 0..=200;
         /// Lag of the lift valve beyond the lowering valve's from which the load swings on a compensator that lags: valves of one machine, one of them off its curve, seem to differ by up to 12 ms.

@@ -23,11 +23,11 @@ use super::units::{
 };
 
 /// Sum of squares from which the rest of a move tells no more of the lag: 20 ms at full speed.
-const COMPLETE: i32 = 200_000;
+const COMPLETE: i32 = 400_000;
 /// What is known before the first move, as such a sum: valves differ by some 10 ms.
-const FIRST_WEIGHT: i32 = 25_000;
+const FIRST_WEIGHT: i32 = 50_000;
 /// Most that earlier moves count: oil gets warm.
-const MOST_WEIGHT: i32 = 100_000;
+const MOST_WEIGHT: i32 = 200_000;
 
 /// A lag, or a part of one, in eighths of a millisecond.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -130,8 +130,7 @@ impl Lag {
     }
 }
 
-/// Sums over a move, in which every other step is looked at. Ways are in 1.024 um, speeds in 1.024 mm/s, so that a
-/// shift makes them; times stay milliseconds.
+/// Sums over a move. Ways are in 1.024 um, speeds in 1.024 mm/s, so that a shift makes them; times stay milliseconds.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Trail {
     from_nm: i32,
@@ -139,7 +138,7 @@ pub struct Trail {
     expected_nm: i32,
     /// What has passed less than that for each ampere that the valve opens late, nl/A.
     sensitivity_nl: i32,
-    /// Sum of speed times sensitivity, in 1024 nl/A.
+    /// Sum of speed times sensitivity, in 2048 nl/A.
     speed_sensitivity: i32,
     /// Sum of speed times way behind, in eighths.
     speed_behind: i32,
@@ -157,7 +156,7 @@ impl Trail {
         }
     }
 
-    /// Every other step; `model`: what the valves should give now, `slope`: how much that changes for each ampere,
+    /// One step; `model`: what the valves should give now, `slope`: how much that changes for each ampere,
     /// `usual`: the time by which a hitch trails them anyway.
     pub fn step(
         &mut self,
@@ -169,16 +168,10 @@ impl Trail {
         if self.is_complete() {
             return;
         }
-        self.expected_nm = self
-            .expected_nm
-            .saturating_add(model.0)
-            .saturating_add(model.0);
-        self.sensitivity_nl = self
-            .sensitivity_nl
-            .saturating_add(slope.0)
-            .saturating_add(slope.0);
+        self.expected_nm = self.expected_nm.saturating_add(model.0);
+        self.sensitivity_nl = self.sensitivity_nl.saturating_add(slope.0);
         let speed = model.0 >> 10;
-        let of_ampere = speed.wrapping_mul(self.sensitivity_nl >> 10);
+        let of_ampere = speed.wrapping_mul(self.sensitivity_nl >> 11);
         self.speed_sensitivity = self.speed_sensitivity.saturating_add(of_ampere);
         let behind = self.expected_nm.saturating_sub(measured_nm) >> 7;
         let further = behind.saturating_sub(speed.wrapping_mul(usual.0));
@@ -204,12 +197,12 @@ impl Trail {
         let way = Divisor::THOUSAND.divide(self.expected_nm.saturating_sub(self.from_nm));
         let way = way.saturating_abs();
         let of_flow = told.missing - of_offset;
-        // Eighths of every other step, halved.
+        // Eighths, halved.
         let grown = mul_div(of_flow.0, way, Divisor::at_least_one(told.expected.0));
-        let by_flow = grown.saturating_mul(way).saturating_mul(2);
+        let by_flow = grown.saturating_mul(way).saturating_mul(4);
         // Some thousand um/ms: what is rounded away is no part of a millisecond.
         let weighted =
-            Divisor::at_least_one(told.sensitivity_nl >> 10).divide(self.speed_sensitivity);
+            Divisor::at_least_one(told.sensitivity_nl >> 11).divide(self.speed_sensitivity);
         let by_offset = of_offset
             .0
             .saturating_mul(weighted.saturating_abs())
@@ -284,11 +277,9 @@ mod tests {
                 expected_nm += flow;
                 way_nm += self::flow(truth - self.late * FULL) * (1.0 + self.flow_error);
                 sensitivity_nl += slope.0;
-                if ms % 2 == 0 {
-                    let place_nm = 5_000_000 + way_nm as i32;
-                    let flow = MicrometrePerSecond(flow as i32);
-                    trail.step(place_nm, flow, slope, Eighths(0));
-                }
+                let place_nm = 5_000_000 + way_nm as i32;
+                let flow = MicrometrePerSecond(flow as i32);
+                trail.step(place_nm, flow, slope, Eighths(0));
                 if ms == self.hold_ms + 60 {
                     falling(trail);
                 }

@@ -20,10 +20,6 @@ const OVERSHOT: Micrometre = Micrometre(1_000);
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Learning {
     course: Option<Course>,
-    /// What a move told that is over and how much of it is its valve's threshold's, until its lag is taken in.
-    over: Option<(Told, Micrometre)>,
-    /// What it told until its offset is.
-    told: Option<Told>,
     offsets: Offsets,
 }
 
@@ -41,12 +37,11 @@ impl Learning {
 
     /// Something has a part in this move: it tells nothing.
     pub fn obstruct(&mut self) {
-        self.over = None;
         self.course = None;
     }
 
     /// A move that came to rest `beyond` its set point is to be corrected: it is over now, and tells more than others
-    /// do. A lift that swung that far tells of nothing else. True until all has been taken in.
+    /// do. A lift that swung that far tells of nothing else. True until it has been taken in.
     pub fn hurries(&mut self, beyond: Micrometre, motion: &mut Motion) -> bool {
         if let Some(course) = &mut self.course {
             course.end();
@@ -55,42 +50,26 @@ impl Learning {
                 self.course = None;
             }
         }
-        self.course.is_some() || self.over.is_some() || self.told.is_some()
+        self.course.is_some()
     }
 
     /// The valves' curves are others now.
     pub fn forget_curves(&mut self) {
         self.course = None;
-        self.over = None;
-        self.told = None;
         self.offsets = Offsets::default();
     }
 
-    /// One step of the way from rest to rest; the move once it is over. What takes long waits for a step with `room`.
-    pub fn follow(&mut self, phase: Phase, motion: &Motion, room: bool) -> Option<Course> {
-        if room && let Some(told) = self.told.take() {
-            self.offsets.learn(&told);
-        }
-        match self.course.as_mut()?.step(phase, motion) && room {
+    /// One step of the way from rest to rest; the move once it is over.
+    pub fn follow(&mut self, phase: Phase, motion: &Motion) -> Option<Course> {
+        match self.course.as_mut()?.step(phase, motion) {
             true => self.course.take(),
             false => None,
         }
     }
 
-    /// A move is over: its lag is learnt in the next step, its offset in the one after that. All in one would take too
-    /// long.
-    pub fn end(&mut self, told: Told) {
-        self.over = Some((told, self.offsets.blamed(&told)));
-    }
-
-    /// What a move told that has just been over, to learn its lag from, and how much of it is its threshold's.
-    pub fn over(&mut self) -> Option<(Told, Micrometre)> {
-        self.over.take()
-    }
-
-    /// Takes in how far a move went, in the next step.
-    pub fn learn(&mut self, told: Told) {
-        self.told = Some(told);
+    /// Takes in how far a move went.
+    pub fn learn(&mut self, told: &Told) {
+        self.offsets.learn(told);
     }
 }
 
@@ -110,7 +89,7 @@ mod tests {
             learning.begin(direction, Micrometre::ZERO);
             assert_eq!(learning.hurries(beyond, &mut motion), !swings);
             assert_eq!(motion.swings(), swings);
-            let told = learning.follow(Phase::Holding, &motion, true);
+            let told = learning.follow(Phase::Holding, &motion);
             assert_eq!(told.is_some(), !swings, "{direction:?}");
             assert!(!learning.hurries(beyond, &mut motion));
         }

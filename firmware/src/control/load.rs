@@ -8,7 +8,7 @@
 use super::design_parameters::HydraulicParameters;
 use super::fixed::{Divisor, mul_div, mul_shift_16};
 use super::motion::Motion;
-use super::units::{MicrometrePerSecond, MilliBar, Millisecond};
+use super::units::{MicrometrePerSecond, MilliBar};
 use super::valve_logic::{Direction, Phase};
 
 /// Sinking slower than this (of the map's 280 mm/s) says more about the threshold than about the load.
@@ -46,7 +46,7 @@ impl LoadEstimate {
         }
     }
 
-    /// Every other step: at rest follows the sensor if there is one, while lowering learns from `motion`.
+    /// One step: at rest follows the sensor if there is one, while lowering learns from `motion`.
     pub fn update(
         &mut self,
         sensor: Option<MilliBar>,
@@ -86,7 +86,7 @@ impl LoadEstimate {
             self.resting_microbar = pressure;
         }
         let error = pressure.saturating_sub(self.resting_microbar);
-        let step = every_other(hydraulics.pressure_filter).divide(error);
+        let step = hydraulics.pressure_filter.divisor().divide(error);
         self.resting_microbar = self.resting_microbar.saturating_add(step);
     }
 
@@ -102,15 +102,10 @@ impl LoadEstimate {
             excess.0 / 32,
             Divisor::at_least_one(model.0 / 64),
         );
-        let step = every_other(hydraulics.drop_learning).divide(twice);
+        let step = hydraulics.drop_learning.divisor().divide(twice);
         self.factor = self
             .factor
             .saturating_add(step)
             .clamp(ONE / MOST_FACTOR, ONE * MOST_FACTOR);
     }
-}
-
-/// A time constant in steps of two milliseconds.
-const fn every_other(time: Millisecond) -> Divisor {
-    Divisor::at_least_one(time.0 / 2)
 }

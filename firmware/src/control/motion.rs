@@ -127,7 +127,7 @@ impl Motion {
         self.bias = MicrometrePerSecond(bias_time.0.divide(self.bias_sum_nm));
     }
 
-    /// How far the hitch trails its valve tells how slow its spool is: every other step of a move.
+    /// How far the hitch trails its valve tells how slow its spool is, at each step of a move.
     pub fn follow_trail(
         &mut self,
         measured: Micrometre,

@@ -15,7 +15,7 @@
 use super::course::Told;
 use super::units::{Micrometre, MicrometrePerSecond};
 
-/// Fastest of a move, in nanometres in two milliseconds.
+/// Fastest of a move, in nanometres a millisecond.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Outrun {
     /// Where the hitch was a while ago.
@@ -42,13 +42,13 @@ impl Outrun {
         }
     }
 
-    /// Every other step of a lift; `model`: what the valve should give now. Both speeds are smoothed over 16 and 4 of
-    /// these steps: the sensor's noise is some mm/s then.
+    /// One step of a lift; `model`: what the valve should give now. Both speeds are smoothed over 32 and 4 ms: the
+    /// sensor's noise is some mm/s then.
     pub fn step(&mut self, measured_nm: i32, model: MicrometrePerSecond) {
-        let hitch = measured_nm.saturating_sub(self.place_nm) >> 4;
+        let hitch = measured_nm.saturating_sub(self.place_nm) >> 5;
         self.place_nm = self.place_nm.saturating_add(hitch);
         self.hitch.step(hitch);
-        let valve = model.0.saturating_mul(2).saturating_sub(self.valve_nm) >> 4;
+        let valve = model.0.saturating_sub(self.valve_nm) >> 5;
         self.valve_nm = self.valve_nm.saturating_add(valve);
         self.valve.step(self.valve_nm);
     }
@@ -58,7 +58,7 @@ impl Outrun {
     pub fn outran(&self, told: &Told) -> bool {
         // 128 um/s times 16 um: half of a word is left for what hitches do.
         let product = |fastest: Fastest, way: Micrometre, weight: i32| {
-            (fastest.most >> 8)
+            (fastest.most >> 7)
                 .saturating_mul(way.0 >> 4)
                 .saturating_mul(weight)
         };
@@ -91,9 +91,7 @@ mod tests {
             let swings = 1.0 - swing * (f64::from(ms) * 0.017).cos();
             expected += model;
             way += truth * swings * share;
-            if ms % 2 == 0 {
-                outrun.step(5_000_000 + way as i32, MicrometrePerSecond(model as i32));
-            }
+            outrun.step(5_000_000 + way as i32, MicrometrePerSecond(model as i32));
         }
         outrun.outran(&Told {
             direction: Direction::Lift,

@@ -4,10 +4,10 @@
 //! speed is steady the way is a straight line over the time, and where that line begins is the delay:
 //!
 //! ```text
-//! x(t) = v (t - t0)      t0 = (x2 t1 - x1 t2) / (x2 - x1)      T = T_twin (t0 - 3/2 usual) / t0_twin
+//! x(t) = v (t - t0)      t0 = (x2 t1 - x1 t2) / (x2 - x1)      T = T_twin (t0 - 8/5 usual) / t0_twin
 //! ```
 //!
-//! By a usual time a hitch trails its valve anyway, for its load has to be accelerated; by half as much again as on a
+//! By a usual time a hitch trails its valve anyway, for its load has to be accelerated; by three fifths more than on a
 //! move, for the little flow of a step takes longer to raise the pressure against friction.
 //! Load and oil change `v`, of which `t0` is free. The twin takes the same step on the calibration's curve and spool,
 //! through the same filter. Means over two windows leave little of sensor's noise and load's swing.
@@ -83,7 +83,7 @@ pub fn found(
     let (Some(real), Some(twin)) = (real.delay(), twin.delay()) else {
         return known;
     };
-    let delay = real.saturating_sub(usual.0.saturating_mul(3) / 2_000);
+    let delay = real.saturating_sub(usual.0.saturating_mul(8) / 5_000);
     let lag = Millisecond(mul_div(known.0, delay, Divisor::at_least_one(twin)));
     match (lag - known).magnitude() > limit {
         true => known,
@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     const KNOWN: Millisecond = Millisecond(40);
-    const USUAL: Microsecond = Microsecond(7_000);
+    const USUAL: Microsecond = Microsecond(6_500);
 
     /// The way behind a spool whose delay is `delay_ms`, at a steady `speed`, mm/s.
     fn way(delay_ms: i32, speed: i32) -> Way {

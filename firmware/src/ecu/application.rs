@@ -23,6 +23,7 @@ use crate::j1939::{
     Variant,
 };
 use crate::storage::CalibrationStore;
+use crate::xcp::angle_noise::AngleNoise;
 use crate::xcp::map::IDENTITY;
 use crate::xcp::measurements::{EcuState, Measurements};
 use crate::xcp::{Access, EcuMemory, Event, Slave};
@@ -52,6 +53,7 @@ pub struct Ecu<F> {
     slave: Slave,
     measurements: Measurements,
     charge: CoilCharge,
+    angle_noise: AngleNoise,
     outbox: Deque<Frame, OUTBOX>,
     pace: Pace,
     flow: FlowMonitor,
@@ -90,6 +92,7 @@ impl<F: NorFlash> Ecu<F> {
             slave: Slave::new(),
             measurements: Measurements::default(),
             charge: CoilCharge::default(),
+            angle_noise: AngleNoise::default(),
             outbox: Deque::new(),
             pace: Pace::default(),
             flow: FlowMonitor::default(),
@@ -191,6 +194,7 @@ impl<F: NorFlash> Ecu<F> {
 
     fn measure(&mut self, frames_dropped: u16) {
         self.charge = self.charge.after(&self.inputs);
+        self.angle_noise.update(self.inputs.rocker_angle);
         let state = EcuState {
             remote_set_point: match self.node.remote() {
                 Remote::Position(position) => position.0,
@@ -201,6 +205,7 @@ impl<F: NorFlash> Ecu<F> {
             calibration_state: self.service.pages.applied() as u8,
             longest_step_us: self.pace.longest_us(),
             frames_dropped,
+            angle_squares: self.angle_noise.sum_of_squares(),
         };
         self.measurements
             .sample(&self.inputs, &self.outputs, &state);

@@ -1,5 +1,6 @@
 //! What can be measured: one table, from which the ECU fills its slots and the description file is made.
 
+use super::angle_noise::rms_deg_bits;
 use crate::control::charge::CoilCharge;
 use crate::control::{Inputs, Outputs};
 use crate::fnv;
@@ -30,12 +31,26 @@ pub struct MeasurementInfo {
     pub counts_per_unit: i32,
     /// Storage.
     pub width: Width,
+    /// The 32 bits are a number in single precision (IEEE 754), not an integer; the limits still are in raw counts.
+    pub is_float: bool,
     /// Smallest value, raw counts.
     pub min: i32,
     /// Largest value, raw counts.
     pub max: i32,
     /// What it is.
     pub description: &'static str,
+}
+
+/// How a measurement is stored, and whether that is a number in single precision: the words of the table below.
+mod form {
+    use super::Width;
+
+    pub const U8: (Width, bool) = (Width::U8, false);
+    pub const U16: (Width, bool) = (Width::U16, false);
+    pub const I16: (Width, bool) = (Width::I16, false);
+    pub const U32: (Width, bool) = (Width::U32, false);
+    pub const I32: (Width, bool) = (Width::I32, false);
+    pub const F32: (Width, bool) = (Width::U32, true);
 }
 
 /// What the ECU knows besides a step's inputs and outputs.
@@ -53,13 +68,15 @@ pub struct EcuState {
     pub longest_step_us: u16,
     /// Frames that were dropped because a queue was full.
     pub frames_dropped: u16,
+    /// Squares of the angle's noise, see [`super::angle_noise::AngleNoise::sum_of_squares`].
+    pub angle_squares: u32,
 }
 
 macro_rules! measurements {
     (
         $inputs:ident, $outputs:ident, $ecu:ident;
         $($(#[doc = $doc:literal])+
-        $name:ident: $width:ident, $suffix:literal, $counts:literal, $min:literal ..= $max:literal = $value:expr;)+
+        $name:ident: $form:ident, $suffix:literal, $counts:literal, $min:literal ..= $max:literal = $value:expr;)+
     ) => {
         /// Descriptions, in the order of the slots.
         pub const INFO: &[MeasurementInfo] = &[
@@ -67,7 +84,8 @@ macro_rules! measurements {
                 name: stringify!($name),
                 suffix: $suffix,
                 counts_per_unit: $counts,
-                width: Width::$width,
+                width: form::$form.0,
+                is_float: form::$form.1,
                 min: $min,
                 max: $max,
                 description: concat!($($doc),+),
@@ -96,6 +114,7 @@ pub const fn hash(mut hash: u32) -> u32 {
         hash = fnv::text(hash, info.suffix);
         hash = fnv::number(hash, info.counts_per_unit);
         hash = fnv::number(hash, info.width as i32);
+        hash = fnv::number(hash, info.is_float as i32);
         index += 1;
     }
     hash
@@ -191,4 +210,6 @@ measurements! {
     longest_step: U16, "us", 1, 0..=65_535 = i32::from(ecu.longest_step_us);
     /// Frames that were dropped because a queue was full.
     frames_dropped: U16, "", 1, 0..=65_535 = i32::from(ecu.frames_dropped);
+    /// Noise of the rocker angle, root mean square over the last second.
+    angle_noise: F32, "deg", 1, 0..=1 = rms_deg_bits(ecu.angle_squares).cast_signed();
 }

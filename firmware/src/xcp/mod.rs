@@ -6,6 +6,7 @@
 //! depends on the tables of this crate and not on where a linker put what, and nothing else can be read or
 //! written at all.
 
+pub mod angle_noise;
 mod checksum;
 mod command;
 mod daq;

@@ -304,6 +304,29 @@ fn clock_and_events_are_described() {
     assert_eq!(desk.ask(&[0xD7, 0, 3, 0]), Err(OUT_OF_RANGE));
 }
 
+/// The root is the ECU's, in single precision; what it is of is an integer.
+#[test]
+fn the_noise_of_the_angle_is_read_in_degrees() {
+    let mut desk = Desk::connected();
+    let noise_deg = |desk: &mut Desk, angle_squares| {
+        let state = EcuState {
+            angle_squares,
+            ..EcuState::default()
+        };
+        desk.measurements
+            .sample(&Inputs::default(), &Outputs::default(), &state);
+        f32::from_bits(
+            desk.read(measurement("angle_noise"))
+                .unwrap()
+                .cast_unsigned(),
+        )
+    };
+    assert_eq!(noise_deg(&mut desk, 0), 0.0);
+    // 0.1 degree, one sigma: a mean square of the second difference of 6 * 10 000 mdeg2.
+    let found_deg = noise_deg(&mut desk, 1_024 * 60_000);
+    assert!((found_deg - 0.1).abs() < 0.000_2, "{found_deg}");
+}
+
 #[test]
 fn parameters_can_be_measured_too() {
     let mut desk = Desk::connected();
@@ -334,6 +357,11 @@ fn all_measurements_fit_into_one_list_and_into_their_width() {
         );
         assert!(desk.read(measurement(info.name)).is_ok());
     }
+    assert!(
+        INFO.iter()
+            .all(|info| !info.is_float || bytes(info.width) == 4),
+        "a number in single precision has 32 bits"
+    );
     let total: usize = INFO.iter().map(|info| usize::from(bytes(info.width))).sum();
     assert!(total <= 16 * 7, "{total} bytes");
 }

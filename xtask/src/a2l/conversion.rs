@@ -18,6 +18,8 @@ pub struct Conversion {
 enum Kind {
     /// Counts in a unit.
     Scaled { unit: &'static str, per_unit: i32 },
+    /// The unit itself, in single precision.
+    Float { unit: &'static str },
     /// Names of codes.
     Named(Vec<(u8, String)>),
 }
@@ -38,6 +40,17 @@ pub fn scaled(conversions: &mut Vec<Conversion>, suffix: &str, per_unit: i32) ->
     )
 }
 
+/// The name of the conversion of a number in single precision, which is none.
+fn float(conversions: &mut Vec<Conversion>, suffix: &str) -> String {
+    add(
+        conversions,
+        Conversion {
+            name: format!("{suffix}_float"),
+            kind: Kind::Float { unit: unit(suffix) },
+        },
+    )
+}
+
 /// The name of the conversion of a measurement.
 pub fn of_measurement(conversions: &mut Vec<Conversion>, info: &MeasurementInfo) -> String {
     let names = match info.name {
@@ -50,6 +63,7 @@ pub fn of_measurement(conversions: &mut Vec<Conversion>, info: &MeasurementInfo)
         "calibration_state" => [Applied::InUse, Applied::Pending, Applied::Inconsistent]
             .map(|applied| (applied as u8, format!("{applied:?}")))
             .to_vec(),
+        _ if info.is_float => return float(conversions, info.suffix),
         _ => return scaled(conversions, info.suffix, info.counts_per_unit),
     };
     add(
@@ -114,6 +128,9 @@ impl Conversion {
                     "/begin COMPU_METHOD {name} \"\" RAT_FUNC \"%12.{decimals}\" \"{unit}\"\n  COEFFS 0 {per_unit} 0 0 0 1\n/end COMPU_METHOD\n"
                 )
             }
+            Kind::Float { unit } => format!(
+                "/begin COMPU_METHOD {name} \"\" IDENTICAL \"%12.6\" \"{unit}\"\n/end COMPU_METHOD\n"
+            ),
             Kind::Named(names) => {
                 let mut text = format!(
                     "/begin COMPU_METHOD {name} \"\" TAB_VERB \"%12.0\" \"\"\n  COMPU_TAB_REF {name}_table\n/end COMPU_METHOD\n\

@@ -221,6 +221,7 @@ fn measurements(conversions: &mut Vec<Conversion>) -> String {
 
 const fn width(info: &MeasurementInfo) -> &'static str {
     match info.width {
+        _ if info.is_float => "FLOAT32_IEEE",
         Width::U8 => "UBYTE",
         Width::U16 => "UWORD",
         Width::I16 => "SWORD",
@@ -315,6 +316,20 @@ mod tests {
             .collect();
         addresses.dedup();
         assert_eq!(addresses.len(), scalars + 5);
+    }
+
+    #[test]
+    fn a_number_in_single_precision_is_shown_as_it_is() {
+        let file = parsed();
+        let module = &file.project.module[0];
+        let noise = module.measurement.get("angle_noise").expect("it is there");
+        assert_eq!(noise.datatype, a2lfile::DataType::Float32Ieee);
+        let conversion = module.compu_method.get(&noise.conversion).unwrap();
+        assert_eq!(
+            conversion.conversion_type,
+            a2lfile::ConversionType::Identical
+        );
+        assert_eq!(conversion.unit, "deg");
     }
 
     #[test]

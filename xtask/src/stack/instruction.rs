@@ -214,11 +214,27 @@ impl Parts<'_> {
         self.arm.writeback().then_some(memory.disp() + behind)
     }
 
+    /// Bytes of the floating-point registers among the operands: a word each, or two of a double one.
+    fn floating_bytes(&self) -> Result<i32> {
+        use ArmReg::{ARM_REG_D0, ARM_REG_D31, ARM_REG_S0, ARM_REG_S31};
+        let is_in = |register: RegId, first: ArmReg::Type, last: ArmReg::Type| {
+            (first..=last).contains(&ArmReg::Type::from(register.0))
+        };
+        let of_one = |register: RegId| match register {
+            STACK_POINTER => Ok(0),
+            _ if is_in(register, ARM_REG_S0, ARM_REG_S31) => Ok(WORD_BYTES),
+            _ if is_in(register, ARM_REG_D0, ARM_REG_D31) => Ok(2 * WORD_BYTES),
+            _ => bail!("saves a register that isn't known"),
+        };
+        self.registers().map(of_one).sum()
+    }
+
     /// Bytes by which the stack gets deeper; an error if that can't be told.
     fn deeper(&self) -> Result<i32> {
         use ArmInsn::{
             ARM_INS_ADD, ARM_INS_ADDW, ARM_INS_LDM, ARM_INS_LDMDB, ARM_INS_POP, ARM_INS_PUSH,
-            ARM_INS_STM, ARM_INS_STMDB, ARM_INS_SUB, ARM_INS_SUBW, ARM_INS_VPOP, ARM_INS_VPUSH,
+            ARM_INS_STM, ARM_INS_STMDB, ARM_INS_SUB, ARM_INS_SUBW, ARM_INS_VLDMDB, ARM_INS_VLDMIA,
+            ARM_INS_VPOP, ARM_INS_VPUSH, ARM_INS_VSTMDB, ARM_INS_VSTMIA,
         };
         let words = |count: usize| i32::try_from(count).unwrap_or(i32::MAX) * WORD_BYTES;
         if self.is(&[ARM_INS_PUSH]) {
@@ -226,6 +242,12 @@ impl Parts<'_> {
         }
         if self.is(&[ARM_INS_POP]) {
             return Ok(-words(self.operands.len()));
+        }
+        if self.is(&[ARM_INS_VPUSH]) {
+            return self.floating_bytes();
+        }
+        if self.is(&[ARM_INS_VPOP]) {
+            return Ok(-self.floating_bytes()?);
         }
         if let Some(moved) = self.written_back() {
             return Ok(-moved);
@@ -246,8 +268,19 @@ impl Parts<'_> {
                     _ => bail!("uses the stack upside down"),
                 }
             }
-            _ if self.is(&[ARM_INS_VPUSH, ARM_INS_VPOP]) => {
-                bail!("saves floating-point registers, which nothing here does")
+            _ if self.is(&[
+                ARM_INS_VLDMIA,
+                ARM_INS_VLDMDB,
+                ARM_INS_VSTMIA,
+                ARM_INS_VSTMDB,
+            ]) =>
+            {
+                match (self.arm.writeback(), self.is(&[ARM_INS_VSTMDB])) {
+                    (false, _) => Ok(0),
+                    (true, true) => self.floating_bytes(),
+                    (true, false) if self.is(&[ARM_INS_VLDMIA]) => Ok(-self.floating_bytes()?),
+                    _ => bail!("uses the stack upside down"),
+                }
             }
             _ => bail!("moves the stack pointer in a way that can't be followed"),
         }
@@ -393,6 +426,29 @@ mod tests {
         assert!(decoded(&[0x468D]).is_err(), "mov sp, r1");
         assert!(decoded(&[0x4687]).is_err(), "mov pc, r0");
         assert!(decoded(&[0xEBAD, 0x0D01]).is_err(), "sub sp, sp, r1");
+    }
+
+    #[test]
+    fn saved_floating_point_registers_make_the_stack_deeper() {
+        let code = [
+            0xED2D, 0x8B04, // vpush {d8, d9}
+            0xED2D, 0x8A01, // vpush {s16}
+            0xED8D, 0x0A01, // vstr s0, [sp, #4]
+            0xEC8D, 0x0A02, // vstmia sp, {s0, s1}
+            0xECB0, 0x0A02, // vldmia r0!, {s0, s1}
+            0xEEB8, 0x0A40, // vcvt.f32.u32 s0, s0
+            0xECBD, 0x8A01, // vpop {s16}
+            0xECBD, 0x8B04, // vpop {d8, d9}
+        ];
+        let instructions = decoded(&code).unwrap();
+        let moves: Vec<i32> = instructions.iter().map(|one| one.deeper).collect();
+        assert_eq!(moves, [16, 4, 0, 0, 0, 0, -4, -16]);
+        assert!(instructions.iter().all(|one| one.floating));
+        assert!(instructions.iter().all(|one| one.flow == Flow::On));
+        assert!(
+            decoded(&[0xECAD, 0x0A02]).is_err(),
+            "vstmia sp!, {{s0, s1}}"
+        );
     }
 
     #[test]

@@ -18,6 +18,8 @@ pub struct Fault {
     pub most_ms: f64,
     /// Whether it shows in any state: a coil's faults only show while it is driven, a jump is over once it has happened.
     pub always_shows: bool,
+    /// Whether only a restart clears it.
+    pub until_restart: bool,
     /// What it does to the samples, in the step of this number.
     pub inject: fn(&mut Contacts, usize),
 }
@@ -36,18 +38,21 @@ pub const FAULTS: [Fault; 17] = [
         name: "supply below 8 V",
         most_ms: 12.0,
         always_shows: true,
+        until_restart: false,
         inject: |contacts, _| contacts.samples.supply = code(7_400 / 6),
     },
     Fault {
         name: "supply above 16.8 V",
         most_ms: 12.0,
         always_shows: true,
+        until_restart: false,
         inject: |contacts, _| contacts.samples.supply = code(18_000 / 6),
     },
     Fault {
         name: "supply alternates each millisecond",
         most_ms: 12.0,
         always_shows: true,
+        until_restart: false,
         inject: |contacts, step| {
             if step % 2 == 0 {
                 contacts.samples.supply = code(7_000 / 6);
@@ -58,36 +63,42 @@ pub const FAULTS: [Fault; 17] = [
         name: "lever shorted to ground",
         most_ms: 7.0,
         always_shows: true,
+        until_restart: false,
         inject: |contacts, _| contacts.samples.lever = LOW,
     },
     Fault {
         name: "lever shorted to its supply",
         most_ms: 7.0,
         always_shows: true,
+        until_restart: false,
         inject: |contacts, _| contacts.samples.lever = HIGH,
     },
     Fault {
         name: "angle shorted to ground",
         most_ms: 7.0,
         always_shows: true,
+        until_restart: false,
         inject: |contacts, _| contacts.samples.rocker_angle = LOW,
     },
     Fault {
         name: "angle shorted to its supply",
         most_ms: 7.0,
         always_shows: true,
+        until_restart: false,
         inject: |contacts, _| contacts.samples.rocker_angle = HIGH,
     },
     Fault {
         name: "second angle track shorted to ground",
         most_ms: 7.0,
         always_shows: true,
+        until_restart: false,
         inject: |contacts, _| contacts.samples.second_angle = LOW,
     },
     Fault {
         name: "second angle track 4 degrees off",
         most_ms: 22.0,
         always_shows: true,
+        until_restart: false,
         inject: |contacts, _| {
             let off = contacts.samples.second_angle.get() + 119;
             contacts.samples.second_angle = code(off);
@@ -97,6 +108,7 @@ pub const FAULTS: [Fault; 17] = [
         name: "both angle tracks lost",
         most_ms: 7.0,
         always_shows: true,
+        until_restart: false,
         inject: |contacts, _| {
             contacts.samples.rocker_angle = LOW;
             contacts.samples.second_angle = LOW;
@@ -106,6 +118,7 @@ pub const FAULTS: [Fault; 17] = [
         name: "angle jumps by 8 degrees",
         most_ms: 7.0,
         always_shows: false,
+        until_restart: false,
         inject: |contacts, _| {
             let jumped = contacts.samples.rocker_angle.get() + 238;
             contacts.samples.rocker_angle = code(jumped);
@@ -115,18 +128,21 @@ pub const FAULTS: [Fault; 17] = [
         name: "lift coil open",
         most_ms: 42.0,
         always_shows: false,
+        until_restart: false,
         inject: |contacts, _| contacts.samples.lift_current = LOW,
     },
     Fault {
         name: "lift coil shorted",
         most_ms: 12.0,
         always_shows: false,
+        until_restart: true,
         inject: |contacts, _| contacts.samples.lift_current = HIGH,
     },
     Fault {
         name: "sensor supply at 4 V",
         most_ms: 22.0,
         always_shows: true,
+        until_restart: false,
         inject: |contacts, _| {
             // Behind a divider of 2.
             contacts.samples.sensor_supply = code(2_482);
@@ -136,12 +152,14 @@ pub const FAULTS: [Fault; 17] = [
         name: "sensor supply shorted to ground",
         most_ms: 22.0,
         always_shows: true,
+        until_restart: false,
         inject: |contacts, _| contacts.samples.sensor_supply = LOW,
     },
     Fault {
         name: "converter reference 8 % low",
         most_ms: 22.0,
         always_shows: true,
+        until_restart: false,
         inject: |contacts, _| {
             let risen = u32::from(contacts.samples.reference.get()) * 100 / 92;
             contacts.samples.reference = code(risen as u16);
@@ -151,6 +169,7 @@ pub const FAULTS: [Fault; 17] = [
         name: "converter reference lost",
         most_ms: 22.0,
         always_shows: true,
+        until_restart: false,
         inject: |contacts, _| contacts.samples.reference = HIGH,
     },
 ];
