@@ -8,7 +8,7 @@ use super::clocks::{Clocks, FARTHEST_S};
 use super::condense::Stretches;
 use super::conditioning::{Drive, jumps_within_s};
 use super::estimate::Estimate;
-use super::noise::from_second_differences;
+use super::noise::{channel_noise, current_noise, current_persistence, median, persistence_block};
 use super::regime::{Regime, regimes};
 use super::shortfall::Shortfall;
 use super::start_angle::{likely_deg, measured_deg};
@@ -20,12 +20,6 @@ use crate::plant::dynamic::Steps;
 use crate::plant::{Currents, HitchRig, Rig};
 use crate::simulation::{Trace, simulate_in};
 use crate::units;
-
-/// Smallest noise that is believed of each channel, in its unit, by [`Channel::index`]: a logger's last digit.
-const NOISE_FLOOR: [f64; 4] = [0.01, 0.01, 0.01, 0.005];
-
-/// Noise of a current if it is neither declared nor seen, A.
-const CURRENT_NOISE_FLOOR_A: f64 = 1e-4;
 
 /// How far, relative to the declared port pressure, a flow bench may be off and still count as set up.
 const PORT_TOLERANCE: f64 = 0.05;
@@ -399,108 +393,4 @@ fn settling_samples(run: &Run) -> usize {
     settled
         .filter(|&samples| samples <= run.time_s.len() / 4)
         .unwrap_or(0)
-}
-
-/// Declared noise of a channel, else the median of what its runs show, else NaN.
-fn channel_noise(campaign: &Campaign, channel: Channel) -> f64 {
-    let records = || campaign.runs.iter().filter_map(|run| run.channel(channel));
-    if records().next().is_none() {
-        return f64::NAN;
-    }
-    let sigma = campaign
-        .noise
-        .of(channel)
-        .or_else(|| median(records().filter_map(from_second_differences).collect()))
-        .unwrap_or(0.0);
-    sigma.max(NOISE_FLOOR[channel.index()])
-}
-
-fn current_noise(campaign: &Campaign) -> Currents {
-    let estimate = |records: Vec<&[f64]>| {
-        median(
-            records
-                .into_iter()
-                .filter_map(from_second_differences)
-                .collect(),
-        )
-        .unwrap_or(0.0)
-    };
-    let lift_a = campaign.noise.lift_current_a.unwrap_or_else(|| {
-        estimate(
-            campaign
-                .runs
-                .iter()
-                .map(|run| run.lift_current_a.as_slice())
-                .collect(),
-        )
-    });
-    let lower_a = campaign.noise.lower_current_a.unwrap_or_else(|| {
-        estimate(
-            campaign
-                .runs
-                .iter()
-                .map(|run| run.lower_current_a.as_slice())
-                .collect(),
-        )
-    });
-    Currents {
-        lift_a: lift_a.max(CURRENT_NOISE_FLOOR_A),
-        lower_a: lower_a.max(CURRENT_NOISE_FLOOR_A),
-    }
-}
-
-/// Half a second, samples.
-fn persistence_block(campaign: &Campaign) -> usize {
-    ((0.5 * campaign.sample_rate_hz).round() as usize).max(2)
-}
-
-/// How much more the mean of the currents' noise over half a second varies than that of white noise would.
-///
-/// Part of a logger's noise is slow; on plateaus of the current the variance of block means shows how much.
-fn current_persistence(campaign: &Campaign, sigma: Currents) -> f64 {
-    let block = persistence_block(campaign);
-    let (mut ratio_sum, mut blocks) = (0.0, 0.0);
-    for run in &campaign.runs {
-        for (record, sigma_a) in [
-            (&run.lift_current_a, sigma.lift_a),
-            (&run.lower_current_a, sigma.lower_a),
-        ] {
-            for plateau in plateaus(record, sigma_a, 4 * block) {
-                let mean = plateau.iter().sum::<f64>() / plateau.len() as f64;
-                for part in plateau.chunks_exact(block) {
-                    let part_mean = part.iter().sum::<f64>() / block as f64;
-                    ratio_sum += (part_mean - mean).powi(2) * block as f64 / (sigma_a * sigma_a);
-                    blocks += 1.0;
-                }
-                blocks -= 1.0;
-            }
-        }
-    }
-    if blocks < 20.0 {
-        return 1.0;
-    }
-    (ratio_sum / blocks).max(1.0)
-}
-
-/// Stretches of at least `shortest` samples over which a current stays put, well above its zero.
-fn plateaus(record: &[f64], sigma_a: f64, shortest: usize) -> Vec<&[f64]> {
-    let mut found = Vec::new();
-    let mut start = 0;
-    for end in 1..=record.len() {
-        let level = record[start..end.min(start + 10)].iter().sum::<f64>()
-            / (end.min(start + 10) - start) as f64;
-        let leaves = end == record.len() || (record[end] - level).abs() > 5.0 * sigma_a;
-        if leaves {
-            if end - start >= shortest && level > 20.0 * sigma_a {
-                found.push(&record[start..end]);
-            }
-            start = end;
-        }
-    }
-    found
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }
