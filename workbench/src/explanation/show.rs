@@ -381,6 +381,8 @@ mod tests {
         let step = Step {
             effect: "lowering-leakage",
             form: Some("thinning"),
+            form_undetermined: false,
+            other_forms: Vec::new(),
             changed_from: None,
             error_before: 3.0,
             error_after: 1.0,
