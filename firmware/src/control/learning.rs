@@ -41,7 +41,7 @@ impl Learning {
     }
 
     /// A move that came to rest `beyond` its set point is to be corrected: it is over now, and tells more than others
-    /// do. A lift that swung that far tells of nothing else. True until it has been taken in.
+    /// do. A lift that swung that far shows the swing alone. True until the move has been evaluated.
     pub fn hurries(&mut self, beyond: Micrometre, motion: &mut Motion) -> bool {
         if let Some(course) = &mut self.course {
             course.end();
