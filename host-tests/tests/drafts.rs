@@ -19,6 +19,13 @@ const BAR: f64 = 0.25;
 /// What is less than this many sigmas, root mean square, is no signature.
 const NO_SIGNATURE: f64 = 0.02;
 
+/// A shipped campaign made ready for a model.
+fn ready(campaign: &str, model: Model) -> (Experiment, Model) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns");
+    let campaign = Campaign::load(&folder.join(campaign)).expect("a campaign");
+    (Experiment::new(&campaign, &model), model)
+}
+
 /// A campaign with what the dynamic model makes of it.
 struct Compared {
     experiment: Experiment,
@@ -29,10 +36,7 @@ struct Compared {
 
 impl Compared {
     fn new() -> Self {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/clean-dynamic");
-        let campaign = Campaign::load(&folder).expect("a campaign");
-        let model = Model::dynamic();
-        let experiment = Experiment::new(&campaign, &model);
+        let (experiment, model) = ready("clean-dynamic", Model::dynamic());
         let estimate = Estimate::new(&experiment, Vec::new());
         let weights = Weights::new(&experiment, &model, &estimate);
         Self {
@@ -106,10 +110,7 @@ fn shown(
 
 #[test]
 fn a_condensed_experiment_shows_what_an_effect_changes() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/clean-steady");
-    let campaign = Campaign::load(&folder).expect("a campaign");
-    let model = Model::nominal();
-    let experiment = Experiment::new(&campaign, &model);
+    let (experiment, model) = ready("clean-steady", Model::nominal());
     let estimate = Estimate::new(&experiment, Vec::new());
     let condensed = experiment.condensed(&model, &estimate);
     assert!(2 * condensed.samples() < experiment.samples());
@@ -127,10 +128,7 @@ fn a_condensed_experiment_shows_what_an_effect_changes() {
 
 #[test]
 fn a_condensed_experiment_leaves_what_noise_leaves() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/clean-steady");
-    let campaign = Campaign::load(&folder).expect("a campaign");
-    let model = Model::nominal();
-    let experiment = Experiment::new(&campaign, &model);
+    let (experiment, model) = ready("clean-steady", Model::nominal());
     let base = fit_base(&experiment, &model);
     let condensed = experiment.condensed(&model, &base.estimate);
     let seen = evaluate(&condensed, &model, base.estimate);
