@@ -18,6 +18,13 @@ pub struct Clocks {
 }
 
 impl Clocks {
+    /// Whether any channel is off by more than one sigma of the prior.
+    #[must_use]
+    pub fn are_off(&self) -> bool {
+        let mut offsets_s = self.offsets_s.iter();
+        offsets_s.any(|offset_s| offset_s.abs() > OFFSET_PRIOR_S)
+    }
+
     /// A simulated trace as channels with these offsets would have been logged at `time_s`.
     #[must_use]
     pub fn stamped(&self, time_s: &[f64], trace: &Trace) -> Trace {

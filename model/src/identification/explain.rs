@@ -260,7 +260,8 @@ fn steps(experiment: &Experiment, model: &Model, before: &Fit, found: &Found) ->
             true => found.held_out,
             false => held_out(experiment, model, &fit),
         };
-        let candidate = beside_others(experiment, model, &found.fit, effect);
+        let whole = with_last(experiment, model, &found.fit, effect);
+        let candidate = beside_others(experiment, model, whole.clone());
         let estimate = &found.fit.estimate;
         let id = estimate.effects[effect].effect.id();
         let with_it = weighed
@@ -275,7 +276,7 @@ fn steps(experiment: &Experiment, model: &Model, before: &Fit, found: &Found) ->
             confidence: with_it.map(|set| set.probability).sum(),
             detectability: candidate.detectability,
             other_forms: other_forms(&found.fit, id, &weighed),
-            indistinguishable: alternatives(experiment, model, &found.fit, effect, &weighed),
+            indistinguishable: alternatives(experiment, model, &whole, &weighed),
             values: candidate.values().to_vec(),
             intervals: candidate.intervals,
             changed_from: estimate.adopted_as(id).map(|adopted| adopted.size),
@@ -299,11 +300,11 @@ fn with_some(experiment: &Experiment, model: &Model, found: &Found, effects: &[u
     }
 }
 
-/// One effect of a fit weighed beside all others.
-fn beside_others(experiment: &Experiment, model: &Model, fit: &Fit, effect: usize) -> Candidate {
-    let named = fit.estimate.effects[effect].effect;
-    let whole = with_last(experiment, model, fit, effect);
-    let without = whole.estimate.without(whole.estimate.effects.len() - 1);
+/// The last effect of a fit weighed beside all others.
+fn beside_others(experiment: &Experiment, model: &Model, whole: Fit) -> Candidate {
+    let last = whole.estimate.effects.len() - 1;
+    let named = whole.estimate.effects[last].effect;
+    let without = whole.estimate.without(last);
     let base = evaluate(experiment, model, without);
     weigh(experiment, model, &base, named, whole)
 }
@@ -316,17 +317,17 @@ fn other_forms(fit: &Fit, id: &str, weighed: &[Weighed]) -> Vec<Option<&'static 
         .collect()
 }
 
-/// Effects that explain the campaign as well in the place of one of a fit.
+/// Effects that explain the campaign as well in the place of the last one of a fit.
 fn alternatives(
     experiment: &Experiment,
     model: &Model,
-    fit: &Fit,
-    effect: usize,
+    whole: &Fit,
     weighed: &[Weighed],
 ) -> Vec<Alternative> {
-    let named = fit.estimate.effects[effect].effect.id();
-    let whole = with_last(experiment, model, fit, effect);
-    let own: Vec<&str> = super::subset::posterior::key(fit).ids().collect();
+    let last = whole.estimate.effects.len() - 1;
+    let named = whole.estimate.effects[last].effect.id();
+    let own = key_of(&whole.estimate);
+    let own: Vec<&str> = own.ids().collect();
     let other = |set: &&Weighed| -> Option<&'static str> {
         let mut others = set.key.ids().filter(|id| !own.contains(id));
         let other = others.next()?;
@@ -345,7 +346,7 @@ fn alternatives(
             let effects = &set.fit.estimate.effects;
             let index = effects.iter().position(|added| added.effect.id() == id)?;
             let its = with_last(experiment, model, set.fit, index);
-            Alternative::new(experiment, model, &whole, (its, set.likelier))
+            Alternative::new(experiment, model, whole, (its, set.likelier))
         })
         .collect();
     alternatives.sort_by(|a, b| b.likelier.total_cmp(&a.likelier));

@@ -16,6 +16,8 @@ pub(super) struct Coarse<'a> {
     pub few: Experiment,
     /// What the same estimate leaves there.
     pub seen: Fit,
+    /// The same runs drafted around it.
+    pub drafted: Experiment,
 }
 
 impl<'a> Coarse<'a> {
@@ -26,12 +28,14 @@ impl<'a> Coarse<'a> {
             true => evaluate(&few, model, present.estimate.clone()),
             false => present.clone(),
         };
+        let drafted = few.drafted(model, &present.estimate);
         Self {
             experiment,
             model,
             present,
             few,
             seen,
+            drafted,
         }
     }
 

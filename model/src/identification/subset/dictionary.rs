@@ -37,8 +37,8 @@ pub(in super::super) struct Dictionary {
     pub is_thorough: bool,
     /// Residuals without any of them.
     without: Vec<Vec<f64>>,
-    /// What adapts.
-    jacobian: Jacobian,
+    /// Sensitivities to what adapts, at the fit that it was made around.
+    pub jacobian: Jacobian,
     estimate: Estimate,
 }
 
@@ -103,14 +103,13 @@ impl Around<'_> {
         let slow = slow_columns(few, model, seen);
         let jacobian = jacobian_by(few, model, seen, &slow);
         let here = huber(seen.residuals.clone());
-        let drafted = few.drafted(model, &seen.estimate);
         let fine = self.screen(few, &jacobian, &here);
         let own = self.own(&fine);
         let mut without = here.clone();
         for entry in &own {
             add(&mut without, &entry.change);
         }
-        let rough = self.screen(&drafted, &jacobian, &here);
+        let rough = self.screen(&self.coarse.drafted, &jacobian, &here);
         let new = rough.columns(self.effects.clone());
         let forms = self.other_forms(&fine, &own);
         let changed = match self.changes {
@@ -124,9 +123,7 @@ impl Around<'_> {
 
     /// A dictionary with what fine searches find of effects whose cost has many valleys.
     pub fn thorough(&self, dictionary: Dictionary) -> Dictionary {
-        let Coarse {
-            few, model, seen, ..
-        } = self.coarse;
+        let seen = &self.coarse.seen;
         let Dictionary {
             entries,
             without,
@@ -134,9 +131,8 @@ impl Around<'_> {
             ..
         } = dictionary;
         let here = huber(seen.residuals.clone());
-        let drafted = few.drafted(model, &seen.estimate);
         let entries = self
-            .screen(&drafted, &jacobian, &here)
+            .screen(&self.coarse.drafted, &jacobian, &here)
             .fine_columns(entries);
         Dictionary {
             is_thorough: true,

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use super::super::estimate::{Estimate, Shared};
 use super::super::frame::Frame;
 use super::super::jacobian::Jacobian;
+use crate::effects::is_same;
 
 /// The frames of sets that have some of the effects of the present fit.
 pub(super) struct Frames<'a> {
@@ -36,9 +37,7 @@ impl<'a> Frames<'a> {
         let has = |&index: &usize| {
             let own = self.present.effects[index].effect;
             (0..estimate.effects.len()).any(|other| {
-                let effect = estimate.effects[other].effect;
-                let same = effect.id() == own.id() && effect.form() == own.form();
-                same && !estimate.is_unchanged(other)
+                is_same(estimate.effects[other].effect, own) && !estimate.is_unchanged(other)
             })
         };
         let bits = self.free.iter().enumerate();

@@ -8,6 +8,7 @@ use super::super::clocks::{Clocks, OFFSET_PRIOR_S};
 use super::super::estimate::Estimate;
 use super::super::experiment::Experiment;
 use super::super::fit::{Fit, refine};
+use crate::effects::Effect;
 use crate::model::Model;
 
 /// A fit's clocks are off by so much, s, if a lag may be in another valley.
@@ -22,12 +23,15 @@ pub(super) fn on_time(experiment: &Experiment, model: &Model, fit: Fit) -> Fit {
     if other.cost < fit.cost { other } else { fit }
 }
 
+/// Whether an effect delays what a channel shows: its size is a time.
+pub(super) fn is_delay(effect: &dyn Effect) -> bool {
+    effect.parameters()[0].unit == "s"
+}
+
 /// An estimate whose lag has what the clocks of its channels took; `None` without a lag or where the clocks are in step.
 fn given_back(estimate: &Estimate) -> Option<Estimate> {
-    let is_lag = |&index: &usize| {
-        let unit = estimate.effects[index].effect.parameters()[0].unit;
-        unit == "s" && !estimate.is_unchanged(index)
-    };
+    let is_lag =
+        |&index: &usize| is_delay(estimate.effects[index].effect) && !estimate.is_unchanged(index);
     let index = (0..estimate.effects.len()).find(is_lag)?;
     let effect = estimate.effects[index].effect;
     let channels = effect.channels().iter();

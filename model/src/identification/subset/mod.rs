@@ -29,7 +29,7 @@ pub mod single;
 
 use std::time::Instant;
 
-use super::clocks::{Clocks, OFFSET_PRIOR_S};
+use super::clocks::Clocks;
 use super::experiment::Experiment;
 use super::explain::{Progress, showing};
 use super::fit::{Fit, evaluate, evaluate_weighted};
@@ -52,8 +52,8 @@ const ROUNDS: usize = 6;
 /// How many effects more than the present ones a set may have that a dictionary leads to.
 const MORE: usize = 2;
 
-/// Error without an effect up to which what jumps may explain as much in its place: beyond, where it jumps tells them
-/// apart.
+/// Largest error without an effect at which an effect that jumps may explain as much in its place. Above it the instants
+/// of the jumps tell the two apart.
 const FAINT: f64 = 1.5;
 
 /// Sets that are tried on held-out runs in one round.
@@ -201,7 +201,7 @@ impl Search<'_> {
             && self.refitted.least_error() > EXPLAINED
         {
             let coarse = Coarse::new(self.experiment, self.model, &in_step);
-            let dictionary = self.around(&coarse, is_late).dictionary();
+            let dictionary = self.around(&coarse, late::is_delay).dictionary();
             self.tries(&coarse, &dictionary, MORE);
         }
     }
@@ -257,7 +257,12 @@ impl Search<'_> {
             price: starts.price,
             options: self.options,
         };
-        for fit in refits.of(starts.estimates, &self.refitted, self.progress) {
+        for fit in refits.of(
+            starts.estimates,
+            &dictionary.jacobian,
+            &self.refitted,
+            self.progress,
+        ) {
             if limits::is_told(self.experiment, &fit.estimate) {
                 self.refitted.insert(fit);
             }
@@ -299,19 +304,10 @@ impl Search<'_> {
     }
 }
 
-/// Whether an effect, in some form, delays what a channel shows.
-fn is_late(effect: &dyn Effect) -> bool {
-    effect.parameters()[0].unit == "s"
-}
-
 /// A fit with its clocks in step, if they are off: what is missing may be late, and while clocks stand in for that no
 /// secant shows it.
 fn synchronous(experiment: &Experiment, model: &Model, fit: &Fit) -> Option<Fit> {
-    let offsets_s = fit.estimate.clocks.offsets_s;
-    let off = offsets_s
-        .iter()
-        .any(|offset_s| offset_s.abs() > OFFSET_PRIOR_S);
-    off.then(|| {
+    fit.estimate.clocks.are_off().then(|| {
         let mut estimate = fit.estimate.clone();
         estimate.clocks = Clocks::default();
         evaluate(experiment, model, estimate)

@@ -2,14 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::super::candidate::{jacobian_by, slow_columns};
-use super::super::clocks::{Clocks, OFFSET_PRIOR_S};
+use super::super::clocks::Clocks;
 use super::super::descent::Descent;
 use super::super::estimate::Estimate;
-use super::super::experiment::Experiment;
 use super::super::explain::Progress;
 use super::super::fit::{Fit, evaluate_weighted, refine, sketch, with_last};
-use super::super::jacobian::{huber_residuals, square_sum};
+use super::super::jacobian::{Jacobian, huber_residuals, square_sum};
 use super::super::needle::threaded;
 use super::Options;
 use super::coarse::Coarse;
@@ -42,20 +40,25 @@ pub(super) struct Refits<'a> {
 impl Refits<'_> {
     /// Fits of some starts: each is simulated once and rid of members that do not keep their promise, the best ones are
     /// sketched under the present yardsticks, the best of those fitted coarsely, and the likely ones to all samples.
-    pub fn of(&self, starts: Vec<Estimate>, known: &Refitted, progress: Progress) -> Vec<Fit> {
+    ///
+    /// `jacobian` has the sensitivities at the coarse fit.
+    pub fn of(
+        &self,
+        starts: Vec<Estimate>,
+        jacobian: &Jacobian,
+        known: &Refitted,
+        progress: Progress,
+    ) -> Vec<Fit> {
         let Coarse {
             experiment,
             model,
-            few,
             seen: present,
+            drafted,
             ..
         } = self.coarse;
-        let drafted = few.drafted(model, &present.estimate);
-        let slow = slow_columns(few, model, present);
-        let jacobian = jacobian_by(few, model, present, &slow);
-        let frames = Frames::new(&jacobian, &present.estimate);
+        let frames = Frames::new(jacobian, &present.estimate);
         let residuals =
-            |estimate: &Estimate| huber_residuals(&drafted, model, &present.weights, estimate);
+            |estimate: &Estimate| huber_residuals(drafted, model, &present.weights, estimate);
         // The clocks have stood in for what is missing: where a start gives them back, slopes lead nowhere.
         let cost = |estimate: &Estimate| {
             let frame = frames.of(estimate);
@@ -74,7 +77,7 @@ impl Refits<'_> {
         let mut starts = distinct(starts);
         starts.retain(|(_, start)| !known.contains(&key_of(start)));
         let sketch = |start: Estimate| {
-            let found = self.sketched(&drafted, start);
+            let found = self.sketched(start);
             (
                 found.cost + self.price.of_all(&found.estimate),
                 found.estimate,
@@ -86,14 +89,14 @@ impl Refits<'_> {
         let nearest = self.nearest(sketches, REFINED).into_par_iter();
         let approached: Vec<(f64, Fit)> = nearest
             .map(|start| {
-                let fit = on_time(&drafted, model, refine(&drafted, model, start));
+                let fit = on_time(drafted, model, refine(drafted, model, start));
                 let (estimate, weights) = (fit.estimate.clone(), present.weights.clone());
-                let under_present = evaluate_weighted(&drafted, model, estimate, weights).cost;
+                let under_present = evaluate_weighted(drafted, model, estimate, weights).cost;
                 let cost = fit.cost.min(under_present) + self.price.of_all(&fit.estimate);
                 (cost, fit)
             })
             .collect();
-        let likely = self.likely(&drafted, approached).into_par_iter();
+        let likely = self.likely(approached).into_par_iter();
         let refined = likely.map(|estimate| {
             let fit = on_time(experiment, model, refine(experiment, model, estimate));
             let fit = self.threaded(fit);
@@ -104,18 +107,16 @@ impl Refits<'_> {
     }
 
     /// Those of some coarse fits that may be the best to all samples: whose cost with its price is near the least one.
-    /// What jumps is met less exactly on fewer samples.
-    fn likely(&self, drafted: &Experiment, approached: Vec<(f64, Fit)>) -> Vec<Estimate> {
+    /// Sizes of effects that jump are less exact on fewer samples.
+    fn likely(&self, approached: Vec<(f64, Fit)>) -> Vec<Estimate> {
         let Some((least, best)) = approached.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else {
             return Vec::new();
         };
         let least = least.min(self.best);
-        let near = least + CLOSE * Price::beside(drafted, best).unit;
+        let near = least + CLOSE * Price::beside(&self.coarse.drafted, best).unit;
         let near_for_jumps = MISSED * least;
         let is_near = |(cost, fit): &(f64, Fit)| {
-            let mut effects = fit.estimate.effects.iter();
-            let is_rough = effects.any(|added| added.effect.search().is_rough());
-            *cost <= near || (is_rough && *cost <= near_for_jumps)
+            *cost <= near || (is_rough(&fit.estimate) && *cost <= near_for_jumps)
         };
         let near = approached.iter().filter(|approached| is_near(approached));
         near.map(|(_, fit)| fit.estimate.clone()).collect()
@@ -138,23 +139,14 @@ impl Refits<'_> {
     /// effect, and between two valleys no slope leads.
     pub fn one(&self, start: Estimate) -> Fit {
         let Coarse {
-            experiment,
-            model,
-            present,
-            few,
-            ..
+            experiment, model, ..
         } = self.coarse;
-        let drafted = few.drafted(model, &present.estimate);
         let from = |start: Estimate| {
-            let found = self.sketched(&drafted, start);
+            let found = self.sketched(start);
             let fit = refine(experiment, model, found.estimate);
             self.threaded(on_time(experiment, model, fit))
         };
-        let offsets_s = start.clocks.offsets_s;
-        let off = offsets_s
-            .iter()
-            .any(|offset_s| offset_s.abs() > OFFSET_PRIOR_S);
-        let in_step = off.then(|| {
+        let in_step = start.clocks.are_off().then(|| {
             let clocks = Clocks::default();
             from(Estimate {
                 clocks,
@@ -169,9 +161,15 @@ impl Refits<'_> {
     }
 
     /// Where a start leads under the present yardsticks; far from the data also by way of a coarse fit.
-    fn sketched(&self, drafted: &Experiment, start: Estimate) -> Descent {
-        let weights = &self.coarse.seen.weights;
-        let from = |far: bool| sketch(drafted, self.coarse.model, weights, start.clone(), far);
+    fn sketched(&self, start: Estimate) -> Descent {
+        let Coarse {
+            model,
+            seen,
+            drafted,
+            ..
+        } = self.coarse;
+        let weights = &seen.weights;
+        let from = |far: bool| sketch(drafted, model, weights, start.clone(), far);
         let near = from(false);
         let samples = weights.count() as f64;
         if (near.cost / samples).sqrt() <= ASTRAY {
@@ -222,6 +220,12 @@ fn lightened(start: Estimate, cost: impl Fn(&Estimate) -> (f64, Estimate)) -> (f
     (least, estimate)
 }
 
+/// Whether the cost does not fall smoothly along the size of some effect.
+fn is_rough(estimate: &Estimate) -> bool {
+    let mut effects = estimate.effects.iter();
+    effects.any(|added| added.effect.search().is_rough())
+}
+
 /// Of each set the estimate with the least cost, or the best few where there are many valleys.
 fn distinct(mut priced: Vec<(f64, Estimate)>) -> Vec<(f64, Estimate)> {
     priced.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -232,9 +236,7 @@ fn distinct(mut priced: Vec<(f64, Estimate)>) -> Vec<(f64, Estimate)> {
             .iter()
             .filter(|(_, other)| key_of(other) == key)
             .count();
-        let mut effects = estimate.effects.iter();
-        let rough = effects.any(|added| added.effect.search().is_rough());
-        if known < if rough { VALLEYS } else { 1 } {
+        if known < if is_rough(&estimate) { VALLEYS } else { 1 } {
             distinct.push((cost, estimate));
         }
     }

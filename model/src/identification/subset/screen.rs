@@ -43,7 +43,7 @@ pub(super) const EXPLAINED: f64 = 1.05;
 
 /// Effects looked for one by one.
 pub(super) struct Screen<'a> {
-    /// What effects are simulated on.
+    /// The experiment that effects are simulated on: the condensed one, or its drafts.
     pub experiment: &'a Experiment,
     pub coarse: &'a Coarse<'a>,
     pub scans: &'a Scans,

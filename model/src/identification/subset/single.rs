@@ -16,7 +16,7 @@ use super::dictionary::Around;
 use super::entry::Kind;
 use super::price::Price;
 use super::refit::Refits;
-use crate::effects::{AddedEffect, Effect};
+use crate::effects::{AddedEffect, Effect, is_same};
 use crate::model::Model;
 
 /// Forms that are fitted in full, the most promising ones; of the others the start of a fit is weighed.
@@ -46,8 +46,7 @@ pub fn try_effects(
     let start = |effect: &'static dyn Effect| -> Option<(f64, Estimate)> {
         let own = |&column: &usize| {
             let entry = &entries[column];
-            let added = entry.added.effect;
-            entry.kind == Kind::New && added.id() == effect.id() && added.form() == effect.form()
+            entry.kind == Kind::New && is_same(entry.added.effect, effect)
         };
         let columns = (0..entries.len()).filter(own);
         let subsets = columns.map(|column| fitted(gram, entries, vec![column]));
