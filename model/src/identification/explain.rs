@@ -191,7 +191,7 @@ pub(super) fn showing(
 }
 
 /// Effects that the plant can have.
-pub fn possible(model: &Model) -> impl Iterator<Item = &'static dyn Effect> {
+pub(super) fn possible(model: &Model) -> impl Iterator<Item = &'static dyn Effect> {
     let dynamics = model.constants().dynamics;
     let effects = model.catalogue().into_iter();
     effects.filter(move |effect| effect.needs().is_none_or(|needed| needed == dynamics))

@@ -32,7 +32,6 @@ pub fn routes() -> Router<Arc<Sessions>> {
         .route("/{token}/api/state", get(state))
         .route("/{token}/api/run", get(run))
         .route("/{token}/api/worst", get(worst))
-        .route("/{token}/api/effects", get(effects))
         .route("/{token}/api/preview", post(preview))
         .route("/{token}/api/start", post(start))
         .route("/{token}/api/cancel", post(cancel))
@@ -166,12 +165,6 @@ async fn preview(State(sessions): Known, Json(trial): Json<Trial>) -> Answer {
     let none =
         || Refusal::conflict("the model has no such parameter any more, or there is no such run");
     Ok(Json(view.await?.ok_or_else(none)?))
-}
-
-async fn effects(State(sessions): Known, Query(of): Query<Of>) -> Answer {
-    let session = find(&sessions, &of.session)?;
-    let open = lock(&session);
-    Ok(Json(views::catalogue(&open)))
 }
 
 #[derive(Debug, Deserialize)]

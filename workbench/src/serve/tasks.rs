@@ -85,9 +85,9 @@ enum What {
 /// What a task came to.
 pub enum Outcome {
     /// A ranking.
-    Ranking(Ranking),
+    Ranking(Arc<Ranking>),
     /// An explanation.
-    Explained(Explained),
+    Explained(Arc<Explained>),
     /// Steps of the session.
     Steps(Vec<Step>),
 }
@@ -96,8 +96,8 @@ impl Outcome {
     /// Takes it over.
     pub fn apply(self, session: &mut Session) {
         match self {
-            Self::Ranking(ranking) => session.ranking = Some(Arc::new(ranking)),
-            Self::Explained(explained) => session.explained = Some(Arc::new(explained)),
+            Self::Ranking(ranking) => session.ranking = Some(ranking),
+            Self::Explained(explained) => session.explained = Some(explained),
             Self::Steps(steps) => steps.into_iter().for_each(|step| session.push(step)),
         }
     }
@@ -165,8 +165,8 @@ impl Ready {
     pub fn run(&self, reporter: &Reporter) -> Outcome {
         let before = &self.present.evaluated.fit;
         match &self.what {
-            What::Rank => Outcome::Ranking(self.rank(reporter)),
-            What::Explain => Outcome::Explained(self.explain(reporter)),
+            What::Rank => Outcome::Ranking(Arc::new(self.rank(reporter))),
+            What::Explain => Outcome::Explained(Arc::new(self.explain(reporter))),
             What::Add(effect) => {
                 let title = format!("Added {}", full_name(*effect));
                 Outcome::Steps(vec![self.fitted(

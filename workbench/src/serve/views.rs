@@ -15,7 +15,7 @@ use crate::error::Error;
 use crate::explanation::rebuilt;
 use crate::report::run_views::conditions;
 
-pub use effects::{catalogue, tried};
+pub use effects::tried;
 
 /// What went wrong, with file and place where it is a file's fault.
 pub fn fault(error: &Error) -> Value {

@@ -5,7 +5,7 @@ import { drawMap, worstCell } from "./error_map.js";
 import { drawMissing, drawRanking, insert } from "./missing.js";
 import { drawCourse, drawModel } from "./model_panel.js";
 import { drawRun, redrawRun } from "./run_plot.js";
-import { Refused, ask, begin, follow, post } from "./server.js";
+import { Refused, ask, begin, follow, leave, post } from "./server.js";
 
 /** @type {any} */
 let state = null;
@@ -20,8 +20,7 @@ let live = [];
 
 async function open() {
   try {
-    await begin();
-    state = await ask("state");
+    state = await begin();
   } catch (error) {
     return showFault(error);
   }
@@ -33,7 +32,10 @@ async function open() {
   else await show(0, null);
   performance.mark("first view");
   byId("views").dataset.ready = "";
-  follow(hear, refresh);
+  if (state.job) {
+    await follow(hear, guarded(refresh));
+    await refresh();
+  }
 }
 
 /** Asks for everything anew, and leaves the zoom as it is. */
@@ -66,9 +68,19 @@ const acts = {
     await refresh();
   }),
   run: guarded(async (/** @type {any} */ task) => {
+    if (!byId("job").hidden) return say("A computation is running; wait for it or cancel it.");
     [tried, live] = [[], []];
-    const { title } = await post("start", task);
-    if (title) showJob(title);
+    showJob("Starting");
+    try {
+      await follow(hear, guarded(refresh));
+      const { title } = await post("start", task);
+      // It may be over already.
+      if (title && !byId("job").hidden) byId("job").dataset.title = title;
+    } catch (error) {
+      leave();
+      showJob(null);
+      throw error;
+    }
   }),
   preview: guarded(preview),
 };
@@ -212,6 +224,7 @@ byId("fit").addEventListener("click", () => acts.run({ task: "fit" }));
 byId("rank").addEventListener("click", () => acts.run({ task: "rank" }));
 byId("explain").addEventListener("click", () => acts.run({ task: "explain" }));
 byId("cancel").addEventListener("click", guarded(async () => {
+  leave();
   await post("cancel", {});
   await refresh();
 }));

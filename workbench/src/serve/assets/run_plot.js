@@ -19,11 +19,11 @@ const BAND = 2;
 
 /** The plotting library, which loads while the campaign is read. */
 export const library = new Promise((resolve, reject) => {
-  const script = document.createElement("script");
-  script.src = "plotly.js";
-  script.onload = () => resolve(/** @type {any} */ (window).Plotly);
-  script.onerror = () => reject(new Error("the plotting library cannot be loaded"));
-  document.head.append(script);
+  const global = /** @type {any} */ (window);
+  if (global.Plotly) return resolve(global.Plotly);
+  const script = byId("plotly");
+  script.addEventListener("load", () => resolve(global.Plotly));
+  script.addEventListener("error", () => reject(new Error("the plotting library cannot be loaded")));
 });
 
 /** Draws a run. `place` is the stretch to look at, its channel first; `null` is the whole run, and `undefined` leaves the
@@ -90,7 +90,7 @@ function figure(view) {
       lines: signals(channel) }),
     { height: share * RESIDUAL, title: `${channel.title}: measured − simulated (grey: 95 % of the noise)`, unit: "σ",
       band: true, lines: [{ name: "residual", y: channel.residual, colour: "residual", key: "residual", unit: "σ",
-        changes: true }] },
+        of: channel.title, changes: true }] },
   ]);
   rows.push({ height: share * CURRENTS, title: "currents of the valves", unit: "A", lines: [
     { name: "lift current", y: view.lift_current_a, colour: "lift", key: "lift", unit: "A" },
@@ -103,7 +103,7 @@ function figure(view) {
     const axis = index === 0 ? "y" : `y${index + 1}`;
     const high = (top - GAP) / inner, low = (top - GAP - row.height) / inner;
     top -= row.height + GAP;
-    layout[index === 0 ? "yaxis" : `yaxis${index + 1}`] = ordinate(row.unit, low, high);
+    layout[index === 0 ? "yaxis" : `yaxis${index + 1}`] = ordinate(row.unit, low, high, row.band ? 3 : 5);
     layout.annotations.push({ text: row.title, x: 0, xref: "paper", xanchor: "left", y: high, yref: "paper",
       yanchor: "bottom", showarrow: false, font: { size: 12, color: colour("ink") } });
     if (row.band) layout.shapes.push({ type: "rect", xref: "paper", yref: axis, x0: 0, x1: 1, y0: -BAND, y1: BAND,
@@ -112,7 +112,7 @@ function figure(view) {
       traces.push({ type: "scatter", mode: "lines", x: view.time_s, y: line.y, yaxis: axis, name: line.name,
         meta: line.changes, legendgroup: line.key, showlegend: !shown.has(line.key),
         line: { color: colour(line.colour), width: line.width ?? 1.4, dash: line.dash },
-        hovertemplate: `%{y:.4~g} ${line.unit}` });
+        hovertemplate: `%{y:.4~g} ${line.unit}${line.of ? ` (${line.of})` : ""}` });
       shown.add(line.key);
     }
   });
@@ -122,12 +122,11 @@ function figure(view) {
 
 /** @param {any} channel */
 function signals(channel) {
-  const lines = [{ name: "measured", y: channel.measured, colour: "measured", key: "measured", width: 1, unit: channel.unit }];
-  if (channel.first) lines.push(/** @type {any} */ ({ name: "first model", y: channel.first, colour: "first",
-    key: "first", dash: "dot", unit: channel.unit }));
-  lines.push(/** @type {any} */ ({ name: "simulated", y: channel.simulated, colour: "simulated", key: "simulated",
-    width: 1.8, unit: channel.unit, changes: true }));
-  return lines;
+  /** @type {any[]} */
+  const lines = [{ name: "measured", y: channel.measured, colour: "measured", key: "measured", width: 1 }];
+  if (channel.first) lines.push({ name: "first model", y: channel.first, colour: "first", key: "first", dash: "dot" });
+  lines.push({ name: "simulated", y: channel.simulated, colour: "simulated", key: "simulated", width: 1.8, changes: true });
+  return lines.map((line) => ({ ...line, unit: channel.unit, of: channel.title }));
 }
 
 /** By how much the parts are smaller than they could be, so that all of them fit into a wide window.
@@ -157,8 +156,9 @@ function frame() {
 
 /** @param {string} unit
  * @param {number} low
- * @param {number} high */
-function ordinate(unit, low, high) {
+ * @param {number} high
+ * @param {number} nticks */
+function ordinate(unit, low, high, nticks) {
   return { title: { text: unit, standoff: 4 }, domain: [Math.max(0, low), Math.min(1, high)], fixedrange: true,
-    gridcolor: colour("line"), zerolinecolor: colour("band"), nticks: 4, automargin: false };
+    gridcolor: colour("line"), zerolinecolor: colour("band"), nticks };
 }

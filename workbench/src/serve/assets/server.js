@@ -14,9 +14,20 @@ export class Refused extends Error {
 
 let session = "";
 
-/** Begins the session of this tab. */
+/** Where the tab keeps its session while it is loaded again. */
+const KEPT = "hitch session";
+
+/** Begins the session of this tab, or goes on with it if the page was loaded again; its state. */
 export async function begin() {
+  const navigation = /** @type {PerformanceNavigationTiming} */ (performance.getEntriesByType("navigation")[0]);
+  session = (navigation.type === "reload" && sessionStorage.getItem(KEPT)) || "";
+  if (session) {
+    const state = await ask("state").catch(() => null);
+    if (state) return state;
+  }
   session = (await post("begin", {})).session;
+  sessionStorage.setItem(KEPT, session);
+  return ask("state");
 }
 
 /** Asks for a view.
@@ -52,16 +63,27 @@ async function answer(request) {
   return body;
 }
 
-/** Follows what runs for this tab.
+/** Follows what runs for this tab until it is over. A tab that waits for nothing holds no connection: a browser has few.
  * @param {(message: any) => void} hear
- * @param {() => void} reconnected */
+ * @param {() => void} reconnected
+ * @returns {Promise<void>} settled as soon as nothing can be missed */
 export function follow(hear, reconnected) {
   const events = new EventSource(address("events"));
-  let lost = false;
-  events.onmessage = (event) => hear(JSON.parse(event.data));
-  events.onerror = () => { lost = true; };
-  events.onopen = () => {
-    if (lost) reconnected();
-    lost = false;
+  let opened = false;
+  events.onmessage = (event) => {
+    const message = JSON.parse(event.data);
+    if (["done", "failed"].includes(message.kind)) events.close();
+    hear(message);
   };
+  leave = () => events.close();
+  return new Promise((resolve) => {
+    events.onopen = () => {
+      if (opened) reconnected();
+      opened = true;
+      resolve();
+    };
+  });
 }
+
+/** Ends following. */
+export let leave = () => {};

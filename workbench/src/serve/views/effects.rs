@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use hitch_model::effects::{Effect, full_name};
 use hitch_model::identification::candidate;
-use hitch_model::identification::explain::possible;
+use hitch_model::identification::explain;
 use hitch_model::identification::fit::Fit;
 use serde_json::{Value, json};
 
@@ -20,14 +20,6 @@ pub fn described(effect: &dyn Effect) -> Value {
         "shows": effect.shows(),
         "source": effect.source(),
     })
-}
-
-/// Every effect that the model can have and has not.
-pub fn catalogue(session: &Session) -> Value {
-    let present = &session.fit().estimate.effects;
-    let absent = possible(&session.subject().model)
-        .filter(|effect| present.iter().all(|added| added.effect.id() != effect.id()));
-    absent.map(described).collect()
 }
 
 /// A candidate as soon as it was tried: its confidence is known when all were.
@@ -87,10 +79,7 @@ pub fn explained(session: &Session) -> Value {
 fn found(explained: &Explained) -> Value {
     let shown = &explained.shown;
     let steps = explained.explanation.steps.iter().zip(&shown.steps);
-    let step = |(found, shown): (
-        &hitch_model::identification::explain::Step,
-        &explanation::Step,
-    )| {
+    let step = |(found, shown): (&explain::Step, &explanation::Step)| {
         json!({
             "effect": described(found.effect),
             "changed_from": shown.changed_from,
