@@ -11,10 +11,10 @@ mod asc;
 mod candump;
 mod clock;
 mod description;
+mod ear;
 mod frame;
 mod line;
 mod listener;
-
 mod settings;
 mod signal;
 
@@ -27,6 +27,7 @@ use super::CampaignError;
 use super::series::Series;
 use super::table::{Cells, LIFT, LOWER, Samples, TIME, Table};
 use crate::source_file::SourceFile;
+use ear::Ear;
 use listener::Listener;
 
 /// A kind of log.
@@ -59,12 +60,8 @@ pub fn read(
     format: Format,
     settings: &BusSettings,
 ) -> Result<Table, CampaignError> {
-    let mut listener = settings.listener();
-    let mut take = |frame: &frame::Frame<'_>| listener.take(source, frame);
-    match format {
-        Format::Candump => candump::read(source, &mut take)?,
-        Format::Asc => asc::read(source, &mut take)?,
-    }
+    let mut listener = settings.listener(source);
+    hear(source, format, &mut listener)?;
     let rows = required(source, &listener, settings, LIFT)?;
     required(source, &listener, settings, LOWER)?;
     let within_s = rows.median_step_s() / 2.0;
@@ -79,6 +76,14 @@ pub fn read(
     }
     let bytes = rows.bytes.clone();
     Table::new(Arc::clone(source), columns, bytes, Cells::OneALine)
+}
+
+/// Gives the frames of a log to somebody.
+fn hear(source: &SourceFile, format: Format, ear: &mut dyn Ear) -> Result<(), CampaignError> {
+    match format {
+        Format::Candump => candump::read(source, ear),
+        Format::Asc => asc::read(source, ear),
+    }
 }
 
 /// A current: without it there is no run.

@@ -180,9 +180,14 @@ impl BusSettings {
         Ok(())
     }
 
-    /// Somebody who hears all of it.
-    pub fn listener(&self) -> Listener<'_> {
-        Listener::new(&self.messages, self.channel.as_deref(), self.address)
+    /// Somebody who hears all of it in a log.
+    pub fn listener<'s>(&'s self, source: &'s SourceFile) -> Listener<'s> {
+        Listener::new(
+            source,
+            &self.messages,
+            self.channel.as_deref(),
+            self.address,
+        )
     }
 
     /// The signal that a column is taken from, for people.
