@@ -17,15 +17,18 @@ mod line;
 mod listener;
 mod settings;
 mod signal;
+mod survey;
 
 use std::path::Path;
 use std::sync::Arc;
 
 pub use settings::BusSettings;
+pub use survey::{Signals, signals};
 
 use super::CampaignError;
 use super::series::Series;
 use super::table::{Cells, LIFT, LOWER, Samples, TIME, Table};
+use crate::input_error::InputError;
 use crate::source_file::SourceFile;
 use ear::Ear;
 use listener::Listener;
@@ -49,6 +52,23 @@ impl Format {
             _ => None,
         }
     }
+}
+
+/// Refuses a log of a bus in a format that isn't read.
+///
+/// # Errors
+/// By which program it becomes one that is.
+pub fn check_known(path: &Path) -> Result<(), CampaignError> {
+    let end = path.extension().and_then(|end| end.to_str());
+    if !end.is_some_and(|end| end.eq_ignore_ascii_case("trc")) {
+        return Ok(());
+    }
+    let mend = "convert it to .asc, for example with python-can: python -m can.logconvert FILE.trc FILE.asc";
+    Err(InputError::of_file(
+        path,
+        "is a trace of a CAN bus by PCAN (TRC)",
+        mend,
+    ))
 }
 
 /// Reads a log of a bus.

@@ -160,7 +160,7 @@ impl BusSettings {
         let found = description.message(name)?;
         let sampled = Sampled {
             column,
-            signal: description.signal(found, signal, column.unit)?,
+            signal: description.signal(found, signal, column)?,
         };
         let matching = description.matching(found);
         let known = self
