@@ -4,6 +4,7 @@
 pub mod campaign;
 pub mod effects;
 pub mod expression;
+mod file_kind;
 pub mod identification;
 pub mod input_error;
 pub mod model;

@@ -2,6 +2,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::file_kind;
 use crate::input_error::{InputError, Place};
 
 /// Longest file that is read: an hour at 1 kHz with eight columns stays below it.
@@ -22,23 +23,7 @@ impl SourceFile {
     /// # Errors
     /// If the file is missing, not a regular file, too long, not readable or not UTF-8.
     pub fn read(path: &Path) -> Result<Self, InputError> {
-        let unreadable = |error: std::io::Error| unreadable(path, &error);
-        let about = fs::metadata(path).map_err(unreadable)?;
-        if !about.is_file() {
-            return Err(InputError::of_file(
-                path,
-                "is not a file",
-                "give the name of a text file",
-            ));
-        }
-        if about.len() > LONGEST_FILE_BYTES {
-            return Err(InputError::of_file(
-                path,
-                "is longer than 512 MiB",
-                "split the log into several runs",
-            ));
-        }
-        let bytes = fs::read(path).map_err(unreadable)?;
+        let bytes = bytes_of(path)?;
         if is_utf16(&bytes) {
             return Err(InputError::of_file(
                 path,
@@ -52,7 +37,38 @@ impl SourceFile {
                 path: path.to_path_buf(),
                 text: text.to_owned(),
             }),
-            Err(error) => Err(not_utf8(path, &bytes[..error.valid_up_to()])),
+            Err(error) => match file_kind::of_binary(bytes) {
+                Some((what, mend)) => Err(is_binary(path, what, mend)),
+                None => Err(not_utf8(path, &bytes[..error.valid_up_to()])),
+            },
+        }
+    }
+
+    /// Reads a text file in whatever encoding loggers and tools write: UTF-8, UTF-16, or else Windows-1252, which any
+    /// bytes are. A byte order mark in front is dropped.
+    ///
+    /// # Errors
+    /// If the file is missing, not a regular file, too long, not readable or no text.
+    pub fn read_any(path: &Path) -> Result<Self, InputError> {
+        let bytes = bytes_of(path)?;
+        let binary = file_kind::of_magic(&bytes).or_else(|| {
+            let no_text = || file_kind::of_binary(&bytes);
+            (!is_utf16(&bytes)).then(no_text).flatten()
+        });
+        match binary {
+            Some((what, mend)) => Err(is_binary(path, what, mend)),
+            None => Ok(Self {
+                path: path.to_path_buf(),
+                text: decoded(&bytes),
+            }),
+        }
+    }
+
+    /// A file whose text is not looked at: its name alone.
+    pub fn named(path: &Path) -> Self {
+        Self {
+            path: path.to_path_buf(),
+            text: String::new(),
         }
     }
 
@@ -75,6 +91,41 @@ impl SourceFile {
     pub fn error(&self, what: impl Into<String>, mend: impl Into<String>) -> InputError {
         InputError::of_file(&self.path, what, mend)
     }
+}
+
+/// The bytes of a regular file that is not too long.
+fn bytes_of(path: &Path) -> Result<Vec<u8>, InputError> {
+    let unreadable = |error: std::io::Error| unreadable(path, &error);
+    let about = fs::metadata(path).map_err(unreadable)?;
+    if !about.is_file() {
+        let mend = "give the name of a text file";
+        return Err(InputError::of_file(path, "is not a file", mend));
+    }
+    if about.len() > LONGEST_FILE_BYTES {
+        let mend = "split the log into several runs";
+        return Err(InputError::of_file(path, "is longer than 512 MiB", mend));
+    }
+    fs::read(path).map_err(unreadable)
+}
+
+/// The text of some bytes, without a byte order mark.
+fn decoded(bytes: &[u8]) -> String {
+    let encoding = if is_utf16(bytes) {
+        // Of what is mostly ASCII, the byte that is zero is the high one.
+        match bytes.first() {
+            Some(0 | 0xFE) => encoding_rs::UTF_16BE,
+            _ => encoding_rs::UTF_16LE,
+        }
+    } else if std::str::from_utf8(bytes).is_ok() {
+        encoding_rs::UTF_8
+    } else {
+        encoding_rs::WINDOWS_1252
+    };
+    encoding.decode(bytes).0.into_owned()
+}
+
+fn is_binary(path: &Path, what: &str, mend: &str) -> InputError {
+    InputError::of_file(path, format!("is {what}, not text"), mend)
 }
 
 /// Counts lines at LF, CR LF and lone CR, as the CSV reader does.
@@ -140,6 +191,17 @@ fn not_utf8(path: &Path, valid: &[u8]) -> InputError {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn text_is_decoded_from_what_loggers_write() {
+        let text = "Öl [°C]\n";
+        let utf16: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let cp1252 = b"\xD6l [\xB0C]\n";
+        let marked = [b"\xEF\xBB\xBF", text.as_bytes()].concat();
+        for bytes in [text.as_bytes(), &utf16, cp1252, &marked] {
+            assert_eq!(decoded(bytes), text, "{bytes:?}");
+        }
+    }
 
     #[test]
     fn counts_lines_however_they_end() {

@@ -89,6 +89,12 @@ impl<'a> TomlTable<'a> {
         self.entries.contains_key(key)
     }
 
+    /// True if the value of this key is a table.
+    pub fn is_table(&self, key: &str) -> bool {
+        let value = self.entries.get(key).map(Spanned::get_ref);
+        matches!(value, Some(DeValue::Table(_)))
+    }
+
     /// The keys of the table, in alphabetical order.
     pub fn keys(&self) -> impl Iterator<Item = &str> {
         self.entries.keys().map(|key| key.get_ref().as_ref())

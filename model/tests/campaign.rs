@@ -248,10 +248,6 @@ fn faults_of_logs_have_a_line_and_a_column() {
             "lift.csv:1:1: column lower_current_a is missing",
         ),
         (
-            fault(MANIFEST, &log.replace(',', ";")),
-            "lift.csv:1:1: columns are not separated by commas",
-        ),
-        (
             fault(MANIFEST, &log[log.find('\n').unwrap() + 1..]),
             "lift.csv:1:1: \"0.00\" stands where a column's name",
         ),
@@ -347,11 +343,11 @@ fn faults_of_the_manifest_have_a_line_and_a_column() {
         ),
         (
             toml("\"flow.csv\"", "\"../flow.csv\""),
-            "campaign.toml:14:8: \"../flow.csv\" is not the name of a file",
+            "campaign.toml:14:8: the folder holds no file \"../flow.csv\"",
         ),
         (
-            toml("\"flow.csv\"", "\"/etc/passwd\""),
-            "campaign.toml:14:8: \"/etc/passwd\" is not the name of a file",
+            toml("\"flow.csv\"", "\"/no/flow.csv\""),
+            "campaign.toml:14:8: there is no file \"/no/flow.csv\"",
         ),
         (
             toml("\"flow.csv\"", "\"\""),
@@ -396,14 +392,36 @@ fn faults_of_the_folder() {
 }
 
 #[test]
-fn text_that_is_not_utf8_is_refused_where_it_stands() {
-    let mut bytes = log().into_bytes();
+fn a_manifest_that_is_not_utf8_is_refused_where_it_stands() {
+    let mut bytes = MANIFEST.as_bytes().to_vec();
     let byte = bytes.iter().position(|b| *b == b'\n').unwrap() + 4;
     bytes[byte] = 0xff;
+    let said = fault_of(folder(&bytes, log().as_bytes()).path());
     assert!(
-        fault_of(folder(MANIFEST.as_bytes(), &bytes).path())
-            .starts_with("lift.csv:2:4: is not UTF-8")
+        said.starts_with("campaign.toml:2:4: is not UTF-8"),
+        "{said}"
     );
+}
+
+#[test]
+fn a_log_that_is_no_text_is_called_by_its_kind() {
+    for (bytes, expected) in [
+        (
+            &b"MDF     4.10    "[..],
+            "lift.csv: is an MDF file, not text; give its name the extension .mf4",
+        ),
+        (
+            b"PK\x03\x04\x14\0",
+            "lift.csv: is a ZIP archive or a workbook of Excel, not text",
+        ),
+        (
+            b"\x01\x02\0\x07\x08",
+            "lift.csv: is a binary file, not text",
+        ),
+    ] {
+        let said = fault_of(folder(MANIFEST.as_bytes(), bytes).path());
+        assert!(said.starts_with(expected), "{said}");
+    }
 }
 
 proptest! {

@@ -3,7 +3,7 @@ use clap::{Parser, Subcommand};
 
 use crate::commands::{
     add, calibrate, changes, compare, controller, diagnose, ecu, effects, explain,
-    flash_calibration, loop_, main_job, paper, record, simulate, tune,
+    flash_calibration, import, loop_, main_job, paper, record, simulate, tune,
 };
 use crate::error::Error;
 use crate::output;
@@ -56,6 +56,8 @@ pub enum Command {
     FlashCalibration(flash_calibration::Args),
     /// A campaign from a running ECU
     Record(record::Args),
+    /// A campaign from anybody's logs: tables, MDF, a bus; read where they are
+    Import(import::Args),
     /// Tunes position and rate control against the plant over loads and valve spread
     Tune(tune::Args),
     /// Turns an identified model into the firmware's calibration: valve map, thresholds, limits
@@ -82,6 +84,7 @@ impl Command {
             Self::Ecu(args) => ecu::run(args),
             Self::FlashCalibration(args) => flash_calibration::run(args),
             Self::Record(args) => record::run(args),
+            Self::Import(args) => import::run(args),
             Self::Tune(args) => tune::run(args),
             Self::Calibrate(args) => calibrate::run(args),
         }

@@ -12,6 +12,7 @@ pub mod demonstration;
 pub mod ecu;
 pub mod error;
 pub mod explanation;
+pub mod import;
 pub mod input_stream;
 pub mod model_arg;
 pub mod output;

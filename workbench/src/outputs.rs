@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::output::{JsonArg, check_writable, is_stdout, print};
 
 /// Ends of the names of files that a campaign is read from beside its manifest.
-const CAMPAIGN_FILES: [&str; 4] = ["csv", "log", "asc", "dbc"];
+const CAMPAIGN_FILES: [&str; 6] = ["csv", "log", "asc", "dbc", "mf4", "mdf"];
 
 /// Every document that a command writes.
 #[derive(Debug)]

@@ -1,9 +1,12 @@
 //! `campaign.toml`: which runs there are, and what is known of them.
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use super::bus_log::BusSettings;
+use super::columns::ColumnSettings;
 use super::cut::Cut;
-use super::{Bench, Campaign, CampaignError, Channel, Noise, Run, run_log};
+use super::run_log::{self, Settings};
+use super::table::Table;
+use super::{Bench, Campaign, CampaignError, Channel, Noise, Run};
 use crate::input_error::{InputError, quote};
 use crate::source_file::SourceFile;
 use crate::toml_reader::TomlTable;
@@ -25,8 +28,12 @@ const SIGMA: std::ops::RangeInclusive<f64> = 1e-6..=100.0;
 
 /// Reads a campaign's folder.
 pub fn load(dir: &Path) -> Result<Campaign, CampaignError> {
-    let source = SourceFile::read(&manifest_path(dir)?)?;
-    let top = TomlTable::parse(&source)?;
+    read(dir, &SourceFile::read(&manifest_path(dir)?)?)
+}
+
+/// Reads the campaign of a manifest that is or will be in `dir`.
+pub fn read(dir: &Path, source: &SourceFile) -> Result<Campaign, CampaignError> {
+    let top = TomlTable::parse(source)?;
     check_format(&top)?;
     top.only(&[
         "format",
@@ -36,6 +43,7 @@ pub fn load(dir: &Path) -> Result<Campaign, CampaignError> {
         "clocks",
         "noise",
         "can",
+        "columns",
         "run",
     ])?;
     let noise = noise(&top)?;
@@ -45,7 +53,13 @@ pub fn load(dir: &Path) -> Result<Campaign, CampaignError> {
         .text("name")?
         .map_or_else(|| folder_name(dir), str::to_owned);
     let description = top.text("description")?.unwrap_or_default().to_owned();
-    let runs = runs(dir, &top, &BusSettings::read(dir, &top)?)?;
+    let bus = BusSettings::read(dir, &top)?;
+    let columns = ColumnSettings::read(&top)?;
+    let settings = Settings {
+        bus: Some(&bus),
+        columns: columns.as_ref(),
+    };
+    let runs = runs(dir, &top, settings)?;
     let sample_rate_hz = declared_rate_hz.unwrap_or_else(|| logged_rate_hz(&runs));
     Ok(Campaign {
         name,
@@ -121,7 +135,11 @@ fn noise(top: &TomlTable<'_>) -> Result<Noise, CampaignError> {
     Ok(noise)
 }
 
-fn runs(dir: &Path, top: &TomlTable<'_>, bus: &BusSettings) -> Result<Vec<Run>, CampaignError> {
+fn runs(
+    dir: &Path,
+    top: &TomlTable<'_>,
+    settings: Settings<'_>,
+) -> Result<Vec<Run>, CampaignError> {
     let tables = top.tables("run")?;
     if tables.is_empty() {
         return Err(top.error_at(
@@ -132,6 +150,8 @@ fn runs(dir: &Path, top: &TomlTable<'_>, bus: &BusSettings) -> Result<Vec<Run>, 
     }
     let mut runs: Vec<Run> = Vec::with_capacity(tables.len());
     let mut parts: Vec<(&str, Cut)> = Vec::with_capacity(tables.len());
+    // A log of several runs is read once if they stand one after the other.
+    let mut last: Option<(PathBuf, Option<ColumnSettings>, Table)> = None;
     for table in &tables {
         let file = file_name(table, "file")?;
         let cut = Cut::read(table)?;
@@ -144,7 +164,22 @@ fn runs(dir: &Path, top: &TomlTable<'_>, bus: &BusSettings) -> Result<Vec<Run>, 
         parts.push((file, cut));
         let (bench, oil_temperature_c) = conditions(table)?;
         let path = file_in(dir, table, "file")?;
-        let run = run_log::read(&path, file, cut, bench, oil_temperature_c, bus)?;
+        let own = ColumnSettings::read(table)?;
+        let log = match last.take() {
+            Some((log, columns, read)) if log == path && columns == own => read,
+            _ => {
+                let columns = own.as_ref().or(settings.columns);
+                run_log::table(
+                    &path,
+                    Settings {
+                        columns,
+                        ..settings
+                    },
+                )?
+            }
+        };
+        let run = run_log::run(&log, file, cut, bench, oil_temperature_c)?;
+        last = Some((path.clone(), own, log));
         run_log::check_usable(&path, &run)?;
         runs.push(run);
     }
@@ -154,14 +189,17 @@ fn runs(dir: &Path, top: &TomlTable<'_>, bus: &BusSettings) -> Result<Vec<Run>, 
 /// The path of the file that `key` names.
 ///
 /// # Errors
-/// If it isn't in the campaign's folder.
+/// If there is no such file.
 pub fn file_in(dir: &Path, table: &TomlTable<'_>, key: &str) -> Result<PathBuf, CampaignError> {
     let file = file_name(table, key)?;
     let path = dir.join(file);
     if path.exists() {
         return Ok(path);
     }
-    let what = format!("the folder holds no file {}", quote(file));
+    let what = match Path::new(file).is_absolute() {
+        true => format!("there is no file {}", quote(file)),
+        false => format!("the folder holds no file {}", quote(file)),
+    };
     let mend = match key {
         "file" => "correct the name, or delete this [[run]] block",
         _ => "correct the name, or delete the line",
@@ -169,25 +207,15 @@ pub fn file_in(dir: &Path, table: &TomlTable<'_>, key: &str) -> Result<PathBuf, 
     Err(table.error_at(key, what, mend))
 }
 
-/// A file's name: a plain path below the campaign's folder.
+/// A file's name: a path from the campaign's folder on, or from the root.
 fn file_name<'t>(table: &'t TomlTable<'_>, key: &str) -> Result<&'t str, CampaignError> {
     let file = table.required_text(key)?;
-    let inside = Path::new(file)
-        .components()
-        .all(|part| matches!(part, Component::Normal(_)));
-    let plain = !file.is_empty() && !file.chars().any(char::is_control);
-    if inside && plain {
+    if !file.is_empty() && !file.chars().any(char::is_control) {
         return Ok(file);
     }
-    let what = format!(
-        "{} is not the name of a file in the campaign's folder",
-        quote(file)
-    );
-    Err(table.error_at(
-        key,
-        what,
-        "put it beside campaign.toml and give its name only",
-    ))
+    let what = format!("{} is not the name of a file", quote(file));
+    let mend = "give its name from the campaign's folder on, or from the root";
+    Err(table.error_at(key, what, mend))
 }
 
 fn conditions(table: &TomlTable<'_>) -> Result<(Bench, f64), CampaignError> {
@@ -197,6 +225,7 @@ fn conditions(table: &TomlTable<'_>) -> Result<(Bench, f64), CampaignError> {
         "load_kg",
         "port_pressure_bar",
         "oil_temperature_c",
+        "columns",
     ];
     table.only(&[&others[..], &Cut::KEYS[..]].concat())?;
     let bench = match table.required_text("bench")? {

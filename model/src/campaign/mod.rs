@@ -3,18 +3,24 @@
 //! ```text
 //! campaign.toml        format, name, noise of the instruments, and a [[run]] block a log
 //! lift_1.5A_050kg.csv  time_s, lift_current_a, lower_current_a and what was measured; or
-//! monday.log, .asc      what candump or a tool of Vector's has heard on the ECU's bus
+//! monday.log, .asc      what candump or a tool of Vector's has heard on the ECU's bus; or
+//! bench.csv, .mf4       what anybody's logger wrote, by `[columns]`
 //! ```
 //!
 //! Reading checks everything that can be checked without a model, so that nothing behind it has to: every number is
 //! finite and plausible, time rises strictly, the currents have no gaps, and every run has something to compare with.
 mod bus_log;
 mod channel;
+mod columns;
 mod csv_log;
 mod cut;
 mod dropout;
 mod manifest;
+mod mdf_log;
 mod run_log;
+mod scale;
+mod series;
+pub mod survey;
 mod table;
 
 use std::path::Path;
@@ -22,6 +28,7 @@ use std::path::Path;
 pub use channel::Channel;
 
 use crate::input_error::InputError;
+use crate::source_file::SourceFile;
 
 /// What is wrong with a campaign, by file, line and column.
 pub type CampaignError = InputError;
@@ -102,6 +109,18 @@ impl Campaign {
     pub fn load(dir: &Path) -> Result<Self, CampaignError> {
         manifest::load(dir)
     }
+
+    /// Reads the campaign that a folder would be if this were its manifest.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn of_manifest(dir: &Path, text: &str) -> Result<Self, CampaignError> {
+        let source = SourceFile {
+            path: dir.join("campaign.toml"),
+            text: text.to_owned(),
+        };
+        manifest::read(dir, &source)
+    }
 }
 
 impl Noise {
@@ -122,8 +141,8 @@ impl Run {
     /// Whatever is wrong first, by file, line and column.
     pub fn read(path: &Path, bench: Bench, oil_temperature_c: f64) -> Result<Self, CampaignError> {
         let file = path.file_name().unwrap_or_default().to_string_lossy();
-        let bus = bus_log::BusSettings::default();
-        run_log::read(path, &file, cut::Cut::NONE, bench, oil_temperature_c, &bus)
+        let table = run_log::table(path, run_log::Settings::default())?;
+        run_log::run(&table, &file, cut::Cut::NONE, bench, oil_temperature_c)
     }
 
     /// Samples of a channel, in its unit, NaN at a dropout; `None` if it was not measured.

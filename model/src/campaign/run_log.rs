@@ -1,27 +1,53 @@
-//! One run's log, of a test bench's logger or of a bus.
+//! One run's log: of a test bench's logger, of a bus, or of a measurement tool.
 use std::path::Path;
+use std::sync::Arc;
 
 use super::bus_log::{self, BusSettings, Format};
+use super::columns::ColumnSettings;
 use super::cut::Cut;
-use super::table::{LIFT, LOWER, OIL_TEMPERATURE, TIME};
-use super::{Bench, CampaignError, Channel, Run, csv_log};
+use super::table::{LIFT, LOWER, OIL_TEMPERATURE, TIME, Table};
+use super::{Bench, CampaignError, Channel, Run, csv_log, mdf_log};
 use crate::input_error::InputError;
 use crate::source_file::SourceFile;
 
-/// Reads a part of one log; it may hold currents only. `bus` says what is taken if it is that of a bus.
-pub fn read(
-    path: &Path,
+/// How the logs of a campaign are meant.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Settings<'s> {
+    /// What is taken of a bus; without it, what the project's own ECU sends.
+    pub bus: Option<&'s BusSettings>,
+    /// Which column of a table or of MDF is which; without it, they have this project's names.
+    pub columns: Option<&'s ColumnSettings>,
+}
+
+/// Reads all of a log.
+///
+/// # Errors
+/// Whatever is wrong first, by file, line and column.
+pub fn table(path: &Path, settings: Settings<'_>) -> Result<Table, CampaignError> {
+    if mdf_log::is_mdf(path) {
+        return mdf_log::read(path, settings.columns);
+    }
+    match Format::of(path) {
+        Some(format) => {
+            let source = Arc::new(SourceFile::read_any(path)?);
+            let ecu = BusSettings::default();
+            bus_log::read(&source, format, settings.bus.unwrap_or(&ecu))
+        }
+        None => csv_log::read(&Arc::new(SourceFile::read_any(path)?), settings.columns),
+    }
+}
+
+/// The run that a part of a log is; it may hold currents only.
+///
+/// # Errors
+/// Whatever is wrong first, by file, line and column.
+pub fn run(
+    table: &Table,
     file: &str,
     cut: Cut,
     bench: Bench,
     oil_temperature_c: f64,
-    bus: &BusSettings,
 ) -> Result<Run, CampaignError> {
-    let source = SourceFile::read(path)?;
-    let table = match Format::of(path) {
-        Some(format) => bus_log::read(&source, format, bus)?,
-        None => csv_log::read(&source)?,
-    };
     let table = table.cut(cut)?;
     let time_s = table.required(TIME)?;
     table.check_time(time_s)?;

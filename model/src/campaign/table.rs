@@ -1,5 +1,6 @@
 //! The numbers of a log by column, wherever they came from.
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
 use super::cut::Cut;
 use super::{CampaignError, Channel, Run, dropout};
@@ -21,7 +22,7 @@ pub const LOWER: &str = "lower_current_a";
 pub const OIL_TEMPERATURE: &str = "oil_temperature_c";
 
 /// A column that a log may have.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub struct Column {
     /// Its name, which ends in its unit.
     pub name: &'static str,
@@ -55,30 +56,43 @@ pub fn column(name: &str) -> Option<&'static Column> {
 /// How the samples of a row stand in its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cells {
-    /// One after the other in the order of the columns, with commas between them.
-    Commas,
+    /// One after the other, with this character between them.
+    Between(char),
     /// Somewhere in the line.
     OneALine,
+    /// The file is no text.
+    Nowhere,
+}
+
+/// The samples of one column.
+#[derive(Debug, Clone)]
+pub struct Samples {
+    /// The column's name.
+    pub name: &'static str,
+    /// Its cell in a row, where rows have cells.
+    pub cell: usize,
+    /// What was sampled; NaN where nothing was.
+    pub values: Vec<f64>,
 }
 
 /// The numbers of a log by column; NaN where a cell is empty.
-#[derive(Debug)]
-pub struct Table<'a> {
-    source: &'a SourceFile,
-    columns: Vec<(&'static str, Vec<f64>)>,
+#[derive(Debug, Clone)]
+pub struct Table {
+    source: Arc<SourceFile>,
+    columns: Vec<Samples>,
     /// First byte of each row in the file.
     rows: Vec<usize>,
     cells: Cells,
 }
 
-impl<'a> Table<'a> {
+impl Table {
     /// The table of these columns, which are as long as `rows`: the first byte of each row in the file.
     ///
     /// # Errors
     /// If there are too few rows for a run.
     pub fn new(
-        source: &'a SourceFile,
-        columns: Vec<(&'static str, Vec<f64>)>,
+        source: Arc<SourceFile>,
+        columns: Vec<Samples>,
         rows: Vec<usize>,
         cells: Cells,
     ) -> Result<Self, CampaignError> {
@@ -102,7 +116,7 @@ impl<'a> Table<'a> {
     ///
     /// # Errors
     /// If there are too few for a run.
-    pub fn cut(mut self, cut: Cut) -> Result<Self, CampaignError> {
+    pub fn cut(&self, cut: Cut) -> Result<Self, CampaignError> {
         let times_s = self.column(TIME).unwrap_or_default();
         let first_s = times_s.first().copied().unwrap_or_default();
         let stays: Vec<bool> = times_s
@@ -110,7 +124,7 @@ impl<'a> Table<'a> {
             .map(|time_s| cut.contains(time_s - first_s))
             .collect();
         if cut == Cut::NONE || stays.is_empty() {
-            return Ok(self);
+            return Ok(self.clone());
         }
         let kept = stays.iter().filter(|stays| **stays).count();
         if kept < Run::FEWEST_SAMPLES {
@@ -121,18 +135,23 @@ impl<'a> Table<'a> {
             );
             return Err(self.source.error(what, mend));
         }
-        for (_, values) in &mut self.columns {
-            retain(values, &stays);
-        }
-        retain(&mut self.rows, &stays);
-        Ok(self)
+        let columns = self.columns.iter().map(|samples| Samples {
+            values: kept_of(&samples.values, &stays),
+            ..*samples
+        });
+        Ok(Self {
+            source: Arc::clone(&self.source),
+            columns: columns.collect(),
+            rows: kept_of(&self.rows, &stays),
+            cells: self.cells,
+        })
     }
 
     fn column(&self, name: &str) -> Option<&[f64]> {
         self.columns
             .iter()
-            .find(|(known, _)| *known == name)
-            .map(|(_, values)| values.as_slice())
+            .find(|samples| samples.name == name)
+            .map(|samples| samples.values.as_slice())
     }
 
     /// A column that every log has.
@@ -142,11 +161,11 @@ impl<'a> Table<'a> {
     pub fn required(&self, name: &str) -> Result<&[f64], CampaignError> {
         self.column(name).ok_or_else(|| {
             let what = format!("column {name} is missing");
-            self.source.error_at(
-                0,
-                what,
-                format!("log it: every run needs {TIME}, {LIFT} and {LOWER}"),
-            )
+            let mend = format!("log it: every run needs {TIME}, {LIFT} and {LOWER}");
+            match self.cells {
+                Cells::Nowhere => self.source.error(what, mend),
+                _ => self.source.error_at(0, what, mend),
+            }
         })
     }
 
@@ -210,44 +229,33 @@ impl<'a> Table<'a> {
         what: String,
         mend: impl Into<String>,
     ) -> InputError {
-        let index = self
-            .columns
-            .iter()
-            .position(|(known, _)| *known == name)
-            .unwrap_or(0);
-        self.error_at(self.rows.get(row).copied().unwrap_or(0), index, what, mend)
-    }
-
-    fn error_at(
-        &self,
-        row_byte: usize,
-        index: usize,
-        what: String,
-        mend: impl Into<String>,
-    ) -> InputError {
+        let samples = self.columns.iter().find(|samples| samples.name == name);
+        let cell = samples.map_or(0, |samples| samples.cell);
+        let byte = self.rows.get(row).copied().unwrap_or(0);
         match self.cells {
-            Cells::Commas => cell_error(self.source, row_byte, index, what, mend),
-            Cells::OneALine => self.source.error_at(row_byte, what, mend),
+            Cells::Between(mark) => cell_error(&self.source, byte, (cell, mark), what, mend),
+            Cells::OneALine => self.source.error_at(byte, what, mend),
+            Cells::Nowhere => self.source.error(what, mend),
         }
     }
 }
 
-fn retain<T>(values: &mut Vec<T>, stays: &[bool]) {
-    let mut stays = stays.iter();
-    values.retain(|_| stays.next() == Some(&true));
+fn kept_of<T: Copy>(values: &[T], stays: &[bool]) -> Vec<T> {
+    let kept = values.iter().zip(stays).filter(|(_, stays)| **stays);
+    kept.map(|(value, _)| *value).collect()
 }
 
-/// A fault of cell `index` of a row with commas.
+/// A fault of a cell of a row whose cells have a mark between them.
 pub fn cell_error(
     source: &SourceFile,
     row_byte: usize,
-    index: usize,
+    (index, mark): (usize, char),
     what: String,
     mend: impl Into<String>,
 ) -> InputError {
     let Place { line, column } = source.place(row_byte);
     let row = source.text.get(row_byte..).unwrap_or_default();
-    let before = cells_before(row, index);
+    let before = cells_before(row, index, mark);
     InputError::at(
         &source.path,
         Place {
@@ -260,15 +268,15 @@ pub fn cell_error(
 }
 
 /// Characters of a row in front of its cell `index`.
-fn cells_before(row: &str, index: usize) -> usize {
-    let (mut quoted, mut commas) = (false, 0);
+fn cells_before(row: &str, index: usize, mark: char) -> usize {
+    let (mut quoted, mut marks) = (false, 0);
     for (characters, c) in row.chars().enumerate() {
-        if commas == index {
+        if marks == index {
             return characters;
         }
         match c {
             '"' => quoted = !quoted,
-            ',' if !quoted => commas += 1,
+            c if c == mark && !quoted => marks += 1,
             '\n' | '\r' if !quoted => return characters,
             _ => {}
         }

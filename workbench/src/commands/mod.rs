@@ -9,6 +9,7 @@ pub mod ecu;
 pub mod effects;
 pub mod explain;
 pub mod flash_calibration;
+pub mod import;
 pub mod loop_;
 pub mod main_job;
 pub mod paper;

@@ -23,6 +23,8 @@ const HEADINGS: [&str; 7] = ["date", "base", "internal", "no", "Begin", "End", "
 const OTHER_EVENTS: [&str; 4] = ["ErrorFrame", "OverloadFrame", "Statistic:", "J1939TP"];
 /// Bytes of a classical frame.
 const MOST_CLASSICAL: usize = 8;
+/// The largest code of a length.
+const MOST_CODE: usize = 15;
 
 /// How numbers are written.
 #[derive(Debug, Clone, Copy)]
@@ -121,8 +123,14 @@ fn classical<'a>(
         _ => return Err(line.fault(kind, 0, "is no kind of frame", "it is d or r")),
     }
     let count = line.word(5, "length")?;
-    let length = number(line, count, radix, 15)?;
-    let length = (length as usize).min(MOST_CLASSICAL);
+    let length = number(line, count, radix, MOST_BYTES as u32)? as usize;
+    // Up to 15 it is the code of a classical frame; some tools write CAN FD so as well.
+    let is_flexible = length > MOST_CODE;
+    let length = if is_flexible {
+        length
+    } else {
+        length.min(MOST_CLASSICAL)
+    };
     data(line, 6, radix, &mut bytes[..length])?;
     Ok(Some((line.text(1), id, length)))
 }

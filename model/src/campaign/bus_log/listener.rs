@@ -2,9 +2,9 @@
 use super::clock::Clock;
 use super::description::Match;
 use super::frame::{Frame, Id};
-use super::series::Series;
 use super::signal::Signal;
 use crate::campaign::CampaignError;
+use crate::campaign::series::Series;
 use crate::campaign::table::Column;
 use crate::input_error::quote;
 use crate::source_file::SourceFile;

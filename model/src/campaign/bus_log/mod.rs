@@ -14,19 +14,20 @@ mod description;
 mod frame;
 mod line;
 mod listener;
-mod series;
+
 mod settings;
 mod signal;
 
 use std::path::Path;
+use std::sync::Arc;
 
 pub use settings::BusSettings;
 
 use super::CampaignError;
-use super::table::{Cells, LIFT, LOWER, TIME, Table};
+use super::series::Series;
+use super::table::{Cells, LIFT, LOWER, Samples, TIME, Table};
 use crate::source_file::SourceFile;
 use listener::Listener;
-use series::Series;
 
 /// A kind of log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,11 +54,11 @@ impl Format {
 ///
 /// # Errors
 /// Whatever is wrong first, by file, line and column.
-pub fn read<'a>(
-    source: &'a SourceFile,
+pub fn read(
+    source: &Arc<SourceFile>,
     format: Format,
     settings: &BusSettings,
-) -> Result<Table<'a>, CampaignError> {
+) -> Result<Table, CampaignError> {
     let mut listener = settings.listener();
     let mut take = |frame: &frame::Frame<'_>| listener.take(source, frame);
     match format {
@@ -67,11 +68,17 @@ pub fn read<'a>(
     let rows = required(source, &listener, settings, LIFT)?;
     required(source, &listener, settings, LOWER)?;
     let within_s = rows.median_step_s() / 2.0;
-    let mut columns = vec![(TIME, rows.times_s.clone())];
+    let samples = |name, values| Samples {
+        name,
+        cell: 0,
+        values,
+    };
+    let mut columns = vec![samples(TIME, rows.times_s.clone())];
     for (column, series) in listener.series() {
-        columns.push((column.name, series.at(&rows.times_s, within_s)));
+        columns.push(samples(column.name, series.at(&rows.times_s, within_s)));
     }
-    Table::new(source, columns, rows.bytes.clone(), Cells::OneALine)
+    let bytes = rows.bytes.clone();
+    Table::new(Arc::clone(source), columns, bytes, Cells::OneALine)
 }
 
 /// A current: without it there is no run.

@@ -81,7 +81,7 @@ impl BusSettings {
         };
         table.only(&["dbc", "channel", "source", "clock", "signals"])?;
         let own = match table.text("dbc")? {
-            Some(_) => Some(SourceFile::read(&file_in(dir, &table, "dbc")?)?),
+            Some(_) => Some(SourceFile::read_any(&file_in(dir, &table, "dbc")?)?),
             None => None,
         };
         let signals = table.table("signals")?;

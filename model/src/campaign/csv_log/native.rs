@@ -1,9 +1,12 @@
-//! A log as a table of numbers with commas: a header whose names carry their unit, then a row a sample.
+//! A log as a table of numbers: a header whose names carry their unit, then a row a sample.
+use std::sync::Arc;
+
 use csv::StringRecord;
 
-use super::CampaignError;
-use super::table::{COLUMNS, Cells, TIME, Table, cell_error, column};
-use crate::input_error::{InputError, quote};
+use super::dialect::{Decimals, MARKS, rows};
+use crate::campaign::CampaignError;
+use crate::campaign::table::{COLUMNS, Cells, Samples, TIME, Table, cell_error, column};
+use crate::input_error::quote;
 use crate::naming::{offer_names, unknown_name};
 use crate::source_file::SourceFile;
 
@@ -11,40 +14,68 @@ use crate::source_file::SourceFile;
 ///
 /// # Errors
 /// Whatever is wrong first, by line and column.
-pub fn read(source: &SourceFile) -> Result<Table<'_>, CampaignError> {
-    let mut reader = csv::ReaderBuilder::new()
-        .flexible(true)
-        .trim(csv::Trim::All)
-        .from_reader(source.text.as_bytes());
-    let header = reader
-        .headers()
-        .map_err(|error| not_csv(source, &error))?
-        .clone();
-    let names = column_names(source, &header, row_start(source, 0))?;
+pub fn read(source: &Arc<SourceFile>) -> Result<Table, CampaignError> {
+    let mark = mark(source);
+    let mut records = rows(&source.text, 0, mark);
+    let Some((byte, header)) = records.next() else {
+        return Err(source.error("is empty", "a log has a header and a row a sample"));
+    };
+    let names = column_names(source, &header, mark, byte)?;
     let mut rows = Rows {
         source,
+        mark,
+        decimals: decimals(source, mark, names.len()),
         columns: names.iter().map(|name| (*name, Vec::new())).collect(),
         bytes: Vec::new(),
     };
-    let mut record = StringRecord::new();
-    while reader
-        .read_record(&mut record)
-        .map_err(|error| not_csv(source, &error))?
-    {
-        let byte = record
-            .position()
-            .map_or(0, |position| position.byte() as usize);
-        rows.push(&record, row_start(source, byte))?;
+    for (byte, record) in records {
+        rows.push(&record, byte)?;
     }
     if rows.bytes.is_empty() {
         return Err(source.error("holds a header but no samples", "log the run again"));
     }
-    Table::new(source, rows.columns, rows.bytes, Cells::Commas)
+    let columns = rows.columns.into_iter().enumerate();
+    let columns = columns.map(|(cell, (name, values))| Samples { name, cell, values });
+    let cells = Cells::Between(mark.into());
+    Table::new(Arc::clone(source), columns.collect(), rows.bytes, cells)
+}
+
+/// Whether all columns have names of this project.
+pub fn has_own_header(source: &SourceFile) -> bool {
+    let header = rows(&source.text, 0, mark(source)).next();
+    header.is_some_and(|(_, header)| header.iter().all(|name| column(name).is_some()))
+}
+
+/// What stands between the cells: what makes most known names of the header; a comma if nothing does.
+fn mark(source: &SourceFile) -> u8 {
+    let known = |mark: &u8| {
+        let header = rows(&source.text, 0, *mark).next();
+        header.map_or(0, |(_, header)| {
+            header.iter().filter(|name| column(name).is_some()).count()
+        })
+    };
+    // Of several that do as well it is the last.
+    MARKS.into_iter().max_by_key(known).unwrap_or(b',')
+}
+
+/// How decimals are written: where commas stand between cells, never with one.
+fn decimals(source: &SourceFile, mark: u8, width: usize) -> Option<Decimals> {
+    const LOOKED_AT: usize = 1_000;
+    (mark != b',').then(|| {
+        let first: Vec<StringRecord> = rows(&source.text, 0, mark)
+            .skip(1)
+            .take(LOOKED_AT)
+            .map(|(_, row)| row)
+            .collect();
+        Decimals::of(first.iter().flat_map(|row| row.iter().take(width)))
+    })
 }
 
 /// The rows that have been read.
 struct Rows<'a> {
     source: &'a SourceFile,
+    mark: u8,
+    decimals: Option<Decimals>,
     columns: Vec<(&'static str, Vec<f64>)>,
     /// First byte of each in the file.
     bytes: Vec<usize>,
@@ -67,8 +98,9 @@ impl Rows<'_> {
         self.bytes.push(byte);
         for (index, cell) in record.iter().enumerate() {
             let name = self.columns[index].0;
-            let value = number(name, cell)
-                .map_err(|(what, mend)| cell_error(self.source, byte, index, what, mend))?;
+            let value = number(name, cell, self.decimals).map_err(|(what, mend)| {
+                cell_error(self.source, byte, (index, self.mark.into()), what, mend)
+            })?;
             self.columns[index].1.push(value);
         }
         Ok(())
@@ -79,24 +111,22 @@ impl Rows<'_> {
 fn column_names(
     source: &SourceFile,
     header: &StringRecord,
+    mark: u8,
     byte: usize,
 ) -> Result<Vec<&'static str>, CampaignError> {
-    if header.is_empty() {
-        return Err(source.error("is empty", "a log has a header and a row a sample"));
-    }
     let known: Vec<&'static str> = COLUMNS.iter().map(|column| column.name).collect();
     let mut names: Vec<&'static str> = Vec::with_capacity(header.len());
     for (index, given) in header.iter().enumerate() {
         let Some(name) = known.iter().find(|name| **name == given) else {
-            let (what, mend) = unknown_column(given, index, header, &known);
-            return Err(cell_error(source, byte, index, what, mend));
+            let (what, mend) = unknown_column(given, index, &known);
+            return Err(cell_error(source, byte, (index, mark.into()), what, mend));
         };
         if names.contains(name) {
             let what = format!("column {name} is there twice");
             return Err(cell_error(
                 source,
                 byte,
-                index,
+                (index, mark.into()),
                 what,
                 "delete one of the two",
             ));
@@ -106,22 +136,11 @@ fn column_names(
     Ok(names)
 }
 
-fn unknown_column(
-    given: &str,
-    index: usize,
-    header: &StringRecord,
-    known: &[&str],
-) -> (String, String) {
+fn unknown_column(given: &str, index: usize, known: &[&str]) -> (String, String) {
     if given.is_empty() {
         return (
             format!("column {} has no name", index + 1),
             "delete the column or name it".to_owned(),
-        );
-    }
-    if header.len() == 1 && given.contains([';', '\t']) {
-        return (
-            "columns are not separated by commas".to_owned(),
-            "write a,b,c with decimal points".to_owned(),
         );
     }
     if given.parse::<f64>().is_ok() {
@@ -132,12 +151,19 @@ fn unknown_column(
     }
     (
         unknown_name("column", given, known),
-        offer_names(given, known),
+        format!(
+            "{}; or say which column is which under [columns], as `hitch import` does",
+            offer_names(given, known)
+        ),
     )
 }
 
 /// The number in a cell; NaN if the cell is empty, which only time may not be.
-fn number(name: &'static str, cell: &str) -> Result<f64, (String, String)> {
+fn number(
+    name: &'static str,
+    cell: &str,
+    decimals: Option<Decimals>,
+) -> Result<f64, (String, String)> {
     if cell.is_empty() && name != TIME {
         return Ok(f64::NAN);
     }
@@ -146,9 +172,13 @@ fn number(name: &'static str, cell: &str) -> Result<f64, (String, String)> {
     } else {
         "leave the cell of a dropout empty"
     };
-    let value: f64 = match cell.parse() {
-        Ok(value) => value,
-        Err(_) => {
+    let read = match decimals {
+        Some(decimals) => decimals.number(cell),
+        None => cell.parse::<f64>().ok(),
+    };
+    let value = match read {
+        Some(value) => value,
+        None => {
             return Err((
                 format!("{} in column {name} is not a number", quote(cell)),
                 mend.to_owned(),
@@ -169,20 +199,4 @@ fn number(name: &'static str, cell: &str) -> Result<f64, (String, String)> {
     }
     let mend = format!("it may be {} to {}; {mend}", range.start(), range.end());
     Err((format!("{value} in column {name} cannot be"), mend))
-}
-
-fn not_csv(source: &SourceFile, error: &csv::Error) -> InputError {
-    let byte = error
-        .position()
-        .map_or(0, |position| position.byte() as usize);
-    source.error_at(byte, format!("is not CSV: {error}"), "")
-}
-
-/// The reader counts the line breaks before a row as part of it; an editor does not.
-fn row_start(source: &SourceFile, byte: usize) -> usize {
-    let rest = &source.text.as_bytes()[byte.min(source.text.len())..];
-    byte + rest
-        .iter()
-        .take_while(|b| matches!(b, b'\n' | b'\r'))
-        .count()
 }

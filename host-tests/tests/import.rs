@@ -1,0 +1,192 @@
+//! `hitch import`: the files of any logger become a campaign that reads to the runs of this project's own format.
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+use hitch_model::campaign::{Campaign, Channel, Run};
+use host_tests::program::run;
+use host_tests::refusal::refused;
+use tempfile::TempDir;
+
+/// Seconds of a log with two motions of 10 s each and long rests between them.
+const LASTS_S: f64 = 80.0;
+
+/// Time, lift current, lowering current, pressure, angle.
+fn samples() -> Vec<[f64; 5]> {
+    let sample = |i: u32| {
+        let time_s = f64::from(i) * 0.02;
+        let up = (10.0..20.0).contains(&time_s);
+        let down = (50.0..60.0).contains(&time_s);
+        let travel_s = (time_s - 10.0).clamp(0.0, 10.0) - (time_s - 50.0).clamp(0.0, 10.0);
+        let lift_a = if up { 1.5 } else { 0.0 };
+        let lower_a = if down { 1.6 } else { 0.0 };
+        [
+            time_s,
+            lift_a,
+            lower_a,
+            40.0 + travel_s,
+            60.0 + 4.0 * travel_s,
+        ]
+    };
+    (0..=(LASTS_S / 0.02) as u32).map(sample).collect()
+}
+
+fn own() -> String {
+    let row = |[t, a, b, p, w]: [f64; 5]| format!("{t:.2},{a:.4},{b:.4},{p:.4},{w:.4}\n");
+    let rows: String = samples().into_iter().map(row).collect();
+    format!("time_s,lift_current_a,lower_current_a,cylinder_pressure_bar,rocker_angle_deg\n{rows}")
+}
+
+fn german() -> Vec<u8> {
+    let row = |[t, a, b, p, w]: [f64; 5]| {
+        let row = format!("{t:.2};x;{:.1};{:.1};{p:.4};{w:.4}\r\n", a * 1e3, b * 1e3);
+        row.replace('.', ",")
+    };
+    let rows: String = samples().into_iter().map(row).collect();
+    let head = "Prüfstand;;;;;\r\nZeit;Bemerkung;Ventil Heben Strom;Ventil Senken Strom;Druck Zylinder;Winkel Hubwelle\r\ns;;mA;mA;bar;°\r\n";
+    let text = format!("{head}{rows}");
+    text.chars()
+        .map(|c| u8::try_from(u32::from(c)).unwrap())
+        .collect()
+}
+
+fn english() -> String {
+    let row = |[t, a, b, p, w]: [f64; 5]| {
+        let psi = p * 1e5 / 6_894.757_293_168;
+        let (minute, second) = ((t / 60.0).floor(), t % 60.0);
+        let w = w.to_radians();
+        format!(
+            "2026-11-21T10:{minute:02}:{second:06.3}Z,{:.1},{:.1},{psi:.4},{w:.6}\n",
+            a * 1e3,
+            b * 1e3
+        )
+    };
+    let rows: String = samples().into_iter().map(row).collect();
+    format!("Timestamp,LiftCurrent,LowerCurrent,Cylinder Pressure [psi],Rocker Angle\n{rows}")
+}
+
+fn imported(dir: &Path, arguments: &str) -> (String, Vec<Run>) {
+    let arguments: Vec<&str> = arguments.split(' ').collect();
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = run(dir, &arguments);
+    let said = String::from_utf8(stdout).unwrap();
+    assert!(
+        status.success(),
+        "{said}{}",
+        String::from_utf8_lossy(&stderr)
+    );
+    let campaign = Campaign::load(&dir.join("c")).unwrap_or_else(|error| panic!("{error}"));
+    (said, campaign.runs)
+}
+
+fn assert_same(case: &str, runs: &[Run], expected: &[Run]) {
+    assert_eq!(runs.len(), expected.len(), "{case}");
+    for (run, expected) in runs.iter().zip(expected) {
+        assert_eq!(run.time_s.len(), expected.time_s.len(), "{case}");
+        let near = |got: &[f64], expected: &[f64], rounding: f64| {
+            let same = got
+                .iter()
+                .zip(expected)
+                .all(|(got, expected)| (got - expected).abs() <= rounding);
+            assert!(same && got.len() == expected.len(), "{case}");
+        };
+        near(&run.time_s, &expected.time_s, 1e-3);
+        near(&run.lift_current_a, &expected.lift_current_a, 1e-4);
+        near(&run.lower_current_a, &expected.lower_current_a, 1e-4);
+        for channel in [Channel::CylinderPressure, Channel::RockerAngle] {
+            near(
+                run.channel(channel).unwrap(),
+                expected.channel(channel).unwrap(),
+                1e-3,
+            );
+        }
+    }
+}
+
+#[test]
+fn logs_of_any_dialect_read_to_the_same_runs() {
+    let dir = TempDir::new().unwrap();
+    fs::write(dir.path().join("own.csv"), own()).unwrap();
+    let (_, expected) = imported(dir.path(), "import own.csv --out c --load 150");
+    assert_eq!(
+        expected.len(),
+        2,
+        "two motions with a long rest between them"
+    );
+    for (file, bytes, said) in [
+        ("german.csv", german(), "Ventil Heben Strom:mA"),
+        ("english.csv", english().into_bytes(), "radians"),
+    ] {
+        let dir = TempDir::new().unwrap();
+        fs::write(dir.path().join(file), bytes).unwrap();
+        let (text, runs) = imported(dir.path(), &format!("import {file} --out c --load 150"));
+        assert!(
+            text.contains(said) && text.contains("next: hitch compare c"),
+            "{text}"
+        );
+        assert_same(file, &runs, &expected);
+        assert_eq!(
+            fs::read_dir(dir.path().join("c")).unwrap().count(),
+            1,
+            "read in place"
+        );
+    }
+}
+
+#[test]
+fn what_cannot_be_told_is_asked_for() {
+    let dir = TempDir::new().unwrap();
+    let odd = own()
+        .replacen("lift_current_a", "A1", 1)
+        .replacen("lower_current_a", "A2", 1);
+    fs::write(dir.path().join("odd.csv"), odd).unwrap();
+    fs::write(dir.path().join("own.csv"), own()).unwrap();
+    fs::write(dir.path().join("log.blf"), b"LOGG\0\0\0").unwrap();
+    fs::write(dir.path().join("text.csv"), "nothing\nhere\n").unwrap();
+    for (arguments, expected) in [
+        (
+            "import odd.csv --out c --load 150",
+            "no column could be told to be lift_current_a",
+        ),
+        ("import own.csv --out c", "give it with --load KG"),
+        (
+            "import odd.csv --out c --load 150 --map A1",
+            "write it as --map CHANNEL",
+        ),
+        (
+            "import odd.csv --out c --load 150 --map current=A1",
+            "channel \"current\" is not known",
+        ),
+        (
+            "import gone.csv --out c --load 150",
+            "gone.csv: no such file",
+        ),
+        (
+            "import log.blf --out c --load 150",
+            "log.blf: is a binary log of a CAN bus (BLF), not text",
+        ),
+        (
+            "import text.csv --out c --load 150",
+            "text.csv: is no table",
+        ),
+        ("import own.csv --out c --bench flow", "--port-pressure BAR"),
+    ] {
+        refused(
+            dir.path(),
+            &arguments.split(' ').collect::<Vec<_>>(),
+            expected,
+        );
+    }
+    let maps =
+        "import odd.csv --out c --load 150 --map lift_current_a=A1:A --map lower_current_a=A2:A";
+    let (text, runs) = imported(dir.path(), maps);
+    assert!(text.contains("as you said") && runs.len() == 2, "{text}");
+    refused(
+        dir.path(),
+        &maps.split(' ').collect::<Vec<_>>(),
+        "is there already",
+    );
+}

@@ -1,0 +1,78 @@
+//! What a file is that is no text, by its first bytes.
+
+/// How many bytes tell.
+const LOOKED_AT: usize = 4096;
+
+/// A kind of file that is told by its first bytes.
+struct Kind {
+    magic: &'static [u8],
+    name: &'static str,
+    mend: &'static str,
+}
+
+const AS_CSV: &str = "export its channels as CSV or as MDF 4 (.mf4) with the tool that wrote it";
+const AS_ASC: &str =
+    "convert it to .asc, for example with python-can: python -m can.logconvert FILE.blf FILE.asc";
+const UNPACK: &str = "unpack it first";
+const AS_MDF: &str = "give its name the extension .mf4";
+
+const fn kind(magic: &'static [u8], name: &'static str, mend: &'static str) -> Kind {
+    Kind { magic, name, mend }
+}
+
+static KINDS: [Kind; 14] = [
+    kind(b"MDF     ", "an MDF file", AS_MDF),
+    kind(b"UnFinMF ", "an MDF file that was not finished", AS_MDF),
+    kind(b"LOGG", "a binary log of a CAN bus (BLF)", AS_ASC),
+    kind(b"MATLAB 5.0", "a MAT file of MATLAB", AS_CSV),
+    kind(b"\x89HDF\r\n\x1a\n", "an HDF5 file", AS_CSV),
+    kind(b"PAR1", "a Parquet file", AS_CSV),
+    kind(b"TDSm", "a TDMS file of LabVIEW", AS_CSV),
+    kind(
+        b"PK\x03\x04",
+        "a ZIP archive or a workbook of Excel",
+        "unpack it, or save the sheet as CSV",
+    ),
+    kind(
+        b"\xD0\xCF\x11\xE0",
+        "a document of Office",
+        "save the sheet as CSV",
+    ),
+    kind(b"\x1F\x8B", "compressed with gzip", UNPACK),
+    kind(b"\x28\xB5\x2F\xFD", "compressed with zstd", UNPACK),
+    kind(b"7z\xBC\xAF\x27\x1C", "a 7z archive", UNPACK),
+    kind(b"%PDF", "a PDF document", AS_CSV),
+    kind(b"SQLite format 3", "a database of SQLite", AS_CSV),
+];
+
+/// What a file is that begins with `bytes`, and how to make text of it; `None` if it may be text.
+pub fn of_binary(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
+    of_magic(bytes).or_else(|| {
+        let begin = &bytes[..bytes.len().min(LOOKED_AT)];
+        begin.contains(&0).then_some(("a binary file", AS_CSV))
+    })
+}
+
+/// The same, if the first bytes name the format.
+pub fn of_magic(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
+    let known = KINDS.iter().find(|kind| bytes.starts_with(kind.magic));
+    known.map(|kind| (kind.name, kind.mend))
+}
+
+/// Whether a file that begins with `bytes` is MDF.
+pub fn is_mdf(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"MDF     ") || bytes.starts_with(b"UnFinMF ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_told_by_their_first_bytes() {
+        assert_eq!(of_binary(b"PAR1\x15").unwrap().0, "a Parquet file");
+        assert_eq!(of_binary(b"\x01\x00\x02").unwrap().0, "a binary file");
+        assert_eq!(of_binary(b"time_s,lift_current_a\n"), None);
+        assert!(is_mdf(b"MDF     4.10    "));
+    }
+}

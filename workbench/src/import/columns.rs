@@ -1,0 +1,269 @@
+//! Which column of a log is which column of a run: by what somebody says, else by names, units and values.
+use hitch_model::campaign::survey::{LogColumn, TIMES, check_source, fits, run_columns};
+
+use super::words::{CHANNELS, Words, is_time};
+
+/// Larger angles in radians are more than a hitch turns.
+const MOST_RAD: f64 = 3.2;
+/// Angles within this are rather in radians: a hitch at work stands higher than so many degrees.
+const SURELY_RAD: f64 = MOST_RAD;
+/// Larger currents are in milliampere.
+const MOST_A: f64 = 20.0;
+/// Larger pressures are not in bar.
+const MOST_BAR: f64 = 400.0;
+
+/// A column of a run, where it comes from, and why.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Taken {
+    /// The run's column.
+    pub channel: &'static str,
+    /// As `[columns]` has it: name, and unit.
+    pub source: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// What is taken of a log.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Mapping {
+    /// In the order of a run's columns.
+    pub taken: Vec<Taken>,
+}
+
+/// A column that could be meant, and its points.
+struct Candidate<'c> {
+    column: &'c LogColumn,
+    score: i32,
+    words: i32,
+}
+
+impl Mapping {
+    /// Proposes one. `named` holds what somebody said: the run's column, and its source.
+    ///
+    /// # Errors
+    /// What is missing, and how to say it.
+    pub fn propose(
+        columns: &[LogColumn],
+        needs_time: bool,
+        named: &[(String, String)],
+    ) -> Result<Self, String> {
+        let mut mapping = Self::default();
+        let mut used: Vec<String> = Vec::new();
+        for (channel, source) in named {
+            let (name, _) = check_source(channel, source).map_err(|why| format!("--map: {why}"))?;
+            let known = run_columns().find(|(known, _)| known == channel);
+            if let Some((channel, _)) = known {
+                used.push(name);
+                mapping.take(channel, source.clone(), "as you said".to_owned());
+            }
+        }
+        if needs_time && !mapping.has(TIMES) {
+            let (column, source, reason) = time(columns)
+                .ok_or_else(|| missing(TIMES, "its times rise from row to row", columns))?;
+            used.push(column.name.clone());
+            mapping.take(TIMES, source, reason);
+        }
+        for words in &CHANNELS {
+            if mapping.has(words.channel) {
+                continue;
+            }
+            let free = columns.iter().filter(|column| !used.contains(&column.name));
+            if let Some((column, source, reason)) = proposal(words, free)? {
+                used.push(column.name.clone());
+                mapping.take(words.channel, source, reason);
+            }
+        }
+        mapping.check(columns)?;
+        mapping
+            .taken
+            .sort_by_key(|taken| run_columns().position(|(name, _)| name == taken.channel));
+        Ok(mapping)
+    }
+
+    fn take(&mut self, channel: &'static str, source: String, reason: String) {
+        self.taken.push(Taken {
+            channel,
+            source,
+            reason,
+        });
+    }
+
+    fn has(&self, channel: &str) -> bool {
+        self.taken.iter().any(|taken| taken.channel == channel)
+    }
+
+    fn check(&self, columns: &[LogColumn]) -> Result<(), String> {
+        for channel in ["lift_current_a", "lower_current_a"] {
+            if !self.has(channel) {
+                return Err(missing(channel, "it drives the model", columns));
+            }
+        }
+        let measured = [
+            "rocker_angle_deg",
+            "cylinder_pressure_bar",
+            "pump_pressure_bar",
+            "flow_lpm",
+        ];
+        match measured.iter().any(|channel| self.has(channel)) {
+            true => Ok(()),
+            false => Err(missing(measured[0], "a run needs a measurement", columns)),
+        }
+    }
+}
+
+fn missing(channel: &str, why: &str, columns: &[LogColumn]) -> String {
+    const MOST: usize = 16;
+    let names: Vec<&str> = columns
+        .iter()
+        .take(MOST)
+        .map(|column| column.name.as_str())
+        .collect();
+    let more = if columns.len() > MOST { ", ..." } else { "" };
+    format!(
+        "no column could be told to be {channel}, and {why}; say which it is, as in --map {channel}=\"NAME:UNIT\", of {}{more}",
+        names.join(", ")
+    )
+}
+
+/// The column of the times, as `[columns]` has it.
+fn time(columns: &[LogColumn]) -> Option<(&LogColumn, String, String)> {
+    let rises = |column: &&LogColumn| {
+        let known: Vec<f64> = column
+            .values
+            .iter()
+            .copied()
+            .filter(|value| !value.is_nan())
+            .collect();
+        known.len() > 1 && known.windows(2).all(|pair| pair[1] > pair[0])
+    };
+    let clock = columns.iter().find(|column| column.is_clock);
+    let named = columns
+        .iter()
+        .filter(rises)
+        .find(|column| is_time(&column.name));
+    let seconds = || {
+        columns
+            .iter()
+            .filter(rises)
+            .find(|column| unit_of_time(column).is_some())
+    };
+    if let Some(column) = named.or_else(seconds) {
+        let source = match unit_of_time(column) {
+            Some(unit) => format!("{}:{unit}", column.name),
+            // Without a unit it is in seconds, or of an epoch that the reader tells by its size.
+            None => column.name.clone(),
+        };
+        return Some((column, source, "rises from row to row".to_owned()));
+    }
+    clock.map(|column| {
+        (
+            column,
+            column.name.clone(),
+            "dates or times of day".to_owned(),
+        )
+    })
+}
+
+fn unit_of_time(column: &LogColumn) -> Option<&str> {
+    column
+        .unit
+        .as_deref()
+        .filter(|unit| *unit != "V" && fits(unit, TIMES))
+}
+
+/// What a log's column is taken as: column, source, reason.
+type Proposal<'c> = Option<(&'c LogColumn, String, String)>;
+
+fn proposal<'c>(
+    words: &Words,
+    columns: impl Iterator<Item = &'c LogColumn>,
+) -> Result<Proposal<'c>, String> {
+    let mut candidates: Vec<Candidate<'c>> = columns
+        .filter_map(|column| candidate(words, column))
+        .collect();
+    candidates.sort_by_key(|candidate| -candidate.score);
+    let best = match &candidates[..] {
+        [] => return Ok(None),
+        [first, second, ..] if first.score == second.score => {
+            let is_needed = words.channel.ends_with("current_a");
+            return match is_needed {
+                true => Err(format!(
+                    "{} may be \"{}\" or \"{}\"; say which, as in --map {}=\"{}\"",
+                    words.channel,
+                    first.column.name,
+                    second.column.name,
+                    words.channel,
+                    first.column.name
+                )),
+                false => Ok(None),
+            };
+        }
+        [first, ..] => first,
+    };
+    let column = best.column;
+    let by_name = if best.words > 0 {
+        "by its name"
+    } else {
+        "the only one in that unit"
+    };
+    let Some((unit, by_unit)) = unit(words.channel, column) else {
+        return Ok(None);
+    };
+    let reason = format!("{by_name}; {by_unit}");
+    Ok(Some((column, format!("{}:{unit}", column.name), reason)))
+}
+
+fn candidate<'c>(words: &Words, column: &'c LogColumn) -> Option<Candidate<'c>> {
+    if column.is_clock || column.values.iter().all(|value| value.is_nan()) {
+        return None;
+    }
+    let by_unit = match column.unit.as_deref() {
+        Some(unit) if unit == "V" || !fits(unit, words.channel) => return None,
+        Some(_) => 2,
+        None => 0,
+    };
+    let by_words = words.score(&column.name);
+    // Of a quantity that a hitch has once, the unit or the name will do; of others the name has to say which.
+    let least = if words.is_only_one() { 1 } else { 2 };
+    let is_told = by_words >= least || (words.is_only_one() && by_words == 0 && by_unit > 0);
+    is_told.then_some(Candidate {
+        column,
+        score: by_words * 2 + by_unit,
+        words: by_words,
+    })
+}
+
+/// The unit of a column as what it most likely is, and why; `None` if nothing tells.
+fn unit(channel: &str, column: &LogColumn) -> Option<(String, String)> {
+    let known = column.values.iter().filter(|value| value.is_finite());
+    let largest = known.fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let said = column.unit.clone();
+    let odd = |unit: &str, what: &str| {
+        let claimed = said.as_deref().unwrap_or("no unit");
+        Some((
+            unit.to_owned(),
+            format!("values up to {largest:.4} are {what}, though the log says {claimed}"),
+        ))
+    };
+    match (channel, said.as_deref()) {
+        ("lift_current_a" | "lower_current_a", Some("A") | None) if largest > MOST_A => {
+            odd("mA", "milliampere")
+        }
+        ("rocker_angle_deg", Some("deg") | None) if largest <= SURELY_RAD && largest > 0.0 => {
+            odd("rad", "radians")
+        }
+        ("rocker_angle_deg", Some("rad")) if largest > 2.0 * MOST_RAD => odd("deg", "degrees"),
+        ("lift_current_a" | "lower_current_a", Some("mA")) if largest > 0.0 && largest <= 5.0 => {
+            odd("A", "ampere")
+        }
+        (_, Some(unit)) => Some((unit.to_owned(), format!("in {unit}, as the log says"))),
+        ("pump_pressure_bar" | "cylinder_pressure_bar", None) if largest > MOST_BAR => None,
+        (_, None) => {
+            let (_, unit) = run_columns().find(|(name, _)| *name == channel)?;
+            Some((
+                unit.to_owned(),
+                format!("values up to {largest:.4}, taken as {unit}: the log says no unit"),
+            ))
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! `campaign.toml` of an import.
+use std::fmt::Write as _;
+use std::path::Path;
+
+use super::columns::Mapping;
+
+/// A log of a campaign.
+#[derive(Debug, Clone)]
+pub struct Log {
+    /// Its path, as the manifest names it.
+    pub file: String,
+    /// What is taken of it; `None` if it needs no telling.
+    pub mapping: Option<Mapping>,
+    /// What the valve block was bolted to, and the load or the pressure.
+    pub bench: String,
+    /// Times of its runs, s; none if it is one.
+    pub cuts: Vec<(f64, f64)>,
+}
+
+/// The text of the manifest.
+#[must_use]
+pub fn text(name: &str, can: Option<&str>, logs: &[Log]) -> String {
+    let mut text = format!("format = 1\nname = {}\n", quoted(name));
+    if let Some(can) = can {
+        text += can;
+    }
+    let mut mappings = logs.iter().filter_map(|log| log.mapping.as_ref());
+    let common = mappings.next();
+    if let Some(common) = common {
+        text += "\n[columns]\n";
+        text += &lines(common);
+    }
+    for log in logs {
+        let whole = [(0.0, f64::INFINITY)];
+        let cuts = if log.cuts.is_empty() {
+            &whole[..]
+        } else {
+            &log.cuts[..]
+        };
+        for (from_s, to_s) in cuts {
+            // Writing to a string can't fail.
+            let _ = write!(
+                text,
+                "\n[[run]]\nfile = {}\n{}",
+                quoted(&log.file),
+                log.bench
+            );
+            if to_s.is_finite() {
+                let _ = write!(text, "from_s = {from_s}\nto_s = {to_s}\n");
+            }
+            if let Some(own) = log.mapping.as_ref().filter(|own| !is_same(own, common)) {
+                text += "[run.columns]\n";
+                text += &lines(own);
+            }
+        }
+    }
+    text
+}
+
+fn is_same(own: &Mapping, common: Option<&Mapping>) -> bool {
+    common.is_some_and(|common| lines(common) == lines(own))
+}
+
+fn lines(mapping: &Mapping) -> String {
+    let line = |taken: &super::Taken| format!("{} = {}\n", taken.channel, quoted(&taken.source));
+    mapping.taken.iter().map(line).collect()
+}
+
+/// A text of TOML.
+#[must_use]
+pub fn quoted(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for letter in text.chars() {
+        match letter {
+            '"' | '\\' => quoted.extend(['\\', letter]),
+            letter if letter.is_control() => {
+                let _ = write!(quoted, "\\u{:04X}", u32::from(letter));
+            }
+            letter => quoted.push(letter),
+        }
+    }
+    quoted + "\""
+}
+
+/// The path of a log as a manifest in `folder` names it: from the folder on if it is in it, else from the root.
+#[must_use]
+pub fn path_from(folder: &Path, log: &Path) -> String {
+    let full = log.canonicalize().unwrap_or_else(|_| log.to_path_buf());
+    let folder = folder
+        .canonicalize()
+        .unwrap_or_else(|_| folder.to_path_buf());
+    let path = full.strip_prefix(&folder).unwrap_or(&full);
+    path.to_string_lossy().into_owned()
+}

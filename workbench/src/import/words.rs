@@ -1,0 +1,243 @@
+//! How columns are called, in German and English.
+
+/// What speaks for a column of a run, and against it, in the name of a log's column.
+#[derive(Debug)]
+pub struct Words {
+    /// The run's column.
+    pub channel: &'static str,
+    /// Its quantity.
+    quantity: &'static [&'static str],
+    /// Which one of that quantity; empty if there is only one.
+    which: &'static [&'static str],
+    /// What it is not.
+    not: &'static [&'static str],
+}
+
+const CURRENT: &[&str] = &[
+    "strom", "current", "ampere", "magnet", "solenoid", "ventil", "valve", "coil", "i",
+];
+const PRESSURE: &[&str] = &["druck", "pressure", "press", "p"];
+const NO_MEASUREMENT: [&str; 9] = [
+    "soll",
+    "target",
+    "setpoint",
+    "desired",
+    "reference",
+    "command",
+    "cmd",
+    "request",
+    "demand",
+];
+
+/// Those of every column but the times.
+pub static CHANNELS: [Words; 7] = [
+    Words {
+        channel: "lift_current_a",
+        quantity: CURRENT,
+        which: &[
+            "heben", "heb", "lift", "lifting", "raise", "raising", "up", "auf",
+        ],
+        not: &[
+            "druck",
+            "pressure",
+            "volumenstrom",
+            "senken",
+            "lower",
+            "flow",
+            "winkel",
+            "angle",
+        ],
+    },
+    Words {
+        channel: "lower_current_a",
+        quantity: CURRENT,
+        which: &["senken", "senk", "lower", "lowering", "down", "ab"],
+        not: &[
+            "druck",
+            "pressure",
+            "volumenstrom",
+            "heben",
+            "lift",
+            "flow",
+            "winkel",
+            "angle",
+        ],
+    },
+    Words {
+        channel: "pump_pressure_bar",
+        quantity: PRESSURE,
+        which: &[
+            "pumpe",
+            "pump",
+            "pumpen",
+            "supply",
+            "versorgung",
+            "system",
+            "pumpendruck",
+        ],
+        not: &[
+            "zylinder",
+            "cylinder",
+            "temperatur",
+            "temperature",
+            "flow",
+            "strom",
+        ],
+    },
+    Words {
+        channel: "cylinder_pressure_bar",
+        quantity: PRESSURE,
+        which: &[
+            "zylinder",
+            "zyl",
+            "zylinderdruck",
+            "cylinder",
+            "cyl",
+            "load",
+            "last",
+            "port",
+        ],
+        not: &[
+            "pumpe",
+            "pump",
+            "temperatur",
+            "temperature",
+            "weg",
+            "flow",
+            "strom",
+        ],
+    },
+    Words {
+        channel: "flow_lpm",
+        quantity: &["durchfluss", "volumenstrom", "flow", "flowrate", "q"],
+        which: &[],
+        not: &["temperatur", "temperature"],
+    },
+    Words {
+        channel: "rocker_angle_deg",
+        quantity: &[
+            "winkel", "angle", "rocker", "hubwelle", "phi", "position", "lage", "weg", "stroke",
+            "travel",
+        ],
+        which: &[],
+        not: &[
+            "druck",
+            "pressure",
+            "strom",
+            "current",
+            "temperatur",
+            "temperature",
+        ],
+    },
+    Words {
+        channel: "oil_temperature_c",
+        quantity: &["temperatur", "temperature", "temp", "t"],
+        which: &["öl", "oel", "oil", "fluid", "tank"],
+        not: &["luft", "air", "kühlwasser", "coolant", "motor", "engine"],
+    },
+];
+
+/// Those of the times.
+const TIMES: [&str; 9] = [
+    "zeit",
+    "time",
+    "timestamp",
+    "zeitstempel",
+    "uhrzeit",
+    "datum",
+    "date",
+    "sec",
+    "t",
+];
+
+impl Words {
+    /// How much of the name speaks for the column: the quantity 1, which one of it 2.
+    #[must_use]
+    pub fn score(&self, name: &str) -> i32 {
+        let words = words(name);
+        let has = |known: &[&str]| known.iter().any(|known| is_in(known, &words));
+        if has(self.not) {
+            return 0;
+        }
+        let score = i32::from(has(self.quantity)) + 2 * i32::from(has(self.which));
+        score - 4 * i32::from(has(&NO_MEASUREMENT))
+    }
+
+    /// Whether there is only one of that quantity.
+    #[must_use]
+    pub fn is_only_one(&self) -> bool {
+        self.which.is_empty()
+    }
+}
+
+/// Whether a name is that of times.
+#[must_use]
+pub fn is_time(name: &str) -> bool {
+    let words = words(name);
+    TIMES.iter().any(|known| is_in(known, &words))
+}
+
+/// The words of a name in small letters; `LiftCurrent` has two.
+fn words(name: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut was_small = false;
+    for letter in name.chars() {
+        let begins = !letter.is_alphabetic() || (letter.is_uppercase() && was_small);
+        was_small = letter.is_lowercase();
+        if begins {
+            words.push(String::new());
+        }
+        if let (true, Some(word)) = (letter.is_alphabetic(), words.last_mut()) {
+            word.extend(letter.to_lowercase());
+        }
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+/// Whether a known word is one of the name's; longer ones may be a part of one, for German joins them.
+fn is_in(known: &str, words: &[String]) -> bool {
+    /// Shorter words are parts of many others.
+    const LONG: usize = 5;
+    let is_part = |word: &String| known.len() >= LONG && word.contains(known);
+    words.iter().any(|word| word == known || is_part(word))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn best(name: &str) -> &'static str {
+        let best = CHANNELS
+            .iter()
+            .max_by_key(|words| words.score(name))
+            .unwrap();
+        assert!(best.score(name) > 0, "{name}");
+        best.channel
+    }
+
+    #[test]
+    fn names_are_understood_in_german_and_english() {
+        for (name, expected) in [
+            ("Ventil Heben Strom", "lift_current_a"),
+            ("Magnetstrom_Senken", "lower_current_a"),
+            ("LiftCurrent", "lift_current_a"),
+            ("current_valve_lower", "lower_current_a"),
+            ("Pumpendruck", "pump_pressure_bar"),
+            ("p_zyl", "cylinder_pressure_bar"),
+            ("Cylinder Pressure", "cylinder_pressure_bar"),
+            ("Volumenstrom", "flow_lpm"),
+            ("Winkel Hubwelle", "rocker_angle_deg"),
+            ("Öltemperatur Tank", "oil_temperature_c"),
+        ] {
+            assert_eq!(best(name), expected, "{name}");
+        }
+        assert!(is_time("Zeit") && is_time("t") && is_time("Timestamp") && !is_time("Temperatur"));
+    }
+
+    #[test]
+    fn what_is_wanted_is_not_what_was_measured() {
+        let lift = &CHANNELS[0];
+        assert!(lift.score("Strom Heben Soll") < lift.score("Strom Heben"));
+    }
+}
