@@ -46,3 +46,25 @@ pub fn environment(requirements: &Path, folder: &Path) -> Result<PathBuf> {
     }
     Ok(python)
 }
+
+/// The same below `folder`, or nothing on a machine without Python or network, except in continuous integration (`CI`
+/// is set).
+///
+/// # Panics
+/// In continuous integration, if there is none.
+pub fn installed(requirements: &str, folder: &Path) -> Option<PathBuf> {
+    match environment(&scripts().join(requirements), folder) {
+        Ok(python) => Some(python),
+        Err(reason) if std::env::var_os("CI").is_none() => {
+            eprintln!("left out, for there is no Python with the packages it needs: {reason:#}");
+            None
+        }
+        Err(reason) => panic!("no Python with the packages it needs: {reason:#}"),
+    }
+}
+
+/// Where the scripts are.
+#[must_use]
+pub fn scripts() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("python")
+}

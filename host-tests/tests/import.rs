@@ -1,10 +1,13 @@
 //! `hitch import`: the files of any logger become a campaign that reads to the runs of this project's own format.
 use std::fs;
 use std::path::Path;
-use std::process::Output;
+use std::process::{Command, Output};
 
+use hitch_model::Model;
 use hitch_model::campaign::{Campaign, Channel, Run};
+use hitch_model::plant::Linkage;
 use host_tests::program::run;
+use host_tests::python::{self, installed, scripts};
 use host_tests::refusal::refused;
 use tempfile::TempDir;
 
@@ -136,6 +139,119 @@ fn logs_of_any_dialect_read_to_the_same_runs() {
     }
 }
 
+/// Currents in mA in one message, angle in hundredths of a degree and pressure in kPa in another, and frames of a third.
+fn candump() -> String {
+    let frame = |[t, a, b, p, w]: [f64; 5]| {
+        let counts = [a * 1e3, b * 1e3, p * 1e2, w * 1e2].map(|value| value.round() as u16);
+        let hex = |value: u16| format!("{:04X}", value.swap_bytes());
+        let [a, b, p, w] = counts.map(hex);
+        format!("({t:.6}) can0 101#{a}{b}\n({t:.6}) can0 102#{w}{p}\n({t:.6}) can0 7FF#123\n")
+    };
+    samples().into_iter().map(frame).collect()
+}
+
+#[test]
+fn signals_of_a_bus_are_told_by_names_comments_and_units() {
+    let dbc = "VERSION \"\"\nBU_: Rig\n\
+        BO_ 257 Valves: 4 Rig\n SG_ Y1 : 0|16@1+ (1,0) [0|0] \"mA\" Rig\n SG_ Y2 : 16|16@1+ (1,0) [0|0] \"mA\" Rig\n\
+        BO_ 258 Hitch: 4 Rig\n SG_ Winkel : 0|16@1+ (0.01,0) [0|0] \"\u{b0}\" Rig\n \
+        SG_ ZylDruck : 16|16@1+ (1,0) [0|0] \"kPa\" Rig\n\
+        BO_ 259 Wanted: 4 Rig\n SG_ LiftCurrent : 0|16@1+ (1,0) [0|0] \"mA\" Rig\n\
+        CM_ SG_ 257 Y1 \"Magnetstrom Heben\";\nCM_ SG_ 257 Y2 \"Magnetstrom Senken\";\n";
+    let dir = TempDir::new().unwrap();
+    fs::write(dir.path().join("own.csv"), own()).unwrap();
+    let (_, expected) = imported(dir.path(), "import own.csv --out c --load 150");
+    fs::remove_dir_all(dir.path().join("c")).unwrap();
+    fs::write(dir.path().join("bus.log"), candump()).unwrap();
+    // Windows-1252, as most tools write it.
+    let bytes: Vec<u8> = dbc
+        .chars()
+        .map(|c| u8::try_from(u32::from(c)).unwrap())
+        .collect();
+    fs::write(dir.path().join("rig.dbc"), bytes).unwrap();
+    let (text, runs) = imported(dir.path(), "import bus.log rig.dbc --out c --load 150");
+    for said in [
+        "Valves.Y1",
+        "by its comment",
+        "Hitch.Winkel",
+        "4001 frames of messages that it doesn't have",
+    ] {
+        assert!(text.contains(said), "{said}\n{text}");
+    }
+    assert_same("bus", &runs, &expected);
+    assert!(
+        runs[0].file.starts_with("bus.log 8.5 to "),
+        "{}",
+        runs[0].file
+    );
+    refused(
+        dir.path(),
+        &[
+            "import", "own.csv", "rig.dbc", "--out", "d", "--load", "150",
+        ],
+        "describes a bus, and no log of one",
+    );
+}
+
+#[test]
+fn travel_of_the_cylinder_is_an_angle_by_the_linkage_of_the_model() {
+    let dir = TempDir::new().unwrap();
+    let row = |[t, a, b, p, w]: [f64; 5]| format!("{t:.2},{a},{b},{p},{:.3}\n", 10.0 + (w - 60.0));
+    let rows: String = samples().into_iter().map(row).collect();
+    let log = format!(
+        "time [s],lift current [A],lower current [A],cylinder pressure [bar],stroke [mm]\n{rows}"
+    );
+    fs::write(dir.path().join("log.csv"), log).unwrap();
+    let nominal = Model::nominal().to_toml();
+    let arm = nominal
+        .lines()
+        .find(|line| line.starts_with("rocker_arm"))
+        .unwrap();
+    let (key, value) = arm.split_once(" = ").unwrap();
+    let value: f64 = value.split_whitespace().next().unwrap().parse().unwrap();
+    let other = nominal.replace(arm, &format!("{key} = {}", value * 1.05));
+    fs::write(dir.path().join("other.toml"), other).unwrap();
+    let (_, runs) = imported(dir.path(), "import log.csv --out c --load 150");
+    fs::remove_dir_all(dir.path().join("c")).unwrap();
+    let arguments = "import log.csv --out c --load 150 --model other.toml";
+    let (text, _) = imported(dir.path(), arguments);
+    assert!(
+        text.contains("next: hitch compare c --model other.toml"),
+        "{text}"
+    );
+    let model = Model::named(dir.path().join("other.toml").to_str().unwrap()).unwrap();
+    let others = Campaign::load_with(&dir.path().join("c"), model.linkage()).unwrap();
+    let angle_deg = |run: &Run| run.channel(Channel::RockerAngle).unwrap()[0];
+    let expected = |linkage: &Linkage| linkage.at(0.01).rocker_angle_rad.to_degrees();
+    let [own_deg, other_deg] = [&runs[0], &others.runs[0]].map(angle_deg);
+    assert!((own_deg - expected(Model::nominal().linkage())).abs() < 1e-9);
+    assert!((other_deg - expected(model.linkage())).abs() < 1e-9);
+    assert!((own_deg - other_deg).abs() > 0.1, "{own_deg} {other_deg}");
+}
+
+#[test]
+fn mdf_of_another_program_reads_to_the_same_runs() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let Some(python) = installed("asammdf.txt", folder) else {
+        return;
+    };
+    let dir = TempDir::new().unwrap();
+    fs::write(dir.path().join("own.csv"), own()).unwrap();
+    let (_, expected) = imported(dir.path(), "import own.csv --out c --load 150");
+    let mut command = Command::new(python);
+    let command = command
+        .arg(scripts().join("write_mdf.py"))
+        .arg(dir.path().join("own.csv"));
+    let written = python::run(command).unwrap_or_else(|reason| panic!("{reason}"));
+    assert_eq!(written.lines().count(), 7, "{written}");
+    for file in written.lines() {
+        fs::remove_dir_all(dir.path().join("c")).unwrap();
+        let (text, runs) = imported(dir.path(), &format!("import {file} --out c --load 150"));
+        assert!(text.contains("LiftCurrent:mA"), "{text}");
+        assert_same(file, &runs, &expected);
+    }
+}
+
 #[test]
 fn what_cannot_be_told_is_asked_for() {
     let dir = TempDir::new().unwrap();
@@ -145,6 +261,7 @@ fn what_cannot_be_told_is_asked_for() {
     fs::write(dir.path().join("odd.csv"), odd).unwrap();
     fs::write(dir.path().join("own.csv"), own()).unwrap();
     fs::write(dir.path().join("log.blf"), b"LOGG\0\0\0").unwrap();
+    fs::write(dir.path().join("log.trc"), ";$FILEVERSION=2.1\n").unwrap();
     fs::write(dir.path().join("text.csv"), "nothing\nhere\n").unwrap();
     for (arguments, expected) in [
         (
@@ -167,6 +284,10 @@ fn what_cannot_be_told_is_asked_for() {
         (
             "import log.blf --out c --load 150",
             "log.blf: is a binary log of a CAN bus (BLF), not text",
+        ),
+        (
+            "import log.trc --out c --load 150",
+            "log.trc: is a trace of a CAN bus by PCAN (TRC)",
         ),
         (
             "import text.csv --out c --load 150",

@@ -15,35 +15,14 @@ use hitch_workbench::can_door::CanDoor;
 use hitch_workbench::ecu::{CutFlash, EcuMachine, Emulator, FLASH_BYTES, OnHost, find_image};
 use host_tests::live_ecu::{self, Operator};
 use host_tests::program::hitch;
-use host_tests::python::{environment, run};
+use host_tests::python::{installed, run, scripts};
 
-fn scripts() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("python")
-}
-
-/// The Python that has the packages, or why there is none.
-fn python() -> Result<&'static Path, &'static str> {
-    static PYTHON: OnceLock<Result<PathBuf, String>> = OnceLock::new();
-    let python = PYTHON.get_or_init(install);
-    python.as_deref().map_err(String::as_str)
-}
-
-fn install() -> Result<PathBuf, String> {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    let python = environment(&scripts().join("requirements.txt"), folder);
-    python.map_err(|error| format!("{error:#}"))
-}
-
-/// The same, or nothing on a machine where that may be.
+/// The Python that has the packages, or nothing on a machine where that may be.
 fn installed_python() -> Option<&'static Path> {
-    match python() {
-        Ok(python) => Some(python),
-        Err(reason) if std::env::var_os("CI").is_none() => {
-            eprintln!("left out, for there is no Python with the packages it needs: {reason}");
-            None
-        }
-        Err(reason) => panic!("no Python with the packages it needs: {reason}"),
-    }
+    static PYTHON: OnceLock<Option<PathBuf>> = OnceLock::new();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let python = PYTHON.get_or_init(|| installed("requirements.txt", folder));
+    python.as_deref()
 }
 
 /// Runs a script against the ECU that `start` gives; what it said has to hold `expected`.

@@ -20,6 +20,15 @@ impl ModelArg {
         PathBuf::from(&self.name)
     }
 
+    /// As it is written behind a command: nothing for the model that a command takes anyway.
+    #[must_use]
+    pub fn written(&self) -> String {
+        match self.name.as_str() {
+            "nominal" => String::new(),
+            name => format!(" --model {name}"),
+        }
+    }
+
     /// Reads the model.
     ///
     /// # Errors

@@ -338,8 +338,12 @@ parameter_group! {
         onset_travel: MilliDegree = 100, 0..=20_000;
         /// Travel given by currents above threshold and margin after which a hitch that shows no motion is a fault: what the budget and 0.2 s of the onset speed give.
         onset_debt: MilliDegree = 10_000, 10..=100_000;
-        /// Share of the calibration's speed that a starting hitch owes: behind the lowering valve 50 kg reach 70 % of it, cold oil and a slow pump half of that.
-        following_share: PerMille = 250, 10..=1_000;
+        /// As much again for a hitch that is lifted off its lower end stop, which carried its load: the oil is compressed from no pressure at all, for up to 0.15 s longer.
+        stop_debt: MilliDegree = 1_500, 0..=100_000;
+        /// Share of the calibration's speed that a hitch in motion owes: healthy ones that swing, or take up a load from the ground, stand while they are given 12 mm of piston travel.
+        following_share: PerMille = 80, 10..=1_000;
+        /// Speed that a hitch in motion owes if the calibration gives twice as much or more: a standstill of 125 ms is then a fault, of healthy ones that swing the longest took 98 ms.
+        following_speed: MicrometrePerSecond = 8_000, 0..=1_000_000;
         /// Travel that is owed when a standstill is a fault, 0.5 degree; a quarter of it, five sigmas of averaged noise of 0.1 degree, is motion.
         following_allowance: Micrometre = 1_000, 50..=20_000;
         /// Within this of the ends no travel towards them is owed: the end stop itself, of a sensor that is turned by as much as teaching accepts.

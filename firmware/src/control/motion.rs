@@ -134,7 +134,7 @@ impl Motion {
         phase: Phase,
         parameters: &MotionParameters,
     ) {
-        // Without flow nobody trails it, nor is it known which valve is in use.
+        // Without flow there is no speed to trail, and it is not known which valve is in use.
         let flows = self.model_speed != MicrometrePerSecond::ZERO;
         if phase == Phase::Holding || !flows {
             return;

@@ -73,3 +73,28 @@ fn against_is_counted_from_the_furthest_point_of_one_stroke() {
     assert_eq!(at(Order::Lift(1_200), 91_939), CoilCurrents::OFF);
     assert_eq!(rig.envelope.tripped(), Some(Trip::Against));
 }
+
+/// At first it followed its coil, so neither coils nor sensor are swapped.
+#[test]
+fn a_lowered_hitch_that_bounces_off_the_ground_is_cut_off_without_a_fault() {
+    for (way_down, bounced) in [(4_000, false), (4_020, true)] {
+        let mut rig = Rig::armed();
+        let mut at = |order, angle| {
+            rig.step_with(order, |inputs| {
+                inputs.rocker_angle = Some(MilliDegree(angle))
+            })
+        };
+        let lowest = 90_000 - way_down;
+        (0..20).for_each(|_| _ = at(Order::Lower(1_100), 90_000));
+        for angle in (lowest..90_000).rev().step_by(20) {
+            at(Order::Lower(1_100), angle);
+        }
+        for angle in (lowest..=lowest + 4_000).step_by(20) {
+            assert_ne!(at(Order::Lower(1_100), angle), CoilCurrents::OFF, "{angle}");
+        }
+        assert_eq!(at(Order::Lower(1_100), lowest + 4_001), CoilCurrents::OFF);
+        assert_eq!(rig.envelope.has_landed(), bounced, "{way_down}");
+        let trip = (!bounced).then_some(Trip::Against);
+        assert_eq!(rig.envelope.tripped(), trip, "{way_down}");
+    }
+}

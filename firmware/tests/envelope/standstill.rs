@@ -1,7 +1,7 @@
 //! Rows 8 and 10: an angle that stands still although a coil must have moved the hitch.
 
 use hitch_firmware::control::motion::piston_speed;
-use hitch_firmware::control::units::MilliBar;
+use hitch_firmware::control::units::{MicrometrePerSecond, MilliBar};
 
 use super::*;
 
@@ -70,8 +70,8 @@ fn row_10_a_sensor_that_sticks_in_motion_and_keeps_its_noise() {
 fn a_hitch_that_stops_is_cut_sooner_than_one_that_has_just_started() {
     let margin = SAFETY.following_margin.0;
     for (order, less, way) in [
-        (Order::Lift(1_900), Order::Lift(1_900 - margin), 1),
-        (Order::Lower(1_800), Order::Lower(1_800 - margin), -1),
+        (Order::Lift(2_300), Order::Lift(2_300 - margin), 1),
+        (Order::Lower(2_300), Order::Lower(2_300 - margin), -1),
     ] {
         let mut rig = Rig::armed_at(90_000 - way * 25_000);
         rig.speed = way * (given_deg(order.currents()) * 1e3) as i32;
@@ -81,8 +81,7 @@ fn a_hitch_that_stops_is_cut_sooner_than_one_that_has_just_started() {
         rig.speed = 0;
         let cut = rig.cut_after(order, |inputs, _| hangs(inputs));
         assert_eq!(rig.envelope.tripped(), Some(Trip::NotFollowing));
-        let share = f64::from(SAFETY.following_share.0) * 1e-3;
-        let owed_um_per_ms = share * given_deg(less.currents()) * um_per_deg();
+        let owed_um_per_ms = started_um_per_ms(less.currents());
         let started_ms = f64::from(SAFETY.following_allowance.0) / owed_um_per_ms;
         let cut_ms = f64::from(cut.unwrap());
         assert!(
@@ -107,7 +106,18 @@ fn a_hitch_that_has_just_started_may_stand_for_as_long_as_its_spool_is_slow() {
         rig.run(slow, 300);
         rig.speed = 0;
         rig.run(slow, 100);
-        let cut = rig.cut_after(order, |inputs, _| hangs(inputs));
+        // Only the share of what the valve gives.
+        let safety = SafetyParameters {
+            following_speed: MicrometrePerSecond(0),
+            ..SAFETY
+        };
+        let cut = (0..2_000).find(|_| {
+            let limits = Limits {
+                safety: &safety,
+                ..limits()
+            };
+            rig.step_within(limits, order, hangs) == CoilCurrents::OFF
+        });
         let (lift, lower) = (order.currents().lift, order.currents().lower);
         let less = |current: MilliAmp| MilliAmp((current - SAFETY.following_margin).0.max(0));
         let less = CoilCurrents {
@@ -122,6 +132,26 @@ fn a_hitch_that_has_just_started_may_stand_for_as_long_as_its_spool_is_slow() {
         assert!(
             f64::from(cut.unwrap()) >= least_ms,
             "{order:?}: {cut:?}, {least_ms} ms"
+        );
+    }
+}
+
+/// A load that swings, or is taken up from the ground, stands for up to 0.1 s.
+#[test]
+fn a_hitch_that_has_just_started_may_stand_for_110_ms() {
+    for (order, slow, way) in [
+        (LIFT, Order::Lift(1_326), 1),
+        (LOWER, Order::Lower(1_199), -1),
+    ] {
+        let mut rig = Rig::armed();
+        rig.speed = way * 2;
+        rig.run(slow, 300);
+        rig.speed = 0;
+        rig.run(slow, 100);
+        let cut = rig.cut_after(order, |inputs, _| hangs(inputs));
+        assert!(
+            cut.is_some_and(|cut| (110..160).contains(&cut)),
+            "{order:?}: {cut:?} ms"
         );
     }
 }
@@ -144,6 +174,13 @@ fn given_deg(passed: CoilCurrents) -> f64 {
     };
     let piston = piston_speed(table.flow(current), NOMINAL.hydraulics.piston_area);
     f64::from(piston.0) * 1e-3 / um_per_deg()
+}
+
+/// Piston travel that a hitch in motion owes in a step for currents less the margin, at 90 degrees, micrometre.
+fn started_um_per_ms(less: CoilCurrents) -> f64 {
+    let given = given_deg(less) * um_per_deg();
+    let least = (0.5 * given).min(f64::from(SAFETY.following_speed.0) * 1e-3);
+    least.max(f64::from(SAFETY.following_share.0) * 1e-3 * given)
 }
 
 /// Piston travel for a degree at 90 degrees, micrometre.
@@ -326,6 +363,46 @@ fn without_a_pressure_a_hitch_that_may_have_landed_is_cut_off_without_a_fault() 
     rig.run(Order::Rest, 1);
     assert!(!rig.envelope.has_landed());
     assert_ne!(rig.run(LOWER, 1), CoilCurrents::OFF, "the command was off");
+}
+
+/// Soft ground takes the weight off the oil slowly.
+#[test]
+fn a_hitch_whose_pressure_has_fallen_by_half_may_have_landed() {
+    for (order, bar_1000, lands) in [
+        (LOWER, 7_500, false),
+        (LOWER, 7_499, true),
+        (LIFT, 7_499, false),
+    ] {
+        let mut rig = Rig::moving(order);
+
+        rig.step_with(order, hangs);
+        rig.speed = 0;
+        let cut = (0..500).find(|_| {
+            let passed = rig.step_with(order, |inputs| {
+                inputs.cylinder_pressure = Some(MilliBar(bar_1000));
+            });
+            passed == CoilCurrents::OFF
+        });
+        let case = (order, bar_1000);
+        assert!(cut.is_some_and(|cut| cut <= 2 * IN_MOTION_MS), "{case:?}");
+        assert_eq!(rig.envelope.has_landed(), lands, "{case:?}");
+        let fault = (!lands).then_some(Trip::NotFollowing);
+        assert_eq!(rig.envelope.tripped(), fault, "{case:?}");
+    }
+}
+
+/// A quarter of the allowance is motion, even if more is owed.
+#[test]
+fn a_hitch_at_half_of_the_following_speed_shows_a_sensor_that_lives() {
+    for (order, way) in [(LIFT, 1), (LOWER, -1)] {
+        let mut rig = Rig::armed();
+        rig.speed = way * 2;
+        assert!(2.0 * um_per_deg() < 0.5 * f64::from(SAFETY.following_speed.0));
+        for step in 0..3_000 {
+            let passed = rig.step_with(order, hangs);
+            assert_ne!(passed, CoilCurrents::OFF, "{order:?}, {step}");
+        }
+    }
 }
 
 #[test]

@@ -142,6 +142,8 @@ impl<'a> Session<'a> {
         Inputs {
             lever: Some(MilliDegree(milli(lever_deg))),
             rocker_angle: Some(MilliDegree(milli(angle_deg))),
+            // Only looked at with `sensors.second_track`.
+            second_angle: Some(MilliDegree(milli(self.hitch.shown_deg()))),
             cylinder_pressure: pressure(cylinder),
             pump_pressure: pressure(pump),
             oil_temperature: Some(MilliCelsius(milli(self.oil_temperature_c))),

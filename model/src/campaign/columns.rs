@@ -254,6 +254,7 @@ fn two(table: &TomlTable<'_>, key: &str) -> Result<Option<[f64; 2]>, CampaignErr
 
 #[cfg(test)]
 mod tests {
+    use super::super::scale::nominal_linkage;
     use super::*;
 
     #[test]
@@ -267,7 +268,8 @@ mod tests {
         assert_eq!((source.name.as_str(), source.unit), ("Bus: Heben", None));
         let source = Source::parse("cylinder_pressure_bar", "U1:V 0.5=0 4.5=250").unwrap();
         assert_eq!(source.name, "U1");
-        assert!((source.scale(None).unwrap().apply(2.5) - 125.0).abs() < 1e-9);
+        let scale = source.scale(None).unwrap();
+        assert!((scale.apply(2.5, nominal_linkage()) - 125.0).abs() < 1e-9);
     }
 
     #[test]

@@ -8,6 +8,7 @@ use super::run_log::{self, Settings};
 use super::table::Table;
 use super::{Bench, Campaign, CampaignError, Channel, Noise, Run};
 use crate::input_error::{InputError, quote};
+use crate::plant::Linkage;
 use crate::source_file::SourceFile;
 use crate::toml_reader::TomlTable;
 
@@ -26,13 +27,13 @@ const SAMPLE_RATE_HZ: std::ops::RangeInclusive<f64> = 0.5..=100_000.0;
 /// One sigma, in any instrument's unit. Zero is not a noise: leave the key out to have it estimated.
 const SIGMA: std::ops::RangeInclusive<f64> = 1e-6..=100.0;
 
-/// Reads a campaign's folder.
-pub fn load(dir: &Path) -> Result<Campaign, CampaignError> {
-    read(dir, &SourceFile::read(&manifest_path(dir)?)?)
+/// Reads the folder of a campaign with a hitch of this linkage.
+pub fn load(dir: &Path, linkage: &Linkage) -> Result<Campaign, CampaignError> {
+    read(dir, &SourceFile::read(&manifest_path(dir)?)?, linkage)
 }
 
 /// Reads the campaign of a manifest that is or will be in `dir`.
-pub fn read(dir: &Path, source: &SourceFile) -> Result<Campaign, CampaignError> {
+pub fn read(dir: &Path, source: &SourceFile, linkage: &Linkage) -> Result<Campaign, CampaignError> {
     let top = TomlTable::parse(source)?;
     check_format(&top)?;
     top.only(&[
@@ -58,6 +59,7 @@ pub fn read(dir: &Path, source: &SourceFile) -> Result<Campaign, CampaignError> 
     let settings = Settings {
         bus: Some(&bus),
         columns: columns.as_ref(),
+        linkage,
     };
     let runs = runs(dir, &top, settings)?;
     let sample_rate_hz = declared_rate_hz.unwrap_or_else(|| logged_rate_hz(&runs));
@@ -150,10 +152,11 @@ fn runs(
     }
     let mut runs: Vec<Run> = Vec::with_capacity(tables.len());
     let mut parts: Vec<(&str, Cut)> = Vec::with_capacity(tables.len());
+    let files = tables.iter().map(|table| file_name(table, "file"));
+    let files = files.collect::<Result<Vec<&str>, CampaignError>>()?;
     // A log of several runs is read once if they stand one after the other.
     let mut last: Option<(PathBuf, Option<ColumnSettings>, Table)> = None;
-    for table in &tables {
-        let file = file_name(table, "file")?;
+    for (table, &file) in tables.iter().zip(&files) {
         let cut = Cut::read(table)?;
         let mut others = parts.iter();
         if others.any(|(other, part)| *other == file && part.overlaps(cut)) {
@@ -178,12 +181,23 @@ fn runs(
                 )?
             }
         };
-        let run = run_log::run(&log, file, cut, bench, oil_temperature_c)?;
+        let run = run_log::run(&log, called(file, &files), cut, bench, oil_temperature_c)?;
         last = Some((path.clone(), own, log));
         run_log::check_usable(&path, &run)?;
         runs.push(run);
     }
     Ok(runs)
+}
+
+/// What people call a log of these: the name of a file that lies elsewhere, unless another one has the same name.
+fn called<'f>(file: &'f str, files: &[&str]) -> &'f str {
+    let name_of = |file: &'f str| Path::new(file).file_name()?.to_str();
+    let name = name_of(file).filter(|_| Path::new(file).is_absolute());
+    let is_shared = |name: &str| {
+        let others = files.iter().filter(|other| **other != file);
+        others.map(Path::new).any(|other| other.ends_with(name))
+    };
+    name.filter(|name| !is_shared(name)).unwrap_or(file)
 }
 
 /// The path of the file that `key` names.

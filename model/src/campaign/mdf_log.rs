@@ -17,6 +17,7 @@ use super::series::Series;
 use super::table::{Cells, Column, LIFT, Samples, TIME, Table};
 use crate::file_kind;
 use crate::input_error::{InputError, quote};
+use crate::plant::Linkage;
 use crate::source_file::SourceFile;
 
 /// Where the version stands in a file.
@@ -174,12 +175,17 @@ impl MdfFile {
         }
     }
 
-    fn taken(&self, wanted: &Source, channel: &MdfChannel) -> Result<Series, CampaignError> {
+    fn taken(
+        &self,
+        wanted: &Source,
+        channel: &MdfChannel,
+        linkage: &Linkage,
+    ) -> Result<Series, CampaignError> {
         let fault = |(what, mend): (String, String)| self.source.error(what, mend);
         let scale = wanted.scale(channel.unit.as_deref()).map_err(fault)?;
         let mut series = self.series(channel)?;
         for index in 0..series.values.len() {
-            let value = scaled(scale, series.values[index], wanted.column);
+            let value = scaled(scale, linkage, series.values[index], wanted.column);
             series.values[index] = value.map_err(|value| {
                 let what = format!(
                     "{} of channel {} at {:.3} s would be {} = {value}",
@@ -201,19 +207,23 @@ impl MdfFile {
 ///
 /// # Errors
 /// If the column can't have it: the value.
-fn scaled(scale: Scale, value: f64, column: &Column) -> Result<f64, f64> {
+fn scaled(scale: Scale, linkage: &Linkage, value: f64, column: &Column) -> Result<f64, f64> {
     if !value.is_finite() {
         return Ok(f64::NAN);
     }
-    let value = scale.apply(value);
+    let value = scale.apply(value, linkage);
     column.range.contains(&value).then_some(value).ok_or(value)
 }
 
-/// Reads a log.
+/// Reads a log of a hitch with this linkage.
 ///
 /// # Errors
 /// Whatever is wrong first.
-pub fn read(path: &Path, settings: Option<&ColumnSettings>) -> Result<Table, CampaignError> {
+pub fn read(
+    path: &Path,
+    settings: Option<&ColumnSettings>,
+    linkage: &Linkage,
+) -> Result<Table, CampaignError> {
     let file = MdfFile::open(path)?;
     let own = ColumnSettings::by_own_names();
     let mut taken: Vec<(&'static str, Series)> = Vec::new();
@@ -222,7 +232,7 @@ pub fn read(path: &Path, settings: Option<&ColumnSettings>) -> Result<Table, Cam
             continue;
         }
         if let Some(channel) = file.find(wanted)? {
-            taken.push((wanted.column.name, file.taken(wanted, channel)?));
+            taken.push((wanted.column.name, file.taken(wanted, channel, linkage)?));
         }
     }
     let rows = taken.iter().find(|(name, _)| *name == LIFT);

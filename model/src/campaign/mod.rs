@@ -28,6 +28,7 @@ use std::path::Path;
 pub use channel::Channel;
 
 use crate::input_error::InputError;
+use crate::plant::Linkage;
 use crate::source_file::SourceFile;
 
 /// What is wrong with a campaign, by file, line and column.
@@ -82,7 +83,7 @@ pub enum Bench {
 /// One log: what drove the valves, and what was measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// File name within the campaign's folder, with its times if the run is a part of it.
+    /// File name within the campaign's folder, or of a log elsewhere, with its times if the run is a part of it.
     pub file: String,
     /// What the valve block was bolted to.
     pub bench: Bench,
@@ -102,24 +103,32 @@ pub struct Run {
 }
 
 impl Campaign {
-    /// Reads a campaign's folder.
+    /// Reads a campaign's folder. If an angle was logged as travel of the cylinder, the linkage is the nominal one.
     ///
     /// # Errors
     /// Whatever is wrong first, by file, line and column: see the module's description.
     pub fn load(dir: &Path) -> Result<Self, CampaignError> {
-        manifest::load(dir)
+        manifest::load(dir, scale::nominal_linkage())
     }
 
-    /// Reads the campaign that a folder would be if this were its manifest.
+    /// Reads the folder of a campaign with a hitch of this linkage.
     ///
     /// # Errors
     /// As [`Campaign::load`].
-    pub fn of_manifest(dir: &Path, text: &str) -> Result<Self, CampaignError> {
+    pub fn load_with(dir: &Path, linkage: &Linkage) -> Result<Self, CampaignError> {
+        manifest::load(dir, linkage)
+    }
+
+    /// Reads the campaign, with a hitch of this linkage, that a folder would be if this were its manifest.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn of_manifest(dir: &Path, text: &str, linkage: &Linkage) -> Result<Self, CampaignError> {
         let source = SourceFile {
             path: dir.join("campaign.toml"),
             text: text.to_owned(),
         };
-        manifest::read(dir, &source)
+        manifest::read(dir, &source, linkage)
     }
 }
 

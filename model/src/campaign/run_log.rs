@@ -5,18 +5,32 @@ use std::sync::Arc;
 use super::bus_log::{self, BusSettings, Format};
 use super::columns::ColumnSettings;
 use super::cut::Cut;
+use super::scale::nominal_linkage;
 use super::table::{LIFT, LOWER, OIL_TEMPERATURE, TIME, Table};
 use super::{Bench, CampaignError, Channel, Run, csv_log, mdf_log};
 use crate::input_error::InputError;
+use crate::plant::Linkage;
 use crate::source_file::SourceFile;
 
 /// How the logs of a campaign are meant.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct Settings<'s> {
     /// What is taken of a bus; without it, what the project's own ECU sends.
     pub bus: Option<&'s BusSettings>,
     /// Which column of a table or of MDF is which; without it, they have this project's names.
     pub columns: Option<&'s ColumnSettings>,
+    /// By which travel of the cylinder is an angle.
+    pub linkage: &'s Linkage,
+}
+
+impl Default for Settings<'_> {
+    fn default() -> Self {
+        Self {
+            bus: None,
+            columns: None,
+            linkage: nominal_linkage(),
+        }
+    }
 }
 
 /// Reads all of a log.
@@ -25,15 +39,19 @@ pub struct Settings<'s> {
 /// Whatever is wrong first, by file, line and column.
 pub fn table(path: &Path, settings: Settings<'_>) -> Result<Table, CampaignError> {
     if mdf_log::is_mdf(path) {
-        return mdf_log::read(path, settings.columns);
+        return mdf_log::read(path, settings.columns, settings.linkage);
     }
+    bus_log::check_known(path)?;
     match Format::of(path) {
         Some(format) => {
             let source = Arc::new(SourceFile::read_any(path)?);
             let ecu = BusSettings::default();
             bus_log::read(&source, format, settings.bus.unwrap_or(&ecu))
         }
-        None => csv_log::read(&Arc::new(SourceFile::read_any(path)?), settings.columns),
+        None => {
+            let source = Arc::new(SourceFile::read_any(path)?);
+            csv_log::read(&source, settings.columns, settings.linkage)
+        }
     }
 }
 

@@ -6,13 +6,15 @@ use super::table::{Column, OIL_TEMPERATURE, TIME};
 use crate::expression::Unit;
 use crate::input_error::quote;
 use crate::model::Model;
+use crate::plant::Linkage;
 
 /// Kelvin at 0 degrees Celsius.
 const ZERO_C_K: f64 = 273.15;
 
 /// Other ways to write a unit: as tools do, and in German.
-const SPELLINGS: [(&str, &str); 38] = [
+const SPELLINGS: [(&str, &str); 39] = [
     ("°", "deg"),
+    ("deg", "deg"),
     ("degree", "deg"),
     ("degrees", "deg"),
     ("grad", "deg"),
@@ -77,8 +79,7 @@ pub enum Scale {
         /// What its zero is.
         offset: f64,
     },
-    /// Travel of the cylinder out of its retracted end, here in metres by this factor, to the rocker's angle; the
-    /// linkage is that of the nominal model.
+    /// Travel of the cylinder out of its retracted end, here in metres by this factor, to the rocker's angle.
     Travel {
         /// Metres in one of the instrument's unit.
         metres: f64,
@@ -133,12 +134,15 @@ impl Scale {
         is_sound.then_some(Self::Line { factor, offset })
     }
 
-    /// The column's value.
-    pub fn apply(self, value: f64) -> f64 {
+    /// The column's value, of a hitch with this linkage.
+    pub fn apply(self, value: f64, linkage: &Linkage) -> f64 {
         match self {
             Self::Line { factor, offset } => value * factor + offset,
             Self::Travel { .. } if value.is_nan() => value,
-            Self::Travel { metres } => angle_deg(value * metres),
+            Self::Travel { metres } => {
+                let posture = linkage.at(value * metres);
+                posture.rocker_angle_rad.to_degrees()
+            }
         }
     }
 }
@@ -195,10 +199,10 @@ pub fn is_time(column: &Column) -> bool {
     column.name == TIME
 }
 
-/// Rocker angle of the nominal linkage at a travel of the piston.
-fn angle_deg(piston_m: f64) -> f64 {
+/// The linkage of a hitch of which nothing else is said.
+pub fn nominal_linkage() -> &'static Linkage {
     static NOMINAL: LazyLock<Model> = LazyLock::new(Model::nominal);
-    NOMINAL.linkage().at(piston_m).rocker_angle_rad.to_degrees()
+    NOMINAL.linkage()
 }
 
 #[cfg(test)]
@@ -208,7 +212,9 @@ mod tests {
 
     fn converted(value: f64, unit: &str, name: &str) -> f64 {
         let scale = Scale::of(unit, column(name).unwrap());
-        scale.unwrap_or_else(|what| panic!("{what}")).apply(value)
+        scale
+            .unwrap_or_else(|what| panic!("{what}"))
+            .apply(value, nominal_linkage())
     }
 
     #[test]
@@ -250,7 +256,7 @@ mod tests {
         }
         assert_eq!(Scale::through([1.0, 1.0], [0.0, 5.0]), None);
         let pressure = Scale::through([0.5, 4.5], [0.0, 250.0]).unwrap();
-        assert!((pressure.apply(2.5) - 125.0).abs() < 1e-9);
+        assert!((pressure.apply(2.5, nominal_linkage()) - 125.0).abs() < 1e-9);
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! What a log holds, before anybody has said which of its columns is which.
 use std::path::Path;
 
-use super::bus_log::Format;
+pub use super::bus_log::Signals;
+use super::bus_log::{self, Format};
 use super::csv_log;
 use super::mdf_log::{self, MdfFile};
 use super::scale::{is_unit_of, spelling};
@@ -16,7 +17,9 @@ pub struct LogColumn {
     pub name: String,
     /// Its unit as formulas write it, if the log says one.
     pub unit: Option<String>,
-    /// Its numbers, as the log has them; NaN where there is none.
+    /// What people say about it; empty if nothing.
+    pub comment: String,
+    /// Its numbers, as the log has them; NaN where there is none, and none at all if they weren't looked at.
     pub values: Vec<f64>,
     /// It holds dates or times of day.
     pub is_clock: bool,
@@ -45,10 +48,30 @@ impl Survey {
             return channels(path);
         }
         let source = SourceFile::read_any(path)?;
+        bus_log::check_known(path)?;
         match Format::of(path) {
             Some(_) => Ok(Self::Bus),
             None => csv_log::survey(&source),
         }
+    }
+}
+
+/// Whether a file is a log of a bus, by its name.
+#[must_use]
+pub fn is_bus(path: &Path) -> bool {
+    Format::of(path).is_some()
+}
+
+/// Looks into a log of a bus with the description that a DBC gives.
+///
+/// # Errors
+/// If one of them can't be read, the log is not of a bus, or holds nothing of the description.
+pub fn bus_signals(path: &Path, dbc: &Path) -> Result<Signals, CampaignError> {
+    let source = SourceFile::read_any(path)?;
+    let description = SourceFile::read_any(dbc)?;
+    match Format::of(path) {
+        Some(format) => bus_log::signals(&source, format, &description),
+        None => Err(source.error("is no log of a bus", "its name ends in .log or .asc")),
     }
 }
 
@@ -68,6 +91,7 @@ fn channels(path: &Path) -> Result<Survey, CampaignError> {
                     .unit
                     .as_deref()
                     .map(|unit| spelling(unit).to_owned()),
+                comment: String::new(),
                 values: series.values,
                 is_clock: false,
             });

@@ -36,6 +36,9 @@ const fn known(name: &'static str, unit: &'static str, range: RangeInclusive<f64
     Column { name, unit, range }
 }
 
+/// The column of times.
+pub static TIMES: Column = known(TIME, "s", TIME_S);
+
 /// Every column there is.
 pub static COLUMNS: [Column; 8] = [
     known(TIME, "s", TIME_S),

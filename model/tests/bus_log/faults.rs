@@ -36,24 +36,24 @@ fn what_is_wrong_with_a_line_is_said_with_its_place() {
             "a.log:25:21: \"FFF#00\" has more than 11 bits",
         ),
         (
-            "(1700000001.0) can0 123#0x11",
-            "a.log:25:25: \"123#0x11\" has bad data",
+            "(1700000001.0) can0 18FF4580#0x11",
+            "a.log:25:30: \"18FF4580#0x11\" has bad data",
         ),
         (
-            "(1700000001.0) can0 123#001",
-            "a.log:25:27: \"123#001\" has bad data",
+            "(1700000001.0) can0 18FF4580#001",
+            "a.log:25:32: \"18FF4580#001\" has bad data",
         ),
         (
-            "(1700000001.0) can0 123#001122334455667788",
-            "a.log:25:41: \"123#001122334455667788\" has too much data",
+            "(1700000001.0) can0 18FF4580#001122334455667788",
+            "a.log:25:46: \"18FF4580#001122334455667788\" has too much data",
         ),
         (
-            "(1700000001.0) can0 123##",
-            "a.log:25:21: \"123##\" has no flags",
+            "(1700000001.0) can0 18FF4580##",
+            "a.log:25:21: \"18FF4580##\" has no flags",
         ),
         (
-            "(1700000001.0) can0 123#00 X",
-            "a.log:25:28: \"X\" stands behind the frame",
+            "(1700000001.0) can0 18FF4580#00 X",
+            "a.log:25:33: \"X\" stands behind the frame",
         ),
         (
             "(1700000000.3) can0 18FF4580#00",
@@ -102,16 +102,16 @@ fn what_is_wrong_with_a_line_of_vector_s_is_said_with_its_place() {
             "a.asc:2:15: \"q\" is no kind of frame",
         ),
         (
-            " 0.5 1 123 Rx d 2 00",
-            "a.asc:2:21: the line ends before its last byte",
+            " 0.5 1 18FF4580x Rx d 2 00",
+            "a.asc:2:27: the line ends before its last byte",
         ),
         (
-            " 0.5 1 123 Rx d 1 +1",
-            "a.asc:2:19: \"+1\" is no such number",
+            " 0.5 1 18FF4580x Rx d 1 +1",
+            "a.asc:2:25: \"+1\" is no such number",
         ),
         (
-            " 0.5 CANFD 1 Rx 123 1 0 8 99 00",
-            "a.asc:2:27: \"99\" is no such number",
+            " 0.5 CANFD 1 Rx 18FF4580x 1 0 8 99 00",
+            "a.asc:2:33: \"99\" is no such number",
         ),
         (
             "",

@@ -59,6 +59,22 @@ fn a_log_of_vector_s_gives_the_same_run() {
     }
 }
 
+#[test]
+fn frames_of_other_messages_need_not_be_readable() {
+    let others = "(1699999999.5) can0 123#001122334455667788\n(1699999999.6) can0 123#0x1\n\
+        (1699999999.7) can0 123##\n(1699999999.8) can0 18FF0000#00 00\n";
+    let log = format!("{others}{}", candump(20));
+    assert_eq!(loaded(MANIFEST, &log), loaded(MANIFEST, &candump(20)));
+    let others = " 0.0 1 123 Rx d 99 00\n 0.0 1 123 Rx d 8 00\n 0.0 CANFD 1 Rx 123 1 0 8 99 00\n";
+    let log = asc(20, "absolute").replace("End TriggerBlock\n", others);
+    let manifest = MANIFEST.replace("a.log", "a.asc");
+    let folder = folder(&[("campaign.toml", &manifest), ("a.asc", &log)]);
+    assert_eq!(
+        Campaign::load(folder.path()).unwrap().runs[0].time_s.len(),
+        20
+    );
+}
+
 /// Both were written by python-can 4.6.1 from the bus of the ECU, while it lowered the hitch.
 #[test]
 fn logs_of_another_program_are_read() {

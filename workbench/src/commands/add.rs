@@ -49,7 +49,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let outputs = Outputs::check([Some(args.out.as_path())], &inputs)?;
     let model = args.model.load()?;
     let effects = effects(&args.effects, &model)?;
-    let campaign = Campaign::load(&args.campaign)?;
+    let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
     let experiment = Experiment::new(&campaign, &model);
     let base = fit_freely(&experiment, &model);

@@ -51,7 +51,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
     inputs.push(args.model.file());
     let outputs = Outputs::check([args.out.as_deref(), args.json.target()], &inputs)?;
     let model = args.model.load()?;
-    let [baseline, new] = [&args.baseline, &args.new].map(|folder| Campaign::load(folder));
+    let load = |folder| Campaign::load_with(folder, model.linkage());
+    let [baseline, new] = [&args.baseline, &args.new].map(|folder| load(folder));
     let (baseline, new) = (baseline?, new?);
     let baseline = Found::new(&baseline, model, args.search.options());
     let adopted = baseline.rebuilt(baseline.shown.head.campaign.clone());

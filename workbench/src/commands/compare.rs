@@ -35,7 +35,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     inputs.push(args.model.file());
     let outputs = Outputs::check([args.report.as_deref(), args.json.target()], &inputs)?;
     let model = args.model.load()?;
-    let campaign = Campaign::load(&args.campaign)?;
+    let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
     let progress = Progress::start(format!("comparing {} with {}", model.name, campaign.name));
     let (comparison, evaluated) = Comparison::new(&campaign, &model);
     drop(progress);

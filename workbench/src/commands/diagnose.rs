@@ -33,7 +33,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     inputs.push(args.model.file());
     let outputs = Outputs::check([args.json.target()], &inputs)?;
     let model = args.model.load()?;
-    let campaign = Campaign::load(&args.campaign)?;
+    let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
     let experiment = Experiment::new(&campaign, &model);
     let base = fit_base(&experiment, &model);

@@ -45,7 +45,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     ];
     let outputs = Outputs::check(wanted, &inputs)?;
     let model = args.model.load()?;
-    let campaign = Campaign::load(&args.campaign)?;
+    let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
     let found = Found::new(&campaign, model, args.search.options());
     if let Some(path) = &args.out {
         output::write_file(path, found.rebuilt(output::stem(path)).to_toml().as_bytes())?;

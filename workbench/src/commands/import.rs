@@ -1,15 +1,15 @@
 //! `hitch import`: a campaign from the files of any logger, which stay where they are.
 use std::fs;
-use std::io::{self, IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use hitch_model::campaign::survey::{LogColumn, Survey};
+use hitch_model::campaign::survey::{self, LogColumn, Survey};
 use hitch_model::campaign::{Campaign, Run};
 
 use super::loop_::load_kg;
 use crate::error::Error;
-use crate::import::manifest::{Log, path_from, quoted, text};
-use crate::import::{Mapping, cuts};
+use crate::import::manifest::{Log, lines, path_from, quoted, text};
+use crate::import::{Kind, Mapping, cuts, dialogue};
+use crate::model_arg::ModelArg;
 use crate::output;
 
 /// Arguments of `hitch import`.
@@ -18,7 +18,8 @@ use crate::output;
     after_help = "Example: hitch import monday.csv --out monday --load 150 --map lift_current_a=\"Ventil Heben Strom:mA\"\n\n\
     Logs are tables (CSV of any kind), MDF (.mf4, .mdf) and a CAN bus (.log, .asc). They are read where they are: the \
     campaign's folder gets campaign.toml alone, which says under [columns] what each column is. Of a bus with a DBC, \
-    which is named beside the logs, --map gives signals: lift_current_a=Message.Signal. A log of more than a minute is \
+    which is named beside the logs, --map gives signals: lift_current_a=Message.Signal. An angle in mm is the travel of \
+    the cylinder: the linkage of --model makes it an angle. A log of more than a minute is \
     cut into runs where the hitch rests. Loads that differ are corrected in campaign.toml, or stand in the files' names \
     (lift_150kg.csv)."
 )]
@@ -41,6 +42,8 @@ pub struct Args {
     /// Pressure at the cylinder port of a flow bench, bar
     #[arg(long, value_name = "BAR")]
     port_pressure: Option<f64>,
+    #[command(flatten)]
+    model: ModelArg,
     /// Take what is proposed without asking
     #[arg(long)]
     yes: bool,
@@ -65,8 +68,9 @@ pub fn run(args: &Args) -> Result<(), Error> {
             .is_some_and(|end| end.eq_ignore_ascii_case("dbc"))
     };
     let (dbcs, files): (Vec<&PathBuf>, Vec<&PathBuf>) = args.files.iter().partition(is_dbc);
-    let named = named(&args.maps)?;
-    let can = can(args, &dbcs, &named)?;
+    let model = args.model.load()?;
+    let named = dialogue::named(&args.maps)?;
+    let can = can(args, &dbcs, &files, &named)?;
     let mut logs = Vec::with_capacity(files.len());
     for file in files {
         let mapping = mapping(args, file, &named)?;
@@ -83,124 +87,81 @@ pub fn run(args: &Args) -> Result<(), Error> {
         .unwrap_or(args.out.as_os_str())
         .to_string_lossy()
         .into_owned();
-    let whole = Campaign::of_manifest(&args.out, &text(&name, can.as_deref(), &logs))?;
+    let whole = Campaign::of_manifest(
+        &args.out,
+        &text(&name, can.as_deref(), &logs),
+        model.linkage(),
+    )?;
     for (log, run) in logs.iter_mut().zip(&whole.runs) {
         log.cuts = cuts::cuts(run);
     }
     let text = text(&name, can.as_deref(), &logs);
-    let campaign = Campaign::of_manifest(&args.out, &text)?;
+    let campaign = Campaign::of_manifest(&args.out, &text, model.linkage())?;
     fs::create_dir_all(&args.out).map_err(|source| Error::Write {
         path: args.out.clone(),
         source,
     })?;
     output::write_file(&manifest, text.as_bytes())?;
-    output::print(&told(&args.out, &campaign.runs))
-}
-
-/// Splits what was given with `--map`.
-fn named(maps: &[String]) -> Result<Vec<(String, String)>, Error> {
-    let split = |map: &String| {
-        let (channel, source) = map.split_once('=')?;
-        Some((
-            channel.trim().to_owned(),
-            source.trim().trim_matches('"').to_owned(),
-        ))
-    };
-    let fault = |map: &String| {
-        Error::Usage(format!(
-            "--map {map}: write it as --map CHANNEL=\"NAME:UNIT\""
-        ))
-    };
-    maps.iter()
-        .map(|map| split(map).ok_or_else(|| fault(map)))
-        .collect()
+    output::print(&told(args, &campaign.runs))
 }
 
 /// `[can]` of the manifest, if a DBC is named.
 fn can(
     args: &Args,
     dbcs: &[&PathBuf],
+    files: &[&PathBuf],
     named: &[(String, String)],
 ) -> Result<Option<String>, Error> {
-    match dbcs {
-        [] => Ok(None),
-        [dbc] => {
-            let dbc = path_from(&args.out, dbc);
-            let signal =
-                |(channel, signal): &(String, String)| format!("{channel} = {}\n", quoted(signal));
-            let signals: String = named.iter().map(signal).collect();
-            Ok(Some(format!(
-                "\n[can]\ndbc = {}\n\n[can.signals]\n{signals}",
-                quoted(&dbc)
-            )))
-        }
+    let dbc = match dbcs {
+        [] => return Ok(None),
+        [dbc] => *dbc,
         [_, second, ..] => {
             let name = second.display();
-            Err(Error::Usage(format!(
+            return Err(Error::Usage(format!(
                 "{name}: is a second DBC; a campaign has one"
-            )))
+            )));
         }
-    }
-}
-
-/// What is taken of a log; asks where that is a terminal.
-fn mapping(args: &Args, file: &Path, named: &[(String, String)]) -> Result<Option<Mapping>, Error> {
-    let (columns, needs_time) = match Survey::of(file)? {
-        Survey::Own | Survey::Bus => return Ok(None),
-        Survey::Table(columns) => (columns, true),
-        Survey::Channels(columns) => (columns, false),
     };
-    let asks = !args.yes && io::stdin().is_terminal() && io::stdout().is_terminal();
-    let mut named = named.to_vec();
-    loop {
-        let proposal = Mapping::propose(&columns, needs_time, &named)
-            .map_err(|why| format!("{}: {why}", file.display()));
-        match &proposal {
-            Ok(mapping) => output::print(&shown(file, &columns, mapping))?,
-            Err(why) if asks => output::print(&format!("{why}\n"))?,
-            Err(why) => return Err(Error::Usage(why.clone())),
-        }
-        let answer = if asks { answer()? } else { String::new() };
-        match (answer.trim(), proposal) {
-            ("", Ok(mapping)) => return Ok(Some(mapping)),
-            ("q" | "", _) => return Err(Error::Usage("stopped; nothing was written".to_owned())),
-            (answer, _) => {
-                let mut more = self::named(&[answer.to_owned()])?;
-                named.retain(|(channel, _)| *channel != more[0].0);
-                named.append(&mut more);
-            }
+    let mut columns: Vec<LogColumn> = Vec::new();
+    let mut unknown_frames = 0;
+    for file in files.iter().filter(|file| survey::is_bus(file)) {
+        let found = survey::bus_signals(file, dbc)?;
+        unknown_frames += found.unknown_frames;
+        for column in found.columns {
+            let is_new = columns.iter().all(|known| known.name != column.name);
+            columns.extend(is_new.then_some(column));
         }
     }
+    if columns.is_empty() {
+        let name = dbc.display();
+        return Err(Error::Usage(format!(
+            "{name}: describes a bus, and no log of one (.log, .asc) is named"
+        )));
+    }
+    let heading = match unknown_frames {
+        0 => dbc.display().to_string(),
+        frames => format!(
+            "{} ({frames} frames of messages that it doesn't have are passed over)",
+            dbc.display()
+        ),
+    };
+    let mapping = dialogue::agreed(&heading, &columns, Kind::Signals, named, !args.yes)?;
+    Ok(Some(format!(
+        "\n[can]\ndbc = {}\n\n[can.signals]\n{}",
+        quoted(&path_from(&args.out, dbc)),
+        lines(&mapping)
+    )))
 }
 
-fn answer() -> Result<String, Error> {
-    print!("Enter takes this, CHANNEL=NAME:UNIT changes a line, q stops: ");
-    io::stdout().flush().map_err(Error::Stdout)?;
-    let mut line = String::new();
-    match io::stdin().read_line(&mut line) {
-        Ok(0) => Ok("q".to_owned()),
-        Ok(_) => Ok(line),
-        Err(error) => Err(Error::Usage(format!("the answer can't be read: {error}"))),
-    }
-}
-
-/// The proposal as a table.
-fn shown(file: &Path, columns: &[LogColumn], mapping: &Mapping) -> String {
-    let mut text = format!("{}:\n", file.display());
-    let width = mapping
-        .taken
-        .iter()
-        .map(|taken| taken.source.chars().count())
-        .max()
-        .unwrap_or(0);
-    for taken in &mapping.taken {
-        text += &format!(
-            "  {:<22} {:<width$}  {}\n",
-            taken.channel, taken.source, taken.reason
-        );
-    }
-    let others = columns.len().saturating_sub(mapping.taken.len());
-    text + &format!("  {others} other columns are passed over\n")
+/// What is taken of a log; `None` of one that needs no telling.
+fn mapping(args: &Args, file: &Path, named: &[(String, String)]) -> Result<Option<Mapping>, Error> {
+    let (columns, kind) = match Survey::of(file)? {
+        Survey::Own | Survey::Bus => return Ok(None),
+        Survey::Table(columns) => (columns, Kind::Table),
+        Survey::Channels(columns) => (columns, Kind::Channels),
+    };
+    let heading = file.display().to_string();
+    dialogue::agreed(&heading, &columns, kind, named, !args.yes).map(Some)
 }
 
 /// The lines of a run that say what the valve block was bolted to.
@@ -236,7 +197,7 @@ fn load_in_name(name: &str) -> Option<f64> {
     load_kg(before.get(digits..)?).ok()
 }
 
-fn told(out: &Path, runs: &[Run]) -> String {
+fn told(args: &Args, runs: &[Run]) -> String {
     let mut text = String::new();
     for run in runs {
         let seconds = run.duration_s();
@@ -247,9 +208,10 @@ fn told(out: &Path, runs: &[Run]) -> String {
         );
     }
     text + &format!(
-        "{}: written; next: hitch compare {}\n",
-        out.join("campaign.toml").display(),
-        out.display()
+        "{}: written; next: hitch compare {}{}\n",
+        args.out.join("campaign.toml").display(),
+        args.out.display(),
+        args.model.written()
     )
 }
 

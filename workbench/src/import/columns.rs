@@ -12,6 +12,17 @@ const MOST_A: f64 = 20.0;
 /// Larger pressures are not in bar.
 const MOST_BAR: f64 = 400.0;
 
+/// What a log is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A table: one of its columns has the times.
+    Table,
+    /// Channels that know their times.
+    Channels,
+    /// Signals of a bus, whose units are those of its description.
+    Signals,
+}
+
 /// A column of a run, where it comes from, and why.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Taken {
@@ -30,11 +41,21 @@ pub struct Mapping {
     pub taken: Vec<Taken>,
 }
 
+/// What can't be told.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Untold {
+    /// What it is.
+    pub what: String,
+    /// How to say it.
+    pub mend: String,
+}
+
 /// A column that could be meant, and its points.
 struct Candidate<'c> {
     column: &'c LogColumn,
     score: i32,
-    words: i32,
+    /// What told.
+    by: &'static str,
 }
 
 impl Mapping {
@@ -44,20 +65,23 @@ impl Mapping {
     /// What is missing, and how to say it.
     pub fn propose(
         columns: &[LogColumn],
-        needs_time: bool,
+        kind: Kind,
         named: &[(String, String)],
-    ) -> Result<Self, String> {
+    ) -> Result<Self, Untold> {
         let mut mapping = Self::default();
         let mut used: Vec<String> = Vec::new();
         for (channel, source) in named {
-            let (name, _) = check_source(channel, source).map_err(|why| format!("--map: {why}"))?;
+            let (name, _) = check_source(channel, source).map_err(|what| Untold {
+                what: format!("--map {channel}={source}: {what}"),
+                mend: "write it as --map CHANNEL=\"NAME:UNIT\"".to_owned(),
+            })?;
             let known = run_columns().find(|(known, _)| known == channel);
             if let Some((channel, _)) = known {
                 used.push(name);
                 mapping.take(channel, source.clone(), "as you said".to_owned());
             }
         }
-        if needs_time && !mapping.has(TIMES) {
+        if kind == Kind::Table && !mapping.has(TIMES) {
             let (column, source, reason) = time(columns)
                 .ok_or_else(|| missing(TIMES, "its times rise from row to row", columns))?;
             used.push(column.name.clone());
@@ -70,6 +94,10 @@ impl Mapping {
             let free = columns.iter().filter(|column| !used.contains(&column.name));
             if let Some((column, source, reason)) = proposal(words, free)? {
                 used.push(column.name.clone());
+                let source = match kind {
+                    Kind::Signals => column.name.clone(),
+                    Kind::Table | Kind::Channels => source,
+                };
                 mapping.take(words.channel, source, reason);
             }
         }
@@ -92,7 +120,7 @@ impl Mapping {
         self.taken.iter().any(|taken| taken.channel == channel)
     }
 
-    fn check(&self, columns: &[LogColumn]) -> Result<(), String> {
+    fn check(&self, columns: &[LogColumn]) -> Result<(), Untold> {
         for channel in ["lift_current_a", "lower_current_a"] {
             if !self.has(channel) {
                 return Err(missing(channel, "it drives the model", columns));
@@ -111,7 +139,7 @@ impl Mapping {
     }
 }
 
-fn missing(channel: &str, why: &str, columns: &[LogColumn]) -> String {
+fn missing(channel: &str, why: &str, columns: &[LogColumn]) -> Untold {
     const MOST: usize = 16;
     let names: Vec<&str> = columns
         .iter()
@@ -119,10 +147,13 @@ fn missing(channel: &str, why: &str, columns: &[LogColumn]) -> String {
         .map(|column| column.name.as_str())
         .collect();
     let more = if columns.len() > MOST { ", ..." } else { "" };
-    format!(
-        "no column could be told to be {channel}, and {why}; say which it is, as in --map {channel}=\"NAME:UNIT\", of {}{more}",
-        names.join(", ")
-    )
+    Untold {
+        what: format!("no column could be told to be {channel}, and {why}"),
+        mend: format!(
+            "say which it is, as in --map {channel}=\"NAME:UNIT\", of {}{more}",
+            names.join(", ")
+        ),
+    }
 }
 
 /// The column of the times, as `[columns]` has it.
@@ -177,7 +208,7 @@ type Proposal<'c> = Option<(&'c LogColumn, String, String)>;
 fn proposal<'c>(
     words: &Words,
     columns: impl Iterator<Item = &'c LogColumn>,
-) -> Result<Proposal<'c>, String> {
+) -> Result<Proposal<'c>, Untold> {
     let mut candidates: Vec<Candidate<'c>> = columns
         .filter_map(|column| candidate(words, column))
         .collect();
@@ -187,34 +218,32 @@ fn proposal<'c>(
         [first, second, ..] if first.score == second.score => {
             let is_needed = words.channel.ends_with("current_a");
             return match is_needed {
-                true => Err(format!(
-                    "{} may be \"{}\" or \"{}\"; say which, as in --map {}=\"{}\"",
-                    words.channel,
-                    first.column.name,
-                    second.column.name,
-                    words.channel,
-                    first.column.name
-                )),
+                true => Err(Untold {
+                    what: format!(
+                        "{} may be \"{}\" or \"{}\"",
+                        words.channel, first.column.name, second.column.name
+                    ),
+                    mend: format!(
+                        "say which, as in --map {}=\"{}\"",
+                        words.channel, first.column.name
+                    ),
+                }),
                 false => Ok(None),
             };
         }
         [first, ..] => first,
     };
     let column = best.column;
-    let by_name = if best.words > 0 {
-        "by its name"
-    } else {
-        "the only one in that unit"
-    };
     let Some((unit, by_unit)) = unit(words.channel, column) else {
         return Ok(None);
     };
-    let reason = format!("{by_name}; {by_unit}");
+    let reason = format!("{}; {by_unit}", best.by);
     Ok(Some((column, format!("{}:{unit}", column.name), reason)))
 }
 
 fn candidate<'c>(words: &Words, column: &'c LogColumn) -> Option<Candidate<'c>> {
-    if column.is_clock || column.values.iter().all(|value| value.is_nan()) {
+    let is_empty = column.values.iter().all(|value| value.is_nan());
+    if column.is_clock || (is_empty && !column.values.is_empty()) {
         return None;
     }
     let by_unit = match column.unit.as_deref() {
@@ -222,14 +251,19 @@ fn candidate<'c>(words: &Words, column: &'c LogColumn) -> Option<Candidate<'c>> 
         Some(_) => 2,
         None => 0,
     };
-    let by_words = words.score(&column.name);
     // Of a quantity that a hitch has once, the unit or the name will do; of others the name has to say which.
     let least = if words.is_only_one() { 1 } else { 2 };
-    let is_told = by_words >= least || (words.is_only_one() && by_words == 0 && by_unit > 0);
-    is_told.then_some(Candidate {
+    let (by_name, by_comment) = (words.score(&column.name), words.score(&column.comment));
+    let (by_words, by) = match by_name {
+        name if name >= least => (name, "by its name"),
+        0.. if by_comment >= least => (by_comment, "by its comment"),
+        0 if words.is_only_one() && by_unit > 0 => (0, "the only one in that unit"),
+        _ => return None,
+    };
+    Some(Candidate {
         column,
         score: by_words * 2 + by_unit,
-        words: by_words,
+        by,
     })
 }
 

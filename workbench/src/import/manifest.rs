@@ -61,7 +61,9 @@ fn is_same(own: &Mapping, common: Option<&Mapping>) -> bool {
     common.is_some_and(|common| lines(common) == lines(own))
 }
 
-fn lines(mapping: &Mapping) -> String {
+/// What of a run is taken from where, a line each.
+#[must_use]
+pub fn lines(mapping: &Mapping) -> String {
     let line = |taken: &super::Taken| format!("{} = {}\n", taken.channel, quoted(&taken.source));
     mapping.taken.iter().map(line).collect()
 }

@@ -56,7 +56,9 @@ pub struct AngleWatch {
 /// Motion since a coil was switched on.
 #[derive(Clone, Copy, Debug)]
 struct Stroke {
-    /// Furthest angle along the coil's way.
+    /// Angle along the coil's way where it was switched on.
+    first: MilliDegree,
+    /// Furthest such angle.
     furthest: MilliDegree,
     /// Travel owed and seen.
     following: Following,
@@ -222,12 +224,18 @@ impl AngleWatch {
         };
         let newest = along(self.newest_sample());
         let stroke = self.stroke.get_or_insert(Stroke {
+            first: newest,
             furthest: newest,
             following: Following::default(),
         });
         if believed.is_some() {
             stroke.furthest = stroke.furthest.max(newest);
-            faults.against = stroke.furthest - newest > limits.safety.contradiction;
+            let most = limits.safety.contradiction;
+            let back = stroke.furthest - newest > most;
+            // A hitch that was lowered far and comes up again has bounced off the ground: nothing is swapped.
+            let bounced = back && !lifting && stroke.furthest - stroke.first > most;
+            self.landed |= bounced;
+            faults.against = back && !bounced;
         }
         let safety = limits.safety;
         let stands = stroke.following.judge(shown, passed, inputs, limits);

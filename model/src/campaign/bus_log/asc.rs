@@ -11,7 +11,9 @@
 //! End TriggerBlock
 //! ```
 //!
-//! Frames are read to the last digit; other events of the bus, and events of other buses, are passed over.
+//! Frames that somebody wants are read to the last digit, others up to the identifier; other events of the bus, and
+//! events of other buses, are passed over.
+use super::ear::Ear;
 use super::frame::{Frame, Id, MOST_BYTES};
 use super::line::{Line, Word, lines};
 use crate::campaign::CampaignError;
@@ -34,11 +36,8 @@ struct Notation {
     relative: bool,
 }
 
-/// Gives every data frame to `take`.
-pub fn read(
-    source: &SourceFile,
-    take: &mut dyn FnMut(&Frame<'_>) -> Result<(), CampaignError>,
-) -> Result<(), CampaignError> {
+/// Gives every data frame that it wants to `ear`.
+pub fn read(source: &SourceFile, ear: &mut dyn Ear) -> Result<(), CampaignError> {
     let mut notation = Notation {
         radix: 16,
         relative: false,
@@ -60,14 +59,14 @@ pub fn read(
         }
         last_s = time_s;
         let length = match line.text(1) {
-            "CANFD" => flexible(&line, &mut bytes)?,
+            "CANFD" => flexible(&line, ear, &mut bytes)?,
             channel if channel.bytes().all(|byte| byte.is_ascii_digit()) => {
-                classical(&line, notation.radix, &mut bytes)?
+                classical(&line, ear, notation.radix, &mut bytes)?
             }
             _ => None,
         };
         if let Some((channel, id, length)) = length {
-            take(&Frame {
+            ear.take(&Frame {
                 time_s,
                 channel,
                 id,
@@ -107,6 +106,7 @@ type Parts<'a> = Option<(&'a str, Id, usize)>;
 /// `TIME CHANNEL ID Rx|Tx d LENGTH DATA...`
 fn classical<'a>(
     line: &Line<'a>,
+    ear: &mut dyn Ear,
     radix: u32,
     bytes: &mut [u8],
 ) -> Result<Parts<'a>, CampaignError> {
@@ -122,6 +122,9 @@ fn classical<'a>(
         "d" | "r" => return Ok(None),
         _ => return Err(line.fault(kind, 0, "is no kind of frame", "it is d or r")),
     }
+    if !ear.wants(line.text(1), id) {
+        return Ok(None);
+    }
     let count = line.word(5, "length")?;
     let length = number(line, count, radix, MOST_BYTES as u32)? as usize;
     // Up to 15 it is the code of a classical frame; some tools write CAN FD so as well.
@@ -136,7 +139,11 @@ fn classical<'a>(
 }
 
 /// `TIME CANFD CHANNEL Rx|Tx ID [NAME] BRS ESI DLC LENGTH DATA...`
-fn flexible<'a>(line: &Line<'a>, bytes: &mut [u8]) -> Result<Parts<'a>, CampaignError> {
+fn flexible<'a>(
+    line: &Line<'a>,
+    ear: &mut dyn Ear,
+    bytes: &mut [u8],
+) -> Result<Parts<'a>, CampaignError> {
     let channel = line.word(2, "channel")?;
     let was_sent = direction(line, line.word(3, "direction")?)?;
     let id = line.word(4, "identifier")?;
@@ -144,6 +151,9 @@ fn flexible<'a>(line: &Line<'a>, bytes: &mut [u8]) -> Result<Parts<'a>, Campaign
         return Ok(None);
     }
     let id = identifier(line, id, 16)?;
+    if !ear.wants(channel.text, id) {
+        return Ok(None);
+    }
     let is_named = !matches!(line.text(5), "0" | "1");
     let count = 8 + usize::from(is_named);
     let word = line.word(count, "length")?;

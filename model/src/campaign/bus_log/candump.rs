@@ -7,7 +7,8 @@
 //! (1436509052.252713) can0 20000004#0000000000000000     an error frame: more than 29 bits
 //! ```
 //!
-//! A word behind that says which way the frame went (`R`, `T`).
+//! A word behind that says which way the frame went (`R`, `T`). Of frames that nobody wants, only the identifier is read.
+use super::ear::Ear;
 use super::frame::{Frame, Id, MOST_BYTES};
 use super::line::{Line, Word, lines};
 use crate::campaign::CampaignError;
@@ -19,23 +20,21 @@ const EXTENDED_DIGITS: usize = 8;
 /// Bytes of a classical frame.
 const MOST_CLASSICAL: usize = 8;
 
-/// Gives every data frame to `take`.
-pub fn read(
-    source: &SourceFile,
-    take: &mut dyn FnMut(&Frame<'_>) -> Result<(), CampaignError>,
-) -> Result<(), CampaignError> {
+/// Gives every data frame that it wants to `ear`.
+pub fn read(source: &SourceFile, ear: &mut dyn Ear) -> Result<(), CampaignError> {
     let mut bytes = [0; MOST_BYTES];
     for line in lines(source) {
-        if let Some(frame) = frame(&line, &mut bytes)? {
-            take(&frame)?;
+        if let Some(frame) = frame(&line, ear, &mut bytes)? {
+            ear.take(&frame)?;
         }
     }
     Ok(())
 }
 
-/// The frame of a line; `None` if it holds no data.
+/// The frame of a line; `None` if it holds no data, or nobody wants it.
 fn frame<'f>(
     line: &Line<'f>,
+    ear: &mut dyn Ear,
     bytes: &'f mut [u8; MOST_BYTES],
 ) -> Result<Option<Frame<'f>>, CampaignError> {
     let time = line.word(0, "time")?;
@@ -54,20 +53,22 @@ fn frame<'f>(
         let mend = "a frame is ID#DATA, as `candump -l` writes it";
         return Err(line.fault(word, 0, "is no frame", mend));
     };
+    let Some(id) = identifier(line, word, id)? else {
+        return Ok(None);
+    };
+    if data.starts_with('R') || !ear.wants(channel, id) {
+        return Ok(None);
+    }
     if let Some(more) = line.get(3)
         && (!matches!(more.text, "R" | "T") || line.len() > 4)
     {
         return Err(line.fault(more, 0, "stands behind the frame", "delete it"));
     }
-    let Some(id) = identifier(line, word, id)? else {
-        return Ok(None);
-    };
     let (data, most, begins) = match data.strip_prefix('#') {
         Some(flexible) => match flexible.chars().next() {
             Some(flags) if flags.is_ascii_hexdigit() => (&flexible[1..], MOST_BYTES, 3),
             _ => return Err(line.fault(word, 0, "has no flags", "CAN FD is ID##FLAGS-DATA")),
         },
-        None if data.starts_with('R') => return Ok(None),
         None => (data, MOST_CLASSICAL, 1),
     };
     let begins = begins + word.text.find('#').unwrap_or(0);

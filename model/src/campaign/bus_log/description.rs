@@ -7,7 +7,8 @@ use can_dbc::{
 use super::frame::{Id, MOST_BYTES};
 use super::signal::{Bits, Kind, Signal};
 use crate::campaign::CampaignError;
-use crate::expression::Unit;
+use crate::campaign::scale::Scale;
+use crate::campaign::table::{Column, TIMES};
 use crate::input_error::{InputError, Place, quote};
 use crate::naming::offer_names;
 use crate::source_file::SourceFile;
@@ -73,6 +74,17 @@ impl Description {
         messages.map(|message| message.name.as_str()).collect()
     }
 
+    /// Every message.
+    pub fn messages(&self) -> &[Message] {
+        &self.dbc.messages
+    }
+
+    /// What people say about a signal; empty if nothing.
+    pub fn comment(&self, message: &Message, signal: &str) -> &str {
+        let comment = self.dbc.signal_comment(message.id, signal);
+        comment.unwrap_or_default()
+    }
+
     /// Which frames are that message.
     pub fn matching(&self, message: &Message) -> Match {
         match message.id {
@@ -95,8 +107,8 @@ impl Description {
         }
     }
 
-    /// A signal of a message, in `unit`.
-    pub fn signal(&self, message: &Message, name: &str, unit: &str) -> Result<Signal, Fault> {
+    /// A signal of a message, in the unit of `column`.
+    pub fn signal(&self, message: &Message, name: &str, column: &Column) -> Result<Signal, Fault> {
         let found = message.signals.iter().find(|signal| signal.name == name);
         let signal = found.ok_or_else(|| {
             let names: Vec<&str> = message
@@ -110,7 +122,7 @@ impl Description {
             )
         })?;
         let name = format!("{}.{}", message.name, signal.name);
-        let scale = conversion(&name, &signal.unit, unit)?;
+        let (factor, offset) = conversion(&name, &signal.unit, column)?;
         let kind = self.kind(message, signal);
         let is_whole = match kind {
             Kind::Float => signal.size == 32,
@@ -123,8 +135,8 @@ impl Description {
         Ok(Signal {
             bits: bits(&name, signal)?,
             kind,
-            factor: signal.factor * scale,
-            offset: signal.offset * scale,
+            factor: signal.factor * factor,
+            offset: signal.offset * factor + offset,
             has_reserved_values: matches!(self.matching(message), Match::Group(_)),
             selected_by: self.selector(message, signal, &name)?,
             name,
@@ -137,7 +149,7 @@ impl Description {
         let Some(found) = message.signals.iter().find(|signal| signal.name == name) else {
             return Ok(None);
         };
-        let mut signal = self.signal(message, name, "s")?;
+        let mut signal = self.signal(message, name, &TIMES)?;
         // It has its whole range.
         signal.has_reserved_values = false;
         let range = number(found.max) - number(found.min);
@@ -219,26 +231,18 @@ fn bits(name: &str, signal: &can_dbc::Signal) -> Result<Bits, Fault> {
     })
 }
 
-/// What one of the signal's unit is in the wanted one.
-fn conversion(name: &str, unit: &str, wanted: &str) -> Result<f64, Fault> {
-    let usual = match unit {
-        "°" | "Deg" | "degree" => "deg",
-        "C" | "°C" | "degC" | "deg C" => "degC",
-        "lpm" | "L/min" => "l/min",
-        other => other,
+/// What a value in the signal's unit is in the column's: factor and offset.
+fn conversion(name: &str, unit: &str, column: &Column) -> Result<(f64, f64), Fault> {
+    let what = match Scale::of(unit, column) {
+        Ok(Scale::Line { factor, offset }) => return Ok((factor, offset)),
+        _ if unit.trim().is_empty() => "has no unit".to_owned(),
+        _ => format!("is in {}", quote(unit)),
     };
-    let fault = |what: String| {
-        let mend = format!("it has to be a unit like {wanted}: mend it in the DBC");
-        (format!("signal {name} {what}"), mend)
-    };
-    if usual.is_empty() {
-        return Err(fault("has no unit".to_owned()));
-    }
-    let parse = |text: &str| Unit::parse(text).ok();
-    match (parse(usual), parse(wanted)) {
-        (Some(own), Some(wanted)) if own.dimension == wanted.dimension => Ok(own.si / wanted.si),
-        _ => Err(fault(format!("is in {}", quote(unit)))),
-    }
+    let mend = format!(
+        "it has to be a unit like {}: mend it in the DBC",
+        column.unit
+    );
+    Err((format!("signal {name} {what}"), mend))
 }
 
 fn wrong(name: &str, what: &str) -> Fault {
@@ -268,13 +272,16 @@ fn not_dbc(source: &SourceFile, error: &DbcError) -> InputError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::table::{LIFT, OIL_TEMPERATURE, column};
 
     #[test]
     fn the_project_s_own_description_is_read() {
         let ecu = Description::of_ecu();
         let message = ecu.message("HitchMotion").unwrap();
         assert_eq!(ecu.matching(message), Match::Group(0xFF45));
-        let angle = ecu.signal(message, "RockerAngle", "deg").unwrap();
+        let angle = ecu
+            .signal(message, "RockerAngle", column("rocker_angle_deg").unwrap())
+            .unwrap();
         let data = [0, 0, 0, 0, 0x55, 0x71, 0, 0];
         let value_deg = angle.value(&data).unwrap().unwrap();
         assert!((value_deg - 90.13).abs() < 1e-9, "{value_deg}");
@@ -283,15 +290,21 @@ mod tests {
     #[test]
     fn units_are_converted_or_refused() {
         let close = |unit, wanted, expected: f64| {
-            let factor = conversion("M.S", unit, wanted).unwrap();
+            let (factor, _) = conversion("M.S", unit, column(wanted).unwrap()).unwrap();
             assert!((factor / expected - 1.0).abs() < 1e-12, "{unit}: {factor}");
         };
-        close("mA", "A", 1e-3);
-        close("kPa", "bar", 1e-2);
-        close("°", "deg", 1.0);
-        close("L/min", "l/min", 1.0);
+        close("mA", LIFT, 1e-3);
+        close("kPa", "cylinder_pressure_bar", 1e-2);
+        close("°", "rocker_angle_deg", 1.0);
+        close("Deg", "rocker_angle_deg", 1.0);
+        close("L/min", "flow_lpm", 1.0);
+        close("C", OIL_TEMPERATURE, 1.0);
+        close("degF", OIL_TEMPERATURE, 5.0 / 9.0);
         for unit in ["", "bar", "%", "parsec"] {
-            assert!(conversion("M.S", unit, "A").is_err(), "{unit}");
+            assert!(
+                conversion("M.S", unit, column(LIFT).unwrap()).is_err(),
+                "{unit}"
+            );
         }
     }
 

@@ -9,7 +9,7 @@ const LARGEST_STANDARD: u32 = 0x7FF;
 const LARGEST_EXTENDED: u32 = 0x1FFF_FFFF;
 
 /// An identifier.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Id {
     /// 11 bits.
     Standard(u32),

@@ -1,6 +1,7 @@
 //! Takes the signals that are wanted out of the frames of a log.
 use super::clock::Clock;
 use super::description::Match;
+use super::ear::Ear;
 use super::frame::{Frame, Id};
 use super::signal::Signal;
 use crate::campaign::CampaignError;
@@ -51,23 +52,30 @@ struct Heard<'s> {
 /// The listener.
 #[derive(Debug)]
 pub struct Listener<'s> {
+    source: &'s SourceFile,
     channel: Option<&'s str>,
     address: Option<u8>,
     heard: Vec<Heard<'s>>,
     clocks: Vec<(&'s str, Clock)>,
-    /// Time of the first frame of the log, s.
+    /// Time of the first frame that was wanted, s.
     first_s: Option<f64>,
 }
 
 impl<'s> Listener<'s> {
-    /// Somebody who hears these messages, from this channel and address if they are named.
-    pub fn new(messages: &'s [Message], channel: Option<&'s str>, address: Option<u8>) -> Self {
+    /// Somebody who hears these messages in a log, from this channel and address if they are named.
+    pub fn new(
+        source: &'s SourceFile,
+        messages: &'s [Message],
+        channel: Option<&'s str>,
+        address: Option<u8>,
+    ) -> Self {
         let heard = messages.iter().map(|message| Heard {
             message,
             sender: None,
             series: vec![Series::default(); message.signals.len()],
         });
         Self {
+            source,
             channel,
             address,
             heard: heard.collect(),
@@ -76,28 +84,37 @@ impl<'s> Listener<'s> {
         }
     }
 
-    /// Takes a frame; times count from the first one of the log.
-    ///
-    /// # Errors
-    /// If the frame can't be what it should be, or two nodes send the same message.
-    pub fn take(&mut self, source: &SourceFile, frame: &Frame<'_>) -> Result<(), CampaignError> {
+    /// What was heard for each column.
+    pub fn series(&self) -> impl Iterator<Item = (&'static Column, &Series)> {
+        self.heard.iter().flat_map(|heard| {
+            let columns = heard.message.signals.iter().map(|sampled| sampled.column);
+            columns.zip(&heard.series)
+        })
+    }
+}
+
+impl Ear for Listener<'_> {
+    fn wants(&mut self, channel: &str, id: Id) -> bool {
+        let is_there = self.channel.is_none_or(|wanted| wanted == channel);
+        let mut messages = self.heard.iter().map(|heard| heard.message.matching);
+        is_there && messages.any(|matching| is_from(matching.sender(id), self.address))
+    }
+
+    /// Times count from the first frame that is wanted. Two nodes that send the same message are refused.
+    fn take(&mut self, frame: &Frame<'_>) -> Result<(), CampaignError> {
+        let source = self.source;
         let logged_s = frame.time_s - *self.first_s.get_or_insert(frame.time_s);
         let sender = Sender {
             channel: frame.channel.to_owned(),
             address: None,
         };
-        if self.channel.is_some_and(|channel| channel != frame.channel) {
-            return Ok(());
-        }
         for heard in &mut self.heard {
-            let Some(address) = heard.message.matching.sender(frame.id) else {
-                continue;
-            };
-            if address.is_some() && self.address.is_some() && address != self.address {
+            let found = heard.message.matching.sender(frame.id);
+            if !is_from(found, self.address) {
                 continue;
             }
             let sender = Sender {
-                address,
+                address: found.flatten(),
                 ..sender.clone()
             };
             heard
@@ -109,14 +126,11 @@ impl<'s> Listener<'s> {
         }
         Ok(())
     }
+}
 
-    /// What was heard for each column.
-    pub fn series(&self) -> impl Iterator<Item = (&'static Column, &Series)> {
-        self.heard.iter().flat_map(|heard| {
-            let columns = heard.message.signals.iter().map(|sampled| sampled.column);
-            columns.zip(&heard.series)
-        })
-    }
+/// Whether a frame that is of a message, or not, comes from the address that is wanted, if one is.
+fn is_from(found: Option<Option<u8>>, wanted: Option<u8>) -> bool {
+    found.is_some_and(|address| address.is_none() || wanted.is_none() || address == wanted)
 }
 
 /// When a frame was sampled, by the clock of its sender if it tells, else when it was logged.
@@ -215,7 +229,7 @@ impl Heard<'_> {
 
 impl Match {
     /// The address of the sender if the identifier is that of the message; J1939 alone has addresses.
-    fn sender(self, id: Id) -> Option<Option<u8>> {
+    pub fn sender(self, id: Id) -> Option<Option<u8>> {
         match (self, id) {
             (Self::Identifier(known), id) => (known == id).then_some(None),
             (Self::Group(known), Id::Extended(raw)) => {

@@ -11,22 +11,26 @@ mod asc;
 mod candump;
 mod clock;
 mod description;
+mod ear;
 mod frame;
 mod line;
 mod listener;
-
 mod settings;
 mod signal;
+mod survey;
 
 use std::path::Path;
 use std::sync::Arc;
 
 pub use settings::BusSettings;
+pub use survey::{Signals, signals};
 
 use super::CampaignError;
 use super::series::Series;
 use super::table::{Cells, LIFT, LOWER, Samples, TIME, Table};
+use crate::input_error::InputError;
 use crate::source_file::SourceFile;
+use ear::Ear;
 use listener::Listener;
 
 /// A kind of log.
@@ -50,6 +54,23 @@ impl Format {
     }
 }
 
+/// Refuses a log of a bus in a format that isn't read.
+///
+/// # Errors
+/// By which program it becomes one that is.
+pub fn check_known(path: &Path) -> Result<(), CampaignError> {
+    let end = path.extension().and_then(|end| end.to_str());
+    if !end.is_some_and(|end| end.eq_ignore_ascii_case("trc")) {
+        return Ok(());
+    }
+    let mend = "convert it to .asc, for example with python-can: python -m can.logconvert FILE.trc FILE.asc";
+    Err(InputError::of_file(
+        path,
+        "is a trace of a CAN bus by PCAN (TRC)",
+        mend,
+    ))
+}
+
 /// Reads a log of a bus.
 ///
 /// # Errors
@@ -59,12 +80,8 @@ pub fn read(
     format: Format,
     settings: &BusSettings,
 ) -> Result<Table, CampaignError> {
-    let mut listener = settings.listener();
-    let mut take = |frame: &frame::Frame<'_>| listener.take(source, frame);
-    match format {
-        Format::Candump => candump::read(source, &mut take)?,
-        Format::Asc => asc::read(source, &mut take)?,
-    }
+    let mut listener = settings.listener(source);
+    hear(source, format, &mut listener)?;
     let rows = required(source, &listener, settings, LIFT)?;
     required(source, &listener, settings, LOWER)?;
     let within_s = rows.median_step_s() / 2.0;
@@ -79,6 +96,14 @@ pub fn read(
     }
     let bytes = rows.bytes.clone();
     Table::new(Arc::clone(source), columns, bytes, Cells::OneALine)
+}
+
+/// Gives the frames of a log to somebody.
+fn hear(source: &SourceFile, format: Format, ear: &mut dyn Ear) -> Result<(), CampaignError> {
+    match format {
+        Format::Candump => candump::read(source, ear),
+        Format::Asc => asc::read(source, ear),
+    }
 }
 
 /// A current: without it there is no run.

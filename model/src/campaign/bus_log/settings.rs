@@ -160,7 +160,7 @@ impl BusSettings {
         let found = description.message(name)?;
         let sampled = Sampled {
             column,
-            signal: description.signal(found, signal, column.unit)?,
+            signal: description.signal(found, signal, column)?,
         };
         let matching = description.matching(found);
         let known = self
@@ -180,9 +180,14 @@ impl BusSettings {
         Ok(())
     }
 
-    /// Somebody who hears all of it.
-    pub fn listener(&self) -> Listener<'_> {
-        Listener::new(&self.messages, self.channel.as_deref(), self.address)
+    /// Somebody who hears all of it in a log.
+    pub fn listener<'s>(&'s self, source: &'s SourceFile) -> Listener<'s> {
+        Listener::new(
+            source,
+            &self.messages,
+            self.channel.as_deref(),
+            self.address,
+        )
     }
 
     /// The signal that a column is taken from, for people.

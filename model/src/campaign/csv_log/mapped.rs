@@ -10,6 +10,7 @@ use crate::campaign::columns::{ColumnSettings, Source, offer_columns};
 use crate::campaign::scale::{Scale, is_time};
 use crate::campaign::table::{Cells, Column, Samples, TIME, Table, cell_error};
 use crate::input_error::quote;
+use crate::plant::Linkage;
 use crate::source_file::SourceFile;
 
 /// A column that is taken.
@@ -21,7 +22,7 @@ struct Taken {
     scale: Scale,
 }
 
-/// Reads the table below `header`.
+/// Reads the table below `header`, of a hitch with this linkage.
 ///
 /// # Errors
 /// Whatever is wrong first, by line and column.
@@ -29,6 +30,7 @@ pub fn read(
     source: &Arc<SourceFile>,
     header: &Header,
     settings: &ColumnSettings,
+    linkage: &Linkage,
 ) -> Result<Table, CampaignError> {
     let (time, taken) = taken(source, header, settings)?;
     let cells: Vec<usize> = taken.iter().map(|taken| taken.cell).collect();
@@ -39,6 +41,7 @@ pub fn read(
         times: Times::new(time.1),
         time_cell: time.0,
         taken: &taken,
+        linkage,
         times_s: Vec::new(),
         values: vec![Vec::new(); taken.len()],
         bytes: Vec::new(),
@@ -132,6 +135,7 @@ struct Reader<'a> {
     times: Times,
     time_cell: usize,
     taken: &'a [Taken],
+    linkage: &'a Linkage,
     times_s: Vec<f64>,
     values: Vec<Vec<f64>>,
     /// First byte of each in the file.
@@ -183,7 +187,7 @@ impl Reader<'_> {
             let mend = "leave the cell of a dropout empty; decimals have a point or a comma, thousands have none";
             return Err((what, mend.to_owned()));
         };
-        let value = taken.scale.apply(number);
+        let value = taken.scale.apply(number, self.linkage);
         if column.range.contains(&value) {
             return Ok(value);
         }

@@ -11,16 +11,18 @@ use super::columns::{ColumnSettings, offer_columns};
 use super::scale::spelling;
 use super::survey::{LogColumn, Survey};
 use super::table::Table;
+use crate::plant::Linkage;
 use crate::source_file::SourceFile;
 use dialect::{Decimals, Header, HeaderCell};
 
-/// Reads a table; `settings` name its columns unless it has this project's own header.
+/// Reads a table of a hitch with this linkage; `settings` name its columns unless it has this project's own header.
 ///
 /// # Errors
 /// Whatever is wrong first, by line and column.
 pub fn read(
     source: &Arc<SourceFile>,
     settings: Option<&ColumnSettings>,
+    linkage: &Linkage,
 ) -> Result<Table, CampaignError> {
     let Some(settings) = settings else {
         return native::read(source);
@@ -31,7 +33,7 @@ pub fn read(
         .map(|wanted| wanted.name.as_str())
         .collect();
     match Header::with_names(&source.text, &names) {
-        Some(header) => mapped::read(source, &header, settings),
+        Some(header) => mapped::read(source, &header, settings, linkage),
         None if native::has_own_header(source) => native::read(source),
         None => Err(no_header(source, &names)),
     }
@@ -80,6 +82,7 @@ fn empty_column(cell: &HeaderCell) -> LogColumn {
     LogColumn {
         name: cell.name.clone(),
         unit: cell.unit.as_deref().map(|unit| spelling(unit).to_owned()),
+        comment: String::new(),
         values: Vec::new(),
         is_clock: false,
     }

@@ -1,0 +1,15 @@
+//! Whoever takes the frames of a log.
+use super::frame::{Frame, Id};
+use crate::campaign::CampaignError;
+
+/// Takes frames.
+pub trait Ear {
+    /// Whether data frames with this identifier on this channel are wanted; others need not be readable.
+    fn wants(&mut self, channel: &str, id: Id) -> bool;
+
+    /// Takes a frame that is wanted.
+    ///
+    /// # Errors
+    /// If it can't be what it should be.
+    fn take(&mut self, frame: &Frame<'_>) -> Result<(), CampaignError>;
+}

@@ -1,0 +1,186 @@
+//! Agrees with somebody at a terminal which column is which.
+use std::io::{self, IsTerminal as _};
+
+use hitch_model::campaign::survey::{LogColumn, check_source};
+
+use super::{Kind, Mapping, Untold};
+use crate::error::Error;
+use crate::output;
+
+/// What is taken of the columns below a heading. Asks if it may, and standard input and output are a terminal.
+///
+/// # Errors
+/// If nobody says what can't be told, or somebody stops.
+pub fn agreed(
+    heading: &str,
+    columns: &[LogColumn],
+    kind: Kind,
+    named: &[(String, String)],
+    may_ask: bool,
+) -> Result<Mapping, Error> {
+    let asks = may_ask && io::stdin().is_terminal() && io::stdout().is_terminal();
+    let mut named = named.to_vec();
+    if asks {
+        output::print(&format!("{heading} has\n{}", listed(columns)))?;
+    }
+    loop {
+        let proposal = Mapping::propose(columns, kind, &named);
+        match &proposal {
+            Ok(mapping) => output::print(&shown(heading, columns, mapping))?,
+            Err(Untold { what, .. }) if asks => output::print(&format!("{what}\n"))?,
+            Err(Untold { what, mend }) => {
+                return Err(Error::Usage(format!("{heading}: {what}; {mend}")));
+            }
+        }
+        if let (false, Ok(mapping)) = (asks, &proposal) {
+            return Ok(mapping.clone());
+        }
+        match (answer(columns, proposal.is_ok())?, proposal) {
+            (Answer::Take, Ok(mapping)) => return Ok(mapping),
+            (Answer::Take, Err(_)) => {}
+            (Answer::Change(channel, source), _) => {
+                named.retain(|(known, _)| *known != channel);
+                named.push((channel, source));
+            }
+            (Answer::Stop, _) => {
+                return Err(Error::Usage("stopped; nothing was written".to_owned()));
+            }
+        }
+    }
+}
+
+/// Splits what was given with `--map`.
+///
+/// # Errors
+/// If a channel or a name is missing.
+pub fn named(maps: &[String]) -> Result<Vec<(String, String)>, Error> {
+    let fault = |map: &String| {
+        Error::Usage(format!(
+            "--map {map}: write it as --map CHANNEL=\"NAME:UNIT\""
+        ))
+    };
+    maps.iter()
+        .map(|map| split(map).ok_or_else(|| fault(map)))
+        .collect()
+}
+
+/// `CHANNEL=NAME:UNIT`, with or without quotation marks.
+fn split(map: &str) -> Option<(String, String)> {
+    let (channel, source) = map.split_once('=')?;
+    let source = source.trim().trim_matches('"');
+    Some((channel.trim().to_owned(), source.to_owned()))
+}
+
+enum Answer {
+    Take,
+    Stop,
+    Change(String, String),
+}
+
+/// What somebody says; asks again until it is understood.
+fn answer(columns: &[LogColumn], is_complete: bool) -> Result<Answer, Error> {
+    loop {
+        output::print(match is_complete {
+            true => "Enter takes this, CHANNEL=NAME:UNIT changes a line, q stops: ",
+            false => "CHANNEL=NAME:UNIT says what a column is, q stops: ",
+        })?;
+        let mut line = String::new();
+        let read = io::stdin().read_line(&mut line);
+        let read =
+            read.map_err(|error| Error::Usage(format!("the answer can't be read: {error}")))?;
+        match understood(line.trim(), columns) {
+            _ if read == 0 => return Ok(Answer::Stop),
+            Ok(Answer::Take) if !is_complete => {}
+            Ok(answer) => return Ok(answer),
+            Err(why) => output::print(&format!("{why}\n"))?,
+        }
+    }
+}
+
+/// # Errors
+/// Why the answer is none.
+fn understood(line: &str, columns: &[LogColumn]) -> Result<Answer, String> {
+    let line = line.strip_prefix("--map").map_or(line, str::trim_start);
+    if line.is_empty() {
+        return Ok(Answer::Take);
+    }
+    if line.eq_ignore_ascii_case("q") {
+        return Ok(Answer::Stop);
+    }
+    let Some((channel, source)) = split(line) else {
+        return Err("write it as in lift_current_a=NAME:mA, or q".to_owned());
+    };
+    let (name, _) = check_source(&channel, &source)?;
+    match columns.iter().any(|column| column.name == name) {
+        true => Ok(Answer::Change(channel, source)),
+        false => Err(format!("there is no column \"{name}\"")),
+    }
+}
+
+/// The proposal as a table.
+fn shown(heading: &str, columns: &[LogColumn], mapping: &Mapping) -> String {
+    let widths = mapping
+        .taken
+        .iter()
+        .map(|taken| taken.source.chars().count());
+    let width = widths.max().unwrap_or(0);
+    let mut text = format!("{heading}:\n");
+    for taken in &mapping.taken {
+        text += &format!(
+            "  {:<22} {:<width$}  {}\n",
+            taken.channel, taken.source, taken.reason
+        );
+    }
+    match columns.len().saturating_sub(mapping.taken.len()) {
+        0 => text,
+        1 => text + "  1 other column is passed over\n",
+        others => text + &format!("  {others} other columns are passed over\n"),
+    }
+}
+
+/// The columns that there are, each with its unit.
+fn listed(columns: &[LogColumn]) -> String {
+    const MOST: usize = 60;
+    let mut text = String::new();
+    for column in columns.iter().take(MOST) {
+        let unit = column.unit.as_deref().unwrap_or("no unit");
+        text += &format!("  {}  ({unit})\n", column.name);
+    }
+    match columns.len().saturating_sub(MOST) {
+        0 => text,
+        more => text + &format!("  and {more} more\n"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn answers_are_understood_or_said_to_be_none() {
+        let columns = [LogColumn {
+            name: "I1".to_owned(),
+            unit: None,
+            comment: String::new(),
+            values: Vec::new(),
+            is_clock: false,
+        }];
+        let said = |line| understood(line, &columns);
+        assert!(matches!(said(""), Ok(Answer::Take)));
+        assert!(matches!(said("Q"), Ok(Answer::Stop)));
+        for line in ["lift_current_a=I1:mA", "--map lift_current_a=\"I1:mA\""] {
+            let Ok(Answer::Change(channel, source)) = said(line) else {
+                panic!("{line}");
+            };
+            assert_eq!((&*channel, &*source), ("lift_current_a", "I1:mA"));
+        }
+        for (line, expected) in [
+            ("I1", "write it as in"),
+            ("lift=I1:mA", "did you mean lift_current_a"),
+            ("lift_current_a=I2:mA", "no column \"I2\""),
+        ] {
+            let why = said(line).err().unwrap_or_default();
+            assert!(why.contains(expected), "{why}");
+        }
+    }
+}
