@@ -16,6 +16,7 @@ DARK = {**DESKTOP, "color_scheme": "dark"}
 # Computations may share the machine with others.
 PATIENCE_MS = 180_000
 
+# What a user feels as at once, on a machine of one's own; measured and printed.
 FIRST_VIEW_MS = 1000
 REDRAW_MS = 100
 
@@ -48,14 +49,15 @@ def error_of(page: Page) -> float:
 
 def assert_fits(page: Page) -> None:
     """Nothing is wider than the window."""
-    assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth"), "the page is too wide"
+    width = page.evaluate("document.documentElement.scrollWidth")
+    assert width <= page.viewport_size["width"], f"the page is {width} px wide"
 
 
 def whole_story(page: Page, pictures: Path) -> None:
     """The story at a desktop."""
     first = wait_for_first_view(page)
     page.screenshot(path=pictures / "open.png")
-    print(f"first view after {first:.0f} ms")
+    print(f"first view after {first:.0f} ms, wanted {FIRST_VIEW_MS} ms")
     before = error_of(page)
 
     cells = page.locator("#cells td button")
@@ -80,7 +82,6 @@ def whole_story(page: Page, pictures: Path) -> None:
 
     drag(page)
     page.screenshot(path=pictures / "dragged.png")
-    expect(page.locator("#steps li")).to_have_count(3)
     page.click("#undo")
     expect(page.locator("#steps .undone")).to_have_count(1)
 
@@ -99,17 +100,16 @@ def drag(page: Page) -> None:
     """Moves a slider by the keyboard; the run is redrawn at each position."""
     slider = page.locator("#effects input[type=range]").first
     slider.focus()
-    page.keyboard.down("ArrowRight")
-    page.wait_for_timeout(150)
     for _ in range(10):
         page.keyboard.down("ArrowRight")
         page.wait_for_timeout(150)
     page.keyboard.up("ArrowRight")
+    expect(page.locator("#steps li")).to_have_count(3)
     settled(page)
     times = page.evaluate("performance.getEntriesByName('redraw').map((entry) => entry.duration)")
     assert times, "nothing was redrawn"
     middle = sorted(times)[len(times) // 2]
-    print(f"redrawn within {middle:.0f} ms (median of {len(times)})")
+    print(f"redrawn within {middle:.0f} ms (median of {len(times)}), wanted {REDRAW_MS} ms")
 
 
 def automatic(page: Page, pictures: Path) -> None:
@@ -131,6 +131,7 @@ def main() -> None:
     pictures = Path(folder)
     pictures.mkdir(parents=True, exist_ok=True)
     faults: list = []
+    expect.set_options(timeout=PATIENCE_MS)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
         whole_story(opened(browser, address, DESKTOP, faults), pictures)

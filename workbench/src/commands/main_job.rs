@@ -43,7 +43,10 @@ pub fn run(args: &Args) -> Result<(), Error> {
     drop(progress);
     outputs.say(|| format!("\n{}", rebuild.text()))?;
     output::write_file(&args.report, main_page::page(&found, &rebuild).as_bytes())?;
-    outputs.say(|| format!("\nReport: {}\n", args.report.display()))
+    outputs.say(|| {
+        let report = args.report.display();
+        format!("\nReport: {report}\nThe same in a browser: hitch serve\n")
+    })
 }
 
 fn compared(campaign: &Campaign, model: &Model) -> String {

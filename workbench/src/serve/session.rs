@@ -145,3 +145,36 @@ impl Drop for Session {
         self.cancel();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::serve::Source;
+    use hitch_model::Model;
+
+    fn step(session: &Session, title: &str) -> Step {
+        Step {
+            title: title.to_owned(),
+            ..session.present().clone()
+        }
+    }
+
+    #[test]
+    fn undone_steps_are_kept_until_something_else_is_done() {
+        let source = Source {
+            campaign: None,
+            model: Model::nominal(),
+        };
+        let mut session = Session::new(Arc::new(source.read().unwrap()));
+        for title in ["one", "two"] {
+            session.push(step(&session, title));
+        }
+        assert!(session.go(0) && !session.go(3));
+        assert_eq!((session.at(), session.steps().len()), (0, 3));
+        assert!(session.go(1));
+        session.push(step(&session, "three"));
+        let titles: Vec<&str> = session.steps().iter().map(|s| s.title.as_str()).collect();
+        assert_eq!(titles, ["Model nominal", "one", "three"]);
+        assert_eq!(session.present().title, "three");
+    }
+}

@@ -71,6 +71,7 @@ const acts = {
     if (!byId("job").hidden) return say("A computation is running; wait for it or cancel it.");
     [tried, live] = [[], []];
     showJob("Starting");
+    if (["add", "adopt"].includes(task.task)) watch();
     try {
       await follow(hear, guarded(refresh));
       const { title } = await post("start", task);
@@ -84,6 +85,12 @@ const acts = {
   }),
   preview: guarded(preview),
 };
+
+/** Leads to the panel of the model, where the error falls. */
+function watch() {
+  byId("model").scrollIntoView({ block: "nearest" });
+  byId("model-title").focus({ preventScroll: true });
+}
 
 /** @type {any} */
 let wanted = null;

@@ -24,7 +24,7 @@ export function drawRanking(candidates, run, next = null) {
   const shows = (/** @type {any} */ one) => one.explains >= SIGN || (one.confidence ?? 0) >= SIGN;
   const seen = candidates.filter(shows);
   const unseen = candidates.filter((one) => !shows(one));
-  const parts = seen.map((one) => candidate(one, run));
+  const parts = [element("h3", {}, "Each effect alone"), ...seen.map((one) => candidate(one, run))];
   if (candidates.length > 0 && seen.length === 0) parts.push(element("p", {}, "No effect shows on these data."));
   if (next) parts.push(element("p", {}, `To tell them apart: ${next}.`));
   if (unseen.length > 0) {
@@ -94,7 +94,8 @@ function explanation(found, run) {
     run({ task: "adopt", steps: steps.filter((/** @type {number} */ index) => index >= 0) });
   } }, "Take the accepted steps over");
   const parts = found.steps.map((/** @type {any} */ step, /** @type {number} */ index) => accepted(step, boxes[index]));
-  return [element("p", {}, element("strong", {}, `${found.verdict}. `), found.meaning), ...parts,
+  return [element("h3", {}, "Explanation"),
+    element("p", {}, element("strong", {}, `Verdict: ${found.verdict}. `), found.meaning), ...parts,
     ...(found.steps.length ? [take] : []),
     ...(found.next_experiment ? [element("p", {}, `Next experiment: ${found.next_experiment}.`)] : []),
     ...(found.not_visible.length ? [element("details", {},

@@ -6,10 +6,10 @@ import { byId, colour, sigmas } from "./dom.js";
 const SIGNAL = 125, RESIDUAL = 70, CURRENTS = 80;
 
 /** Heights that are the same everywhere, px. */
-const GAP = 22, BOTTOM = 42, TOP = 24;
+const GAP = 22, BOTTOM = 42, TOP = 24, LEGEND = 64;
 
 /** What stands above the plot, px, and how small its parts may get. */
-const ABOVE = 165, SMALLEST = 0.5;
+const ABOVE = 215, SMALLEST = 0.5;
 
 /** How much of a run is shown on either side of its worst place, s. */
 const AROUND_S = 1.5;
@@ -86,9 +86,9 @@ function figure(view) {
   const share = shrink(channels.length);
   /** @type {any[]} */
   const rows = channels.flatMap((/** @type {any} */ channel) => [
-    /** @type {any} */ ({ height: share * SIGNAL, title: `${channel.title}, error ${sigmas(channel.error)} σ`, unit: channel.unit,
+    /** @type {any} */ ({ height: share * SIGNAL, title: `${channel.title}, error ${sigmas(channel.error)} σ`, unit: channel.unit, ticks: 5,
       lines: signals(channel) }),
-    { height: share * RESIDUAL, title: `${channel.title}: measured − simulated (grey: 95 % of the noise)`, unit: "σ",
+    { height: share * RESIDUAL, title: `${channel.title}: measured − simulated`, unit: "σ",
       band: true, lines: [{ name: "residual", y: channel.residual, colour: "residual", key: "residual", unit: "σ",
         of: channel.title, changes: true }] },
   ]);
@@ -96,14 +96,14 @@ function figure(view) {
     { name: "lift current", y: view.lift_current_a, colour: "lift", key: "lift", unit: "A" },
     { name: "lowering current", y: view.lower_current_a, colour: "lower", key: "lower", dash: "dash", unit: "A" }] });
   const inner = rows.reduce((/** @type {number} */ sum, /** @type {any} */ row) => sum + row.height + GAP, 0);
-  layout.height = inner + BOTTOM + TOP;
+  layout.height = inner + layout.margin.b + TOP;
   let top = inner;
   const shown = new Set();
   rows.forEach((/** @type {any} */ row, /** @type {number} */ index) => {
     const axis = index === 0 ? "y" : `y${index + 1}`;
     const high = (top - GAP) / inner, low = (top - GAP - row.height) / inner;
     top -= row.height + GAP;
-    layout[index === 0 ? "yaxis" : `yaxis${index + 1}`] = ordinate(row.unit, low, high, row.band ? 3 : 5);
+    layout[index === 0 ? "yaxis" : `yaxis${index + 1}`] = ordinate(row.unit, low, high, row.ticks ?? 3);
     layout.annotations.push({ text: row.title, x: 0, xref: "paper", xanchor: "left", y: high, yref: "paper",
       yanchor: "bottom", showarrow: false, font: { size: 12, color: colour("ink") } });
     if (row.band) layout.shapes.push({ type: "rect", xref: "paper", yref: axis, x0: 0, x1: 1, y0: -BAND, y1: BAND,
@@ -142,12 +142,15 @@ function shrink(channels) {
  * @returns {any} */
 function frame() {
   const touch = matchMedia("(pointer: coarse)").matches;
+  const narrow = matchMedia("(max-width: 40rem)").matches;
+  const legend = narrow ? { y: 0, yref: "container", yanchor: "bottom" } : { y: 1, yanchor: "bottom" };
   return {
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: colour("paper"),
-    font: { color: colour("ink"), size: 12 }, margin: { l: 52, r: 12, t: TOP, b: BOTTOM },
+    font: { color: colour("ink"), size: 12 }, margin: { l: 52, r: 12, t: TOP, b: narrow ? BOTTOM + LEGEND : BOTTOM },
     hovermode: "x unified", hoversubplots: "axis", dragmode: touch ? false : "zoom",
     hoverlabel: { bgcolor: colour("card"), font: { color: colour("ink") } },
-    showlegend: true, legend: { orientation: "h", x: 0, xanchor: "left", y: 1, yanchor: "bottom" },
+    showlegend: true, legend: { orientation: "h", x: 0, xanchor: "left", ...legend },
+    modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("soft"), activecolor: colour("ink") },
     shapes: [], annotations: [],
     xaxis: { title: { text: "time, s" }, gridcolor: colour("line"), zeroline: false, showspikes: true, spikemode: "across",
       spikesnap: "cursor", spikethickness: 1, spikecolor: colour("soft"), spikedash: "solid" },
