@@ -10,6 +10,7 @@ pub mod hidden_effects;
 pub mod instruction_counts;
 pub mod lab;
 pub mod live_ecu;
+pub mod page_server;
 pub mod program;
 pub mod python;
 pub mod recording;

@@ -3,7 +3,7 @@ use clap::{Parser, Subcommand};
 
 use crate::commands::{
     add, calibrate, changes, compare, controller, diagnose, ecu, effects, explain,
-    flash_calibration, import, loop_, main_job, paper, record, simulate, tune,
+    flash_calibration, import, loop_, main_job, paper, record, serve, simulate, tune,
 };
 use crate::error::Error;
 use crate::output;
@@ -40,6 +40,8 @@ pub enum Command {
     Explain(explain::Args),
     /// What differs between two campaigns of a machine, or of two machines of a series
     Changes(changes::Args),
+    /// Campaign and model in the browser, on this machine alone: compare, rank effects, add them
+    Serve(serve::Args),
     /// The catalogue of physical effects: equation, parameters, units, source, where it shows
     Effects(effects::Args),
     /// The plant alone, driven by a log's currents
@@ -76,6 +78,7 @@ impl Command {
             Self::Add(args) => add::run(args),
             Self::Explain(args) => explain::run(args),
             Self::Changes(args) => changes::run(args),
+            Self::Serve(args) => serve::run(args),
             Self::Effects(args) => effects::run(args),
             Self::Simulate(args) => simulate::run(args),
             Self::Paper(args) => paper::run(args),

@@ -22,6 +22,7 @@ pub mod progress;
 pub mod rebuild;
 pub mod report;
 pub mod search_args;
+pub mod serve;
 pub mod status_line;
 pub mod teaching;
 pub mod text;

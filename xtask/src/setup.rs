@@ -1,4 +1,4 @@
-//! Finding the ARM parts, and installing what is missing where that can be done without asking.
+//! Finding the ARM parts and a browser, and installing what is missing where that can be done without asking.
 
 use std::path::Path;
 
@@ -10,12 +10,16 @@ use crate::toolchain::{TARGET, Way};
 /// The emulator of the ECU's processor.
 pub const EMULATOR: &str = "qemu-system-arm";
 
+/// The browser that the page of `hitch serve` is tried in.
+pub const BROWSER: &str = "chromium";
+
 const DEBIAN_TOOLCHAIN: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
 
 /// Finds or installs everything.
 pub fn run(way: Option<Way>) -> Result<()> {
     toolchain(way)?;
-    emulator()
+    emulator()?;
+    browser()
 }
 
 /// Finds or installs a compiler for ARM: `wanted`, or else the first way that works.
@@ -35,19 +39,31 @@ pub fn toolchain(wanted: Option<Way>) -> Result<Way> {
 
 /// Finds or installs the emulator.
 pub fn emulator() -> Result<()> {
-    if version_of_emulator().is_none() {
+    if version_of(EMULATOR).is_none() {
         install_packages(&[EMULATOR]).with_context(|| {
             format!("no {EMULATOR}: install QEMU for ARM (Debian's package has the same name)")
         })?;
     }
-    let version = version_of_emulator()
+    let version = version_of(EMULATOR)
         .with_context(|| format!("{EMULATOR} is installed, but does not run"))?;
     println!("ARM emulator: {version}");
     Ok(())
 }
 
-fn version_of_emulator() -> Option<String> {
-    let version = process::output(&mut process::command(EMULATOR, &["--version"]))?;
+/// Finds or installs the browser.
+pub fn browser() -> Result<()> {
+    if version_of(BROWSER).is_none() {
+        install_packages(&[BROWSER])
+            .with_context(|| format!("no {BROWSER}: install Debian's package of that name"))?;
+    }
+    let version =
+        version_of(BROWSER).with_context(|| format!("{BROWSER} is installed, but does not run"))?;
+    println!("browser: {version}");
+    Ok(())
+}
+
+fn version_of(program: &str) -> Option<String> {
+    let version = process::output(&mut process::command(program, &["--version"]))?;
     version.lines().next().map(str::to_owned)
 }
 

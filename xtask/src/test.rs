@@ -1,4 +1,4 @@
-//! Every test: those of the host, and those that need the emulated target.
+//! Every test: those of the host, and those that need the emulated target or a browser.
 
 use std::fmt;
 use std::io::{BufRead, BufReader, Write, stdout};
@@ -18,8 +18,14 @@ const STACK_VARIABLE: &str = "HITCH_STACK_BOUND";
 /// Names the folder with the images for the parts.
 const IMAGES_VARIABLE: &str = "HITCH_BOARD_IMAGES";
 
-/// Tests that need images.
-const ON_TARGET: [&str; 4] = ["board_bench", "emulated", "emulated_ecu", "python_clients"];
+/// Tests that need images, or a browser.
+const ON_TARGET: [&str; 5] = [
+    "board_bench",
+    "emulated",
+    "emulated_ecu",
+    "page_in_browser",
+    "python_clients",
+];
 
 /// How many tests ended how.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,6 +51,7 @@ struct Outcome {
 pub fn run(way: Option<Way>) -> Result<()> {
     let way = setup::toolchain(way)?;
     setup::emulator()?;
+    setup::browser()?;
     let image = image::build_all(way)?;
 
     let host = run_group(&mut cargo_test(&["--workspace"]))?;

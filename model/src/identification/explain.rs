@@ -15,7 +15,7 @@ use super::fit::{Fit, evaluate, fit, refine, with_last};
 use super::holdout::{HeldOut, held_out};
 use super::regime::Regime;
 use super::subset::posterior::{Weighed, key_of};
-use super::subset::single::{confidences, try_effects};
+use super::subset::single::{confidences, try_each};
 use super::subset::{Found, Options, search};
 use super::unseen::{Unseen, unseen};
 use crate::effects::Effect;
@@ -146,8 +146,21 @@ pub fn diagnose(
     base: Fit,
     progress: Progress,
 ) -> Diagnosis {
+    diagnose_each(experiment, model, base, progress, &|_, _| {})
+}
+
+/// [`diagnose`] that tells of each form as soon as it is weighed, in any order, and of how many there are.
+#[must_use]
+pub fn diagnose_each(
+    experiment: &Experiment,
+    model: &Model,
+    base: Fit,
+    progress: Progress,
+    weighed: &(dyn Fn(&Candidate, usize) + Sync),
+) -> Diagnosis {
     let absent = showing(experiment, model, &base.estimate);
-    let candidates = try_effects(experiment, model, &base, &absent, progress);
+    let told = |candidate: &Candidate| weighed(candidate, absent.len());
+    let candidates = try_each(experiment, model, &base, &absent, progress, &told);
     let confidences = confidences(&candidates);
     Diagnosis {
         base,

@@ -14,5 +14,6 @@ pub mod loop_;
 pub mod main_job;
 pub mod paper;
 pub mod record;
+pub mod serve;
 pub mod simulate;
 pub mod tune;

@@ -2,7 +2,7 @@
 use hitch_model::campaign::Bench;
 use hitch_model::identification::experiment::ReadyRun;
 use hitch_model::identification::regime::Regime;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Currents below are off, A.
 const OFF_BELOW_A: f64 = 0.2;
@@ -12,7 +12,7 @@ const EDGES_A: [f64; 4] = [1.0, 1.6, 2.2, 2.8];
 const TEMPERATURE_STEP_C: f64 = 10.0;
 
 /// How the samples are parted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Grouping {
     /// By what the plant does.

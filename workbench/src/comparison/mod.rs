@@ -3,6 +3,8 @@ mod groups;
 mod show;
 mod tally;
 
+use std::sync::Arc;
+
 use hitch_model::Model;
 use hitch_model::campaign::{Campaign, Channel};
 use hitch_model::identification::estimate::Estimate;
@@ -90,7 +92,7 @@ pub struct WorstStretch {
 #[derive(Debug, Clone)]
 pub struct Evaluated {
     /// The campaign, ready.
-    pub experiment: Experiment,
+    pub experiment: Arc<Experiment>,
     /// The model's simulation and residuals, each run's weighed load corrected within its tolerance.
     pub fit: Fit,
 }
@@ -104,7 +106,10 @@ impl Evaluated {
         let weights = Weights::new(&experiment, model, &start);
         let loaded = fit_loads(&experiment, model, &weights, start);
         let fit = evaluate(&experiment, model, loaded);
-        Self { experiment, fit }
+        Self {
+            experiment: Arc::new(experiment),
+            fit,
+        }
     }
 
     /// Whitened residuals of a channel of a run, NaN where nothing is compared.
@@ -175,7 +180,8 @@ impl Comparison {
             cells: cells(evaluated),
             worst: Channel::ALL
                 .into_iter()
-                .filter_map(|channel| worst_stretch(evaluated, channel))
+                .filter_map(|channel| worst_stretch(evaluated, channel, |_, _| true))
+                .map(|(_, stretch)| stretch)
                 .collect(),
         }
     }
@@ -250,25 +256,44 @@ fn tally(
     }
 }
 
-fn worst_stretch(evaluated: &Evaluated, channel: Channel) -> Option<WorstStretch> {
-    let stretches = evaluated
-        .experiment
-        .runs
-        .iter()
-        .enumerate()
-        .flat_map(|(index, run)| {
-            let residuals = evaluated.residuals(index, channel);
-            stretches(&run.drive.time_s, &residuals).into_iter().map(
-                move |(from_s, to_s, error)| WorstStretch {
-                    channel: channel.key(),
-                    run: run.file.clone(),
-                    from_s,
-                    to_s,
-                    error,
-                },
-            )
-        });
-    stretches.max_by(|a, b| a.error.total_cmp(&b.error))
+/// Where in time a part of the data fails most in a channel: the index of the run, and the stretch of it.
+pub fn worst_in_part(
+    evaluated: &Evaluated,
+    by: Grouping,
+    part: &str,
+    channel: Channel,
+) -> Option<(usize, WorstStretch)> {
+    worst_stretch(evaluated, channel, |run, sample| {
+        by.part(run, sample).is_some_and(|own| own.name == part)
+    })
+}
+
+fn worst_stretch(
+    evaluated: &Evaluated,
+    channel: Channel,
+    counts: impl Fn(&ReadyRun, usize) -> bool,
+) -> Option<(usize, WorstStretch)> {
+    let of_run = |(index, run): (usize, &ReadyRun)| {
+        let mut residuals = evaluated.residuals(index, channel);
+        for (sample, residual) in residuals.iter_mut().enumerate() {
+            if !counts(run, sample) {
+                *residual = f64::NAN;
+            }
+        }
+        let stretches = stretches(&run.drive.time_s, &residuals);
+        let (from_s, to_s, error) = stretches.into_iter().max_by(|a, b| a.2.total_cmp(&b.2))?;
+        let stretch = WorstStretch {
+            channel: channel.key(),
+            run: run.file.clone(),
+            from_s,
+            to_s,
+            error,
+        };
+        Some((index, stretch))
+    };
+    let runs = evaluated.experiment.runs.iter().enumerate();
+    let worst = runs.filter_map(of_run);
+    worst.max_by(|(_, a), (_, b)| a.error.total_cmp(&b.error))
 }
 
 /// Consecutive stretches of a run with the root mean square in each.

@@ -9,6 +9,7 @@ mod show;
 
 pub use found::Found;
 pub use next::{Detail, Next};
+pub use of_diagnosis::explained;
 pub use of_explanation::parameters;
 pub use rebuilt::rebuilt;
 pub use show::late_ms;

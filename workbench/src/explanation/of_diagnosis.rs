@@ -114,7 +114,7 @@ fn shown(
 }
 
 /// Share of the squared error above the noise that a fit takes away.
-fn explained(base: &Fit, with: &Fit) -> f64 {
+pub fn explained(base: &Fit, with: &Fit) -> f64 {
     let excess = |fit: &Fit| (fit.error().powi(2) - 1.0).max(0.0);
     if excess(base) > 0.0 {
         (1.0 - excess(with) / excess(base)).clamp(0.0, 1.0)

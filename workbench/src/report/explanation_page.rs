@@ -1,4 +1,6 @@
 //! The report of `hitch explain`.
+use std::sync::Arc;
+
 use hitch_model::identification::fit::Fit;
 use maud::{Markup, html};
 
@@ -44,7 +46,7 @@ pub fn findings(found: &Found) -> Markup {
 /// What it rests on: errors by channel and regime, and every run.
 pub fn details(found: &Found) -> Markup {
     let evaluated = |fit: &Fit| Evaluated {
-        experiment: found.experiment.clone(),
+        experiment: Arc::new(found.experiment.clone()),
         fit: fit.clone(),
     };
     let (before, after) = (

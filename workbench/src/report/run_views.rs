@@ -42,7 +42,8 @@ fn channel_views(
     Channel::ALL.into_iter().filter_map(view).collect()
 }
 
-fn conditions(bench: Bench, oil_temperature_c: f64) -> String {
+/// Load or port pressure, and oil temperature, for people.
+pub fn conditions(bench: Bench, oil_temperature_c: f64) -> String {
     let bench = match bench {
         Bench::Hitch { load_kg } => format!("{load_kg:.0} kg"),
         Bench::Flow { port_pressure_bar } => format!("flow bench at {port_pressure_bar:.0} bar"),

@@ -22,6 +22,9 @@ use crate::model::Model;
 /// Forms that are fitted in full, the most promising ones; of the others the start of a fit is weighed.
 const FITTED: usize = 8;
 
+/// Told of a form of an effect that was weighed.
+pub type Weighed<'a> = &'a (dyn Fn(&Candidate) + Sync);
+
 /// Each effect in its best form beside a fit, weighed; the likeliest first.
 #[must_use]
 pub fn try_effects(
@@ -30,6 +33,19 @@ pub fn try_effects(
     base: &Fit,
     effects: &[&'static dyn Effect],
     progress: Progress,
+) -> Vec<Candidate> {
+    try_each(experiment, model, base, effects, progress, &|_| {})
+}
+
+/// [`try_effects`] that tells of each form as soon as it is weighed, in any order.
+#[must_use]
+pub fn try_each(
+    experiment: &Experiment,
+    model: &Model,
+    base: &Fit,
+    effects: &[&'static dyn Effect],
+    progress: Progress,
+    weighed: Weighed,
 ) -> Vec<Candidate> {
     let scans = Scans::default();
     let price = Price::beside(experiment, base);
@@ -75,7 +91,7 @@ pub fn try_effects(
     let tried = starts.into_par_iter().enumerate();
     let tried = tried.map(|(rank, (cost, effect, estimate))| {
         progress(effect.id());
-        match estimate {
+        let candidate = match estimate {
             Some(estimate) if promising(cost) && rank < FITTED => {
                 weigh(experiment, model, base, effect, refits.one(estimate))
             }
@@ -88,7 +104,9 @@ pub fn try_effects(
                 fit.estimate.effects.push(AddedEffect::null(effect));
                 Candidate::absent(effect, fit)
             }
-        }
+        };
+        weighed(&candidate);
+        candidate
     });
     likeliest_forms(tried.collect())
 }

@@ -1,0 +1,152 @@
+"""The page of `hitch serve` in a headless Chromium: open, find the worst place, rank, add, drag, undo, save.
+
+Called with the page's address, the address of a page with a broken campaign, the browser, and a folder for pictures.
+"""
+
+import shutil
+import sys
+from pathlib import Path
+
+from playwright.sync_api import Page, expect, sync_playwright
+
+DESKTOP = {"viewport": {"width": 1440, "height": 900}}
+PHONE = {"viewport": {"width": 390, "height": 844}, "device_scale_factor": 2, "has_touch": True, "is_mobile": True}
+DARK = {**DESKTOP, "color_scheme": "dark"}
+
+# Computations may share the machine with others.
+PATIENCE_MS = 180_000
+
+FIRST_VIEW_MS = 1000
+REDRAW_MS = 100
+
+
+def opened(browser, address: str, options: dict, faults: list) -> Page:
+    """A page whose console messages count as faults."""
+    page = browser.new_context(**options).new_page()
+    page.set_default_timeout(PATIENCE_MS)
+    page.on("pageerror", lambda error: faults.append(f"error: {error}"))
+    page.on("console", lambda said: faults.append(f"console: {said.type}: {said.text}"))
+    page.goto(address)
+    return page
+
+
+def wait_for_first_view(page: Page) -> float:
+    """Waits until map and plot are drawn; when that was, in ms after the request."""
+    page.wait_for_selector("#views[data-ready]")
+    return page.evaluate("performance.getEntriesByName('first view')[0].startTime")
+
+
+def settled(page: Page) -> None:
+    """Waits until no computation runs."""
+    expect(page.locator("#job")).to_be_hidden(timeout=PATIENCE_MS)
+
+
+def error_of(page: Page) -> float:
+    """The error in the heading."""
+    return float(page.locator("#title").inner_text().split("error ")[1].split(" ")[0])
+
+
+def assert_fits(page: Page) -> None:
+    """Nothing is wider than the window."""
+    assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth"), "the page is too wide"
+
+
+def whole_story(page: Page, pictures: Path) -> None:
+    """The story at a desktop."""
+    first = wait_for_first_view(page)
+    page.screenshot(path=pictures / "open.png")
+    print(f"first view after {first:.0f} ms")
+    before = error_of(page)
+
+    cells = page.locator("#cells td button")
+    errors = [float(text) for text in cells.all_inner_texts()]
+    cells.nth(errors.index(max(errors))).click()
+    expect(page.locator("#place")).to_contain_text("Worst for")
+
+    page.click("#rank")
+    page.wait_for_selector("#ranking .effect")
+    settled(page)
+    best = page.locator("#ranking .effect").first
+    expect(best).to_contain_text("nearly certain, 100 %")
+    page.screenshot(path=pictures / "ranked.png", full_page=True)
+
+    best.locator("button.add").press("Enter")
+    page.wait_for_selector("#effects .effect")
+    settled(page)
+    after = error_of(page)
+    assert after < 1.1 < before, f"the error falls from {before} to {after}"
+    page.wait_for_timeout(300)
+    page.screenshot(path=pictures / "added.png", full_page=True)
+
+    drag(page)
+    page.screenshot(path=pictures / "dragged.png")
+    expect(page.locator("#steps li")).to_have_count(3)
+    page.click("#undo")
+    expect(page.locator("#steps .undone")).to_have_count(1)
+
+    with page.expect_download() as saving:
+        page.click("#save")
+    text = Path(saving.value.path()).read_text(encoding="utf-8")
+    assert "lower-threshold-shift" in text, text[-400:]
+
+    page.click("#undo")
+    expect(page.locator("#steps .undone")).to_have_count(2)
+    assert abs(error_of(page) - before) < 0.02
+    automatic(page, pictures)
+
+
+def drag(page: Page) -> None:
+    """Moves a slider by the keyboard; the run is redrawn at each position."""
+    slider = page.locator("#effects input[type=range]").first
+    slider.focus()
+    page.keyboard.down("ArrowRight")
+    page.wait_for_timeout(150)
+    for _ in range(10):
+        page.keyboard.down("ArrowRight")
+        page.wait_for_timeout(150)
+    page.keyboard.up("ArrowRight")
+    settled(page)
+    times = page.evaluate("performance.getEntriesByName('redraw').map((entry) => entry.duration)")
+    assert times, "nothing was redrawn"
+    middle = sorted(times)[len(times) // 2]
+    print(f"redrawn within {middle:.0f} ms (median of {len(times)})")
+
+
+def automatic(page: Page, pictures: Path) -> None:
+    """Explains, and takes the steps over."""
+    page.click("#explain")
+    page.wait_for_selector("#adopt")
+    settled(page)
+    page.screenshot(path=pictures / "explained.png", full_page=True)
+    page.click("#adopt")
+    page.wait_for_selector("#effects .effect")
+    settled(page)
+    assert error_of(page) < 1.1
+
+
+def main() -> None:
+    address, broken, name, folder = sys.argv[1:5]
+    program = shutil.which(name)
+    assert program, f"no {name} is installed"
+    pictures = Path(folder)
+    pictures.mkdir(parents=True, exist_ok=True)
+    faults: list = []
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        whole_story(opened(browser, address, DESKTOP, faults), pictures)
+        for view, options in {"phone": PHONE, "dark": DARK}.items():
+            page = opened(browser, address, options, faults)
+            wait_for_first_view(page)
+            page.wait_for_timeout(300)
+            page.screenshot(path=pictures / f"{view}.png", full_page=view == "phone")
+            assert_fits(page)
+        assert not faults, faults
+        page = opened(browser, broken, DESKTOP, [])
+        expect(page.locator("#fault-text")).to_contain_text("lift.csv:2:18")
+        page.screenshot(path=pictures / "broken.png")
+        browser.close()
+    print("the whole story went well")
+
+
+if __name__ == "__main__":
+    main()

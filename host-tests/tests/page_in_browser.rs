@@ -1,0 +1,37 @@
+//! The page of `hitch serve` in a real browser, at the widths of a desktop and of a phone, light and dark.
+//!
+//! `cargo xtask test` installs the browser. The pictures of each view are kept in the target folder.
+use std::path::Path;
+use std::process::Command;
+
+use host_tests::page_server::PageServer;
+use host_tests::python::{environment, run};
+use host_tests::refusal;
+use tempfile::TempDir;
+
+#[test]
+#[ignore = "needs Chromium; cargo xtask test installs it and runs this"]
+fn the_whole_story_by_clicking() {
+    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("python");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let python = environment(&scripts.join("browser.txt"), folder).unwrap();
+    let dir = TempDir::new().unwrap();
+    let server = PageServer::start(dir.path(), &[]);
+    let wrong = refusal::folder();
+    refusal::write(
+        &wrong,
+        "c/lift.csv",
+        refusal::log().replacen("16.0", "oops", 1),
+    );
+    let broken = PageServer::start(wrong.path(), &["c"]);
+    let mut command = Command::new(python);
+    command
+        .arg(scripts.join("page_in_browser.py"))
+        .args([&server.page, &broken.page])
+        .arg("chromium")
+        .arg(folder.join("pictures"))
+        .env("PYTHONPYCACHEPREFIX", folder.join("python-cache"));
+    let said = run(&mut command).unwrap_or_else(|reason| panic!("{reason:#}"));
+    println!("{said}");
+    assert!(said.contains("the whole story went well"), "{said}");
+}

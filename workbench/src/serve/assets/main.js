@@ -1,0 +1,237 @@
+// @ts-check
+/** The page: what is open, and what happens when something is pressed. */
+import { byId, element, sigmas } from "./dom.js";
+import { drawMap, worstCell } from "./error_map.js";
+import { drawMissing, drawRanking, insert } from "./missing.js";
+import { drawCourse, drawModel } from "./model_panel.js";
+import { drawRun, redrawRun } from "./run_plot.js";
+import { Refused, ask, begin, follow, leave, post } from "./server.js";
+
+/** @type {any} */
+let state = null;
+/** @type {any} */
+let view = null;
+/** Candidates of a ranking that is being made.
+ * @type {any[]} */
+let tried = [];
+/** Errors of a fit that runs.
+ * @type {{fraction: number, error: number}[]} */
+let live = [];
+
+async function open() {
+  try {
+    state = await begin();
+  } catch (error) {
+    return showFault(error);
+  }
+  byId("views").hidden = false;
+  listRuns();
+  draw();
+  const worst = worstCell(state);
+  if (worst) await visit(worst);
+  else await show(0, null);
+  performance.mark("first view");
+  byId("views").dataset.ready = "";
+  if (state.job) {
+    await follow(hear, guarded(refresh));
+    await refresh();
+  }
+}
+
+/** Asks for everything anew, and leaves the zoom as it is. */
+async function refresh() {
+  state = await ask("state");
+  draw();
+  showJob(state.job);
+  if (view) {
+    view = await ask("run", { run: view.run });
+    byId("place").textContent = "";
+    await drawRun(view, undefined);
+  }
+}
+
+/** Everything but the run. */
+function draw() {
+  byId("title").textContent = `${state.campaign}: error ${sigmas(state.error)} σ`;
+  byId("subtitle").textContent = [state.description, `model ${state.model}`,
+    `${state.runs.length} runs`].filter(Boolean).join(" · ");
+  document.title = `${state.campaign} – hitch`;
+  drawMap(state, guarded(visit));
+  drawModel(state, acts);
+  drawMissing(state, acts.run);
+}
+
+/** What the panels can have done. */
+const acts = {
+  go: guarded(async (/** @type {number} */ at) => {
+    await post("go", { at });
+    await refresh();
+  }),
+  run: guarded(async (/** @type {any} */ task) => {
+    if (!byId("job").hidden) return say("A computation is running; wait for it or cancel it.");
+    [tried, live] = [[], []];
+    showJob("Starting");
+    try {
+      await follow(hear, guarded(refresh));
+      const { title } = await post("start", task);
+      // It may be over already.
+      if (title && !byId("job").hidden) byId("job").dataset.title = title;
+    } catch (error) {
+      leave();
+      showJob(null);
+      throw error;
+    }
+  }),
+  preview: guarded(preview),
+};
+
+/** @type {any} */
+let wanted = null;
+let previewing = false;
+
+/** Redraws the run with a parameter set by hand; while one is on its way, only the latest waits.
+ * @param {any} trial */
+async function preview(trial) {
+  wanted = trial;
+  if (previewing) return;
+  previewing = true;
+  try {
+    while (wanted) {
+      const next = wanted;
+      wanted = null;
+      const began = performance.now();
+      const tried = await post("preview", { ...next, run: view.run });
+      if (tried.run !== view.run) continue;
+      const channels = view.channels.map((/** @type {any} */ channel, /** @type {number} */ index) =>
+        ({ ...channel, ...tried.channels[index] }));
+      await redrawRun({ ...view, channels });
+      performance.measure("redraw", { start: began });
+      const errors = channels.map((/** @type {any} */ one) => `${one.title} ${sigmas(one.error)} σ`);
+      byId("place").textContent = `This run: ${errors.join(", ")}`;
+    }
+  } finally {
+    previewing = false;
+  }
+}
+
+/** What the server tells of a computation.
+ * @param {any} message */
+function hear(message) {
+  if (message.kind === "progress") {
+    byId("job-text").textContent = `${byId("job").dataset.title}: ${message.text}`;
+    fraction(message.fraction);
+    if (message.error !== null) {
+      live.push({ fraction: message.fraction ?? 0, error: message.error });
+      drawCourse(state, live);
+      byId("title").textContent = `${state.campaign}: error ${sigmas(message.error)} σ`;
+    }
+  } else if (message.kind === "candidate") {
+    tried = insert(tried, message.candidate);
+    fraction(message.fraction);
+    byId("job-text").textContent = `${byId("job").dataset.title}: ${message.candidate.effect.title}`;
+    drawRanking(tried, acts.run);
+  } else {
+    showJob(null);
+    if (message.kind === "failed") say(message.text);
+    guarded(refresh)();
+  }
+}
+
+/** @param {number | null} share */
+function fraction(share) {
+  const bar = /** @type {HTMLProgressElement} */ (byId("job-progress"));
+  if (share === null) bar.removeAttribute("value");
+  else bar.value = share;
+}
+
+/** Shows what runs, and lets nothing else be started.
+ * @param {string | null} title */
+function showJob(title) {
+  const job = byId("job");
+  job.hidden = !title;
+  job.dataset.title = title ?? "";
+  byId("job-text").textContent = title ?? "";
+  fraction(null);
+  document.body.toggleAttribute("data-busy", Boolean(title));
+}
+
+/** Says what went wrong for some seconds.
+ * @param {string} text */
+function say(text) {
+  const message = byId("message");
+  message.textContent = text;
+  message.hidden = false;
+  setTimeout(() => { message.hidden = true; }, 8000);
+}
+
+/** The same function, but what goes wrong in it is said on the page.
+ * @template {any[]} A
+ * @param {(...args: A) => Promise<void>} work */
+function guarded(work) {
+  return async (/** @type {A} */ ...args) => {
+    try {
+      await work(...args);
+    } catch (error) {
+      say(error instanceof Refused ? [error.fault.what, error.fault.mend].filter(Boolean).join(" ") : String(error));
+    }
+  };
+}
+
+function listRuns() {
+  const option = (/** @type {any} */ run, /** @type {number} */ index) =>
+    element("option", { value: index }, `${run.file}, ${run.conditions}`);
+  byId("run").replaceChildren(...state.runs.map(option));
+}
+
+/** Shows where a cell of the map is worst.
+ * @param {any} cell */
+async function visit(cell) {
+  const { run, stretch } = await ask("worst", { by: cell.by, part: cell.part, channel: cell.channel });
+  const channel = state.channels.find((/** @type {any} */ one) => one.key === cell.channel);
+  await show(run, stretch);
+  byId("place").textContent =
+    `Worst for ${channel.title}, ${cell.part}: ${stretch.from_s.toFixed(1)} to ${stretch.to_s.toFixed(1)} s, ` +
+    `${sigmas(stretch.error)} σ`;
+}
+
+/** Shows a run.
+ * @param {number} index
+ * @param {any} place */
+async function show(index, place) {
+  view = await ask("run", { run: index });
+  /** @type {HTMLSelectElement} */ (byId("run")).value = String(index);
+  byId("place").textContent = "";
+  await drawRun(view, place);
+}
+
+/** @param {unknown} error */
+function showFault(error) {
+  const fault = error instanceof Refused ? error.fault : { what: String(error) };
+  const where = fault.file && [fault.file, fault.line, fault.column].filter((part) => part != null).join(":");
+  const lines = [where && element("p", {}, element("code", {}, where)), element("p", {}, fault.what),
+    fault.mend && element("p", {}, `To mend it: ${fault.mend}.`)];
+  byId("fault-text").replaceChildren(...lines.filter((line) => line instanceof Node));
+  byId("fault").hidden = false;
+}
+
+byId("again").addEventListener("click", () => location.reload());
+byId("whole").addEventListener("click", () => view && drawRun(view, null));
+byId("run").addEventListener("change", guarded((event) =>
+  show(Number(/** @type {HTMLSelectElement} */ (event.target).value), null)));
+byId("undo").addEventListener("click", () => acts.go(state.at - 1));
+byId("redo").addEventListener("click", () => acts.go(state.at + 1));
+byId("fit").addEventListener("click", () => acts.run({ task: "fit" }));
+byId("rank").addEventListener("click", () => acts.run({ task: "rank" }));
+byId("explain").addEventListener("click", () => acts.run({ task: "explain" }));
+byId("cancel").addEventListener("click", guarded(async () => {
+  leave();
+  await post("cancel", {});
+  await refresh();
+}));
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  if (!view) return;
+  draw();
+  drawRun(view, undefined);
+});
+
+open();

@@ -1,0 +1,116 @@
+// @ts-check
+/** What the model lacks: the ranking of single effects, and the explanation as a set of effects. */
+import { byId, element, number, sigmas } from "./dom.js";
+
+/** Less than this share explained, or of confidence, is no sign of an effect. */
+const SIGN = 0.005;
+
+/** @typedef {(task: any) => void} Run */
+
+/** Draws ranking and explanation of a state.
+ * @param {any} state
+ * @param {Run} run */
+export function drawMissing(state, run) {
+  byId("explained").replaceChildren(...(state.explained ? explanation(state.explained, run) : []));
+  if (state.ranking) drawRanking(state.ranking.candidates, run, state.ranking.next_experiment);
+  else byId("ranking").replaceChildren();
+}
+
+/** Draws candidates, those that were tried so far.
+ * @param {any[]} candidates
+ * @param {Run} run
+ * @param {string | null} [next] */
+export function drawRanking(candidates, run, next = null) {
+  const shows = (/** @type {any} */ one) => one.explains >= SIGN || (one.confidence ?? 0) >= SIGN;
+  const seen = candidates.filter(shows);
+  const unseen = candidates.filter((one) => !shows(one));
+  const parts = seen.map((one) => candidate(one, run));
+  if (candidates.length > 0 && seen.length === 0) parts.push(element("p", {}, "No effect shows on these data."));
+  if (next) parts.push(element("p", {}, `To tell them apart: ${next}.`));
+  if (unseen.length > 0) {
+    parts.push(element("details", {}, element("summary", {}, `${unseen.length} more, without a sign on these data`),
+      ...unseen.map((one) => candidate(one, run))));
+  }
+  byId("ranking").replaceChildren(...parts);
+}
+
+/** Puts a candidate that was just tried among the others: of an effect its better form, the best effect first.
+ * @param {any[]} candidates
+ * @param {any} tried */
+export function insert(candidates, tried) {
+  const others = candidates.filter((one) => one.effect.id !== tried.effect.id);
+  const own = candidates.filter((one) => one.effect.id === tried.effect.id);
+  const best = [...own, tried].reduce((a, b) => (b.error_after < a.error_after ? b : a));
+  return [...others, best].sort((a, b) => a.error_after - b.error_after);
+}
+
+/** @param {any} one
+ * @param {Run} run */
+function candidate(one, run) {
+  const add = element("button", { type: "button", class: "add", "aria-label": `Add ${one.effect.title}`,
+    onclick: () => run({ task: "add", effect: one.effect.name }) }, "Add");
+  const confidence = one.confidence === undefined ? "being compared"
+    : `${one.in_words}, ${(100 * one.confidence).toFixed(0)} %`;
+  return element("div", { class: "effect" },
+    element("div", { class: "row" }, element("h3", {}, one.effect.title), add),
+    element("meter", { min: 0, max: 1, value: one.explains, "aria-label": `Share explained by ${one.effect.title}` }),
+    element("div", { class: "figures" },
+      element("span", {}, `explains ${(100 * one.explains).toFixed(0)} %`),
+      element("span", {}, `leaves ${sigmas(one.error_after)} σ`),
+      element("span", {}, confidence)),
+    element("div", { class: "values" }, parameters(one)),
+    ...twins(one), details(one.effect));
+}
+
+/** @param {any} one */
+function parameters(one) {
+  const shown = (/** @type {any} */ p) => {
+    const interval = p.low === null || p.high === null ? "" : ` (95 %: ${number(p.low)} to ${number(p.high)})`;
+    return `${p.name} ${number(p.value)} ${p.unit}`.trim() + interval;
+  };
+  return one.parameters.map(shown).join(", ");
+}
+
+/** @param {any} one */
+function twins(one) {
+  if (!one.indistinguishable?.length) return [];
+  return [element("div", { class: "values" }, `These data do not tell it from ${one.indistinguishable.join(", ")}.`)];
+}
+
+/** @param {any} effect */
+function details(effect) {
+  return element("details", {}, element("summary", {}, "Equation, where it shows, source"),
+    element("code", { class: "equation" }, effect.equation), element("p", {}, `Shows: ${effect.shows}.`),
+    element("p", {}, `Source: ${effect.source}.`));
+}
+
+/** @param {any} found
+ * @param {Run} run */
+function explanation(found, run) {
+  const boxes = found.steps.map((/** @type {any} */ step) => /** @type {HTMLInputElement} */ (
+    element("input", { type: "checkbox", checked: true, "aria-label": `Accept ${step.effect.title}` })));
+  const take = element("button", { type: "button", class: "main", id: "adopt", onclick: () => {
+    const steps = boxes.map((/** @type {any} */ box, /** @type {number} */ index) => (box.checked ? index : -1));
+    run({ task: "adopt", steps: steps.filter((/** @type {number} */ index) => index >= 0) });
+  } }, "Take the accepted steps over");
+  const parts = found.steps.map((/** @type {any} */ step, /** @type {number} */ index) => accepted(step, boxes[index]));
+  return [element("p", {}, element("strong", {}, `${found.verdict}. `), found.meaning), ...parts,
+    ...(found.steps.length ? [take] : []),
+    ...(found.next_experiment ? [element("p", {}, `Next experiment: ${found.next_experiment}.`)] : []),
+    ...(found.not_visible.length ? [element("details", {},
+      element("summary", {}, `${found.not_visible.length} effects would not show in this campaign`),
+      element("p", {}, found.not_visible.join(", ")))] : [])];
+}
+
+/** @param {any} step
+ * @param {HTMLInputElement} box */
+function accepted(step, box) {
+  const was = step.changed_from === null ? "" : `, changed from ${number(step.changed_from)}`;
+  return element("div", { class: "effect" },
+    element("div", { class: "row" }, element("label", {}, box, " ", element("strong", {}, step.effect.title)), was),
+    element("div", { class: "figures" },
+      element("span", {}, `${sigmas(step.error_before)} → ${sigmas(step.error_after)} σ`),
+      element("span", {}, `held out ${sigmas(step.held_out_after)} σ`),
+      element("span", {}, `${step.in_words}, ${(100 * step.confidence).toFixed(0)} %`)),
+    element("div", { class: "values" }, parameters(step)), ...twins(step), details(step.effect));
+}

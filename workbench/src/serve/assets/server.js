@@ -1,0 +1,89 @@
+// @ts-check
+/** Requests to the server. */
+
+/** @typedef {{file?: string, line?: number, column?: number, what: string, mend?: string}} Fault */
+
+/** A request that the server did not answer as wished. */
+export class Refused extends Error {
+  /** @param {Fault} fault */
+  constructor(fault) {
+    super(fault.what);
+    this.fault = fault;
+  }
+}
+
+let session = "";
+
+/** Where the tab keeps its session while it is loaded again. */
+const KEPT = "hitch session";
+
+/** Begins the session of this tab, or goes on with it if the page was loaded again; its state. */
+export async function begin() {
+  const navigation = /** @type {PerformanceNavigationTiming} */ (performance.getEntriesByType("navigation")[0]);
+  session = (navigation.type === "reload" && sessionStorage.getItem(KEPT)) || "";
+  if (session) {
+    const state = await ask("state").catch(() => null);
+    if (state) return state;
+  }
+  session = (await post("begin", {})).session;
+  sessionStorage.setItem(KEPT, session);
+  return ask("state");
+}
+
+/** Asks for a view.
+ * @param {string} path
+ * @param {Record<string, string | number>} [query] */
+export function ask(path, query = {}) {
+  return answer(fetch(address(path, query)));
+}
+
+/** Has something done.
+ * @param {string} path
+ * @param {Record<string, unknown>} body */
+export function post(path, body) {
+  const headers = { "Content-Type": "application/json" };
+  return answer(fetch(`api/${path}`, { method: "POST", headers, body: JSON.stringify({ session, ...body }) }));
+}
+
+/** The address of a view of this tab.
+ * @param {string} path
+ * @param {Record<string, string | number>} [query] */
+export function address(path, query = {}) {
+  const pairs = Object.entries({ session, ...query }).map(([key, value]) => [key, String(value)]);
+  return `api/${path}?${new URLSearchParams(pairs)}`;
+}
+
+/** @param {Promise<Response>} request */
+async function answer(request) {
+  const response = await request.catch(() => {
+    throw new Refused({ what: "The server does not answer.", mend: "Start hitch serve again." });
+  });
+  const body = await response.json().catch(() => ({ fault: { what: `The server answered ${response.status}.` } }));
+  if (!response.ok) throw new Refused(body.fault);
+  return body;
+}
+
+/** Follows what runs for this tab until it is over. A tab that waits for nothing holds no connection: a browser has few.
+ * @param {(message: any) => void} hear
+ * @param {() => void} reconnected
+ * @returns {Promise<void>} settled as soon as nothing can be missed */
+export function follow(hear, reconnected) {
+  const events = new EventSource(address("events"));
+  let opened = false;
+  events.onmessage = (event) => {
+    const message = JSON.parse(event.data);
+    if (["done", "failed"].includes(message.kind)) events.close();
+    hear(message);
+  };
+  leave = () => events.close();
+  return new Promise((resolve) => {
+    events.onopen = () => {
+      if (opened) reconnected();
+      opened = true;
+      resolve();
+    };
+  });
+}
+
+/** Ends following. */
+export let leave = () => {};

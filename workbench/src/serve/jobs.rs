@@ -1,0 +1,92 @@
+//! Computations that take longer than a request: they run on a thread of their own and tell how far they are.
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use serde_json::{Value, json};
+use tokio::sync::broadcast;
+
+use super::routes::{Refusal, lock};
+use super::session::Job;
+use super::sessions::Shared;
+use super::tasks::{Outcome, Ready, Task};
+
+/// What unwinds a computation whose result is no longer wanted.
+struct Cancelled;
+
+/// How a computation tells its tab how far it is.
+pub struct Reporter {
+    cancelled: Arc<AtomicBool>,
+    messages: broadcast::Sender<Value>,
+}
+
+impl Reporter {
+    /// Says what is being done, how much of all is done (0 to 1, `None` if that is not known), and what the error is.
+    pub fn progress(&self, text: &str, fraction: Option<f64>, error: Option<f64>) {
+        self.tell(
+            json!({ "kind": "progress", "text": text, "fraction": fraction, "error": error }),
+        );
+    }
+
+    /// Tells of an effect that was tried.
+    pub fn candidate(&self, candidate: &Value, fraction: f64) {
+        self.tell(json!({ "kind": "candidate", "candidate": candidate, "fraction": fraction }));
+    }
+
+    fn tell(&self, message: Value) {
+        if self.cancelled.load(Ordering::Relaxed) {
+            // Unwinds to the start of the computation without the message of a panic.
+            resume_unwind(Box::new(Cancelled));
+        }
+        // Nobody may be listening.
+        let _ = self.messages.send(message);
+    }
+}
+
+/// Starts a computation for a session.
+///
+/// # Errors
+/// If one is running, or the task does not fit the session.
+pub fn start(session: &Shared, task: Task) -> Result<(), Refusal> {
+    let mut open = lock(session);
+    if open.job.is_some() {
+        let what = "a computation is running; wait for it or cancel it";
+        return Err(Refusal::conflict(what));
+    }
+    let ready = Ready::new(&open, task)?;
+    let reporter = Reporter {
+        cancelled: Arc::default(),
+        messages: open.messages.clone(),
+    };
+    open.job = Some(Job {
+        title: ready.title(),
+        cancelled: Arc::clone(&reporter.cancelled),
+    });
+    drop(open);
+    let session = Arc::clone(session);
+    tokio::task::spawn_blocking(move || {
+        let outcome = catch_unwind(AssertUnwindSafe(|| ready.run(&reporter)));
+        finish(&session, &reporter, outcome);
+    });
+    Ok(())
+}
+
+/// Takes over a result, if it is still wanted, and says that the computation is over.
+fn finish(session: &Shared, reporter: &Reporter, outcome: std::thread::Result<Outcome>) {
+    let mut open = lock(session);
+    if reporter.cancelled.load(Ordering::Relaxed) {
+        return;
+    }
+    open.job = None;
+    let message = match outcome {
+        Ok(outcome) => {
+            outcome.apply(&mut open);
+            json!({ "kind": "done" })
+        }
+        Err(_) => json!({
+            "kind": "failed",
+            "text": "The computation failed. The model is as it was before; try another effect.",
+        }),
+    };
+    let _ = open.messages.send(message);
+}

@@ -1,0 +1,259 @@
+//! What the page can ask for.
+use std::sync::{Arc, MutexGuard, PoisonError};
+
+use axum::extract::{Path, Query, State};
+use axum::http::{StatusCode, header};
+use axum::response::sse::{Event, KeepAlive, Sse};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use axum::{Json, Router};
+use hitch_model::campaign::Channel;
+use serde::Deserialize;
+use serde_json::{Value, json};
+use tokio_stream::wrappers::BroadcastStream;
+use tokio_stream::{Stream, StreamExt};
+
+use super::session::Session;
+use super::sessions::{Sessions, Shared};
+use super::tasks::{Task, moved};
+use super::{assets, jobs, views};
+use crate::comparison::{Grouping, worst_in_part};
+use crate::error::Error;
+
+type Known = State<Arc<Sessions>>;
+type Answer = Result<Json<Value>, Refusal>;
+
+/// Every path, behind the token.
+pub fn routes() -> Router<Arc<Sessions>> {
+    Router::new()
+        .route("/{token}/", get(page))
+        .route("/{token}/{file}", get(file))
+        .route("/{token}/api/begin", post(begin))
+        .route("/{token}/api/state", get(state))
+        .route("/{token}/api/run", get(run))
+        .route("/{token}/api/worst", get(worst))
+        .route("/{token}/api/preview", post(preview))
+        .route("/{token}/api/start", post(start))
+        .route("/{token}/api/cancel", post(cancel))
+        .route("/{token}/api/go", post(go))
+        .route("/{token}/api/events", get(events))
+        .route("/{token}/api/model", get(model))
+}
+
+/// Why a request cannot be answered, as the page shows it.
+pub(super) struct Refusal {
+    status: StatusCode,
+    fault: Value,
+}
+
+impl Refusal {
+    /// A request that does not fit what there is.
+    pub(super) fn of(status: StatusCode, what: &str) -> Self {
+        Self {
+            status,
+            fault: json!({ "what": what }),
+        }
+    }
+
+    /// A request that does not fit what the session has come to.
+    pub(super) fn conflict(what: &str) -> Self {
+        Self::of(StatusCode::CONFLICT, what)
+    }
+}
+
+impl From<Error> for Refusal {
+    fn from(error: Error) -> Self {
+        Self {
+            status: StatusCode::UNPROCESSABLE_ENTITY,
+            fault: views::fault(&error),
+        }
+    }
+}
+
+impl IntoResponse for Refusal {
+    fn into_response(self) -> Response {
+        (self.status, Json(json!({ "fault": self.fault }))).into_response()
+    }
+}
+
+/// Which session a request is about.
+#[derive(Debug, Deserialize)]
+struct Of {
+    session: String,
+}
+
+async fn page() -> Response {
+    named("")
+}
+
+async fn file(Path((_, name)): Path<(String, String)>) -> Response {
+    named(&name)
+}
+
+fn named(name: &str) -> Response {
+    assets::file(name).unwrap_or_else(|| StatusCode::NOT_FOUND.into_response())
+}
+
+async fn begin(State(sessions): Known) -> Answer {
+    let session = blocking(move || sessions.begin()).await??;
+    Ok(Json(json!({ "session": session })))
+}
+
+async fn state(State(sessions): Known, Query(of): Query<Of>) -> Answer {
+    let session = find(&sessions, &of.session)?;
+    let view = blocking(move || views::state(&lock(&session)));
+    Ok(Json(view.await?))
+}
+
+#[derive(Debug, Deserialize)]
+struct OfRun {
+    session: String,
+    run: usize,
+}
+
+async fn run(State(sessions): Known, Query(of): Query<OfRun>) -> Answer {
+    let session = find(&sessions, &of.session)?;
+    let view = blocking(move || {
+        let session = lock(&session);
+        views::run(&session, of.run)
+    });
+    let no_run = || Refusal::of(StatusCode::NOT_FOUND, "the campaign has no such run");
+    Ok(Json(view.await?.ok_or_else(no_run)?))
+}
+
+/// A cell of the error map.
+#[derive(Debug, Deserialize)]
+struct OfCell {
+    session: String,
+    by: Grouping,
+    part: String,
+    channel: String,
+}
+
+async fn worst(State(sessions): Known, Query(of): Query<OfCell>) -> Answer {
+    let session = find(&sessions, &of.session)?;
+    let evaluated = Arc::clone(&lock(&session).present().evaluated);
+    let mut channels = Channel::ALL.into_iter();
+    let channel = channels.find(|channel| channel.key() == of.channel);
+    let worst = blocking(move || worst_in_part(&evaluated, of.by, &of.part, channel?)).await?;
+    let nothing = || Refusal::of(StatusCode::NOT_FOUND, "nothing was compared there");
+    let (run, stretch) = worst.ok_or_else(nothing)?;
+    Ok(Json(json!({ "run": run, "stretch": stretch })))
+}
+
+/// A parameter of an effect set by hand, and the run to redraw with it.
+#[derive(Debug, Deserialize)]
+struct Trial {
+    session: String,
+    run: usize,
+    effect: usize,
+    parameter: usize,
+    value: f64,
+}
+
+async fn preview(State(sessions): Known, Json(trial): Json<Trial>) -> Answer {
+    let session = find(&sessions, &trial.session)?;
+    let (subject, step) = {
+        let session = lock(&session);
+        (Arc::clone(session.subject()), session.present().clone())
+    };
+    let view = blocking(move || {
+        let estimate = &step.evaluated.fit.estimate;
+        let estimate = moved(estimate, trial.effect, trial.parameter, trial.value)?;
+        views::preview(&subject, &step, &estimate, trial.run)
+    });
+    let none =
+        || Refusal::conflict("the model has no such parameter any more, or there is no such run");
+    Ok(Json(view.await?.ok_or_else(none)?))
+}
+
+#[derive(Debug, Deserialize)]
+struct Start {
+    session: String,
+    #[serde(flatten)]
+    task: Task,
+}
+
+async fn start(State(sessions): Known, Json(wanted): Json<Start>) -> Answer {
+    let session = find(&sessions, &wanted.session)?;
+    jobs::start(&session, wanted.task)?;
+    let title = lock(&session).job.as_ref().map(|job| job.title.clone());
+    Ok(Json(json!({ "title": title })))
+}
+
+async fn cancel(State(sessions): Known, Json(of): Json<Of>) -> Answer {
+    lock(&find(&sessions, &of.session)?).cancel();
+    Ok(Json(json!({})))
+}
+
+#[derive(Debug, Deserialize)]
+struct Go {
+    session: String,
+    at: usize,
+}
+
+async fn go(State(sessions): Known, Json(to): Json<Go>) -> Answer {
+    let session = find(&sessions, &to.session)?;
+    let mut open = lock(&session);
+    if open.job.is_some() {
+        return Err(Refusal::conflict(
+            "a computation is running; wait for it or cancel it",
+        ));
+    }
+    match open.go(to.at) {
+        true => Ok(Json(json!({}))),
+        false => Err(Refusal::conflict("there is no such step any more")),
+    }
+}
+
+async fn events(
+    State(sessions): Known,
+    Query(of): Query<Of>,
+) -> Result<Sse<impl Stream<Item = Result<Event, axum::Error>>>, Refusal> {
+    let session = find(&sessions, &of.session)?;
+    let messages = BroadcastStream::new(lock(&session).messages.subscribe());
+    // A tab that is too far behind has missed messages; the state that it asks for at the end has all of it.
+    let known = messages.filter_map(Result::ok);
+    let events = known.map(|message| Event::default().json_data(message));
+    Ok(Sse::new(events).keep_alive(KeepAlive::default()))
+}
+
+async fn model(State(sessions): Known, Query(of): Query<Of>) -> Result<Response, Refusal> {
+    let session = find(&sessions, &of.session)?;
+    let text = views::model_file(&lock(&session));
+    let headers = [
+        (header::CONTENT_TYPE, "application/toml; charset=utf-8"),
+        (
+            header::CONTENT_DISPOSITION,
+            "attachment; filename=\"model.toml\"",
+        ),
+    ];
+    Ok((headers, text).into_response())
+}
+
+/// The session of a tab.
+pub(super) fn find(sessions: &Sessions, id: &str) -> Result<Shared, Refusal> {
+    let unknown = || {
+        Refusal::of(
+            StatusCode::GONE,
+            "this session is over; load the page again",
+        )
+    };
+    sessions.get(id).ok_or_else(unknown)
+}
+
+/// A session to look at or to change; a computation that failed leaves it as it was.
+pub(super) fn lock(session: &Shared) -> MutexGuard<'_, Session> {
+    session.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Computes off the threads that answer requests.
+pub(super) async fn blocking<T: Send + 'static>(
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Result<T, Refusal> {
+    let failed = |_| {
+        let what = "the computation failed; undo the last step, or load the page again";
+        Refusal::of(StatusCode::INTERNAL_SERVER_ERROR, what)
+    };
+    tokio::task::spawn_blocking(work).await.map_err(failed)
+}

@@ -1,0 +1,73 @@
+//! The server: bound to 127.0.0.1, stopped with Ctrl-C.
+use std::net::{Ipv4Addr, SocketAddr};
+use std::sync::Arc;
+
+use axum::Router;
+use axum::extract::DefaultBodyLimit;
+use axum::middleware;
+use tokio::net::TcpListener;
+use tokio::runtime::Runtime;
+
+use super::guard::{self, Guard, random_token};
+use super::routes;
+use super::sessions::Sessions;
+use super::source::Source;
+use crate::error::Error;
+use crate::output;
+
+/// Largest request, bytes: no request of the page is longer than a few values.
+const LARGEST_REQUEST: usize = 64 * 1024;
+
+/// Serves the page until Ctrl-C.
+///
+/// # Errors
+/// If the port cannot be used, or the address cannot be printed.
+pub fn run(source: Source, port: u16, open_browser: bool) -> Result<(), Error> {
+    let runtime = Runtime::new().map_err(cannot_start)?;
+    let sessions = Arc::new(Sessions::new(source));
+    let page = runtime.block_on(start(Arc::clone(&sessions), port))?;
+    output::print(&format!("{page}\nStop it with Ctrl-C.\n"))?;
+    if open_browser && let Err(error) = open::that_detached(&page) {
+        eprintln!("hitch: no browser opens ({error}); open the address above");
+    }
+    // The first page has less to wait for.
+    runtime.spawn_blocking(move || match sessions.subject() {
+        Ok(_) => {}
+        Err(error) => eprintln!("hitch: {error}"),
+    });
+    let stopped = runtime.block_on(tokio::signal::ctrl_c());
+    // Computations and pages that are still open do not hold the program up.
+    runtime.shutdown_background();
+    stopped.map_err(cannot_start)
+}
+
+/// Listens and answers in the background, as long as the runtime that this is called in lives; the page's address.
+///
+/// # Errors
+/// If the port cannot be used.
+async fn start(sessions: Arc<Sessions>, port: u16) -> Result<String, Error> {
+    let wanted = SocketAddr::from((Ipv4Addr::LOCALHOST, port));
+    let cannot_listen = |error| {
+        Error::Usage(format!(
+            "port {port} cannot be used: {error}; name another one, or leave out --port"
+        ))
+    };
+    let listener = TcpListener::bind(wanted).await.map_err(cannot_listen)?;
+    let port = listener.local_addr().map_err(cannot_listen)?.port();
+    let token = random_token();
+    let page = format!("http://127.0.0.1:{port}/{token}/");
+    let app = app(sessions, Guard::new(token, port));
+    tokio::spawn(async move { axum::serve(listener, app).await });
+    Ok(page)
+}
+
+fn app(sessions: Arc<Sessions>, guard: Guard) -> Router {
+    routes::routes()
+        .layer(DefaultBodyLimit::max(LARGEST_REQUEST))
+        .layer(middleware::from_fn_with_state(guard, guard::check))
+        .with_state(sessions)
+}
+
+fn cannot_start(error: std::io::Error) -> Error {
+    Error::Failed(format!("the server cannot run: {error}"))
+}

@@ -1,0 +1,360 @@
+//! What can be computed for a session: rank effects, fit a model with or without one, explain the campaign.
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use hitch_model::Model;
+use hitch_model::effects::{AddedEffect, Effect, full_name};
+use hitch_model::identification::estimate::Estimate;
+use hitch_model::identification::experiment::Experiment;
+use hitch_model::identification::explain::{diagnose_each, explain_with};
+use hitch_model::identification::fit::{Fit, evaluate, fit_loads, refine, sketch};
+use hitch_model::identification::holdout::held_out;
+use hitch_model::identification::residual::Weights;
+use hitch_model::identification::subset::Options;
+use hitch_model::identification::subset::single::try_effects;
+use serde::Deserialize;
+
+use super::jobs::Reporter;
+use super::routes::Refusal;
+use super::session::{Explained, Ranking, Session, Step};
+use super::source::Subject;
+use super::views;
+use crate::commands::effects::find;
+use crate::comparison::Evaluated;
+use crate::explanation;
+
+/// Most rounds of a fit before its last one, and the relative fall of the cost that is worth another.
+const ROUNDS: usize = 6;
+const WORTHWHILE: f64 = 1e-3;
+
+/// What a tab wants to have computed.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(tag = "task", rename_all = "lowercase")]
+pub enum Task {
+    /// Try every effect that the model lacks.
+    Rank,
+    /// Add an effect and fit.
+    Add {
+        /// Its name, with its form.
+        effect: String,
+    },
+    /// Take an effect away and fit.
+    Remove {
+        /// Index of the effect.
+        effect: usize,
+    },
+    /// Set a parameter of an effect by hand.
+    Set {
+        /// Index of the effect.
+        effect: usize,
+        /// Index of the parameter.
+        parameter: usize,
+        /// Its value, in its unit.
+        value: f64,
+    },
+    /// Fit all effects from where they are.
+    Fit,
+    /// Find everything that is missing.
+    Explain,
+    /// Take over steps of the explanation.
+    Adopt {
+        /// Indices of the steps that are accepted.
+        steps: Vec<usize>,
+    },
+}
+
+/// A task with all that it needs.
+pub struct Ready {
+    subject: Arc<Subject>,
+    present: Step,
+    ranking: Option<Arc<Ranking>>,
+    what: What,
+}
+
+/// A checked task.
+enum What {
+    Rank,
+    Explain,
+    Add(&'static dyn Effect),
+    Remove(usize),
+    Set(Estimate, String),
+    Fit,
+    Adopt(Arc<Explained>, Vec<usize>),
+}
+
+/// What a task came to.
+pub enum Outcome {
+    /// A ranking.
+    Ranking(Arc<Ranking>),
+    /// An explanation.
+    Explained(Arc<Explained>),
+    /// Steps of the session.
+    Steps(Vec<Step>),
+}
+
+impl Outcome {
+    /// Takes it over.
+    pub fn apply(self, session: &mut Session) {
+        match self {
+            Self::Ranking(ranking) => session.ranking = Some(ranking),
+            Self::Explained(explained) => session.explained = Some(explained),
+            Self::Steps(steps) => steps.into_iter().for_each(|step| session.push(step)),
+        }
+    }
+}
+
+impl Ready {
+    /// Checks a task against a session.
+    ///
+    /// # Errors
+    /// If the session has nothing that the task could be about.
+    pub fn new(session: &Session, task: Task) -> Result<Self, Refusal> {
+        let effects = &session.fit().estimate.effects;
+        let there = |effect: usize| {
+            let added = effects.get(effect);
+            added.ok_or_else(|| Refusal::conflict("the model has no such effect any more"))
+        };
+        let what = match task {
+            Task::Rank => What::Rank,
+            Task::Explain => What::Explain,
+            Task::Fit => What::Fit,
+            Task::Add { effect } => What::Add(new_effect(session, &effect)?),
+            Task::Remove { effect } => there(effect).map(|_| What::Remove(effect))?,
+            Task::Set {
+                effect,
+                parameter,
+                value,
+            } => {
+                let title = format!("{} set by hand", full_name(there(effect)?.effect));
+                let estimate = moved(&session.fit().estimate, effect, parameter, value);
+                let no_parameter = || Refusal::conflict("the effect has no such parameter");
+                What::Set(estimate.ok_or_else(no_parameter)?, title)
+            }
+            Task::Adopt { steps } => {
+                let present = &session.present().evaluated;
+                let explained = session.explained.as_ref();
+                let explained = explained.filter(|known| Arc::ptr_eq(&known.of, present));
+                let stale = || Refusal::conflict("the model has changed since; explain it again");
+                What::Adopt(Arc::clone(explained.ok_or_else(stale)?), steps)
+            }
+        };
+        let ranking = session.ranking.as_ref();
+        let ranking = ranking.filter(|known| Arc::ptr_eq(&known.of, &session.present().evaluated));
+        Ok(Self {
+            subject: Arc::clone(session.subject()),
+            present: session.present().clone(),
+            ranking: ranking.cloned(),
+            what,
+        })
+    }
+
+    /// What is being done, for people.
+    pub fn title(&self) -> String {
+        match &self.what {
+            What::Rank => "Trying every effect".to_owned(),
+            What::Explain => "Explaining".to_owned(),
+            What::Add(effect) => format!("Adding {}", full_name(*effect)),
+            What::Remove(effect) => format!("Taking {} away", self.name(*effect)),
+            What::Set(_, _) => "Evaluating all runs".to_owned(),
+            What::Fit => "Fitting all effects".to_owned(),
+            What::Adopt(..) => "Taking the steps over".to_owned(),
+        }
+    }
+
+    /// Does it.
+    pub fn run(&self, reporter: &Reporter) -> Outcome {
+        let before = &self.present.evaluated.fit;
+        match &self.what {
+            What::Rank => Outcome::Ranking(Arc::new(self.rank(reporter))),
+            What::Explain => Outcome::Explained(Arc::new(self.explain(reporter))),
+            What::Add(effect) => {
+                let title = format!("Added {}", full_name(*effect));
+                Outcome::Steps(vec![self.fitted(
+                    title,
+                    self.with(*effect, reporter),
+                    reporter,
+                )])
+            }
+            What::Remove(effect) => {
+                let title = format!("Took {} away", self.name(*effect));
+                let mut start = before.estimate.clone();
+                start.effects.remove(*effect);
+                Outcome::Steps(vec![self.fitted(title, start, reporter)])
+            }
+            What::Set(estimate, title) => {
+                reporter.progress("evaluating all runs", None, None);
+                let weights = Weights::new(self.experiment(), self.model(), estimate);
+                let estimate = estimate.clone();
+                let loaded = fit_loads(self.experiment(), self.model(), &weights, estimate);
+                let fit = evaluate(self.experiment(), self.model(), loaded);
+                Outcome::Steps(vec![self.step(title.clone(), fit, None)])
+            }
+            What::Fit => {
+                let start = before.estimate.clone();
+                Outcome::Steps(vec![self.fitted("Fitted".to_owned(), start, reporter)])
+            }
+            What::Adopt(explained, steps) => {
+                Outcome::Steps(self.adopted(explained, steps, reporter))
+            }
+        }
+    }
+
+    fn rank(&self, reporter: &Reporter) -> Ranking {
+        reporter.progress("fitting the clocks and loads", None, None);
+        let start = self.present.evaluated.fit.estimate.clone();
+        let base = refine(self.experiment(), self.model(), start.with_adopted());
+        reporter.progress("simulating every effect at a few sizes", None, None);
+        let done = AtomicUsize::new(0);
+        let diagnosis = diagnose_each(
+            self.experiment(),
+            self.model(),
+            base.clone(),
+            &|_| {},
+            &|candidate, all| {
+                let share = (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / all as f64;
+                reporter.candidate(&views::tried(&base, candidate), share);
+            },
+        );
+        reporter.progress("comparing the best", None, None);
+        let shown = explanation::Diagnosis::new(self.experiment(), self.model(), &diagnosis);
+        Ranking {
+            of: Arc::clone(&self.present.evaluated),
+            diagnosis,
+            shown,
+        }
+    }
+
+    fn explain(&self, reporter: &Reporter) -> Explained {
+        let effects = self.present.evaluated.fit.estimate.effects.clone();
+        let model = self.model().with_effects(effects);
+        reporter.progress("fitting the clocks and loads", None, None);
+        let options = Options::default();
+        let explanation = explain_with(self.experiment(), &model, options, &|what| {
+            reporter.progress(what, None, None);
+        });
+        let shown = explanation::Explanation::new(self.experiment(), &model, &explanation);
+        Explained {
+            of: Arc::clone(&self.present.evaluated),
+            explanation,
+            shown,
+        }
+    }
+
+    /// Where the fit with one more effect begins.
+    fn with(&self, effect: &'static dyn Effect, reporter: &Reporter) -> Estimate {
+        reporter.progress(
+            "looking for its size",
+            None,
+            Some(self.present.evaluated.fit.error()),
+        );
+        let ranked = self.ranking.as_ref().and_then(|ranking| {
+            let mut candidates = ranking.diagnosis.candidates.iter();
+            candidates.find(|tried| full_name(tried.effect) == full_name(effect))
+        });
+        if let Some(candidate) = ranked {
+            return candidate.fit.estimate.clone();
+        }
+        let (experiment, model) = (self.experiment(), self.model());
+        let base = &self.present.evaluated.fit;
+        let tried = try_effects(experiment, model, base, &[effect], &|_| {
+            reporter.progress("looking for its size", None, None);
+        });
+        let tried = tried.into_iter().next();
+        tried.map_or_else(
+            || {
+                let mut start = base.estimate.clone();
+                start.effects.push(AddedEffect::typical(effect));
+                start
+            },
+            |candidate| candidate.fit.estimate,
+        )
+    }
+
+    /// Fits all effects from a start, telling the error after each round.
+    fn fitted(&self, title: String, mut estimate: Estimate, reporter: &Reporter) -> Step {
+        let (experiment, model) = (self.experiment(), self.model());
+        estimate.adopted.clear();
+        let whole = (ROUNDS + 3) as f64;
+        let told = |round: usize, text: &str, fit: &Fit| {
+            reporter.progress(text, Some(round as f64 / whole), Some(fit.error()));
+        };
+        told(0, "start", &evaluate(experiment, model, estimate.clone()));
+        for round in 1..=ROUNDS {
+            let weights = Weights::new(experiment, model, &estimate);
+            let descent = sketch(experiment, model, &weights, estimate, false);
+            estimate = descent.estimate;
+            let text = format!("fitting, round {round}");
+            told(round, &text, &evaluate(experiment, model, estimate.clone()));
+            if descent.falling <= WORTHWHILE * descent.cost {
+                break;
+            }
+        }
+        let fit = refine(experiment, model, estimate);
+        told(ROUNDS + 1, "testing on runs that are held out", &fit);
+        let error = held_out(experiment, model, &fit).error;
+        reporter.progress("done", Some(1.0), None);
+        self.step(title, fit, Some(error))
+    }
+
+    /// The accepted steps of an explanation: one by one if all are, else fitted together.
+    fn adopted(&self, explained: &Explained, accepted: &[usize], reporter: &Reporter) -> Vec<Step> {
+        let found = &explained.explanation;
+        if (0..found.steps.len()).all(|step| accepted.contains(&step)) {
+            let steps = found.steps.iter().map(|step| {
+                let title = format!("Added {}", full_name(step.effect));
+                self.step(title, step.fit.clone(), Some(step.held_out_after.error))
+            });
+            return steps.collect();
+        }
+        let mut start = found.after.estimate.clone();
+        for (index, step) in found.steps.iter().enumerate() {
+            let mut effects = start.effects.iter();
+            let place = effects.position(|added| added.effect.id() == step.effect.id());
+            if let (false, Some(place)) = (accepted.contains(&index), place) {
+                start = start.without(place);
+            }
+        }
+        vec![self.fitted("Took steps over".to_owned(), start, reporter)]
+    }
+
+    fn step(&self, title: String, fit: Fit, held_out: Option<f64>) -> Step {
+        let experiment = Arc::clone(&self.subject.start.experiment);
+        Step {
+            title,
+            evaluated: Arc::new(Evaluated { experiment, fit }),
+            held_out: held_out.filter(|error| error.is_finite()),
+        }
+    }
+
+    fn name(&self, effect: usize) -> String {
+        let effects = &self.present.evaluated.fit.estimate.effects;
+        full_name(effects[effect].effect)
+    }
+
+    fn experiment(&self) -> &Experiment {
+        self.subject.experiment()
+    }
+
+    fn model(&self) -> &Model {
+        &self.subject.model
+    }
+}
+
+/// An effect by its name that the model of a session can have and does not.
+fn new_effect(session: &Session, name: &str) -> Result<&'static dyn Effect, Refusal> {
+    let effect = find(&session.subject().model, name)?;
+    let mut present = session.fit().estimate.effects.iter();
+    match present.any(|added| added.effect.id() == effect.id()) {
+        true => Err(Refusal::conflict("the model has this effect already")),
+        false => Ok(effect),
+    }
+}
+
+/// An estimate with one parameter set by hand, within its range; `None` if there is no such parameter.
+pub fn moved(estimate: &Estimate, effect: usize, parameter: usize, value: f64) -> Option<Estimate> {
+    let mut moved = estimate.clone();
+    let added = moved.effects.get_mut(effect)?;
+    let range = added.effect.parameters().get(parameter)?;
+    *added.values.get_mut(parameter)? = value.max(range.low).min(range.high);
+    Some(moved)
+}

@@ -1,0 +1,187 @@
+//! What the page shows, as JSON.
+mod effects;
+
+use hitch_model::campaign::Channel;
+use hitch_model::effects::{AddedEffect, Parameter};
+use hitch_model::identification::estimate::Estimate;
+use hitch_model::identification::experiment::{Experiment, ReadyRun};
+use hitch_model::simulation::Trace;
+use serde_json::{Value, json};
+
+use super::session::{Session, Step};
+use super::source::Subject;
+use crate::comparison::{Comparison, Evaluated, Grouping};
+use crate::error::Error;
+use crate::explanation::rebuilt;
+use crate::report::run_views::conditions;
+
+pub use effects::tried;
+
+/// What went wrong, with file and place where it is a file's fault.
+pub fn fault(error: &Error) -> Value {
+    match error {
+        Error::Input(input) => json!({
+            "file": input.file.display().to_string(),
+            "line": input.place.map(|place| place.line),
+            "column": input.place.map(|place| place.column),
+            "what": input.what,
+            "mend": input.mend,
+        }),
+        other => json!({ "what": other.to_string() }),
+    }
+}
+
+/// Campaign, model, steps and the map of the error.
+pub fn state(session: &Session) -> Value {
+    let subject = session.subject();
+    let evaluated = &session.present().evaluated;
+    let comparison = Comparison::of(evaluated, &subject.model);
+    let grouping = |by: Grouping| json!({ "by": by, "title": by.title() });
+    json!({
+        "campaign": subject.experiment().name,
+        "description": subject.description,
+        "model": subject.model.name,
+        "runs": runs(subject.experiment()),
+        "channels": channels(evaluated),
+        "error": comparison.error,
+        "noise_floor": comparison.noise_floor,
+        "groupings": Grouping::ALL.map(grouping),
+        "cells": comparison.cells,
+        "steps": session.steps().iter().map(step).collect::<Vec<_>>(),
+        "at": session.at(),
+        "effects": added(session),
+        "ranking": effects::ranking(session),
+        "explained": effects::explained(session),
+        "job": session.job.as_ref().map(|job| &job.title),
+    })
+}
+
+fn runs(experiment: &Experiment) -> Vec<Value> {
+    let run = |run: &ReadyRun| {
+        json!({
+            "file": run.file,
+            "conditions": conditions(run.bench, run.oil_temperature_c),
+        })
+    };
+    experiment.runs.iter().map(run).collect()
+}
+
+fn channels(evaluated: &Evaluated) -> Vec<Value> {
+    let measured = |channel: &Channel| evaluated.experiment.measures(*channel);
+    let channel = |channel: Channel| {
+        json!({
+            "key": channel.key(),
+            "title": channel.title(),
+            "unit": channel.unit(),
+            "error": evaluated.fit.channel_error(channel.index()),
+            "noise": evaluated.experiment.noise[channel.index()],
+        })
+    };
+    let channels = Channel::ALL.into_iter().filter(measured);
+    channels.map(channel).collect()
+}
+
+fn step(step: &Step) -> Value {
+    json!({
+        "title": step.title,
+        "error": step.evaluated.fit.error(),
+        "held_out": step.held_out,
+    })
+}
+
+/// The effects of the present model with what each parameter can be set to.
+fn added(session: &Session) -> Vec<Value> {
+    let effect = |added: &AddedEffect| {
+        let parameters = added.effect.parameters().iter().zip(&added.values);
+        let parameter = |(own, value): (&Parameter, &f64)| {
+            json!({
+                "name": own.name,
+                "unit": own.unit,
+                "meaning": own.meaning,
+                "value": value,
+                "low": own.low,
+                "high": own.high,
+                "scale": own.scale(),
+                "by_magnitude": own.is_by_magnitude(),
+            })
+        };
+        json!({
+            "effect": effects::described(added.effect),
+            "parameters": parameters.map(parameter).collect::<Vec<_>>(),
+        })
+    };
+    let estimate = &session.fit().estimate;
+    estimate.effects.iter().map(effect).collect()
+}
+
+/// A run under an estimate that was set by hand; `None` if there is no such run.
+pub fn preview(subject: &Subject, step: &Step, estimate: &Estimate, run: usize) -> Option<Value> {
+    let ready = subject.experiment().runs.get(run)?;
+    let weights = &step.evaluated.fit.weights.runs[run];
+    let model = subject.model.with_effects(estimate.effects.clone());
+    let trace = ready.simulate(&model, estimate.nuisances[run], &estimate.clocks);
+    let residuals = weights.whiten(ready, &trace);
+    let channel = |channel: Channel| {
+        ready.measured[channel.index()].as_ref()?;
+        let part = channel.index() * ready.len()..(channel.index() + 1) * ready.len();
+        let compared = residuals[part.clone()].iter().zip(&weights.scale[part]);
+        let residual: Vec<f64> = compared
+            .map(|(residual, &scale)| if scale > 0.0 { *residual } else { f64::NAN })
+            .collect();
+        let seen = residual.iter().filter(|residual| residual.is_finite());
+        let square: f64 = seen.clone().map(|residual| residual * residual).sum();
+        Some(json!({
+            "simulated": trace.channel(channel),
+            "residual": residual,
+            "error": (square / seen.count() as f64).sqrt(),
+        }))
+    };
+    let channels = Channel::ALL.into_iter().filter_map(channel);
+    Some(json!({ "run": run, "channels": channels.collect::<Vec<_>>() }))
+}
+
+/// The present model as a file, with the steps that led to it.
+pub fn model_file(session: &Session) -> String {
+    let subject = session.subject();
+    let mut text = String::from("# Made with hitch serve:\n");
+    for (number, step) in session.steps()[..=session.at()].iter().enumerate() {
+        let error = step.evaluated.fit.error();
+        let title = step.title.replace(char::is_control, " ");
+        text += &format!("# {number}. {title}: error {error:.2} sigma\n");
+    }
+    let name = format!("{}-{}", subject.model.name, subject.experiment().name);
+    let effects = &session.fit().estimate.effects;
+    text + &rebuilt(&subject.model, effects, name).to_toml()
+}
+
+/// Measured and simulated channels of a run; `None` if there is no such run.
+pub fn run(session: &Session, index: usize) -> Option<Value> {
+    let subject = session.subject();
+    let ready = subject.experiment().runs.get(index)?;
+    let evaluated = &session.present().evaluated;
+    let simulated = evaluated.simulated(&subject.model, index);
+    let first = (session.at() > 0).then(|| subject.start.simulated(&subject.model, index));
+    let channel = |channel: Channel| {
+        let measured = ready.measured[channel.index()].as_ref()?;
+        Some(json!({
+            "key": channel.key(),
+            "title": channel.title(),
+            "unit": channel.unit(),
+            "measured": measured,
+            "simulated": simulated.channel(channel),
+            "first": first.as_ref().map(|trace: &Trace| trace.channel(channel)),
+            "residual": evaluated.residuals(index, channel),
+            "error": evaluated.error(index, channel),
+        }))
+    };
+    let currents = &ready.drive.currents;
+    Some(json!({
+        "run": index,
+        "file": ready.file,
+        "conditions": conditions(ready.bench, ready.oil_temperature_c),
+        "time_s": ready.drive.time_s,
+        "lift_current_a": currents.iter().map(|current| current.lift_a).collect::<Vec<_>>(),
+        "lower_current_a": currents.iter().map(|current| current.lower_a).collect::<Vec<_>>(),
+        "channels": Channel::ALL.into_iter().filter_map(channel).collect::<Vec<_>>(),
+    }))
+}

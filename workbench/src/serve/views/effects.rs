@@ -1,0 +1,115 @@
+//! What the page shows of effects: the catalogue, a ranking, an explanation.
+use std::sync::Arc;
+
+use hitch_model::effects::{Effect, full_name};
+use hitch_model::identification::candidate;
+use hitch_model::identification::explain;
+use hitch_model::identification::fit::Fit;
+use serde_json::{Value, json};
+
+use crate::explanation::{self, Candidate, explained as share_explained, parameters};
+use crate::serve::session::{Explained, Ranking, Session};
+
+/// Texts of an effect.
+pub fn described(effect: &dyn Effect) -> Value {
+    json!({
+        "name": full_name(effect),
+        "id": effect.id(),
+        "title": effect.title(),
+        "equation": effect.equation(),
+        "shows": effect.shows(),
+        "source": effect.source(),
+    })
+}
+
+/// A candidate as soon as it was tried: its confidence is known when all were.
+pub fn tried(base: &Fit, candidate: &candidate::Candidate) -> Value {
+    let values = parameters(candidate.effect, candidate.values(), &candidate.intervals);
+    json!({
+        "effect": described(candidate.effect),
+        "explains": share_explained(base, &candidate.fit),
+        "error_after": candidate.fit.error(),
+        "parameters": values,
+    })
+}
+
+/// The ranking, if it is of the present model.
+pub fn ranking(session: &Session) -> Value {
+    let present = &session.present().evaluated;
+    let ranking = session.ranking.as_ref();
+    match ranking.filter(|ranking| Arc::ptr_eq(&ranking.of, present)) {
+        Some(ranking) => ranked(ranking),
+        None => Value::Null,
+    }
+}
+
+fn ranked(ranking: &Ranking) -> Value {
+    let shown = &ranking.shown;
+    let candidate = |shown: &Candidate| {
+        let mut tried = ranking.diagnosis.candidates.iter();
+        let tried = tried
+            .find(|tried| tried.effect.id() == shown.effect && tried.effect.form() == shown.form)?;
+        Some(json!({
+            "effect": described(tried.effect),
+            "explains": shown.explains,
+            "error_after": shown.error_after,
+            "confidence": shown.confidence,
+            "in_words": in_words(shown.confidence),
+            "indistinguishable": shown.indistinguishable,
+            "parameters": shown.parameters,
+        }))
+    };
+    json!({
+        "error_before": shown.head.error_before,
+        "candidates": shown.candidates.iter().filter_map(candidate).collect::<Vec<_>>(),
+        "next_experiment": shown.next.next_experiment,
+    })
+}
+
+/// The explanation, if it begins with the present model.
+pub fn explained(session: &Session) -> Value {
+    let present = &session.present().evaluated;
+    let explained = session.explained.as_ref();
+    match explained.filter(|explained| Arc::ptr_eq(&explained.of, present)) {
+        Some(explained) => found(explained),
+        None => Value::Null,
+    }
+}
+
+fn found(explained: &Explained) -> Value {
+    let shown = &explained.shown;
+    let steps = explained.explanation.steps.iter().zip(&shown.steps);
+    let step = |(found, shown): (&explain::Step, &explanation::Step)| {
+        json!({
+            "effect": described(found.effect),
+            "changed_from": shown.changed_from,
+            "error_before": shown.error_before,
+            "error_after": shown.error_after,
+            "held_out_after": shown.held_out_after,
+            "confidence": shown.confidence,
+            "in_words": in_words(shown.confidence),
+            "indistinguishable": shown.indistinguishable,
+            "parameters": shown.parameters,
+        })
+    };
+    json!({
+        "error_before": shown.head.error_before,
+        "error_after": shown.head.error_after,
+        "verdict": shown.head.verdict,
+        "meaning": shown.meaning(),
+        "steps": steps.map(step).collect::<Vec<_>>(),
+        "not_visible": shown.not_visible.iter().map(|effect| effect.effect).collect::<Vec<_>>(),
+        "next_experiment": shown.next.next_experiment,
+    })
+}
+
+/// A probability in a word or two.
+fn in_words(confidence: f64) -> &'static str {
+    match confidence {
+        share if share >= 0.95 => "nearly certain",
+        share if share >= 0.7 => "likely",
+        share if share >= 0.3 => "possible",
+        share if share >= 0.005 => "unlikely",
+        _ => "very unlikely",
+    }
+}
