@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use hitch_model::campaign::Campaign;
 use serde::Serialize;
 
 use crate::error::Error;
@@ -70,7 +71,7 @@ impl<'a> Outputs<'a> {
     }
 }
 
-/// The files that a campaign is read from, by what is in its folder.
+/// The files that a campaign is read from: by what is in its folder, and those elsewhere that its manifest names.
 pub fn campaign_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let paths = entries.map(|entry| entry.path());
@@ -79,7 +80,9 @@ pub fn campaign_files(folder: &Path) -> Vec<PathBuf> {
         Some(end) => CAMPAIGN_FILES.contains(&end.to_lowercase().as_str()),
         None => false,
     };
-    paths.filter(is_read).collect()
+    // What is wrong with the manifest is said when the campaign is read.
+    let named = Campaign::files(folder).unwrap_or_default();
+    paths.filter(is_read).chain(named).collect()
 }
 
 /// Whether two names are of one file. Of devices and pipes any number of results may go into one.
@@ -134,6 +137,17 @@ mod tests {
             1,
             "nothing else is left"
         );
+    }
+
+    #[test]
+    fn logs_that_lie_elsewhere_are_read_too() {
+        let [dir, elsewhere] = [0; 2].map(|_| tempfile::tempdir().unwrap());
+        let log = elsewhere.path().join("monday.txt");
+        fs::write(&log, "").unwrap();
+        let text = format!("[[run]]\nfile = {:?}\n", log.to_str().unwrap());
+        fs::write(dir.path().join("campaign.toml"), text).unwrap();
+        let read = campaign_files(dir.path());
+        assert!(fault(&[&log], &read).contains("would be overwritten"));
     }
 
     #[test]

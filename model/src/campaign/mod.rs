@@ -15,6 +15,7 @@ mod columns;
 mod csv_log;
 mod cut;
 mod dropout;
+mod files;
 mod manifest;
 mod mdf_log;
 mod run_log;
@@ -23,7 +24,7 @@ mod series;
 pub mod survey;
 mod table;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub use channel::Channel;
 
@@ -117,6 +118,14 @@ impl Campaign {
     /// As [`Campaign::load`].
     pub fn load_with(dir: &Path, linkage: &Linkage) -> Result<Self, CampaignError> {
         manifest::load(dir, linkage)
+    }
+
+    /// The logs and the DBC that the manifest in a folder names, wherever they lie.
+    ///
+    /// # Errors
+    /// If the manifest can't be read so far.
+    pub fn files(dir: &Path) -> Result<Vec<PathBuf>, CampaignError> {
+        files::named(dir)
     }
 
     /// Reads the campaign, with a hitch of this linkage, that a folder would be if this were its manifest.
