@@ -7,6 +7,7 @@ import shutil
 import sys
 from pathlib import Path
 
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, expect, sync_playwright
 
 DESKTOP = {"viewport": {"width": 1440, "height": 900}}
@@ -53,6 +54,12 @@ def assert_fits(page: Page) -> None:
     assert width <= page.viewport_size["width"], f"the page is {width} px wide"
 
 
+def assert_accessible(page: Page) -> None:
+    """The accessibility check finds nothing."""
+    found = Axe().run(page).response["violations"]
+    assert not found, [(rule["id"], rule["help"], rule["nodes"][0]["html"]) for rule in found]
+
+
 def whole_story(page: Page, pictures: Path) -> None:
     """The story at a desktop."""
     first = wait_for_first_view(page)
@@ -71,6 +78,7 @@ def whole_story(page: Page, pictures: Path) -> None:
     best = page.locator("#ranking .effect").first
     expect(best).to_contain_text("nearly certain, 100 %")
     page.screenshot(path=pictures / "ranked.png", full_page=True)
+    assert_accessible(page)
 
     best.locator("button.add").press("Enter")
     page.wait_for_selector("#effects .effect")
@@ -79,6 +87,7 @@ def whole_story(page: Page, pictures: Path) -> None:
     assert after < 1.1 < before, f"the error falls from {before} to {after}"
     page.wait_for_timeout(300)
     page.screenshot(path=pictures / "added.png", full_page=True)
+    assert_accessible(page)
 
     drag(page)
     page.screenshot(path=pictures / "dragged.png")
@@ -118,6 +127,7 @@ def automatic(page: Page, pictures: Path) -> None:
     page.wait_for_selector("#adopt")
     settled(page)
     page.screenshot(path=pictures / "explained.png", full_page=True)
+    assert_accessible(page)
     page.click("#adopt")
     page.wait_for_selector("#effects .effect")
     settled(page)
@@ -141,10 +151,12 @@ def main() -> None:
             page.wait_for_timeout(300)
             page.screenshot(path=pictures / f"{view}.png", full_page=view == "phone")
             assert_fits(page)
+            assert_accessible(page)
         assert not faults, faults
         page = opened(browser, broken, DESKTOP, [])
         expect(page.locator("#fault-text")).to_contain_text("lift.csv:2:18")
         page.screenshot(path=pictures / "broken.png")
+        assert_accessible(page)
         browser.close()
     print("the whole story went well")
 

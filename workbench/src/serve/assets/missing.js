@@ -11,7 +11,7 @@ const SIGN = 0.005;
  * @param {any} state
  * @param {Run} run */
 export function drawMissing(state, run) {
-  byId("explained").replaceChildren(...(state.explained ? explanation(state.explained, run) : []));
+  byId("explained").replaceChildren(...(state.explained ? explanation(state.explained, state.effects.length > 0, run) : []));
   if (state.ranking) drawRanking(state.ranking.candidates, run, state.ranking.next_experiment);
   else byId("ranking").replaceChildren();
 }
@@ -85,8 +85,9 @@ function details(effect) {
 }
 
 /** @param {any} found
+ * @param {boolean} keeps whether the model has effects already
  * @param {Run} run */
-function explanation(found, run) {
+function explanation(found, keeps, run) {
   const boxes = found.steps.map((/** @type {any} */ step) => /** @type {HTMLInputElement} */ (
     element("input", { type: "checkbox", checked: true, "aria-label": `Accept ${step.effect.title}` })));
   const take = element("button", { type: "button", class: "main", id: "adopt", onclick: () => {
@@ -95,7 +96,9 @@ function explanation(found, run) {
   } }, "Take the accepted steps over");
   const parts = found.steps.map((/** @type {any} */ step, /** @type {number} */ index) => accepted(step, boxes[index]));
   return [element("h3", {}, "Explanation"),
-    element("p", {}, element("strong", {}, `Verdict: ${found.verdict}. `), found.meaning), ...parts,
+    element("p", {}, element("strong", {}, `Verdict: ${found.verdict}. `), found.meaning), ...(keeps ? [element("p", {},
+      "Effects that the model has already are kept; only their sizes may change. Take one away if it may be wrong.")] : []),
+    ...parts,
     ...(found.steps.length ? [take] : []),
     ...(found.next_experiment ? [element("p", {}, `Next experiment: ${found.next_experiment}.`)] : []),
     ...(found.not_visible.length ? [element("details", {},
