@@ -67,17 +67,35 @@ impl Model {
     /// [`LinkageError`] when the dimensions make no linkage.
     pub fn new(name: impl Into<String>, constants: Constants) -> Result<Self, LinkageError> {
         let linkage = Linkage::new(&constants.linkage, constants.cylinder.stroke_m)?;
-        let spool_lag_s = match constants.dynamics {
-            Dynamics::Steady => 0.0,
-            Dynamics::Dynamic => constants.spool_time_constant_s,
-        };
         Ok(Self {
             name: name.into(),
             effects: Vec::new(),
             terms: Vec::new(),
+            spool_lag_s: spool_lag_s(&constants),
             constants: Arc::new(constants),
             linkage: Arc::new(linkage),
-            spool_lag_s,
+        })
+    }
+
+    /// The same model with other constants.
+    ///
+    /// # Errors
+    /// [`LinkageError`] when the dimensions make no linkage.
+    pub fn with_constants(&self, constants: Constants) -> Result<Self, LinkageError> {
+        let same_linkage = constants.linkage == self.constants.linkage
+            && constants.cylinder.stroke_m == self.constants.cylinder.stroke_m;
+        let linkage = match same_linkage {
+            true => Arc::clone(&self.linkage),
+            false => Arc::new(Linkage::new(
+                &constants.linkage,
+                constants.cylinder.stroke_m,
+            )?),
+        };
+        Ok(Self {
+            spool_lag_s: spool_lag_s(&constants),
+            constants: Arc::new(constants),
+            linkage,
+            ..self.clone()
         })
     }
 
@@ -141,5 +159,13 @@ impl Model {
     pub fn catalogue(&self) -> Vec<&'static dyn Effect> {
         let own = self.terms.iter().map(|term| *term as &dyn Effect);
         CATALOGUE.iter().copied().chain(own).collect()
+    }
+}
+
+/// Lag of the spools of a plant with these constants, s.
+fn spool_lag_s(constants: &Constants) -> f64 {
+    match constants.dynamics {
+        Dynamics::Steady => 0.0,
+        Dynamics::Dynamic => constants.spool_time_constant_s,
     }
 }

@@ -27,6 +27,7 @@ mod table;
 use std::path::{Path, PathBuf};
 
 pub use channel::Channel;
+pub use csv_log::flow_curve;
 
 use crate::input_error::InputError;
 use crate::plant::Linkage;

@@ -45,10 +45,14 @@
 //!
 //! Keys end in their unit. Without `base`, every constant has to be there; a file that the program writes is complete.
 mod constants;
+mod meaning;
 mod read;
 mod round_trip;
+mod template;
 mod terms;
 mod write;
+
+pub use template::{Template, Valve};
 
 use std::path::Path;
 

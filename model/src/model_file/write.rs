@@ -6,6 +6,7 @@ use super::round_trip::decimal;
 use super::terms;
 use crate::effects::AddedEffect;
 use crate::model::{Constants, Dynamics, Model};
+use crate::plant::ValveCurve;
 use crate::units::M3_S_PER_LPM;
 
 /// The text of a complete model file. (Writing to a string cannot fail, so the results are dropped.)
@@ -39,9 +40,18 @@ pub fn model(model: &Model) -> String {
 }
 
 fn write_curve(text: &mut String, curve: &Curve, constants: &mut Constants) {
-    let curve = &(curve.place)(constants).curve;
-    let _ = writeln!(text, "{CURRENT} = {}", list(curve.currents_a(), 1.0));
-    let _ = writeln!(text, "{FLOW} = {}", list(curve.flows_m3_s(), M3_S_PER_LPM));
+    for (_, line) in curve_lines(&(curve.place)(constants).curve) {
+        *text += &line;
+    }
+}
+
+/// The two lines of a flow curve, each with its key.
+pub fn curve_lines(curve: &ValveCurve) -> [(&'static str, String); 2] {
+    [
+        (CURRENT, list(curve.currents_a(), 1.0)),
+        (FLOW, list(curve.flows_m3_s(), M3_S_PER_LPM)),
+    ]
+    .map(|(key, list)| (key, format!("{key} = {list}\n")))
 }
 
 fn list(values: &[f64], unit: f64) -> String {

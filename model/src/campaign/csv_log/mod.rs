@@ -1,6 +1,7 @@
 //! Logs that are tables of text: this project's own, whose header carries its columns' names, and by `[columns]` anybody's.
 mod clock;
 mod dialect;
+pub mod flow_curve;
 mod mapped;
 mod native;
 
