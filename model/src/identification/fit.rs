@@ -13,7 +13,7 @@ use crate::model::Model;
 
 /// Coarse weights of the channels (pump pressure, cylinder pressure, flow, angle): ringing pressures make valleys
 /// that a fit falls into, so the first round looks at flow and angle.
-const COARSE: [f64; 4] = [0.04, 0.04, 0.15, 0.25];
+pub(super) const COARSE: [f64; 4] = [0.04, 0.04, 0.15, 0.25];
 
 /// Iterations of the coarse and of each fine round.
 const COARSE_ITERATIONS: usize = 4;

@@ -2,6 +2,7 @@
 
 pub mod adequacy;
 pub mod attribution;
+pub mod base;
 pub mod beside;
 pub mod candidate;
 mod central;
@@ -17,6 +18,7 @@ pub mod explain;
 pub mod fit;
 pub mod frame;
 pub mod holdout;
+pub mod hopeless;
 pub mod jacobian;
 mod landings;
 mod needle;
