@@ -3,7 +3,7 @@ use clap::{Parser, Subcommand};
 
 use crate::commands::{
     add, calibrate, changes, compare, controller, diagnose, ecu, effects, explain,
-    flash_calibration, import, loop_, main_job, paper, record, serve, simulate, tune,
+    flash_calibration, import, loop_, main_job, model, paper, record, serve, simulate, tune,
 };
 use crate::error::Error;
 use crate::output;
@@ -44,6 +44,8 @@ pub enum Command {
     Serve(serve::Args),
     /// The catalogue of physical effects: equation, parameters, units, source, where it shows
     Effects(effects::Args),
+    /// A model file of one's own hitch: a template from data sheets, and its constants from a campaign
+    Model(model::Args),
     /// The plant alone, driven by a log's currents
     Simulate(simulate::Args),
     /// The paper's tables and figures from this model, side by side
@@ -80,6 +82,7 @@ impl Command {
             Self::Changes(args) => changes::run(args),
             Self::Serve(args) => serve::run(args),
             Self::Effects(args) => effects::run(args),
+            Self::Model(args) => model::run(args),
             Self::Simulate(args) => simulate::run(args),
             Self::Paper(args) => paper::run(args),
             Self::Loop(args) => loop_::run(args),

@@ -1,6 +1,7 @@
 //! The workbench: everything behind the program `hitch`.
 #![forbid(unsafe_code)]
 
+pub mod base_fit;
 pub mod calibrate;
 pub mod calibration_file;
 pub mod can_door;

@@ -10,11 +10,12 @@ use hitch_model::identification::evidence::BELIEVED;
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::fit_freely;
 use hitch_model::identification::fit::{Fit, refine};
+use hitch_model::identification::hopeless::is_hopeless;
 use hitch_model::identification::subset::single::try_effects;
 
 use super::effects::find;
 use crate::error::Error;
-use crate::explanation::{parameters, rebuilt};
+use crate::explanation::{HOPELESS_BASE, parameters, rebuilt};
 use crate::model_arg::ModelArg;
 use crate::output;
 use crate::outputs::{Outputs, campaign_files};
@@ -59,14 +60,19 @@ pub fn run(args: &Args) -> Result<(), Error> {
     drop(progress);
     let rebuilt = rebuilt(&model, &fit.estimate.effects, output::stem(&args.out));
     output::write_file(&args.out, rebuilt.to_toml().as_bytes())?;
-    let mut text = format!(
-        "Campaign {}, model {}: error {:.2} sigma\n",
+    let mut text = match is_hopeless(&experiment, &base, &fit) {
+        true => format!("{HOPELESS_BASE}\n\n"),
+        false => String::new(),
+    };
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        text,
+        "Campaign {}, model {}: error {:.2} sigma",
         campaign.name,
         model.name,
         base.error()
     );
     for effect in &weighed {
-        // Writing to a string cannot fail.
         let _ = writeln!(text, "{}", shown(effect));
     }
     let _ = writeln!(text, "With all of them: error {:.2} sigma", fit.error());

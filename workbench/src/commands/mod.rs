@@ -12,6 +12,7 @@ pub mod flash_calibration;
 pub mod import;
 pub mod loop_;
 pub mod main_job;
+pub mod model;
 pub mod paper;
 pub mod record;
 pub mod serve;

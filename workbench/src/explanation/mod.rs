@@ -69,7 +69,13 @@ pub struct Head {
     pub channels: Map<String, Value>,
     /// The answer in a word.
     pub verdict: &'static str,
+    /// Whether the error is large everywhere, with effects as without: then the base is to be fitted first.
+    pub hopeless_base: bool,
 }
+
+/// What is said first of a model that is wrong everywhere.
+pub const HOPELESS_BASE: &str = "This looks like another machine: the error is large everywhere. Fit the base first: \
+    hitch model fit CAMPAIGN --model MODEL --out FILE";
 
 /// One effect that was added.
 #[derive(Debug, Clone, Serialize)]

@@ -10,6 +10,7 @@ use hitch_model::identification::evidence::TOLD_APART;
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::{self, Verdict};
 use hitch_model::identification::fit::Fit;
+use hitch_model::identification::hopeless::is_hopeless;
 
 use super::of_explanation::{channels, parameters};
 use super::{Candidate, Diagnosis, Head};
@@ -38,6 +39,7 @@ impl Diagnosis {
                 noise_floor: 1.0,
                 channels: channels(experiment, &found.base, after),
                 verdict: verdict(experiment, found, believed).name(),
+                hopeless_base: is_hopeless(experiment, &found.base, after),
             },
             candidates,
             next: next(experiment, model, found, believed).into(),

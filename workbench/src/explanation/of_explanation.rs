@@ -6,6 +6,7 @@ use hitch_model::identification::design;
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain;
 use hitch_model::identification::fit::Fit;
+use hitch_model::identification::hopeless::is_hopeless;
 use hitch_model::identification::unseen::Unseen;
 use serde_json::{Map, Value, json};
 
@@ -23,6 +24,7 @@ impl Explanation {
                 noise_floor: 1.0,
                 channels: channels(experiment, &found.before, &found.after),
                 verdict: found.verdict.name(),
+                hopeless_base: is_hopeless(experiment, &found.before, &found.after),
             },
             error_refitted: found.refitted.as_ref().map(Fit::error),
             steps: found.steps.iter().map(step).collect(),

@@ -4,8 +4,8 @@ use std::fmt;
 use hitch_model::identification::explain::Verdict;
 
 use super::{
-    Alternative, Diagnosis, Explanation, Head, Next, NotVisible, Parameter, Step, Suggested,
-    Unexplained,
+    Alternative, Diagnosis, Explanation, HOPELESS_BASE, Head, Next, NotVisible, Parameter, Step,
+    Suggested, Unexplained,
 };
 use crate::text::{Table, known, wrapped};
 
@@ -166,6 +166,9 @@ impl fmt::Display for Diagnosis {
 
 impl fmt::Display for Head {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.hopeless_base {
+            writeln!(f, "{}\n", wrapped(HOPELESS_BASE, WIDTH))?;
+        }
         writeln!(f, "Campaign {}, model {}", self.campaign, self.model)?;
         let (before, after) = (self.error_before, self.error_after);
         writeln!(

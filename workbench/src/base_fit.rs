@@ -1,0 +1,199 @@
+//! What `hitch model fit` found, as scripts read it (JSON) and as people do (text).
+use std::fmt;
+
+use hitch_model::Model;
+use hitch_model::identification::base::{BaseFit, CurvePoint, FittedConstant};
+use hitch_model::identification::experiment::Experiment;
+use serde::Serialize;
+
+use crate::text::{Table, wrapped};
+
+/// Width of running text, characters.
+const WIDTH: usize = 100;
+
+/// Result of `hitch model fit`.
+#[derive(Debug, Clone, Serialize)]
+pub struct ShownBaseFit {
+    /// Name of the campaign.
+    pub campaign: String,
+    /// Name of the declared model.
+    pub model: String,
+    /// Error of the declared model, in sigma.
+    pub error_before: f64,
+    /// Error of the fitted model, in sigma.
+    pub error_after: f64,
+    /// The constants.
+    pub constants: Vec<ShownConstant>,
+    /// The flow curves, point by point.
+    pub curves: Vec<ShownPoint>,
+    /// What the campaign does not determine.
+    pub not_determined: Vec<String>,
+    /// Constants that went as far from the declared value as is believed.
+    pub at_an_end: Vec<String>,
+    /// The next command.
+    pub next: String,
+}
+
+/// A constant.
+#[derive(Debug, Clone, Serialize)]
+pub struct ShownConstant {
+    /// Name in a model file.
+    pub name: String,
+    /// Unit.
+    pub unit: &'static str,
+    /// Declared value.
+    pub declared: f64,
+    /// Fitted value.
+    pub fitted: f64,
+    /// Lower end of the 95 % interval.
+    pub low: f64,
+    /// Upper end of the 95 % interval.
+    pub high: f64,
+    /// Whether the campaign determines it.
+    pub determined: bool,
+}
+
+/// A point of a flow curve.
+#[derive(Debug, Clone, Serialize)]
+pub struct ShownPoint {
+    /// Table of the valve.
+    pub valve: &'static str,
+    /// Current, A.
+    pub current_a: f64,
+    /// Declared flow, l/min.
+    pub declared_lpm: f64,
+    /// Fitted flow, l/min.
+    pub fitted_lpm: f64,
+    /// Lower end of the 95 % interval, l/min.
+    pub low_lpm: f64,
+    /// Upper end of the 95 % interval, l/min.
+    pub high_lpm: f64,
+    /// Whether the campaign determines it.
+    pub determined: bool,
+}
+
+impl ShownBaseFit {
+    /// What is shown of a fit.
+    #[must_use]
+    pub fn new(experiment: &Experiment, declared: &Model, fit: &BaseFit, next: String) -> Self {
+        let constants: Vec<ShownConstant> = fit.constants.iter().map(constant).collect();
+        let curves: Vec<ShownPoint> = fit.curves.iter().map(point).collect();
+        let unknown_constants = constants.iter().filter(|constant| !constant.determined);
+        let unknown_points = curves.iter().filter(|point| !point.determined);
+        let not_determined = unknown_constants
+            .map(|constant| constant.name.clone())
+            .chain(
+                unknown_points.map(|point| format!("{} at {:.3} A", point.valve, point.current_a)),
+            )
+            .collect();
+        let ended = fit.constants.iter().filter(|constant| constant.at_an_end);
+        Self {
+            campaign: experiment.name.clone(),
+            model: declared.name.clone(),
+            error_before: fit.before.error(),
+            error_after: fit.after.error(),
+            not_determined,
+            at_an_end: ended.map(|constant| constant.name.clone()).collect(),
+            constants,
+            curves,
+            next,
+        }
+    }
+}
+
+fn constant(fitted: &FittedConstant) -> ShownConstant {
+    ShownConstant {
+        name: fitted.name.clone(),
+        unit: fitted.unit,
+        declared: fitted.declared,
+        fitted: fitted.fitted,
+        low: fitted.interval.0,
+        high: fitted.interval.1,
+        determined: fitted.determined,
+    }
+}
+
+fn point(fitted: &CurvePoint) -> ShownPoint {
+    ShownPoint {
+        valve: fitted.valve.table(),
+        current_a: fitted.current_a,
+        declared_lpm: fitted.declared_lpm,
+        fitted_lpm: fitted.fitted_lpm,
+        low_lpm: fitted.interval_lpm.0,
+        high_lpm: fitted.interval_lpm.1,
+        determined: fitted.determined,
+    }
+}
+
+impl fmt::Display for ShownBaseFit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "Campaign {}, model {}: error {:.2} sigma before the fit, {:.2} sigma after it\n",
+            self.campaign, self.model, self.error_before, self.error_after
+        )?;
+        let mut table = Table::new(["constant", "declared", "fitted", "95 % interval", "unit"]);
+        for constant in self.constants.iter().filter(|constant| constant.determined) {
+            table.row([
+                constant.name.clone(),
+                digits(constant.declared),
+                digits(constant.fitted),
+                format!("{} to {}", digits(constant.low), digits(constant.high)),
+                constant.unit.to_owned(),
+            ]);
+        }
+        writeln!(f, "{table}")?;
+        let mut table = Table::new([
+            "valve",
+            "A",
+            "declared l/min",
+            "fitted",
+            "95 % interval",
+            "",
+        ]);
+        for point in &self.curves {
+            table.row([
+                point.valve.to_owned(),
+                format!("{:.3}", point.current_a),
+                digits(point.declared_lpm),
+                digits(point.fitted_lpm),
+                format!("{} to {}", digits(point.low_lpm), digits(point.high_lpm)),
+                match point.determined {
+                    true => String::new(),
+                    false => "follows its neighbours".to_owned(),
+                },
+            ]);
+        }
+        writeln!(f, "{table}")?;
+        let unknown = self
+            .constants
+            .iter()
+            .filter(|constant| !constant.determined);
+        let unknown: Vec<&str> = unknown.map(|constant| constant.name.as_str()).collect();
+        if !unknown.is_empty() {
+            let line = format!(
+                "Not determined by this campaign, left as declared: {}.",
+                unknown.join(", ")
+            );
+            writeln!(f, "{}", wrapped(&line, WIDTH))?;
+        }
+        if !self.at_an_end.is_empty() {
+            let line = format!(
+                "At the end of what is believed of the declared value, check the data sheet: {}.",
+                self.at_an_end.join(", ")
+            );
+            writeln!(f, "{}", wrapped(&line, WIDTH))?;
+        }
+        writeln!(f, "Next: {}", self.next)
+    }
+}
+
+/// A number with four significant digits.
+fn digits(value: f64) -> String {
+    let size = value.abs().log10().floor();
+    match size.is_finite() {
+        true if size > 5.0 => format!("{value:.3e}"),
+        true => format!("{value:.*}", (3.0 - size).max(0.0) as usize),
+        false => format!("{value}"),
+    }
+}

@@ -1,0 +1,57 @@
+//! `hitch model fit`: the constants of the base model from a campaign.
+use std::path::PathBuf;
+
+use hitch_model::campaign::Campaign;
+use hitch_model::identification::base::fit_base_model;
+use hitch_model::identification::experiment::Experiment;
+
+use crate::base_fit::ShownBaseFit;
+use crate::error::Error;
+use crate::model_arg::ModelArg;
+use crate::output::{self, JsonArg};
+use crate::outputs::{Outputs, campaign_files};
+use crate::progress::Progress;
+
+/// Arguments of `hitch model fit`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example: hitch model fit lab-a --model my-hitch.toml --out fitted.toml\n\n\
+    Every constant has a prior: the declared value with the tolerance of data sheets (flow curves 20 %, pressures 10 % \
+    to 20 %, bore 2 %, masses 10 %). What the campaign does not determine stays at its declared value and is named."
+)]
+pub struct Args {
+    /// Folder of the campaign
+    campaign: PathBuf,
+    #[command(flatten)]
+    model: ModelArg,
+    /// Write the fitted model to this file
+    #[arg(long, value_name = "FILE.toml")]
+    out: PathBuf,
+    #[command(flatten)]
+    json: JsonArg,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the campaign or the model file is wrong, or a result cannot be written.
+pub fn run(args: &Args) -> Result<(), Error> {
+    let mut inputs = campaign_files(&args.campaign);
+    inputs.push(args.model.file());
+    let outputs = Outputs::check([Some(args.out.as_path()), args.json.target()], &inputs)?;
+    let model = args.model.load()?;
+    let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
+    let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
+    let experiment = Experiment::new(&campaign, &model);
+    let mut fit = fit_base_model(&experiment, &model, &|what| progress.say(what));
+    drop(progress);
+    fit.model.name = output::stem(&args.out);
+    output::write_file(&args.out, fit.model.to_toml().as_bytes())?;
+    let next = format!(
+        "hitch explain {} --model {}",
+        args.campaign.display(),
+        args.out.display()
+    );
+    let shown = ShownBaseFit::new(&experiment, &model, &fit, next);
+    outputs.tell(&args.json, &shown, || shown.to_string())
+}

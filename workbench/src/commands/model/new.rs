@@ -1,0 +1,192 @@
+//! `hitch model new`: a commented model file.
+use std::io::{self, IsTerminal as _};
+use std::path::{Path, PathBuf};
+
+use hitch_model::Model;
+use hitch_model::campaign::flow_curve;
+use hitch_model::model_file::{Template, Valve};
+use hitch_model::plant::ValveCurve;
+
+use crate::error::Error;
+use crate::output;
+use crate::outputs::Outputs;
+
+/// Arguments of `hitch model new`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Examples:\n  hitch model new --out my-hitch.toml --lift-curve lift.csv\n  \
+    hitch model new --set cylinder.bore_mm=80 --set relief_valve.set_pressure_bar=180 --out my-hitch.toml\n\n\
+    A curve is a table with a header, a current in A or mA and a flow in l/min or m3/s: current_a,flow_lpm. \
+    What is not given is as in the model named with --from. On a terminal it asks for the values of the data sheets."
+)]
+pub struct Args {
+    /// Flow of the lift valve over current, CSV
+    #[arg(long, value_name = "CSV")]
+    lift_curve: Option<PathBuf>,
+    /// Flow of the lowering valve over current, CSV
+    #[arg(long, value_name = "CSV")]
+    lower_curve: Option<PathBuf>,
+    /// A constant, in the unit of its key; may be given several times
+    #[arg(long = "set", value_name = "TABLE.KEY=VALUE")]
+    set: Vec<String>,
+    /// Where the defaults come from: nominal, dynamic, or the name of a model file
+    #[arg(long, value_name = "MODEL", default_value = "nominal")]
+    from: String,
+    /// Write the model file here; without it, print it
+    #[arg(long, value_name = "FILE.toml")]
+    out: Option<PathBuf>,
+    /// Take the defaults without asking
+    #[arg(long)]
+    yes: bool,
+}
+
+/// What is asked on a terminal: constant and question.
+const QUESTIONS: [(&str, &str); 8] = [
+    ("cylinder.bore_mm", "Cylinder bore, mm"),
+    ("cylinder.stroke_mm", "Cylinder stroke, mm"),
+    (
+        "pump.theoretical_flow_lpm",
+        "Pump, displacement times speed, l/min",
+    ),
+    ("compensator.margin_bar", "Compensator margin, bar"),
+    (
+        "check_valve.cracking_pressure_bar",
+        "Check valve, cracking pressure, bar",
+    ),
+    ("relief_valve.set_pressure_bar", "Relief setting, bar"),
+    (
+        "lift_valve.reference_drop_bar",
+        "Lift valve, pressure drop of its flow curve, bar",
+    ),
+    (
+        "lower_valve.reference_drop_bar",
+        "Lowering valve, pressure drop of its flow curve, bar",
+    ),
+];
+
+/// Runs the command.
+///
+/// # Errors
+/// If a curve or a value is wrong, or the file cannot be written.
+pub fn run(args: &Args) -> Result<(), Error> {
+    let curves = [&args.lift_curve, &args.lower_curve];
+    let mut inputs: Vec<PathBuf> = curves.into_iter().flatten().cloned().collect();
+    inputs.push(PathBuf::from(&args.from));
+    let outputs = Outputs::check([args.out.as_deref()], &inputs)?;
+    let name = args
+        .out
+        .as_deref()
+        .map_or_else(|| "my-hitch".to_owned(), output::stem);
+    let mut template = Template::of(&name, &Model::named(&args.from)?);
+    for set in &args.set {
+        let (name, value) = set.split_once('=').ok_or_else(|| {
+            Error::Usage(format!("--set {set}: write it as --set TABLE.KEY=VALUE"))
+        })?;
+        template
+            .set(name.trim(), value)
+            .map_err(|why| Error::Usage(format!("--set {set}: {why}")))?;
+    }
+    for (valve, path) in [Valve::Lift, Valve::Lower].into_iter().zip(curves) {
+        if let Some(path) = path {
+            template.set_curve(valve, flow_curve::read(path)?);
+        }
+    }
+    if !args.yes && io::stdin().is_terminal() && io::stderr().is_terminal() {
+        ask_all(&mut template, args)?;
+    }
+    let text = template.text()?;
+    match &args.out {
+        Some(path) => {
+            output::write_file(path, text.as_bytes())?;
+            outputs.say(|| told(path))
+        }
+        None => output::print(&text),
+    }
+}
+
+fn told(path: &Path) -> String {
+    let path = path.display();
+    format!(
+        "{path}: written; check it against your data sheets\n\
+        next: hitch compare CAMPAIGN --model {path}\n"
+    )
+}
+
+/// Asks for what was not given.
+fn ask_all(template: &mut Template, args: &Args) -> Result<(), Error> {
+    eprintln!("Values of the data sheets; Enter takes what stands in brackets.");
+    let given = |name: &str| args.set.iter().any(|set| set.starts_with(name));
+    for (name, question) in QUESTIONS.iter().filter(|(name, _)| !given(name)) {
+        let default = template.get(name).map_err(Error::Usage)?;
+        ask(question, &default, |answer| template.set(name, answer))?;
+    }
+    for (valve, path, title) in [
+        (Valve::Lift, &args.lift_curve, "Lift valve"),
+        (Valve::Lower, &args.lower_curve, "Lowering valve"),
+    ] {
+        if path.is_none() {
+            let curve = asked_curve(template.curve(valve), title)?;
+            template.set_curve(valve, curve);
+        }
+    }
+    Ok(())
+}
+
+/// A flow curve of the default's shape between the current at which the valve opens and the current limit.
+fn asked_curve(default: &ValveCurve, title: &str) -> Result<ValveCurve, Error> {
+    let opens = default.threshold_a();
+    let last = default.currents_a()[default.currents_a().len() - 1];
+    let positive = |answer: &str| match answer.trim().replace(',', ".").parse::<f64>() {
+        Ok(number) if number > 0.0 && number <= 1000.0 => Ok(number),
+        _ => Err("it is a number above 0, at most 1000".to_owned()),
+    };
+    let asked = |what: &str, default: f64| {
+        let mut found = default;
+        let question = format!("{title}, {what}");
+        ask(&question, &format!("{default:.3}"), |answer| {
+            found = positive(answer)?;
+            Ok(())
+        })?;
+        Ok::<f64, Error>(found)
+    };
+    let opens_now = asked("current at which it opens, A", opens)?;
+    let last_now = asked("current limit, A", last)?;
+    let full = hitch_model::units::lpm_from_m3_s(default.saturation_m3_s());
+    let full_now = asked("flow at the current limit, l/min", full)?;
+    let moved = |&current: &f64| match current <= opens {
+        true if current == 0.0 => 0.0,
+        true => current * opens_now / opens,
+        false => opens_now + (current - opens) * (last_now - opens_now) / (last - opens),
+    };
+    let currents = default.currents_a().iter().map(moved).collect();
+    let flows = default.flows_m3_s().iter();
+    let flows = flows.map(|flow| flow * full_now / full).collect();
+    ValveCurve::new(currents, flows).map_err(|_| {
+        Error::Usage(format!(
+            "{title}: the current limit must be above the current at which it opens"
+        ))
+    })
+}
+
+/// Asks until the answer is taken; an empty one leaves the default.
+fn ask(
+    question: &str,
+    default: &str,
+    mut take: impl FnMut(&str) -> Result<(), String>,
+) -> Result<(), Error> {
+    loop {
+        eprint!("{question} [{default}]: ");
+        let mut line = String::new();
+        let read = io::stdin().read_line(&mut line);
+        if !read.is_ok_and(|bytes| bytes > 0) {
+            return Err(Error::Usage("stopped; nothing was written".to_owned()));
+        }
+        if line.trim().is_empty() {
+            return Ok(());
+        }
+        match take(line.trim()) {
+            Ok(()) => return Ok(()),
+            Err(why) => eprintln!("{why}"),
+        }
+    }
+}
