@@ -1,0 +1,317 @@
+//! Base models that are off, fitted to campaigns of the second rig whose constants are known.
+
+use hitch_model::Model;
+use hitch_model::identification::adequacy::cells;
+use hitch_model::identification::base::{BaseFit, fit_base_model};
+use hitch_model::identification::experiment::Experiment;
+use hitch_model::identification::explain::fit_base;
+use hitch_model::identification::hopeless::{is_hopeless, wrong_share};
+use hitch_model::model::Constants;
+use hitch_model::model_file::Valve;
+use hitch_model::plant::ValveCurve;
+use hitch_model::units::lpm_from_m3_s;
+use host_tests::hidden_effects::starting_point;
+use host_tests::second_rig::campaign_writer::campaign;
+use host_tests::second_rig::draw::{Kind, Wish, draw};
+use host_tests::second_rig::hideable::Fidelity;
+use host_tests::second_rig::manoeuvres::Plan;
+use host_tests::second_rig::test_stand::Family;
+
+/// Error of a fitted model that is noise.
+const NOISE: f64 = 1.1;
+
+/// Seeds of the campaigns.
+const SEEDS: std::ops::Range<u64> = 700..710;
+
+/// How far off a declared model is.
+#[derive(Clone, Copy)]
+struct Off {
+    /// Flow curves at the current limit, growing from nothing at the threshold.
+    curves: f64,
+    /// Compensator margin.
+    margin: f64,
+    /// Pump flow.
+    pump: f64,
+}
+
+const NOTHING: Off = Off {
+    curves: 0.0,
+    margin: 0.0,
+    pump: 0.0,
+};
+
+const TYPICAL: Off = Off {
+    curves: 0.1,
+    margin: 0.1,
+    pump: 0.05,
+};
+
+fn declared(truth: &Model, off: Off) -> Model {
+    let mut constants = truth.constants().clone();
+    for valve in [Valve::Lift, Valve::Lower] {
+        let curve = &mut valve.of_mut(&mut constants).curve;
+        let threshold_a = curve.threshold_a();
+        let currents_a = curve.currents_a().to_vec();
+        let range_a = currents_a[currents_a.len() - 1] - threshold_a;
+        let wrong = |(current_a, flow): (&f64, &f64)| {
+            flow * (1.0 + off.curves * ((current_a - threshold_a) / range_a).max(0.0))
+        };
+        let flows = currents_a.iter().zip(curve.flows_m3_s()).map(wrong);
+        *curve = ValveCurve::new(currents_a.clone(), flows.collect()).expect("a curve");
+    }
+    constants.compensator.margin_pa *= 1.0 + off.margin;
+    constants.pump.theoretical_flow_m3_s *= 1.0 + off.pump;
+    truth.with_constants(constants).expect("a linkage")
+}
+
+fn fitted(seed: u64, family: Family, plan: Plan, off: Off) -> (Model, BaseFit) {
+    let case = draw(
+        seed,
+        &Wish {
+            family,
+            plan,
+            fidelity: Some(Fidelity::Faithful),
+            rough: Some(false),
+            kind: Some(Kind::Nothing),
+            effect: None,
+            known: |_| true,
+        },
+    );
+    let truth = starting_point(family);
+    let declared = declared(&truth, off);
+    let experiment = Experiment::new(&campaign(&case), &declared);
+    let fit = fit_base_model(&experiment, &declared, &|_| {});
+    (truth, fit)
+}
+
+/// True value of a constant by its name in a model file.
+fn true_value(name: &str, truth: &Model) -> f64 {
+    let mut constants: Constants = truth.constants().clone();
+    match name.split_once('.') {
+        Some((table, "threshold_a")) => {
+            let valves = [Valve::Lift, Valve::Lower].into_iter();
+            let mut valves = valves.filter(|valve| valve.table() == table);
+            let valve = valves.next().expect("a valve");
+            valve.of(&constants).curve.threshold_a()
+        }
+        _ => {
+            let scalars = hitch_model::identification::base::parameter::SCALARS.iter();
+            let mut scalars = scalars.filter(|scalar| scalar.name == name);
+            let scalar = scalars.next().expect("a constant");
+            *(scalar.place)(&mut constants) / scalar.si
+        }
+    }
+}
+
+/// For everything that is determined: its name and whether its interval holds the truth.
+fn covered(truth: &Model, fit: &BaseFit) -> Vec<(String, bool)> {
+    let holds = |(low, high): (f64, f64), value: f64| low <= value && value <= high;
+    let constants = fit.constants.iter().filter(|constant| constant.determined);
+    let constants = constants.map(|constant| {
+        let value = true_value(&constant.name, truth);
+        (constant.name.clone(), holds(constant.interval, value))
+    });
+    let true_flows = [Valve::Lift, Valve::Lower].into_iter().flat_map(|valve| {
+        let flows = valve.of(truth.constants()).curve.flows_m3_s();
+        flows.iter().filter(|flow| **flow > 0.0)
+    });
+    let points = fit.curves.iter().zip(true_flows);
+    let points = points.filter(|(point, _)| point.determined);
+    let points = points.map(|(point, &flow)| {
+        let name = format!("{} at {:.2} A", point.valve.table(), point.current_a);
+        (name, holds(point.interval_lpm, lpm_from_m3_s(flow)))
+    });
+    constants.chain(points).collect()
+}
+
+/// Fits one campaign a seed; returns the share of intervals that hold the truth.
+fn coverage(family: Family, plan: Plan, off: Off) -> f64 {
+    let (mut held, mut all) = (0, 0);
+    for seed in SEEDS {
+        let (truth, fit) = fitted(seed, family, plan, off);
+        let covered = covered(&truth, &fit);
+        let missed: Vec<&str> = covered
+            .iter()
+            .filter(|(_, holds)| !holds)
+            .map(|(name, _)| name.as_str())
+            .collect();
+        println!(
+            "seed {seed}: error {:.2} -> {:.3} sigma, {} determined, not held: {missed:?}",
+            fit.before.error(),
+            fit.after.error(),
+            covered.len()
+        );
+        assert!(fit.after.error() <= NOISE, "seed {seed}");
+        assert!(!covered.is_empty(), "seed {seed}");
+        held += covered.len() - missed.len();
+        all += covered.len();
+    }
+    let share = f64::from(held as u32) / f64::from(all as u32);
+    println!("{held} of {all} intervals hold the truth: {share:.3}");
+    share
+}
+
+#[test]
+fn a_declared_model_that_is_off_comes_back_to_the_truth() {
+    assert!(coverage(Family::Steady, Plan::Lab, TYPICAL) >= 0.9);
+}
+
+#[test]
+fn motion_determines_the_curves_without_a_flow_bench() {
+    let (_, fit) = fitted(720, Family::Steady, Plan::Field, TYPICAL);
+    let determined = fit.curves.iter().filter(|point| point.determined).count();
+    println!(
+        "error {:.2} -> {:.3} sigma, {determined} points determined",
+        fit.before.error(),
+        fit.after.error()
+    );
+    assert!(fit.after.error() <= NOISE);
+    assert!(2 * determined >= fit.curves.len());
+    assert!(coverage(Family::Steady, Plan::Field, TYPICAL) >= 0.9);
+}
+
+#[test]
+fn nothing_off_leaves_every_constant_within_its_interval() {
+    assert!(coverage(Family::Steady, Plan::Lab, NOTHING) >= 0.9);
+}
+
+#[test]
+fn a_dynamic_model_that_is_off_leaves_noise() {
+    let (truth, fit) = fitted(730, Family::Dynamic, Plan::Lab, TYPICAL);
+    let covered = covered(&truth, &fit);
+    let held = covered.iter().filter(|(_, holds)| *holds).count();
+    println!(
+        "error {:.2} -> {:.3} sigma, {held} of {} intervals hold the truth",
+        fit.before.error(),
+        fit.after.error(),
+        covered.len()
+    );
+    for constant in &fit.constants {
+        println!("{constant:?}, true {}", true_value(&constant.name, &truth));
+    }
+    assert!(fit.after.error() <= NOISE);
+    let mut constants = fit.constants.iter();
+    let margin = constants.find(|constant| constant.name == "compensator.margin_bar");
+    let margin = margin.expect("a margin");
+    assert!(margin.determined && (margin.fitted - 4.0).abs() < 0.1);
+}
+
+/// Another machine: bore, curves, margin and weights are far from those of the rig.
+fn another_machine() -> Model {
+    let mut constants = declared(
+        &Model::nominal(),
+        Off {
+            curves: 1.0,
+            margin: 1.0,
+            pump: 0.5,
+        },
+    )
+    .constants()
+    .clone();
+    constants.cylinder.bore_m *= 0.7;
+    constants.masses.dead_weight_kg *= 4.0;
+    Model::new("another", constants).expect("a linkage")
+}
+
+#[test]
+fn only_another_machine_is_a_hopeless_base() {
+    let folder = |name: &str| format!("{}/campaigns/{name}", env!("CARGO_MANIFEST_DIR"));
+    for name in [
+        "known-friction",
+        "known-threshold",
+        "known-outside",
+        "clean-steady",
+    ] {
+        let campaign = hitch_model::campaign::Campaign::load(folder(name).as_ref());
+        let campaign = campaign.expect("a shipped campaign");
+        let hopeless = |model: &Model| {
+            let experiment = Experiment::new(&campaign, model);
+            let base = fit_base(&experiment, model);
+            let channels = [0, 1, 2, 3].map(|channel| base.channel_error(channel));
+            println!(
+                "{name}, {}: error {:.2} sigma, by channel {channels:.1?}, share of wrong cells {:.2}",
+                model.name,
+                base.error(),
+                wrong_share(&cells(&experiment, &base))
+            );
+            is_hopeless(&experiment, &base, &base)
+        };
+        assert!(!hopeless(&Model::nominal()), "{name}");
+        let other = hopeless(&another_machine());
+        assert!(other, "{name}");
+    }
+}
+
+#[test]
+fn diagnose_says_first_that_the_base_is_hopeless() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("another.toml");
+    std::fs::write(&file, another_machine().to_toml()).expect("a file");
+    let campaign = format!("{}/campaigns/clean-steady", env!("CARGO_MANIFEST_DIR"));
+    let said = |json: bool| {
+        let mut command = host_tests::program::hitch();
+        command.args(["diagnose", &campaign, "--model"]).arg(&file);
+        if json {
+            command.args(["--json", "-"]);
+        }
+        let output = command.output().expect("it runs");
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    assert!(said(false).starts_with("This looks like another machine"));
+    assert!(said(true).contains("\"hopeless_base\": true"));
+}
+
+#[test]
+fn a_new_model_file_loads_and_faults_are_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = |name: &str, text: &str| {
+        std::fs::write(folder.path().join(name), text).expect("a file");
+    };
+    text(
+        "lift.csv",
+        "Strom [mA];Menge [l/min]\n0;0\n1200;0\n3000;35,5\n",
+    );
+    text("bad.csv", "current_a,flow_lpm\n0,0\n2,20\n1,30\n");
+    let run = |arguments: &[&str]| {
+        let output = host_tests::program::run(folder.path(), arguments);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), said)
+    };
+    let new = [
+        "model",
+        "new",
+        "--out",
+        "my.toml",
+        "--set",
+        "cylinder.bore_mm=80",
+    ];
+    let (code, said) = run(&[&new[..], &["--lift-curve", "lift.csv"]].concat());
+    assert_eq!(code, Some(0), "{said}");
+    let model = Model::read(&folder.path().join("my.toml")).expect("a model file");
+    assert!((model.constants().cylinder.bore_m - 0.08).abs() < 1e-12);
+    assert_eq!(
+        model.constants().lift_valve.curve.currents_a(),
+        [0.0, 1.2, 3.0]
+    );
+    let campaign = format!("{}/campaigns/clean-steady", env!("CARGO_MANIFEST_DIR"));
+    let (code, said) = run(&["compare", &campaign, "--model", "my.toml"]);
+    assert_eq!(code, Some(0), "{said}");
+    for (wrong, expected) in [
+        (
+            ["--lower-curve", "bad.csv"],
+            "bad.csv:4:1: the current does not rise",
+        ),
+        (
+            ["--set", "cylinder.bore_mm=9999"],
+            "a number from 5 to 1000",
+        ),
+        (
+            ["--set", "cylinder.boar_mm=80"],
+            "did you mean cylinder.bore_mm",
+        ),
+    ] {
+        let (code, said) = run(&[&["model", "new"], &wrong[..]].concat());
+        assert_eq!(code, Some(2), "{said}");
+        assert!(said.contains(expected), "{said}");
+    }
+}
