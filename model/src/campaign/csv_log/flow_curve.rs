@@ -131,7 +131,12 @@ mod tests {
         assert_eq!(english, german);
         let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/table2a_lift_valve.csv");
         let shipped = read(&table).expect("a curve");
-        assert_eq!(&shipped, &Model::nominal().constants().lift_valve.curve);
+        // The model leaves out points on the straight end.
+        let nominal = Model::nominal();
+        let curve = &nominal.constants().lift_valve.curve;
+        for (&current_a, &flow_m3_s) in curve.currents_a().iter().zip(curve.flows_m3_s()) {
+            assert_eq!(shipped.flow_m3_s(current_a), flow_m3_s, "{current_a} A");
+        }
     }
 
     #[test]
