@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Time between two lines where standard error is no terminal.
-const LINE_PERIOD: Duration = Duration::from_secs(5);
+const LINE_PERIOD: Duration = Duration::from_secs(10);
 
 /// A line that shows what is being done and for how long; it goes away when dropped.
 #[derive(Debug)]

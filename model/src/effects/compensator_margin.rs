@@ -11,8 +11,6 @@ use crate::campaign::Channel;
 use crate::plant::sites::Sites;
 use crate::units::pa_from_bar;
 
-const CHANNELS: &[Channel] = &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle];
-
 const EXCESS: Parameter = Parameter {
     name: "excess",
     unit: "bar",
@@ -34,7 +32,7 @@ pub static PRELOAD: Described = Described {
     shows: "the pump pressure is higher or lower than declared by the same amount at idle and over every load, and the lift \
          flow with it; without a pump pressure it is the lift valve's flow scale",
     parameters: &[EXCESS],
-    channels: CHANNELS,
+    channels: &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle],
     needs: None,
     search: Search::Secants,
     refines: false,
@@ -60,7 +58,8 @@ pub static BYPASS: Described = Described {
             ..EXCESS
         },
     ],
-    channels: CHANNELS,
+    // The pump pressure alone tells it from the usual form.
+    channels: &[Channel::PumpPressure],
     needs: None,
     search: Search::Secants,
     refines: false,
