@@ -11,6 +11,9 @@ use crate::campaign::Channel;
 use crate::plant::sites::Sites;
 use crate::units::pa_from_bar;
 
+/// Flow and angle change as well, but alike with the lift valve's flow scale: without a pump pressure it is that.
+const CHANNELS: &[Channel] = &[Channel::PumpPressure];
+
 const EXCESS: Parameter = Parameter {
     name: "excess",
     unit: "bar",
@@ -32,7 +35,7 @@ pub static PRELOAD: Described = Described {
     shows: "the pump pressure is higher or lower than declared by the same amount at idle and over every load, and the lift \
          flow with it; without a pump pressure it is the lift valve's flow scale",
     parameters: &[EXCESS],
-    channels: &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle],
+    channels: CHANNELS,
     needs: None,
     search: Search::Secants,
     refines: false,
@@ -58,8 +61,7 @@ pub static BYPASS: Described = Described {
             ..EXCESS
         },
     ],
-    // The pump pressure alone tells it from the usual form.
-    channels: &[Channel::PumpPressure],
+    channels: CHANNELS,
     needs: None,
     search: Search::Secants,
     refines: false,
