@@ -80,6 +80,15 @@ def whole_story(page: Page, pictures: Path) -> None:
     page.screenshot(path=pictures / "ranked.png", full_page=True)
     assert_accessible(page)
 
+    best.locator("button.sign").click()
+    expect(best.locator("button.sign")).to_have_attribute("aria-pressed", "true")
+    expect(page.locator("#place")).to_contain_text("Signature")
+    page.wait_for_function("document.getElementById('plot').data.some((line) => line.legendgroup === 'signature')")
+    page.evaluate("scrollTo(0, document.getElementById('missing').offsetTop - 20)")
+    page.wait_for_timeout(300)
+    page.screenshot(path=pictures / "signature.png")
+    assert_accessible(page)
+
     best.locator("button.add").press("Enter")
     page.wait_for_selector("#effects .effect")
     settled(page)

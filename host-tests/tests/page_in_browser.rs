@@ -1,6 +1,8 @@
 //! The page of `hitch serve` in a real browser, at the widths of a desktop and of a phone, light and dark.
 //!
-//! `cargo xtask test` installs the browser. The pictures of each view are kept in the target folder.
+//! `cargo xtask test` installs the browser. The pictures of each view are kept in the target folder. With
+//! `UPDATE_PICTURE=1 cargo test -p host-tests --test page_in_browser -- --ignored`, one of them becomes `docs/page.png`.
+use std::fs;
 use std::path::Path;
 use std::process::Command;
 
@@ -24,14 +26,19 @@ fn the_whole_story_by_clicking() {
         refusal::log().replacen("16.0", "oops", 1),
     );
     let broken = PageServer::start(wrong.path(), &["c"]);
+    let pictures = folder.join("pictures");
     let mut command = Command::new(python);
     command
         .arg(scripts.join("page_in_browser.py"))
         .args([&server.page, &broken.page])
         .arg("chromium")
-        .arg(folder.join("pictures"))
+        .arg(&pictures)
         .env("PYTHONPYCACHEPREFIX", folder.join("python-cache"));
     let said = run(&mut command).unwrap_or_else(|reason| panic!("{reason:#}"));
     println!("{said}");
     assert!(said.contains("the whole story went well"), "{said}");
+    if std::env::var_os("UPDATE_PICTURE").is_some() {
+        let shown = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/page.png");
+        fs::copy(pictures.join("signature.png"), shown).unwrap();
+    }
 }

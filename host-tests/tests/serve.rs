@@ -161,6 +161,40 @@ fn a_cancelled_ranking_leaves_the_session_usable() {
     let best = &ranked["ranking"]["candidates"][0];
     assert_eq!(best["effect"]["name"], "lower-threshold-shift");
     assert_eq!(best["in_words"], "nearly certain");
+
+    let view = |path: &str, run: usize| {
+        let query = format!("session={session}&run={run}&effect=lower-threshold-shift");
+        server.get(&format!("api/{path}?{query}"))
+    };
+    let rms =
+        |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt();
+    let runs = ranked["runs"].as_array().unwrap();
+    let lowers = |run: &Value| run["file"].as_str().unwrap().contains("lower");
+    let run = runs.iter().position(lowers).unwrap();
+    let numbers = |values: &Value| -> Vec<f64> {
+        values
+            .as_array()
+            .unwrap()
+            .iter()
+            .filter_map(Value::as_f64)
+            .collect()
+    };
+    let before = view("run", run).json();
+    let explained = view("signature", run).json();
+    let residual = numbers(&before["channels"][2]["residual"]);
+    let signature = numbers(&explained["channels"][2]["signature"]);
+    let rest: Vec<f64> = residual
+        .iter()
+        .zip(&signature)
+        .map(|(a, b)| a - b)
+        .collect();
+    assert!(
+        rms(&rest) < 0.5 * rms(&residual),
+        "{} {}",
+        rms(&rest),
+        rms(&residual)
+    );
+    assert_eq!(view("signature", 999).status, 404);
 }
 
 #[test]

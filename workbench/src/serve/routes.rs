@@ -32,6 +32,7 @@ pub fn routes() -> Router<Arc<Sessions>> {
         .route("/{token}/api/state", get(state))
         .route("/{token}/api/run", get(run))
         .route("/{token}/api/worst", get(worst))
+        .route("/{token}/api/signature", get(signature))
         .route("/{token}/api/preview", post(preview))
         .route("/{token}/api/start", post(start))
         .route("/{token}/api/cancel", post(cancel))
@@ -139,6 +140,31 @@ async fn worst(State(sessions): Known, Query(of): Query<OfCell>) -> Answer {
     let nothing = || Refusal::of(StatusCode::NOT_FOUND, "nothing was compared there");
     let (run, stretch) = worst.ok_or_else(nothing)?;
     Ok(Json(json!({ "run": run, "stretch": stretch })))
+}
+
+/// A candidate of the ranking, and the run to show its signature in.
+#[derive(Debug, Deserialize)]
+struct OfCandidate {
+    session: String,
+    run: usize,
+    effect: String,
+}
+
+async fn signature(State(sessions): Known, Query(of): Query<OfCandidate>) -> Answer {
+    let session = find(&sessions, &of.session)?;
+    let (subject, step, ranking) = {
+        let session = lock(&session);
+        (
+            Arc::clone(session.subject()),
+            session.present().clone(),
+            session.present_ranking().cloned(),
+        )
+    };
+    let unranked = || Refusal::conflict("the model has changed since; rank the effects again");
+    let ranking = ranking.ok_or_else(unranked)?;
+    let view = blocking(move || views::signature(&subject, &step, &ranking, &of.effect, of.run));
+    let none = || Refusal::of(StatusCode::NOT_FOUND, "there is no such run or candidate");
+    Ok(Json(view.await?.ok_or_else(none)?))
 }
 
 /// A parameter of an effect set by hand, and the run to redraw with it.

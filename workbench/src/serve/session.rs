@@ -2,6 +2,8 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use hitch_model::effects::full_name;
+use hitch_model::identification::candidate::Candidate;
 use hitch_model::identification::explain;
 use hitch_model::identification::fit::Fit;
 use serde_json::Value;
@@ -34,6 +36,14 @@ pub struct Ranking {
     pub diagnosis: explain::Diagnosis,
     /// The same for people.
     pub shown: explanation::Diagnosis,
+}
+
+impl Ranking {
+    /// A candidate by its full name.
+    pub fn candidate(&self, name: &str) -> Option<&Candidate> {
+        let mut candidates = self.diagnosis.candidates.iter();
+        candidates.find(|candidate| full_name(candidate.effect) == name)
+    }
 }
 
 /// What explains the campaign from the model of a step.
@@ -114,6 +124,13 @@ impl Session {
     /// The fit of the present step.
     pub fn fit(&self) -> &Fit {
         &self.present().evaluated.fit
+    }
+
+    /// The ranking, if it is of the present model.
+    pub fn present_ranking(&self) -> Option<&Arc<Ranking>> {
+        let present = &self.present().evaluated;
+        let ranking = self.ranking.as_ref();
+        ranking.filter(|ranking| Arc::ptr_eq(&ranking.of, present))
     }
 
     /// Adds a step after the present one; what was undone is gone.

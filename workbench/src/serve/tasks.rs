@@ -138,12 +138,10 @@ impl Ready {
                 What::Adopt(Arc::clone(explained.ok_or_else(stale)?), steps)
             }
         };
-        let ranking = session.ranking.as_ref();
-        let ranking = ranking.filter(|known| Arc::ptr_eq(&known.of, &session.present().evaluated));
         Ok(Self {
             subject: Arc::clone(session.subject()),
             present: session.present().clone(),
-            ranking: ranking.cloned(),
+            ranking: session.present_ranking().cloned(),
             what,
         })
     }
@@ -247,10 +245,8 @@ impl Ready {
             None,
             Some(self.present.evaluated.fit.error()),
         );
-        let ranked = self.ranking.as_ref().and_then(|ranking| {
-            let mut candidates = ranking.diagnosis.candidates.iter();
-            candidates.find(|tried| full_name(tried.effect) == full_name(effect))
-        });
+        let ranking = self.ranking.as_ref();
+        let ranked = ranking.and_then(|ranking| ranking.candidate(&full_name(effect)));
         if let Some(candidate) = ranked {
             return candidate.fit.estimate.clone();
         }

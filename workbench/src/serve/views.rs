@@ -8,7 +8,7 @@ use hitch_model::identification::experiment::{Experiment, ReadyRun};
 use hitch_model::simulation::Trace;
 use serde_json::{Value, json};
 
-use super::session::{Session, Step};
+use super::session::{Ranking, Session, Step};
 use super::source::Subject;
 use crate::comparison::{Comparison, Evaluated, Grouping};
 use crate::error::Error;
@@ -135,6 +135,37 @@ pub fn preview(subject: &Subject, step: &Step, estimate: &Estimate, run: usize) 
             "residual": residual,
             "error": (square / seen.count() as f64).sqrt(),
         }))
+    };
+    let channels = Channel::ALL.into_iter().filter_map(channel);
+    Some(json!({ "run": run, "channels": channels.collect::<Vec<_>>() }))
+}
+
+/// What a candidate at its fitted size takes from the residuals of a run: residual without it less residual with it.
+/// `None` if there is no such run or candidate.
+pub fn signature(
+    subject: &Subject,
+    step: &Step,
+    ranking: &Ranking,
+    effect: &str,
+    run: usize,
+) -> Option<Value> {
+    let ready = subject.experiment().runs.get(run)?;
+    let candidate = ranking.candidate(effect)?;
+    let fit = &step.evaluated.fit;
+    let mut effects = fit.estimate.effects.clone();
+    effects.push(AddedEffect {
+        effect: candidate.effect,
+        values: candidate.values().to_vec(),
+    });
+    let model = subject.model.with_effects(effects);
+    let trace = ready.simulate(&model, fit.estimate.nuisances[run], &fit.estimate.clocks);
+    let with = fit.weights.runs[run].whiten(ready, &trace);
+    let channel = |channel: Channel| {
+        ready.measured[channel.index()].as_ref()?;
+        let with = &with[channel.index() * ready.len()..];
+        let without = step.evaluated.residuals(run, channel);
+        let explained: Vec<f64> = without.iter().zip(with).map(|(a, b)| a - b).collect();
+        Some(json!({ "signature": explained }))
     };
     let channels = Channel::ALL.into_iter().filter_map(channel);
     Some(json!({ "run": run, "channels": channels.collect::<Vec<_>>() }))

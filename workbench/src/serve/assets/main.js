@@ -14,6 +14,9 @@ let view = null;
 /** Candidates of a ranking that is being made.
  * @type {any[]} */
 let tried = [];
+/** The candidate whose signature is drawn.
+ * @type {any} */
+let signed = null;
 /** Errors of a fit that runs.
  * @type {{fraction: number, error: number}[]} */
 let live = [];
@@ -41,10 +44,11 @@ async function open() {
 /** Asks for everything anew, and leaves the zoom as it is. */
 async function refresh() {
   state = await ask("state");
+  if (!state.ranking) signed = null;
   draw();
   showJob(state.job);
   if (view) {
-    view = await ask("run", { run: view.run });
+    view = await look(view.run);
     byId("place").textContent = "";
     await drawRun(view, undefined);
   }
@@ -58,7 +62,7 @@ function draw() {
   document.title = `${state.campaign} – hitch`;
   drawMap(state, guarded(visit));
   drawModel(state, acts);
-  drawMissing(state, acts.run);
+  drawMissing(state, { ...acts, signed: signed?.name });
 }
 
 /** What the panels can have done. */
@@ -84,7 +88,25 @@ const acts = {
     }
   }),
   preview: guarded(preview),
+  sign: guarded(async (/** @type {any} */ effect) => {
+    signed = signed?.name === effect.name ? null : effect;
+    view = await look(view.run);
+    draw();
+    /** @type {HTMLElement | null} */ (document.querySelector(`#ranking [aria-label="Signature of ${effect.title}"]`))?.focus();
+    byId("place").textContent = signed ? `Signature of: ${signed.title}` : "";
+    await drawRun(view, undefined);
+  }),
 };
+
+/** A run, with the signature of the selected candidate.
+ * @param {number} index */
+async function look(index) {
+  const run = await ask("run", { run: index });
+  if (!signed) return run;
+  const { channels } = await ask("signature", { run: index, effect: signed.name });
+  return { ...run, channels: run.channels.map((/** @type {any} */ channel, /** @type {number} */ at) =>
+    ({ ...channel, ...channels[at] })) };
+}
 
 /** Leads to the panel of the model, where the error falls. */
 function watch() {
@@ -136,7 +158,7 @@ function hear(message) {
     tried = insert(tried, message.candidate);
     fraction(message.fraction);
     byId("job-text").textContent = `${byId("job").dataset.title}: ${message.candidate.effect.title}`;
-    drawRanking(tried, acts.run);
+    drawRanking(tried, { ...acts, signed: "" });
   } else {
     showJob(null);
     if (message.kind === "failed") say(message.text);
@@ -205,7 +227,7 @@ async function visit(cell) {
  * @param {number} index
  * @param {any} place */
 async function show(index, place) {
-  view = await ask("run", { run: index });
+  view = await look(index);
   /** @type {HTMLSelectElement} */ (byId("run")).value = String(index);
   byId("place").textContent = "";
   await drawRun(view, place);

@@ -7,29 +7,32 @@ const SIGN = 0.005;
 
 /** @typedef {(task: any) => void} Run */
 
+/** What the panel can have done, and the name of the effect whose signature is drawn.
+ * @typedef {{run: Run, sign: (effect: any) => void, signed: string}} Acts */
+
 /** Draws ranking and explanation of a state.
  * @param {any} state
- * @param {Run} run */
-export function drawMissing(state, run) {
-  byId("explained").replaceChildren(...(state.explained ? explanation(state.explained, state.effects.length > 0, run) : []));
-  if (state.ranking) drawRanking(state.ranking.candidates, run, state.ranking.next_experiment);
+ * @param {Acts} acts */
+export function drawMissing(state, acts) {
+  byId("explained").replaceChildren(...(state.explained ? explanation(state.explained, state.effects.length > 0, acts.run) : []));
+  if (state.ranking) drawRanking(state.ranking.candidates, acts, state.ranking.next_experiment);
   else byId("ranking").replaceChildren();
 }
 
 /** Draws candidates, those that were tried so far.
  * @param {any[]} candidates
- * @param {Run} run
+ * @param {Acts} acts
  * @param {string | null} [next] */
-export function drawRanking(candidates, run, next = null) {
+export function drawRanking(candidates, acts, next = null) {
   const shows = (/** @type {any} */ one) => one.explains >= SIGN || (one.confidence ?? 0) >= SIGN;
   const seen = candidates.filter(shows);
   const unseen = candidates.filter((one) => !shows(one));
-  const parts = [element("h3", {}, "Each effect alone"), ...seen.map((one) => candidate(one, run))];
+  const parts = [element("h3", {}, "Each effect alone"), ...seen.map((one) => candidate(one, acts))];
   if (candidates.length > 0 && seen.length === 0) parts.push(element("p", {}, "No effect shows on these data."));
   if (next) parts.push(element("p", {}, `To tell them apart: ${next}.`));
   if (unseen.length > 0) {
     parts.push(element("details", {}, element("summary", {}, `${unseen.length} more, without a sign on these data`),
-      ...unseen.map((one) => candidate(one, run))));
+      ...unseen.map((one) => candidate(one, acts))));
   }
   byId("ranking").replaceChildren(...parts);
 }
@@ -45,14 +48,19 @@ export function insert(candidates, tried) {
 }
 
 /** @param {any} one
- * @param {Run} run */
-function candidate(one, run) {
+ * @param {Acts} acts */
+function candidate(one, acts) {
   const add = element("button", { type: "button", class: "add", "aria-label": `Add ${one.effect.title}`,
-    onclick: () => run({ task: "add", effect: one.effect.name }) }, "Add");
+    onclick: () => acts.run({ task: "add", effect: one.effect.name }) }, "Add");
+  // A ranking that is being made has no confidences yet, and the server no candidates to draw.
+  const sign = one.confidence === undefined ? [] : [element("button", { type: "button", class: "sign",
+    "aria-pressed": one.effect.name === acts.signed, "aria-label": `Signature of ${one.effect.title}`,
+    title: "Draws over the residuals of the run what this effect would explain of them",
+    onclick: () => acts.sign(one.effect) }, "Signature")];
   const confidence = one.confidence === undefined ? "being compared"
     : `${one.in_words}, ${(100 * one.confidence).toFixed(0)} %`;
   return element("div", { class: "effect" },
-    element("div", { class: "row" }, element("h3", {}, one.effect.title), add),
+    element("div", { class: "row" }, element("h3", {}, one.effect.title), ...sign, add),
     element("meter", { min: 0, max: 1, value: one.explains, "aria-label": `Share explained by ${one.effect.title}` }),
     element("div", { class: "figures" },
       element("span", {}, `explains ${(100 * one.explains).toFixed(0)} %`),

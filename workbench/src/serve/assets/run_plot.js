@@ -89,8 +89,7 @@ function figure(view) {
     /** @type {any} */ ({ height: share * SIGNAL, title: `${channel.title}, error ${sigmas(channel.error)} σ`, unit: channel.unit, ticks: 5,
       lines: signals(channel) }),
     { height: share * RESIDUAL, title: `${channel.title}: measured − simulated`, unit: "σ",
-      band: true, lines: [{ name: "residual", y: channel.residual, colour: "residual", key: "residual", unit: "σ",
-        of: channel.title, changes: true }] },
+      band: true, lines: residuals(channel) },
   ]);
   rows.push({ height: share * CURRENTS, title: "currents of the valves", unit: "A", lines: [
     { name: "lift current", y: view.lift_current_a, colour: "lift", key: "lift", unit: "A" },
@@ -127,6 +126,15 @@ function signals(channel) {
   if (channel.first) lines.push({ name: "first model", y: channel.first, colour: "first", key: "first", dash: "dot" });
   lines.push({ name: "simulated", y: channel.simulated, colour: "simulated", key: "simulated", width: 1.8, changes: true });
   return lines.map((line) => ({ ...line, unit: channel.unit, of: channel.title }));
+}
+
+/** @param {any} channel */
+function residuals(channel) {
+  /** @type {any[]} */
+  const lines = [{ name: "residual", y: channel.residual, colour: "residual", key: "residual", changes: true }];
+  if (channel.signature) lines.push({ name: "signature of the effect", y: channel.signature, colour: "signature", key: "signature",
+    width: 2, dash: "dash" });
+  return lines.map((line) => ({ ...line, unit: "σ", of: channel.title }));
 }
 
 /** By how much the parts are smaller than they could be, so that all of them fit into a wide window.

@@ -35,12 +35,8 @@ pub fn tried(base: &Fit, candidate: &candidate::Candidate) -> Value {
 
 /// The ranking, if it is of the present model.
 pub fn ranking(session: &Session) -> Value {
-    let present = &session.present().evaluated;
-    let ranking = session.ranking.as_ref();
-    match ranking.filter(|ranking| Arc::ptr_eq(&ranking.of, present)) {
-        Some(ranking) => ranked(ranking),
-        None => Value::Null,
-    }
+    let ranking = session.present_ranking();
+    ranking.map_or(Value::Null, |ranking| ranked(ranking))
 }
 
 fn ranked(ranking: &Ranking) -> Value {
