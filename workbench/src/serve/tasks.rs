@@ -15,6 +15,7 @@ use hitch_model::identification::subset::single::try_effects;
 use serde::Deserialize;
 
 use super::jobs::Reporter;
+use super::own_term::TermForm;
 use super::routes::Refusal;
 use super::session::{Explained, Ranking, Session, Step};
 use super::source::Subject;
@@ -37,6 +38,11 @@ pub enum Task {
     Add {
         /// Its name, with its form.
         effect: String,
+    },
+    /// Add a term of the user's own and fit.
+    Term {
+        /// Its definition.
+        term: TermForm,
     },
     /// Take an effect away and fit.
     Remove {
@@ -66,6 +72,7 @@ pub enum Task {
 /// A task with all that it needs.
 pub struct Ready {
     subject: Arc<Subject>,
+    model: Model,
     present: Step,
     ranking: Option<Arc<Ranking>>,
     what: What,
@@ -114,11 +121,18 @@ impl Ready {
             let added = effects.get(effect);
             added.ok_or_else(|| Refusal::conflict("the model has no such effect any more"))
         };
+        let mut present = session.present().clone();
         let what = match task {
             Task::Rank => What::Rank,
             Task::Explain => What::Explain,
             Task::Fit => What::Fit,
             Task::Add { effect } => What::Add(new_effect(session, &effect)?),
+            Task::Term { term } => {
+                let term = term.define().map_err(Refusal::wrong)?;
+                present.terms.retain(|known| known.id() != term.id());
+                present.terms.push(term);
+                What::Add(lacking(session, term)?)
+            }
             Task::Remove { effect } => there(effect).map(|_| What::Remove(effect))?,
             Task::Set {
                 effect,
@@ -131,7 +145,7 @@ impl Ready {
                 What::Set(estimate.ok_or_else(no_parameter)?, title)
             }
             Task::Adopt { steps } => {
-                let present = &session.present().evaluated;
+                let present = &present.evaluated;
                 let explained = session.explained.as_ref();
                 let explained = explained.filter(|known| Arc::ptr_eq(&known.of, present));
                 let stale = || Refusal::conflict("the model has changed since; explain it again");
@@ -140,7 +154,8 @@ impl Ready {
         };
         Ok(Self {
             subject: Arc::clone(session.subject()),
-            present: session.present().clone(),
+            model: session.model().with_terms(present.terms.clone()),
+            present,
             ranking: session.present_ranking().cloned(),
             what,
         })
@@ -319,6 +334,7 @@ impl Ready {
             title,
             evaluated: Arc::new(Evaluated { experiment, fit }),
             held_out: held_out.filter(|error| error.is_finite()),
+            terms: self.present.terms.clone(),
         }
     }
 
@@ -332,13 +348,17 @@ impl Ready {
     }
 
     fn model(&self) -> &Model {
-        &self.subject.model
+        &self.model
     }
 }
 
 /// An effect by its name that the model of a session can have and does not.
 fn new_effect(session: &Session, name: &str) -> Result<&'static dyn Effect, Refusal> {
-    let effect = find(&session.subject().model, name)?;
+    lacking(session, find(&session.model(), name)?)
+}
+
+/// The same effect, if the model of the session does not have it.
+fn lacking(session: &Session, effect: &'static dyn Effect) -> Result<&'static dyn Effect, Refusal> {
     let mut present = session.fit().estimate.effects.iter();
     match present.any(|added| added.effect.id() == effect.id()) {
         true => Err(Refusal::conflict("the model has this effect already")),
