@@ -111,6 +111,7 @@ def whole_story(page: Page, pictures: Path) -> None:
     page.click("#undo")
     expect(page.locator("#steps .undone")).to_have_count(2)
     assert abs(error_of(page) - before) < 0.02
+    own_term(page, pictures)
     automatic(page, pictures)
 
 
@@ -128,6 +129,33 @@ def drag(page: Page) -> None:
     assert times, "nothing was redrawn"
     middle = sorted(times)[len(times) // 2]
     print(f"redrawn within {middle:.0f} ms (median of {len(times)}), wanted {REDRAW_MS} ms")
+
+
+def own_term(page: Page, pictures: Path) -> None:
+    """Writes a term, first with a fault, and adds it."""
+    page.fill("#term-id", "shift")
+    page.select_option("#term-place", "lower-current")
+    row = page.locator("#term-rows .term-row").first
+    for key, value in {"unit": "A", "start": "-0.1", "low": "-0.5", "high": "0.5"}.items():
+        row.locator(f"[data-key={key}]").fill(value)
+    page.fill("#term-formula", "c * oops")
+    expect(page.locator("#term-fault")).to_contain_text("Column 5")
+    page.locator("#own").scroll_into_view_if_needed()
+    page.screenshot(path=pictures / "own_term_wrong.png")
+    assert_accessible(page)
+    page.fill("#term-formula", "c")
+    expect(page.locator("#term-fault")).to_have_text("The term is right.")
+    page.click("#term-add")
+    page.wait_for_selector("#effects .effect")
+    settled(page)
+    assert error_of(page) < 1.2
+    page.screenshot(path=pictures / "own_term.png")
+    with page.expect_download() as saving:
+        page.click("#save")
+    text = Path(saving.value.path()).read_text(encoding="utf-8")
+    assert "[[term]]" in text, text[-400:]
+    page.click("#undo")
+    expect(page.locator("#effects .effect")).to_have_count(0)
 
 
 def automatic(page: Page, pictures: Path) -> None:

@@ -57,3 +57,27 @@ fn less_viscous_friction_than_declared() {
     });
     assert_named(&found, "viscous-friction", -6000.0, 0.1);
 }
+
+#[test]
+fn margin_of_the_compensator_smaller_than_declared() {
+    let found = explained(|constants| {
+        constants.compensator.margin_pa += 0.4e5;
+    });
+    assert_named(&found, "compensator-margin", -0.4, 0.05);
+}
+
+#[test]
+fn margin_of_the_compensator_larger_than_declared() {
+    let found = explained(|constants| {
+        constants.compensator.margin_pa -= 0.4e5;
+    });
+    assert_named(&found, "compensator-margin", 0.4, 0.05);
+}
+
+#[test]
+fn spools_quicker_than_declared() {
+    let found = explained(|constants| {
+        constants.spool_time_constant_s += 0.02;
+    });
+    assert_named(&found, "spool-lag", -0.02, 0.1);
+}

@@ -143,6 +143,72 @@ fn a_session_adds_undoes_and_saves_beside_another() {
 }
 
 #[test]
+fn a_term_of_ones_own_is_checked_added_and_saved() {
+    let dir = TempDir::new().unwrap();
+    let server = PageServer::start(dir.path(), &[]);
+    let offered = server.get("api/formulas").json();
+    assert!(offered["places"].to_string().contains("lower-current"));
+    let session = server.begin();
+    let term = |formula: &str| {
+        json!({ "id": "shift", "place": "lower-current", "formula": formula, "parameters": [{
+            "name": "c", "unit": "A", "null": 0.0, "start": -0.1, "low": -0.5, "high": 0.5 }] })
+    };
+    let check = |formula: &str| {
+        let answer = server.post("api/check", &json!({ "term": term(formula) }));
+        answer.json()["fault"].clone()
+    };
+    assert!(check("c").is_null());
+    assert_eq!(check("c * oops")["column"], 5);
+    let start = |formula: &str| {
+        let task = json!({ "session": session, "task": "term", "term": term(formula) });
+        server.post("api/start", &task).status
+    };
+    assert_eq!(start("c *"), 422);
+    assert_eq!(start("c"), 200);
+    let after = server.settled(&session);
+    assert!(after["error"].as_f64().unwrap() < 1.2, "{}", after["error"]);
+    assert_eq!(start("c"), 409);
+    let saved = server.get(&format!("api/model?session={session}")).body;
+    assert!(
+        saved.contains("[[term]]") && saved.contains("[[effect]]"),
+        "{saved}"
+    );
+    fs::write(dir.path().join("model.toml"), &saved).unwrap();
+    let model = dir.path().join("model.toml");
+    let again = PageServer::start(dir.path(), &["--model", model.to_str().unwrap()]);
+    assert_eq!(
+        again.settled(&again.begin())["effects"]
+            .as_array()
+            .unwrap()
+            .len(),
+        1
+    );
+}
+
+#[test]
+fn a_suggested_term_is_taken_over() {
+    let dir = TempDir::new().unwrap();
+    let campaign = concat!(env!("CARGO_MANIFEST_DIR"), "/campaigns/known-outside");
+    let server = PageServer::start(dir.path(), &[campaign]);
+    let session = server.begin();
+    let start = |task: &str| {
+        let body = json!({ "session": session, "task": task });
+        server.post("api/start", &body).status
+    };
+    assert_eq!(start("suggested"), 409);
+    assert_eq!(start("explain"), 200);
+    let explained = server.settled(&session);
+    let suggested = &explained["explained"]["suggested"];
+    assert!(suggested["formula"].is_string(), "{suggested}");
+    assert_eq!(start("suggested"), 200);
+    let after = server.settled(&session);
+    let error = |state: &Value| state["error"].as_f64().unwrap();
+    assert!(error(&after) < error(&explained));
+    let saved = server.get(&format!("api/model?session={session}")).body;
+    assert!(saved.contains("[[term]]"), "{saved}");
+}
+
+#[test]
 fn a_cancelled_ranking_leaves_the_session_usable() {
     let dir = TempDir::new().unwrap();
     let server = PageServer::start(dir.path(), &[]);

@@ -4,6 +4,7 @@ use crate::campaign::Channel;
 use crate::model::Model;
 use crate::plant::dynamic::Steps;
 use crate::plant::{Currents, Plant, Rig};
+use crate::units::bar_from_pa;
 
 /// What the instruments would have shown over a run, by [`Channel::index`], in the channels' units.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -12,6 +13,8 @@ pub struct Trace {
     pub channels: [Vec<f64>; 4],
     /// The rocker angle itself, degree, whatever its sensor shows; not a number on a flow bench.
     pub true_angle_deg: Vec<f64>,
+    /// Pump pressure with the lift valve shut, bar.
+    pub idle_pressure_bar: f64,
 }
 
 impl Trace {
@@ -59,11 +62,13 @@ pub fn simulate_in(
     let mut trace = Trace {
         channels: std::array::from_fn(|_| Vec::with_capacity(time_s.len())),
         true_angle_deg: Vec::with_capacity(time_s.len()),
+        idle_pressure_bar: f64::NAN,
     };
     let Some(first) = currents.first() else {
         return trace;
     };
     let mut plant = Plant::new(model, rig, oil_temperature_c, *first).in_steps(steps);
+    trace.idle_pressure_bar = bar_from_pa(plant.idle_pressure_pa());
     for (sample, currents) in currents.iter().enumerate() {
         if sample > 0 {
             plant.step(*currents, time_s[sample] - time_s[sample - 1]);

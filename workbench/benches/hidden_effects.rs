@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! cargo bench --bench hidden_effects -- --count 40 --family steady --plan lab
+//! cargo bench --bench hidden_effects -- --count 40 --family steady --plan lab --foreign
 //! ```
 //!
 //! Prints a Markdown table a family and plan, and every miss of the project's own method with the command that repeats
@@ -11,6 +12,7 @@
 use clap::Parser;
 use comfy_table::{Table, presets};
 use host_tests::hidden_effects::answer::Method;
+use host_tests::hidden_effects::foreign::Adopted;
 use host_tests::hidden_effects::grade::{Graded, Posed};
 use host_tests::hidden_effects::methods;
 use host_tests::hidden_effects::tally::{BINS, Tally};
@@ -42,6 +44,10 @@ struct Arguments {
     plan: Vec<Plan>,
     #[command(flatten)]
     wish: WishArguments,
+    /// Machines that differ from their data sheet in every constant and have structures of their own: what has changed
+    /// between two campaigns?
+    #[arg(long, conflicts_with_all = ["effect", "kind", "fidelity", "rough"])]
+    foreign: bool,
     /// Methods, by a part of their name
     #[arg(long, value_delimiter = ',')]
     methods: Vec<String>,
@@ -77,6 +83,11 @@ fn main() {
     );
     for &family in &arguments.family {
         for &plan in &arguments.plan {
+            if arguments.foreign {
+                let machines = foreign_machines(&arguments, &methods, family, plan, &bar);
+                bar.suspend(|| show_foreign(&methods, &machines, family, plan));
+                continue;
+            }
             let answers = answers(&arguments, &methods, family, plan, &bar);
             bar.suspend(|| show(&arguments, &methods, &answers, family, plan));
         }
@@ -111,6 +122,146 @@ fn answers(
         }
     }
     answers
+}
+
+/// A foreign machine with every method's answer, in the methods' order.
+struct Machine {
+    adopted: Adopted,
+    answers: Vec<Graded>,
+    /// Error in a third campaign of the model that each method found, in sigmas.
+    errors: Vec<Option<f64>>,
+}
+
+fn foreign_machines(
+    arguments: &Arguments,
+    methods: &[Box<dyn Method>],
+    family: Family,
+    plan: Plan,
+    bar: &ProgressBar,
+) -> Vec<Machine> {
+    let seeds = arguments.seed..arguments.seed + arguments.count;
+    let machines = seeds.map(|seed| {
+        bar.set_message(format!("{family:?} {plan:?} {seed}"));
+        let adopted = Adopted::new(seed, family, plan);
+        let answers: Vec<Graded> = methods
+            .iter()
+            .map(|method| adopted.ask(method.as_ref()))
+            .collect();
+        bar.inc(methods.len() as u64);
+        let errors = answers
+            .iter()
+            .map(|graded| Some(adopted.error_elsewhere(graded.answer.model.as_ref()?)));
+        let errors: Vec<Option<f64>> = errors.collect();
+        let line = told(&adopted, &answers, &errors);
+        bar.suspend(|| eprintln!("{line}"));
+        Machine {
+            adopted,
+            answers,
+            errors,
+        }
+    });
+    machines.collect()
+}
+
+/// A machine and what the first method says of it, as text.
+fn told(adopted: &Adopted, answers: &[Graded], errors: &[Option<f64>]) -> String {
+    let sizes = |sizes: &[(&'static str, f64)]| {
+        let sizes = sizes.iter().map(|(id, size)| format!("{id} {size:.4}"));
+        sizes.collect::<Vec<_>>().join(", ")
+    };
+    let added = adopted.model.effects.iter().map(|added| added.effect.id());
+    let hidden = adopted.posed.case.hidden.iter();
+    let changes: Vec<_> = hidden.map(|hidden| (hidden.what.id, hidden.size)).collect();
+    let stated = answers.iter().map(|graded| {
+        let confidences = graded.answer.confidences.iter();
+        let stated = confidences.map(|(id, confidence)| format!("{id} ({confidence:.2})"));
+        stated.collect::<Vec<_>>().join(", ")
+    });
+    format!(
+        "machine {}: {}\n  adopted: {} (error {:.2}, {:.1} s)\n  changed: {} (d {:.2})\n  answered: {}; in {:.1} s, \
+         error elsewhere {:.2?}",
+        adopted.posed.case.seed / 3,
+        sizes(&adopted.foreign.own),
+        added.collect::<Vec<_>>().join(", "),
+        adopted.error,
+        adopted.seconds,
+        sizes(&changes),
+        adopted.posed.detectability,
+        stated.collect::<Vec<_>>().join(" | "),
+        answers.first().map_or(0.0, |graded| graded.seconds),
+        errors.first().copied().flatten().unwrap_or(f64::NAN),
+    )
+}
+
+fn show_foreign(methods: &[Box<dyn Method>], machines: &[Machine], family: Family, plan: Plan) {
+    println!("\n## Foreign machines, {family:?} rig, {plan:?} plan\n");
+    let mut table = Table::new();
+    table.load_preset(presets::ASCII_MARKDOWN);
+    table.set_header(std::iter::once("").chain(methods.iter().map(|method| method.name())));
+    let columns: Vec<Vec<(&str, String)>> = (0..methods.len())
+        .map(|method| foreign_column(machines, method))
+        .collect();
+    for row in 0..columns.first().map_or(0, Vec::len) {
+        let cells = columns.iter().map(|column| column[row].1.clone());
+        table.add_row(std::iter::once(columns[0][row].0.to_owned()).chain(cells));
+    }
+    println!("{table}\n");
+    let adopting: Vec<f64> = machines
+        .iter()
+        .map(|machine| machine.adopted.error)
+        .collect();
+    let seconds: Vec<f64> = machines
+        .iter()
+        .map(|machine| machine.adopted.seconds)
+        .collect();
+    println!(
+        "Adopted: error {}, in {} s (medians).\n",
+        median(adopting),
+        median(seconds)
+    );
+    for (index, method) in methods.iter().enumerate() {
+        let answers: Vec<Graded> = machines
+            .iter()
+            .map(|machine| machine.answers[index].clone())
+            .collect();
+        show_reliability(method.as_ref(), &answers);
+    }
+}
+
+/// Labels and cells of a method's column for foreign machines.
+fn foreign_column(machines: &[Machine], method: usize) -> Vec<(&'static str, String)> {
+    let answers = machines.iter().map(|machine| &machine.answers[method]);
+    let all = Tally(answers.collect());
+    let errors: Vec<f64> = machines
+        .iter()
+        .filter_map(|machine| machine.errors[method])
+        .collect();
+    let seconds = |share| {
+        all.seconds(share)
+            .map_or("-".to_owned(), |s| format!("{s:.1} s"))
+    };
+    vec![
+        ("first right", all.rate(Graded::named_first).to_string()),
+        ("all right", all.rate(Graded::exact).to_string()),
+        (
+            "wrong at confidence 0.9 or more",
+            all.rate(|graded| graded.wrong_at(0.9)).to_string(),
+        ),
+        (
+            "95 % intervals that hold the truth",
+            all.coverage().to_string(),
+        ),
+        ("error in a third campaign, median", median(errors)),
+        ("time, median", seconds(0.5)),
+        ("time, 95 %", seconds(0.95)),
+    ]
+}
+
+/// The median as text; a dash if there is none.
+fn median(mut values: Vec<f64>) -> String {
+    values.sort_by(f64::total_cmp);
+    let middle = values.get(values.len() / 2);
+    middle.map_or("-".to_owned(), |middle| format!("{middle:.2}"))
 }
 
 fn show(
@@ -177,6 +328,15 @@ fn column(method: &dyn Method, all: &Tally) -> Vec<(String, String)> {
         (
             "one hidden: named first".to_owned(),
             cannot(able.names, one.rate(Graded::named_first).to_string()),
+        ),
+        (
+            "named first: alone, and at most 1.1 sigma left".to_owned(),
+            cannot(
+                able.intervals,
+                one.filtered(Graded::named_first)
+                    .rate(Graded::explained)
+                    .to_string(),
+            ),
         ),
         (
             "one hidden: in the group".to_owned(),

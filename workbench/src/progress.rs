@@ -1,50 +1,91 @@
-//! Says on standard error what takes so long; only where that is a terminal.
-use std::time::Duration;
+//! Reports on standard error what takes long: as one line that changes on a terminal, elsewhere as a line now and then.
+use std::io::{IsTerminal, Write};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+/// Time between two lines where standard error is no terminal.
+const LINE_PERIOD: Duration = Duration::from_secs(10);
+
 /// A line that shows what is being done and for how long; it goes away when dropped.
 #[derive(Debug)]
-pub struct Progress(ProgressBar);
+pub struct Progress {
+    bar: ProgressBar,
+    /// `None` on a terminal.
+    lines: Option<Lines>,
+}
+
+/// Lines for a log.
+#[derive(Debug)]
+struct Lines {
+    start: Instant,
+    last: Mutex<Instant>,
+}
 
 impl Progress {
     /// Shows the first message.
     pub fn start(message: impl Into<String>) -> Self {
-        let bar = ProgressBar::new_spinner();
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
-            bar.set_style(style);
-        }
-        bar.set_message(message.into());
-        bar.enable_steady_tick(Duration::from_millis(120));
-        Self(bar)
+        Self::with(
+            ProgressBar::new_spinner(),
+            "{spinner} {msg} ({elapsed})",
+            message,
+        )
     }
 
     /// Shows a bar for work of `total` steps.
     pub fn of(total: usize, message: impl Into<String>) -> Self {
-        let bar = ProgressBar::new(total as u64);
         let template = "{spinner} [{bar:30}] {pos} of {len}, {msg} ({elapsed}, {eta} to go)";
+        Self::with(ProgressBar::new(total as u64), template, message)
+    }
+
+    fn with(bar: ProgressBar, template: &str, message: impl Into<String>) -> Self {
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style.progress_chars("=> "));
         }
         bar.set_message(message.into());
         bar.enable_steady_tick(Duration::from_millis(120));
-        Self(bar)
+        let now = Instant::now();
+        let lines = (!std::io::stderr().is_terminal()).then(|| Lines {
+            start: now,
+            last: Mutex::new(now),
+        });
+        Self { bar, lines }
     }
 
     /// Says how many steps of a bar are done, and what to say of them.
     pub fn reach(&self, steps: usize, message: impl Into<String>) {
-        self.0.set_position(steps as u64);
-        self.0.set_message(message.into());
+        self.bar.set_position(steps as u64);
+        let message = message.into();
+        let total = self.bar.length().unwrap_or_default();
+        self.line(&format!("{steps} of {total}, {message}"));
+        self.bar.set_message(message);
     }
 
     /// Replaces the message.
     pub fn say(&self, message: impl Into<String>) {
-        self.0.set_message(message.into());
+        let message = message.into();
+        self.line(&message);
+        self.bar.set_message(message);
+    }
+
+    /// Writes a line where standard error is no terminal, if the last one was long ago.
+    fn line(&self, message: &str) {
+        let Some(lines) = &self.lines else { return };
+        let Ok(mut last) = lines.last.lock() else {
+            return;
+        };
+        if last.elapsed() >= LINE_PERIOD {
+            *last = Instant::now();
+            let elapsed_s = lines.start.elapsed().as_secs();
+            // A log that cannot be written is no reason to stop the work.
+            let _ = writeln!(std::io::stderr(), "{message} ({elapsed_s} s)");
+        }
     }
 }
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }

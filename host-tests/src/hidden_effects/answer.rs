@@ -18,6 +18,10 @@ pub struct Answer {
     pub confidences: Vec<(String, f64)>,
     /// Error on runs that it was not fitted to, before and after, in sigmas.
     pub held_out: Option<(f64, f64)>,
+    /// Error on the campaign with what was found, in sigmas, of methods that fit a model.
+    pub error: Option<f64>,
+    /// The model with what was found, of methods that fit one.
+    pub model: Option<Model>,
 }
 
 /// What a method can say at all.

@@ -53,6 +53,8 @@ impl Method for Explaining {
                 || (explanation.before.error(), explanation.before.error()),
                 |(first, last)| (first.held_out_before.error, last.held_out_after.error),
             )),
+            error: Some(explanation.after.error()),
+            model: Some(model.with_effects(explanation.after.estimate.effects.clone())),
         }
     }
 }

@@ -3,12 +3,17 @@
 use std::collections::BTreeSet;
 use std::time::Instant;
 
+use hitch_model::Model;
+
 use super::answer::{Answer, Method};
 use super::detectability::detectability;
 use super::starting_point;
 use crate::second_rig::campaign_writer::campaign;
 use crate::second_rig::draw::{Case, Kind};
 use crate::second_rig::hideable::Fidelity;
+
+/// Error up to which a model explains a campaign, sigmas.
+const EXPLAINED: f64 = 1.1;
 
 /// A case with its measure of difficulty.
 #[derive(Debug, Clone)]
@@ -48,10 +53,15 @@ impl Posed {
     /// Lets a method answer.
     #[must_use]
     pub fn ask(&self, method: &dyn Method) -> Graded {
+        self.ask_about(method, &starting_point(self.case.family))
+    }
+
+    /// Lets a method answer, starting from a model.
+    #[must_use]
+    pub fn ask_about(&self, method: &dyn Method, model: &Model) -> Graded {
         let campaign = campaign(&self.case);
-        let model = starting_point(self.case.family);
         let start = Instant::now();
-        let answer = method.answer(&campaign, &model);
+        let answer = method.answer(&campaign, model);
         Graded {
             posed: self.clone(),
             answer,
@@ -76,6 +86,13 @@ impl Graded {
     pub fn named_first(&self) -> bool {
         let first = self.answer.named.first();
         first.is_some_and(|first| self.truth().contains(first.as_str()))
+    }
+
+    /// Whether the first name is a true one, no other was needed, and no more than noise is left.
+    #[must_use]
+    pub fn explained(&self) -> bool {
+        let error = self.answer.error.unwrap_or(f64::INFINITY);
+        self.named_first() && self.answer.named.len() == 1 && error <= EXPLAINED
     }
 
     /// Whether every true name is among those given or said to be possible.
@@ -104,6 +121,13 @@ impl Graded {
         let truth = self.truth();
         let mut said = self.answer.named.iter().chain(&self.answer.group);
         !self.answer.named.is_empty() && !said.any(|name| truth.contains(name.as_str()))
+    }
+
+    /// Whether a name that is not true is stated with at least this probability.
+    #[must_use]
+    pub fn wrong_at(&self, confidence: f64) -> bool {
+        self.stated()
+            .any(|(stated, there)| !there && stated >= confidence)
     }
 
     /// For each true name with an interval whether that holds the true size; only sizes that mean the same.

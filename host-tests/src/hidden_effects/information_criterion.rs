@@ -72,18 +72,9 @@ impl Method for InformationCriterion {
 
 /// The most promising effects, fitted.
 fn fits(comparison: &Comparison) -> Vec<Fitted> {
-    let cost = |added: &AddedEffect| square_sum(&comparison.all(std::slice::from_ref(added)));
-    let mut started: Vec<Fitted> = comparison
-        .effects()
-        .filter_map(|effect| {
-            starts(effect)
-                .into_iter()
-                .map(|added| Fitted {
-                    cost: cost(&added),
-                    added,
-                })
-                .min_by(|a, b| a.cost.total_cmp(&b.cost))
-        })
+    let started = comparison.effects();
+    let mut started: Vec<Fitted> = started
+        .filter_map(|effect| best_start(comparison, effect))
         .collect();
     started.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     started.truncate(FITTED);
@@ -91,6 +82,25 @@ fn fits(comparison: &Comparison) -> Vec<Fitted> {
         .into_iter()
         .map(|start| fit(comparison, start))
         .collect()
+}
+
+/// An effect at the best of a few sizes.
+fn best_start(comparison: &Comparison, effect: &'static dyn Effect) -> Option<Fitted> {
+    let cost = |added: &AddedEffect| square_sum(&comparison.all(std::slice::from_ref(added)));
+    let started = starts(effect).into_iter().map(|added| Fitted {
+        cost: cost(&added),
+        added,
+    });
+    started.min_by(|a, b| a.cost.total_cmp(&b.cost))
+}
+
+/// An effect fitted alone from the best of a few sizes.
+pub(super) fn started_and_fitted(
+    comparison: &Comparison,
+    effect: &'static dyn Effect,
+) -> Option<AddedEffect> {
+    let start = best_start(comparison, effect)?;
+    Some(fit(comparison, start).added)
 }
 
 fn starts(effect: &'static dyn Effect) -> Vec<AddedEffect> {

@@ -3,9 +3,11 @@
 pub mod answer;
 pub mod detectability;
 pub mod explaining;
+pub mod foreign;
 pub mod gaussian_process;
 pub mod grade;
 pub mod information_criterion;
+pub mod localised_hold_out;
 pub mod residuals;
 pub mod sparse_regression;
 pub mod tally;
@@ -20,6 +22,7 @@ pub fn methods() -> Vec<Box<dyn Method>> {
     vec![
         Box::new(explaining::Explaining),
         Box::new(information_criterion::InformationCriterion),
+        Box::new(localised_hold_out::LocalisedHoldOut),
         Box::new(sparse_regression::SparseRegression),
         Box::new(gaussian_process::GaussianProcess),
     ]

@@ -35,6 +35,18 @@ pub struct Hidden {
     shape_seed: u64,
 }
 
+impl Hidden {
+    /// Something of a size, with the rest of its shape drawn from a seed.
+    #[must_use]
+    pub fn new(what: &'static Hideable, size: f64, shape_seed: u64) -> Self {
+        Self {
+            what,
+            size,
+            shape_seed,
+        }
+    }
+}
+
 /// What a drawn case has to be like; what is left open is drawn.
 #[derive(Debug, Clone, Copy)]
 pub struct Wish {
@@ -71,8 +83,8 @@ pub struct Case {
     pub kind: Kind,
     /// What is hidden.
     pub hidden: Vec<Hidden>,
-    /// Physics that nobody has a name for, too small to matter.
-    unnamed: Physics,
+    /// What the rig is beside what is hidden: its own structures, and physics that nobody has a name for.
+    pub(super) unnamed: Physics,
     /// The instruments.
     pub instruments: Instruments,
 }
@@ -163,11 +175,7 @@ fn draw_hidden(wish: &Wish, kind: Kind, random: &mut Pcg64) -> Vec<Hidden> {
         .map(|what| {
             let size = what.draw_size(random);
             let wanted = wish.effect.and_then(|(_, size)| size);
-            Hidden {
-                what,
-                size: wanted.unwrap_or(size),
-                shape_seed: random.random(),
-            }
+            Hidden::new(what, wanted.unwrap_or(size), random.random())
         })
         .collect()
 }

@@ -6,6 +6,7 @@
 //!
 //! ```text
 //! draw           a seed -> family, plan, hidden effects, instruments
+//! foreign        a machine that differs from the data sheet in many ways, and its changes
 //! hideable       every physics that can be hidden, with its usual sizes; fills a `Physics`
 //! physics        what a rig has beyond its data sheet, as plain numbers
 //! manoeuvres     what the lab and the field do: loads, temperatures, courses of the currents
@@ -23,6 +24,7 @@ pub mod current_path;
 pub mod data_sheet;
 pub mod draw;
 pub mod driven_hitch;
+pub mod foreign;
 pub mod hideable;
 pub mod hydraulics;
 pub mod instruments;

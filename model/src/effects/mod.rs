@@ -25,6 +25,7 @@ mod angle_sensor_lag;
 mod bulk_modulus;
 mod check_valve_loss;
 mod compensator_droop;
+mod compensator_margin;
 mod coulomb_friction;
 mod described;
 mod entrained_air;
@@ -79,6 +80,8 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &compensator_droop::WITH_LOAD,
     &compensator_droop::WITH_FLOW,
     &compensator_droop::LAGGING,
+    &compensator_margin::PRELOAD,
+    &compensator_margin::BYPASS,
     &check_valve_loss::THROTTLING,
     &check_valve_loss::LIFTING,
     &pump_leakage::PUMP_LEAKAGE,
@@ -112,6 +115,9 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &pressure_sensor_offset::PRESSURE_SENSOR_OFFSET,
 ];
 
+/// Share of the end of a parameter's range, or of its typical value, within which a value counts as at that end.
+const AT_A_LIMIT: f64 = 1e-3;
+
 /// One parameter of an effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameter {
@@ -131,6 +137,16 @@ pub struct Parameter {
     pub low: f64,
     /// Largest value that makes sense.
     pub high: f64,
+}
+
+impl Parameter {
+    /// Whether a value is at an end of the range, and that end does not turn the effect off.
+    #[must_use]
+    pub fn is_at_a_limit(&self, value: f64) -> bool {
+        let near = |end: f64| AT_A_LIMIT * end.abs().max(self.typical.abs());
+        let is_at = |end: f64| end != self.null && (value - end).abs() <= near(end);
+        is_at(self.low) || is_at(self.high)
+    }
 }
 
 /// How the size of an effect is looked for before it is fitted.

@@ -4,7 +4,8 @@
 //! this class (Merritt, ch. 6; data sheets). The usual form is two first-order lags in series: `share` moves part of the
 //! lag into the second one; none is a plain first-order lag, a half is critical damping. A spool with less damping than
 //! that swings past its place: 5 to 15 Hz and a damping of 0.7 to 1 are usual. Both are exact at any step as long as the
-//! current runs linearly. On the dynamic starting point it comes on top of the 45 ms that are declared there.
+//! current runs linearly. On the dynamic starting point it comes on top of the 45 ms that are declared there; a negative
+//! lag takes from those, down to none.
 
 use super::described::Described;
 use super::{Parameter, Search};
@@ -34,7 +35,7 @@ pub static CREEPING: Described = Described {
             meaning: "sum of the two time constants",
             null: 0.0,
             typical: 0.05,
-            low: 0.0,
+            low: -0.1,
             high: 1.0,
         },
         Parameter {
@@ -105,6 +106,10 @@ fn attach_swinging(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
 }
 
 fn attach_creeping(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+    if values[0] < 0.0 {
+        sites.spool_lag_extra_s += values[0];
+        return;
+    }
     let second_s = values[0] * values[1];
     for time_constant_s in [values[0] - second_s, second_s] {
         sites.currents.push(Box::new(SpoolLag {

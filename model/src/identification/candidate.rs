@@ -15,6 +15,18 @@ use super::profile::Profile;
 use crate::effects::{AddedEffect, Effect};
 use crate::model::Model;
 
+/// Ratio of the mean square that an effect explains to what is left where it acts at which it is as likely itself as the
+/// nearest to something else. In drawn campaigns with physics outside the catalogue no name had more than 17, in those
+/// with the effect itself 45 of 46 had more than 400 (benchmark `hidden_effects`, steady rig, lab plan, seeds 1 to 60 and,
+/// with `--kind outside`, 101 to 130).
+const EVEN_RATIO: f64 = 25.0;
+
+/// By how much slow noise spreads a mean square.
+const SLOW_NOISE: f64 = 2.0;
+
+/// Standard deviations by which a mean square exceeds noise before it counts as left.
+const SCATTERS: f64 = 2.0;
+
 /// See [`systematic`].
 const SYSTEMATIC_A: f64 = 0.000_9;
 const SYSTEMATIC_S: f64 = 0.001;
@@ -34,6 +46,8 @@ pub struct Candidate {
     pub inflation: f64,
     /// Root mean square of its projected signature at the fitted size, in sigmas.
     pub detectability: f64,
+    /// Of the mean square that would be left beyond noise without it, where it shows, the share that it explains.
+    pub explained_share: f64,
     /// 95 % intervals of its parameters, in their units; not numbers if the screen found nothing of the effect.
     pub intervals: Vec<(f64, f64)>,
 }
@@ -48,6 +62,7 @@ impl Candidate {
             likelihood_ratio: 0.0,
             inflation: 1.0,
             detectability: 0.0,
+            explained_share: 0.0,
             intervals: vec![(f64::NAN, f64::NAN); effect.parameters().len()],
         }
     }
@@ -66,6 +81,17 @@ impl Candidate {
     #[must_use]
     pub fn effective_samples(&self) -> f64 {
         self.fit.weights.count() as f64 / self.inflation
+    }
+
+    /// Probability that it is what it is called and not the nearest to something that is in no catalogue.
+    ///
+    /// A different mechanism never fits everywhere, and what it leaves lies where the effect acts. The odds grow with the
+    /// square of the ratio of what is explained there to what is left there; they are even at [`EVEN_RATIO`].
+    #[must_use]
+    pub fn genuine(&self) -> f64 {
+        let explained = self.explained_share;
+        let left = EVEN_RATIO * (1.0 - explained);
+        explained.powi(2) / (explained.powi(2) + left.powi(2)).max(f64::MIN_POSITIVE)
     }
 
     /// Fall of the cost, under the yardsticks of the model without it.
@@ -145,6 +171,7 @@ fn weigh_with(
     let Seen {
         detectability,
         inflation,
+        explained_share,
     } = Seen::new(experiment, model, &fit, jacobian);
     let intervals = signatures
         .par_iter()
@@ -175,6 +202,7 @@ fn weigh_with(
         likelihood_ratio: fallen / (variance * inflation),
         inflation,
         detectability,
+        explained_share,
         intervals,
         fit,
     }
@@ -245,6 +273,8 @@ struct Seen {
     detectability: f64,
     /// Variance inflation of that change.
     inflation: f64,
+    /// See [`explained_share`].
+    explained_share: f64,
 }
 
 impl Seen {
@@ -263,6 +293,30 @@ impl Seen {
         Self {
             detectability: detectability(&left, price, fit.weights.count()),
             inflation: variance_inflation(experiment, &fit.residuals, &left),
+            explained_share: explained_share(&left, &huber(fit.residuals.clone())),
         }
     }
+}
+
+/// Of the mean square that would be left beyond noise without an effect the share that it explains, both weighted with
+/// the square of what it changes: what something else leaves elsewhere says nothing of it, and what an effect that is
+/// there in its place leaves lies where it acts.
+fn explained_share(changes: &[Vec<f64>], residuals: &[Vec<f64>]) -> f64 {
+    let (mut weight, mut weight_square, mut explained, mut left) = (0.0, 0.0, 0.0, 0.0);
+    let pairs = changes.iter().flatten().zip(residuals.iter().flatten());
+    for (change, residual) in pairs {
+        let square = change * change;
+        weight += square;
+        weight_square += square * square;
+        explained += square * square;
+        left += square * (residual * residual - 1.0);
+    }
+    if weight == 0.0 {
+        return 0.0;
+    }
+    // Scatter of a weighted mean of squares of noise, a part of which is slow.
+    let scatter = (2.0 * SLOW_NOISE * weight_square).sqrt() / weight;
+    let left = (left / weight - SCATTERS * scatter).max(0.0);
+    let explained = explained / weight;
+    explained / (explained + left)
 }

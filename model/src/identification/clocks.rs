@@ -31,6 +31,7 @@ impl Clocks {
         Trace {
             channels: Channel::ALL.map(|channel| self.stamped_channel(channel, time_s, trace)),
             true_angle_deg: trace.true_angle_deg.clone(),
+            idle_pressure_bar: trace.idle_pressure_bar,
         }
     }
 

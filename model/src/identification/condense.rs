@@ -97,6 +97,7 @@ impl Stretches {
         Trace {
             channels: std::array::from_fn(|channel| self.means(&trace.channels[channel])),
             true_angle_deg: self.means(&trace.true_angle_deg),
+            idle_pressure_bar: trace.idle_pressure_bar,
         }
     }
 }

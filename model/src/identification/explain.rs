@@ -71,6 +71,8 @@ pub struct Step {
     pub confidence: f64,
     /// Root mean square of its projected signature, in sigmas.
     pub detectability: f64,
+    /// Of the mean square that would be left beyond noise without it, where it shows, the share that it explains.
+    pub explained_share: f64,
     /// Effects that would explain the campaign as well in its place.
     pub indistinguishable: Vec<Alternative>,
     /// Other forms of it that would explain the campaign as well; `None` is the usual one.
@@ -286,8 +288,9 @@ fn steps(experiment: &Experiment, model: &Model, before: &Fit, found: &Found) ->
             error_after: fit.error(),
             held_out_before,
             held_out_after,
-            confidence: with_it.map(|set| set.probability).sum(),
+            confidence: with_it.map(|set| set.probability).sum::<f64>() * candidate.genuine(),
             detectability: candidate.detectability,
+            explained_share: candidate.explained_share,
             other_forms: other_forms(&found.fit, id, &weighed),
             indistinguishable: alternatives(experiment, model, &whole, &weighed),
             values: candidate.values().to_vec(),

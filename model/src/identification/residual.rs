@@ -122,13 +122,7 @@ impl RunWeights {
         let [below, above] = [-1.0, 1.0].map(|spreads| trace(0.0, spreads));
         let edges = run.measured[Channel::PumpPressure.index()]
             .as_ref()
-            .map(|_| {
-                pump_edges(
-                    run,
-                    model,
-                    [-EDGE_SPREADS, EDGE_SPREADS].map(|s| trace(0.0, s)),
-                )
-            });
+            .map(|_| pump_edges(run, [-EDGE_SPREADS, EDGE_SPREADS].map(|s| trace(0.0, s))));
         let [below, above] = [below, above].map(|trace| run.stamped(&trace, clocks));
         let [early, late] =
             [-TIMING_S, TIMING_S].map(|later_s| run.stamped(&trace(later_s, 0.0), clocks));
@@ -261,12 +255,11 @@ const EDGE_SAMPLES: usize = 2;
 const EDGE_SPREADS: f64 = 3.0;
 
 /// Samples next to a jump of the pump pressure between idle and load pressure.
-fn pump_edges(run: &ReadyRun, model: &Model, traces: [Arc<Trace>; 2]) -> Vec<bool> {
-    let idle_bar = units::bar_from_pa(model.constants().compensator.idle_pressure_pa());
+fn pump_edges(run: &ReadyRun, traces: [Arc<Trace>; 2]) -> Vec<bool> {
     let last = run.len() - 1;
     let lifts = |sample: usize| {
         let high = |trace: &Arc<Trace>| {
-            (trace.channel(Channel::PumpPressure)[sample] - idle_bar).abs() > 1e-6
+            (trace.channel(Channel::PumpPressure)[sample] - trace.idle_pressure_bar).abs() > 1e-6
         };
         traces.each_ref().map(high)
     };

@@ -21,6 +21,7 @@ impl Shortfall {
         Self(Trace {
             channels: std::array::from_fn(|c| short((&fine.channels[c], &draft.channels[c]))),
             true_angle_deg: short((&fine.true_angle_deg, &draft.true_angle_deg)),
+            idle_pressure_bar: 0.0,
         })
     }
 

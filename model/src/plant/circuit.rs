@@ -288,7 +288,7 @@ impl Circuit<'_> {
     /// Pump pressure, Pa, that compensator and relief valve seek with the lift valve so far open.
     fn sought_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
         if opening.shut() {
-            return self.constants.compensator.idle_pressure_pa();
+            return self.idle_pressure_pa();
         }
         let flow_at = self.lift_flow_at(opening, state);
         let without_flow_pa = self.lifting_pressure_pa(state);
@@ -298,8 +298,13 @@ impl Circuit<'_> {
     /// Whether a lagging compensator has come to rest without a lift, or does not lag.
     #[must_use]
     pub fn idles(&self, state: &MechanicalState) -> bool {
-        let idle_pa = self.constants.compensator.idle_pressure_pa();
-        (state.compensator_pa - idle_pa).abs() < AT_REST_PA
+        (state.compensator_pa - self.idle_pressure_pa()).abs() < AT_REST_PA
+    }
+
+    /// Pump pressure with the lift valve shut, Pa.
+    #[must_use]
+    pub fn idle_pressure_pa(&self) -> f64 {
+        self.constants.compensator.idle_pressure_pa() + self.sites.idle_extra_pa
     }
 
     /// How fast a lagging compensator gets to the pump pressure that it seeks, Pa/s; nothing without a lag.

@@ -162,7 +162,8 @@ impl<'m> Plant<'m> {
             .iter_mut()
             .fold(at_rest, |currents, stage| stage.rest(currents));
         let spools = [effective.lift_a, effective.lower_a];
-        let spools = spools.map(|a| Lag::at_rest(model.spool_lag_s(), a));
+        let lag_s = (model.spool_lag_s() + sites.spool_lag_extra_s).max(0.0);
+        let spools = spools.map(|a| Lag::at_rest(lag_s, a));
         let mut plant = Self {
             model,
             rig,
@@ -282,6 +283,12 @@ impl<'m> Plant<'m> {
             }
             Rig::Flow { .. } => f64::NAN,
         }
+    }
+
+    /// Pump pressure with the lift valve shut, Pa.
+    #[must_use]
+    pub fn idle_pressure_pa(&self) -> f64 {
+        self.circuit().idle_pressure_pa()
     }
 
     fn circuit(&self) -> Circuit<'_> {

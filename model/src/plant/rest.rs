@@ -50,7 +50,7 @@ impl Plant<'_> {
     /// Nothing moves, and the pump's flow passes the compensator.
     fn idle(&self) -> MechanicalState {
         MechanicalState {
-            compensator_pa: self.model.constants().compensator.idle_pressure_pa(),
+            compensator_pa: self.idle_pressure_pa(),
             ..MechanicalState::default()
         }
     }

@@ -247,6 +247,10 @@ pub struct Sites {
     pub flow_number_1_a_sqrt_pa: Option<f64>,
     /// Added to the compensator's margin, Pa, from the cylinder pressure, Pa.
     pub margin: Vec<Law>,
+    /// Added to the pump pressure with the lift valve shut, Pa.
+    pub idle_extra_pa: f64,
+    /// Added to the model's own lag of the spools, s; negative where they are quicker than declared.
+    pub spool_lag_extra_s: f64,
     /// What the compensator's margin loses for each lift flow, Pa/(m3/s).
     pub margin_lost_to_flow_pa_s_m3: f64,
     /// How long the compensator takes to get to its pressure, s.
@@ -300,6 +304,8 @@ impl Default for Sites {
             lower_travel_factor: Vec::new(),
             flow_number_1_a_sqrt_pa: None,
             margin: Vec::new(),
+            idle_extra_pa: 0.0,
+            spool_lag_extra_s: 0.0,
             margin_lost_to_flow_pa_s_m3: 0.0,
             compensator_lag_s: 0.0,
             cracking_extra_pa: 0.0,

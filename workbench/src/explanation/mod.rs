@@ -31,7 +31,8 @@ pub struct Explanation {
     pub unexplained: Unexplained,
     /// What would not have been seen at its typical size, the faintest first; empty if something stays unexplained.
     pub not_visible: Vec<NotVisible>,
-    /// Whether the time was up before the search had ended: there may be more than the steps say.
+    /// Whether the search ended, by its time or its number of rounds, before its set stayed: there may be more than the
+    /// steps say.
     pub unfinished: bool,
     /// The experiment that would tell most, if one is needed.
     #[serde(flatten)]
@@ -104,6 +105,8 @@ pub struct Step {
     pub held_out_loss_after: f64,
     /// How sure the data make one that it is this effect, 0 to 1.
     pub confidence: f64,
+    /// Of the mean square that would be left beyond noise without it, where it shows, the share that it explains.
+    pub explained_share: f64,
     /// Effects that it cannot be told from on these data.
     pub indistinguishable: Vec<&'static str>,
     /// The same with how far apart they are.
@@ -193,6 +196,8 @@ pub struct Parameter {
     pub low: f64,
     /// Upper end of the 95 % interval.
     pub high: f64,
+    /// Whether the estimate is at an end of the range that the catalogue allows: it is no measurement then.
+    pub at_its_limit: bool,
 }
 
 /// What the catalogue does not explain.

@@ -37,7 +37,7 @@ impl Diagnosis {
                 error_before: found.base.error(),
                 error_after: after.error(),
                 noise_floor: 1.0,
-                channels: channels(experiment, &found.base, after),
+                channels: channels(experiment, model, &found.base, after),
                 verdict: verdict(experiment, found, believed).name(),
                 hopeless_base: is_hopeless(experiment, &found.base, after),
             },

@@ -22,7 +22,7 @@ impl Explanation {
                 error_before: found.before.error(),
                 error_after: found.after.error(),
                 noise_floor: 1.0,
-                channels: channels(experiment, &found.before, &found.after),
+                channels: channels(experiment, model, &found.before, &found.after),
                 verdict: found.verdict.name(),
                 hopeless_base: is_hopeless(experiment, &found.before, &found.after),
             },
@@ -56,6 +56,7 @@ fn step(step: &explain::Step) -> Step {
         held_out_loss_before: step.held_out_before.loss,
         held_out_loss_after: step.held_out_after.loss,
         confidence: step.confidence,
+        explained_share: step.explained_share,
         indistinguishable: step
             .indistinguishable
             .iter()
@@ -97,6 +98,7 @@ pub fn parameters(effect: &dyn Effect, values: &[f64], intervals: &[(f64, f64)])
             value: *value,
             low: *low,
             high: *high,
+            at_its_limit: parameter.is_at_a_limit(*value),
         }
     };
     effect
@@ -110,9 +112,17 @@ pub fn parameters(effect: &dyn Effect, values: &[f64], intervals: &[(f64, f64)])
 /// Errors by channel before and after, in the channel's unit, beside the instrument's noise, and how late its clock is
 /// against that of the currents, s.
 ///
+/// Beside that stand the parts of the channel's whole delay behind the currents, s.
+///
 /// They are the errors in sigma times sigma, so that they add up to the error of the whole; what the noise of the
 /// logged currents does to the simulation is no error of the model and not in them.
-pub fn channels(experiment: &Experiment, before: &Fit, after: &Fit) -> Map<String, Value> {
+pub fn channels(
+    experiment: &Experiment,
+    model: &Model,
+    before: &Fit,
+    after: &Fit,
+) -> Map<String, Value> {
+    let spool_lag_s = model.spool_lag_s();
     let measured = |channel: &Channel| experiment.noise[channel.index()].is_finite();
     let entry = |channel: Channel| {
         let noise = experiment.noise[channel.index()];
@@ -124,6 +134,7 @@ pub fn channels(experiment: &Experiment, before: &Fit, after: &Fit) -> Map<Strin
                 "after": error(after),
                 "noise": noise,
                 "late_s": after.estimate.clocks.offsets_s[channel.index()],
+                "delay_s": delays(after, spool_lag_s, channel),
             }),
         )
     };
@@ -131,5 +142,27 @@ pub fn channels(experiment: &Experiment, before: &Fit, after: &Fit) -> Map<Strin
         .into_iter()
         .filter(measured)
         .map(entry)
+        .collect()
+}
+
+/// The parts of a channel's delay behind the currents, s: its clock, the spools' lag that the model declares, and the
+/// effects whose size is a time and that the channel shows; and their sum.
+fn delays(fit: &Fit, spool_lag_s: f64, channel: Channel) -> Map<String, Value> {
+    let shown = fit.estimate.effects.iter().filter(|added| {
+        added.effect.parameters()[0].unit == "s" && added.effect.channels().contains(&channel)
+    });
+    let effects = shown.map(|added| (added.effect.id(), added.values[0]));
+    let clock_s = fit.estimate.clocks.offsets_s[channel.index()];
+    let known = [("clock", clock_s), ("declared spool lag", spool_lag_s)];
+    let parts: Vec<(&str, f64)> = known
+        .into_iter()
+        .chain(effects)
+        .filter(|(_, part_s)| *part_s != 0.0)
+        .collect();
+    let sum_s: f64 = parts.iter().map(|(_, part_s)| part_s).sum();
+    let whole = std::iter::once(("sum", sum_s));
+    let parts = parts.into_iter().chain(whole);
+    parts
+        .map(|(name, part_s)| (name.to_owned(), json!(part_s)))
         .collect()
 }

@@ -9,6 +9,9 @@ use super::{
 };
 use crate::text::{Table, known, wrapped};
 
+/// Share of the error where it acts below which an effect is less likely itself than the nearest to something else.
+const STANDS_FOR_ANOTHER: f64 = 0.96;
+
 /// Width of running text, characters.
 const WIDTH: usize = 100;
 
@@ -36,7 +39,7 @@ impl fmt::Display for Explanation {
             )
         )?;
         if self.unfinished {
-            let line = "The time was up before the search had ended: there may be more. Give it more with --budget.";
+            let line = "The search reached its limit of time or rounds before its result was stable: there may be more effects.";
             writeln!(f, "{}", wrapped(line, WIDTH))?;
         }
         write!(f, "{}{}", self.unexplained, self.next)?;
@@ -191,8 +194,28 @@ impl fmt::Display for Head {
                 late_ms(values),
             ]);
         }
-        write!(f, "{table}")
+        write!(f, "{table}")?;
+        for (channel, values) in &self.channels {
+            if let Some(parts) = delay_ms(values) {
+                writeln!(f, "  {channel} is {parts} behind the currents")?;
+            }
+        }
+        Ok(())
     }
+}
+
+/// A channel's delay behind the currents with its parts, ms, as text; `None` if a clock is all of it.
+fn delay_ms(channel: &serde_json::Value) -> Option<String> {
+    let parts = channel["delay_s"].as_object()?;
+    let ms = |part: &serde_json::Value| 1e3 * part.as_f64().unwrap_or(f64::NAN);
+    let is_effect = |name: &&String| !["sum", "clock"].contains(&name.as_str());
+    parts.keys().find(is_effect)?;
+    let named = parts.iter().filter(|(name, _)| name.as_str() != "sum");
+    let terms: Vec<String> = named
+        .map(|(name, part)| format!("{name} {:.0}", ms(part)))
+        .collect();
+    let sum = ms(&parts["sum"]);
+    Some(format!("{sum:.0} ms ({})", terms.join(" + ")))
 }
 
 /// How late a channel's clock is against that of the currents, ms, as text.
@@ -258,6 +281,13 @@ impl fmt::Display for Step {
             self.confidence,
             self.detectability
         )?;
+        if self.explained_share < STANDS_FOR_ANOTHER {
+            let share = 100.0 * self.explained_share;
+            writeln!(
+                f,
+                "     explains {share:.0} % of the error where it acts: probably another effect, outside the catalogue, acts there"
+            )?;
+        }
         if self.form_undetermined {
             let forms = self.other_forms.iter();
             let forms: Vec<&str> = forms.map(|form| form.unwrap_or("usual")).collect();
@@ -283,6 +313,7 @@ impl fmt::Display for Parameter {
             value,
             low,
             high,
+            at_its_limit,
         } = self;
         let space = if unit.is_empty() { "" } else { " " };
         let number = |value: f64| significant(value, 4);
@@ -290,7 +321,11 @@ impl fmt::Display for Parameter {
         if low.is_nan() || high.is_nan() {
             return Ok(());
         }
-        write!(f, " ({} to {})", number(*low), number(*high))
+        write!(f, " ({} to {})", number(*low), number(*high))?;
+        if *at_its_limit {
+            write!(f, ", at its limit")?;
+        }
+        Ok(())
     }
 }
 
@@ -371,6 +406,7 @@ mod tests {
         value: -0.05,
         low: -0.06,
         high: -0.04,
+        at_its_limit: false,
     };
 
     #[test]
@@ -394,6 +430,7 @@ mod tests {
             held_out_loss_before: f64::NAN,
             held_out_loss_after: f64::NAN,
             confidence: 1.0,
+            explained_share: 1.0,
             indistinguishable: Vec::new(),
             alternatives: Vec::new(),
             detectability: 2.0,

@@ -27,6 +27,7 @@ const FILES: &[(&str, &str, &str)] = &[
     ("server.js", SCRIPT, include_str!("assets/server.js")),
     ("dom.js", SCRIPT, include_str!("assets/dom.js")),
     ("error_map.js", SCRIPT, include_str!("assets/error_map.js")),
+    ("own_term.js", SCRIPT, include_str!("assets/own_term.js")),
     ("missing.js", SCRIPT, include_str!("assets/missing.js")),
     (
         "model_panel.js",

@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 use tokio_stream::wrappers::BroadcastStream;
 use tokio_stream::{Stream, StreamExt};
 
+use super::own_term::{self, TermForm};
 use super::session::Session;
 use super::sessions::{Sessions, Shared};
 use super::tasks::{Task, moved};
@@ -33,6 +34,8 @@ pub fn routes() -> Router<Arc<Sessions>> {
         .route("/{token}/api/run", get(run))
         .route("/{token}/api/worst", get(worst))
         .route("/{token}/api/signature", get(signature))
+        .route("/{token}/api/formulas", get(formulas))
+        .route("/{token}/api/check", post(check))
         .route("/{token}/api/preview", post(preview))
         .route("/{token}/api/start", post(start))
         .route("/{token}/api/cancel", post(cancel))
@@ -53,6 +56,14 @@ impl Refusal {
         Self {
             status,
             fault: json!({ "what": what }),
+        }
+    }
+
+    /// A request whose content is wrong.
+    pub(super) fn wrong(fault: Value) -> Self {
+        Self {
+            status: StatusCode::UNPROCESSABLE_ENTITY,
+            fault,
         }
     }
 
@@ -191,6 +202,22 @@ async fn preview(State(sessions): Known, Json(trial): Json<Trial>) -> Answer {
     let none =
         || Refusal::conflict("the model has no such parameter any more, or there is no such run");
     Ok(Json(view.await?.ok_or_else(none)?))
+}
+
+async fn formulas() -> Json<Value> {
+    Json(own_term::offered())
+}
+
+/// A term to look at.
+#[derive(Debug, Deserialize)]
+struct Draft {
+    term: TermForm,
+}
+
+/// What is wrong with a term; nothing if it is right.
+async fn check(Json(draft): Json<Draft>) -> Answer {
+    let fault = blocking(move || draft.term.check()).await?;
+    Ok(Json(json!({ "fault": fault })))
 }
 
 #[derive(Debug, Deserialize)]

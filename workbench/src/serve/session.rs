@@ -2,10 +2,12 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hitch_model::effects::full_name;
+use hitch_model::Model;
+use hitch_model::effects::{TermEffect, full_name};
 use hitch_model::identification::candidate::Candidate;
 use hitch_model::identification::explain;
 use hitch_model::identification::fit::Fit;
+use hitch_model::identification::suggestion::Suggestion;
 use serde_json::Value;
 use tokio::sync::broadcast;
 
@@ -25,6 +27,8 @@ pub struct Step {
     pub evaluated: Arc<Evaluated>,
     /// Error on runs that were not used to fit; `None` where nothing was fitted.
     pub held_out: Option<f64>,
+    /// Terms that were defined up to here, those of the model's file first.
+    pub terms: Vec<&'static TermEffect>,
 }
 
 /// Effects that the model of a step could lack, ranked.
@@ -53,6 +57,8 @@ pub struct Explained {
     pub of: Arc<Evaluated>,
     /// What was found.
     pub explanation: explain::Explanation,
+    /// A term for what stays unexplained.
+    pub suggestion: Option<Suggestion>,
     /// The same for people.
     pub shown: explanation::Explanation,
 }
@@ -89,6 +95,7 @@ impl Session {
             title: format!("Model {}", subject.model.name),
             evaluated: Arc::clone(&subject.start),
             held_out: None,
+            terms: subject.model.terms.clone(),
         };
         Self {
             subject,
@@ -119,6 +126,11 @@ impl Session {
     /// The present step.
     pub fn present(&self) -> &Step {
         &self.steps[self.at]
+    }
+
+    /// The model to begin with, with the terms that were defined since.
+    pub fn model(&self) -> Model {
+        self.subject.model.with_terms(self.present().terms.clone())
     }
 
     /// The fit of the present step.
@@ -167,7 +179,6 @@ impl Drop for Session {
 mod tests {
     use super::*;
     use crate::serve::Source;
-    use hitch_model::Model;
 
     fn step(session: &Session, title: &str) -> Step {
         Step {

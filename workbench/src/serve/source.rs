@@ -37,7 +37,7 @@ impl Source {
     /// If the campaign is wrong.
     pub fn read(&self) -> Result<Subject, Error> {
         let campaign = match &self.campaign {
-            Some(folder) => Campaign::load(folder)?,
+            Some(folder) => Campaign::load_with(folder, self.model.linkage())?,
             None => demonstration::campaign()?,
         };
         Ok(Subject {

@@ -12,9 +12,11 @@ use hitch_model::identification::holdout::held_out;
 use hitch_model::identification::residual::Weights;
 use hitch_model::identification::subset::Options;
 use hitch_model::identification::subset::single::try_effects;
+use hitch_model::identification::suggestion::{Suggestion, suggest};
 use serde::Deserialize;
 
 use super::jobs::Reporter;
+use super::own_term::TermForm;
 use super::routes::Refusal;
 use super::session::{Explained, Ranking, Session, Step};
 use super::source::Subject;
@@ -37,6 +39,11 @@ pub enum Task {
     Add {
         /// Its name, with its form.
         effect: String,
+    },
+    /// Add a term of the user's own and fit.
+    Term {
+        /// Its definition.
+        term: TermForm,
     },
     /// Take an effect away and fit.
     Remove {
@@ -61,11 +68,14 @@ pub enum Task {
         /// Indices of the steps that are accepted.
         steps: Vec<usize>,
     },
+    /// Take over the explanation with the term that it suggests.
+    Suggested,
 }
 
 /// A task with all that it needs.
 pub struct Ready {
     subject: Arc<Subject>,
+    model: Model,
     present: Step,
     ranking: Option<Arc<Ranking>>,
     what: What,
@@ -80,6 +90,7 @@ enum What {
     Set(Estimate, String),
     Fit,
     Adopt(Arc<Explained>, Vec<usize>),
+    Suggested(Suggestion),
 }
 
 /// What a task came to.
@@ -114,11 +125,18 @@ impl Ready {
             let added = effects.get(effect);
             added.ok_or_else(|| Refusal::conflict("the model has no such effect any more"))
         };
+        let mut present = session.present().clone();
         let what = match task {
             Task::Rank => What::Rank,
             Task::Explain => What::Explain,
             Task::Fit => What::Fit,
             Task::Add { effect } => What::Add(new_effect(session, &effect)?),
+            Task::Term { term } => {
+                let term = term.define().map_err(Refusal::wrong)?;
+                present.terms.retain(|known| known.id() != term.id());
+                present.terms.push(term);
+                What::Add(lacking(session, term)?)
+            }
             Task::Remove { effect } => there(effect).map(|_| What::Remove(effect))?,
             Task::Set {
                 effect,
@@ -130,17 +148,22 @@ impl Ready {
                 let no_parameter = || Refusal::conflict("the effect has no such parameter");
                 What::Set(estimate.ok_or_else(no_parameter)?, title)
             }
-            Task::Adopt { steps } => {
-                let present = &session.present().evaluated;
-                let explained = session.explained.as_ref();
-                let explained = explained.filter(|known| Arc::ptr_eq(&known.of, present));
-                let stale = || Refusal::conflict("the model has changed since; explain it again");
-                What::Adopt(Arc::clone(explained.ok_or_else(stale)?), steps)
+            Task::Adopt { steps } => What::Adopt(present_explanation(session)?, steps),
+            Task::Suggested => {
+                let suggestion = present_explanation(session)?.suggestion.clone();
+                let none = || Refusal::conflict("the explanation suggests no term");
+                let suggestion = suggestion.ok_or_else(none)?;
+                present
+                    .terms
+                    .retain(|known| known.id() != suggestion.term.id());
+                present.terms.push(suggestion.term);
+                What::Suggested(suggestion)
             }
         };
         Ok(Self {
             subject: Arc::clone(session.subject()),
-            present: session.present().clone(),
+            model: session.model().with_terms(present.terms.clone()),
+            present,
             ranking: session.present_ranking().cloned(),
             what,
         })
@@ -156,6 +179,7 @@ impl Ready {
             What::Set(_, _) => "Evaluating all runs".to_owned(),
             What::Fit => "Fitting all effects".to_owned(),
             What::Adopt(..) => "Taking the steps over".to_owned(),
+            What::Suggested(found) => format!("Adding {}", found.term.id()),
         }
     }
 
@@ -190,6 +214,11 @@ impl Ready {
             What::Fit => {
                 let start = before.estimate.clone();
                 Outcome::Steps(vec![self.fitted("Fitted".to_owned(), start, reporter)])
+            }
+            What::Suggested(found) => {
+                let title = format!("Took the explanation over with {}", found.term.id());
+                let start = found.fit.estimate.clone();
+                Outcome::Steps(vec![self.fitted(title, start, reporter)])
             }
             What::Adopt(explained, steps) => {
                 Outcome::Steps(self.adopted(explained, steps, reporter))
@@ -230,8 +259,15 @@ impl Ready {
         let explanation = explain_with(self.experiment(), &model, options, &|what| {
             reporter.progress(what, None, None);
         });
-        let shown = explanation::Explanation::new(self.experiment(), &model, &explanation);
+        let suggestion = suggest(self.experiment(), &model, &explanation, &|what| {
+            reporter.progress(&format!("trying a term, {what}"), None, None);
+        });
+        let mut shown = explanation::Explanation::new(self.experiment(), &model, &explanation);
+        if let Some(suggestion) = &suggestion {
+            shown.unexplained.suggest(suggestion);
+        }
         Explained {
+            suggestion,
             of: Arc::clone(&self.present.evaluated),
             explanation,
             shown,
@@ -319,6 +355,7 @@ impl Ready {
             title,
             evaluated: Arc::new(Evaluated { experiment, fit }),
             held_out: held_out.filter(|error| error.is_finite()),
+            terms: self.present.terms.clone(),
         }
     }
 
@@ -332,13 +369,26 @@ impl Ready {
     }
 
     fn model(&self) -> &Model {
-        &self.subject.model
+        &self.model
     }
+}
+
+/// The explanation, if it begins with the present model.
+fn present_explanation(session: &Session) -> Result<Arc<Explained>, Refusal> {
+    let present = &session.present().evaluated;
+    let explained = session.explained.as_ref();
+    let explained = explained.filter(|known| Arc::ptr_eq(&known.of, present));
+    let stale = || Refusal::conflict("the model has changed since; explain it again");
+    explained.cloned().ok_or_else(stale)
 }
 
 /// An effect by its name that the model of a session can have and does not.
 fn new_effect(session: &Session, name: &str) -> Result<&'static dyn Effect, Refusal> {
-    let effect = find(&session.subject().model, name)?;
+    lacking(session, find(&session.model(), name)?)
+}
+
+/// The same effect, if the model of the session does not have it.
+fn lacking(session: &Session, effect: &'static dyn Effect) -> Result<&'static dyn Effect, Refusal> {
     let mut present = session.fit().estimate.effects.iter();
     match present.any(|added| added.effect.id() == effect.id()) {
         true => Err(Refusal::conflict("the model has this effect already")),

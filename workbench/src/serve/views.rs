@@ -182,7 +182,7 @@ pub fn model_file(session: &Session) -> String {
     }
     let name = format!("{}-{}", subject.model.name, subject.experiment().name);
     let effects = &session.fit().estimate.effects;
-    text + &rebuilt(&subject.model, effects, name).to_toml()
+    text + &rebuilt(&session.model(), effects, name).to_toml()
 }
 
 /// Measured and simulated channels of a run; `None` if there is no such run.

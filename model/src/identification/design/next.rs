@@ -69,13 +69,10 @@ impl NextExperiment {
             chosen.map(|(pair, _)| (pair.named.effect, pair.other.effect))
         };
         let (ratio, minutes) = (judged.smallest(bar), manoeuvre.minutes());
-        let left: Vec<String> = told(false).map(|(a, b)| either(a, b)).collect();
+        let left = distinct(told(false).map(|(a, b)| either(a, b)));
         let mut why = format!(
             "it would tell {} apart (expected likelihood ratio {}, about {} minutes)",
-            told(true)
-                .map(|(a, b)| both(a, b))
-                .collect::<Vec<_>>()
-                .join(", and "),
+            distinct(told(true).map(|(a, b)| both(a, b))).join(", and "),
             rounded(ratio),
             rounded(minutes),
         );
@@ -95,10 +92,8 @@ impl NextExperiment {
     }
 
     fn none(best: f64, pairs: &[Pair], instrument: Option<&str>) -> Self {
-        let named: Vec<String> = pairs
-            .iter()
-            .map(|pair| both(pair.named.effect, pair.other.effect))
-            .collect();
+        let named = pairs.iter();
+        let named = distinct(named.map(|pair| both(pair.named.effect, pair.other.effect)));
         let instead = instrument.map_or_else(
             || "and in every quantity of the plant, so that either name will do".to_owned(),
             |name| format!("an additional sensor is needed: {name}"),
@@ -180,6 +175,17 @@ pub fn next_experiment(
             a_count.cmp(&b_count).then(a_rate.total_cmp(&b_rate))
         })
         .map(|(manoeuvre, judged)| NextExperiment::of(manoeuvre, judged, pairs, bar, instrument))
+}
+
+/// Texts without repetitions: two forms of an effect have one name.
+fn distinct(texts: impl Iterator<Item = String>) -> Vec<String> {
+    let mut distinct: Vec<String> = Vec::new();
+    for text in texts {
+        if !distinct.contains(&text) {
+            distinct.push(text);
+        }
+    }
+    distinct
 }
 
 fn both(a: &dyn Effect, b: &dyn Effect) -> String {

@@ -202,7 +202,9 @@ impl Search<'_> {
         {
             let coarse = Coarse::new(self.experiment, self.model, &in_step);
             let dictionary = self.around(&coarse, late::is_delay).dictionary();
-            self.tries(&coarse, &dictionary, MORE);
+            // Sets that were fitted with clocks that are off may be in another valley with all in step.
+            let known = Refitted::new(present);
+            self.tries_beside(&known, &coarse, &dictionary, MORE);
         }
     }
 
@@ -250,19 +252,26 @@ impl Search<'_> {
 
     /// Fits the most promising sets of a dictionary around a fit, with at most so many effects more than that.
     fn tries(&mut self, coarse: &Coarse, dictionary: &Dictionary, more: usize) {
-        let starts = starts(coarse, dictionary, &self.refitted, more);
+        let known = self.refitted.clone();
+        self.tries_beside(&known, coarse, dictionary, more);
+    }
+
+    /// The same without those sets that are known.
+    fn tries_beside(
+        &mut self,
+        known: &Refitted,
+        coarse: &Coarse,
+        dictionary: &Dictionary,
+        more: usize,
+    ) {
+        let starts = starts(coarse, dictionary, known, more);
         let refits = Refits {
             coarse,
             best: coarse.cost(&self.present) + starts.price.of_all(&self.present.estimate),
             price: starts.price,
             options: self.options,
         };
-        for fit in refits.of(
-            starts.estimates,
-            &dictionary.jacobian,
-            &self.refitted,
-            self.progress,
-        ) {
+        for fit in refits.of(starts.estimates, &dictionary.jacobian, known, self.progress) {
             if limits::is_told(self.experiment, &fit.estimate) {
                 self.refitted.insert(fit);
             }

@@ -23,8 +23,9 @@ use crate::effects::{AddedEffect, Effect, Search, is_same};
 const SMOOTH: &[f64] = &[0.3, 2.0];
 const ROUGH: &[f64] = &[0.3, 1.0, 2.0];
 
-/// One more size, in typical sizes, of an effect that may have either sign.
-const OPPOSITE: f64 = -1.0;
+/// Sizes of the other sign, in typical sizes, of an effect that may have either: where edges of a signal move, a secant
+/// promises little at half its size.
+const OPPOSITE: &[f64] = &[-0.3, -1.0];
 
 /// A form is looked at closely if it promises at least this share of what the best one does.
 const PROMISING: f64 = 0.2;
@@ -141,7 +142,7 @@ impl Screen<'_> {
         };
         let mut ends = at(sizes);
         self.begin(&mut ends);
-        ends.extend(at(&[OPPOSITE]));
+        ends.extend(at(OPPOSITE));
         ends.extend(self.ends(with_opposite_shapes(effect), false));
         ends
     }

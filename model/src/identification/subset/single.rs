@@ -111,7 +111,7 @@ pub fn try_each(
     likeliest_forms(tried.collect())
 }
 
-/// Probability of each candidate among all and none, all other differences aside.
+/// Probability of each candidate among all and none, all other differences aside, that it is what it is called.
 #[must_use]
 pub fn confidences(candidates: &[Candidate]) -> Vec<f64> {
     let none = 0.0;
@@ -119,6 +119,9 @@ pub fn confidences(candidates: &[Candidate]) -> Vec<f64> {
     let odds: Vec<f64> = odds.chain([none]).collect();
     let mut confidences = shares(&odds);
     confidences.truncate(candidates.len());
+    for (confidence, candidate) in confidences.iter_mut().zip(candidates) {
+        *confidence *= candidate.genuine();
+    }
     confidences
 }
 

@@ -4,6 +4,7 @@ import { byId, element, sigmas } from "./dom.js";
 import { drawMap, worstCell } from "./error_map.js";
 import { drawMissing, drawRanking, insert } from "./missing.js";
 import { drawCourse, drawModel } from "./model_panel.js";
+import { openForm } from "./own_term.js";
 import { drawRun, redrawRun } from "./run_plot.js";
 import { Refused, ask, begin, follow, leave, post } from "./server.js";
 
@@ -30,6 +31,7 @@ async function open() {
   byId("views").hidden = false;
   listRuns();
   draw();
+  await openForm(acts.run);
   const worst = worstCell(state);
   if (worst) await visit(worst);
   else await show(0, null);
@@ -75,7 +77,7 @@ const acts = {
     if (!byId("job").hidden) return say("A computation is running; wait for it or cancel it.");
     [tried, live] = [[], []];
     showJob("Starting");
-    if (["add", "adopt"].includes(task.task)) watch();
+    if (["add", "term", "adopt"].includes(task.task)) watch();
     try {
       await follow(hear, guarded(refresh));
       const { title } = await post("start", task);
