@@ -186,6 +186,29 @@ fn a_term_of_ones_own_is_checked_added_and_saved() {
 }
 
 #[test]
+fn a_suggested_term_is_taken_over() {
+    let dir = TempDir::new().unwrap();
+    let campaign = concat!(env!("CARGO_MANIFEST_DIR"), "/campaigns/known-outside");
+    let server = PageServer::start(dir.path(), &[campaign]);
+    let session = server.begin();
+    let start = |task: &str| {
+        let body = json!({ "session": session, "task": task });
+        server.post("api/start", &body).status
+    };
+    assert_eq!(start("suggested"), 409);
+    assert_eq!(start("explain"), 200);
+    let explained = server.settled(&session);
+    let suggested = &explained["explained"]["suggested"];
+    assert!(suggested["formula"].is_string(), "{suggested}");
+    assert_eq!(start("suggested"), 200);
+    let after = server.settled(&session);
+    let error = |state: &Value| state["error"].as_f64().unwrap();
+    assert!(error(&after) < error(&explained));
+    let saved = server.get(&format!("api/model?session={session}")).body;
+    assert!(saved.contains("[[term]]"), "{saved}");
+}
+
+#[test]
 fn a_cancelled_ranking_leaves_the_session_usable() {
     let dir = TempDir::new().unwrap();
     let server = PageServer::start(dir.path(), &[]);

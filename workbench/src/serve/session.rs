@@ -7,6 +7,7 @@ use hitch_model::effects::{TermEffect, full_name};
 use hitch_model::identification::candidate::Candidate;
 use hitch_model::identification::explain;
 use hitch_model::identification::fit::Fit;
+use hitch_model::identification::suggestion::Suggestion;
 use serde_json::Value;
 use tokio::sync::broadcast;
 
@@ -56,6 +57,8 @@ pub struct Explained {
     pub of: Arc<Evaluated>,
     /// What was found.
     pub explanation: explain::Explanation,
+    /// A term for what stays unexplained.
+    pub suggestion: Option<Suggestion>,
     /// The same for people.
     pub shown: explanation::Explanation,
 }

@@ -12,6 +12,7 @@ use hitch_model::identification::holdout::held_out;
 use hitch_model::identification::residual::Weights;
 use hitch_model::identification::subset::Options;
 use hitch_model::identification::subset::single::try_effects;
+use hitch_model::identification::suggestion::{Suggestion, suggest};
 use serde::Deserialize;
 
 use super::jobs::Reporter;
@@ -67,6 +68,8 @@ pub enum Task {
         /// Indices of the steps that are accepted.
         steps: Vec<usize>,
     },
+    /// Take over the explanation with the term that it suggests.
+    Suggested,
 }
 
 /// A task with all that it needs.
@@ -87,6 +90,7 @@ enum What {
     Set(Estimate, String),
     Fit,
     Adopt(Arc<Explained>, Vec<usize>),
+    Suggested(Suggestion),
 }
 
 /// What a task came to.
@@ -144,12 +148,16 @@ impl Ready {
                 let no_parameter = || Refusal::conflict("the effect has no such parameter");
                 What::Set(estimate.ok_or_else(no_parameter)?, title)
             }
-            Task::Adopt { steps } => {
-                let present = &present.evaluated;
-                let explained = session.explained.as_ref();
-                let explained = explained.filter(|known| Arc::ptr_eq(&known.of, present));
-                let stale = || Refusal::conflict("the model has changed since; explain it again");
-                What::Adopt(Arc::clone(explained.ok_or_else(stale)?), steps)
+            Task::Adopt { steps } => What::Adopt(present_explanation(session)?, steps),
+            Task::Suggested => {
+                let suggestion = present_explanation(session)?.suggestion.clone();
+                let none = || Refusal::conflict("the explanation suggests no term");
+                let suggestion = suggestion.ok_or_else(none)?;
+                present
+                    .terms
+                    .retain(|known| known.id() != suggestion.term.id());
+                present.terms.push(suggestion.term);
+                What::Suggested(suggestion)
             }
         };
         Ok(Self {
@@ -171,6 +179,7 @@ impl Ready {
             What::Set(_, _) => "Evaluating all runs".to_owned(),
             What::Fit => "Fitting all effects".to_owned(),
             What::Adopt(..) => "Taking the steps over".to_owned(),
+            What::Suggested(found) => format!("Adding {}", found.term.id()),
         }
     }
 
@@ -205,6 +214,11 @@ impl Ready {
             What::Fit => {
                 let start = before.estimate.clone();
                 Outcome::Steps(vec![self.fitted("Fitted".to_owned(), start, reporter)])
+            }
+            What::Suggested(found) => {
+                let title = format!("Took the explanation over with {}", found.term.id());
+                let start = found.fit.estimate.clone();
+                Outcome::Steps(vec![self.fitted(title, start, reporter)])
             }
             What::Adopt(explained, steps) => {
                 Outcome::Steps(self.adopted(explained, steps, reporter))
@@ -245,8 +259,15 @@ impl Ready {
         let explanation = explain_with(self.experiment(), &model, options, &|what| {
             reporter.progress(what, None, None);
         });
-        let shown = explanation::Explanation::new(self.experiment(), &model, &explanation);
+        let suggestion = suggest(self.experiment(), &model, &explanation, &|what| {
+            reporter.progress(&format!("trying a term, {what}"), None, None);
+        });
+        let mut shown = explanation::Explanation::new(self.experiment(), &model, &explanation);
+        if let Some(suggestion) = &suggestion {
+            shown.unexplained.suggest(suggestion);
+        }
         Explained {
+            suggestion,
             of: Arc::clone(&self.present.evaluated),
             explanation,
             shown,
@@ -350,6 +371,15 @@ impl Ready {
     fn model(&self) -> &Model {
         &self.model
     }
+}
+
+/// The explanation, if it begins with the present model.
+fn present_explanation(session: &Session) -> Result<Arc<Explained>, Refusal> {
+    let present = &session.present().evaluated;
+    let explained = session.explained.as_ref();
+    let explained = explained.filter(|known| Arc::ptr_eq(&known.of, present));
+    let stale = || Refusal::conflict("the model has changed since; explain it again");
+    explained.cloned().ok_or_else(stale)
 }
 
 /// An effect by its name that the model of a session can have and does not.

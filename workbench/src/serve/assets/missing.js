@@ -108,10 +108,25 @@ function explanation(found, keeps, run) {
       "Effects that the model has already are kept; only their sizes may change. Take one away if it may be wrong.")] : []),
     ...parts,
     ...(found.steps.length ? [take] : []),
+    ...(found.suggested ? [suggested(found.suggested, run)] : []),
     ...(found.next_experiment ? [element("p", {}, `Next experiment: ${found.next_experiment}.`)] : []),
     ...(found.not_visible.length ? [element("details", {},
       element("summary", {}, `${found.not_visible.length} effects would not show in this campaign`),
       element("p", {}, found.not_visible.join(", ")))] : [])];
+}
+
+/** A term for what stays unexplained.
+ * @param {any} term
+ * @param {Run} run */
+function suggested(term, run) {
+  const replaces = term.replaces.length ? [element("p", {}, `It replaces ${term.replaces.join(", ")}.`)] : [];
+  return element("div", { class: "effect" }, element("h3", {}, "Suggested term"),
+    element("code", { class: "equation" }, `${term.place} = ${term.formula}`),
+    element("div", { class: "values" }, parameters(term)),
+    element("p", {}, `Error on held-out runs: ${sigmas(term.held_out_before)} → ${sigmas(term.held_out_after)} σ. ` +
+      "It describes the error; it is not an identified cause."), ...replaces,
+    element("button", { type: "button", id: "take-suggested", onclick: () => run({ task: "suggested" }) },
+      "Take the explanation over with this term"));
 }
 
 /** @param {any} step

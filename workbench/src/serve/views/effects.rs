@@ -94,6 +94,7 @@ fn found(explained: &Explained) -> Value {
         "verdict": shown.head.verdict,
         "meaning": shown.meaning(),
         "steps": steps.map(step).collect::<Vec<_>>(),
+        "suggested": shown.unexplained.suggested,
         "not_visible": shown.not_visible.iter().map(|effect| effect.effect).collect::<Vec<_>>(),
         "next_experiment": shown.next.next_experiment,
     })
