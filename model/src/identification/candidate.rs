@@ -86,7 +86,7 @@ impl Candidate {
     /// Probability that it is what it is called and not the nearest to something that is in no catalogue.
     ///
     /// A different mechanism never fits everywhere, and what it leaves lies where the effect acts. The odds grow with the
-    /// square of the ratio of what is explained there to what is left there; they are even at [`EVEN_RATIO`].
+    /// square of the ratio of what is explained there to what is left there; they are even at a ratio of 25.
     #[must_use]
     pub fn genuine(&self) -> f64 {
         let explained = self.explained_share;
