@@ -199,7 +199,7 @@ pub fn is_time(column: &Column) -> bool {
     column.name == TIME
 }
 
-/// The linkage of a hitch of which nothing else is said.
+/// The linkage of the nominal model, for campaigns that are read without a model.
 pub fn nominal_linkage() -> &'static Linkage {
     static NOMINAL: LazyLock<Model> = LazyLock::new(Model::nominal);
     NOMINAL.linkage()

@@ -11,10 +11,10 @@
 //! End TriggerBlock
 //! ```
 //!
-//! Frames that somebody wants are read to the last digit, others up to the identifier; other events of the bus, and
+//! Frames that are wanted are read to the last digit, others up to the identifier; other events of the bus, and
 //! events of other buses, are passed over.
-use super::ear::Ear;
 use super::frame::{Frame, Id, MOST_BYTES};
+use super::frame_sink::FrameSink;
 use super::line::{Line, Word, lines};
 use crate::campaign::CampaignError;
 use crate::source_file::SourceFile;
@@ -36,8 +36,8 @@ struct Notation {
     relative: bool,
 }
 
-/// Gives every data frame that it wants to `ear`.
-pub fn read(source: &SourceFile, ear: &mut dyn Ear) -> Result<(), CampaignError> {
+/// Passes every data frame that `sink` wants to it.
+pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), CampaignError> {
     let mut notation = Notation {
         radix: 16,
         relative: false,
@@ -59,14 +59,14 @@ pub fn read(source: &SourceFile, ear: &mut dyn Ear) -> Result<(), CampaignError>
         }
         last_s = time_s;
         let length = match line.text(1) {
-            "CANFD" => flexible(&line, ear, &mut bytes)?,
+            "CANFD" => flexible(&line, sink, &mut bytes)?,
             channel if channel.bytes().all(|byte| byte.is_ascii_digit()) => {
-                classical(&line, ear, notation.radix, &mut bytes)?
+                classical(&line, sink, notation.radix, &mut bytes)?
             }
             _ => None,
         };
         if let Some((channel, id, length)) = length {
-            ear.take(&Frame {
+            sink.take(&Frame {
                 time_s,
                 channel,
                 id,
@@ -106,7 +106,7 @@ type Parts<'a> = Option<(&'a str, Id, usize)>;
 /// `TIME CHANNEL ID Rx|Tx d LENGTH DATA...`
 fn classical<'a>(
     line: &Line<'a>,
-    ear: &mut dyn Ear,
+    sink: &mut dyn FrameSink,
     radix: u32,
     bytes: &mut [u8],
 ) -> Result<Parts<'a>, CampaignError> {
@@ -122,7 +122,7 @@ fn classical<'a>(
         "d" | "r" => return Ok(None),
         _ => return Err(line.fault(kind, 0, "is no kind of frame", "it is d or r")),
     }
-    if !ear.wants(line.text(1), id) {
+    if !sink.wants(line.text(1), id) {
         return Ok(None);
     }
     let count = line.word(5, "length")?;
@@ -141,7 +141,7 @@ fn classical<'a>(
 /// `TIME CANFD CHANNEL Rx|Tx ID [NAME] BRS ESI DLC LENGTH DATA...`
 fn flexible<'a>(
     line: &Line<'a>,
-    ear: &mut dyn Ear,
+    sink: &mut dyn FrameSink,
     bytes: &mut [u8],
 ) -> Result<Parts<'a>, CampaignError> {
     let channel = line.word(2, "channel")?;
@@ -151,7 +151,7 @@ fn flexible<'a>(
         return Ok(None);
     }
     let id = identifier(line, id, 16)?;
-    if !ear.wants(channel.text, id) {
+    if !sink.wants(channel.text, id) {
         return Ok(None);
     }
     let is_named = !matches!(line.text(5), "0" | "1");

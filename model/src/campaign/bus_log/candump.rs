@@ -7,9 +7,9 @@
 //! (1436509052.252713) can0 20000004#0000000000000000     an error frame: more than 29 bits
 //! ```
 //!
-//! A word behind that says which way the frame went (`R`, `T`). Of frames that nobody wants, only the identifier is read.
-use super::ear::Ear;
+//! A word behind that says which way the frame went (`R`, `T`). Of frames that are not wanted only the identifier is read.
 use super::frame::{Frame, Id, MOST_BYTES};
+use super::frame_sink::FrameSink;
 use super::line::{Line, Word, lines};
 use crate::campaign::CampaignError;
 use crate::source_file::SourceFile;
@@ -20,21 +20,21 @@ const EXTENDED_DIGITS: usize = 8;
 /// Bytes of a classical frame.
 const MOST_CLASSICAL: usize = 8;
 
-/// Gives every data frame that it wants to `ear`.
-pub fn read(source: &SourceFile, ear: &mut dyn Ear) -> Result<(), CampaignError> {
+/// Passes every data frame that `sink` wants to it.
+pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), CampaignError> {
     let mut bytes = [0; MOST_BYTES];
     for line in lines(source) {
-        if let Some(frame) = frame(&line, ear, &mut bytes)? {
-            ear.take(&frame)?;
+        if let Some(frame) = frame(&line, sink, &mut bytes)? {
+            sink.take(&frame)?;
         }
     }
     Ok(())
 }
 
-/// The frame of a line; `None` if it holds no data, or nobody wants it.
+/// The frame of a line; `None` if it holds no data, or is not wanted.
 fn frame<'f>(
     line: &Line<'f>,
-    ear: &mut dyn Ear,
+    sink: &mut dyn FrameSink,
     bytes: &'f mut [u8; MOST_BYTES],
 ) -> Result<Option<Frame<'f>>, CampaignError> {
     let time = line.word(0, "time")?;
@@ -56,7 +56,7 @@ fn frame<'f>(
     let Some(id) = identifier(line, word, id)? else {
         return Ok(None);
     };
-    if data.starts_with('R') || !ear.wants(channel, id) {
+    if data.starts_with('R') || !sink.wants(channel, id) {
         return Ok(None);
     }
     if let Some(more) = line.get(3)

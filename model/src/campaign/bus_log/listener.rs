@@ -1,8 +1,8 @@
 //! Takes the signals that are wanted out of the frames of a log.
 use super::clock::Clock;
 use super::description::Match;
-use super::ear::Ear;
 use super::frame::{Frame, Id};
+use super::frame_sink::FrameSink;
 use super::signal::Signal;
 use crate::campaign::CampaignError;
 use crate::campaign::series::Series;
@@ -62,7 +62,7 @@ pub struct Listener<'s> {
 }
 
 impl<'s> Listener<'s> {
-    /// Somebody who hears these messages in a log, from this channel and address if they are named.
+    /// A listener for some messages of a log. A channel or a source address, if given, limits what it takes.
     pub fn new(
         source: &'s SourceFile,
         messages: &'s [Message],
@@ -93,7 +93,7 @@ impl<'s> Listener<'s> {
     }
 }
 
-impl Ear for Listener<'_> {
+impl FrameSink for Listener<'_> {
     fn wants(&mut self, channel: &str, id: Id) -> bool {
         let is_there = self.channel.is_none_or(|wanted| wanted == channel);
         let mut messages = self.heard.iter().map(|heard| heard.message.matching);

@@ -11,8 +11,8 @@ mod asc;
 mod candump;
 mod clock;
 mod description;
-mod ear;
 mod frame;
+mod frame_sink;
 mod line;
 mod listener;
 mod settings;
@@ -30,7 +30,7 @@ use super::series::Series;
 use super::table::{Cells, LIFT, LOWER, Samples, TIME, Table};
 use crate::input_error::InputError;
 use crate::source_file::SourceFile;
-use ear::Ear;
+use frame_sink::FrameSink;
 use listener::Listener;
 
 /// A kind of log.
@@ -81,7 +81,7 @@ pub fn read(
     settings: &BusSettings,
 ) -> Result<Table, CampaignError> {
     let mut listener = settings.listener(source);
-    hear(source, format, &mut listener)?;
+    read_frames(source, format, &mut listener)?;
     let rows = required(source, &listener, settings, LIFT)?;
     required(source, &listener, settings, LOWER)?;
     let within_s = rows.median_step_s() / 2.0;
@@ -98,11 +98,15 @@ pub fn read(
     Table::new(Arc::clone(source), columns, bytes, Cells::OneALine)
 }
 
-/// Gives the frames of a log to somebody.
-fn hear(source: &SourceFile, format: Format, ear: &mut dyn Ear) -> Result<(), CampaignError> {
+/// Passes the frames of a log to a sink.
+fn read_frames(
+    source: &SourceFile,
+    format: Format,
+    sink: &mut dyn FrameSink,
+) -> Result<(), CampaignError> {
     match format {
-        Format::Candump => candump::read(source, ear),
-        Format::Asc => asc::read(source, ear),
+        Format::Candump => candump::read(source, sink),
+        Format::Asc => asc::read(source, sink),
     }
 }
 

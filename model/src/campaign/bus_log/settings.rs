@@ -180,7 +180,7 @@ impl BusSettings {
         Ok(())
     }
 
-    /// Somebody who hears all of it in a log.
+    /// A listener for all messages of these settings in a log.
     pub fn listener<'s>(&'s self, source: &'s SourceFile) -> Listener<'s> {
         Listener::new(
             source,

@@ -2,9 +2,9 @@
 use std::collections::HashMap;
 
 use super::description::Description;
-use super::ear::Ear;
 use super::frame::{Frame, Id};
-use super::{Format, hear};
+use super::frame_sink::FrameSink;
+use super::{Format, read_frames};
 use crate::campaign::CampaignError;
 use crate::campaign::scale::spelling;
 use crate::campaign::survey::LogColumn;
@@ -13,11 +13,11 @@ use crate::source_file::SourceFile;
 
 /// The identifiers of a log, and how many frames each has.
 #[derive(Debug, Default)]
-struct Roll {
+struct IdentifierCounts {
     frames: HashMap<Id, usize>,
 }
 
-impl Ear for Roll {
+impl FrameSink for IdentifierCounts {
     fn wants(&mut self, _channel: &str, id: Id) -> bool {
         *self.frames.entry(id).or_default() += 1;
         false
@@ -47,15 +47,15 @@ pub fn signals(
     dbc: &SourceFile,
 ) -> Result<Signals, CampaignError> {
     let description = Description::read(dbc)?;
-    let mut roll = Roll::default();
-    hear(source, format, &mut roll)?;
+    let mut counts = IdentifierCounts::default();
+    read_frames(source, format, &mut counts)?;
     let mut columns = Vec::new();
     let mut is_heard = false;
-    let mut unknown = roll.frames.clone();
+    let mut unknown = counts.frames.clone();
     for message in description.messages() {
         let matching = description.matching(message);
         let is_it = |id: Id| matching.sender(id).is_some();
-        if !roll.frames.keys().any(|id| is_it(*id)) {
+        if !counts.frames.keys().any(|id| is_it(*id)) {
             continue;
         }
         is_heard = true;

@@ -7,7 +7,7 @@ use super::super::scale::Scale;
 const DAY_S: f64 = 86_400.0;
 /// Times that count from an epoch are later than this after it, s: three years. A log alone does not last so long.
 const EPOCH_FROM_S: f64 = 1e8;
-/// Without a unit, times since an epoch are told by their size: from here on they are in milliseconds, and so on.
+/// The magnitude of an epoch time without a unit selects its unit: limit, and unit above it in s (ns, us, ms).
 const EPOCH_UNITS: [(f64, f64); 3] = [(1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3)];
 
 /// Reads the times of a log, one after the other.

@@ -46,7 +46,7 @@ pub fn read(
         values: vec![Vec::new(); taken.len()],
         bytes: Vec::new(),
     };
-    // What follows the last sample, or a last row that was cut short, is no fault.
+    // Text after the last sample and an incomplete last row are accepted.
     let mut fault = None;
     for (byte, row) in rows(&source.text, header.data_byte, header.mark) {
         if row.iter().all(str::is_empty) {

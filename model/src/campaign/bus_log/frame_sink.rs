@@ -1,9 +1,9 @@
-//! Whoever takes the frames of a log.
+//! Receiver of the frames of a log.
 use super::frame::{Frame, Id};
 use crate::campaign::CampaignError;
 
-/// Takes frames.
-pub trait Ear {
+/// A receiver of frames.
+pub trait FrameSink {
     /// Whether data frames with this identifier on this channel are wanted; others need not be readable.
     fn wants(&mut self, channel: &str, id: Id) -> bool;
 
