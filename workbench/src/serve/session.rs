@@ -3,7 +3,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hitch_model::Model;
-use hitch_model::effects::{TermEffect, full_name};
+use hitch_model::effects::{Effect, TermEffect, full_name};
 use hitch_model::identification::candidate::Candidate;
 use hitch_model::identification::explain;
 use hitch_model::identification::fit::Fit;
@@ -29,6 +29,14 @@ pub struct Step {
     pub held_out: Option<f64>,
     /// Terms that were defined up to here, those of the model's file first.
     pub terms: Vec<&'static TermEffect>,
+}
+
+impl Step {
+    /// Defines a term; an older one of the same name is gone.
+    pub fn define(&mut self, term: &'static TermEffect) {
+        self.terms.retain(|known| known.id() != term.id());
+        self.terms.push(term);
+    }
 }
 
 /// Effects that the model of a step could lack, ranked.

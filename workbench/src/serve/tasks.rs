@@ -133,8 +133,7 @@ impl Ready {
             Task::Add { effect } => What::Add(new_effect(session, &effect)?),
             Task::Term { term } => {
                 let term = term.define().map_err(Refusal::wrong)?;
-                present.terms.retain(|known| known.id() != term.id());
-                present.terms.push(term);
+                present.define(term);
                 What::Add(lacking(session, term)?)
             }
             Task::Remove { effect } => there(effect).map(|_| What::Remove(effect))?,
@@ -153,10 +152,7 @@ impl Ready {
                 let suggestion = present_explanation(session)?.suggestion.clone();
                 let none = || Refusal::conflict("the explanation suggests no term");
                 let suggestion = suggestion.ok_or_else(none)?;
-                present
-                    .terms
-                    .retain(|known| known.id() != suggestion.term.id());
-                present.terms.push(suggestion.term);
+                present.define(suggestion.term);
                 What::Suggested(suggestion)
             }
         };
@@ -310,18 +306,17 @@ impl Ready {
         let told = |round: usize, text: &str, fit: &Fit| {
             reporter.progress(text, Some(round as f64 / whole), Some(fit.error()));
         };
-        told(0, "start", &evaluate(experiment, model, estimate.clone()));
+        let mut fit = evaluate(experiment, model, estimate);
+        told(0, "start", &fit);
         for round in 1..=ROUNDS {
-            let weights = Weights::new(experiment, model, &estimate);
-            let descent = sketch(experiment, model, &weights, estimate, false);
-            estimate = descent.estimate;
-            let text = format!("fitting, round {round}");
-            told(round, &text, &evaluate(experiment, model, estimate.clone()));
+            let descent = sketch(experiment, model, &fit.weights, fit.estimate, false);
+            fit = evaluate(experiment, model, descent.estimate);
+            told(round, &format!("fitting, round {round}"), &fit);
             if descent.falling <= WORTHWHILE * descent.cost {
                 break;
             }
         }
-        let fit = refine(experiment, model, estimate);
+        let fit = refine(experiment, model, fit.estimate);
         told(ROUNDS + 1, "testing on runs that are held out", &fit);
         let error = held_out(experiment, model, &fit).error;
         reporter.progress("done", Some(1.0), None);
