@@ -15,7 +15,7 @@ use host_tests::hidden_effects::answer::Method;
 use host_tests::hidden_effects::foreign::Adopted;
 use host_tests::hidden_effects::grade::{Graded, Posed};
 use host_tests::hidden_effects::methods;
-use host_tests::hidden_effects::tally::{BINS, Tally};
+use host_tests::hidden_effects::tally::{BINS, Tally, quantile};
 use host_tests::second_rig::draw::{Kind, draw};
 use host_tests::second_rig::manoeuvres::Plan;
 use host_tests::second_rig::test_stand::Family;
@@ -180,7 +180,7 @@ fn told(adopted: &Adopted, answers: &[Graded], errors: &[Option<f64>]) -> String
     format!(
         "machine {}: {}\n  adopted: {} (error {:.2}, {:.1} s)\n  changed: {} (d {:.2})\n  answered: {}; in {:.1} s, \
          error elsewhere {:.2?}",
-        adopted.posed.case.seed / 3,
+        adopted.foreign.seed,
         sizes(&adopted.foreign.own),
         added.collect::<Vec<_>>().join(", "),
         adopted.error,
@@ -258,9 +258,8 @@ fn foreign_column(machines: &[Machine], method: usize) -> Vec<(&'static str, Str
 }
 
 /// The median as text; a dash if there is none.
-fn median(mut values: Vec<f64>) -> String {
-    values.sort_by(f64::total_cmp);
-    let middle = values.get(values.len() / 2);
+fn median(values: Vec<f64>) -> String {
+    let middle = quantile(values.into_iter(), 0.5);
     middle.map_or("-".to_owned(), |middle| format!("{middle:.2}"))
 }
 

@@ -12,7 +12,6 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
 use super::answer::Method;
-use super::detectability::detectability;
 use super::grade::{Graded, Posed};
 use super::starting_point;
 use crate::second_rig::campaign_writer::campaign;
@@ -56,20 +55,11 @@ impl Adopted {
         let explanation = explain(&experiment, &data_sheet, &|_| {});
         let effects = explanation.after.estimate.effects.clone();
         let seconds = start.elapsed().as_secs_f64();
-        let case = foreign.second.clone();
-        let detectabilities = case
-            .hidden
-            .iter()
-            .map(|hidden| detectability(&case, hidden));
-        let posed = Posed {
-            detectability: detectabilities.fold(f64::INFINITY, f64::min),
-            case: case.clone(),
-        };
         Self {
             model: data_sheet.with_effects(effects),
             error: explanation.after.error(),
             seconds,
-            posed,
+            posed: Posed::new(foreign.second.clone()),
             foreign,
         }
     }
@@ -100,44 +90,22 @@ fn data_sheet(family: Family, seed: u64) -> Model {
 
 /// Puts every constant off by some percent.
 fn spoil(constants: &mut Constants, random: &mut Pcg64) {
-    let off = |value: &mut f64, sigma: f64, random: &mut Pcg64| {
+    let constants = [
+        (&mut constants.pump.theoretical_flow_m3_s, DATA_SHEET),
+        (&mut constants.relief_valve.set_pressure_pa, DATA_SHEET),
+        (&mut constants.compensator.margin_pa, DATA_SHEET),
+        (&mut constants.check_valve.cracking_pressure_pa, DATA_SHEET),
+        (&mut constants.lift_valve.reference_drop_pa, DATA_SHEET),
+        (&mut constants.lower_valve.reference_drop_pa, DATA_SHEET),
+        (&mut constants.masses.dead_weight_kg, DATA_SHEET),
+        (&mut constants.spool_time_constant_s, TEXT_BOOK),
+        (&mut constants.cylinder.dead_volume_m3, TEXT_BOOK),
+        (&mut constants.cylinder.viscous_friction_n_s_m, TEXT_BOOK),
+        (&mut constants.oil.bulk_modulus_pa, TEXT_BOOK),
+        (&mut constants.masses.piston_kg, TEXT_BOOK),
+    ];
+    for (value, sigma) in constants {
         let error: f64 = StandardNormal.sample(random);
         *value *= 1.0 + sigma * error.clamp(-2.0, 2.0);
-    };
-    off(
-        &mut constants.pump.theoretical_flow_m3_s,
-        DATA_SHEET,
-        random,
-    );
-    off(
-        &mut constants.relief_valve.set_pressure_pa,
-        DATA_SHEET,
-        random,
-    );
-    off(&mut constants.compensator.margin_pa, DATA_SHEET, random);
-    off(
-        &mut constants.check_valve.cracking_pressure_pa,
-        DATA_SHEET,
-        random,
-    );
-    off(
-        &mut constants.lift_valve.reference_drop_pa,
-        DATA_SHEET,
-        random,
-    );
-    off(
-        &mut constants.lower_valve.reference_drop_pa,
-        DATA_SHEET,
-        random,
-    );
-    off(&mut constants.masses.dead_weight_kg, DATA_SHEET, random);
-    off(&mut constants.spool_time_constant_s, TEXT_BOOK, random);
-    off(&mut constants.cylinder.dead_volume_m3, TEXT_BOOK, random);
-    off(
-        &mut constants.cylinder.viscous_friction_n_s_m,
-        TEXT_BOOK,
-        random,
-    );
-    off(&mut constants.oil.bulk_modulus_pa, TEXT_BOOK, random);
-    off(&mut constants.masses.piston_kg, TEXT_BOOK, random);
+    }
 }

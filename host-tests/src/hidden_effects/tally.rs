@@ -131,8 +131,8 @@ impl<'a> Tally<'a> {
     }
 }
 
-/// A quantile by rank.
-fn quantile(values: impl Iterator<Item = f64>, share: f64) -> Option<f64> {
+/// A quantile by rank; `None` without values.
+pub fn quantile(values: impl Iterator<Item = f64>, share: f64) -> Option<f64> {
     let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     let last = values.len().checked_sub(1)?;

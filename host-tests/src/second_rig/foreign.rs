@@ -33,6 +33,8 @@ const SHARED: [&str; 2] = ["stribeck-friction", "spool-stiction"];
 /// A machine of which nobody has the true data sheet.
 #[derive(Debug, Clone)]
 pub struct Foreign {
+    /// What it was drawn from.
+    pub seed: u64,
     /// Its structures, by id and size.
     pub own: Vec<(&'static str, f64)>,
     /// The campaign from which it is adopted.
@@ -77,6 +79,7 @@ pub fn draw_foreign(seed: u64, family: Family, plan: Plan) -> Foreign {
         instruments: Instruments::good(),
     };
     Foreign {
+        seed,
         own: own.iter().map(|(what, size)| (what.id, *size)).collect(),
         first: case(0, Vec::new()),
         second: case(1, changes.clone()),

@@ -32,7 +32,7 @@ const TABLES: f64 = 0.002;
 const DEVIATIONS: f64 = 6.0;
 
 /// By how much slow noise spreads a mean square: a fifth of the variance with a correlation time of 0.4 s gives 1.8.
-const SLOW_NOISE: f64 = 2.0;
+pub(super) const SLOW_NOISE: f64 = 2.0;
 
 /// One cell of the residuals.
 #[derive(Debug, Clone, PartialEq)]

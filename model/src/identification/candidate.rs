@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::adequacy::SLOW_NOISE;
 use super::central::both_ways;
 use super::estimate::Shared;
 use super::evidence::{detectability, log_odds, variance_inflation};
@@ -20,9 +21,6 @@ use crate::model::Model;
 /// with the effect itself 45 of 46 had more than 400 (benchmark `hidden_effects`, steady rig, lab plan, seeds 1 to 60 and,
 /// with `--kind outside`, 101 to 130).
 const EVEN_RATIO: f64 = 25.0;
-
-/// By how much slow noise spreads a mean square.
-const SLOW_NOISE: f64 = 2.0;
 
 /// Standard deviations by which a mean square exceeds noise before it counts as left.
 const SCATTERS: f64 = 2.0;
@@ -83,15 +81,10 @@ impl Candidate {
         self.fit.weights.count() as f64 / self.inflation
     }
 
-    /// Probability that it is what it is called and not the nearest to something that is in no catalogue.
-    ///
-    /// A different mechanism never fits everywhere, and what it leaves lies where the effect acts. The odds grow with the
-    /// square of the ratio of what is explained there to what is left there; they are even at a ratio of 25.
+    /// Probability that it is what it is called: see [`genuine`].
     #[must_use]
     pub fn genuine(&self) -> f64 {
-        let explained = self.explained_share;
-        let left = EVEN_RATIO * (1.0 - explained);
-        explained.powi(2) / (explained.powi(2) + left.powi(2)).max(f64::MIN_POSITIVE)
+        genuine(self.explained_share)
     }
 
     /// Fall of the cost, under the yardsticks of the model without it.
@@ -106,6 +99,17 @@ impl Candidate {
         let added = self.fit.estimate.effects.last();
         added.map_or(&[], |added| &added.values)
     }
+}
+
+/// Probability that an effect is what it is called and not the nearest to something that is in no catalogue, from
+/// [`Candidate::explained_share`].
+///
+/// A different mechanism never fits everywhere, and what it leaves lies where the effect acts. The odds grow with the
+/// square of the ratio of what is explained there to what is left there; they are even at a ratio of 25.
+#[must_use]
+pub fn genuine(explained_share: f64) -> f64 {
+    let left = EVEN_RATIO * (1.0 - explained_share);
+    explained_share.powi(2) / (explained_share.powi(2) + left.powi(2)).max(f64::MIN_POSITIVE)
 }
 
 /// Weighs the last effect of a fitted model against the model without it.

@@ -53,6 +53,7 @@ mod terms;
 mod write;
 
 pub use template::{Template, Valve};
+pub use write::quoted;
 
 use std::path::Path;
 

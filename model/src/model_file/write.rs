@@ -70,6 +70,7 @@ fn write_effect(text: &mut String, added: &AddedEffect) {
 }
 
 /// A TOML basic string.
+#[must_use]
 pub fn quoted(text: &str) -> String {
     let mut quoted = String::from('"');
     for c in text.chars() {

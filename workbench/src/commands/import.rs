@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use hitch_model::campaign::survey::{self, LogColumn, Survey};
 use hitch_model::campaign::{Campaign, Run};
+use hitch_model::model_file::quoted;
 
 use super::loop_::load_kg;
 use crate::error::Error;
-use crate::import::manifest::{Log, lines, path_from, quoted, text};
+use crate::import::manifest::{Log, lines, path_from, text};
 use crate::import::{Kind, Mapping, cuts, dialogue};
 use crate::model_arg::ModelArg;
 use crate::output;

@@ -1,6 +1,7 @@
 //! The same results as text.
 use std::fmt;
 
+use hitch_model::identification::candidate::genuine;
 use hitch_model::identification::explain::Verdict;
 
 use super::{
@@ -8,9 +9,6 @@ use super::{
     Suggested, Unexplained,
 };
 use crate::text::{Table, known, wrapped};
-
-/// Share of the error where it acts below which an effect is less likely itself than the nearest to something else.
-const STANDS_FOR_ANOTHER: f64 = 0.96;
 
 /// Width of running text, characters.
 const WIDTH: usize = 100;
@@ -281,7 +279,7 @@ impl fmt::Display for Step {
             self.confidence,
             self.detectability
         )?;
-        if self.explained_share < STANDS_FOR_ANOTHER {
+        if genuine(self.explained_share) < 0.5 {
             let share = 100.0 * self.explained_share;
             writeln!(
                 f,

@@ -2,6 +2,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use hitch_model::model_file::quoted;
+
 use super::columns::Mapping;
 
 /// A log of a campaign.
@@ -66,22 +68,6 @@ fn is_same(own: &Mapping, common: Option<&Mapping>) -> bool {
 pub fn lines(mapping: &Mapping) -> String {
     let line = |taken: &super::Taken| format!("{} = {}\n", taken.channel, quoted(&taken.source));
     mapping.taken.iter().map(line).collect()
-}
-
-/// A text of TOML.
-#[must_use]
-pub fn quoted(text: &str) -> String {
-    let mut quoted = String::from("\"");
-    for letter in text.chars() {
-        match letter {
-            '"' | '\\' => quoted.extend(['\\', letter]),
-            letter if letter.is_control() => {
-                let _ = write!(quoted, "\\u{:04X}", u32::from(letter));
-            }
-            letter => quoted.push(letter),
-        }
-    }
-    quoted + "\""
 }
 
 /// The path of a log as a manifest in `folder` names it: from the folder on if it is in it, else from the root.
