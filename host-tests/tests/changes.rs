@@ -2,12 +2,14 @@
 //! otherwise, and a change of one is a step like a new effect.
 
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
 use hitch_model::Model;
 use hitch_model::campaign::Campaign;
 use hitch_model::effects::{AddedEffect, find};
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::{Explanation, Verdict, explain_with};
+use hitch_model::identification::fit::Fit;
 use hitch_model::identification::subset::Options;
 use host_tests::program::run;
 use serde_json::Value;
@@ -70,6 +72,32 @@ fn a_frozen_model_keeps_its_effects() {
     let named: Vec<&str> = found.steps.iter().map(|step| step.effect.id()).collect();
     assert!(!named.contains(&"coulomb-friction"), "{named:?}");
     assert_eq!(found.after.estimate.effects[0].values[0], 300.0);
+}
+
+#[test]
+fn each_account_is_better_than_the_one_before_and_the_last_one_is_the_answer() {
+    let model = Model::nominal();
+    let campaign = Campaign::load(&campaigns().join("known-leak-and-lag")).expect("shipped");
+    let experiment = Experiment::new(&campaign, &model);
+    let accounts = Mutex::new(Vec::new());
+    let options = Options {
+        improved: &|fit: &Fit| accounts.lock().unwrap().push(fit.clone()),
+        ..Options::default()
+    };
+    let found = explain_with(&experiment, &model, options, &|_| {});
+    let accounts = accounts.into_inner().unwrap();
+    let costs: Vec<f64> = accounts.iter().map(|fit| fit.cost).collect();
+    assert!(
+        !costs.is_empty() && costs.is_sorted_by(|a, b| a > b),
+        "{costs:?}"
+    );
+    let ids = |fit: &Fit| {
+        let effects = fit.estimate.effects.iter();
+        let mut ids: Vec<&str> = effects.map(|added| added.effect.id()).collect();
+        ids.sort_unstable();
+        ids
+    };
+    assert_eq!(ids(&accounts[accounts.len() - 1]), ids(&found.after));
 }
 
 /// What the command prints as JSON for two campaigns.

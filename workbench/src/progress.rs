@@ -69,6 +69,15 @@ impl Progress {
         self.bar.set_message(message);
     }
 
+    /// Shows a result at once: a log has a line for each.
+    pub fn result(&self, message: impl Into<String>) {
+        let message = message.into();
+        if let Some(lines) = &self.lines {
+            lines.write(&message);
+        }
+        self.bar.set_message(message);
+    }
+
     /// Writes a line where standard error is no terminal, if the last one was long ago.
     fn line(&self, message: &str) {
         let Some(lines) = &self.lines else { return };
@@ -77,10 +86,16 @@ impl Progress {
         };
         if last.elapsed() >= LINE_PERIOD {
             *last = Instant::now();
-            let elapsed_s = lines.start.elapsed().as_secs();
-            // A log that cannot be written is no reason to stop the work.
-            let _ = writeln!(std::io::stderr(), "{message} ({elapsed_s} s)");
+            lines.write(message);
         }
+    }
+}
+
+impl Lines {
+    fn write(&self, message: &str) {
+        let elapsed_s = self.start.elapsed().as_secs();
+        // A log that cannot be written is no reason to stop the work.
+        let _ = writeln!(std::io::stderr(), "{message} ({elapsed_s} s)");
     }
 }
 

@@ -16,11 +16,12 @@ pub struct SearchArgs {
 
 impl SearchArgs {
     /// The options of a search that begins now.
-    pub fn options(&self) -> Options {
+    pub fn options(&self) -> Options<'static> {
         let budget = self.budget.map(Duration::from_secs_f64);
         Options {
             changes: !self.frozen,
             deadline: budget.map(|budget| Instant::now() + budget),
+            ..Options::default()
         }
     }
 }

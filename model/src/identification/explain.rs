@@ -217,7 +217,7 @@ pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Ex
 pub fn explain_with(
     experiment: &Experiment,
     model: &Model,
-    options: Options,
+    options: Options<'_>,
     progress: Progress,
 ) -> Explanation {
     let before = fit_base(experiment, model);

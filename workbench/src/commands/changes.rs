@@ -54,9 +54,9 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let load = |folder| Campaign::load_with(folder, model.linkage());
     let [baseline, new] = [&args.baseline, &args.new].map(|folder| load(folder));
     let (baseline, new) = (baseline?, new?);
-    let baseline = Found::new(&baseline, model, args.search.options());
+    let baseline = Found::new(&baseline, model, args.search.options(), &|_| {});
     let adopted = baseline.rebuilt(baseline.shown.head.campaign.clone());
-    let new = Found::new(&new, adopted, args.search.options());
+    let new = Found::new(&new, adopted, args.search.options(), &|_| {});
     if let Some(path) = &args.out {
         output::write_file(path, new.rebuilt(output::stem(path)).to_toml().as_bytes())?;
     }

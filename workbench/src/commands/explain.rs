@@ -2,9 +2,10 @@
 use std::path::PathBuf;
 
 use hitch_model::campaign::Campaign;
+use hitch_model::effects::AddedEffect;
 
 use crate::error::Error;
-use crate::explanation::Found;
+use crate::explanation::{Found, rebuilt};
 use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
@@ -19,7 +20,7 @@ pub struct Args {
     campaign: PathBuf,
     #[command(flatten)]
     model: ModelArg,
-    /// Write the model with what was added to this file
+    /// Write the model with what was added to this file; the best model so far while the search goes on
     #[arg(long, value_name = "MODEL.toml")]
     out: Option<PathBuf>,
     /// Write a report to this file: self-contained HTML
@@ -46,7 +47,17 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let outputs = Outputs::check(wanted, &inputs)?;
     let model = args.model.load()?;
     let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
-    let found = Found::new(&campaign, model, args.search.options());
+    // What is found so far is on disk when the search is interrupted.
+    let out = args.out.as_deref().filter(|path| !output::is_stdout(path));
+    let base = model.clone();
+    let improved = |effects: &[AddedEffect]| {
+        if let Some(path) = out {
+            let partial = rebuilt(&base, effects, output::stem(path));
+            // The last write reports a fault.
+            let _ = output::write_file(path, partial.to_toml().as_bytes());
+        }
+    };
+    let found = Found::new(&campaign, model, args.search.options(), &improved);
     if let Some(path) = &args.out {
         output::write_file(path, found.rebuilt(output::stem(path)).to_toml().as_bytes())?;
     }

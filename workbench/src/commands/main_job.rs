@@ -36,7 +36,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let campaign = demonstration::campaign()?;
     let model = Model::nominal();
     outputs.say(|| compared(&campaign, &model))?;
-    let found = Found::new(&campaign, model, Options::default());
+    let found = Found::new(&campaign, model, Options::default(), &|_| {});
     outputs.say(|| explained(&found))?;
     let progress = Progress::start("closing the loop with either valve map");
     let rebuild = Rebuild::new(&found, Scenario::Moves)?;

@@ -1,13 +1,15 @@
 //! An explanation together with what it was found from.
 use hitch_model::Model;
 use hitch_model::campaign::Campaign;
-use hitch_model::effects::Effect;
+use hitch_model::effects::{AddedEffect, Effect, full_name, is_same};
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain;
+use hitch_model::identification::fit::Fit;
 use hitch_model::identification::subset::Options;
 use hitch_model::identification::suggestion::{Suggestion, suggest};
 use hitch_model::identification::whereabouts::Profile;
 
+use super::show::significant;
 use super::{Explanation, rebuilt};
 use crate::progress::Progress;
 
@@ -29,29 +31,37 @@ pub struct Found {
 }
 
 impl Found {
-    /// Explains a campaign, saying on a terminal what is being tried.
-    pub fn new(campaign: &Campaign, model: Model, options: Options) -> Self {
+    /// Explains a campaign. Reports on a terminal what is tried, and gives each better account to `improved`.
+    pub fn new(
+        campaign: &Campaign,
+        model: Model,
+        options: Options<'_>,
+        improved: &(dyn Fn(&[AddedEffect]) + Sync),
+    ) -> Self {
         let progress = Progress::start(format!("reading {}", campaign.name));
         let experiment = Experiment::new(campaign, &model);
-        let explanation = explain::explain_with(&experiment, &model, options, &|what| {
-            progress.say(format!("trying {what}"))
+        let better = |fit: &Fit| {
+            progress.result(account(&model, fit));
+            improved(&fit.estimate.effects);
+        };
+        let options = Options {
+            improved: &better,
+            ..options
+        };
+        let explained = Explained::new(&experiment, &model, options, &|what| {
+            progress.say(format!("trying {what}"));
         });
+        let Explained {
+            explanation,
+            suggestion,
+            mut shown,
+        } = explained;
         let rest = explanation
             .rest
             .depends_on
             .first()
             .and_then(|signal| Profile::new(&experiment, &explanation.after, signal));
-        let suggestion = (!options.is_over()).then(|| {
-            suggest(&experiment, &model, &explanation, &|what| {
-                progress.say(format!("trying a term of its own, {what}"))
-            })
-        });
-        let suggestion = suggestion.flatten();
-        let mut shown = Explanation::new(&experiment, &model, &explanation);
         shown.unexplained.whereabouts = rest.as_ref().map(ToString::to_string);
-        if let Some(suggestion) = &suggestion {
-            shown.unexplained.suggest(suggestion);
-        }
         Self {
             rest,
             suggestion,
@@ -73,4 +83,68 @@ impl Found {
         }
         model
     }
+}
+
+/// An explanation with a term for what it leaves, as found and as shown.
+#[derive(Debug, Clone)]
+pub struct Explained {
+    /// As the identification gives it.
+    pub explanation: explain::Explanation,
+    /// A term for what stays unexplained.
+    pub suggestion: Option<Suggestion>,
+    /// As it is shown.
+    pub shown: Explanation,
+}
+
+impl Explained {
+    /// Explains an experiment; no term is looked for once the time of the search is over.
+    pub fn new(
+        experiment: &Experiment,
+        model: &Model,
+        options: Options<'_>,
+        progress: explain::Progress<'_>,
+    ) -> Self {
+        let explanation = explain::explain_with(experiment, model, options, progress);
+        let suggestion = (!options.is_over()).then(|| {
+            suggest(experiment, model, &explanation, &|what| {
+                progress(&format!("a term of its own, {what}"));
+            })
+        });
+        let suggestion = suggestion.flatten();
+        let mut shown = Explanation::new(experiment, model, &explanation);
+        if let Some(suggestion) = &suggestion {
+            shown.unexplained.suggest(suggestion);
+        }
+        Self {
+            explanation,
+            suggestion,
+            shown,
+        }
+    }
+}
+
+/// A fit in one line: what it has beyond a model, and its error.
+fn account(model: &Model, fit: &Fit) -> String {
+    let unchanged = |added: &AddedEffect| {
+        let mut own = model.effects.iter();
+        own.any(|own| is_same(own.effect, added.effect) && own.values == added.values)
+    };
+    let effects = fit
+        .estimate
+        .effects
+        .iter()
+        .filter(|added| !unchanged(added));
+    let named = |added: &AddedEffect| {
+        let unit = added.effect.parameters()[0].unit;
+        let size = significant(added.values[0], 3);
+        format!("{} {size} {unit}", full_name(added.effect))
+            .trim_end()
+            .to_owned()
+    };
+    let effects: Vec<String> = effects.map(named).collect();
+    format!(
+        "best so far: {}; error {:.2} sigma",
+        effects.join(", "),
+        fit.error()
+    )
 }

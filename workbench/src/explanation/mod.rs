@@ -7,7 +7,7 @@ mod of_suggestion;
 mod rebuilt;
 mod show;
 
-pub use found::Found;
+pub use found::{Explained, Found};
 pub use next::{Detail, Next};
 pub use of_diagnosis::explained;
 pub use of_explanation::parameters;

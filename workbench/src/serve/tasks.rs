@@ -6,7 +6,7 @@ use hitch_model::Model;
 use hitch_model::effects::{AddedEffect, Effect, full_name};
 use hitch_model::identification::estimate::Estimate;
 use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{diagnose_each, explain_with};
+use hitch_model::identification::explain::diagnose_each;
 use hitch_model::identification::fit::{Fit, evaluate, fit_loads, refine, sketch};
 use hitch_model::identification::holdout::held_out;
 use hitch_model::identification::residual::Weights;
@@ -251,17 +251,15 @@ impl Ready {
         let effects = self.present.evaluated.fit.estimate.effects.clone();
         let model = self.model().with_effects(effects);
         reporter.progress("fitting the clocks and loads", None, None);
-        let options = Options::default();
-        let explanation = explain_with(self.experiment(), &model, options, &|what| {
-            reporter.progress(what, None, None);
-        });
-        let suggestion = suggest(self.experiment(), &model, &explanation, &|what| {
-            reporter.progress(&format!("trying a term, {what}"), None, None);
-        });
-        let mut shown = explanation::Explanation::new(self.experiment(), &model, &explanation);
-        if let Some(suggestion) = &suggestion {
-            shown.unexplained.suggest(suggestion);
-        }
+        let explained =
+            explanation::Explained::new(self.experiment(), &model, Options::default(), &|what| {
+                reporter.progress(&format!("trying {what}"), None, None);
+            });
+        let explanation::Explained {
+            explanation,
+            suggestion,
+            shown,
+        } = explained;
         Explained {
             suggestion,
             of: Arc::clone(&self.present.evaluated),

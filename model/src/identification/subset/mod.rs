@@ -60,24 +60,36 @@ const FAINT: f64 = 1.5;
 const TRIED: usize = 3;
 
 /// What a search may do.
-#[derive(Debug, Clone, Copy)]
-pub struct Options {
+#[derive(Clone, Copy)]
+pub struct Options<'a> {
     /// Whether effects that the model had before the search may have changed.
     pub changes: bool,
     /// When the search has to end with what it has.
     pub deadline: Option<Instant>,
+    /// Receives each fit that becomes the best one while the search goes on.
+    pub improved: &'a (dyn Fn(&Fit) + Sync),
 }
 
-impl Default for Options {
+impl Default for Options<'_> {
     fn default() -> Self {
         Self {
             changes: true,
             deadline: None,
+            improved: &|_| {},
         }
     }
 }
 
-impl Options {
+impl std::fmt::Debug for Options<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Options")
+            .field("changes", &self.changes)
+            .field("deadline", &self.deadline)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Options<'_> {
     /// Whether the time is up.
     #[must_use]
     pub fn is_over(&self) -> bool {
@@ -118,7 +130,7 @@ pub(super) fn search(
     experiment: &Experiment,
     model: &Model,
     base: &Fit,
-    options: Options,
+    options: Options<'_>,
     progress: Progress,
 ) -> Found {
     let mut search = Search {
@@ -153,7 +165,7 @@ pub(super) fn search(
 struct Search<'a> {
     experiment: &'a Experiment,
     model: &'a Model,
-    options: Options,
+    options: Options<'a>,
     progress: Progress<'a>,
     scans: Scans,
     refitted: Refitted,
@@ -291,6 +303,7 @@ impl Search<'_> {
         });
         let found = admitted.is_some();
         if let Some((fit, its)) = admitted {
+            (self.options.improved)(&fit);
             (self.present, self.left) = (fit, its);
         }
         found

@@ -34,7 +34,7 @@ pub(super) struct Refits<'a> {
     /// The cost of the best fit so far with its price, seen as coarsely.
     pub best: f64,
     pub price: Price,
-    pub options: Options,
+    pub options: Options<'a>,
 }
 
 impl Refits<'_> {
