@@ -10,7 +10,7 @@ use hitch_firmware::control::State;
 use hitch_firmware::control::safety::Trip;
 use hitch_firmware::ecu::link::{Reply, Request, frame_to_bytes};
 use hitch_firmware::ecu::{AdcCode, Contact, Contacts, Panel, Samples};
-use hitch_model::Model;
+use hitch_plant::Model;
 use hitch_workbench::ecu::{Bench, CutFlash, EcuMachine, OnHost, Operator};
 
 /// What the ECU was told and what it said, as bytes on its link, and its flash at the end.
@@ -41,7 +41,7 @@ pub struct Day {
 /// # Errors
 /// If the model is none.
 pub fn live(seed: u64, milliseconds: u64, flash: Vec<u8>) -> Result<Day> {
-    let model = Model::named("dynamic")?;
+    let model = hitch_model_file::named("dynamic")?;
     let mut random = Rng::with_seed(seed);
     let mut bench = Bench::new(&model, random.f64() * 250.0, 40.0, 90.0, seed);
     let cells = CutFlash::holding(flash);

@@ -1,10 +1,10 @@
 //! A lab that can measure a planned manoeuvre on the second rig with something hidden in it, and explain what it has.
 
-use hitch_model::Model;
-use hitch_model::campaign::{Campaign, Noise, Run};
-use hitch_model::identification::design::plan::RunPlan;
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{Explanation, explain};
+use hitch_campaign::{Campaign, Noise, Run};
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::design::plan::RunPlan;
+use hitch_identification::explanation::explain::{Explanation, explain};
+use hitch_plant::Model;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
@@ -51,8 +51,8 @@ impl Lab {
         };
         let mut lab = Self {
             model: match family {
-                Family::Steady => Model::nominal(),
-                Family::Dynamic => Model::dynamic(),
+                Family::Steady => hitch_model_file::nominal(),
+                Family::Dynamic => hitch_model_file::dynamic(),
             },
             case: draw(SEED, &wish),
             channels,

@@ -5,7 +5,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use hitch_firmware::ecu::{AdcCode, Contact, Contacts};
-use hitch_model::Model;
+use hitch_plant::Model;
 use hitch_workbench::can_door::CanDoor;
 use hitch_workbench::ecu::{Bench, Bus, EcuMachine, Order};
 
@@ -54,7 +54,7 @@ const MOST_BEHIND: Duration = Duration::from_millis(200);
 
 /// Runs it until `stop` is set. Service is switched on, so tools may write.
 pub fn run(machine: &mut impl EcuMachine, door: CanDoor, operator: Operator, stop: &AtomicBool) {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut bench = Bench::new(&model, LOAD_KG, OIL_TEMPERATURE_C, START_DEG, SEED);
     bench.operator.obey(Order::Contact(Contact::Service, true));
     let mut bus = Bus::behind(door);

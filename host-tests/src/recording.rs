@@ -9,8 +9,7 @@ use hitch_firmware::control::units::{
     MilliVolt,
 };
 use hitch_firmware::control::{Inputs, Outputs};
-use hitch_model::Model;
-use hitch_model::plant::{Currents, HitchRig, Plant, Rig};
+use hitch_plant::{Currents, HitchRig, Model, Plant, Rig};
 use hitch_workbench::closed_loop::Coil;
 
 use crate::replay;
@@ -137,7 +136,7 @@ const SCRIPT: &[Scene] = &[
 
 /// The inputs of every step of the script, with the controller's own outputs moving the plant.
 pub fn record() -> Trace {
-    let model = Model::dynamic();
+    let model = hitch_model_file::dynamic();
     let rig = HitchRig {
         load_kg: 150.0,
         start_angle_rad: START_DEGREE.to_radians(),

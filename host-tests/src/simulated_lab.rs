@@ -1,11 +1,10 @@
 //! A lab campaign that the project's own plant is measured in: every parameter of its effects means what the catalogue
 //! says. The currents run on between samples, loads are weighed wrong, instruments are noisy and have digits.
 
-use hitch_model::Model;
-use hitch_model::campaign::{Bench, Campaign, Channel, Noise, Run};
-use hitch_model::plant::{Currents, HitchRig, Rig};
-use hitch_model::simulation::simulate;
-use hitch_model::units::pa_from_bar;
+use hitch_campaign::{Bench, Campaign, Noise, Run};
+use hitch_plant::simulation::simulate;
+use hitch_plant::units::pa_from_bar;
+use hitch_plant::{Channel, Currents, HitchRig, Model, Rig};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 

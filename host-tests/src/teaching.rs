@@ -1,10 +1,10 @@
 //! Teaching a plant's controller, as service does it.
 
+use hitch_effects::find;
 use hitch_firmware::control::teach::{Taught, TeachError};
 use hitch_firmware::control::units::MilliDegreePerSecond;
 use hitch_firmware::control::{Calibration, Inputs, ValidCalibration};
-use hitch_model::Model;
-use hitch_model::effects::{AddedEffect, find};
+use hitch_plant::{AddedEffect, Model};
 use hitch_workbench::closed_loop::ClosedLoop;
 
 /// The calibration of an untaught machine.
@@ -20,7 +20,7 @@ pub fn dynamic_with(effects: &[(&str, &[f64])]) -> Model {
         effect: find(id).unwrap_or_else(|| panic!("there is no effect {id}")),
         values: values.to_vec(),
     });
-    Model::dynamic().with_effects(added.collect())
+    hitch_model_file::dynamic().with_effects(added.collect())
 }
 
 /// What valves, oil and seals of this class add to the dynamic plant, and thresholds that are off by so much: hysteresis

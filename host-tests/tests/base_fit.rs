@@ -1,15 +1,13 @@
 //! Base models that are off, fitted to campaigns of the second rig whose constants are known.
 
-use hitch_model::Model;
-use hitch_model::identification::adequacy::cells;
-use hitch_model::identification::base::{BaseFit, fit_base_model};
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::fit_base;
-use hitch_model::identification::hopeless::{is_hopeless, wrong_share};
-use hitch_model::model::Constants;
-use hitch_model::model_file::Valve;
-use hitch_model::plant::ValveCurve;
-use hitch_model::units::lpm_from_m3_s;
+use hitch_identification::adequacy::lack_of_fit::cells;
+use hitch_identification::adequacy::unsuitable_base::{is_hopeless, wrong_share};
+use hitch_identification::base::{BaseFit, fit_base_model};
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::explanation::explain::fit_base;
+use hitch_model_file::Valve;
+use hitch_plant::units::lpm_from_m3_s;
+use hitch_plant::{Constants, Model, ValveCurve};
 use host_tests::hidden_effects::starting_point;
 use host_tests::second_rig::campaign_writer::campaign;
 use host_tests::second_rig::draw::{Kind, Wish, draw};
@@ -95,7 +93,7 @@ fn true_value(name: &str, truth: &Model) -> f64 {
             valve.of(&constants).curve.threshold_a()
         }
         _ => {
-            let scalars = hitch_model::identification::base::parameter::SCALARS.iter();
+            let scalars = hitch_identification::base::parameter::SCALARS.iter();
             let mut scalars = scalars.filter(|scalar| scalar.name == name);
             let scalar = scalars.next().expect("a constant");
             *(scalar.place)(&mut constants) / scalar.si
@@ -199,7 +197,7 @@ fn a_dynamic_model_that_is_off_leaves_noise() {
 /// Another machine: bore, curves, margin and weights are far from those of the rig.
 fn another_machine() -> Model {
     let mut constants = declared(
-        &Model::nominal(),
+        &hitch_model_file::nominal(),
         Off {
             curves: 1.0,
             margin: 1.0,
@@ -222,7 +220,7 @@ fn only_another_machine_is_a_hopeless_base() {
         "known-outside",
         "clean-steady",
     ] {
-        let campaign = hitch_model::campaign::Campaign::load(folder(name).as_ref());
+        let campaign = hitch_campaign::Campaign::load(folder(name).as_ref());
         let campaign = campaign.expect("a shipped campaign");
         let hopeless = |model: &Model| {
             let experiment = Experiment::new(&campaign, model);
@@ -236,7 +234,7 @@ fn only_another_machine_is_a_hopeless_base() {
             );
             is_hopeless(&experiment, &base, &base)
         };
-        assert!(!hopeless(&Model::nominal()), "{name}");
+        assert!(!hopeless(&hitch_model_file::nominal()), "{name}");
         let other = hopeless(&another_machine());
         assert!(other, "{name}");
     }
@@ -246,7 +244,7 @@ fn only_another_machine_is_a_hopeless_base() {
 fn diagnose_says_first_that_the_base_is_hopeless() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("another.toml");
-    std::fs::write(&file, another_machine().to_toml()).expect("a file");
+    std::fs::write(&file, hitch_model_file::to_toml(&another_machine())).expect("a file");
     let campaign = format!("{}/campaigns/clean-steady", env!("CARGO_MANIFEST_DIR"));
     let said = |json: bool| {
         let mut command = host_tests::program::hitch();
@@ -287,7 +285,7 @@ fn a_new_model_file_loads_and_faults_are_told() {
     ];
     let (code, said) = run(&[&new[..], &["--lift-curve", "lift.csv"]].concat());
     assert_eq!(code, Some(0), "{said}");
-    let model = Model::read(&folder.path().join("my.toml")).expect("a model file");
+    let model = hitch_model_file::read(&folder.path().join("my.toml")).expect("a model file");
     assert!((model.constants().cylinder.bore_m - 0.08).abs() < 1e-12);
     assert_eq!(
         model.constants().lift_valve.curve.currents_a(),

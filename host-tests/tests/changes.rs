@@ -4,13 +4,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use hitch_model::Model;
-use hitch_model::campaign::Campaign;
-use hitch_model::effects::{AddedEffect, find};
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{Explanation, Verdict, explain_with};
-use hitch_model::identification::fit::Fit;
-use hitch_model::identification::subset::Options;
+use hitch_campaign::Campaign;
+use hitch_effects::find;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::estimation::fit::Fit;
+use hitch_identification::explanation::explain::{Explanation, Verdict, explain_with};
+use hitch_identification::search::subset::Options;
+use hitch_plant::{AddedEffect, Model};
 use host_tests::program::run;
 use serde_json::Value;
 
@@ -26,7 +26,7 @@ fn from_adopted(friction_n: f64, changes: bool) -> Explanation {
     let effect = find("coulomb-friction").expect("in the catalogue");
     let mut adopted = AddedEffect::typical(effect);
     adopted.values[0] = friction_n;
-    let model = Model::nominal().with_effects(vec![adopted]);
+    let model = hitch_model_file::nominal().with_effects(vec![adopted]);
     let campaign = Campaign::load(&campaigns().join("known-friction")).expect("shipped");
     let options = Options {
         changes,
@@ -76,7 +76,7 @@ fn a_frozen_model_keeps_its_effects() {
 
 #[test]
 fn each_account_is_better_than_the_one_before_and_the_last_one_is_the_answer() {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let campaign = Campaign::load(&campaigns().join("known-leak-and-lag")).expect("shipped");
     let experiment = Experiment::new(&campaign, &model);
     let accounts = Mutex::new(Vec::new());

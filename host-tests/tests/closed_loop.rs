@@ -1,9 +1,9 @@
 //! The controller in closed loop with the dynamic plant, and what a wrong and a right calibration do to it.
 
+use hitch_effects::find;
 use hitch_firmware::control::units::{MicrometrePerSecond, PerMille};
 use hitch_firmware::control::{Calibration, ValidCalibration};
-use hitch_model::Model;
-use hitch_model::effects::{AddedEffect, find};
+use hitch_plant::{AddedEffect, Model};
 use hitch_workbench::calibrate::calibrate;
 use hitch_workbench::calibration_file::with_settings;
 use hitch_workbench::closed_loop::{ClosedLoop, LoopRun, Scenario, run};
@@ -22,7 +22,7 @@ fn with_effect(id: &str, values: &[f64]) -> Model {
         effect: find(id).unwrap(),
         values: values.to_vec(),
     };
-    Model::dynamic().with_effects(vec![effect])
+    hitch_model_file::dynamic().with_effects(vec![effect])
 }
 
 fn driven(model: &Model, calibration: &ValidCalibration, scenario: Scenario) -> LoopRun {
@@ -49,7 +49,7 @@ fn assert_good(run: &LoopRun) {
 
 #[test]
 fn nominal_valves_with_the_nominal_calibration_meet_every_bar() {
-    let run = driven(&Model::dynamic(), &nominal(), Scenario::Moves);
+    let run = driven(&hitch_model_file::dynamic(), &nominal(), Scenario::Moves);
     assert_eq!(
         run.results.len(),
         30,
@@ -71,7 +71,11 @@ fn nominal_valves_with_the_nominal_calibration_meet_every_bar() {
 #[test]
 fn a_move_that_never_arrives_has_no_time_and_counts_for_no_ratio() {
     let weak = with_settings(&nominal(), &["safety.lift_current_limit=1.0".to_owned()]);
-    let run = driven(&Model::dynamic(), &weak.unwrap(), Scenario::Quick);
+    let run = driven(
+        &hitch_model_file::dynamic(),
+        &weak.unwrap(),
+        Scenario::Quick,
+    );
     for result in &run.results {
         let lifts = result.to_deg > result.from_deg;
         assert_eq!(result.arrived, !lifts, "{result:?}");
@@ -90,7 +94,7 @@ fn a_move_that_never_arrives_has_no_time_and_counts_for_no_ratio() {
 #[test]
 fn a_lift_that_the_relief_valve_forbids_has_no_shortest_time() {
     let moves = Scenario::Quick.moves(Some(2_000.0));
-    let run = run(&Model::dynamic(), &nominal(), &moves).unwrap();
+    let run = run(&hitch_model_file::dynamic(), &nominal(), &moves).unwrap();
     let lift = run.results.iter().find(|r| r.to_deg > r.from_deg);
     let lift = lift.unwrap();
     assert!(!lift.arrived && lift.shortest_s.is_nan(), "{lift:?}");
@@ -103,12 +107,16 @@ fn a_lift_that_the_relief_valve_forbids_has_no_shortest_time() {
 
 #[test]
 fn near_the_ends_of_travel_it_is_no_worse() {
-    assert_good(&driven(&Model::dynamic(), &nominal(), Scenario::Ends));
+    assert_good(&driven(
+        &hitch_model_file::dynamic(),
+        &nominal(),
+        Scenario::Ends,
+    ));
 }
 
 #[test]
 fn the_calibration_of_the_nominal_model_is_the_nominal_one() {
-    let calibration = calibrated(&Model::dynamic());
+    let calibration = calibrated(&hitch_model_file::dynamic());
     for milliampere in 0..3_500 {
         let current = hitch_firmware::control::units::MilliAmp(milliampere);
         for (taught, printed) in [
@@ -136,7 +144,7 @@ fn a_shifted_threshold_makes_the_nominal_calibration_worse_and_calibrating_bring
             .collect();
         ratios.iter().sum::<f64>() / ratios.len() as f64
     };
-    let unshifted = Model::dynamic();
+    let unshifted = hitch_model_file::dynamic();
     let right = driven(&unshifted, &calibrated(&unshifted), Scenario::Fine);
     let wrong = driven(&shifted, &nominal(), Scenario::Fine);
     let again = driven(&shifted, &calibrated(&shifted), Scenario::Fine);
@@ -163,7 +171,7 @@ fn a_leaking_lowering_valve_is_corrected_and_then_reported() {
 
 /// Time from the lever's drop to the bottom until the hitch is within half a degree of it, s.
 fn full_lowering_s(calibration: &ValidCalibration, load_kg: f64, dial: Option<PerMille>) -> f64 {
-    let model = Model::dynamic();
+    let model = hitch_model_file::dynamic();
     let mut closed_loop = ClosedLoop::new(&model, calibration, load_kg, 40.0, 135.0, 11);
     closed_loop.pick_up();
     let steps = (0..60_000).position(|_| {

@@ -4,12 +4,11 @@
 
 use std::path::Path;
 
-use hitch_model::Model;
-use hitch_model::campaign::{Campaign, Channel, Run};
-use hitch_model::effects::{AddedEffect, CATALOGUE, Effect};
-use hitch_model::identification::experiment::{Experiment, Nuisance};
-use hitch_model::plant::Currents;
-use hitch_model::simulation::{Trace, simulate};
+use hitch_campaign::{Campaign, Run};
+use hitch_effects::CATALOGUE;
+use hitch_identification::data::experiment::{Experiment, Nuisance};
+use hitch_plant::simulation::{Trace, simulate};
+use hitch_plant::{AddedEffect, Channel, Currents, Effect, Model};
 
 /// Pieces that a sample is cut into for the converged solution: steps of half a millisecond.
 const FINER: usize = 40;
@@ -104,7 +103,7 @@ fn the_steps_of_a_log_are_fine_enough() {
     let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/known-threshold");
     let campaign = Campaign::load(&campaign).expect("a shipped campaign");
     println!("pump pressure, cylinder pressure, flow, angle:");
-    for model in [Model::nominal(), Model::dynamic()] {
+    for model in [hitch_model_file::nominal(), hitch_model_file::dynamic()] {
         let without = off(&model, &campaign);
         println!("{} {}", percent(without), model.name);
         assert!(without.iter().all(|share| *share <= BAR), "{}", model.name);

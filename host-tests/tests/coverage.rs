@@ -4,12 +4,11 @@
 //! between samples, loads are weighed wrong, instruments are noisy and have digits. `HITCH_COVERAGE_SEEDS=100` judges
 //! every effect by a hundred campaigns, `HITCH_COVERAGE_EFFECT=spool-lag` that effect alone.
 
-use hitch_model::Model;
-use hitch_model::effects::{AddedEffect, CATALOGUE, Effect};
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::fit_base;
-use hitch_model::identification::subset::single::try_effects;
-use hitch_model::model::Dynamics;
+use hitch_effects::CATALOGUE;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::explanation::explain::fit_base;
+use hitch_identification::search::single::try_effects;
+use hitch_plant::{AddedEffect, Dynamics, Effect, Model};
 use host_tests::simulated_lab::campaign;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -104,7 +103,7 @@ fn distance(value: f64, (low, high): (f64, f64), truth: f64) -> f64 {
 
 fn starting_point(effect: &dyn Effect) -> Model {
     match effect.needs() {
-        Some(Dynamics::Dynamic) => Model::dynamic(),
-        _ => Model::nominal(),
+        Some(Dynamics::Dynamic) => hitch_model_file::dynamic(),
+        _ => hitch_model_file::nominal(),
     }
 }

@@ -3,17 +3,16 @@
 
 use std::path::Path;
 
-use hitch_model::Model;
-use hitch_model::campaign::Campaign;
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{Explanation, Verdict, explain};
-use hitch_model::model::Constants;
+use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::explanation::explain::{Explanation, Verdict, explain};
+use hitch_plant::{Constants, Model};
 
 /// The clean campaign of the dynamic machine explained from a model with other constants.
 fn explained(declare: fn(&mut Constants)) -> Explanation {
     let campaigns = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns");
     let campaign = Campaign::load(&campaigns.join("clean-dynamic")).expect("shipped");
-    let mut constants = Model::dynamic().constants().clone();
+    let mut constants = hitch_model_file::dynamic().constants().clone();
     declare(&mut constants);
     let model = Model::new("misdeclared", constants).expect("the linkage is the paper's");
     explain(&Experiment::new(&campaign, &model), &model, &|_| {})

@@ -2,15 +2,14 @@
 
 use std::path::Path;
 
-use hitch_model::Model;
-use hitch_model::campaign::Campaign;
-use hitch_model::effects::{AddedEffect, Effect};
-use hitch_model::identification::estimate::Estimate;
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::fit_base;
-use hitch_model::identification::fit::evaluate;
-use hitch_model::identification::jacobian::{difference, residuals, square_sum};
-use hitch_model::identification::residual::Weights;
+use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::estimate::Estimate;
+use hitch_identification::estimation::fit::evaluate;
+use hitch_identification::estimation::jacobian::{difference, residuals, square_sum};
+use hitch_identification::explanation::explain::fit_base;
+use hitch_identification::residuals::whitening::Weights;
+use hitch_plant::{AddedEffect, Effect, Model};
 
 /// Largest part of what an effect changes that a draft may have otherwise, root mean square: a signature 14 degrees
 /// off, where those within 37 are worth a fit.
@@ -36,7 +35,7 @@ struct Compared {
 
 impl Compared {
     fn new() -> Self {
-        let (experiment, model) = ready("clean-dynamic", Model::dynamic());
+        let (experiment, model) = ready("clean-dynamic", hitch_model_file::dynamic());
         let estimate = Estimate::new(&experiment, Vec::new());
         let weights = Weights::new(&experiment, &model, &estimate);
         Self {
@@ -79,7 +78,7 @@ fn a_draft_shows_what_an_effect_changes() {
     let drafted = compared.drafted();
     let samples = compared.weights.count() as f64;
     let mut otherwise = Vec::new();
-    for effect in compared.model.catalogue() {
+    for effect in hitch_effects::available(&compared.model) {
         let fine = compared.signature(&compared.experiment, effect);
         let off = difference(&fine, &compared.signature(&drafted, effect));
         let [size, off] = [&fine, &off].map(|of| (square_sum(of) / samples).sqrt());
@@ -110,13 +109,13 @@ fn shown(
 
 #[test]
 fn a_condensed_experiment_shows_what_an_effect_changes() {
-    let (experiment, model) = ready("clean-steady", Model::nominal());
+    let (experiment, model) = ready("clean-steady", hitch_model_file::nominal());
     let estimate = Estimate::new(&experiment, Vec::new());
     let condensed = experiment.condensed(&model, &estimate);
     assert!(2 * condensed.samples() < experiment.samples());
     let visible = NO_SIGNATURE * NO_SIGNATURE * experiment.samples() as f64;
     let mut otherwise = Vec::new();
-    for effect in model.catalogue() {
+    for effect in hitch_effects::available(&model) {
         let [all, few] =
             [&experiment, &condensed].map(|runs| shown(runs, &model, &estimate, effect));
         if all > visible && !SHOWN.contains(&(few / all)) {
@@ -128,7 +127,7 @@ fn a_condensed_experiment_shows_what_an_effect_changes() {
 
 #[test]
 fn a_condensed_experiment_leaves_what_noise_leaves() {
-    let (experiment, model) = ready("clean-steady", Model::nominal());
+    let (experiment, model) = ready("clean-steady", hitch_model_file::nominal());
     let base = fit_base(&experiment, &model);
     let condensed = experiment.condensed(&model, &base.estimate);
     let seen = evaluate(&condensed, &model, base.estimate);

@@ -3,7 +3,7 @@
 
 use hitch_firmware::control::{Fault, State, ValidCalibration};
 use hitch_firmware::ecu::{AdcCode, Contacts, Samples};
-use hitch_model::Model;
+use hitch_plant::Model;
 use hitch_workbench::ecu::{Bench, CutFlash, Moment, OnHost, delivered};
 
 const START_DEG: f64 = 90.0;
@@ -84,7 +84,7 @@ fn sensor_supply(samples: &mut Samples, share: f64) {
 
 #[test]
 fn eight_percent_lost_in_three_seconds_move_the_hitch_by_less_than_half_a_degree() {
-    let model = Model::dynamic();
+    let model = hitch_model_file::dynamic();
     for (what, tamper, fault) in [
         (
             "reference",

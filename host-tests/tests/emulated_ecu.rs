@@ -8,9 +8,8 @@ use std::time::{Duration, Instant};
 use hitch_firmware::control::ValidCalibration;
 use hitch_firmware::ecu::link::{FRAME_BYTES, REPLY_BYTES, Reply};
 use hitch_firmware::storage::{CalibrationStore, Source};
-use hitch_model::Model;
+use hitch_plant::Model;
 use hitch_workbench::ecu::{Bench, CALIBRATION_BYTES, CutFlash, Emulator, Mode, delivered};
-
 use host_tests::{ecu_day, ecu_tool, emulator};
 
 const SEED: u64 = 20_260_101;
@@ -111,7 +110,7 @@ fn a_killed_emulator_finds_its_calibration_again_and_stays_locked() {
     const KILLS: i32 = 12;
     /// Storing takes 46 milliseconds, one erased page or programmed chunk each.
     const LATEST_MS: u32 = 55;
-    let model = Model::named("nominal").unwrap();
+    let model = hitch_model_file::named("nominal").unwrap();
     let image = emulator::image().unwrap();
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("flash");

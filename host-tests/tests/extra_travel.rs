@@ -5,8 +5,7 @@ use hitch_firmware::control::units::{
     Count, Microsecond, MilliAmp, MilliDegree, MilliVolt, PerMille,
 };
 use hitch_firmware::control::{Calibration, Fault, Inputs, Outputs};
-use hitch_model::Model;
-use hitch_model::plant::Currents;
+use hitch_plant::{Currents, Model};
 use hitch_workbench::closed_loop::{ClosedLoop, Sample};
 
 /// What is done to a hitch in motion.
@@ -256,7 +255,7 @@ fn places() -> impl Iterator<Item = (f64, (f64, f64), usize)> {
 
 #[test]
 fn no_fault_takes_the_hitch_further_than_it_may() {
-    let model = Model::dynamic();
+    let model = hitch_model_file::dynamic();
     let yardsticks: Vec<f64> = places()
         .map(|(load_kg, way, ms)| run(&model, CutAtOnce, load_kg, way, ms).travel_deg)
         .collect();
@@ -289,7 +288,7 @@ fn no_fault_takes_the_hitch_further_than_it_may() {
 /// A driver that switches itself on under a resting hitch.
 #[test]
 fn a_stuck_driver_moves_a_resting_hitch_by_little() {
-    let model = Model::dynamic();
+    let model = hitch_model_file::dynamic();
     for load_kg in LOADS_KG {
         for trouble in [LiftStuck, LowerStuck] {
             let run = run(&model, trouble, load_kg, (90.0, 90.0), 100);
@@ -316,7 +315,7 @@ struct Drift {
 }
 
 fn drift(rate_deg_per_s: f64, watched_s: u32) -> Drift {
-    let model = Model::dynamic();
+    let model = hitch_model_file::dynamic();
     let calibration = Calibration::nominal().validate().unwrap();
     let mut closed_loop = ClosedLoop::new(&model, &calibration, 150.0, 40.0, 90.0, 3);
     closed_loop.pick_up();

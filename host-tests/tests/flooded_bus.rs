@@ -5,7 +5,7 @@ use hitch_firmware::can::{ExtendedId, Frame, StandardId};
 use hitch_firmware::ecu::link::Reply;
 use hitch_firmware::j1939::Pgn;
 use hitch_firmware::xcp::TOOL_ADDRESS;
-use hitch_model::Model;
+use hitch_plant::Model;
 use hitch_workbench::ecu::{Bench, CutFlash, OnHost, Order};
 
 const ECU: u8 = 0x80;
@@ -57,7 +57,7 @@ fn nonsense(random: &mut Rng) -> Frame {
 
 /// What an ECU does while the operator works, without what it says.
 fn work(mut bus: impl FnMut(u32) -> Vec<Frame>) -> (Vec<Reply>, usize) {
-    let model = Model::named("dynamic").unwrap();
+    let model = hitch_model_file::named("dynamic").unwrap();
     let mut bench = Bench::new(&model, 150.0, 40.0, 80.0, 5);
     let mut machine = OnHost::start(CutFlash::blank());
     let mut said = Vec::new();

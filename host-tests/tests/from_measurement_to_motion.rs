@@ -1,10 +1,10 @@
 //! The whole way: valves whose curves differ in several ways are measured, explained, calibrated and driven.
 
+use hitch_effects::find;
 use hitch_firmware::control::{Calibration, ValidCalibration};
-use hitch_model::Model;
-use hitch_model::effects::{AddedEffect, find};
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{Verdict, explain};
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::explanation::explain::{Verdict, explain};
+use hitch_plant::{AddedEffect, Model};
 use hitch_workbench::calibrate::calibrate;
 use hitch_workbench::closed_loop::{LoopRun, Scenario, run};
 use host_tests::simulated_lab::campaign;
@@ -44,7 +44,7 @@ fn lowering(run: &LoopRun) -> (f64, f64) {
 
 #[test]
 fn several_deviations_of_the_valves_are_found_and_the_motion_is_better_by_them() {
-    let nominal_model = Model::nominal();
+    let nominal_model = hitch_model_file::nominal();
     let rig = nominal_model.with_effects(hidden());
     let campaign = campaign(&rig, &mut Pcg64::seed_from_u64(SEED));
     let experiment = Experiment::new(&campaign, &nominal_model);
@@ -66,7 +66,7 @@ fn several_deviations_of_the_valves_are_found_and_the_motion_is_better_by_them()
     assert!(found.after.error() <= 1.1, "{}", found.after.error());
 
     let identified = nominal_model.with_effects(found.after.estimate.effects.clone());
-    let driven_rig = Model::dynamic().with_effects(hidden());
+    let driven_rig = hitch_model_file::dynamic().with_effects(hidden());
     let driven = |calibration: &ValidCalibration, scenario: Scenario| {
         let run = run(&driven_rig, calibration, &scenario.moves(None)).unwrap();
         println!("{:?}", run.summary);

@@ -1,10 +1,10 @@
 //! A few cases of the second rig, always the same: the hidden effect is named, nothing is named where nothing is
 //! hidden, and what is in no catalogue is owned up to. `cargo bench --bench hidden_effects` asks many more.
 
-use hitch_model::campaign::Campaign;
-use hitch_model::effects::Effect;
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{Explanation, explain};
+use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::explanation::explain::{Explanation, explain};
+use hitch_plant::Effect;
 use host_tests::hidden_effects::answer::Method;
 use host_tests::hidden_effects::explaining::Explaining;
 use host_tests::hidden_effects::grade::{Graded, Posed};

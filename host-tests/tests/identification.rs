@@ -3,18 +3,17 @@
 use std::path::Path;
 
 use fastrand::Rng;
-use hitch_model::Model;
-use hitch_model::campaign::{Campaign, Channel};
-use hitch_model::effects::{AddedEffect, find};
-use hitch_model::identification::clocks::Clocks;
-use hitch_model::identification::conditioning::Drive;
-use hitch_model::identification::evidence::variance_inflation;
-use hitch_model::identification::experiment::{Experiment, Nuisance};
-use hitch_model::identification::explain::{Verdict, explain};
-use hitch_model::identification::noise::from_second_differences;
-use hitch_model::identification::traces::CurrentShift;
-use hitch_model::plant::Currents;
-use hitch_model::simulation::Trace;
+use hitch_campaign::Campaign;
+use hitch_effects::find;
+use hitch_identification::data::clocks::Clocks;
+use hitch_identification::data::conditioning::Drive;
+use hitch_identification::data::experiment::{Experiment, Nuisance};
+use hitch_identification::data::noise::from_second_differences;
+use hitch_identification::data::trace_cache::CurrentShift;
+use hitch_identification::explanation::explain::{Verdict, explain};
+use hitch_identification::selection::evidence::variance_inflation;
+use hitch_plant::simulation::Trace;
+use hitch_plant::{AddedEffect, Channel, Currents, Model};
 
 /// Standard normal numbers (Box & Muller).
 fn normal(rng: &mut Rng) -> f64 {
@@ -35,7 +34,7 @@ fn kept_traces_are_those_of_their_model() {
     let campaign = shipped("clean-dynamic");
     let friction = AddedEffect::typical(find("coulomb-friction").expect("an effect"));
     let off = AddedEffect::null(friction.effect);
-    let nominal = Model::nominal();
+    let nominal = hitch_model_file::nominal();
     let mut twice = nominal.clone();
     twice.effects = vec![friction.clone(), friction.clone()];
     let models = [
@@ -43,7 +42,7 @@ fn kept_traces_are_those_of_their_model() {
         nominal.with_effects(vec![friction]),
         nominal.with_effects(vec![off]),
         twice,
-        Model::dynamic(),
+        hitch_model_file::dynamic(),
     ];
     let experiment = Experiment::new(&campaign, &nominal);
     let loads = [-0.01, 0.0, 0.01].map(|load| Nuisance { load });
@@ -118,7 +117,7 @@ fn cleaning_a_current_removes_noise_and_keeps_corners_where_they_are() {
 /// white residuals not at all.
 #[test]
 fn autocorrelation_is_counted() {
-    let (campaign, model) = (shipped("clean-steady"), Model::nominal());
+    let (campaign, model) = (shipped("clean-steady"), hitch_model_file::nominal());
     let mut experiment = Experiment::new(&campaign, &model);
     experiment.runs.retain(|run| run.file == "hold_250kg.csv");
     let samples = experiment.runs[0].len();
@@ -146,7 +145,7 @@ fn autocorrelation_is_counted() {
 /// the model's own plant, another load and noise of its own. Proves the search on ringing pressures, not the plant.
 fn ringing_campaign(hidden: &AddedEffect, seed: u64) -> Campaign {
     let mut campaign = shipped("clean-dynamic");
-    let model = Model::dynamic();
+    let model = hitch_model_file::dynamic();
     let experiment = Experiment::new(&campaign, &model);
     let rig = model.with_effects(vec![hidden.clone()]);
     let mut rng = Rng::with_seed(seed);
@@ -169,7 +168,7 @@ fn ringing_campaign(hidden: &AddedEffect, seed: u64) -> Campaign {
 
 #[test]
 fn friction_is_named_where_pressures_ring() {
-    let model = Model::dynamic();
+    let model = hitch_model_file::dynamic();
     let hidden = AddedEffect {
         effect: find("coulomb-friction").expect("in the catalogue"),
         values: vec![350.0],
@@ -195,7 +194,7 @@ fn friction_is_named_where_pressures_ring() {
 fn a_campaign_that_only_holds_cannot_decide() {
     let mut campaign = shipped("clean-steady");
     campaign.runs.retain(|run| run.file == "hold_250kg.csv");
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let explanation = explain(&Experiment::new(&campaign, &model), &model, &|_| {});
     assert_eq!(explanation.verdict, Verdict::NotEnoughData);
     assert!(

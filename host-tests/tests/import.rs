@@ -1,13 +1,14 @@
 //! `hitch import`: the files of any logger become a campaign that reads to the runs of this project's own format.
+
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use hitch_model::Model;
-use hitch_model::campaign::{Campaign, Channel, Run};
-use hitch_model::plant::Linkage;
+use hitch_campaign::{Campaign, Run};
+use hitch_plant::{Channel, Linkage, Model};
 use host_tests::program::run;
-use host_tests::python::{self, installed, scripts};
+use host_tests::python;
+use host_tests::python::{installed, scripts};
 use host_tests::refusal::refused;
 use tempfile::TempDir;
 
@@ -202,7 +203,7 @@ fn travel_of_the_cylinder_is_an_angle_by_the_linkage_of_the_model() {
         "time [s],lift current [A],lower current [A],cylinder pressure [bar],stroke [mm]\n{rows}"
     );
     fs::write(dir.path().join("log.csv"), log).unwrap();
-    let nominal = Model::nominal().to_toml();
+    let nominal = hitch_model_file::to_toml(&hitch_model_file::nominal());
     let arm = nominal
         .lines()
         .find(|line| line.starts_with("rocker_arm"))
@@ -219,12 +220,12 @@ fn travel_of_the_cylinder_is_an_angle_by_the_linkage_of_the_model() {
         text.contains("next: hitch compare c --model other.toml"),
         "{text}"
     );
-    let model = Model::named(dir.path().join("other.toml").to_str().unwrap()).unwrap();
+    let model = hitch_model_file::named(dir.path().join("other.toml").to_str().unwrap()).unwrap();
     let others = Campaign::load_with(&dir.path().join("c"), model.linkage()).unwrap();
     let angle_deg = |run: &Run| run.channel(Channel::RockerAngle).unwrap()[0];
     let expected = |linkage: &Linkage| linkage.at(0.01).rocker_angle_rad.to_degrees();
     let [own_deg, other_deg] = [&runs[0], &others.runs[0]].map(angle_deg);
-    assert!((own_deg - expected(Model::nominal().linkage())).abs() < 1e-9);
+    assert!((own_deg - expected(hitch_model_file::nominal().linkage())).abs() < 1e-9);
     assert!((other_deg - expected(model.linkage())).abs() < 1e-9);
     assert!((own_deg - other_deg).abs() > 0.1, "{own_deg} {other_deg}");
 }

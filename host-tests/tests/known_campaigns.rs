@@ -4,10 +4,10 @@
 
 use std::path::{Path, PathBuf};
 
-use hitch_model::Model;
-use hitch_model::campaign::Campaign;
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{Explanation, Verdict, explain};
+use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::explanation::explain::{Explanation, Verdict, explain};
+use hitch_plant::Model;
 
 fn campaigns() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns")
@@ -31,7 +31,7 @@ fn hidden(name: &str) -> Vec<(String, f64)> {
 }
 
 fn is_named(name: &str) {
-    is_named_on(name, &Model::nominal());
+    is_named_on(name, &hitch_model_file::nominal());
 }
 
 fn is_named_on(name: &str, model: &Model) {
@@ -116,31 +116,31 @@ fn a_flow_force_is_named_from_field_logs() {
 
 #[test]
 fn air_in_the_oil_is_named_where_pressures_ring() {
-    is_named_on("known-air", &Model::dynamic());
+    is_named_on("known-air", &hitch_model_file::dynamic());
 }
 
 #[test]
 fn nothing_is_named_where_nothing_is_hidden() {
-    nothing_is_named("clean-steady", &Model::nominal());
-    nothing_is_named("clean-rough", &Model::nominal());
+    nothing_is_named("clean-steady", &hitch_model_file::nominal());
+    nothing_is_named("clean-rough", &hitch_model_file::nominal());
 }
 
 #[test]
 fn nothing_is_named_where_nothing_is_hidden_and_pressures_ring() {
-    nothing_is_named("clean-dynamic", &Model::dynamic());
+    nothing_is_named("clean-dynamic", &hitch_model_file::dynamic());
 }
 
 /// The wrong starting point is not adequate, and no effect of the catalogue is made to stand for inertia.
 #[test]
 fn the_wrong_starting_point_is_not_called_adequate() {
-    let explanation = explained("clean-dynamic", &Model::nominal());
+    let explanation = explained("clean-dynamic", &hitch_model_file::nominal());
     assert_eq!(explanation.verdict, Verdict::Unexplained);
 }
 
 /// An end cushion is not in the catalogue: what is left has to be owned up to, and to point at the angle.
 #[test]
 fn what_is_not_in_the_catalogue_is_unexplained() {
-    let explanation = explained("known-outside", &Model::nominal());
+    let explanation = explained("known-outside", &hitch_model_file::nominal());
     assert_eq!(explanation.verdict, Verdict::Unexplained);
     assert!(explanation.rest.share > 0.2);
     assert_eq!(explanation.rest.depends_on[0], "rocker_angle_deg");

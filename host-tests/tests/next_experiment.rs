@@ -1,18 +1,18 @@
 //! What to measure next: proposed on campaigns that leave two effects alike, then measured, then decided.
 
-use hitch_model::effects::{AddedEffect, find};
-use hitch_model::identification::candidate::weigh;
-use hitch_model::identification::design::alternative::angle_deg;
-use hitch_model::identification::design::manoeuvre::MANOEUVRES;
-use hitch_model::identification::design::plan::{Manoeuvre, RunPlan, Segment, Stand};
-use hitch_model::identification::design::separation::Bench;
-use hitch_model::identification::design::{NextExperiment, Pair, Rival, next_experiment};
-use hitch_model::identification::estimate::Estimate;
-use hitch_model::identification::evidence::TOLD_APART;
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{Explanation, Step, Verdict};
-use hitch_model::identification::fit::{Fit, evaluate, refine};
-use hitch_model::plant::Currents;
+use hitch_effects::find;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::design::alternative::angle_deg;
+use hitch_identification::design::manoeuvre::MANOEUVRES;
+use hitch_identification::design::plan::{Manoeuvre, RunPlan, Segment, Stand};
+use hitch_identification::design::separation::Bench;
+use hitch_identification::design::{NextExperiment, Pair, Rival, next_experiment};
+use hitch_identification::estimate::Estimate;
+use hitch_identification::estimation::fit::{Fit, evaluate, refine};
+use hitch_identification::explanation::explain::{Explanation, Step, Verdict};
+use hitch_identification::selection::candidate::weigh;
+use hitch_identification::selection::evidence::TOLD_APART;
+use hitch_plant::{AddedEffect, Currents};
 use host_tests::lab::Lab;
 use host_tests::second_rig::test_stand::{Family, SAMPLE_RATE_HZ};
 

@@ -3,9 +3,8 @@
 use fastrand::Rng;
 use hitch_firmware::control::{State, ValidCalibration};
 use hitch_firmware::storage::{CalibrationStore, Source};
-use hitch_model::Model;
+use hitch_plant::Model;
 use hitch_workbench::ecu::{Bench, CutFlash, OnHost, delivered};
-
 use host_tests::ecu_tool;
 
 const LOAD_KG: f64 = 200.0;
@@ -48,7 +47,7 @@ fn assert_nothing_moves(bench: &mut Bench<'_>, flash: &CutFlash, milliseconds: u
 
 #[test]
 fn a_power_cut_at_any_word_of_storing_leaves_the_old_calibration_or_the_new() {
-    let model = Model::named("nominal").unwrap();
+    let model = hitch_model_file::named("nominal").unwrap();
     let nominal = ValidCalibration::nominal();
     let (word, old_gain) = (
         ecu_tool::word(GAIN.0, GAIN.1).unwrap(),
@@ -98,7 +97,7 @@ fn a_power_cut_at_any_word_of_storing_leaves_the_old_calibration_or_the_new() {
 
 #[test]
 fn a_power_cut_at_any_instant_of_a_move_moves_nothing_afterwards() {
-    let model = Model::named("dynamic").unwrap();
+    let model = hitch_model_file::named("dynamic").unwrap();
     let mut random = Rng::with_seed(7);
     let mut cut_while_moving = 0;
     for case in 0..60 {

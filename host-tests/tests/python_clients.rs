@@ -10,10 +10,12 @@ use std::process::Command;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hitch_model::campaign::{Campaign, Channel, Run};
+use hitch_campaign::{Campaign, Run};
+use hitch_plant::Channel;
 use hitch_workbench::can_door::CanDoor;
 use hitch_workbench::ecu::{CutFlash, EcuMachine, Emulator, FLASH_BYTES, OnHost, find_image};
-use host_tests::live_ecu::{self, Operator};
+use host_tests::live_ecu;
+use host_tests::live_ecu::Operator;
 use host_tests::program::hitch;
 use host_tests::python::{installed, run, scripts};
 

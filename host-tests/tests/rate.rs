@@ -4,7 +4,7 @@
 
 use hitch_firmware::control::units::MilliDegreePerSecond;
 use hitch_firmware::control::{Inputs, ValidCalibration};
-use hitch_model::Model;
+use hitch_plant::Model;
 use hitch_workbench::closed_loop::ClosedLoop;
 use host_tests::teaching::{taught_calibration, typical};
 use rayon::prelude::*;

@@ -4,7 +4,7 @@
 use hitch_firmware::can::{ExtendedId, Frame};
 use hitch_firmware::control::{State, ValidCalibration};
 use hitch_firmware::ecu::{Contact, Panel};
-use hitch_model::Model;
+use hitch_plant::Model;
 use hitch_workbench::ecu::{Bench, CutFlash, Moment, OnHost, delivered};
 
 const START_DEG: f64 = 90.0;
@@ -45,7 +45,7 @@ impl<'m> Machine<'m> {
 
 #[test]
 fn nothing_but_the_lever_raises_the_enable_line() {
-    let model = Model::named("nominal").unwrap();
+    let model = hitch_model_file::named("nominal").unwrap();
     // An implement that commands the hitch at once, from where it is and from elsewhere.
     let commands: Vec<Frame> = [125, 200]
         .map(|position| {
@@ -74,7 +74,7 @@ fn nothing_but_the_lever_raises_the_enable_line() {
 
 #[test]
 fn a_button_that_was_held_from_the_start_on_raises_nothing() {
-    let model = Model::named("nominal").unwrap();
+    let model = hitch_model_file::named("nominal").unwrap();
     for contact in [Contact::Up, Contact::Down] {
         let mut machine = Machine::switched_on(&model, 150.0);
         machine.bench.operator.panel = Panel::FIELD.with(contact, true);
@@ -84,7 +84,7 @@ fn a_button_that_was_held_from_the_start_on_raises_nothing() {
 
 #[test]
 fn the_line_rises_with_the_first_move_after_the_pick_up() {
-    let model = Model::named("nominal").unwrap();
+    let model = hitch_model_file::named("nominal").unwrap();
     let mut machine = Machine::switched_on(&model, 150.0);
     (0..IDLE_MS).for_each(|_| machine.assert_off(&[], "a lever that rests"));
     // Through the hitch and on.

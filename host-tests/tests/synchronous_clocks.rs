@@ -3,10 +3,10 @@
 
 use std::path::Path;
 
-use hitch_model::Model;
-use hitch_model::campaign::{Campaign, Channel};
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{Explanation, Verdict, explain};
+use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::explanation::explain::{Explanation, Verdict, explain};
+use hitch_plant::{Channel, Model};
 
 /// The clean campaign with its angle a sample late, explained.
 fn explained(synchronous: bool) -> Explanation {
@@ -19,7 +19,7 @@ fn explained(synchronous: bool) -> Explanation {
             angle_deg.insert(0, angle_deg[0]);
         }
     }
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     explain(&Experiment::new(&campaign, &model), &model, &|_| ())
 }
 

@@ -3,7 +3,7 @@
 use hitch_firmware::control::teach::{Taught, TeachError};
 use hitch_firmware::control::units::MilliDegree;
 use hitch_firmware::control::{Inputs, State};
-use hitch_model::Model;
+use hitch_plant::Model;
 use hitch_workbench::closed_loop::{ClosedLoop, LoopRun, Scenario, run};
 use host_tests::teaching::{dynamic_with, nominal, teach as taught, teach_with as taught_with};
 
@@ -52,7 +52,7 @@ fn thresholds_that_are_off_by_a_quarter_ampere_are_found() {
             };
             let calibration = thresholds_alone.applied_to(&nominal()).validate().unwrap();
             let right = run(
-                &Model::dynamic(),
+                &hitch_model_file::dynamic(),
                 &nominal(),
                 &Scenario::Moves.moves(Some(load_kg)),
             )
@@ -87,7 +87,7 @@ fn the_lags_of_the_spools_are_found() {
     ])
     .effects;
     for true_ms in [30.0, 45.0, 55.0] {
-        let mut constants = Model::dynamic().constants().clone();
+        let mut constants = hitch_model_file::dynamic().constants().clone();
         constants.spool_time_constant_s = 1e-3 * true_ms;
         let model = Model::new("another spool", constants)
             .unwrap()
@@ -128,7 +128,7 @@ fn a_sensor_that_is_turned_on_its_shaft_moves_linkage_and_limits() {
     let turned = |_, inputs: &mut Inputs| {
         inputs.rocker_angle = inputs.rocker_angle.map(|angle| angle + MilliDegree(2_000))
     };
-    let found = taught_with(&Model::dynamic(), 150.0, 120_000, turned)
+    let found = taught_with(&hitch_model_file::dynamic(), 150.0, 120_000, turned)
         .unwrap()
         .unwrap();
     let calibration = found.applied_to(&nominal());
@@ -143,7 +143,7 @@ fn a_sensor_that_is_turned_on_its_shaft_moves_linkage_and_limits() {
     let too_far = |_, inputs: &mut Inputs| {
         inputs.rocker_angle = inputs.rocker_angle.map(|angle| angle + MilliDegree(3_500))
     };
-    let refused = taught_with(&Model::dynamic(), 150.0, 120_000, too_far);
+    let refused = taught_with(&hitch_model_file::dynamic(), 150.0, 120_000, too_far);
     assert_eq!(refused, Some(Err(TeachError::Ends)));
 }
 
@@ -165,7 +165,7 @@ fn what_is_implausible_is_refused() {
             .map(|angle| MilliDegree(90_000 + (angle.0 - 90_000) * 97 / 100));
     };
     assert_eq!(
-        taught_with(&Model::dynamic(), 150.0, 120_000, squeezed),
+        taught_with(&hitch_model_file::dynamic(), 150.0, 120_000, squeezed),
         Some(Err(TeachError::Ends))
     );
     // Somebody pushes the hitch up for a moment during the third ramp.
@@ -175,7 +175,7 @@ fn what_is_implausible_is_refused() {
         }
     };
     assert_eq!(
-        taught_with(&Model::dynamic(), 150.0, 120_000, pushed),
+        taught_with(&hitch_model_file::dynamic(), 150.0, 120_000, pushed),
         Some(Err(TeachError::Spread))
     );
 }
@@ -183,7 +183,7 @@ fn what_is_implausible_is_refused() {
 #[test]
 fn letting_go_or_a_fault_ends_it_without_a_result() {
     assert_eq!(
-        taught_with(&Model::dynamic(), 150.0, 5_000, |_, _| {}),
+        taught_with(&hitch_model_file::dynamic(), 150.0, 5_000, |_, _| {}),
         Some(Err(TeachError::Aborted))
     );
     let lost = |step: usize, inputs: &mut Inputs| {
@@ -192,14 +192,14 @@ fn letting_go_or_a_fault_ends_it_without_a_result() {
         }
     };
     assert_eq!(
-        taught_with(&Model::dynamic(), 150.0, 120_000, lost),
+        taught_with(&hitch_model_file::dynamic(), 150.0, 120_000, lost),
         Some(Err(TeachError::Aborted))
     );
 }
 
 #[test]
 fn without_the_switch_the_button_jogs_and_without_the_button_the_switch_does_nothing() {
-    let model = Model::dynamic();
+    let model = hitch_model_file::dynamic();
     let mut closed_loop = ClosedLoop::new(&model, &nominal(), 150.0, 40.0, 80.0, 3);
     for _ in 0..500 {
         let sample = closed_loop.step_with(60.0, |inputs| inputs.switches.teach = true, |_, _| {});

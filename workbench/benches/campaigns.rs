@@ -8,13 +8,13 @@ use std::path::Path;
 use std::time::Duration;
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use hitch_model::Model;
-use hitch_model::campaign::{Campaign, Channel};
-use hitch_model::effects::{self, AddedEffect};
-use hitch_model::identification::clocks::Clocks;
-use hitch_model::identification::experiment::{Experiment, Nuisance, ReadyRun};
-use hitch_model::identification::explain::explain;
-use hitch_model::identification::traces::CurrentShift;
+use hitch_campaign::Campaign;
+use hitch_effects;
+use hitch_identification::data::clocks::Clocks;
+use hitch_identification::data::experiment::{Experiment, Nuisance, ReadyRun};
+use hitch_identification::data::trace_cache::CurrentShift;
+use hitch_identification::explanation::explain::explain;
+use hitch_plant::{AddedEffect, Channel, Model};
 use hitch_workbench::demonstration;
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
@@ -34,7 +34,7 @@ fn lab(name: &str) -> Campaign {
 /// measured one, always the same noise.
 fn measured_on_a_dynamic_rig() -> Campaign {
     let friction = effects::find("coulomb-friction").expect("the effect is in the catalogue");
-    let rig = Model::dynamic().with_effects(vec![AddedEffect::typical(friction)]);
+    let rig = hitch_model_file::dynamic().with_effects(vec![AddedEffect::typical(friction)]);
     let mut campaign = lab("clean-dynamic");
     let experiment = Experiment::new(&campaign, &rig);
     let mut random = Pcg64::seed_from_u64(1);
@@ -57,7 +57,7 @@ fn measured_on_a_dynamic_rig() -> Campaign {
 
 fn simulate_runs(criterion: &mut Criterion) {
     let campaign = measured();
-    for model in [Model::nominal(), Model::dynamic()] {
+    for model in [hitch_model_file::nominal(), hitch_model_file::dynamic()] {
         let experiment = Experiment::new(&campaign, &model);
         for (kind, on_hitch) in [("hitch", true), ("flow-bench", false)] {
             let runs: Vec<&ReadyRun> = experiment
@@ -88,8 +88,8 @@ fn explain_campaigns(criterion: &mut Criterion) {
         .sample_size(10)
         .measurement_time(Duration::from_secs(30));
     for (campaign, model) in [
-        (lab("known-friction"), Model::nominal()),
-        (measured_on_a_dynamic_rig(), Model::dynamic()),
+        (lab("known-friction"), hitch_model_file::nominal()),
+        (measured_on_a_dynamic_rig(), hitch_model_file::dynamic()),
     ] {
         group.bench_function(&model.name, |bencher| {
             bencher.iter(|| {

@@ -1,9 +1,10 @@
 //! What `hitch model fit` found, as scripts read it (JSON) and as people do (text).
+
 use std::fmt;
 
-use hitch_model::Model;
-use hitch_model::identification::base::{BaseFit, CurvePoint, FittedConstant};
-use hitch_model::identification::experiment::Experiment;
+use hitch_identification::base::{BaseFit, CurvePoint, FittedConstant};
+use hitch_identification::data::experiment::Experiment;
+use hitch_plant::Model;
 use serde::Serialize;
 
 use crate::text::{Table, wrapped};

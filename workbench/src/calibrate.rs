@@ -7,10 +7,8 @@ use hitch_firmware::control::units::{
 };
 use hitch_firmware::control::valve_map::{VALVE_POINTS, ValvePoint, ValveTable};
 use hitch_firmware::control::{Controller, ValidCalibration};
-use hitch_model::Model;
-use hitch_model::model::Dynamics;
-use hitch_model::plant::Valve;
-use hitch_model::units::{bar_from_pa, lpm_from_m3_s, m3_s_from_lpm};
+use hitch_plant::units::{bar_from_pa, lpm_from_m3_s, m3_s_from_lpm};
+use hitch_plant::{Dynamics, Model, Valve};
 
 use crate::valve_survey::{CurvePoint, LOWERING_PORT_BAR, survey};
 
@@ -237,11 +235,11 @@ mod tests {
 
     /// The nominal model with another stroke, calibrated.
     fn with_stroke(stroke_mm: f64) -> ValidCalibration {
-        let source = hitch_model::source_file::SourceFile {
+        let source = hitch_input::source_file::SourceFile {
             path: "m.toml".into(),
             text: format!("format = 1\nbase = \"nominal\"\n[cylinder]\nstroke_mm = {stroke_mm}\n"),
         };
-        let model = Model::from_source(&source).unwrap();
+        let model = hitch_model_file::parse(&source).unwrap();
         calibrate(&model, &Calibration::nominal()).unwrap()
     }
 

@@ -28,9 +28,9 @@ use hitch_firmware::control::linkage::LINKAGE_POINTS;
 use hitch_firmware::control::parameter::{ParameterGroup, ParameterInfo};
 use hitch_firmware::control::units::{MicroLitrePerSecond, Micrometre, MilliAmp, MilliDegree};
 use hitch_firmware::control::valve_map::{VALVE_POINTS, ValvePoint, ValveTable};
-use hitch_model::input_error::InputError;
-use hitch_model::source_file::SourceFile;
-use hitch_model::toml_reader::TomlTable;
+use hitch_input::input_error::InputError;
+use hitch_input::source_file::SourceFile;
+use hitch_input::toml_reader::TomlTable;
 
 /// Version of the file format.
 const FORMAT: f64 = 1.0;

@@ -1,5 +1,6 @@
 //! The campaign that comes with the program, built into it: the main job works wherever the program is.
-use hitch_model::campaign::Campaign;
+
+use hitch_campaign::Campaign;
 use include_dir::{Dir, include_dir};
 
 use crate::error::Error;

@@ -1,9 +1,10 @@
 //! What can go wrong while the program runs, and the exit code that says so.
+
 use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use hitch_model::input_error::InputError;
+use hitch_input::input_error::InputError;
 
 /// Why a command stopped. Every message is one line: what, where, how to mend it.
 #[derive(Debug, thiserror::Error)]

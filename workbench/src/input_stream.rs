@@ -5,8 +5,8 @@ use hitch_firmware::control::units::{
     RevolutionPerMinute,
 };
 use hitch_firmware::control::{Inputs, Switches};
-use hitch_model::input_error::quote;
-use hitch_model::naming::{offer_names, unknown_name};
+use hitch_input::input_error::quote;
+use hitch_input::naming::{offer_names, unknown_name};
 
 /// Columns that have to be there.
 const NEEDED: [&str; 3] = ["time_s", "lever_deg", "rocker_angle_deg"];

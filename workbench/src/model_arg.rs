@@ -1,7 +1,8 @@
 //! The option `--model`.
+
 use std::path::PathBuf;
 
-use hitch_model::Model;
+use hitch_plant::Model;
 
 use crate::error::Error;
 
@@ -34,6 +35,6 @@ impl ModelArg {
     /// # Errors
     /// If there is no such model, or its file is wrong.
     pub fn load(&self) -> Result<Model, Error> {
-        Ok(Model::named(&self.name)?)
+        Ok(hitch_model_file::named(&self.name)?)
     }
 }

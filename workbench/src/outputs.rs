@@ -1,9 +1,10 @@
 //! What a command writes: checked before it works, so that nobody waits for a result that has nowhere to go, or finds
 //! that it took the place of a measurement.
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use hitch_model::campaign::Campaign;
+use hitch_campaign::Campaign;
 use serde::Serialize;
 
 use crate::error::Error;

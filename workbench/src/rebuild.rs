@@ -1,10 +1,12 @@
 //! The valve map rebuilt from an identified model, and what the closed loop gains by it.
+
 use hitch_firmware::control::ValidCalibration;
 use hitch_firmware::control::calibration::Calibration;
-use hitch_model::Model;
+use hitch_plant::Model;
 
 use crate::calibrate::calibrate;
-use crate::closed_loop::{self, LoopRun, MoveResult, Scenario, Summary};
+use crate::closed_loop;
+use crate::closed_loop::{LoopRun, MoveResult, Scenario, Summary};
 use crate::error::Error;
 use crate::explanation::Found;
 use crate::text::{Table, known};
@@ -38,7 +40,8 @@ impl Rebuild {
     /// # Errors
     /// If the firmware refuses the map of this model.
     pub fn new(found: &Found, scenario: Scenario) -> Result<Self, Error> {
-        let rig = Model::dynamic().with_effects(found.explanation.after.estimate.effects.clone());
+        let rig = hitch_model_file::dynamic()
+            .with_effects(found.explanation.after.estimate.effects.clone());
         let identified = found.rebuilt("identified".to_owned());
         let base = Calibration::nominal();
         let failed = |error: &dyn std::fmt::Display| {

@@ -1,7 +1,8 @@
 //! What a search for missing effects may do, as commands take it.
+
 use std::time::{Duration, Instant};
 
-use hitch_model::identification::subset::Options;
+use hitch_identification::search::subset::Options;
 
 /// Arguments of a search.
 #[derive(Debug, Clone, Copy, clap::Args)]

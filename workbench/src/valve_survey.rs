@@ -3,9 +3,8 @@
 //! The plant is put on a flow bench with the current at rest, so thresholds, scales, hysteresis (from below) and
 //! return line are all in the curve, and the curve is what a calibration has to invert.
 
-use hitch_model::Model;
-use hitch_model::plant::{Currents, Plant, Rig, Valve};
-use hitch_model::units::{lpm_from_m3_s, pa_from_bar};
+use hitch_plant::units::{lpm_from_m3_s, pa_from_bar};
+use hitch_plant::{Currents, Model, Plant, Rig, Valve};
 
 /// Largest current of the survey, A.
 pub const LARGEST_CURRENT_A: f64 = 3.5;

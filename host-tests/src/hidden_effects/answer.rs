@@ -1,7 +1,7 @@
 //! What a method says about a campaign.
 
-use hitch_model::Model;
-use hitch_model::campaign::Campaign;
+use hitch_campaign::Campaign;
+use hitch_plant::Model;
 
 /// What a method says.
 #[derive(Debug, Clone, Default)]

@@ -1,10 +1,10 @@
 //! The project's own identification.
 
-use hitch_model::Model;
-use hitch_model::campaign::Campaign;
-use hitch_model::effects::{Effect, find};
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{Verdict, explain};
+use hitch_campaign::Campaign;
+use hitch_effects::find;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::explanation::explain::{Verdict, explain};
+use hitch_plant::{Effect, Model};
 
 use super::answer::{Abilities, Answer, Method};
 

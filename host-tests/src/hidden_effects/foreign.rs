@@ -3,10 +3,9 @@
 
 use std::time::Instant;
 
-use hitch_model::Model;
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{explain, fit_base};
-use hitch_model::model::Constants;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::explanation::explain::{explain, fit_base};
+use hitch_plant::{Constants, Model};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;

@@ -4,10 +4,10 @@
 //! pressure, flow and angle, oil temperature. A few hundred samples of the training runs are its data, length and
 //! variance come from the marginal likelihood over a grid.
 
-use hitch_model::Model;
-use hitch_model::campaign::{Bench, Campaign, Channel};
-use hitch_model::identification::experiment::{Experiment, ReadyRun};
-use hitch_model::simulation::Trace;
+use hitch_campaign::{Bench, Campaign};
+use hitch_identification::data::experiment::{Experiment, ReadyRun};
+use hitch_plant::simulation::Trace;
+use hitch_plant::{Channel, Model};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::answer::{Abilities, Answer, Method};

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::time::Instant;
 
-use hitch_model::Model;
+use hitch_plant::Model;
 
 use super::answer::{Answer, Method};
 use super::detectability::detectability;

@@ -3,10 +3,9 @@
 //! Samples count as independent, weights and clocks as exact, nothing is held out: the usual way. The optimiser is
 //! given its best chance: several starts, both signs, all of an effect's parameters.
 
-use hitch_model::Model;
-use hitch_model::campaign::Campaign;
-use hitch_model::effects::{AddedEffect, Effect};
-use hitch_model::identification::experiment::Experiment;
+use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
+use hitch_plant::{AddedEffect, Effect, Model};
 use nalgebra::{DMatrix, DVector};
 
 use super::answer::{Abilities, Answer, Method};

@@ -7,11 +7,10 @@
 
 use std::collections::BTreeMap;
 
-use hitch_model::Model;
-use hitch_model::campaign::{Campaign, Channel};
-use hitch_model::effects::AddedEffect;
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::regime::Regime;
+use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::regime::Regime;
+use hitch_plant::{AddedEffect, Channel, Model};
 
 use super::answer::{Abilities, Answer, Method};
 use super::information_criterion::started_and_fitted;

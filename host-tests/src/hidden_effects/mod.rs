@@ -12,9 +12,10 @@ pub mod residuals;
 pub mod sparse_regression;
 pub mod tally;
 
-use crate::second_rig::test_stand::Family;
 use answer::Method;
-use hitch_model::Model;
+use hitch_plant::Model;
+
+use crate::second_rig::test_stand::Family;
 
 /// Every method, the project's own first.
 #[must_use]
@@ -32,7 +33,7 @@ pub fn methods() -> Vec<Box<dyn Method>> {
 #[must_use]
 pub fn starting_point(family: Family) -> Model {
     match family {
-        Family::Steady => Model::nominal(),
-        Family::Dynamic => Model::dynamic(),
+        Family::Steady => hitch_model_file::nominal(),
+        Family::Dynamic => hitch_model_file::dynamic(),
     }
 }

@@ -3,14 +3,13 @@
 //! The sigmas are the project's own yardsticks: sensor noise and what the logged currents leave unknown. Without them
 //! the samples at switched currents would drown every method that compares.
 
-use hitch_model::Model;
-use hitch_model::campaign::Channel;
-use hitch_model::effects::{AddedEffect, CATALOGUE, Effect};
-use hitch_model::identification::clocks::Clocks;
-use hitch_model::identification::estimate::Estimate;
-use hitch_model::identification::experiment::{Experiment, Nuisance};
-use hitch_model::identification::residual::Weights;
-use hitch_model::simulation::Trace;
+use hitch_effects::CATALOGUE;
+use hitch_identification::data::clocks::Clocks;
+use hitch_identification::data::experiment::{Experiment, Nuisance};
+use hitch_identification::estimate::Estimate;
+use hitch_identification::residuals::whitening::Weights;
+use hitch_plant::simulation::Trace;
+use hitch_plant::{AddedEffect, Channel, Effect, Model};
 
 /// A campaign and a model to be held against it.
 pub struct Comparison<'a> {

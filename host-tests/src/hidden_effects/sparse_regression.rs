@@ -5,10 +5,9 @@
 //! effect of the catalogue, and the term is the best that an author could write: what the effect at its typical size
 //! does to these signals on these very runs.
 
-use hitch_model::Model;
-use hitch_model::campaign::{Campaign, Channel};
-use hitch_model::effects::{AddedEffect, Effect};
-use hitch_model::identification::experiment::Experiment;
+use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
+use hitch_plant::{AddedEffect, Channel, Effect, Model};
 use nalgebra::{DMatrix, DVector};
 
 use super::answer::{Abilities, Answer, Method};

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use hitch_model::campaign::{Bench, Campaign, Channel, Noise, Run};
+use hitch_campaign::{Bench, Campaign, Noise, Run};
+use hitch_plant::Channel;
 use rand::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;

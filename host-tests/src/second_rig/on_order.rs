@@ -1,8 +1,7 @@
 //! Runs that somebody else planned, as the second rig carries them out.
 
-use hitch_model::Model;
-use hitch_model::identification::design::plan::{RunPlan, Stand as PlannedStand};
-use hitch_model::plant::{Currents, Rig};
+use hitch_identification::design::plan::{RunPlan, Stand as PlannedStand};
+use hitch_plant::{Currents, Model, Rig};
 
 use super::manoeuvres::{Course, Manoeuvre, Stand};
 

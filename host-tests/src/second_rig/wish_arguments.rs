@@ -42,7 +42,7 @@ impl WishArguments {
             rough: self.rough,
             kind: self.kind,
             effect: self.effect.map(|what| (what, self.size)),
-            known: |id| hitch_model::effects::find(id).is_some(),
+            known: |id| hitch_effects::find(id).is_some(),
         }
     }
 

@@ -4,8 +4,7 @@
 mod rig;
 
 use differential_equations::prelude::{IVP, ImplicitRungeKutta};
-use hitch_model::Model;
-use hitch_model::plant::{Currents, HitchRig, Plant};
+use hitch_plant::{Currents, HitchRig, Model, Plant};
 use rig::{Rig, State, linkage};
 
 /// The logger's rate, and so the longest step that the plant is asked for.
@@ -97,14 +96,14 @@ struct Comparison {
 }
 
 fn compare(manoeuvres: &Manoeuvres, load_kg: f64) -> Comparison {
-    let model = Model::dynamic();
+    let model = hitch_model_file::dynamic();
     let start = HitchRig {
         load_kg,
         start_angle_rad: 70.0_f64.to_radians(),
     };
     let mut plant = Plant::new(
         &model,
-        hitch_model::plant::Rig::Hitch(start),
+        hitch_plant::Rig::Hitch(start),
         40.0,
         Currents::default(),
     );

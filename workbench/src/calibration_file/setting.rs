@@ -2,8 +2,8 @@
 
 use hitch_firmware::control::calibration::{Calibration, ValidCalibration};
 use hitch_firmware::control::parameter::{ParameterGroup, ParameterInfo};
-use hitch_model::input_error::{InputError, quote};
-use hitch_model::naming::offer_names;
+use hitch_input::input_error::{InputError, quote};
+use hitch_input::naming::offer_names;
 
 use super::{is_exact, key, objection};
 

@@ -1,7 +1,6 @@
 //! A plant behind its two coils: what a driver's duty does to a hitch.
 
-use hitch_model::Model;
-use hitch_model::plant::{Currents, HitchRig, Plant, Reading, Rig};
+use hitch_plant::{Currents, HitchRig, Model, Plant, Reading, Rig};
 
 use super::coil::Coil;
 use super::instruments::SUPPLY_V;

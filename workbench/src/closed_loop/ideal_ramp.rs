@@ -7,8 +7,7 @@
 //! its valve more steeply than that can be a little faster, at the price of a larger pressure swing: then its time over
 //! the shortest is below one.
 
-use hitch_model::Model;
-use hitch_model::plant::{Currents, HitchRig, Plant, Rig};
+use hitch_plant::{Currents, HitchRig, Model, Plant, Rig};
 
 use super::loop_::STEP_S;
 use super::metrics::{ARRIVED_DEG, swing_bar};

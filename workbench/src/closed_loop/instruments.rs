@@ -2,7 +2,7 @@
 
 use hitch_firmware::control::Inputs;
 use hitch_firmware::control::units::{MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliVolt};
-use hitch_model::plant::{Currents, Reading};
+use hitch_plant::{Currents, Reading};
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64Mcg;

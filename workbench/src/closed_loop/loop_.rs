@@ -2,8 +2,7 @@
 
 use hitch_firmware::control::units::Duty;
 use hitch_firmware::control::{Controller, Inputs, Outputs, ValidCalibration};
-use hitch_model::Model;
-use hitch_model::plant::Currents;
+use hitch_plant::{Currents, Model};
 
 use super::driven_plant::DrivenPlant;
 use super::instruments::Instruments;

@@ -1,17 +1,17 @@
 //! `hitch add`: adds effects to a model and estimates their parameters.
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use hitch_model::Model;
-use hitch_model::campaign::Campaign;
-use hitch_model::effects::{Effect, full_name};
-use hitch_model::identification::beside::{Beside, beside};
-use hitch_model::identification::evidence::BELIEVED;
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::fit_freely;
-use hitch_model::identification::fit::{Fit, refine};
-use hitch_model::identification::hopeless::is_hopeless;
-use hitch_model::identification::subset::single::try_effects;
+use hitch_campaign::Campaign;
+use hitch_identification::adequacy::unsuitable_base::is_hopeless;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::estimation::fit::{Fit, refine};
+use hitch_identification::explanation::explain::fit_freely;
+use hitch_identification::search::single::try_effects;
+use hitch_identification::selection::evidence::BELIEVED;
+use hitch_identification::selection::leave_one_out::{Beside, beside};
+use hitch_plant::{Effect, Model, full_name};
 
 use super::effects::find;
 use crate::error::Error;
@@ -59,7 +59,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let weighed = beside(&experiment, &model, &fit, model.effects.len());
     drop(progress);
     let rebuilt = rebuilt(&model, &fit.estimate.effects, output::stem(&args.out));
-    output::write_file(&args.out, rebuilt.to_toml().as_bytes())?;
+    output::write_file(&args.out, hitch_model_file::to_toml(&rebuilt).as_bytes())?;
     let mut text = match is_hopeless(&experiment, &base, &fit) {
         true => format!("{HOPELESS_BASE}\n\n"),
         false => String::new(),

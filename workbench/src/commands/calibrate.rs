@@ -1,16 +1,16 @@
 //! `hitch calibrate`: an identified model turned into the firmware's calibration.
+
 use std::path::PathBuf;
 
 use hitch_firmware::control::calibration::Calibration;
 use hitch_firmware::control::valve_map::ValveTable;
-use hitch_model::Model;
+use hitch_plant::Model;
 
 use super::loop_::read_files;
 use crate::calibrate::calibrate;
-use crate::calibration_file;
 use crate::error::Error;
-use crate::output;
 use crate::outputs::Outputs;
+use crate::{calibration_file, output};
 
 /// Arguments of `hitch calibrate`.
 #[derive(Debug, clap::Args)]
@@ -34,7 +34,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Error> {
     let inputs = read_files(&args.model, args.calibration.as_ref());
     let outputs = Outputs::check([Some(args.out.as_path())], &inputs)?;
-    let model = Model::named(&args.model)?;
+    let model = hitch_model_file::named(&args.model)?;
     let base = match &args.calibration {
         Some(path) => (*calibration_file::read(path)?).clone(),
         None => Calibration::nominal(),

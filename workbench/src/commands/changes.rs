@@ -1,13 +1,15 @@
 //! `hitch changes`: what differs between two campaigns of one machine, or of two machines of a series.
+
 use std::path::PathBuf;
 
-use hitch_model::campaign::Campaign;
+use hitch_campaign::Campaign;
 use serde::Serialize;
 
 use crate::error::Error;
 use crate::explanation::{Explanation, Found};
 use crate::model_arg::ModelArg;
-use crate::output::{self, JsonArg};
+use crate::output;
+use crate::output::JsonArg;
 use crate::outputs::{Outputs, campaign_files};
 use crate::search_args::SearchArgs;
 
@@ -58,7 +60,10 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let adopted = baseline.rebuilt(baseline.shown.head.campaign.clone());
     let new = Found::new(&new, adopted, args.search.options(), &|_| {});
     if let Some(path) = &args.out {
-        output::write_file(path, new.rebuilt(output::stem(path)).to_toml().as_bytes())?;
+        output::write_file(
+            path,
+            hitch_model_file::to_toml(&new.rebuilt(output::stem(path))).as_bytes(),
+        )?;
     }
     let changes = Changes {
         baseline: baseline.shown,

@@ -1,12 +1,14 @@
 //! `hitch compare`: model against measurements.
+
 use std::path::PathBuf;
 
-use hitch_model::campaign::Campaign;
+use hitch_campaign::Campaign;
 
 use crate::comparison::Comparison;
 use crate::error::Error;
 use crate::model_arg::ModelArg;
-use crate::output::{self, JsonArg};
+use crate::output;
+use crate::output::JsonArg;
 use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
 use crate::report::comparison_page;

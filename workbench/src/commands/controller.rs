@@ -1,16 +1,17 @@
 //! `hitch controller`: the firmware's controller on standard input and output, for anyone's own plant.
-use std::io::{self, BufRead, Write};
+
+use std::io;
+use std::io::{BufRead, Write};
 use std::path::{Path, PathBuf};
 
 use hitch_firmware::control::{Controller, Outputs, State};
-use hitch_model::input_error::{InputError, Place};
+use hitch_input::input_error::{InputError, Place};
 
 use super::loop_::calibration;
 use crate::error::Error;
 use crate::input_stream::{Columns, LineError};
-use crate::output;
-use crate::outputs;
-use crate::teaching::{self, Teaching};
+use crate::teaching::Teaching;
+use crate::{output, outputs, teaching};
 
 /// Header of what the command prints.
 const HEADER: &str = "lift_current_a,lower_current_a,state";

@@ -1,9 +1,10 @@
 //! `hitch diagnose`: which physical effect is missing, ranked.
+
 use std::path::PathBuf;
 
-use hitch_model::campaign::Campaign;
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{diagnose, fit_base};
+use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::explanation::explain::{diagnose, fit_base};
 
 use crate::error::Error;
 use crate::explanation::Diagnosis;

@@ -1,14 +1,16 @@
 //! `hitch ecu`: the ECU on the bench, live.
-use std::io::{self, BufRead};
+
+use std::io::BufRead;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::mpsc::{self, Receiver, TryRecvError};
-use std::thread;
+use std::sync::mpsc;
+use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::{Duration, Instant};
+use std::{io, thread};
 
 use hitch_firmware::can::Frame;
-use hitch_model::Model;
+use hitch_plant::Model;
 
 use super::loop_::{calibration, load_kg};
 use crate::can_door::CanDoor;
@@ -71,7 +73,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     // What is read of it is what it keeps.
     no_stdout("--flash", args.flash.as_deref(), "it has to be read again")?;
     args.flash.as_deref().map_or(Ok(()), check_writable)?;
-    let model = Model::named(&args.model)?;
+    let model = hitch_model_file::named(&args.model)?;
     let flash = flash(args)?;
     let door = args.can.as_deref().map(open_door).transpose()?;
     let mut session = Session::new(&model, args, door);

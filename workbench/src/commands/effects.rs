@@ -3,9 +3,8 @@ mod formulas;
 
 use std::fmt::Write as _;
 
-use hitch_model::Model;
-use hitch_model::effects::{Effect, full_name};
-use hitch_model::naming::offer_names;
+use hitch_input::naming::offer_names;
+use hitch_plant::{Effect, Model, full_name};
 
 use crate::error::Error;
 use crate::model_arg::ModelArg;
@@ -47,7 +46,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
 /// # Errors
 /// If there is none; the nearest name is offered.
 pub fn find(model: &Model, id: &str) -> Result<&'static dyn Effect, Error> {
-    let catalogue = model.catalogue();
+    let catalogue = hitch_effects::available(&model);
     let found = catalogue
         .iter()
         .copied()
@@ -64,7 +63,7 @@ pub fn find(model: &Model, id: &str) -> Result<&'static dyn Effect, Error> {
 
 fn list(model: &Model) -> String {
     let mut text = String::new();
-    for effect in model.catalogue() {
+    for effect in hitch_effects::available(&model) {
         let _ = writeln!(
             text,
             "{:<26} {}\n{:26} {}",
@@ -137,7 +136,7 @@ fn card(effect: &dyn Effect) -> String {
 
 #[cfg(test)]
 mod tests {
-    use hitch_model::effects::CATALOGUE;
+    use hitch_effects::CATALOGUE;
 
     use super::*;
 
@@ -151,18 +150,18 @@ mod tests {
                 .unwrap()
                 .replace("\n  ", "\n");
             let text = format!("format = 1\nbase = \"nominal\"\n{block}");
-            let source = hitch_model::source_file::SourceFile {
+            let source = hitch_input::source_file::SourceFile {
                 path: "card.toml".into(),
                 text,
             };
-            let model = Model::from_source(&source).unwrap();
+            let model = hitch_model_file::parse(&source).unwrap();
             assert_eq!(full_name(model.effects[0].effect), full_name(*effect));
         }
     }
 
     #[test]
     fn a_misspelt_effect_is_offered_its_neighbour() {
-        let error = find(&Model::nominal(), "coulomb-fricton")
+        let error = find(&hitch_model_file::nominal(), "coulomb-fricton")
             .unwrap_err()
             .to_string();
         assert!(error.contains("did you mean coulomb-friction?"), "{error}");

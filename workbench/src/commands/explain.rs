@@ -1,13 +1,15 @@
 //! `hitch explain`: what the model lacks, found and added until nothing more is worth adding.
+
 use std::path::PathBuf;
 
-use hitch_model::campaign::Campaign;
-use hitch_model::effects::AddedEffect;
+use hitch_campaign::Campaign;
+use hitch_plant::AddedEffect;
 
 use crate::error::Error;
 use crate::explanation::{Found, rebuilt};
 use crate::model_arg::ModelArg;
-use crate::output::{self, JsonArg};
+use crate::output;
+use crate::output::JsonArg;
 use crate::outputs::{Outputs, campaign_files};
 use crate::report::explanation_page;
 use crate::search_args::SearchArgs;
@@ -54,12 +56,15 @@ pub fn run(args: &Args) -> Result<(), Error> {
         if let Some(path) = out {
             let partial = rebuilt(&base, effects, output::stem(path));
             // The last write reports a fault.
-            let _ = output::write_file(path, partial.to_toml().as_bytes());
+            let _ = output::write_file(path, hitch_model_file::to_toml(&partial).as_bytes());
         }
     };
     let found = Found::new(&campaign, model, args.search.options(), &improved);
     if let Some(path) = &args.out {
-        output::write_file(path, found.rebuilt(output::stem(path)).to_toml().as_bytes())?;
+        output::write_file(
+            path,
+            hitch_model_file::to_toml(&found.rebuilt(output::stem(path))).as_bytes(),
+        )?;
     }
     if let Some(path) = &args.report {
         output::write_file(path, explanation_page::page(&found).as_bytes())?;

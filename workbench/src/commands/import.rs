@@ -1,10 +1,11 @@
 //! `hitch import`: a campaign from the files of any logger, which stay where they are.
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use hitch_model::campaign::survey::{self, LogColumn, Survey};
-use hitch_model::campaign::{Campaign, Run};
-use hitch_model::model_file::quoted;
+use hitch_campaign::survey::{LogColumn, Survey};
+use hitch_campaign::{Campaign, Run, survey};
+use hitch_model_file::quoted;
 
 use super::loop_::load_kg;
 use crate::error::Error;

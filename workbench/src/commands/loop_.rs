@@ -1,18 +1,19 @@
 //! `hitch loop`: the firmware's controller in closed loop with the plant.
+
 use std::path::PathBuf;
 
 use hitch_firmware::control::ValidCalibration;
-use hitch_model::Model;
+use hitch_plant::Model;
 use serde::Serialize;
 
-use crate::calibration_file;
-use crate::closed_loop::{self, MoveResult, Scenario, Summary};
+use crate::closed_loop::{MoveResult, Scenario, Summary};
 use crate::error::Error;
-use crate::output::{self, JsonArg};
+use crate::output::JsonArg;
 use crate::outputs::Outputs;
 use crate::progress::Progress;
 use crate::report::loop_page;
 use crate::text::{Table, known};
+use crate::{calibration_file, closed_loop, output};
 
 /// Arguments of `hitch loop`.
 #[derive(Debug, clap::Args)]
@@ -61,7 +62,7 @@ struct Document<'a> {
 pub fn run(args: &Args) -> Result<(), Error> {
     let inputs = read_files(&args.model, args.calibration.as_ref());
     let outputs = Outputs::check([args.report.as_deref(), args.json.target()], &inputs)?;
-    let model = Model::named(&args.model)?;
+    let model = hitch_model_file::named(&args.model)?;
     let calibration = changed(&calibration(args.calibration.as_ref())?, &args.set)?;
     let moves = args.scenario.moves(args.load);
     let progress = Progress::start(format!("driving {} moves", moves.len()));

@@ -1,20 +1,20 @@
 //! `hitch` without a command: the whole way on the campaign that comes with the program.
+
 use std::path::PathBuf;
 
-use hitch_model::Model;
-use hitch_model::campaign::Campaign;
-use hitch_model::identification::subset::Options;
+use hitch_campaign::Campaign;
+use hitch_identification::search::subset::Options;
+use hitch_plant::Model;
 
 use crate::closed_loop::Scenario;
 use crate::comparison::Comparison;
-use crate::demonstration;
 use crate::error::Error;
 use crate::explanation::Found;
-use crate::output;
 use crate::outputs::Outputs;
 use crate::progress::Progress;
 use crate::rebuild::Rebuild;
 use crate::report::main_page;
+use crate::{demonstration, output};
 
 /// So many of the worst cells are named.
 const NAMED_CELLS: usize = 3;
@@ -34,7 +34,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Error> {
     let outputs = Outputs::check([Some(args.report.as_path())], &[])?;
     let campaign = demonstration::campaign()?;
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     outputs.say(|| compared(&campaign, &model))?;
     let found = Found::new(&campaign, model, Options::default(), &|_| {});
     outputs.say(|| explained(&found))?;

@@ -1,11 +1,11 @@
 //! `hitch simulate`: the plant alone, driven by a log's currents.
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use hitch_model::Model;
-use hitch_model::campaign::{Bench, Channel, Run};
-use hitch_model::plant::{Currents, HitchRig, Plant, Reading, Rig};
-use hitch_model::units::pa_from_bar;
+use hitch_campaign::{Bench, Run};
+use hitch_plant::units::pa_from_bar;
+use hitch_plant::{Channel, Currents, HitchRig, Model, Plant, Reading, Rig};
 
 use crate::error::Error;
 use crate::model_arg::ModelArg;

@@ -1,19 +1,19 @@
 //! `hitch tune`: gains, ramps and limits for a plant.
+
 use std::path::PathBuf;
 
 use hitch_firmware::control::Calibration;
-use hitch_model::Model;
+use hitch_plant::Model;
 
 use crate::calibrate::calibrate;
-use crate::calibration_file;
 use crate::closed_loop::{Scenario, Summary};
 use crate::commands::loop_::{changed, read_files};
 use crate::error::Error;
-use crate::output;
 use crate::outputs::Outputs;
 use crate::progress::Progress;
 use crate::text::{Table, known};
 use crate::tuning::{Judged, Trial, changes};
+use crate::{calibration_file, output};
 
 /// Arguments of `hitch tune`.
 #[derive(Debug, clap::Args)]
@@ -56,7 +56,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Error> {
     let inputs = read_files(&args.model, args.calibration.as_ref());
     let outputs = Outputs::check([Some(args.out.as_path())], &inputs)?;
-    let model = Model::named(&args.model)?;
+    let model = hitch_model_file::named(&args.model)?;
     let base = match &args.calibration {
         Some(path) => calibration_file::read(path)?,
         None => calibrate(&model, &Calibration::nominal())

@@ -1,7 +1,8 @@
 //! Ways to part the samples of a campaign, so that one sees where a model fails.
-use hitch_model::campaign::Bench;
-use hitch_model::identification::experiment::ReadyRun;
-use hitch_model::identification::regime::Regime;
+
+use hitch_campaign::Bench;
+use hitch_identification::data::experiment::ReadyRun;
+use hitch_identification::data::regime::Regime;
 use serde::{Deserialize, Serialize};
 
 /// Currents below are off, A.

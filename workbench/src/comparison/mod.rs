@@ -5,17 +5,17 @@ mod tally;
 
 use std::sync::Arc;
 
-use hitch_model::Model;
-use hitch_model::campaign::{Campaign, Channel};
-use hitch_model::identification::estimate::Estimate;
-use hitch_model::identification::experiment::{Experiment, ReadyRun};
-use hitch_model::identification::fit::{ErrorSums, Fit, evaluate, fit_loads};
-use hitch_model::identification::residual::Weights;
-use hitch_model::simulation::Trace;
+use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::{Experiment, ReadyRun};
+use hitch_identification::estimate::Estimate;
+use hitch_identification::estimation::fit::{ErrorSums, Fit, evaluate, fit_loads};
+use hitch_identification::residuals::whitening::Weights;
+use hitch_plant::simulation::Trace;
+use hitch_plant::{Channel, Model};
 use serde::Serialize;
+use tally::Tally;
 
 pub use groups::Grouping;
-use tally::Tally;
 
 /// Length of the stretch of a run that is shown as its worst, s.
 const WORST_STRETCH_S: f64 = 1.0;

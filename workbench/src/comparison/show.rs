@@ -1,7 +1,8 @@
 //! A comparison as text and as tables of a report.
+
 use std::fmt;
 
-use hitch_model::campaign::Channel;
+use hitch_plant::Channel;
 
 use super::{Cell, Comparison, Grouping};
 use crate::report::heat_table::{HeatTable, Shade};

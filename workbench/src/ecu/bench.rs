@@ -4,7 +4,7 @@ use hitch_firmware::can::Frame;
 use hitch_firmware::control::units::PerMille;
 use hitch_firmware::ecu::link::Reply;
 use hitch_firmware::ecu::{BoardScaling, Contacts};
-use hitch_model::Model;
+use hitch_plant::Model;
 
 use super::converters::{Converters, Signals};
 use super::machine::{EcuMachine, MachineError};

@@ -1,13 +1,13 @@
 //! An explanation together with what it was found from.
-use hitch_model::Model;
-use hitch_model::campaign::Campaign;
-use hitch_model::effects::{AddedEffect, Effect, full_name, is_same};
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain;
-use hitch_model::identification::fit::Fit;
-use hitch_model::identification::subset::Options;
-use hitch_model::identification::suggestion::{Suggestion, suggest};
-use hitch_model::identification::whereabouts::Profile;
+
+use hitch_campaign::Campaign;
+use hitch_identification::adequacy::localization::Profile;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::estimation::fit::Fit;
+use hitch_identification::explanation::explain;
+use hitch_identification::search::subset::Options;
+use hitch_identification::suggestion::{Suggestion, suggest};
+use hitch_plant::{AddedEffect, Effect, Model, full_name, is_same};
 
 use super::show::significant;
 use super::{Explanation, rebuilt};
@@ -102,7 +102,7 @@ impl Explained {
         experiment: &Experiment,
         model: &Model,
         options: Options<'_>,
-        progress: explain::Progress<'_>,
+        progress: Progress<'_>,
     ) -> Self {
         let explanation = explain::explain_with(experiment, model, options, progress);
         let suggestion = (!options.is_over()).then(|| {

@@ -133,7 +133,7 @@ impl Candidate {
     }
 }
 
-/// An effect's id, with its form if it has one, as commands take it: see [`hitch_model::effects::full_name`].
+/// An effect's id, with its form if it has one, as commands take it: see [`hitch_plant::full_name`].
 fn with_form(id: &str, form: Option<&str>) -> String {
     form.map_or_else(|| id.to_owned(), |form| format!("{id}/{form}"))
 }

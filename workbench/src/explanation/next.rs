@@ -1,5 +1,6 @@
 //! What to measure next, as scripts read it: a sentence, and its parts.
-use hitch_model::identification::design::NextExperiment;
+
+use hitch_identification::design::NextExperiment;
 use serde::Serialize;
 
 /// What to measure next, if anything.

@@ -1,16 +1,17 @@
 //! From the identification's diagnosis to what is shown of it.
+
 use std::cmp::Ordering;
 
-use hitch_model::Model;
-use hitch_model::identification::adequacy::{adequate, cells};
-use hitch_model::identification::candidate;
-use hitch_model::identification::design::{NextExperiment, Pair, Rival, next_experiment};
-use hitch_model::identification::evidence::BELIEVED;
-use hitch_model::identification::evidence::TOLD_APART;
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{self, Verdict};
-use hitch_model::identification::fit::Fit;
-use hitch_model::identification::hopeless::is_hopeless;
+use hitch_identification::adequacy::lack_of_fit::{adequate, cells};
+use hitch_identification::adequacy::unsuitable_base::is_hopeless;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::design::{NextExperiment, Pair, Rival, next_experiment};
+use hitch_identification::estimation::fit::Fit;
+use hitch_identification::explanation::explain;
+use hitch_identification::explanation::explain::Verdict;
+use hitch_identification::selection::candidate;
+use hitch_identification::selection::evidence::{BELIEVED, TOLD_APART};
+use hitch_plant::Model;
 
 use super::of_explanation::{channels, parameters};
 use super::{Candidate, Diagnosis, Head};

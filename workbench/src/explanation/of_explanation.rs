@@ -1,13 +1,12 @@
 //! From the identification's explanation to what is shown of it.
-use hitch_model::Model;
-use hitch_model::campaign::Channel;
-use hitch_model::effects::Effect;
-use hitch_model::identification::design;
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain;
-use hitch_model::identification::fit::Fit;
-use hitch_model::identification::hopeless::is_hopeless;
-use hitch_model::identification::unseen::Unseen;
+
+use hitch_identification::adequacy::unsuitable_base::is_hopeless;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::design;
+use hitch_identification::estimation::fit::Fit;
+use hitch_identification::explanation::explain;
+use hitch_identification::explanation::undetected::Unseen;
+use hitch_plant::{Channel, Effect, Model};
 use serde_json::{Map, Value, json};
 
 use super::{Alternative, Explanation, Head, NotVisible, Parameter, Step, Unexplained};
@@ -88,19 +87,17 @@ fn alternative(alternative: &design::Alternative) -> Alternative {
 /// Parameters of an effect with their values and intervals.
 pub fn parameters(effect: &dyn Effect, values: &[f64], intervals: &[(f64, f64)]) -> Vec<Parameter> {
     let fitted = values.iter().zip(intervals);
-    let parameter = |(parameter, (value, (low, high))): (
-        &hitch_model::effects::Parameter,
-        (&f64, &(f64, f64)),
-    )| {
-        Parameter {
-            name: parameter.name,
-            unit: parameter.unit,
-            value: *value,
-            low: *low,
-            high: *high,
-            at_its_limit: parameter.is_at_a_limit(*value),
-        }
-    };
+    let parameter =
+        |(parameter, (value, (low, high))): (&hitch_plant::Parameter, (&f64, &(f64, f64)))| {
+            Parameter {
+                name: parameter.name,
+                unit: parameter.unit,
+                value: *value,
+                low: *low,
+                high: *high,
+                at_its_limit: parameter.is_at_a_limit(*value),
+            }
+        };
     effect
         .parameters()
         .iter()

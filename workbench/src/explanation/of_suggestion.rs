@@ -1,6 +1,7 @@
 //! From a suggested term to what is shown of it.
-use hitch_model::identification::suggestion::Suggestion;
-use hitch_model::model_file::term_text;
+
+use hitch_identification::suggestion::Suggestion;
+use hitch_model_file::term_text;
 
 use super::{Suggested, Unexplained, parameters};
 

@@ -1,6 +1,6 @@
 //! A model with the effects that were estimated, as it is written to a file.
-use hitch_model::Model;
-use hitch_model::effects::AddedEffect;
+
+use hitch_plant::{AddedEffect, Model};
 
 /// Significant digits of an estimate in a model file; an estimate never has more.
 const DIGITS: usize = 6;

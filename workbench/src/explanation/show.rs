@@ -1,8 +1,9 @@
 //! The same results as text.
+
 use std::fmt;
 
-use hitch_model::identification::candidate::genuine;
-use hitch_model::identification::explain::Verdict;
+use hitch_identification::explanation::explain::Verdict;
+use hitch_identification::selection::candidate::genuine;
 
 use super::{
     Alternative, Diagnosis, Explanation, HOPELESS_BASE, Head, Next, NotVisible, Parameter, Step,

@@ -1,5 +1,6 @@
 //! Which column of a log is which column of a run: by what somebody says, else by names, units and values.
-use hitch_model::campaign::survey::{LogColumn, TIMES, check_source, fits, run_columns};
+
+use hitch_campaign::survey::{LogColumn, TIMES, check_source, fits, run_columns};
 
 use super::words::{CHANNELS, Words, is_time};
 

@@ -1,5 +1,7 @@
 //! Where the runs are in a long log: they begin and end where the hitch rests.
-use hitch_model::campaign::{Channel, Run};
+
+use hitch_campaign::Run;
+use hitch_plant::Channel;
 
 /// Currents below this open no valve, A.
 const RESTS_BELOW_A: f64 = 0.3;

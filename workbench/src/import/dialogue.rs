@@ -1,7 +1,9 @@
 //! Agrees with somebody at a terminal which column is which.
-use std::io::{self, IsTerminal as _};
 
-use hitch_model::campaign::survey::{LogColumn, check_source};
+use std::io;
+use std::io::IsTerminal as _;
+
+use hitch_campaign::survey::{LogColumn, check_source};
 
 use super::{Kind, Mapping, Untold};
 use crate::error::Error;

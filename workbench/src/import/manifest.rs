@@ -1,8 +1,9 @@
 //! `campaign.toml` of an import.
+
 use std::fmt::Write as _;
 use std::path::Path;
 
-use hitch_model::model_file::quoted;
+use hitch_model_file::quoted;
 
 use super::columns::Mapping;
 

@@ -2,14 +2,14 @@
 mod show;
 mod table_5;
 
-use hitch_model::Model;
-use hitch_model::paper::check_valve::Spring;
-use hitch_model::paper::travel_time::{self, Panel};
-use hitch_model::paper::{flow_table, orifice_area, tables};
-use hitch_model::plant::Valve;
+use hitch_paper::check_valve::Spring;
+use hitch_paper::travel_time::Panel;
+use hitch_paper::{flow_table, orifice_area, tables, travel_time};
+use hitch_plant::{Model, Valve};
 use serde::Serialize;
 
 use crate::progress::Progress;
+
 pub use table_5::Table5;
 
 /// Ports for which the spring of equation 7 is shown, m; chosen, the paper gives none.
@@ -196,7 +196,7 @@ fn check_valve(model: &Model) -> CheckValve {
     };
     CheckValve {
         paper_bar: tables::CRACKING_PRESSURE_BAR,
-        model_bar: hitch_model::units::bar_from_pa(
+        model_bar: hitch_plant::units::bar_from_pa(
             model.constants().check_valve.cracking_pressure_pa,
         ),
         springs: PORT_DIAMETERS_M.map(row).to_vec(),

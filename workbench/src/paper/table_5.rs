@@ -1,14 +1,14 @@
 //! Table 5: what the paper measured of the valves, found again by the identification.
-use hitch_model::Model;
-use hitch_model::effects::{AddedEffect, find};
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::{Explanation, explain};
-use hitch_model::model::{Constants, Dynamics};
-use hitch_model::paper::flow_table::{flow_lpm, table_2};
-use hitch_model::paper::tables::{FIGURE_12_LIFT_A, FIGURE_12_LOADS_KG};
-use hitch_model::paper::test_bench::{self, deviation, saturation_a, table_5, threshold_a};
-use hitch_model::paper::travel_time::travel_s;
-use hitch_model::plant::Valve;
+
+use hitch_effects::find;
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::explanation::explain::{Explanation, explain};
+use hitch_paper::flow_table::{flow_lpm, table_2};
+use hitch_paper::tables::{FIGURE_12_LIFT_A, FIGURE_12_LOADS_KG};
+use hitch_paper::test_bench;
+use hitch_paper::test_bench::{deviation, saturation_a, table_5, threshold_a};
+use hitch_paper::travel_time::travel_s;
+use hitch_plant::{AddedEffect, Constants, Dynamics, Model, Valve};
 use serde::Serialize;
 
 use crate::explanation::{Parameter, parameters};

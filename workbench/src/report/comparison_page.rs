@@ -1,5 +1,6 @@
 //! The report of `hitch compare`.
-use hitch_model::Model;
+
+use hitch_plant::Model;
 use maud::{Markup, html};
 
 use super::page;

@@ -1,14 +1,15 @@
 //! The report of `hitch explain`.
+
 use std::sync::Arc;
 
-use hitch_model::identification::fit::Fit;
+use hitch_identification::estimation::fit::Fit;
 use maud::{Markup, html};
 
-use super::page;
 use super::rest_figure::{picture, suggestion};
 use super::run_views::run_views;
 use super::runs::runs;
-use super::staircase::{self, staircase};
+use super::staircase::staircase;
+use super::{page, staircase};
 use crate::comparison::{Comparison, Evaluated, Grouping};
 use crate::explanation::{Explanation, Found, Step, late_ms};
 use crate::text::known;

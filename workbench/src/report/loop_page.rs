@@ -3,7 +3,7 @@ mod course;
 mod steps;
 mod worst;
 
-use hitch_model::Model;
+use hitch_plant::Model;
 use maud::{Markup, html};
 
 use super::page;

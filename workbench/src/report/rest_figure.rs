@@ -1,5 +1,6 @@
 //! What the catalogue leaves unexplained: residuals along the signal that they go with, and a term that would help.
-use hitch_model::identification::whereabouts::{Bin, Profile};
+
+use hitch_identification::adequacy::localization::{Bin, Profile};
 use maud::{Markup, html};
 
 use super::chart::{Chart, Line, Stroke};
@@ -60,7 +61,7 @@ pub fn suggestion(term: &Suggested) -> Markup {
 
 #[cfg(test)]
 mod tests {
-    use hitch_model::campaign::Channel;
+    use hitch_plant::Channel;
 
     use super::*;
 

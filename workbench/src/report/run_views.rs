@@ -1,6 +1,7 @@
 //! From evaluated models to the runs that a report draws.
-use hitch_model::Model;
-use hitch_model::campaign::{Bench, Channel};
+
+use hitch_campaign::Bench;
+use hitch_plant::{Channel, Model};
 
 use super::runs::{ChannelView, RunView};
 use crate::comparison::Evaluated;

@@ -1,5 +1,6 @@
 //! Measured against simulated, run by run.
-use hitch_model::campaign::Channel;
+
+use hitch_plant::Channel;
 use maud::{Markup, html};
 
 use super::chart::{Chart, Line, Stroke, legend};

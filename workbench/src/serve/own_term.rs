@@ -1,8 +1,10 @@
 //! A term of the user's own, as the form of the page sends it.
-use hitch_model::effects::TermEffect;
-use hitch_model::expression::operation::FUNCTIONS;
-use hitch_model::expression::{ParameterDefinition, Part, Place, Term, TermDefinition, TermError};
-use hitch_model::plant::signals::SIGNALS;
+
+use hitch_effects::TermEffect;
+use hitch_effects::expression::operation::FUNCTIONS;
+use hitch_effects::expression::{ParameterDefinition, Part, Term, TermDefinition, TermError};
+use hitch_plant::Place;
+use hitch_plant::hooks::signals::SIGNALS;
 use serde::Deserialize;
 use serde_json::{Value, json};
 

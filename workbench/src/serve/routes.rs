@@ -1,4 +1,5 @@
 //! What the page can ask for.
+
 use std::sync::{Arc, MutexGuard, PoisonError};
 
 use axum::extract::{Path, Query, State};
@@ -7,17 +8,17 @@ use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
-use hitch_model::campaign::Channel;
+use hitch_plant::Channel;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio_stream::wrappers::BroadcastStream;
 use tokio_stream::{Stream, StreamExt};
 
-use super::own_term::{self, TermForm};
+use super::own_term::TermForm;
 use super::session::Session;
 use super::sessions::{Sessions, Shared};
 use super::tasks::{Task, moved};
-use super::{assets, jobs, views};
+use super::{assets, jobs, own_term, views};
 use crate::comparison::{Grouping, worst_in_part};
 use crate::error::Error;
 

@@ -1,13 +1,14 @@
 //! What one tab of a browser has done: the steps from the first model, with undo and redo, and what runs for it.
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hitch_model::Model;
-use hitch_model::effects::{Effect, TermEffect, full_name};
-use hitch_model::identification::candidate::Candidate;
-use hitch_model::identification::explain;
-use hitch_model::identification::fit::Fit;
-use hitch_model::identification::suggestion::Suggestion;
+use hitch_effects::TermEffect;
+use hitch_identification::estimation::fit::Fit;
+use hitch_identification::explanation::explain;
+use hitch_identification::selection::candidate::Candidate;
+use hitch_identification::suggestion::Suggestion;
+use hitch_plant::{Effect, Model, full_name};
 use serde_json::Value;
 use tokio::sync::broadcast;
 
@@ -28,7 +29,7 @@ pub struct Step {
     /// Error on runs that were not used to fit; `None` where nothing was fitted.
     pub held_out: Option<f64>,
     /// Terms that were defined up to here, those of the model's file first.
-    pub terms: Vec<&'static TermEffect>,
+    pub terms: Vec<&'static dyn Effect>,
 }
 
 impl Step {
@@ -199,7 +200,7 @@ mod tests {
     fn undone_steps_are_kept_until_something_else_is_done() {
         let source = Source {
             campaign: None,
-            model: Model::nominal(),
+            model: hitch_model_file::nominal(),
         };
         let mut session = Session::new(Arc::new(source.read().unwrap()));
         for title in ["one", "two"] {

@@ -1,10 +1,11 @@
 //! What the page is about: a campaign and the model to begin with.
+
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use hitch_model::Model;
-use hitch_model::campaign::Campaign;
-use hitch_model::identification::experiment::Experiment;
+use hitch_campaign::Campaign;
+use hitch_identification::data::experiment::Experiment;
+use hitch_plant::Model;
 
 use crate::comparison::Evaluated;
 use crate::demonstration;

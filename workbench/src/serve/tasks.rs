@@ -1,18 +1,18 @@
 //! What can be computed for a session: rank effects, fit a model with or without one, explain the campaign.
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use hitch_model::Model;
-use hitch_model::effects::{AddedEffect, Effect, full_name};
-use hitch_model::identification::estimate::Estimate;
-use hitch_model::identification::experiment::Experiment;
-use hitch_model::identification::explain::diagnose_each;
-use hitch_model::identification::fit::{Fit, evaluate, fit_loads, refine, sketch};
-use hitch_model::identification::holdout::held_out;
-use hitch_model::identification::residual::Weights;
-use hitch_model::identification::subset::Options;
-use hitch_model::identification::subset::single::try_effects;
-use hitch_model::identification::suggestion::{Suggestion, suggest};
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::estimate::Estimate;
+use hitch_identification::estimation::fit::{Fit, evaluate, fit_loads, refine, sketch};
+use hitch_identification::explanation::explain::diagnose_each;
+use hitch_identification::residuals::whitening::Weights;
+use hitch_identification::search::single::try_effects;
+use hitch_identification::search::subset::Options;
+use hitch_identification::selection::hold_out::held_out;
+use hitch_identification::suggestion::{Suggestion, suggest};
+use hitch_plant::{AddedEffect, Effect, Model, full_name};
 use serde::Deserialize;
 
 use super::jobs::Reporter;

@@ -1,11 +1,10 @@
 //! What the page shows, as JSON.
 mod effects;
 
-use hitch_model::campaign::Channel;
-use hitch_model::effects::{AddedEffect, Parameter};
-use hitch_model::identification::estimate::Estimate;
-use hitch_model::identification::experiment::{Experiment, ReadyRun};
-use hitch_model::simulation::Trace;
+use hitch_identification::data::experiment::{Experiment, ReadyRun};
+use hitch_identification::estimate::Estimate;
+use hitch_plant::simulation::Trace;
+use hitch_plant::{AddedEffect, Channel, Parameter};
 use serde_json::{Value, json};
 
 use super::session::{Ranking, Session, Step};
@@ -182,7 +181,7 @@ pub fn model_file(session: &Session) -> String {
     }
     let name = format!("{}-{}", subject.model.name, subject.experiment().name);
     let effects = &session.fit().estimate.effects;
-    text + &rebuilt(&session.model(), effects, name).to_toml()
+    text + &hitch_model_file::to_toml(&rebuilt(&session.model(), effects, name))
 }
 
 /// Measured and simulated channels of a run; `None` if there is no such run.

@@ -9,14 +9,15 @@ mod cost;
 mod knobs;
 
 use cmaes::{CMAESOptions, DVector};
+use hitch_effects::find;
 use hitch_firmware::control::{Calibration, ValidCalibration};
-use hitch_model::Model;
-use hitch_model::effects::{AddedEffect, find};
+use hitch_plant::{AddedEffect, Model};
+use knobs::{Least, with_values, without};
 
 use crate::closed_loop::{Course, Move, MoveResult, Summary, courses, figures};
+
 pub use cost::cost;
 pub use knobs::KNOBS;
-use knobs::{Least, with_values, without};
 
 /// What teaching leaves of a threshold's error, A.
 const SPREAD_A: f64 = 0.02;

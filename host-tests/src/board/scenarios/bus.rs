@@ -3,14 +3,14 @@
 use anyhow::{Result, ensure};
 use embedded_can::{ExtendedId, Id, StandardId};
 use hitch_firmware::can::Frame;
-use hitch_model::Model;
+use hitch_plant::Model;
 
 use super::Setup;
 use super::rig::Rig;
 
 /// Thrown off the bus by errors, the controller comes back by itself.
 pub fn bus_off(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut rig = Rig::typical(setup, &model)?;
     rig.pick_up()?;
     let before = rig.said.len();
@@ -39,7 +39,7 @@ pub fn bus_off(setup: &Setup) -> Result<String> {
 
 /// The shortest frames, one after the other: no pulse of a move differs from those on a quiet bus.
 pub fn flooded(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut angles = Vec::new();
     let mut lost = 0;
     for floods in [false, true] {

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use hitch_firmware::ecu::{AdcCode, Contacts};
-use hitch_model::Model;
+use hitch_plant::Model;
 use hitch_workbench::ecu::Order;
 
 use super::Setup;
@@ -195,7 +195,7 @@ pub fn electrical_faults(setup: &Setup) -> Result<String> {
 }
 
 fn react(setup: &Setup, inject: fn(&mut Contacts, usize)) -> Result<f64> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut rig = Rig::typical(setup, &model)?;
     rig.pick_up()?;
     rig.lever(125.0, 700)?;
@@ -220,7 +220,7 @@ fn react(setup: &Setup, inject: fn(&mut Contacts, usize)) -> Result<f64> {
 pub fn frozen_track(setup: &Setup) -> Result<String> {
     /// 2 degrees at 40 deg/s or more, the row's time, and two milliseconds.
     const MOST_MS: f64 = 60.0;
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut worst_ms: f64 = 0.0;
     for trembles in [false, true] {
         let mut rig = Rig::typical(setup, &model)?;
@@ -245,7 +245,7 @@ pub fn frozen_track(setup: &Setup) -> Result<String> {
 
 /// The enable line's read-back is stuck high or low from power-up on, or goes low in the middle of a move.
 pub fn enable_line(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     for stuck in [true, false] {
         let mut rig = Rig::typical(setup, &model)?;
         rig.board

@@ -5,7 +5,7 @@ use hitch_firmware::ecu::fault_history::MOST_WRITES;
 use hitch_firmware::ecu::{AdcCode, Contacts};
 use hitch_firmware::j1939::{Id, Pgn, Trouble};
 use hitch_firmware::storage::fault_log::{Entry, FaultLog, MOST_SLOTS};
-use hitch_model::Model;
+use hitch_plant::Model;
 use hitch_workbench::ecu::{CALIBRATION_BYTES, CutFlash, FLASH_BYTES};
 
 use super::Setup;
@@ -96,7 +96,7 @@ fn entries(rig: &mut Rig<'_>) -> Result<Vec<Operation>> {
 
 /// A fault, restarts, a power cut before and within each operation that stores it, and clearing.
 pub fn fault_history(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut rig = Rig::typical(setup, &model)?;
     rig.run(CLAIMED_MS)?;
     // Erased flash has no calibration, which is a trouble of its own and active at each start.
@@ -202,7 +202,7 @@ fn compacts(setup: &Setup, rig: &mut Rig<'_>, contents: &Contents, all: &[Troubl
 /// Starts with a log that is to be compacted, with all codes and the fastest oscillator of the watchdog; and with a few, cut
 /// before and within each operation.
 pub fn compaction(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let [_, fastest_hz] = setup.part.slow_clock_hz();
     let conditions = Conditions {
         slow_clock_hz: fastest_hz,

@@ -1,7 +1,7 @@
 //! Normal work.
 
 use anyhow::{Result, ensure};
-use hitch_model::Model;
+use hitch_plant::Model;
 
 use super::Setup;
 use super::rig::Rig;
@@ -14,7 +14,7 @@ const NEAR_DEG: f64 = 1.0;
 
 /// Lifts, holds and lowers; pulses, instructions and set-up are judged.
 pub fn lift_hold_lower(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut rig = Rig::typical(setup, &model)?;
     rig.pick_up()?;
     let chip = rig.board.chip();

@@ -1,7 +1,7 @@
 //! Faults of the processor and its clock.
 
 use anyhow::{Result, ensure};
-use hitch_model::Model;
+use hitch_plant::Model;
 
 use super::Setup;
 use super::rig::{READY_MS, Rig};
@@ -35,7 +35,7 @@ fn stays_off(rig: &mut Rig<'_>, milliseconds: usize) -> Result<()> {
 
 /// The crystal fails: hardware cuts the outputs, the program gives up, and the watchdog resets the part.
 pub fn crystal_failure(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut rig = lifted(setup, &model)?;
     let fault_ns = rig.now_ns();
     rig.board.chip().fail_crystal();
@@ -55,7 +55,7 @@ pub fn crystal_failure(setup: &Setup) -> Result<String> {
 
 /// A debugger halts the processor for a second in the middle of a move.
 pub fn debugger_halt(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut rig = lifted(setup, &model)?;
     let fault_ns = rig.now_ns();
     rig.board.halt(true);
@@ -75,7 +75,7 @@ pub fn debugger_halt(setup: &Setup) -> Result<String> {
 
 /// The converters stop, so the program waits for ever: the watchdog resets the part.
 pub fn stuck_program(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut worst_ms: f64 = 0.0;
     for slow_clock_hz in setup.part.slow_clock_hz() {
         let conditions = Conditions {
@@ -106,7 +106,7 @@ pub fn stuck_program(setup: &Setup) -> Result<String> {
 
 /// The stack runs out of RAM: the write faults, and the coils are off.
 pub fn stack_overflow(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut rig = lifted(setup, &model)?;
     let fault_ns = rig.now_ns();
     rig.board.set_stack_pointer(0x2000_0020);
@@ -125,7 +125,7 @@ pub fn stack_overflow(setup: &Setup) -> Result<String> {
 
 /// Bits of the peripherals' set-up flip while the hitch is lifted: the program notices and restarts.
 pub fn flipped_registers(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let places = setup.part.addresses();
     let sequence = match setup.part {
         Part::Stm32f405 => 0x38,
@@ -166,7 +166,7 @@ pub fn flipped_registers(setup: &Setup) -> Result<String> {
 
 /// A bit of the program flips in flash: it is found within two seconds, and the ECU doesn't come back.
 pub fn flipped_code(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut rig = lifted(setup, &model)?;
     let last = setup
         .image
@@ -196,7 +196,7 @@ pub fn flipped_code(setup: &Setup) -> Result<String> {
 
 /// The main clock runs at a rate that is 30 % off, with all timers on it: only the independent oscillator shows it.
 pub fn wrong_clock(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut worst_ms: f64 = 0.0;
     for factor in [0.7, 1.3] {
         let mut rig = lifted(setup, &model)?;
@@ -215,7 +215,7 @@ pub fn wrong_clock(setup: &Setup) -> Result<String> {
 
 /// A bit of RAM is stuck at power-up: the program doesn't start.
 pub fn damaged_ram(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let conditions = Conditions {
         stuck_ram: Some(0x2001_1004),
         ..Conditions::typical(setup.part)

@@ -2,7 +2,7 @@
 
 use anyhow::{Result, ensure};
 use hitch_firmware::ecu::Contact;
-use hitch_model::Model;
+use hitch_plant::Model;
 use hitch_workbench::ecu::Order;
 
 use super::Setup;
@@ -28,7 +28,7 @@ const LEAST_DRIVEN: f64 = 0.2;
 pub fn operation(setup: &Setup) -> Result<String> {
     let minutes =
         std::env::var(MINUTES_VARIABLE).map_or(Ok(MINUTES), |text| text.parse::<f64>())?;
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut shift = Shift {
         rig: Rig::typical(setup, &model)?,
         random: fastrand::Rng::with_seed(SEED),

@@ -3,7 +3,7 @@
 use anyhow::{Result, ensure};
 use hitch_firmware::can::Frame;
 use hitch_firmware::ecu::Contacts;
-use hitch_model::Model;
+use hitch_plant::Model;
 use hitch_workbench::ecu::{Bench, Moment, Order};
 
 use super::Setup;

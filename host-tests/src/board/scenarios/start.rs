@@ -1,7 +1,7 @@
 //! Power-up.
 
 use anyhow::{Result, ensure};
-use hitch_model::Model;
+use hitch_plant::Model;
 
 use super::Setup;
 use super::rig::{READY_MS, Rig};
@@ -9,7 +9,7 @@ use crate::board::{Conditions, Contents, Operation, Stop};
 
 /// Frames of the address claim and the status say that the application runs.
 fn starts(setup: &Setup, conditions: Conditions) -> Result<f64> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut rig = Rig::new(setup, &model, Contents::erased(setup.part), conditions)?;
     let mut ready_ms = None;
     for millisecond in 0..READY_MS + 300 {
@@ -39,7 +39,7 @@ pub fn boot(setup: &Setup) -> Result<String> {
 
 /// A part with the manufacturer's option bytes and nothing in flash but the image.
 pub fn factory_fresh(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut rig = Rig::typical(setup, &model)?;
     let before = rig.board.chip().flash.options;
     rig.run(READY_MS + 300)?;
@@ -77,7 +77,7 @@ pub fn slow_crystal(setup: &Setup) -> Result<String> {
 
 /// A crystal that never starts: the watchdog resets the part again and again, and no coil is driven.
 pub fn dead_crystal(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let conditions = Conditions {
         crystal_start_ns: None,
         ..Conditions::typical(setup.part)

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use hitch_firmware::ecu::Contact;
-use hitch_model::Model;
+use hitch_plant::Model;
 
 use super::Setup;
 use super::rig::{READY_MS, Rig};
@@ -45,7 +45,7 @@ fn in_use(board: &mut Board) -> Result<Vec<i32>> {
 
 /// Stores twice, and reads back after power was off.
 pub fn store_and_read_back(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut rig = Rig::typical(setup, &model)?;
     for value in [FIRST, SECOND] {
         store(&mut rig, value)?;
@@ -65,7 +65,7 @@ pub fn store_and_read_back(setup: &Setup) -> Result<String> {
 
 /// Cuts power before, within and after each erasing and programming of a second calibration.
 pub fn power_cuts(setup: &Setup) -> Result<String> {
-    let model = Model::nominal();
+    let model = hitch_model_file::nominal();
     let mut rig = Rig::typical(setup, &model)?;
     store(&mut rig, FIRST)?;
     rig.board.cycle_power()?;

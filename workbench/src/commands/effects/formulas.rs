@@ -1,9 +1,10 @@
 //! What formulas of a user's own in a model file are made of.
+
 use std::fmt::Write as _;
 
-use hitch_model::expression::Place;
-use hitch_model::expression::operation::FUNCTIONS;
-use hitch_model::plant::signals::SIGNALS;
+use hitch_effects::expression::operation::FUNCTIONS;
+use hitch_plant::Place;
+use hitch_plant::hooks::signals::SIGNALS;
 
 use crate::text::Table;
 
@@ -59,11 +60,11 @@ mod tests {
     #[test]
     fn the_example_is_a_model_file() {
         let term = HEAD.split("\n\n").skip(1).take(3).collect::<Vec<_>>();
-        let source = hitch_model::source_file::SourceFile {
+        let source = hitch_input::source_file::SourceFile {
             path: "term.toml".into(),
             text: format!("format = 1\nbase = \"nominal\"\n{}", term.join("\n")),
         };
-        let model = hitch_model::Model::from_source(&source).unwrap();
+        let model = hitch_plant::hitch_model_file::parse(&source).unwrap();
         assert_eq!(model.terms.len(), 1);
     }
 

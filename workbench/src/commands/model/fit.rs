@@ -1,14 +1,16 @@
 //! `hitch model fit`: the constants of the base model from a campaign.
+
 use std::path::PathBuf;
 
-use hitch_model::campaign::Campaign;
-use hitch_model::identification::base::fit_base_model;
-use hitch_model::identification::experiment::Experiment;
+use hitch_campaign::Campaign;
+use hitch_identification::base::fit_base_model;
+use hitch_identification::data::experiment::Experiment;
 
 use crate::base_fit::ShownBaseFit;
 use crate::error::Error;
 use crate::model_arg::ModelArg;
-use crate::output::{self, JsonArg};
+use crate::output;
+use crate::output::JsonArg;
 use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
 
@@ -46,7 +48,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let mut fit = fit_base_model(&experiment, &model, &|what| progress.say(what));
     drop(progress);
     fit.model.name = output::stem(&args.out);
-    output::write_file(&args.out, fit.model.to_toml().as_bytes())?;
+    output::write_file(&args.out, hitch_model_file::to_toml(&fit.model).as_bytes())?;
     let next = format!(
         "hitch explain {} --model {}",
         args.campaign.display(),

@@ -1,11 +1,12 @@
 //! `hitch model new`: a commented model file.
-use std::io::{self, IsTerminal as _};
+
+use std::io;
+use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
-use hitch_model::Model;
-use hitch_model::campaign::flow_curve;
-use hitch_model::model_file::{Template, Valve};
-use hitch_model::plant::ValveCurve;
+use hitch_campaign::flow_curve;
+use hitch_model_file::{Template, Valve};
+use hitch_plant::{Model, ValveCurve};
 
 use crate::error::Error;
 use crate::output;
@@ -77,7 +78,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         .out
         .as_deref()
         .map_or_else(|| "my-hitch".to_owned(), output::stem);
-    let mut template = Template::of(&name, &Model::named(&args.from)?);
+    let mut template = Template::of(&name, &hitch_model_file::named(&args.from)?);
     for set in &args.set {
         let (name, value) = set.split_once('=').ok_or_else(|| {
             Error::Usage(format!("--set {set}: write it as --set TABLE.KEY=VALUE"))
@@ -151,7 +152,7 @@ fn asked_curve(default: &ValveCurve, title: &str) -> Result<ValveCurve, Error> {
     };
     let opens_now = asked("current at which it opens, A", opens)?;
     let last_now = asked("current limit, A", last)?;
-    let full = hitch_model::units::lpm_from_m3_s(default.saturation_m3_s());
+    let full = hitch_plant::units::lpm_from_m3_s(default.saturation_m3_s());
     let full_now = asked("flow at the current limit, l/min", full)?;
     let moved = |&current: &f64| match current <= opens {
         true if current == 0.0 => 0.0,

@@ -1,13 +1,15 @@
 //! What the page shows of effects: the catalogue, a ranking, an explanation.
+
 use std::sync::Arc;
 
-use hitch_model::effects::{Effect, full_name};
-use hitch_model::identification::candidate;
-use hitch_model::identification::explain;
-use hitch_model::identification::fit::Fit;
+use hitch_identification::estimation::fit::Fit;
+use hitch_identification::explanation::explain;
+use hitch_identification::selection::candidate;
+use hitch_plant::{Effect, full_name};
 use serde_json::{Value, json};
 
-use crate::explanation::{self, Candidate, explained as share_explained, parameters};
+use crate::explanation;
+use crate::explanation::{Candidate, explained as share_explained, parameters};
 use crate::serve::session::{Explained, Ranking, Session};
 
 /// Texts of an effect.

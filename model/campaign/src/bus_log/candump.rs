@@ -1,0 +1,126 @@
+//! candump's log (`candump -l`, can-utils), which python-can and SavvyCAN write as well.
+//!
+//! ```text
+//! (1436509052.249713) can0 18FF4580#0011223344556677     a frame of 29 bits; three digits are one of 11 bits
+//! (1436509052.250713) can0 123#R                         a remote frame: no data
+//! (1436509052.251713) can0 18FF4580##1001122             CAN FD: a digit of flags before the data
+//! (1436509052.252713) can0 20000004#0000000000000000     an error frame: more than 29 bits
+//! ```
+//!
+//! A word behind that says which way the frame went (`R`, `T`). Of frames that are not wanted only the identifier is read.
+
+use hitch_input::source_file::SourceFile;
+
+use crate::CampaignError;
+use crate::bus_log::frame::{Frame, Id, MOST_BYTES};
+use crate::bus_log::frame_sink::FrameSink;
+use crate::bus_log::line::{Line, Word, lines};
+
+/// Digits of an identifier of 11 bits, and of 29.
+const STANDARD_DIGITS: usize = 3;
+const EXTENDED_DIGITS: usize = 8;
+/// Bytes of a classical frame.
+const MOST_CLASSICAL: usize = 8;
+
+/// Passes every data frame that `sink` wants to it.
+pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), CampaignError> {
+    let mut bytes = [0; MOST_BYTES];
+    for line in lines(source) {
+        if let Some(frame) = frame(&line, sink, &mut bytes)? {
+            sink.take(&frame)?;
+        }
+    }
+    Ok(())
+}
+
+/// The frame of a line; `None` if it holds no data, or is not wanted.
+fn frame<'f>(
+    line: &Line<'f>,
+    sink: &mut dyn FrameSink,
+    bytes: &'f mut [u8; MOST_BYTES],
+) -> Result<Option<Frame<'f>>, CampaignError> {
+    let time = line.word(0, "time")?;
+    let inside = time
+        .text
+        .strip_prefix('(')
+        .and_then(|text| text.strip_suffix(')'));
+    let Some(inside) = inside else {
+        let mend = "a line is (SECONDS) BUS ID#DATA, as `candump -l` writes it";
+        return Err(line.fault(time, 0, "is no time in parentheses", mend));
+    };
+    let time_s = line.time_s(time, inside)?;
+    let channel = line.word(1, "bus")?.text;
+    let word = line.word(2, "frame")?;
+    let Some((id, data)) = word.text.split_once('#') else {
+        let mend = "a frame is ID#DATA, as `candump -l` writes it";
+        return Err(line.fault(word, 0, "is no frame", mend));
+    };
+    let Some(id) = identifier(line, word, id)? else {
+        return Ok(None);
+    };
+    if data.starts_with('R') || !sink.wants(channel, id) {
+        return Ok(None);
+    }
+    if let Some(more) = line.get(3)
+        && (!matches!(more.text, "R" | "T") || line.len() > 4)
+    {
+        return Err(line.fault(more, 0, "stands behind the frame", "delete it"));
+    }
+    let (data, most, begins) = match data.strip_prefix('#') {
+        Some(flexible) => match flexible.chars().next() {
+            Some(flags) if flags.is_ascii_hexdigit() => (&flexible[1..], MOST_BYTES, 3),
+            _ => return Err(line.fault(word, 0, "has no flags", "CAN FD is ID##FLAGS-DATA")),
+        },
+        None => (data, MOST_CLASSICAL, 1),
+    };
+    let begins = begins + word.text.find('#').unwrap_or(0);
+    let length = decoded(line, word, begins, data, &mut bytes[..most])?;
+    Ok(Some(Frame {
+        time_s,
+        channel,
+        id,
+        data: &bytes[..length],
+        byte: line.byte(),
+    }))
+}
+
+/// The identifier; `None` if the line reports an error of the bus.
+fn identifier(line: &Line<'_>, word: Word<'_>, text: &str) -> Result<Option<Id>, CampaignError> {
+    let mend = "an identifier has three hexadecimal digits or eight";
+    let is_hex = text.bytes().all(|byte| byte.is_ascii_hexdigit());
+    let raw = u32::from_str_radix(text, 16).ok().filter(|_| is_hex);
+    match (raw, text.len()) {
+        (Some(raw), STANDARD_DIGITS) if Id::new(raw, false).is_none() => {
+            Err(line.fault(word, 0, "has more than 11 bits", mend))
+        }
+        (Some(raw), STANDARD_DIGITS) => Ok(Id::new(raw, false)),
+        (Some(raw), EXTENDED_DIGITS) => Ok(Id::new(raw, true)),
+        _ => Err(line.fault(word, 0, "has no identifier", mend)),
+    }
+}
+
+/// Two digits a byte, from byte `begins` of the word on; how many there are.
+fn decoded(
+    line: &Line<'_>,
+    word: Word<'_>,
+    begins: usize,
+    data: &str,
+    bytes: &mut [u8],
+) -> Result<usize, CampaignError> {
+    let mend = "data are two hexadecimal digits a byte; delete the line if it was cut short";
+    let mut length = 0;
+    for (index, pair) in data.as_bytes().chunks(2).enumerate() {
+        let digits = std::str::from_utf8(pair).unwrap_or_default();
+        let is_hex = pair.len() == 2 && pair.iter().all(u8::is_ascii_hexdigit);
+        let value = u8::from_str_radix(digits, 16).ok().filter(|_| is_hex);
+        match (value, bytes.get_mut(index)) {
+            (Some(value), Some(byte)) => *byte = value,
+            (None, _) => return Err(line.fault(word, begins + 2 * index, "has bad data", mend)),
+            (_, None) => {
+                return Err(line.fault(word, begins + 2 * index, "has too much data", mend));
+            }
+        }
+        length = index + 1;
+    }
+    Ok(length)
+}

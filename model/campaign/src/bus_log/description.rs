@@ -1,0 +1,317 @@
+//! What is on a bus, as a DBC describes it.
+
+use can_dbc::{
+    AttributeValue, ByteOrder, Dbc, DbcError, Message, MessageId, MultiplexIndicator, NumericValue,
+    SignalExtendedValueType, ValueType,
+};
+use hitch_input::input_error::{InputError, Place, quote};
+use hitch_input::naming::offer_names;
+use hitch_input::source_file::SourceFile;
+
+use crate::CampaignError;
+use crate::bus_log::frame::{Id, MOST_BYTES};
+use crate::bus_log::signal::{Bits, Kind, Signal};
+use crate::scale::Scale;
+use crate::table::{Column, TIMES};
+
+/// The description of the project's own ECU.
+const OF_ECU: &str = include_str!("../../../../firmware/hitch.dbc");
+
+/// A clock that goes round faster can't be told from the delays of a logger, s.
+const SHORTEST_ROUND_S: f64 = 2.0;
+
+/// What is wrong, and how to mend it.
+pub type Fault = (String, String);
+
+/// Which frames are a message.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Match {
+    /// Those with this identifier.
+    Identifier(Id),
+    /// Those of this parameter group, whoever sends them (J1939).
+    Group(u32),
+}
+
+/// A description.
+#[derive(Debug, Clone)]
+pub struct Description {
+    dbc: Dbc,
+}
+
+impl Description {
+    /// Reads a DBC.
+    ///
+    /// # Errors
+    /// If it is none, where.
+    pub fn read(source: &SourceFile) -> Result<Self, CampaignError> {
+        let dbc = Dbc::try_from(source.text.as_str()).map_err(|error| not_dbc(source, &error))?;
+        Ok(Self { dbc })
+    }
+
+    /// The one of the project's own ECU.
+    pub fn of_ecu() -> Self {
+        let dbc = Dbc::try_from(OF_ECU).expect("a test reads the project's own description");
+        Self { dbc }
+    }
+
+    /// The message of that name.
+    pub fn message(&self, name: &str) -> Result<&Message, Fault> {
+        let found = self
+            .dbc
+            .messages
+            .iter()
+            .find(|message| message.name == name);
+        found.ok_or_else(|| {
+            let names: Vec<&str> = self.names();
+            (
+                format!("the DBC has no message {}", quote(name)),
+                offer_names(name, &names),
+            )
+        })
+    }
+
+    fn names(&self) -> Vec<&str> {
+        let messages = self.dbc.messages.iter();
+        messages.map(|message| message.name.as_str()).collect()
+    }
+
+    /// Every message.
+    pub fn messages(&self) -> &[Message] {
+        &self.dbc.messages
+    }
+
+    /// What people say about a signal; empty if nothing.
+    pub fn comment(&self, message: &Message, signal: &str) -> &str {
+        let comment = self.dbc.signal_comment(message.id, signal);
+        comment.unwrap_or_default()
+    }
+
+    /// Which frames are that message.
+    pub fn matching(&self, message: &Message) -> Match {
+        match message.id {
+            MessageId::Standard(raw) => Match::Identifier(Id::Standard(raw.into())),
+            MessageId::Extended(raw) if self.is_j1939(message) => Match::Group(group(raw)),
+            MessageId::Extended(raw) => Match::Identifier(Id::Extended(raw)),
+        }
+    }
+
+    /// The attribute that Vector's tools give to messages of J1939.
+    fn is_j1939(&self, message: &Message) -> bool {
+        const NUMBER: u64 = 3;
+        match self
+            .dbc
+            .resolved_message_attribute(message.id, "VFrameFormat")
+        {
+            Some(AttributeValue::Uint(number)) => *number == NUMBER,
+            Some(AttributeValue::String(name)) => name == "J1939PG",
+            _ => false,
+        }
+    }
+
+    /// A signal of a message, in the unit of `column`.
+    pub fn signal(&self, message: &Message, name: &str, column: &Column) -> Result<Signal, Fault> {
+        let found = message.signals.iter().find(|signal| signal.name == name);
+        let signal = found.ok_or_else(|| {
+            let names: Vec<&str> = message
+                .signals
+                .iter()
+                .map(|signal| signal.name.as_str())
+                .collect();
+            (
+                format!("message {} has no signal {}", message.name, quote(name)),
+                offer_names(name, &names),
+            )
+        })?;
+        let name = format!("{}.{}", message.name, signal.name);
+        let (factor, offset) = conversion(&name, &signal.unit, column)?;
+        let kind = self.kind(message, signal);
+        let is_whole = match kind {
+            Kind::Float => signal.size == 32,
+            Kind::Double => signal.size == 64,
+            Kind::Unsigned | Kind::Signed => true,
+        };
+        if !is_whole {
+            return Err(wrong(&name, "is a floating-point number of another size"));
+        }
+        Ok(Signal {
+            bits: bits(&name, signal)?,
+            kind,
+            factor: signal.factor * factor,
+            offset: signal.offset * factor + offset,
+            has_reserved_values: matches!(self.matching(message), Match::Group(_)),
+            selected_by: self.selector(message, signal, &name)?,
+            name,
+        })
+    }
+
+    /// The signal of a message that says when it was sampled, s, and after how many seconds that goes round, if it has
+    /// one: one step behind the largest value that the description gives it.
+    pub fn clock(&self, message: &Message, name: &str) -> Result<Option<(Signal, f64)>, Fault> {
+        let Some(found) = message.signals.iter().find(|signal| signal.name == name) else {
+            return Ok(None);
+        };
+        let mut signal = self.signal(message, name, &TIMES)?;
+        // It has its whole range.
+        signal.has_reserved_values = false;
+        let range = number(found.max) - number(found.min);
+        let period_s = (range + found.factor) * (signal.factor / found.factor);
+        let is_a_clock = period_s.is_finite() && period_s > SHORTEST_ROUND_S;
+        match is_a_clock {
+            true => Ok(Some((signal, period_s))),
+            false => Err((
+                format!(
+                    "signal {} goes round within {SHORTEST_ROUND_S} s",
+                    signal.name
+                ),
+                "give it its range in the dbc, or name another clock".to_owned(),
+            )),
+        }
+    }
+
+    fn kind(&self, message: &Message, signal: &can_dbc::Signal) -> Kind {
+        let extended = self
+            .dbc
+            .extended_value_type_for_signal(message.id, &signal.name);
+        match (extended, signal.value_type) {
+            (Some(SignalExtendedValueType::IEEEfloat32Bit), _) => Kind::Float,
+            (Some(SignalExtendedValueType::IEEEdouble64bit), _) => Kind::Double,
+            (_, ValueType::Signed) => Kind::Signed,
+            (_, ValueType::Unsigned) => Kind::Unsigned,
+        }
+    }
+
+    /// The bits that say whether a multiplexed signal is there.
+    fn selector(
+        &self,
+        message: &Message,
+        signal: &can_dbc::Signal,
+        name: &str,
+    ) -> Result<Option<(Bits, u64)>, Fault> {
+        let value = match signal.multiplexer_indicator {
+            MultiplexIndicator::MultiplexedSignal(value) => value,
+            MultiplexIndicator::Plain | MultiplexIndicator::Multiplexor => return Ok(None),
+            MultiplexIndicator::MultiplexorAndMultiplexedSignal(_) => {
+                return Err(wrong(name, "is multiplexed in more than one step"));
+            }
+        };
+        match self.dbc.message_multiplexor_switch(message.id) {
+            Ok(Some(switch)) => Ok(Some((bits(name, switch)?, value))),
+            Ok(None) => Err(wrong(name, "is multiplexed, and nothing says by what")),
+            Err(_) => Err(wrong(name, "is multiplexed in more than one step")),
+        }
+    }
+}
+
+/// The parameter group of an identifier of J1939: without the destination that the lower half of groups has.
+pub fn group(id: u32) -> u32 {
+    const FIRST_BROADCAST: u32 = 240;
+    let group = id >> 8 & 0x3_FFFF;
+    match group >> 8 & 0xFF {
+        format if format < FIRST_BROADCAST => group & 0x3_FF00,
+        _ => group,
+    }
+}
+
+fn number(value: NumericValue) -> f64 {
+    match value {
+        NumericValue::Uint(value) => value as f64,
+        NumericValue::Int(value) => value as f64,
+        NumericValue::Double(value) => value,
+    }
+}
+
+fn bits(name: &str, signal: &can_dbc::Signal) -> Result<Bits, Fault> {
+    let fits = (1..=64).contains(&signal.size) && signal.start_bit < 8 * MOST_BYTES as u64;
+    if !fits {
+        return Err(wrong(name, "has bits that no frame has"));
+    }
+    Ok(Bits {
+        start: signal.start_bit as usize,
+        size: signal.size as usize,
+        is_big_endian: signal.byte_order == ByteOrder::BigEndian,
+    })
+}
+
+/// What a value in the signal's unit is in the column's: factor and offset.
+fn conversion(name: &str, unit: &str, column: &Column) -> Result<(f64, f64), Fault> {
+    let what = match Scale::of(unit, column) {
+        Ok(Scale::Line { factor, offset }) => return Ok((factor, offset)),
+        _ if unit.trim().is_empty() => "has no unit".to_owned(),
+        _ => format!("is in {}", quote(unit)),
+    };
+    let mend = format!(
+        "it has to be a unit like {}: mend it in the DBC",
+        column.unit
+    );
+    Err((format!("signal {name} {what}"), mend))
+}
+
+fn wrong(name: &str, what: &str) -> Fault {
+    (
+        format!("signal {name} {what}"),
+        "such signals are not read: choose another one".to_owned(),
+    )
+}
+
+fn not_dbc(source: &SourceFile, error: &DbcError) -> InputError {
+    let said = error.to_string();
+    let mend = "export it as a DBC from the tool that it comes from";
+    // Where the grammar broke: `--> LINE:COLUMN`, and a last line that says what it would have taken.
+    let place = said.lines().find_map(|line| {
+        let (line, column) = line.trim().strip_prefix("--> ")?.split_once(':')?;
+        Some(Place {
+            line: line.parse().ok()?,
+            column: column.parse().ok()?,
+        })
+    });
+    match place {
+        Some(place) => InputError::at(&source.path, place, "this is not DBC", mend),
+        None => source.error(format!("is not DBC: {said}"), mend),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::{LIFT, OIL_TEMPERATURE, column};
+
+    #[test]
+    fn the_project_s_own_description_is_read() {
+        let ecu = Description::of_ecu();
+        let message = ecu.message("HitchMotion").unwrap();
+        assert_eq!(ecu.matching(message), Match::Group(0xFF45));
+        let angle = ecu
+            .signal(message, "RockerAngle", column("rocker_angle_deg").unwrap())
+            .unwrap();
+        let data = [0, 0, 0, 0, 0x55, 0x71, 0, 0];
+        let value_deg = angle.value(&data).unwrap().unwrap();
+        assert!((value_deg - 90.13).abs() < 1e-9, "{value_deg}");
+    }
+
+    #[test]
+    fn units_are_converted_or_refused() {
+        let close = |unit, wanted, expected: f64| {
+            let (factor, _) = conversion("M.S", unit, column(wanted).unwrap()).unwrap();
+            assert!((factor / expected - 1.0).abs() < 1e-12, "{unit}: {factor}");
+        };
+        close("mA", LIFT, 1e-3);
+        close("kPa", "cylinder_pressure_bar", 1e-2);
+        close("°", "rocker_angle_deg", 1.0);
+        close("Deg", "rocker_angle_deg", 1.0);
+        close("L/min", "flow_lpm", 1.0);
+        close("C", OIL_TEMPERATURE, 1.0);
+        close("degF", OIL_TEMPERATURE, 5.0 / 9.0);
+        for unit in ["", "bar", "%", "parsec"] {
+            assert!(
+                conversion("M.S", unit, column(LIFT).unwrap()).is_err(),
+                "{unit}"
+            );
+        }
+    }
+
+    #[test]
+    fn groups_are_without_destination() {
+        assert_eq!(group(0x18FF_4580), 0xFF45);
+        assert_eq!(group(0x18EF_80F9), 0xEF00);
+    }
+}

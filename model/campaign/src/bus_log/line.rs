@@ -1,0 +1,91 @@
+//! A line of a log, in words that know where they stand.
+
+use hitch_input::input_error::quote;
+use hitch_input::source_file::SourceFile;
+
+use crate::CampaignError;
+
+/// Latest time stamp, s: that of any date, and still exact to a microsecond.
+const LATEST_S: f64 = 1e10;
+
+/// A word and its place in the file.
+#[derive(Debug, Clone, Copy)]
+pub struct Word<'a> {
+    /// The word.
+    pub text: &'a str,
+    /// Its first byte in the file.
+    pub byte: usize,
+}
+
+/// A line with at least one word.
+#[derive(Debug)]
+pub struct Line<'a> {
+    source: &'a SourceFile,
+    words: Vec<Word<'a>>,
+    /// Behind the last word.
+    end: usize,
+}
+
+/// The lines of a file that aren't empty.
+pub fn lines(source: &SourceFile) -> impl Iterator<Item = Line<'_>> {
+    let mut byte = 0;
+    source.text.split_inclusive('\n').filter_map(move |text| {
+        let start = byte;
+        byte += text.len();
+        let words: Vec<Word<'_>> = text
+            .split_whitespace()
+            .map(|word| Word {
+                text: word,
+                byte: start + (word.as_ptr() as usize - text.as_ptr() as usize),
+            })
+            .collect();
+        let last = words.last()?;
+        let end = last.byte + last.text.len();
+        Some(Line { source, words, end })
+    })
+}
+
+impl<'a> Line<'a> {
+    /// Word `index`, if there are so many.
+    pub fn get(&self, index: usize) -> Option<Word<'a>> {
+        self.words.get(index).copied()
+    }
+
+    /// The text of word `index`; empty if there aren't so many.
+    pub fn text(&self, index: usize) -> &'a str {
+        self.get(index).map_or("", |word| word.text)
+    }
+
+    /// How many words there are.
+    pub fn len(&self) -> usize {
+        self.words.len()
+    }
+
+    /// Where the line begins.
+    pub fn byte(&self) -> usize {
+        self.words.first().map_or(self.end, |word| word.byte)
+    }
+
+    /// Word `index`, which has to be there.
+    pub fn word(&self, index: usize, what: &str) -> Result<Word<'a>, CampaignError> {
+        self.get(index).ok_or_else(|| {
+            let what = format!("the line ends before its {what}");
+            let mend = "delete the line: it was cut short";
+            self.source.error_at(self.end, what, mend)
+        })
+    }
+
+    /// A fault of a word, from byte `inside` of it on.
+    pub fn fault(&self, word: Word<'_>, inside: usize, what: &str, mend: &str) -> CampaignError {
+        let what = format!("{} {what}", quote(word.text));
+        self.source.error_at(word.byte + inside, what, mend)
+    }
+
+    /// The time stamp in `text`, which is a part of `word`.
+    pub fn time_s(&self, word: Word<'_>, text: &str) -> Result<f64, CampaignError> {
+        let time_s = text.parse().ok();
+        time_s
+            .filter(|time_s| (0.0..=LATEST_S).contains(time_s))
+            .ok_or_else(|| self.fault(word, 0, "is no time in seconds", "write it as 12.345678"))
+    }
+}

@@ -1,0 +1,131 @@
+//! Runs that a logger took from a CAN bus: candump's `.log` and Vector's `.asc`, read by a description of the bus
+//! (DBC).
+//!
+//! ```text
+//! log --(candump, asc)--> frames --(listener: signals of the DBC)--> series of each column --> rows of a run
+//! ```
+//!
+//! A row is a sample of the lift current. What comes in another message is brought to its time by a straight line, if
+//! it was sampled no further away than half a row.
+mod asc;
+mod candump;
+mod clock;
+mod description;
+mod frame;
+mod frame_sink;
+mod line;
+mod listener;
+mod settings;
+mod signal;
+mod survey;
+
+use std::path::Path;
+use std::sync::Arc;
+
+pub use settings::BusSettings;
+pub use survey::{Signals, signals};
+
+use crate::CampaignError;
+use crate::series::Series;
+use crate::table::{Cells, LIFT, LOWER, Samples, TIME, Table};
+use frame_sink::FrameSink;
+use hitch_input::input_error::InputError;
+use hitch_input::source_file::SourceFile;
+use listener::Listener;
+
+/// A kind of log.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// candump's.
+    Candump,
+    /// Vector's.
+    Asc,
+}
+
+impl Format {
+    /// By the end of the file's name; `None` if that is no log of a bus.
+    pub fn of(path: &Path) -> Option<Self> {
+        let end = path.extension()?.to_str()?.to_ascii_lowercase();
+        match end.as_str() {
+            "log" => Some(Self::Candump),
+            "asc" => Some(Self::Asc),
+            _ => None,
+        }
+    }
+}
+
+/// Refuses a log of a bus in a format that isn't read.
+///
+/// # Errors
+/// By which program it becomes one that is.
+pub fn check_known(path: &Path) -> Result<(), CampaignError> {
+    let end = path.extension().and_then(|end| end.to_str());
+    if !end.is_some_and(|end| end.eq_ignore_ascii_case("trc")) {
+        return Ok(());
+    }
+    let mend = "convert it to .asc, for example with python-can: python -m can.logconvert FILE.trc FILE.asc";
+    Err(InputError::of_file(
+        path,
+        "is a trace of a CAN bus by PCAN (TRC)",
+        mend,
+    ))
+}
+
+/// Reads a log of a bus.
+///
+/// # Errors
+/// Whatever is wrong first, by file, line and column.
+pub fn read(
+    source: &Arc<SourceFile>,
+    format: Format,
+    settings: &BusSettings,
+) -> Result<Table, CampaignError> {
+    let mut listener = settings.listener(source);
+    read_frames(source, format, &mut listener)?;
+    let rows = required(source, &listener, settings, LIFT)?;
+    required(source, &listener, settings, LOWER)?;
+    let within_s = rows.median_step_s() / 2.0;
+    let samples = |name, values| Samples {
+        name,
+        cell: 0,
+        values,
+    };
+    let mut columns = vec![samples(TIME, rows.times_s.clone())];
+    for (column, series) in listener.series() {
+        columns.push(samples(column.name, series.at(&rows.times_s, within_s)));
+    }
+    let bytes = rows.bytes.clone();
+    Table::new(Arc::clone(source), columns, bytes, Cells::OneALine)
+}
+
+/// Passes the frames of a log to a sink.
+fn read_frames(
+    source: &SourceFile,
+    format: Format,
+    sink: &mut dyn FrameSink,
+) -> Result<(), CampaignError> {
+    match format {
+        Format::Candump => candump::read(source, sink),
+        Format::Asc => asc::read(source, sink),
+    }
+}
+
+/// A current: without it there is no run.
+fn required<'l>(
+    source: &SourceFile,
+    listener: &'l Listener<'_>,
+    settings: &BusSettings,
+    name: &str,
+) -> Result<&'l Series, CampaignError> {
+    let mut of_column = listener.series().filter(|(column, _)| column.name == name);
+    let series = of_column.next().map(|(_, series)| series);
+    series
+        .filter(|series| !series.times_s.is_empty())
+        .ok_or_else(|| {
+            let what = match settings.signal(name) {
+                Some(signal) => format!("holds no {signal}, which is {name}"),
+                None => format!("{name} is taken from no signal"),
+            };
+            source.error(what, settings.how_to_get(name))
+        })
+}

@@ -1,0 +1,96 @@
+//! Which signals of a description logs of a bus hold.
+
+use std::collections::HashMap;
+
+use hitch_input::source_file::SourceFile;
+
+use crate::CampaignError;
+use crate::bus_log::description::Description;
+use crate::bus_log::frame::{Frame, Id};
+use crate::bus_log::frame_sink::FrameSink;
+use crate::bus_log::{Format, read_frames};
+use crate::scale::spelling;
+use crate::survey::LogColumn;
+use crate::table::COLUMNS;
+
+/// The identifiers of a log, and how many frames each has.
+#[derive(Debug, Default)]
+struct IdentifierCounts {
+    frames: HashMap<Id, usize>,
+}
+
+impl FrameSink for IdentifierCounts {
+    fn wants(&mut self, _channel: &str, id: Id) -> bool {
+        *self.frames.entry(id).or_default() += 1;
+        false
+    }
+
+    fn take(&mut self, _frame: &Frame<'_>) -> Result<(), CampaignError> {
+        Ok(())
+    }
+}
+
+/// What a log holds of a description.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Signals {
+    /// Signals of messages that it holds, in a unit that a run's column may have, as `Message.Signal`; without values.
+    pub columns: Vec<LogColumn>,
+    /// Frames of messages that the description doesn't have.
+    pub unknown_frames: usize,
+}
+
+/// Looks for the signals of a description in a log.
+///
+/// # Errors
+/// If the log can't be read, or holds no such signal.
+pub fn signals(
+    source: &SourceFile,
+    format: Format,
+    dbc: &SourceFile,
+) -> Result<Signals, CampaignError> {
+    let description = Description::read(dbc)?;
+    let mut counts = IdentifierCounts::default();
+    read_frames(source, format, &mut counts)?;
+    let mut columns = Vec::new();
+    let mut is_heard = false;
+    let mut unknown = counts.frames.clone();
+    for message in description.messages() {
+        let matching = description.matching(message);
+        let is_it = |id: Id| matching.sender(id).is_some();
+        if !counts.frames.keys().any(|id| is_it(*id)) {
+            continue;
+        }
+        is_heard = true;
+        unknown.retain(|id, _| !is_it(*id));
+        for signal in &message.signals {
+            let fits = |column| description.signal(message, &signal.name, column).is_ok();
+            if COLUMNS.iter().any(fits) {
+                columns.push(LogColumn {
+                    name: format!("{}.{}", message.name, signal.name),
+                    unit: Some(spelling(&signal.unit).to_owned()),
+                    comment: description.comment(message, &signal.name).to_owned(),
+                    values: Vec::new(),
+                    is_clock: false,
+                });
+            }
+        }
+    }
+    if columns.is_empty() {
+        let name = dbc.path.display();
+        let (what, mend) = match is_heard {
+            false => (
+                format!("holds no message of {name}"),
+                "name the DBC of this bus",
+            ),
+            true => (
+                format!("holds no signal of {name} in a unit that a run may have"),
+                "correct the units in the DBC: A, mA, bar, kPa, deg, l/min and the like",
+            ),
+        };
+        return Err(source.error(what, mend));
+    }
+    Ok(Signals {
+        columns,
+        unknown_frames: unknown.values().sum(),
+    })
+}

@@ -1,0 +1,298 @@
+//! `[columns]` in `campaign.toml`: which column of anybody's log is which of a run.
+//!
+//! ```toml
+//! [columns]
+//! time_s = "Zeit:ms"
+//! lift_current_a = "Ventil Heben Strom:mA"      # name as in the log, and unit
+//! lower_current_a = "Ventil Senken Strom"       # unit as the log says
+//! cylinder_pressure_bar = { column = "U_p2", unit = "V", from = [0.5, 4.5], to = [0, 250] }
+//! ```
+
+use hitch_input::input_error::quote;
+use hitch_input::naming::{nearest, offer_names, unknown_name};
+use hitch_input::toml_reader::TomlTable;
+
+use crate::CampaignError;
+use crate::scale::{Scale, is_unit_of};
+use crate::table::{COLUMNS, Column, column};
+
+/// Values of an instrument.
+const ANY: std::ops::RangeInclusive<f64> = -1e12..=1e12;
+
+/// Two values of an instrument, and what they are in the column's unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TwoPoints {
+    /// The instrument's values.
+    pub from: [f64; 2],
+    /// The column's.
+    pub to: [f64; 2],
+}
+
+/// Where a column of a run comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    /// The run's column.
+    pub column: &'static Column,
+    /// Its name in the log.
+    pub name: String,
+    /// Its unit there; `None` if the log says it.
+    pub unit: Option<String>,
+    /// What its values are, if not by the unit.
+    pub points: Option<TwoPoints>,
+    /// Whether a log has to have it.
+    pub is_required: bool,
+}
+
+/// Where each column of a run comes from.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ColumnSettings {
+    /// One for each column that is taken.
+    pub sources: Vec<Source>,
+}
+
+impl Source {
+    /// Reads `NAME`, `NAME:UNIT`, or with two points of a sensor `NAME:UNIT 0.5=0 4.5=250`, for the column called
+    /// `key`.
+    ///
+    /// # Errors
+    /// What is wrong, and how to mend it.
+    pub fn parse(key: &str, text: &str) -> Result<Self, (String, String)> {
+        let names: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
+        let Some(column) = column(key) else {
+            return Err((
+                unknown_name("channel", key, &names),
+                offer_names(key, &names),
+            ));
+        };
+        let (text, points) = points(text);
+        let (name, unit) = match text.rsplit_once(':') {
+            Some((name, unit)) if points.is_some() || is_unit_of(unit, column) => {
+                (name, Some(unit.trim().to_owned()))
+            }
+            _ => (text, None),
+        };
+        let source = Self {
+            column,
+            name: name.trim().to_owned(),
+            unit,
+            points,
+            is_required: true,
+        };
+        source.check()?;
+        Ok(source)
+    }
+
+    fn check(&self) -> Result<(), (String, String)> {
+        let key = self.column.name;
+        if self.name.is_empty() {
+            let what = format!("{key} has no name of a column");
+            return Err((what, format!("write {key} = \"Name in the log:unit\"")));
+        }
+        match (&self.unit, self.points) {
+            (_, Some(points)) if Scale::through(points.from, points.to).is_none() => Err((
+                format!("the two points of {key} are no line"),
+                "give two different values and what they are".to_owned(),
+            )),
+            (Some(unit), None) => match Scale::of(unit, self.column) {
+                Ok(_) => Ok(()),
+                Err(what) => Err((what, how_to_scale(self.column))),
+            },
+            _ => Ok(()),
+        }
+    }
+
+    /// How a value of the log becomes one of the run, if the log says that it is in `logged`.
+    ///
+    /// # Errors
+    /// What is wrong, and how to mend it.
+    pub fn scale(&self, logged: Option<&str>) -> Result<Scale, (String, String)> {
+        if let Some(TwoPoints { from, to }) = self.points {
+            return Ok(Scale::through(from, to).unwrap_or(Scale::ONE));
+        }
+        let key = self.column.name;
+        let Some(unit) = self.unit.as_deref().or(logged) else {
+            let what = format!("{} of {key} has no unit", quote(&self.name));
+            let mend = format!(
+                "write {key} = \"{}:{}\" under [columns], with the unit that it has",
+                self.name, self.column.unit
+            );
+            return Err((what, mend));
+        };
+        Scale::of(unit, self.column).map_err(|what| (what, how_to_scale(self.column)))
+    }
+}
+
+fn how_to_scale(column: &Column) -> String {
+    format!(
+        "give a unit like {}, or for a sensor's voltage two points, as in \
+         {{ column = \"U1\", unit = \"V\", from = [0.5, 4.5], to = [0, 250] }}",
+        column.unit
+    )
+}
+
+/// Names those of a log's columns that somebody may have meant.
+pub fn offer_columns(given: &str, known: &[&str]) -> String {
+    /// Longer lists are of no help in a line.
+    const MOST: usize = 12;
+    if let Some(name) = nearest(given, known) {
+        return format!("did you mean {name}?");
+    }
+    let more = if known.len() > MOST { ", ..." } else { "" };
+    let named: Vec<&str> = known.iter().take(MOST).copied().collect();
+    format!("it has {}{more}", named.join(", "))
+}
+
+/// Splits two points off the end of a text.
+fn points(text: &str) -> (&str, Option<TwoPoints>) {
+    let pair = |word: &str| {
+        let (from, to) = word.split_once('=')?;
+        Some((number(from)?, number(to)?))
+    };
+    let split = || {
+        let (rest, second) = text.trim_end().rsplit_once(' ')?;
+        let (rest, first) = rest.trim_end().rsplit_once(' ')?;
+        let (first, second) = (pair(first)?, pair(second)?);
+        Some((
+            rest.trim_end(),
+            TwoPoints {
+                from: [first.0, second.0],
+                to: [first.1, second.1],
+            },
+        ))
+    };
+    match split() {
+        Some((rest, points)) => (rest, Some(points)),
+        None => (text, None),
+    }
+}
+
+fn number(text: &str) -> Option<f64> {
+    let number: f64 = text.trim().parse().ok()?;
+    ANY.contains(&number).then_some(number)
+}
+
+impl ColumnSettings {
+    /// Every column by its own name; the log says the unit, and may lack what no run needs.
+    pub fn by_own_names() -> Self {
+        let sources = COLUMNS.iter().map(|column| Source {
+            column,
+            name: column.name.to_owned(),
+            unit: Some(column.unit.to_owned()),
+            points: None,
+            is_required: false,
+        });
+        Self {
+            sources: sources.collect(),
+        }
+    }
+
+    /// Reads the table `[columns]` of a campaign, or of one of its runs.
+    ///
+    /// # Errors
+    /// Whatever is wrong first, by file, line and column.
+    pub fn read(table: &TomlTable<'_>) -> Result<Option<Self>, CampaignError> {
+        let Some(columns) = table.table("columns")? else {
+            return Ok(None);
+        };
+        let known: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
+        columns.only(&known)?;
+        let mut settings = Self::default();
+        for column in &COLUMNS {
+            let key = column.name;
+            if !columns.has(key) {
+                continue;
+            }
+            let source = if columns.is_table(key) {
+                source_of_table(&columns, column)?
+            } else {
+                let text = columns.required_text(key)?;
+                Source::parse(key, text)
+                    .map_err(|(what, mend)| columns.error_at(key, what, mend))?
+            };
+            settings.sources.push(source);
+        }
+        Ok(Some(settings))
+    }
+}
+
+/// `{ column = "U1", unit = "V", from = [0.5, 4.5], to = [0, 250] }`
+fn source_of_table(
+    columns: &TomlTable<'_>,
+    column: &'static Column,
+) -> Result<Source, CampaignError> {
+    let key = column.name;
+    let Some(table) = columns.table(key)? else {
+        return Err(columns.missing(key));
+    };
+    table.only(&["column", "unit", "from", "to"])?;
+    let points = match (two(&table, "from")?, two(&table, "to")?) {
+        (Some(from), Some(to)) => Some(TwoPoints { from, to }),
+        (None, None) => None,
+        (Some(_), None) => return Err(table.missing("to")),
+        (None, Some(_)) => return Err(table.missing("from")),
+    };
+    let source = Source {
+        column,
+        name: table.required_text("column")?.to_owned(),
+        unit: table.text("unit")?.map(str::to_owned),
+        points,
+        is_required: true,
+    };
+    source
+        .check()
+        .map_err(|(what, mend)| columns.error_at(key, what, mend))?;
+    Ok(source)
+}
+
+fn two(table: &TomlTable<'_>, key: &str) -> Result<Option<[f64; 2]>, CampaignError> {
+    let Some(numbers) = table.numbers(key, ANY)? else {
+        return Ok(None);
+    };
+    <[f64; 2]>::try_from(numbers).map(Some).map_err(|numbers| {
+        let what = format!("{key} has {} numbers", numbers.len());
+        table.error_at(key, what, "a line goes through two points")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scale::nominal_linkage;
+
+    #[test]
+    fn a_source_is_a_name_with_or_without_a_unit() {
+        let source = Source::parse("lift_current_a", "Ventil Heben Strom:mA").unwrap();
+        assert_eq!(
+            (source.name.as_str(), source.unit.as_deref()),
+            ("Ventil Heben Strom", Some("mA"))
+        );
+        let source = Source::parse("lift_current_a", "Bus: Heben").unwrap();
+        assert_eq!((source.name.as_str(), source.unit), ("Bus: Heben", None));
+        let source = Source::parse("cylinder_pressure_bar", "U1:V 0.5=0 4.5=250").unwrap();
+        assert_eq!(source.name, "U1");
+        let scale = source.scale(None).unwrap();
+        assert!((scale.apply(2.5, nominal_linkage()) - 125.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_no_source_is_refused() {
+        for (key, text, expected) in [
+            ("lift_current", "I", "did you mean lift_current_a"),
+            ("lift_current_a", ":mA", "has no name"),
+            ("cylinder_pressure_bar", "U1:V", "two points"),
+            ("cylinder_pressure_bar", "U1:V 1=2 1=3", "no line"),
+        ] {
+            let (what, mend) = Source::parse(key, text).unwrap_err();
+            assert!(
+                format!("{what}; {mend}").contains(expected),
+                "{what}; {mend}"
+            );
+        }
+        assert!(
+            Source::parse("lift_current_a", "I")
+                .unwrap()
+                .scale(None)
+                .is_err()
+        );
+    }
+}

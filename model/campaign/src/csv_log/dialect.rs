@@ -1,0 +1,299 @@
+//! How a table of numbers is written as text: which mark stands between cells, where the header is, which mark is that
+//! of decimals.
+
+use csv::StringRecord;
+
+use crate::csv_log::clock::is_clock;
+use crate::scale::is_unit;
+
+/// What may stand between cells; the first wins where several would do, so the comma, which may be decimal, is last.
+pub const MARKS: [u8; 4] = [b'\t', b';', b'|', b','];
+/// A header stands among so many rows.
+const HEADER_WITHIN: usize = 200;
+/// So many rows show how decimals are written.
+const LOOKED_AT: usize = 1_000;
+
+/// The cell of a header.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct HeaderCell {
+    /// All of it.
+    pub text: String,
+    /// Without a unit in brackets.
+    pub name: String,
+    /// The unit, from brackets or from a row of units below.
+    pub unit: Option<String>,
+}
+
+/// The header of a table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Header {
+    /// What stands between cells.
+    pub mark: u8,
+    /// Its first byte in the text.
+    pub byte: usize,
+    /// Its cells.
+    pub cells: Vec<HeaderCell>,
+    /// The first byte of the samples.
+    pub data_byte: usize,
+}
+
+/// The rows of a text from `byte` on, each with its first byte in the text.
+pub fn rows(text: &str, byte: usize, mark: u8) -> impl Iterator<Item = (usize, StringRecord)> {
+    let rest = text.get(byte..).unwrap_or_default();
+    let reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .delimiter(mark)
+        .trim(csv::Trim::All)
+        .from_reader(rest.as_bytes());
+    // The text is UTF-8 and lies in memory: nothing can fail.
+    reader.into_records().map_while(Result::ok).map(move |row| {
+        let start = row
+            .position()
+            .map_or(0, |position| position.byte() as usize);
+        (row_start(text, byte + start), row)
+    })
+}
+
+/// The reader counts the line breaks before a row as part of it; an editor does not.
+fn row_start(text: &str, byte: usize) -> usize {
+    let rest = &text.as_bytes()[byte.min(text.len())..];
+    let breaks = rest.iter().take_while(|b| matches!(b, b'\n' | b'\r'));
+    byte + breaks.count()
+}
+
+impl HeaderCell {
+    fn new(text: &str) -> Self {
+        let text = text.trim();
+        let (name, unit) = match in_brackets(text) {
+            Some((name, unit)) => (name, Some(unit.to_owned())),
+            None => (text, None),
+        };
+        Self {
+            text: text.to_owned(),
+            name: name.to_owned(),
+            unit,
+        }
+    }
+
+    /// Whether it is the column of that name.
+    pub fn is(&self, name: &str) -> bool {
+        self.text == name || self.name == name
+    }
+}
+
+/// Splits `Name [unit]`, `Name (unit)`, `Name {unit}` and `Name / unit`.
+fn in_brackets(text: &str) -> Option<(&str, &str)> {
+    for (open, close) in [('[', ']'), ('(', ')'), ('{', '}')] {
+        if let Some((name, unit)) = text
+            .strip_suffix(close)
+            .and_then(|text| text.rsplit_once(open))
+        {
+            // The name of a quantity may end in brackets that hold no unit.
+            let is_bracket = open == '[' || is_unit(unit);
+            return is_bracket.then(|| (name.trim_end(), unit.trim()));
+        }
+    }
+    let (name, unit) = text.rsplit_once(" / ")?;
+    is_unit(unit).then(|| (name.trim_end(), unit.trim()))
+}
+
+impl Header {
+    /// The row that holds most of `names`; `None` if none holds any.
+    pub fn with_names(text: &str, names: &[&str]) -> Option<Self> {
+        let found = |row: &StringRecord| {
+            let cells: Vec<HeaderCell> = row.iter().map(HeaderCell::new).collect();
+            let is_there = |name: &&&str| cells.iter().any(|cell| cell.is(name));
+            names.iter().filter(is_there).count()
+        };
+        let mut best: Option<(usize, u8, usize, StringRecord)> = None;
+        for mark in MARKS {
+            for (byte, row) in rows(text, 0, mark).take(HEADER_WITHIN) {
+                let count = found(&row);
+                if count > best.as_ref().map_or(0, |best| best.0) {
+                    best = Some((count, mark, byte, row));
+                }
+            }
+        }
+        best.map(|(_, mark, byte, row)| Self::at(text, mark, byte, &row))
+    }
+
+    /// The row in front of the first samples, of a table whose names are not known; `None` if this is no table.
+    pub fn guessed(text: &str) -> Option<Self> {
+        MARKS.into_iter().find_map(|mark| {
+            let rows: Vec<(usize, StringRecord)> =
+                rows(text, 0, mark).take(HEADER_WITHIN).collect();
+            let width = usual_width(&rows)?;
+            let is_sample = |row: &StringRecord| {
+                let filled: Vec<&str> = row.iter().filter(|cell| !cell.is_empty()).collect();
+                let values = filled.iter().filter(|cell| is_value(cell)).count();
+                row.len() >= width && filled.len() > 1 && 2 * values > filled.len()
+            };
+            let first = rows.iter().position(|(_, row)| is_sample(row))?;
+            // A row of units or of other remarks may stand between.
+            let is_header =
+                |row: &StringRecord| row.len() >= 2 && !is_units(row) && row.len() + 1 >= width;
+            let (byte, header) = rows[..first].iter().rev().find(|(_, row)| is_header(row))?;
+            Some(Self::at(text, mark, *byte, header))
+        })
+    }
+
+    fn at(text: &str, mark: u8, byte: usize, row: &StringRecord) -> Self {
+        let mut cells: Vec<HeaderCell> = row.iter().map(HeaderCell::new).collect();
+        let mut below = rows(text, byte, mark).skip(1).take(4).peekable();
+        while let Some((_, row)) = below.next_if(|(_, row)| !holds_samples(row)) {
+            for (cell, unit) in cells.iter_mut().zip(row.iter()) {
+                let unit = unit.trim_matches(['[', ']', '(', ')', '{', '}']).trim();
+                if cell.unit.is_none() && is_unit(unit) {
+                    cell.unit = Some(unit.to_owned());
+                }
+            }
+        }
+        let data_byte = below.next().map_or(text.len(), |(byte, _)| byte);
+        Self {
+            mark,
+            byte,
+            cells,
+            data_byte,
+        }
+    }
+
+    /// The names of its columns.
+    pub fn names(&self) -> Vec<&str> {
+        let cells = self.cells.iter().map(|cell| cell.name.as_str());
+        cells.filter(|name| !name.is_empty()).collect()
+    }
+}
+
+/// Whether a row below a header holds samples: a number or a time somewhere in it.
+fn holds_samples(row: &StringRecord) -> bool {
+    row.iter().any(is_value)
+}
+
+fn is_value(cell: &str) -> bool {
+    Decimals::ANY.number(cell).is_some() || is_clock(cell)
+}
+
+/// Whether a row holds units alone.
+fn is_units(row: &StringRecord) -> bool {
+    let mut filled = row.iter().filter(|cell| !cell.is_empty()).peekable();
+    let bare = |cell: &str| is_unit(cell.trim_matches(['[', ']', '(', ')', '{', '}']));
+    filled.peek().is_some() && filled.all(bare)
+}
+
+/// How many cells most rows have, if that is two or more and most rows agree.
+fn usual_width(rows: &[(usize, StringRecord)]) -> Option<usize> {
+    let count = |width: usize| rows.iter().filter(|(_, row)| row.len() == width).count();
+    let widths = rows.iter().map(|(_, row)| row.len());
+    let usual = widths.max_by_key(|width| count(*width))?;
+    (usual >= 2 && 2 * count(usual) > rows.len()).then_some(usual)
+}
+
+/// Which mark stands in front of decimals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Decimals {
+    point: bool,
+    comma: bool,
+}
+
+impl Decimals {
+    /// Either mark.
+    pub const ANY: Self = Self {
+        point: true,
+        comma: true,
+    };
+
+    /// As the cells of the first rows show it.
+    pub fn of<'r>(cells: impl Iterator<Item = &'r str>) -> Self {
+        let (mut points, mut commas) = (0, 0);
+        for cell in cells.filter(|cell| Self::ANY.number(cell).is_some()) {
+            points += usize::from(cell.contains('.'));
+            commas += usize::from(cell.contains(','));
+        }
+        // A few cells with the other mark are faults, which are better shown than read.
+        Self {
+            point: points >= commas,
+            comma: commas > points || points == 0,
+        }
+    }
+
+    /// As the first rows of a table show it in some of its columns.
+    pub fn in_columns(text: &str, header: &Header, cells: &[usize]) -> Self {
+        let rows: Vec<StringRecord> = rows(text, header.data_byte, header.mark)
+            .take(LOOKED_AT)
+            .map(|(_, row)| row)
+            .collect();
+        Self::of(
+            rows.iter()
+                .flat_map(|row| cells.iter().filter_map(|&cell| row.get(cell))),
+        )
+    }
+
+    /// The number in a cell; it may be infinite, but holds a digit. `None` if there is none.
+    pub fn number(self, cell: &str) -> Option<f64> {
+        if !cell.bytes().any(|byte| byte.is_ascii_digit()) {
+            return None;
+        }
+        match (cell.contains(','), cell.contains('.')) {
+            (true, false) if self.comma => cell.replacen(',', ".", 1).parse().ok(),
+            (false, true) if self.point => cell.parse().ok(),
+            (false, false) => cell.parse().ok(),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_header_is_found_behind_remarks_and_before_units() {
+        let text =
+            "Messung 5;\r\nBench 2\r\n\r\nZeit;Strom;Druck p2 [bar]\r\ns;mA;\r\n0,00;1,5;20\r\n";
+        for header in [
+            Header::with_names(text, &["Strom", "Druck p2"]).unwrap(),
+            Header::guessed(text).unwrap(),
+        ] {
+            assert_eq!(header.mark, b';');
+            assert_eq!(header.names(), ["Zeit", "Strom", "Druck p2"]);
+            let units: Vec<&str> = header
+                .cells
+                .iter()
+                .flat_map(|cell| cell.unit.as_deref())
+                .collect();
+            assert_eq!(units, ["s", "mA", "bar"]);
+            assert!(text[header.data_byte..].starts_with("0,00"));
+        }
+        assert_eq!(Header::guessed("nothing\nhere\n"), None);
+        assert_eq!(Header::with_names(text, &["x"]), None);
+    }
+
+    #[test]
+    fn decimals_are_told_from_each_other() {
+        let of = |cells: &[&str]| Decimals::of(cells.iter().copied());
+        assert_eq!(of(&["1,5", "2"]).number("2,25"), Some(2.25));
+        assert_eq!(of(&["1.5", "2"]).number("2.25"), Some(2.25));
+        assert_eq!(
+            of(&["1.5", "2"]).number("1,234"),
+            None,
+            "thousands are no decimals"
+        );
+        assert_eq!(of(&["1,5"]).number("1.234"), None);
+        assert_eq!(Decimals::ANY.number("1.234,5"), None);
+        assert_eq!(Decimals::ANY.number("inf"), None);
+    }
+
+    #[test]
+    fn units_stand_in_brackets() {
+        for (text, name, unit) in [
+            ("Strom [mA]", "Strom", Some("mA")),
+            ("Druck (bar)", "Druck", Some("bar")),
+            ("Winkel / °", "Winkel", Some("°")),
+            ("Druck (Zylinder)", "Druck (Zylinder)", None),
+        ] {
+            let cell = HeaderCell::new(text);
+            assert_eq!((cell.name.as_str(), cell.unit.as_deref()), (name, unit));
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Logs that are tables of text: this project's own, whose header carries its columns' names, and by `[columns]` anybody's.
+mod clock;
+mod dialect;
+pub mod flow_curve;
+mod mapped;
+mod native;
+
+use std::sync::Arc;
+
+use dialect::{Decimals, Header, HeaderCell};
+use hitch_input::source_file::SourceFile;
+use hitch_plant::Linkage;
+
+use crate::CampaignError;
+use crate::columns::{ColumnSettings, offer_columns};
+use crate::scale::spelling;
+use crate::survey::{LogColumn, Survey};
+use crate::table::Table;
+
+/// Reads a table of a hitch with this linkage; `settings` name its columns unless it has this project's own header.
+///
+/// # Errors
+/// Whatever is wrong first, by line and column.
+pub fn read(
+    source: &Arc<SourceFile>,
+    settings: Option<&ColumnSettings>,
+    linkage: &Linkage,
+) -> Result<Table, CampaignError> {
+    let Some(settings) = settings else {
+        return native::read(source);
+    };
+    let names: Vec<&str> = settings
+        .sources
+        .iter()
+        .map(|wanted| wanted.name.as_str())
+        .collect();
+    match Header::with_names(&source.text, &names) {
+        Some(header) => mapped::read(source, &header, settings, linkage),
+        None if native::has_own_header(source) => native::read(source),
+        None => Err(no_header(source, &names)),
+    }
+}
+
+fn no_header(source: &SourceFile, wanted: &[&str]) -> CampaignError {
+    let what = "no row holds any of the names under [columns]";
+    match Header::guessed(&source.text) {
+        Some(header) => {
+            let first = wanted.first().copied().unwrap_or_default();
+            source.error_at(header.byte, what, offer_columns(first, &header.names()))
+        }
+        None => source.error(what, "a log has a header and a row a sample"),
+    }
+}
+
+/// What a table holds; the numbers of so many rows at most show it.
+///
+/// # Errors
+/// If it is no table.
+pub fn survey(source: &SourceFile) -> Result<Survey, CampaignError> {
+    const MOST_ROWS: usize = 200_000;
+    if native::has_own_header(source) {
+        return Ok(Survey::Own);
+    }
+    let Some(header) = Header::guessed(&source.text) else {
+        let what = "is no table: no row of names stands in front of rows of numbers";
+        let mend = "export it with a header, and commas, semicolons or tabs between the columns";
+        return Err(source.error(what, mend));
+    };
+    let all: Vec<usize> = (0..header.cells.len()).collect();
+    let decimals = Decimals::in_columns(&source.text, &header, &all);
+    let mut columns: Vec<LogColumn> = header.cells.iter().map(empty_column).collect();
+    for (_, row) in dialect::rows(&source.text, header.data_byte, header.mark).take(MOST_ROWS) {
+        for (column, cell) in columns.iter_mut().zip(row.iter()) {
+            let number = decimals.number(cell).filter(|number| number.is_finite());
+            column.is_clock |= column.values.is_empty() && clock::is_clock(cell);
+            column.values.push(number.unwrap_or(f64::NAN));
+        }
+    }
+    columns.retain(|column| !column.name.is_empty());
+    Ok(Survey::Table(columns))
+}
+
+fn empty_column(cell: &HeaderCell) -> LogColumn {
+    LogColumn {
+        name: cell.name.clone(),
+        unit: cell.unit.as_deref().map(|unit| spelling(unit).to_owned()),
+        comment: String::new(),
+        values: Vec::new(),
+        is_clock: false,
+    }
+}

@@ -1,0 +1,25 @@
+//! Which files a campaign's manifest names.
+
+use std::path::{Path, PathBuf};
+
+use hitch_input::source_file::SourceFile;
+use hitch_input::toml_reader::TomlTable;
+
+use crate::CampaignError;
+
+/// The logs and the DBC that the manifest in a folder names, wherever they lie.
+///
+/// # Errors
+/// If it can't be read so far.
+pub fn named(dir: &Path) -> Result<Vec<PathBuf>, CampaignError> {
+    let source = SourceFile::read(&dir.join("campaign.toml"))?;
+    let top = TomlTable::parse(&source)?;
+    let mut files = Vec::new();
+    for run in top.tables("run")? {
+        files.extend(run.text("file")?.map(|file| dir.join(file)));
+    }
+    if let Some(can) = top.table("can")? {
+        files.extend(can.text("dbc")?.map(|file| dir.join(file)));
+    }
+    Ok(files)
+}

@@ -1,0 +1,179 @@
+//! Measurements: a campaign is a folder with `campaign.toml` and one log a run.
+//!
+//! ```text
+//! campaign.toml        format, name, noise of the instruments, and a [[run]] block a log
+//! lift_1.5A_050kg.csv  time_s, lift_current_a, lower_current_a and what was measured; or
+//! monday.log, .asc      what candump or a tool of Vector's has heard on the ECU's bus; or
+//! bench.csv, .mf4       what anybody's logger wrote, by `[columns]`
+//! ```
+//!
+//! Reading checks everything that can be checked without a model, so that nothing behind it has to: every number is
+//! finite and plausible, time rises strictly, the currents have no gaps, and every run has something to compare with.
+#![forbid(unsafe_code)]
+
+mod bus_log;
+mod columns;
+mod csv_log;
+mod cut;
+mod dropout;
+mod files;
+mod manifest;
+mod mdf_log;
+mod run_log;
+mod scale;
+mod series;
+pub mod survey;
+mod table;
+
+use std::path::{Path, PathBuf};
+
+pub use csv_log::flow_curve;
+
+use hitch_input::input_error::InputError;
+use hitch_input::source_file::SourceFile;
+use hitch_plant::{Channel, Linkage};
+
+/// What is wrong with a campaign, by file, line and column.
+pub type CampaignError = InputError;
+
+/// A set of runs measured on one rig.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Campaign {
+    /// Short name; the folder's name if the campaign does not say.
+    pub name: String,
+    /// One sentence; empty if the campaign does not say.
+    pub description: String,
+    /// Sample rate, Hz; taken from the first run's time column if the campaign does not say.
+    pub sample_rate_hz: f64,
+    /// Whether one clock stamps the currents and all channels: no channel is late because of the logger.
+    pub synchronous: bool,
+    /// Noise of the instruments.
+    pub noise: Noise,
+    /// The runs, in the order of `campaign.toml`; at least one.
+    pub runs: Vec<Run>,
+}
+
+/// Noise of each instrument as its data sheet declares it: one sigma, in the instrument's unit; `None` where it is not
+/// declared and has to be estimated.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Noise {
+    /// Logged current of the lift solenoid, A.
+    pub lift_current_a: Option<f64>,
+    /// Logged current of the lowering solenoid, A.
+    pub lower_current_a: Option<f64>,
+    /// Measured channels, by [`Channel::index`].
+    pub channels: [Option<f64>; 4],
+    /// Oil temperature, degrees Celsius.
+    pub oil_temperature_c: Option<f64>,
+}
+
+/// What the valve block was bolted to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bench {
+    /// Cylinder, linkage and a load at the hitch.
+    Hitch {
+        /// Load at the hitch as it was weighed, without the links' own weight, kg.
+        load_kg: f64,
+    },
+    /// No cylinder: the cylinder port is held at a pressure and the flow through it is measured.
+    Flow {
+        /// Pressure at the port, bar.
+        port_pressure_bar: f64,
+    },
+}
+
+/// One log: what drove the valves, and what was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// File name within the campaign's folder, or of a log elsewhere, with its times if the run is a part of it.
+    pub file: String,
+    /// What the valve block was bolted to.
+    pub bench: Bench,
+    /// Oil temperature of the run, degrees Celsius; 40 if the campaign does not say.
+    pub oil_temperature_c: f64,
+    /// Time stamps as logged, s; strictly rising, at least [`Run::FEWEST_SAMPLES`].
+    pub time_s: Vec<f64>,
+    /// Current of the lift solenoid, A; short dropouts are bridged, so no value is missing.
+    pub lift_current_a: Vec<f64>,
+    /// Current of the lowering solenoid, A; short dropouts are bridged, so no value is missing.
+    pub lower_current_a: Vec<f64>,
+    /// Measured channels by [`Channel::index`], in the channel's unit; `None` if the channel was not measured (or lost
+    /// throughout), NaN at a dropout. A flow bench has no rocker: its angle is always `None`.
+    pub channels: [Option<Vec<f64>>; 4],
+    /// Logged oil temperature, degrees Celsius; NaN at a dropout.
+    pub oil_temperature_log_c: Option<Vec<f64>>,
+}
+
+impl Campaign {
+    /// Reads a campaign's folder. If an angle was logged as travel of the cylinder, the linkage is the nominal one.
+    ///
+    /// # Errors
+    /// Whatever is wrong first, by file, line and column: see the module's description.
+    pub fn load(dir: &Path) -> Result<Self, CampaignError> {
+        manifest::load(dir, scale::nominal_linkage())
+    }
+
+    /// Reads the folder of a campaign with a hitch of this linkage.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn load_with(dir: &Path, linkage: &Linkage) -> Result<Self, CampaignError> {
+        manifest::load(dir, linkage)
+    }
+
+    /// The logs and the DBC that the manifest in a folder names, wherever they lie.
+    ///
+    /// # Errors
+    /// If the manifest can't be read so far.
+    pub fn files(dir: &Path) -> Result<Vec<PathBuf>, CampaignError> {
+        files::named(dir)
+    }
+
+    /// Reads the campaign, with a hitch of this linkage, that a folder would be if this were its manifest.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn of_manifest(dir: &Path, text: &str, linkage: &Linkage) -> Result<Self, CampaignError> {
+        let source = SourceFile {
+            path: dir.join("campaign.toml"),
+            text: text.to_owned(),
+        };
+        manifest::read(dir, &source, linkage)
+    }
+}
+
+impl Noise {
+    /// Declared sigma of a channel, in the channel's unit.
+    pub fn of(&self, channel: Channel) -> Option<f64> {
+        self.channels[channel.index()]
+    }
+}
+
+impl Run {
+    /// Fewest samples that make a run.
+    pub const FEWEST_SAMPLES: usize = 10;
+
+    /// Reads a log by itself, without a campaign around it; it may hold currents only. If it is that of a bus, it has
+    /// to be the bus of the project's own ECU.
+    ///
+    /// # Errors
+    /// Whatever is wrong first, by file, line and column.
+    pub fn read(path: &Path, bench: Bench, oil_temperature_c: f64) -> Result<Self, CampaignError> {
+        let file = path.file_name().unwrap_or_default().to_string_lossy();
+        let table = run_log::table(path, run_log::Settings::default())?;
+        run_log::run(&table, &file, cut::Cut::NONE, bench, oil_temperature_c)
+    }
+
+    /// Samples of a channel, in its unit, NaN at a dropout; `None` if it was not measured.
+    pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
+        self.channels[channel.index()].as_deref()
+    }
+
+    /// Time from the first to the last sample, s.
+    pub fn duration_s(&self) -> f64 {
+        self.time_s
+            .last()
+            .zip(self.time_s.first())
+            .map_or(0.0, |(last, first)| last - first)
+    }
+}

@@ -1,0 +1,296 @@
+//! `campaign.toml`: which runs there are, and what is known of them.
+
+use std::path::{Path, PathBuf};
+
+use hitch_input::input_error::{InputError, quote};
+use hitch_input::source_file::SourceFile;
+use hitch_input::toml_reader::TomlTable;
+use hitch_plant::{Channel, Linkage};
+
+use crate::bus_log::BusSettings;
+use crate::columns::ColumnSettings;
+use crate::cut::Cut;
+use crate::run_log::Settings;
+use crate::table::Table;
+use crate::{Bench, Campaign, CampaignError, Noise, Run, run_log};
+
+/// The only format there is.
+const FORMAT: f64 = 1.0;
+/// Oil temperature of a run that does not say, degrees Celsius: where the valve's tables hold.
+const DEFAULT_OIL_TEMPERATURE_C: f64 = 40.0;
+/// Loads that the cylinder can hold below the relief pressure, with a margin, kg.
+const LOAD_KG: std::ops::RangeInclusive<f64> = 0.0..=2000.0;
+/// Pressures of hydraulics of this class, bar.
+const PORT_PRESSURE_BAR: std::ops::RangeInclusive<f64> = 0.0..=400.0;
+/// Temperatures at which the oil is a liquid and the seals live, degrees Celsius.
+const OIL_TEMPERATURE_C: std::ops::RangeInclusive<f64> = -40.0..=150.0;
+/// Slower than the hitch moves, to faster than any logger of this class, Hz.
+const SAMPLE_RATE_HZ: std::ops::RangeInclusive<f64> = 0.5..=100_000.0;
+/// One sigma, in any instrument's unit. Zero is not a noise: leave the key out to have it estimated.
+const SIGMA: std::ops::RangeInclusive<f64> = 1e-6..=100.0;
+
+/// Reads the folder of a campaign with a hitch of this linkage.
+pub fn load(dir: &Path, linkage: &Linkage) -> Result<Campaign, CampaignError> {
+    read(dir, &SourceFile::read(&manifest_path(dir)?)?, linkage)
+}
+
+/// Reads the campaign of a manifest that is or will be in `dir`.
+pub fn read(dir: &Path, source: &SourceFile, linkage: &Linkage) -> Result<Campaign, CampaignError> {
+    let top = TomlTable::parse(source)?;
+    check_format(&top)?;
+    top.only(&[
+        "format",
+        "name",
+        "description",
+        "sample_rate_hz",
+        "clocks",
+        "noise",
+        "can",
+        "columns",
+        "run",
+    ])?;
+    let noise = noise(&top)?;
+    let synchronous = synchronous(&top)?;
+    let declared_rate_hz = top.number("sample_rate_hz", SAMPLE_RATE_HZ)?;
+    let name = top
+        .text("name")?
+        .map_or_else(|| folder_name(dir), str::to_owned);
+    let description = top.text("description")?.unwrap_or_default().to_owned();
+    let bus = BusSettings::read(dir, &top)?;
+    let columns = ColumnSettings::read(&top)?;
+    let settings = Settings {
+        bus: Some(&bus),
+        columns: columns.as_ref(),
+        linkage,
+    };
+    let runs = runs(dir, &top, settings)?;
+    let sample_rate_hz = declared_rate_hz.unwrap_or_else(|| logged_rate_hz(&runs));
+    Ok(Campaign {
+        name,
+        description,
+        sample_rate_hz,
+        synchronous,
+        noise,
+        runs,
+    })
+}
+
+/// Whether the campaign says that one clock stamps all channels.
+fn synchronous(top: &TomlTable) -> Result<bool, CampaignError> {
+    match top.text("clocks")? {
+        None | Some("independent") => Ok(false),
+        Some("synchronous") => Ok(true),
+        Some(other) => {
+            let what = format!("clocks {} are not known", quote(other));
+            let mend = "they are \"synchronous\" or \"independent\"";
+            Err(top.error_at("clocks", what, mend))
+        }
+    }
+}
+
+fn manifest_path(dir: &Path) -> Result<PathBuf, CampaignError> {
+    let mend = "a campaign is a folder with campaign.toml and a log per run";
+    if !dir.exists() {
+        return Err(InputError::of_file(dir, "no such folder", mend));
+    }
+    if !dir.is_dir() {
+        return Err(InputError::of_file(dir, "is not a folder", mend));
+    }
+    let path = dir.join("campaign.toml");
+    if !path.exists() {
+        return Err(InputError::of_file(dir, "holds no campaign.toml", mend));
+    }
+    Ok(path)
+}
+
+fn folder_name(dir: &Path) -> String {
+    let full = dir.canonicalize().unwrap_or_else(|_| dir.to_path_buf());
+    full.file_name().map_or_else(
+        || "campaign".to_owned(),
+        |name| name.to_string_lossy().into_owned(),
+    )
+}
+
+fn check_format(top: &TomlTable<'_>) -> Result<(), CampaignError> {
+    let format = top.required_number("format", f64::MIN..=f64::MAX)?;
+    if format == FORMAT {
+        return Ok(());
+    }
+    let what = format!("format {format} is not known");
+    Err(top.error_at("format", what, "this program reads format = 1"))
+}
+
+fn noise(top: &TomlTable<'_>) -> Result<Noise, CampaignError> {
+    let Some(table) = top.table("noise")? else {
+        return Ok(Noise::default());
+    };
+    let channels = Channel::ALL.map(Channel::key);
+    let others = ["lift_current_a", "lower_current_a", "oil_temperature_c"];
+    table.only(&[&others[..], &channels[..]].concat())?;
+    let mut noise = Noise {
+        lift_current_a: table.number(others[0], SIGMA)?,
+        lower_current_a: table.number(others[1], SIGMA)?,
+        oil_temperature_c: table.number(others[2], SIGMA)?,
+        channels: [None; 4],
+    };
+    for channel in Channel::ALL {
+        noise.channels[channel.index()] = table.number(channel.key(), SIGMA)?;
+    }
+    Ok(noise)
+}
+
+fn runs(
+    dir: &Path,
+    top: &TomlTable<'_>,
+    settings: Settings<'_>,
+) -> Result<Vec<Run>, CampaignError> {
+    let tables = top.tables("run")?;
+    if tables.is_empty() {
+        return Err(top.error_at(
+            "run",
+            "there is no run",
+            "add a [[run]] block for every log",
+        ));
+    }
+    let mut runs: Vec<Run> = Vec::with_capacity(tables.len());
+    let mut parts: Vec<(&str, Cut)> = Vec::with_capacity(tables.len());
+    let files = tables.iter().map(|table| file_name(table, "file"));
+    let files = files.collect::<Result<Vec<&str>, CampaignError>>()?;
+    // A log of several runs is read once if they stand one after the other.
+    let mut last: Option<(PathBuf, Option<ColumnSettings>, Table)> = None;
+    for (table, &file) in tables.iter().zip(&files) {
+        let cut = Cut::read(table)?;
+        let mut others = parts.iter();
+        if others.any(|(other, part)| *other == file && part.overlaps(cut)) {
+            let what = format!("{} is listed twice", quote(file));
+            let mend = "delete one of the two [[run]] blocks, or give them times (from_s, to_s) that don't overlap";
+            return Err(table.error_at("file", what, mend));
+        }
+        parts.push((file, cut));
+        let (bench, oil_temperature_c) = conditions(table)?;
+        let path = file_in(dir, table, "file")?;
+        let own = ColumnSettings::read(table)?;
+        let log = match last.take() {
+            Some((log, columns, read)) if log == path && columns == own => read,
+            _ => {
+                let columns = own.as_ref().or(settings.columns);
+                run_log::table(
+                    &path,
+                    Settings {
+                        columns,
+                        ..settings
+                    },
+                )?
+            }
+        };
+        let run = run_log::run(&log, called(file, &files), cut, bench, oil_temperature_c)?;
+        last = Some((path.clone(), own, log));
+        run_log::check_usable(&path, &run)?;
+        runs.push(run);
+    }
+    Ok(runs)
+}
+
+/// What people call a log of these: the name of a file that lies elsewhere, unless another one has the same name.
+fn called<'f>(file: &'f str, files: &[&str]) -> &'f str {
+    let name_of = |file: &'f str| Path::new(file).file_name()?.to_str();
+    let name = name_of(file).filter(|_| Path::new(file).is_absolute());
+    let is_shared = |name: &str| {
+        let others = files.iter().filter(|other| **other != file);
+        others.map(Path::new).any(|other| other.ends_with(name))
+    };
+    name.filter(|name| !is_shared(name)).unwrap_or(file)
+}
+
+/// The path of the file that `key` names.
+///
+/// # Errors
+/// If there is no such file.
+pub fn file_in(dir: &Path, table: &TomlTable<'_>, key: &str) -> Result<PathBuf, CampaignError> {
+    let file = file_name(table, key)?;
+    let path = dir.join(file);
+    if path.exists() {
+        return Ok(path);
+    }
+    let what = match Path::new(file).is_absolute() {
+        true => format!("there is no file {}", quote(file)),
+        false => format!("the folder holds no file {}", quote(file)),
+    };
+    let mend = match key {
+        "file" => "correct the name, or delete this [[run]] block",
+        _ => "correct the name, or delete the line",
+    };
+    Err(table.error_at(key, what, mend))
+}
+
+/// A file's name: a path from the campaign's folder on, or from the root.
+fn file_name<'t>(table: &'t TomlTable<'_>, key: &str) -> Result<&'t str, CampaignError> {
+    let file = table.required_text(key)?;
+    if !file.is_empty() && !file.chars().any(char::is_control) {
+        return Ok(file);
+    }
+    let what = format!("{} is not the name of a file", quote(file));
+    let mend = "give its name from the campaign's folder on, or from the root";
+    Err(table.error_at(key, what, mend))
+}
+
+fn conditions(table: &TomlTable<'_>) -> Result<(Bench, f64), CampaignError> {
+    let others = [
+        "file",
+        "bench",
+        "load_kg",
+        "port_pressure_bar",
+        "oil_temperature_c",
+        "columns",
+    ];
+    table.only(&[&others[..], &Cut::KEYS[..]].concat())?;
+    let bench = match table.required_text("bench")? {
+        "hitch" => {
+            belongs_elsewhere(table, "port_pressure_bar", "flow")?;
+            Bench::Hitch {
+                load_kg: table.required_number("load_kg", LOAD_KG)?,
+            }
+        }
+        "flow" => {
+            belongs_elsewhere(table, "load_kg", "hitch")?;
+            Bench::Flow {
+                port_pressure_bar: table.required_number("port_pressure_bar", PORT_PRESSURE_BAR)?,
+            }
+        }
+        other => {
+            let what = format!("bench {} is not known", quote(other));
+            return Err(table.error_at("bench", what, "it is \"hitch\" or \"flow\""));
+        }
+    };
+    let oil_temperature_c = table.number("oil_temperature_c", OIL_TEMPERATURE_C)?;
+    Ok((
+        bench,
+        oil_temperature_c.unwrap_or(DEFAULT_OIL_TEMPERATURE_C),
+    ))
+}
+
+fn belongs_elsewhere(table: &TomlTable<'_>, key: &str, bench: &str) -> Result<(), CampaignError> {
+    if !table.has(key) {
+        return Ok(());
+    }
+    let what = format!("{key} belongs to a run on the {bench} bench");
+    Err(table.error_at(
+        key,
+        what,
+        format!("delete the line, or write bench = \"{bench}\""),
+    ))
+}
+
+/// Rate of the first run's time stamps (median step), Hz.
+fn logged_rate_hz(runs: &[Run]) -> f64 {
+    let Some(run) = runs.first() else { return 0.0 };
+    let mut steps_s: Vec<f64> = run
+        .time_s
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .collect();
+    steps_s.sort_by(f64::total_cmp);
+    steps_s
+        .get(steps_s.len() / 2)
+        .map_or(0.0, |step_s| 1.0 / step_s)
+}

@@ -1,0 +1,103 @@
+//! One run's log: of a test bench's logger, of a bus, or of a measurement tool.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use hitch_input::input_error::InputError;
+use hitch_input::source_file::SourceFile;
+use hitch_plant::{Channel, Linkage};
+
+use crate::bus_log::{BusSettings, Format};
+use crate::columns::ColumnSettings;
+use crate::cut::Cut;
+use crate::scale::nominal_linkage;
+use crate::table::{LIFT, LOWER, OIL_TEMPERATURE, TIME, Table};
+use crate::{Bench, CampaignError, Run, bus_log, csv_log, mdf_log};
+
+/// How the logs of a campaign are meant.
+#[derive(Debug, Clone, Copy)]
+pub struct Settings<'s> {
+    /// What is taken of a bus; without it, what the project's own ECU sends.
+    pub bus: Option<&'s BusSettings>,
+    /// Which column of a table or of MDF is which; without it, they have this project's names.
+    pub columns: Option<&'s ColumnSettings>,
+    /// By which travel of the cylinder is an angle.
+    pub linkage: &'s Linkage,
+}
+
+impl Default for Settings<'_> {
+    fn default() -> Self {
+        Self {
+            bus: None,
+            columns: None,
+            linkage: nominal_linkage(),
+        }
+    }
+}
+
+/// Reads all of a log.
+///
+/// # Errors
+/// Whatever is wrong first, by file, line and column.
+pub fn table(path: &Path, settings: Settings<'_>) -> Result<Table, CampaignError> {
+    if mdf_log::is_mdf(path) {
+        return mdf_log::read(path, settings.columns, settings.linkage);
+    }
+    bus_log::check_known(path)?;
+    match Format::of(path) {
+        Some(format) => {
+            let source = Arc::new(SourceFile::read_any(path)?);
+            let ecu = BusSettings::default();
+            bus_log::read(&source, format, settings.bus.unwrap_or(&ecu))
+        }
+        None => {
+            let source = Arc::new(SourceFile::read_any(path)?);
+            csv_log::read(&source, settings.columns, settings.linkage)
+        }
+    }
+}
+
+/// The run that a part of a log is; it may hold currents only.
+///
+/// # Errors
+/// Whatever is wrong first, by file, line and column.
+pub fn run(
+    table: &Table,
+    file: &str,
+    cut: Cut,
+    bench: Bench,
+    oil_temperature_c: f64,
+) -> Result<Run, CampaignError> {
+    let table = table.cut(cut)?;
+    let time_s = table.required(TIME)?;
+    table.check_time(time_s)?;
+    let lift_current_a = table.current(LIFT, time_s)?;
+    let lower_current_a = table.current(LOWER, time_s)?;
+    let channels = Channel::ALL.map(|channel| {
+        let measurable = channel != Channel::RockerAngle || matches!(bench, Bench::Hitch { .. });
+        table.measured(channel.key()).filter(|_| measurable)
+    });
+    Ok(Run {
+        file: cut.name(file),
+        bench,
+        oil_temperature_c,
+        time_s: time_s.to_vec(),
+        lift_current_a,
+        lower_current_a,
+        channels,
+        oil_temperature_log_c: table.measured(OIL_TEMPERATURE),
+    })
+}
+
+/// Refuses a run that has nothing to compare a model with.
+pub fn check_usable(path: &Path, run: &Run) -> Result<(), CampaignError> {
+    if run.channels.iter().any(Option::is_some) {
+        return Ok(());
+    }
+    let known = Channel::ALL.map(Channel::key).join(", ");
+    Err(InputError::of_file(
+        path,
+        "has no usable channel",
+        format!("log at least one of {known}"),
+    ))
+}

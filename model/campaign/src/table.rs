@@ -1,0 +1,291 @@
+//! The numbers of a log by column, wherever they came from.
+
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+use hitch_input::input_error::{InputError, Place};
+use hitch_input::source_file::SourceFile;
+use hitch_plant::Channel;
+
+use crate::cut::Cut;
+use crate::{CampaignError, Run, dropout};
+
+/// Longest step between two samples, s: what the valves did in a longer one is not known.
+const LONGEST_STEP_S: f64 = 2.0;
+/// Time stamps, s: beyond, the step between two samples drowns in rounding.
+const TIME_S: RangeInclusive<f64> = -1e7..=1e10;
+
+/// Name of the column of times.
+pub const TIME: &str = "time_s";
+/// Name of the lift solenoid's current.
+pub const LIFT: &str = "lift_current_a";
+/// Name of the lowering solenoid's current.
+pub const LOWER: &str = "lower_current_a";
+/// Name of the oil temperature.
+pub const OIL_TEMPERATURE: &str = "oil_temperature_c";
+
+/// A column that a log may have.
+#[derive(Debug, PartialEq)]
+pub struct Column {
+    /// Its name, which ends in its unit.
+    pub name: &'static str,
+    /// That unit, as formulas write it.
+    pub unit: &'static str,
+    /// The values that its instrument can show.
+    pub range: RangeInclusive<f64>,
+}
+
+const fn known(name: &'static str, unit: &'static str, range: RangeInclusive<f64>) -> Column {
+    Column { name, unit, range }
+}
+
+/// The column of times.
+pub static TIMES: Column = known(TIME, "s", TIME_S);
+
+/// Every column there is.
+pub static COLUMNS: [Column; 8] = [
+    known(TIME, "s", TIME_S),
+    known(LIFT, "A", -10.0..=10.0),
+    known(LOWER, "A", -10.0..=10.0),
+    known(Channel::PumpPressure.key(), "bar", -10.0..=1000.0),
+    known(Channel::CylinderPressure.key(), "bar", -10.0..=1000.0),
+    known(Channel::Flow.key(), "l/min", -1000.0..=1000.0),
+    known(Channel::RockerAngle.key(), "deg", -360.0..=360.0),
+    known(OIL_TEMPERATURE, "degC", -60.0..=250.0),
+];
+
+/// The column of that name.
+pub fn column(name: &str) -> Option<&'static Column> {
+    COLUMNS.iter().find(|column| column.name == name)
+}
+
+/// How the samples of a row stand in its file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cells {
+    /// One after the other, with this character between them.
+    Between(char),
+    /// Somewhere in the line.
+    OneALine,
+    /// The file is no text.
+    Nowhere,
+}
+
+/// The samples of one column.
+#[derive(Debug, Clone)]
+pub struct Samples {
+    /// The column's name.
+    pub name: &'static str,
+    /// Its cell in a row, where rows have cells.
+    pub cell: usize,
+    /// What was sampled; NaN where nothing was.
+    pub values: Vec<f64>,
+}
+
+/// The numbers of a log by column; NaN where a cell is empty.
+#[derive(Debug, Clone)]
+pub struct Table {
+    source: Arc<SourceFile>,
+    columns: Vec<Samples>,
+    /// First byte of each row in the file.
+    rows: Vec<usize>,
+    cells: Cells,
+}
+
+impl Table {
+    /// The table of these columns, which are as long as `rows`: the first byte of each row in the file.
+    ///
+    /// # Errors
+    /// If there are too few rows for a run.
+    pub fn new(
+        source: Arc<SourceFile>,
+        columns: Vec<Samples>,
+        rows: Vec<usize>,
+        cells: Cells,
+    ) -> Result<Self, CampaignError> {
+        match rows.len() {
+            0 => Err(source.error("holds no samples", "log the run again")),
+            n if n < Run::FEWEST_SAMPLES => {
+                let what = format!("holds {n} samples only");
+                let mend = format!("a run needs at least {}", Run::FEWEST_SAMPLES);
+                Err(source.error(what, mend))
+            }
+            _ => Ok(Self {
+                source,
+                columns,
+                rows,
+                cells,
+            }),
+        }
+    }
+
+    /// The rows of a part.
+    ///
+    /// # Errors
+    /// If there are too few for a run.
+    pub fn cut(&self, cut: Cut) -> Result<Self, CampaignError> {
+        let times_s = self.column(TIME).unwrap_or_default();
+        let first_s = times_s.first().copied().unwrap_or_default();
+        let stays: Vec<bool> = times_s
+            .iter()
+            .map(|time_s| cut.contains(time_s - first_s))
+            .collect();
+        if cut == Cut::NONE || stays.is_empty() {
+            return Ok(self.clone());
+        }
+        let kept = stays.iter().filter(|stays| **stays).count();
+        if kept < Run::FEWEST_SAMPLES {
+            let what = format!("holds {kept} samples in the time of the run");
+            let mend = format!(
+                "a run needs at least {}; from_s and to_s are seconds after the first sample",
+                Run::FEWEST_SAMPLES
+            );
+            return Err(self.source.error(what, mend));
+        }
+        let columns = self.columns.iter().map(|samples| Samples {
+            values: kept_of(&samples.values, &stays),
+            ..*samples
+        });
+        Ok(Self {
+            source: Arc::clone(&self.source),
+            columns: columns.collect(),
+            rows: kept_of(&self.rows, &stays),
+            cells: self.cells,
+        })
+    }
+
+    fn column(&self, name: &str) -> Option<&[f64]> {
+        self.columns
+            .iter()
+            .find(|samples| samples.name == name)
+            .map(|samples| samples.values.as_slice())
+    }
+
+    /// A column that every log has.
+    ///
+    /// # Errors
+    /// If it is missing.
+    pub fn required(&self, name: &str) -> Result<&[f64], CampaignError> {
+        self.column(name).ok_or_else(|| {
+            let what = format!("column {name} is missing");
+            let mend = format!("log it: every run needs {TIME}, {LIFT} and {LOWER}");
+            match self.cells {
+                Cells::Nowhere => self.source.error(what, mend),
+                _ => self.source.error_at(0, what, mend),
+            }
+        })
+    }
+
+    /// A measured column, if there is one and it holds anything.
+    pub fn measured(&self, name: &str) -> Option<Vec<f64>> {
+        let values = self.column(name)?;
+        values
+            .iter()
+            .any(|value| !value.is_nan())
+            .then(|| values.to_vec())
+    }
+
+    /// A current, with its dropouts bridged.
+    ///
+    /// # Errors
+    /// If one is too long for that.
+    pub fn current(&self, name: &str, time_s: &[f64]) -> Result<Vec<f64>, CampaignError> {
+        let mut current_a = self.required(name)?.to_vec();
+        match dropout::bridge(time_s, &mut current_a) {
+            Ok(()) => Ok(current_a),
+            Err(gap) => {
+                let what = if gap.duration_s.is_finite() {
+                    format!("{name} is missing for {:.2} s", gap.duration_s)
+                } else {
+                    format!("{name} has no values")
+                };
+                let mend =
+                    "the currents drive the model: log the run again, or cut it before the gap";
+                Err(self.error_in(gap.sample, name, what, mend))
+            }
+        }
+    }
+
+    /// Refuses times that don't rise from row to row.
+    ///
+    /// # Errors
+    /// At the first row that is not later than the last, or much later.
+    pub fn check_time(&self, time_s: &[f64]) -> Result<(), CampaignError> {
+        for (sample, pair) in time_s.windows(2).enumerate() {
+            let (before_s, now_s) = (pair[0], pair[1]);
+            let fault = if now_s < before_s {
+                "goes back"
+            } else if now_s == before_s {
+                "stands still"
+            } else if now_s - before_s > LONGEST_STEP_S {
+                "jumps"
+            } else {
+                continue;
+            };
+            let what = format!("time {fault}: {now_s} s after {before_s} s");
+            let mend = format!("{TIME} has to rise from row to row, by {LONGEST_STEP_S} s at most");
+            return Err(self.error_in(sample + 1, TIME, what, mend));
+        }
+        Ok(())
+    }
+
+    fn error_in(
+        &self,
+        row: usize,
+        name: &str,
+        what: String,
+        mend: impl Into<String>,
+    ) -> InputError {
+        let samples = self.columns.iter().find(|samples| samples.name == name);
+        let cell = samples.map_or(0, |samples| samples.cell);
+        let byte = self.rows.get(row).copied().unwrap_or(0);
+        match self.cells {
+            Cells::Between(mark) => cell_error(&self.source, byte, (cell, mark), what, mend),
+            Cells::OneALine => self.source.error_at(byte, what, mend),
+            Cells::Nowhere => self.source.error(what, mend),
+        }
+    }
+}
+
+fn kept_of<T: Copy>(values: &[T], stays: &[bool]) -> Vec<T> {
+    let kept = values.iter().zip(stays).filter(|(_, stays)| **stays);
+    kept.map(|(value, _)| *value).collect()
+}
+
+/// A fault of a cell of a row whose cells have a mark between them.
+pub fn cell_error(
+    source: &SourceFile,
+    row_byte: usize,
+    (index, mark): (usize, char),
+    what: String,
+    mend: impl Into<String>,
+) -> InputError {
+    let Place { line, column } = source.place(row_byte);
+    let row = source.text.get(row_byte..).unwrap_or_default();
+    let before = cells_before(row, index, mark);
+    InputError::at(
+        &source.path,
+        Place {
+            line,
+            column: column + before,
+        },
+        what,
+        mend,
+    )
+}
+
+/// Characters of a row in front of its cell `index`.
+fn cells_before(row: &str, index: usize, mark: char) -> usize {
+    let (mut quoted, mut marks) = (false, 0);
+    for (characters, c) in row.chars().enumerate() {
+        if marks == index {
+            return characters;
+        }
+        match c {
+            '"' => quoted = !quoted,
+            c if c == mark && !quoted => marks += 1,
+            '\n' | '\r' if !quoted => return characters,
+            _ => {}
+        }
+    }
+    row.chars().count()
+}

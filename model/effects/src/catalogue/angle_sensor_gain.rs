@@ -1,0 +1,59 @@
+//! `angle-sensor-gain`: the angle sensor shows too much or too little.
+//!
+//! `y = (1 + g) angle`; 0.5 to 1 % of full scale is usual for a hall sensor, more for a worn lever or a wrong supply.
+
+use hitch_plant::Reading;
+use hitch_plant::hooks::sites::{RunConditions, SensorStage, Sites};
+use hitch_plant::{Channel, Parameter, Search};
+
+use crate::described::Described;
+
+/// Gain error of the rocker angle sensor.
+pub static ANGLE_SENSOR_GAIN: Described = Described {
+    id: "angle-sensor-gain",
+    form: None,
+    title: "Gain error of the rocker angle sensor",
+    equation: "y = (1 + gain) angle",
+    source: "hall angle sensors, +-0.5 to 1 % of full scale; a ratiometric sensor on a wrong supply \
+         more",
+    shows: "the angle travels too far or too short for the oil that flowed, lifting and lowering \
+         alike; easily taken for a wrong stroke",
+    parameters: &[Parameter {
+        name: "gain",
+        unit: "",
+        key: "gain",
+        meaning: "relative error of the angle",
+        null: 0.0,
+        typical: 0.02,
+        low: -0.3,
+        high: 0.3,
+    }],
+    channels: &[Channel::RockerAngle],
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach,
+};
+
+fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+    sites.sensors.push(Box::new(Gain { gain: values[0] }));
+}
+
+#[derive(Debug)]
+struct Gain {
+    gain: f64,
+}
+
+impl SensorStage for Gain {
+    fn rest(&mut self, reading: &mut Reading) {
+        reading.rocker_angle_deg *= 1.0 + self.gain;
+    }
+
+    fn advance(&mut self, reading: &mut Reading, _: f64) {
+        self.rest(reading);
+    }
+
+    fn angle_behind_deg(&self, shown_deg: f64) -> f64 {
+        shown_deg / (1.0 + self.gain)
+    }
+}

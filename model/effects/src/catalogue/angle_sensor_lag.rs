@@ -1,0 +1,183 @@
+//! `angle-sensor-lag`: the angle sensor or its filter shows the angle late.
+//!
+//! `tau y' + y = angle`, first order. Hall sensors lag by 2 to 10 ms; filtering in the logger adds up to some 0.2 s. A
+//! sensor that averages over a window, or sends on a bus, has dead time as well: what it shows is some time old before
+//! any filter.
+
+use std::collections::VecDeque;
+
+use hitch_plant::components::lag::Lag;
+use hitch_plant::hooks::sites::{SensorStage, Sites};
+use hitch_plant::{Channel, Parameter, Reading, Search};
+
+use crate::described::Described;
+
+const CHANNELS: &[Channel] = &[Channel::RockerAngle];
+
+/// Longest step of a sensor, which takes the angle between two steps from a straight line, s. Where a motion starts or
+/// stops, lines of 20 ms are as far off as the sensor's own noise, and least for whole samples of dead time.
+const STEP_S: f64 = 0.005;
+
+/// A sensor that filters.
+pub static FILTERING: Described = Described {
+    id: "angle-sensor-lag",
+    form: None,
+    title: "Lag of the rocker angle sensor",
+    equation: "tau y' + y = angle",
+    source: "first-order sensor or input filter; 2 to 10 ms for hall sensors, up to 0.2 s with \
+         filtering",
+    shows: "the angle trails its true course by speed times lag, in both directions; pressures and \
+         flow stay right",
+    parameters: &[Parameter {
+        name: "time_constant",
+        unit: "s",
+        key: "time_constant_s",
+        meaning: "time constant of the sensor",
+        null: 0.0,
+        typical: 0.06,
+        low: 0.0,
+        high: 2.0,
+    }],
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, _, sites| attach(values[0], 0.0, sites),
+};
+
+/// A sensor that sends late what it filters.
+pub static DELAYED: Described = Described {
+    id: "angle-sensor-lag",
+    form: Some("delayed"),
+    title: "Lag of the rocker angle sensor, part of it dead time",
+    equation: "(1 - dead) lag y' + y = angle(t - dead lag)",
+    source: "sensors that average over a window (half of it is dead time) or send on a bus: 5 to 50 ms",
+    shows: "the angle trails its true course by speed times lag, and starts late; pressures and flow \
+         stay right",
+    parameters: &[
+        Parameter {
+            name: "lag",
+            unit: "s",
+            key: "lag_s",
+            meaning: "how late it follows an even motion",
+            null: 0.0,
+            typical: 0.06,
+            low: 0.0,
+            high: 2.0,
+        },
+        Parameter {
+            name: "dead",
+            unit: "",
+            key: "dead",
+            meaning: "share of it that is dead time",
+            null: 0.0,
+            typical: 0.5,
+            low: 0.0,
+            high: 1.0,
+        },
+    ],
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, _, sites| {
+        let dead_s = values[0] * values[1];
+        attach(values[0] - dead_s, dead_s, sites);
+    },
+};
+
+fn attach(time_constant_s: f64, dead_s: f64, sites: &mut Sites) {
+    if time_constant_s + dead_s > 0.0 {
+        sites.limit_step(STEP_S);
+    }
+    sites.sensors.push(Box::new(LateAngle {
+        time_constant_s,
+        dead_s,
+        filter: Lag::at_rest(time_constant_s, 0.0),
+        past: VecDeque::new(),
+    }));
+}
+
+/// A sensor with dead time before its filter.
+#[derive(Debug)]
+struct LateAngle {
+    time_constant_s: f64,
+    dead_s: f64,
+    filter: Lag,
+    /// How long ago, s, the angle was what, degree; the oldest first, the first of them old enough.
+    past: VecDeque<(f64, f64)>,
+}
+
+impl LateAngle {
+    /// The angle of `dead_s` ago, degree, when `dt_s` after the last one it is `now_deg`.
+    fn delayed_deg(&mut self, now_deg: f64, dt_s: f64) -> f64 {
+        for (ago_s, _) in &mut self.past {
+            *ago_s += dt_s;
+        }
+        self.past.push_back((0.0, now_deg));
+        while self.past.get(1).is_some_and(|next| next.0 >= self.dead_s) {
+            self.past.pop_front();
+        }
+        match (self.past.front(), self.past.get(1)) {
+            (Some(&(older_s, older_deg)), Some(&(newer_s, newer_deg))) => {
+                let share = ((older_s - self.dead_s) / (older_s - newer_s)).clamp(0.0, 1.0);
+                older_deg + share * (newer_deg - older_deg)
+            }
+            _ => now_deg,
+        }
+    }
+}
+
+impl SensorStage for LateAngle {
+    fn rest(&mut self, reading: &mut Reading) {
+        self.filter = Lag::at_rest(self.time_constant_s, reading.rocker_angle_deg);
+        self.past = [self.dead_s, 0.0]
+            .map(|ago_s| (ago_s, reading.rocker_angle_deg))
+            .into();
+    }
+
+    fn advance(&mut self, reading: &mut Reading, dt_s: f64) {
+        let angle_deg = if self.dead_s > 0.0 {
+            self.delayed_deg(reading.rocker_angle_deg, dt_s)
+        } else {
+            reading.rocker_angle_deg
+        };
+        reading.rocker_angle_deg = self.filter.advance(angle_deg, dt_s);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::VecDeque;
+
+    use super::LateAngle;
+    use hitch_plant::Reading;
+    use hitch_plant::components::lag::Lag;
+    use hitch_plant::hooks::sites::SensorStage;
+
+    /// Steady motion at 10 degree a second is followed as late as filter and dead time together; the start shows after
+    /// the dead time, sooner by no more than the step in which it lies.
+    #[test]
+    fn a_ramp_is_followed_as_late_as_the_parameters_say() {
+        for (time_constant_s, dead_s) in [(0.0, 0.05), (0.02, 0.03), (0.01, 0.004)] {
+            let mut sensor = LateAngle {
+                time_constant_s,
+                dead_s,
+                filter: Lag::at_rest(time_constant_s, 0.0),
+                past: VecDeque::new(),
+            };
+            let mut reading = Reading::default();
+            sensor.rest(&mut reading);
+            for step in 1..=100 {
+                let time_s = 0.02 * f64::from(step);
+                reading.rocker_angle_deg = 10.0 * time_s;
+                sensor.advance(&mut reading, 0.02);
+                if time_s <= dead_s - 0.02 {
+                    assert!(reading.rocker_angle_deg.abs() < 1e-12);
+                }
+            }
+            let expected = 10.0 * (2.0 - time_constant_s - dead_s);
+            assert!((reading.rocker_angle_deg - expected).abs() < 1e-9);
+        }
+    }
+}

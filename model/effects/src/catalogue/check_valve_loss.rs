@@ -1,0 +1,84 @@
+//! `check-valve-loss`: the open check valve throttles.
+//!
+//! Beyond its nominal cracking pressure the poppet takes `loss (steady + (1 - steady) (Q / 40 l/min)^2)`: a throttling
+//! seat, and with the share `steady` a spring that is stiffer than its data sheet. The compensator holds the sum of all
+//! drops, so the lift orifice keeps what is left of 1.5 bar. A poppet that its spring lets further out the more flows takes
+//! more in proportion instead, `Q / 40 l/min`. Throttling makes large flows fall short the more; the
+//! spring alone takes the same share of every flow and is `lift-flow-scale` by another name.
+
+use hitch_plant::hooks::sites::Sites;
+use hitch_plant::units::{m3_s_from_lpm, pa_from_bar};
+use hitch_plant::{Channel, Parameter, Search};
+
+use crate::described::Described;
+
+/// Flow at which the loss is stated, l/min.
+const RATED_LPM: f64 = 40.0;
+
+const LOSS: Parameter = Parameter {
+    name: "loss",
+    unit: "bar",
+    key: "loss_bar",
+    meaning: "pressure that it takes at 40 l/min beyond 2.5 bar",
+    null: 0.0,
+    typical: 0.4,
+    low: 0.0,
+    high: 10.0,
+};
+
+const STEADY: Parameter = Parameter {
+    name: "steady",
+    unit: "",
+    key: "steady",
+    meaning: "share of it that does not change with the flow",
+    null: 0.5,
+    typical: 0.0,
+    low: 0.0,
+    high: 1.0,
+};
+
+/// Pressure loss of a check valve whose seat throttles.
+pub static THROTTLING: Described = Described {
+    id: "check-valve-loss",
+    form: None,
+    title: "Pressure loss of the check valve",
+    equation: "dp_orifice = p_P - p_C - 2.5 bar - loss [steady + (1 - steady) (Q / 40 l/min)^2]; Q = \
+         Q_table(I) sqrt(dp_orifice / 1.5 bar)",
+    source: "orifice law of an open poppet; 0.3 to 1 bar at rated flow in data sheets of cartridge \
+         check valves",
+    shows: "large lift flows fall short while small ones fit, at every load alike; the pump pressure \
+         does not change",
+    parameters: &[LOSS, STEADY],
+    channels: &[Channel::Flow, Channel::RockerAngle],
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, _, sites| {
+        let varying_pa = stiffened(values, sites);
+        let rated_m3_s = m3_s_from_lpm(RATED_LPM);
+        sites.check_valve.turbulent_pa_s2_m6 += varying_pa / (rated_m3_s * rated_m3_s);
+    },
+};
+
+/// Pressure loss of a check valve whose poppet lifts against its spring.
+pub static LIFTING: Described = Described {
+    form: Some("lifting"),
+    title: "Pressure loss of the check valve, whose poppet lifts with the flow",
+    equation: "dp_orifice = p_P - p_C - 2.5 bar - loss [steady + (1 - steady) Q / 40 l/min]; Q = \
+         Q_table(I) sqrt(dp_orifice / 1.5 bar)",
+    source: "force balance of a poppet on its spring; 0.3 to 1 bar at rated flow in data sheets of \
+         cartridge check valves",
+    refines: true,
+    attach: |values, _, sites| {
+        let varying_pa = stiffened(values, sites);
+        sites.check_valve.laminar_pa_s_m3 += varying_pa / m3_s_from_lpm(RATED_LPM);
+    },
+    ..THROTTLING
+};
+
+/// Stiffens the spring by the steady share of a loss; returns the rest of it at the rated flow, Pa.
+fn stiffened(values: &[f64], sites: &mut Sites) -> f64 {
+    let (loss_pa, steady) = (pa_from_bar(values[0]), values[1]);
+    sites.cracking_extra_pa += steady * loss_pa;
+    (1.0 - steady) * loss_pa
+}

@@ -1,0 +1,141 @@
+//! `compensator-droop`: the compensator's margin falls with the pressure that it works at.
+//!
+//! Force balance of its spool, `A_c (p_P - p_C) = F_0 + k x + 0.43 w x p_P`: the further it has to close and the higher
+//! the pressure, the smaller the margin. Linear about no load: `margin = 4 bar - c p_C`. What the lift orifice keeps
+//! shrinks from 1.5 bar, so the lift flow falls with its square root. The spool closes further the less flow it has to
+//! pass by, so the margin falls with the lift flow too: by a share `d` of the 4 bar from none to the pump's whole flow.
+//! A restrictor in the line that tells it the load, or its own mass, makes it late: 5 to 20 ms. Meanwhile the lift orifice
+//! feels what the cylinder pressure does, and takes from its ringing.
+
+use hitch_plant::hooks::sites::{RunConditions, Sites};
+use hitch_plant::{Channel, Parameter, Search};
+
+use crate::described::Described;
+
+/// A lag that is shorter than all else in the plant is none, s.
+const SHORTEST_LAG_S: f64 = 1e-4;
+
+/// Longest step of the quasi-static plant that follows a late compensator, s.
+const STEP_S: f64 = 0.002;
+
+const CHANNELS: &[Channel] = &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle];
+
+const SLOPE: Parameter = Parameter {
+    name: "slope",
+    unit: "bar/bar",
+    key: "slope",
+    meaning: "margin lost for each bar of cylinder pressure",
+    null: 0.0,
+    typical: 0.005,
+    low: -0.02,
+    high: 0.05,
+};
+
+const FLOW: Parameter = Parameter {
+    name: "flow",
+    unit: "",
+    key: "flow",
+    meaning: "share of the margin lost from no lift flow to the pump's whole",
+    null: 0.0,
+    typical: 0.1,
+    low: 0.0,
+    high: 0.3,
+};
+
+/// Droop with the load alone.
+pub static WITH_LOAD: Described = Described {
+    id: "compensator-droop",
+    form: None,
+    title: "Droop of the pressure compensator",
+    equation: "p_P - p_C = 4 bar - slope p_C; Q = Q_table(I) sqrt((p_P - p_C - 2.5 bar) / 1.5 bar)",
+    source: "spool force balance of a three-way compensator; up to 0.02 bar/bar either way",
+    shows: "heavy loads lift slower than light ones, and the pump pressure stands less than 4 bar \
+         over the load",
+    parameters: &[SLOPE],
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, _, sites| fall_with_load(values[0], sites),
+};
+
+/// Droop with the flow, and with the load.
+pub static WITH_FLOW: Described = Described {
+    id: "compensator-droop",
+    form: Some("flow"),
+    title: "Droop of the pressure compensator with flow and load",
+    equation: "p_P - p_C = 4 bar (1 - flow Q / Q_pump) - slope p_C",
+    source: "spool force balance of a three-way compensator; 0.05 to 0.2 of the margin over the \
+         pump's flow",
+    shows: "slow lifts are relatively faster than fast ones, and the pump pressure stands the less \
+         over the load the more flows",
+    parameters: &[
+        FLOW,
+        Parameter {
+            typical: 0.0,
+            ..SLOPE
+        },
+    ],
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, conditions, sites| {
+        fall_with_flow(values[0], conditions, sites);
+        fall_with_load(values[1], sites);
+    },
+};
+
+/// Droop of a compensator that is late.
+pub static LAGGING: Described = Described {
+    id: "compensator-droop",
+    form: Some("lagging"),
+    title: "Lag of the pressure compensator, with droop over load and flow",
+    equation: "lag p_P' = p_C + 4 bar (1 - flow Q / Q_pump) - slope p_C - p_P",
+    source: "spool behind the orifice of its load-sensing line: 5 to 20 ms",
+    shows: "the pump pressure follows every start and stop of a lift late; the lift flow gives way to a cylinder \
+         pressure that rings, which dies away the faster for it",
+    parameters: &[
+        Parameter {
+            name: "lag",
+            unit: "s",
+            key: "lag_s",
+            meaning: "time constant of the pump pressure",
+            null: 0.0,
+            typical: 0.01,
+            low: 0.0,
+            high: 0.1,
+        },
+        Parameter {
+            typical: 0.0,
+            ..SLOPE
+        },
+        Parameter {
+            typical: 0.0,
+            ..FLOW
+        },
+    ],
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: true,
+    attach: |values, conditions, sites| {
+        if values[0] >= SHORTEST_LAG_S {
+            sites.compensator_lag_s = values[0];
+            sites.limit_step(STEP_S);
+        }
+        fall_with_load(values[1], sites);
+        fall_with_flow(values[2], conditions, sites);
+    },
+};
+
+fn fall_with_flow(share: f64, RunConditions { constants, .. }: RunConditions, sites: &mut Sites) {
+    let lost_pa = share * constants.compensator.margin_pa;
+    sites.margin_lost_to_flow_pa_s_m3 += lost_pa / constants.pump.flow_m3_s();
+}
+
+fn fall_with_load(slope: f64, sites: &mut Sites) {
+    sites.margin.push(Box::new(move |cylinder_pressure_pa| {
+        -slope * cylinder_pressure_pa
+    }));
+}

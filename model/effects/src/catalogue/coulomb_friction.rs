@@ -1,0 +1,104 @@
+//! `coulomb-friction`: dry friction of the cylinder's seals and of the links.
+//!
+//! Pressure is higher while lifting and lower while lowering by `F_C / A`. Two equations say what happens at rest: with
+//! a hyperbolic tangent, `F = F_C tanh(v / 3 mm/s)`, the friction is gone (Simscape's cylinder friction; Jelali & Kroll
+//! 4.3); bristles that bend before they slip hold what they held when the piston stopped (Dahl 1968; LuGre, Canudas de
+//! Wit 1995), until the trembling of a running machine has let them straighten. 100 to 300 N and 1 to 4 % of the
+//! pressure force are usual for a 76 mm cylinder, and some tenths of a millimetre of bending.
+
+use hitch_plant::hooks::sites::Bristles;
+use hitch_plant::{Channel, Parameter, Search};
+
+use crate::described::Described;
+
+/// Speed at which the friction has reached three quarters of its full value, m/s.
+pub(crate) const TRANSITION_SPEED_M_S: f64 = 0.003;
+
+const FORCE: Parameter = Parameter {
+    name: "force",
+    unit: "N",
+    key: "force_n",
+    meaning: "friction force at the piston",
+    null: 0.0,
+    typical: 400.0,
+    low: 0.0,
+    high: 5000.0,
+};
+
+const CHANNELS: &[Channel] = &[
+    Channel::PumpPressure,
+    Channel::CylinderPressure,
+    Channel::Flow,
+    Channel::RockerAngle,
+];
+
+/// Friction that is gone at rest.
+pub static SMOOTH: Described = Described {
+    id: "coulomb-friction",
+    form: None,
+    title: "Coulomb friction at the piston",
+    equation: "F = force * tanh(v / 3 mm/s)",
+    source: "Simscape cylinder friction; Jelali & Kroll 4.3; 100 to 800 N for seals of a 76 mm cylinder and links",
+    shows: "cylinder pressure steps down from lifting to holding and again to lowering, by the same at every load; slower \
+            lowering of light loads",
+    parameters: &[FORCE],
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, _, sites| {
+        let force_n = values[0];
+        sites.friction.push(Box::new(move |state, _| {
+            force_n * (state.speed_m_s / TRANSITION_SPEED_M_S).tanh()
+        }));
+    },
+};
+
+/// Longest step that follows bristles as they bend, s.
+const STEP_S: f64 = 0.01;
+
+/// Friction that stays at rest.
+pub static BRISTLES: Described = Described {
+    id: "coulomb-friction",
+    form: Some("bristles"),
+    title: "Coulomb friction at the piston, which holds at rest",
+    equation: "F = force * z / bending, z' = v - (|v| + creep) z / bending",
+    source: "Dahl 1968; Canudas de Wit et al. 1995 (LuGre with a level that does not hang on the speed); Jelali & Kroll 4.3",
+    shows: "cylinder pressure at rest lies higher after lifting than after lowering, by the same at every load; slower \
+            lowering of light loads",
+    parameters: &[
+        FORCE,
+        Parameter {
+            name: "bending",
+            unit: "mm",
+            key: "bending_mm",
+            meaning: "how far the piston moves before the seal slips",
+            null: 0.0,
+            typical: 0.3,
+            low: 0.02,
+            high: 5.0,
+        },
+        Parameter {
+            name: "creep",
+            unit: "mm/s",
+            key: "creep_mm_per_s",
+            meaning: "speed that trembling gives the seal under the full force; none: it holds for ever",
+            null: 0.0,
+            typical: 0.0,
+            low: 0.0,
+            high: 8.0,
+        },
+    ],
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, _, sites| {
+        sites.bristles = Some(Bristles {
+            force_n: values[0],
+            reach_m: 1e-3 * values[1],
+            creep_m_s: 1e-3 * values[2],
+        });
+        sites.limit_step(STEP_S);
+    },
+};

@@ -1,0 +1,99 @@
+//! `lift-flow-scale`, `lower-flow-scale`: the valve passes a share more or less than its data sheet says.
+//!
+//! `Q = (1 + scale) Q_table`, for one valve: orifice area and discharge coefficient (equations 5 and 6). The paper's
+//! valves saturate 6.7 % (lift) and 3.4 % (lowering) under the manufacturer's values. A metering edge that is cut
+//! otherwise passes another share when it is wide open: the scale grows with the opening.
+
+use hitch_plant::hooks::sites::FlowFactor;
+use hitch_plant::{Channel, Parameter, Search};
+
+use crate::described::Described;
+
+const SCALE: Parameter = Parameter {
+    name: "scale",
+    unit: "",
+    key: "scale",
+    meaning: "relative change of the flow, at half the largest",
+    null: 0.0,
+    typical: 0.05,
+    low: -0.5,
+    high: 0.5,
+};
+
+const GROWTH: Parameter = Parameter {
+    name: "growth",
+    unit: "",
+    key: "growth",
+    meaning: "relative growth of the scale from half to the largest flow",
+    null: 0.0,
+    typical: 0.3,
+    low: -1.0,
+    high: 1.0,
+};
+
+const CHANNELS: &[Channel] = &[Channel::Flow, Channel::RockerAngle];
+
+const SOURCE: &str =
+    "equations 5 and 6 of the paper with another Cd A; paper, Table 5 against Table 2";
+
+/// Flow scale of the lift valve.
+pub static LIFT: Described = Described {
+    id: "lift-flow-scale",
+    form: None,
+    title: "Scaled flow of the lift valve",
+    equation: "Q = (1 + scale) Q_table(I)",
+    source: SOURCE,
+    shows: "lifting at every current alike in proportion: flow and speed; the same as another margin of the \
+            compensator, another discharge coefficient or a stiffer spring of the check valve",
+    parameters: &[SCALE],
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, _, sites| scale(&mut sites.lift_flow_factor, values[0], 0.0),
+};
+
+/// Flow scale of the lift valve that grows with its opening.
+pub static LIFT_UNEVEN: Described = Described {
+    form: Some("uneven"),
+    title: "Scaled flow of the lift valve, wide open otherwise",
+    equation: "Q = (1 + scale (1 + growth (2 Q_table / Q_largest - 1))) Q_table(I)",
+    shows: "lifting at every current, fast otherwise in proportion than slowly: flow and speed",
+    parameters: &[SCALE, GROWTH],
+    refines: true,
+    attach: |values, _, sites| scale(&mut sites.lift_flow_factor, values[0], values[1]),
+    ..LIFT
+};
+
+/// Flow scale of the lowering valve.
+pub static LOWERING: Described = Described {
+    id: "lower-flow-scale",
+    form: None,
+    title: "Scaled flow of the lowering valve",
+    equation: "Q = (1 + scale) Q_table(I)",
+    source: SOURCE,
+    shows: "lowering at every current and load alike in proportion: flow and speed",
+    parameters: &[SCALE],
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, _, sites| scale(&mut sites.lower_flow_factor, values[0], 0.0),
+};
+
+/// Flow scale of the lowering valve that grows with its opening.
+pub static LOWERING_UNEVEN: Described = Described {
+    form: Some("uneven"),
+    title: "Scaled flow of the lowering valve, wide open otherwise",
+    equation: "Q = (1 + scale (1 + growth (2 Q_table / Q_largest - 1))) Q_table(I)",
+    shows: "lowering at every current and load, fast otherwise in proportion than slowly: flow and speed",
+    parameters: &[SCALE, GROWTH],
+    refines: true,
+    attach: |values, _, sites| scale(&mut sites.lower_flow_factor, values[0], values[1]),
+    ..LOWERING
+};
+
+fn scale(factor: &mut FlowFactor, scale: f64, growth: f64) {
+    factor.at_half += scale;
+    factor.growth += scale * growth;
+}

@@ -1,0 +1,108 @@
+//! `ground-contact`: the implement comes to rest on the ground before the end of the stroke.
+//!
+//! `F = k z (1 + c z')` upwards at the hitch point, never pulling, where z is how deep it has sunk below the height at
+//! which the implement touches (Bekker with n = 1, damped as by Hunt & Crossley). Floors have 1e6 to 1e7 N/m, soil 5e4
+//! to 5e5 N/m. Where the ground itself damps, `F = k z + d z'` with 1e3 to 1e4 N s/m.
+
+use hitch_plant::Dynamics;
+use hitch_plant::hooks::sites::{Ground, RunConditions};
+use hitch_plant::{Channel, Parameter, Search};
+
+use crate::described::Described;
+
+/// Damping of the contact where nothing is known of it, s/m.
+const DAMPING_S_M: f64 = 1.5;
+
+const HEIGHT: Parameter = Parameter {
+    name: "height",
+    unit: "m",
+    key: "height_m",
+    meaning: "height of the ground over the lowest point of the stroke",
+    null: 0.0,
+    typical: 0.1,
+    low: 0.0,
+    high: 0.65,
+};
+
+const STIFFNESS: Parameter = Parameter {
+    name: "stiffness",
+    unit: "kN/m",
+    key: "stiffness_kn_m",
+    meaning: "stiffness of the ground",
+    null: 0.0,
+    typical: 500.0,
+    low: 50.0,
+    high: 5000.0,
+};
+
+const CHANNELS: &[Channel] = &[
+    Channel::CylinderPressure,
+    Channel::Flow,
+    Channel::RockerAngle,
+];
+
+/// Contact with ground that hardly damps.
+pub static SPRINGY: Described = Described {
+    id: "ground-contact",
+    form: None,
+    title: "Contact with the ground",
+    equation: "F = stiffness (h_ground - h), upwards; h_ground = lowest point of the stroke + height",
+    source: "Bekker with exponent one; floor 1e6 to 1e7 N/m, soil 5e4 to 5e5 N/m",
+    shows: "lowering ends early and the cylinder pressure falls to nothing while the angle stands",
+    parameters: &[HEIGHT, STIFFNESS],
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Places,
+    refines: false,
+    attach: |values, conditions, sites| {
+        sites.ground = Some(Ground {
+            damping_s_m: DAMPING_S_M,
+            ..ground(values, conditions)
+        });
+    },
+};
+
+/// Contact with ground that damps.
+pub static DAMPED: Described = Described {
+    id: "ground-contact",
+    form: Some("damped"),
+    title: "Contact with ground that damps",
+    equation: "F = stiffness (h_ground - h) - damping h', upwards; h_ground = lowest point of the stroke + height",
+    source: "Bekker with exponent one; soil 1e3 to 1e4 N s/m",
+    shows: "lowering ends early and the cylinder pressure falls to nothing while the angle stands; what rings on the \
+         ground dies away sooner",
+    parameters: &[
+        HEIGHT,
+        STIFFNESS,
+        Parameter {
+            name: "damping",
+            unit: "kN s/m",
+            key: "damping_kn_s_m",
+            meaning: "force over the speed of sinking in",
+            null: 0.0,
+            typical: 5.0,
+            low: 0.0,
+            high: 50.0,
+        },
+    ],
+    channels: CHANNELS,
+    needs: Some(Dynamics::Dynamic),
+    search: Search::Places,
+    refines: true,
+    attach: |values, conditions, sites| {
+        sites.ground = Some(Ground {
+            damping_n_s_m: values[2] * 1e3,
+            ..ground(values, conditions)
+        });
+    },
+};
+
+/// Ground of a height, m, and a stiffness, kN/m, without damping.
+fn ground(values: &[f64], conditions: RunConditions<'_>) -> Ground {
+    Ground {
+        height_m: conditions.linkage.at(0.0).height_m + values[0],
+        stiffness_n_m: values[1] * 1e3,
+        damping_s_m: 0.0,
+        damping_n_s_m: 0.0,
+    }
+}

@@ -1,0 +1,95 @@
+//! `hose-compliance`: hoses and fittings swell with the pressure.
+//!
+//! `dp/dt = (sum Q - A v) / (V/E + C)`. Two metres of half-inch two-wire hose have 3 to 6e-13 m3/Pa, as much as 0.6 l
+//! of oil; written in cm3/bar, 0.03 to 0.06. Rubber does not swell at once: a share of it creeps after the pressure
+//! (Kelvin-Voigt), which slows a fast ringing less than a slow one and damps both.
+
+use hitch_plant::hooks::sites::Hose;
+use hitch_plant::units::pa_from_bar;
+use hitch_plant::{Channel, Dynamics, Parameter, Search};
+
+use crate::described::Described;
+
+const COMPLIANCE: Parameter = Parameter {
+    name: "compliance",
+    unit: "cm3/bar",
+    key: "compliance_cm3_bar",
+    meaning: "volume that the hoses take up",
+    null: 0.0,
+    typical: 0.04,
+    low: 0.0,
+    high: 1.0,
+};
+
+fn m3_pa(cm3_bar: f64) -> f64 {
+    cm3_bar * 1e-6 / pa_from_bar(1.0)
+}
+
+/// Hoses that swell at once.
+pub static ELASTIC: Described = Described {
+    id: "hose-compliance",
+    form: None,
+    title: "Compliance of hoses",
+    equation: "dp/dt = (sum Q - A v) / (V/E + C)",
+    source: "two-wire hose, 0.25 l at 0.4 to 0.8e9 Pa: 0.03 to 0.06 cm3/bar",
+    shows: "slower ringing of the cylinder pressure at every load alike; entrained air softens light \
+         loads more",
+    parameters: &[COMPLIANCE],
+    channels: &[Channel::CylinderPressure],
+    needs: Some(Dynamics::Dynamic),
+    search: Search::Secants,
+    refines: false,
+    attach: |values, _, sites| {
+        sites.hose = Hose {
+            at_once_m3_pa: m3_pa(values[0]),
+            ..Hose::default()
+        };
+    },
+};
+
+/// Hoses that creep.
+pub static CREEPING: Described = Described {
+    id: "hose-compliance",
+    form: Some("creeping"),
+    title: "Compliance of hoses whose wall creeps",
+    equation: "dp/dt = (sum Q - A v - W') / (V/E + (1 - share) C), W' = (share C p - W) / creep",
+    source: "Kelvin-Voigt in series with a spring, the standard linear solid (Ferry 1980, ch. 1); size as of hoses that \
+         swell at once",
+    shows: "slower ringing of the cylinder pressure that dies away sooner, most where it is about as fast as the wall \
+         creeps",
+    parameters: &[
+        COMPLIANCE,
+        Parameter {
+            name: "share",
+            unit: "",
+            key: "share",
+            meaning: "share of it that creeps",
+            null: 0.0,
+            typical: 0.5,
+            low: 0.0,
+            high: 1.0,
+        },
+        Parameter {
+            name: "creep",
+            unit: "s",
+            key: "creep_s",
+            meaning: "retardation time of the wall",
+            null: 0.0,
+            typical: 0.05,
+            low: 0.005,
+            high: 1.0,
+        },
+    ],
+    channels: &[Channel::CylinderPressure],
+    needs: Some(Dynamics::Dynamic),
+    search: Search::Secants,
+    refines: false,
+    attach: |values, _, sites| {
+        let whole_m3_pa = m3_pa(values[0]);
+        sites.hose = Hose {
+            at_once_m3_pa: (1.0 - values[1]) * whole_m3_pa,
+            creeping_m3_pa: values[1] * whole_m3_pa,
+            catching_up_1_s: 1.0 / values[2],
+        };
+    },
+};

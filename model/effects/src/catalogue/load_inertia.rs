@@ -1,0 +1,91 @@
+//! `load-inertia`: the moving masses want a force to be accelerated.
+//!
+//! `p A = F_weight + s M(x) dv/dt` with `M = (load + dead weight) (dh/dx)^2 + 20 kg`. One is the inertia of the weights
+//! as they are. On the dynamic starting point, which has that already, it is what comes on top: rocker, arms, mast. What
+//! turns with the shaft, `J (dphi/dx)^2` at the piston, no load makes heavier: a part of the share at 150 kg and mid stroke,
+//! it is a larger one at lighter loads.
+
+use hitch_plant::hooks::sites::{RunConditions, Sites};
+use hitch_plant::{Channel, Parameter, Search};
+
+use crate::described::Described;
+
+/// Longest step that follows the pressure of an accelerated load, s.
+const STEP_S: f64 = 0.005;
+
+/// Load at which the shaft's part is stated, kg.
+const USUAL_LOAD_KG: f64 = 150.0;
+
+const SHARE: Parameter = Parameter {
+    name: "share",
+    unit: "",
+    key: "share",
+    meaning: "share of the inertia of load and dead weight",
+    null: 0.0,
+    typical: 0.5,
+    low: 0.0,
+    high: 5.0,
+};
+
+/// Inertia that goes with the load.
+pub static OF_LOAD: Described = Described {
+    id: "load-inertia",
+    form: None,
+    title: "Inertia of load and linkage",
+    equation: "p A = F_weight + share M(x) dv/dt, M = m (dh/dx)^2 + 20 kg",
+    source: "Lagrange's equation of the linkage; rocker and arms of 0.3 to 0.8 kg m2 add 30 to 80 kg \
+         at the piston",
+    shows: "peaks of cylinder pressure when a movement starts or stops, in proportion to the load; \
+         on the dynamic starting point slower ringing",
+    parameters: &[SHARE],
+    channels: &[Channel::CylinderPressure],
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, _, sites| resist(values[0], 0.0, sites),
+};
+
+/// Inertia part of which is on the rocker shaft.
+pub static AND_SHAFT: Described = Described {
+    form: Some("shaft"),
+    title: "Inertia of load and linkage, part of it on the rocker shaft",
+    equation: "p A = F_weight + share ((1 - shaft) M(x) + shaft M_0 (dphi/dx)^2 / (dphi/dx)_0^2) dv/dt, \
+         M = m (dh/dx)^2 + 20 kg, 0: 150 kg at mid stroke",
+    parameters: &[
+        SHARE,
+        Parameter {
+            name: "shaft",
+            unit: "",
+            key: "shaft",
+            meaning: "part of it that turns with the rocker shaft, at 150 kg and mid stroke",
+            null: 0.0,
+            typical: 0.2,
+            low: 0.0,
+            high: 1.0,
+        },
+    ],
+    refines: true,
+    attach: |values, conditions, sites| {
+        let RunConditions {
+            constants, linkage, ..
+        } = conditions;
+        let middle_m = 0.5 * constants.cylinder.stroke_m;
+        let (turn_rad_m, _) = linkage.shaft_transmission(middle_m);
+        let of_load_kg = constants
+            .masses
+            .inertia_kg(USUAL_LOAD_KG, linkage.dh_dx(middle_m));
+        let on_shaft = values[0] * values[1];
+        resist(
+            values[0] - on_shaft,
+            on_shaft * of_load_kg / (turn_rad_m * turn_rad_m),
+            sites,
+        );
+    },
+    ..OF_LOAD
+};
+
+fn resist(share: f64, shaft_kg_m2: f64, sites: &mut Sites) {
+    sites.inertia_share += share;
+    sites.shaft_inertia_kg_m2 += shaft_kg_m2;
+    sites.limit_step(STEP_S);
+}

@@ -1,0 +1,70 @@
+//! `lowering-leakage`: the shut lowering valve and the check valve do not hold the load for ever.
+//!
+//! `Q = G p_C`, laminar flow through an annular gap (Merritt 3.3, `G = pi d c^3 / 12 mu l`), out of the cylinder past
+//! the flow meter. A seated poppet loses 5e-6 l/min/bar, a worn one a thousand times that. The gap widens or narrows
+//! with its housing, so that over a day's temperatures `G` may stay what it is; where the gap stays, it goes with the
+//! oil's fluidity.
+
+use hitch_plant::components::oil::viscosity_m2_s;
+use hitch_plant::hooks::sites::Sites;
+use hitch_plant::{Channel, Parameter, Search, units};
+
+use crate::described::Described;
+
+/// Temperature at which the conductance of a gap that stays is told, degree Celsius.
+const TOLD_AT_C: f64 = 40.0;
+
+const PARAMETERS: &[Parameter] = &[Parameter {
+    name: "conductance",
+    unit: "l/min/bar",
+    key: "conductance_lpm_per_bar",
+    meaning: "leakage flow over cylinder pressure, with oil of 40 degC",
+    null: 0.0,
+    typical: 0.002,
+    low: 0.0,
+    high: 0.1,
+}];
+
+const CHANNELS: &[Channel] = &[Channel::RockerAngle];
+
+/// Leakage alike at all temperatures.
+pub static EVEN: Described = Described {
+    id: "lowering-leakage",
+    form: None,
+    title: "Leakage of the load-holding valves",
+    equation: "Q_leak = conductance * p_C",
+    source: "laminar gap, Merritt 3.3; worn load-holding valves",
+    shows: "the hitch sinks while holding, faster under heavy loads; little else",
+    parameters: PARAMETERS,
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, _, sites| leak(values[0], sites),
+};
+
+/// Leakage of hot, thin oil.
+pub static THINNING: Described = Described {
+    id: "lowering-leakage",
+    form: Some("thinning"),
+    title: "Leakage of the load-holding valves, of thin oil more",
+    equation: "Q_leak = conductance nu(40 C) / nu(T) p_C",
+    source: "laminar gap that stays as wide, Merritt 3.3: G goes with 1 / mu",
+    shows: "the hitch sinks while holding, faster under heavy loads and with hot oil; little else",
+    parameters: PARAMETERS,
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, conditions, sites| {
+        let fluidity = viscosity_m2_s(TOLD_AT_C) / viscosity_m2_s(conditions.oil_temperature_c);
+        leak(values[0] * fluidity, sites);
+    },
+};
+
+fn leak(conductance_lpm_bar: f64, sites: &mut Sites) {
+    let conductance = units::m3_s_from_lpm(conductance_lpm_bar) / units::PA_PER_BAR;
+    sites.leakage.push(Box::new(move |pressure_pa| {
+        conductance * pressure_pa.max(0.0)
+    }));
+}

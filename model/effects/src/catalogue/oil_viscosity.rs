@@ -1,0 +1,104 @@
+//! `oil-viscosity`: part of the flow through the valves is laminar.
+//!
+//! A series about the point where the lowering valve's table holds says it with two numbers: `Q = Q_table(I) [(1 - s)
+//! sqrt(dp/dp_ref) + s (dp/dp_ref) nu(40 C)/nu(T)]`: `s` is the laminar share of the flow at the reference drop and 40
+//! degrees (a series of the laminar-turbulent transition of McCloy & Martin about that point). Viscosity falls by 4 to
+//! 6 % a kelvin: `nu = nu(40 C) exp(-fall (T - 40 C))`, a local form of Walther's equation.
+//!
+//! The transition itself, in both valves: `Q = Q_table(I) tanh(2 lambda / lambda_c)` with the flow number
+//! `lambda = D_h sqrt(2 dp / rho) / nu(T)`. The hydraulic diameter is twice the gap, which opens by 4 mm an ampere, so
+//! this one shows at the lowest currents.
+
+use hitch_plant::components::oil::viscosity_m2_s;
+use hitch_plant::hooks::sites::{RunConditions, Sites};
+use hitch_plant::{Channel, Parameter, Search};
+
+use crate::described::Described;
+
+/// Temperature at which the valve's table holds, degree Celsius.
+const REFERENCE_C: f64 = 40.0;
+
+/// Hydraulic diameter of a valve's gap for each ampere beyond the threshold, m/A: twice its opening, 4 mm/A.
+const DIAMETER_M_A: f64 = 2.0 * 0.004;
+
+/// Laminar share of the flow through the lowering valve.
+pub static SERIES: Described = Described {
+    id: "oil-viscosity",
+    form: None,
+    title: "Laminar flow in the lowering valve",
+    equation: "Q = Q_table(I) [(1 - share) sqrt(r) + share r exp(fall (T - 40 C))], r = dp / 15 bar",
+    source: "laminar-turbulent transition, McCloy & Martin; SAE 30 loses 4 to 6 % of its viscosity a \
+         kelvin",
+    shows: "lowering slower when cold and faster when warm, and more than with the square root of \
+         the pressure; at one temperature the opposite of a flow force",
+    parameters: &[
+        Parameter {
+            name: "share",
+            unit: "",
+            key: "share",
+            meaning: "laminar share of the flow at 15 bar and 40 C",
+            null: 0.0,
+            typical: 0.2,
+            low: 0.0,
+            high: 1.0,
+        },
+        Parameter {
+            name: "fall",
+            unit: "1/K",
+            key: "fall_1_k",
+            meaning: "fall of the viscosity with temperature",
+            null: 0.0,
+            typical: 0.042,
+            low: 0.02,
+            high: 0.08,
+        },
+    ],
+    channels: &[Channel::Flow, Channel::RockerAngle],
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: attach_series,
+};
+
+fn attach_series(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
+    let share = values[0];
+    let thinner = (values[1] * (conditions.oil_temperature_c - REFERENCE_C)).exp();
+    let reference_pa = conditions.constants.lower_valve.reference_drop_pa;
+    sites.lower_drop_factor.push(Box::new(move |drop_pa| {
+        1.0 - share + share * thinner * (drop_pa.max(0.0) / reference_pa).sqrt()
+    }));
+}
+
+/// Transition from laminar to turbulent flow in both valves.
+pub static FLOW_NUMBER: Described = Described {
+    id: "oil-viscosity",
+    form: Some("flow-number"),
+    title: "Transition from laminar to turbulent flow in both valves",
+    equation: "Q = Q_table(I) tanh(2 lambda / critical), lambda = 2 (4 mm/A) (I - I_0) sqrt(2 dp / rho) / nu(T)",
+    source: "McCloy & Martin, Control of Fluid Power, 2nd ed. 1980; critical flow number 100 to 250 for spools; \
+         viscosity of SAE 30 by Walther's equation",
+    shows: "less flow at the lowest currents, by far more when cold; at one temperature a twin of a \
+         threshold",
+    parameters: &[Parameter {
+        name: "critical",
+        unit: "",
+        key: "critical_flow_number",
+        meaning: "flow number at which the flow turns turbulent",
+        null: 0.0,
+        typical: 100.0,
+        low: 0.0,
+        high: 1000.0,
+    }],
+    channels: &[Channel::Flow, Channel::RockerAngle],
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: attach_flow_number,
+};
+
+fn attach_flow_number(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
+    let per_root_pa = (2.0 / conditions.constants.oil.density_kg_m3).sqrt();
+    let viscosity = viscosity_m2_s(conditions.oil_temperature_c);
+    sites.flow_number_1_a_sqrt_pa =
+        Some(2.0 * DIAMETER_M_A * per_root_pa / (viscosity * values[0]));
+}

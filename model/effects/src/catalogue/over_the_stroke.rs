@@ -1,0 +1,24 @@
+//! What is not the same all over the stroke, as a slope and a bow.
+
+use hitch_plant::Parameter;
+
+/// A parameter that tells how a relative quantity differs over the stroke.
+pub(crate) const fn shape(name: &'static str, meaning: &'static str, widest: f64) -> Parameter {
+    Parameter {
+        name,
+        unit: "",
+        key: name,
+        meaning,
+        null: 0.0,
+        typical: 0.1,
+        low: -widest,
+        high: widest,
+    }
+}
+
+/// A quantity at a piston travel over its mean over the stroke: `1 + slope z + bow (3 z^2 - 1) / 2` with
+/// `z = 2 x / stroke - 1`, Legendre's polynomials, whose mean over the stroke is nought.
+pub(crate) fn over_mean([slope, bow]: [f64; 2], piston_m: f64, stroke_m: f64) -> f64 {
+    let z = 2.0 * piston_m / stroke_m - 1.0;
+    1.0 + slope * z + 0.5 * bow * (3.0 * z * z - 1.0)
+}

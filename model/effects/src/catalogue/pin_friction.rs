@@ -1,0 +1,79 @@
+//! `pin-friction`: dry friction in the linkage's pins, proportional to the load.
+//!
+//! `F = e F_weight tanh(v / 3 mm/s)`: each pin resists with `mu r |F_pin|`, and all pin forces grow with the load. With
+//! mu 0.10 to 0.20 and radii of 10 to 30 mm, e is 0.03 to 0.08. What a pin adds to e goes with how much it turns for the
+//! piston's way, `e = sum mu r |F_pin| |dphi/dx| / F_weight`, and so with the stroke: a slope and a bow over it say how.
+
+use hitch_plant::hooks::sites::{RunConditions, Sites};
+use hitch_plant::{Channel, Parameter, Search};
+
+use crate::catalogue::coulomb_friction::TRANSITION_SPEED_M_S;
+use crate::catalogue::over_the_stroke;
+use crate::described::Described;
+
+const SHARE: Parameter = Parameter {
+    name: "share",
+    unit: "",
+    key: "share",
+    meaning: "friction over the weight's force",
+    null: 0.0,
+    typical: 0.05,
+    low: 0.0,
+    high: 0.5,
+};
+
+/// Friction in the pins of the linkage.
+pub static EVEN: Described = Described {
+    id: "pin-friction",
+    form: None,
+    title: "Friction in the pins of the linkage",
+    equation: "F = share F_weight tanh(v / 3 mm/s)",
+    source: "sum of mu r |F_pin| |dphi/dx| over the pins; 3 to 8 % of the weight's force",
+    shows: "cylinder pressure steps down from lifting to holding and again to lowering, in \
+         proportion to the load; slower lowering at every load",
+    parameters: &[SHARE],
+    channels: &[
+        Channel::PumpPressure,
+        Channel::CylinderPressure,
+        Channel::Flow,
+        Channel::RockerAngle,
+    ],
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, conditions, sites| rub(values[0], [0.0; 2], conditions, sites),
+};
+
+/// Friction in pins that turn more in one part of the stroke than in another.
+pub static UNEVEN: Described = Described {
+    form: Some("uneven"),
+    title: "Friction in the pins of the linkage, uneven over the stroke",
+    equation: "F = share (1 + slope z + bow (3 z^2 - 1) / 2) F_weight tanh(v / 3 mm/s), z = 2 x / stroke - 1",
+    shows: "cylinder pressure steps down from lifting to holding and again to lowering, in proportion to the load and \
+         elsewhere in the stroke by another share",
+    parameters: &[
+        SHARE,
+        over_the_stroke::shape(
+            "slope",
+            "growth of the share from mid stroke to the upper end",
+            1.0,
+        ),
+        over_the_stroke::shape(
+            "bow",
+            "growth of the share towards both ends of the stroke",
+            1.0,
+        ),
+    ],
+    refines: true,
+    attach: |values, conditions, sites| rub(values[0], [values[1], values[2]], conditions, sites),
+    ..EVEN
+};
+
+fn rub(share: f64, shape: [f64; 2], conditions: RunConditions<'_>, sites: &mut Sites) {
+    let stroke_m = conditions.constants.cylinder.stroke_m;
+    sites.friction.push(Box::new(move |state, weight_n| {
+        // Friction never drives.
+        let there = over_the_stroke::over_mean(shape, state.piston_m, stroke_m).max(0.0);
+        share * there * weight_n * (state.speed_m_s / TRANSITION_SPEED_M_S).tanh()
+    }));
+}

@@ -1,0 +1,56 @@
+//! `pressure-sensor-offset`: the cylinder pressure sensor is off by a constant.
+//!
+//! `y = p + o`; 0.25 to 1 % of a full scale of 250 or 350 bar is 0.6 to 3.5 bar, more with temperature.
+
+use hitch_plant::Reading;
+use hitch_plant::hooks::sites::{RunConditions, SensorStage, Sites};
+use hitch_plant::{Channel, Parameter, Search};
+
+use crate::described::Described;
+
+/// Offset of the cylinder pressure sensor.
+pub static PRESSURE_SENSOR_OFFSET: Described = Described {
+    id: "pressure-sensor-offset",
+    form: None,
+    title: "Offset of the cylinder pressure sensor",
+    equation: "y = p_C + offset",
+    source: "data sheets of mobile pressure sensors, 0.25 to 1 % of full scale",
+    shows: "cylinder pressure off by the same everywhere while pump pressure and flows fit; in \
+         pressure alone easily taken for dead weight",
+    parameters: &[Parameter {
+        name: "offset",
+        unit: "bar",
+        key: "offset_bar",
+        meaning: "what the sensor shows too much",
+        null: 0.0,
+        typical: 0.8,
+        low: -20.0,
+        high: 20.0,
+    }],
+    channels: &[Channel::CylinderPressure],
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach,
+};
+
+fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+    sites.sensors.push(Box::new(Offset {
+        offset_bar: values[0],
+    }));
+}
+
+#[derive(Debug)]
+struct Offset {
+    offset_bar: f64,
+}
+
+impl SensorStage for Offset {
+    fn rest(&mut self, reading: &mut Reading) {
+        reading.cylinder_pressure_bar += self.offset_bar;
+    }
+
+    fn advance(&mut self, reading: &mut Reading, _: f64) {
+        self.rest(reading);
+    }
+}

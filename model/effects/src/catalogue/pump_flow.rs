@@ -1,0 +1,36 @@
+//! `pump-flow`: the pump delivers another flow than declared.
+//!
+//! `Q_pump = (1 + change) Q_declared`: another speed of the engine, or another displacement; a worn pump slips with the
+//! pressure instead (`pump-leakage`). It shows only where the lift valve asks for more than there is.
+
+use hitch_plant::{Channel, Parameter, Search};
+
+use crate::described::Described;
+
+/// Another flow than declared.
+pub static PUMP_FLOW: Described = Described {
+    id: "pump-flow",
+    form: None,
+    title: "Flow of the pump, off the declared one",
+    equation: "Q_pump = (1 + change) 48 l/min",
+    source: "engine speed and displacement; what is less than a fifth off is seldom missed by a lift",
+    shows: "lifting at high currents, alike at all pressures; invisible while the compensator has flow to spare",
+    parameters: &[Parameter {
+        name: "change",
+        unit: "",
+        key: "change",
+        meaning: "change of the flow as a share of the declared one",
+        null: 0.0,
+        typical: -0.3,
+        low: -0.7,
+        high: 1.0,
+    }],
+    channels: &[Channel::PumpPressure, Channel::Flow],
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, conditions, sites| {
+        let lost_m3_s = -values[0] * conditions.constants.pump.flow_m3_s();
+        sites.pump_slip.push(Box::new(move |_| lost_m3_s));
+    },
+};

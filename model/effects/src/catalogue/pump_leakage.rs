@@ -1,0 +1,43 @@
+//! `pump-leakage`: the pump slips under pressure.
+//!
+//! Wilson's laminar slip, `Q = Q_0 - k p` (Merritt 4.2). The compensator sends what nobody needs to tank, so a smaller
+//! delivery shows only where the lift valve asks for more than is left.
+
+use hitch_plant::hooks::sites::{RunConditions, Sites};
+use hitch_plant::units::{m3_s_from_lpm, pa_from_bar};
+use hitch_plant::{Channel, Parameter, Search};
+
+use crate::described::Described;
+
+/// Slip of the pump.
+pub static PUMP_LEAKAGE: Described = Described {
+    id: "pump-leakage",
+    form: None,
+    title: "Slip of the pump",
+    equation: "Q_pump = 48 l/min - slip p_P",
+    source: "Wilson's slip flow, Merritt 4.2: efficiency 0.88 at 150 bar is 0.044 l/min/bar",
+    shows: "lifting fast against high pressure, where demand exceeds delivery; invisible while the \
+         compensator has flow to spare",
+    parameters: &[Parameter {
+        name: "slip",
+        unit: "l/min/bar",
+        key: "slip_lpm_bar",
+        meaning: "flow lost for each bar of pump pressure",
+        null: 0.0,
+        typical: 0.1,
+        low: 0.0,
+        high: 0.5,
+    }],
+    channels: &[Channel::PumpPressure, Channel::Flow],
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach,
+};
+
+fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+    let slip_m3_s_pa = m3_s_from_lpm(values[0]) / pa_from_bar(1.0);
+    sites.pump_slip.push(Box::new(move |pump_pressure_pa| {
+        slip_m3_s_pa * pump_pressure_pa
+    }));
+}

@@ -1,0 +1,58 @@
+//! `relief-override`: the relief valve opens before its setting and needs more than it to pass the whole flow.
+//!
+//! `p_P = p_crack + override Q_relief / Q_pump`: its spring gives as it opens (Merritt 5.6). The setting is stated at
+//! some flow: `above` is the part of the override that lies above the 154 bar, none if they hold at the pump's whole
+//! flow. 10 to 25 bar at 48 l/min; valves crack at 0.85 to 0.93 of their setting.
+
+use hitch_plant::hooks::sites::{ReliefOverride, RunConditions, Sites};
+use hitch_plant::units::pa_from_bar;
+use hitch_plant::{Channel, Parameter, Search};
+
+use crate::described::Described;
+
+/// Override of the relief valve.
+pub static RELIEF_OVERRIDE: Described = Described {
+    id: "relief-override",
+    form: None,
+    title: "Override of the relief valve",
+    equation: "p_P = 154 bar + override (Q_relief / 48 l/min - 1 + above)",
+    source: "Merritt 5.6; 10 to 25 bar over the range of a direct-acting valve, Hopsan's example 15 \
+         bar at 42 l/min",
+    shows: "lifting against more than 130 bar and pump pressure at the upper end of the stroke: only \
+         there does the relief valve work",
+    parameters: &[
+        Parameter {
+            name: "override",
+            unit: "bar",
+            key: "override_bar",
+            meaning: "rise of the pump pressure from cracking to the pump's whole flow",
+            null: 0.0,
+            typical: 15.0,
+            low: 0.0,
+            high: 60.0,
+        },
+        Parameter {
+            name: "above",
+            unit: "",
+            key: "above",
+            meaning: "share of it above the setting",
+            null: 0.2,
+            typical: 0.0,
+            low: 0.0,
+            high: 1.0,
+        },
+    ],
+    channels: &[Channel::PumpPressure, Channel::Flow],
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach,
+};
+
+fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+    let override_pa = pa_from_bar(values[0]);
+    sites.relief = Some(ReliefOverride {
+        override_pa,
+        below_setting_pa: override_pa * (1.0 - values[1]),
+    });
+}

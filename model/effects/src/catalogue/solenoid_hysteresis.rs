@@ -1,0 +1,93 @@
+//! `solenoid-hysteresis`: the spool sticks to where it was (magnetic hysteresis and friction of the armature).
+//!
+//! Play operator on either current, `w = clamp(w_before, I - H/2, I + H/2)`, `Q = Q_table(w)`: the flow over a slow
+//! triangular current runs on two branches H apart, the data sheet's curve between them (Visintin; Jelali & Kroll,
+//! ch. 4). H is 3 to 6 % of 3.3 A with dither, 8 to 12 % on plain direct current.
+
+use hitch_plant::hooks::sites::{CurrentStage, RunConditions, Sites};
+use hitch_plant::{Channel, Currents, Effect, Parameter, Valve};
+
+/// Hysteresis of both solenoids.
+#[derive(Debug)]
+pub struct SolenoidHysteresis;
+
+static PARAMETERS: [Parameter; 1] = [Parameter {
+    name: "width",
+    unit: "A",
+    key: "width_a",
+    meaning: "distance of the rising from the falling branch",
+    null: 0.0,
+    typical: 0.12,
+    low: 0.0,
+    high: 0.8,
+}];
+
+impl Effect for SolenoidHysteresis {
+    fn id(&self) -> &'static str {
+        "solenoid-hysteresis"
+    }
+
+    fn rank(&self) -> usize {
+        super::rank(self.id())
+    }
+
+    fn title(&self) -> &'static str {
+        "Hysteresis of the solenoids"
+    }
+
+    fn equation(&self) -> &'static str {
+        "w = clamp(w_before, I - width/2, I + width/2); Q = Q_table(w)"
+    }
+
+    fn source(&self) -> &'static str {
+        "play operator, Visintin; Jelali & Kroll ch. 4; 0.10 to 0.20 A with dither, 0.25 to 0.4 A on plain DC"
+    }
+
+    fn shows(&self) -> &'static str {
+        "a loop in flow over a triangular current; after a step down more flow than after a step up; with steps from \
+         zero alone easily taken for a shifted threshold"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &PARAMETERS
+    }
+
+    fn channels(&self) -> &'static [Channel] {
+        &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle]
+    }
+
+    fn attach(&self, values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+        sites.currents.push(Box::new(Play {
+            half_width_a: 0.5 * values[0],
+            spool: Currents::default(),
+        }));
+    }
+}
+
+/// Play operator on both currents.
+#[derive(Debug)]
+struct Play {
+    half_width_a: f64,
+    spool: Currents,
+}
+
+impl CurrentStage for Play {
+    /// Coming from zero, the spool has followed as far as the play lets it.
+    fn rest(&mut self, currents: Currents) -> Currents {
+        self.spool = Currents::default();
+        self.advance(currents, 0.0)
+    }
+
+    fn advance(&mut self, currents: Currents, _: f64) -> Currents {
+        let half_a = self.half_width_a;
+        let before = self.spool;
+        self.spool = currents.map(|valve, current_a| {
+            let spool_a = match valve {
+                Valve::Lift => before.lift_a,
+                Valve::Lowering => before.lower_a,
+            };
+            spool_a.max(current_a - half_a).min(current_a + half_a)
+        });
+        self.spool
+    }
+}

@@ -1,0 +1,231 @@
+//! `spool-lag`: the spools follow their currents late.
+//!
+//! Coil and spool together behave like a second-order, well damped system: 40 to 100 ms to 90 % of a step for valves of
+//! this class (Merritt, ch. 6; data sheets). The usual form is two first-order lags in series: `share` moves part of the
+//! lag into the second one; none is a plain first-order lag, a half is critical damping. A spool with less damping than
+//! that swings past its place: 5 to 15 Hz and a damping of 0.7 to 1 are usual. Both are exact at any step as long as the
+//! current runs linearly. On the dynamic starting point it comes on top of the 45 ms that are declared there; a negative
+//! lag takes from those, down to none.
+
+use hitch_plant::Currents;
+use hitch_plant::components::lag::Lag;
+use hitch_plant::hooks::sites::{CurrentStage, RunConditions, Sites};
+use hitch_plant::{Channel, Parameter, Search};
+
+use crate::described::Described;
+
+const CHANNELS: &[Channel] = &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle];
+
+/// Spools that creep to their place.
+pub static CREEPING: Described = Described {
+    id: "spool-lag",
+    form: None,
+    title: "Lag of the spools",
+    equation: "(1 - share) lag w1' + w1 = I; share lag w' + w = w1; Q = Q_table(w)",
+    source: "second-order spool, Merritt ch. 6; data sheets of proportional valves: 40 to 100 ms to \
+         90 % of a step",
+    shows: "flow and pump pressure follow every edge of a current late, by the same time at any \
+         load; a shifted clock shifts every channel alike",
+    parameters: &[
+        Parameter {
+            name: "lag",
+            unit: "s",
+            key: "lag_s",
+            meaning: "sum of the two time constants",
+            null: 0.0,
+            typical: 0.05,
+            low: -0.1,
+            high: 1.0,
+        },
+        Parameter {
+            name: "share",
+            unit: "",
+            key: "share",
+            meaning: "share of the lag in the second stage",
+            null: 0.0,
+            typical: 0.25,
+            low: 0.0,
+            high: 0.5,
+        },
+    ],
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: attach_creeping,
+};
+
+/// Spools that swing past their place.
+pub static SWINGING: Described = Described {
+    id: "spool-lag",
+    form: Some("swinging"),
+    title: "Lag of the spools, which swing",
+    equation: "(lag / 2 damping)^2 w'' + lag w' + w = I; Q = Q_table(w)",
+    source: "second-order spool, Merritt ch. 6; data sheets of proportional valves: 5 to 15 Hz, damping \
+         0.7 to 1",
+    shows: "flow and pump pressure follow every edge of a current late, by the same time at any \
+         load, and overshoot a little",
+    parameters: &[
+        Parameter {
+            name: "lag",
+            unit: "s",
+            key: "lag_s",
+            meaning: "how late it follows a ramp of the current",
+            null: 0.0,
+            typical: 0.05,
+            low: 0.0,
+            high: 1.0,
+        },
+        Parameter {
+            name: "damping",
+            unit: "",
+            key: "damping",
+            meaning: "damping ratio of the spool",
+            null: 1.0,
+            typical: 0.8,
+            low: 0.3,
+            high: 0.99,
+        },
+    ],
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: attach_swinging,
+};
+
+fn attach_swinging(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+    let (lag_s, damping) = (values[0], values[1]);
+    sites.currents.push(Box::new(SwingingSpools {
+        frequency_rad_s: 2.0 * damping / lag_s,
+        damping,
+        free: Free::default(),
+        spools: [Swinging::default(); 2],
+    }));
+}
+
+fn attach_creeping(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+    if values[0] < 0.0 {
+        sites.spool_lag_extra_s += values[0];
+        return;
+    }
+    let second_s = values[0] * values[1];
+    for time_constant_s in [values[0] - second_s, second_s] {
+        sites.currents.push(Box::new(SpoolLag {
+            time_constant_s,
+            spools: [Lag::at_rest(time_constant_s, 0.0); 2],
+        }));
+    }
+}
+
+/// First-order lag of both spools.
+#[derive(Debug)]
+struct SpoolLag {
+    time_constant_s: f64,
+    spools: [Lag; 2],
+}
+
+impl CurrentStage for SpoolLag {
+    fn rest(&mut self, currents: Currents) -> Currents {
+        self.spools = [currents.lift_a, currents.lower_a]
+            .map(|current_a| Lag::at_rest(self.time_constant_s, current_a));
+        currents
+    }
+
+    fn advance(&mut self, currents: Currents, dt_s: f64) -> Currents {
+        Currents {
+            lift_a: self.spools[0].advance(currents.lift_a, dt_s),
+            lower_a: self.spools[1].advance(currents.lower_a, dt_s),
+        }
+    }
+}
+
+/// Second-order lag of both spools.
+#[derive(Debug)]
+struct SwingingSpools {
+    frequency_rad_s: f64,
+    damping: f64,
+    /// Of the last step: steps are mostly alike, and sine and `exp` are dear.
+    free: Free,
+    spools: [Swinging; 2],
+}
+
+/// What becomes of a spool's swing in one step, the same for both.
+#[derive(Debug, Clone, Copy, Default)]
+struct Free {
+    dt_s: f64,
+    /// How fast it dies away, and its own frequency, 1/s.
+    decay: f64,
+    swing: f64,
+    /// What is left of it, and how far round it has gone.
+    left: f64,
+    sine: f64,
+    cosine: f64,
+}
+
+impl Free {
+    fn new(frequency_rad_s: f64, damping: f64, dt_s: f64) -> Self {
+        let decay = damping * frequency_rad_s;
+        let swing = frequency_rad_s * (1.0 - damping * damping).sqrt();
+        let (sine, cosine) = (swing * dt_s).sin_cos();
+        Self {
+            dt_s,
+            decay,
+            swing,
+            left: (-decay * dt_s).exp(),
+            sine,
+            cosine,
+        }
+    }
+}
+
+/// One of them, in terms of the current.
+#[derive(Debug, Clone, Copy, Default)]
+struct Swinging {
+    input_a: f64,
+    place_a: f64,
+    speed_a_s: f64,
+}
+
+impl Swinging {
+    /// Goes on while the current runs linearly to `input_a`, which it follows `late_s` behind: what is left of the way
+    /// to there swings and dies away.
+    fn advance(&mut self, free: &Free, late_s: f64, input_a: f64) {
+        let rate_a_s = (input_a - self.input_a) / free.dt_s;
+        let behind_a = late_s * rate_a_s;
+        let away_a = self.place_a - self.input_a + behind_a;
+        let away_a_s = self.speed_a_s - rate_a_s;
+        let quadrature_a = (away_a_s + free.decay * away_a) / free.swing;
+        let left_a = free.left * (away_a * free.cosine + quadrature_a * free.sine);
+        let turning_a = free.left * (quadrature_a * free.cosine - away_a * free.sine);
+        self.place_a = input_a - behind_a + left_a;
+        self.speed_a_s = rate_a_s + free.swing * turning_a - free.decay * left_a;
+        self.input_a = input_a;
+    }
+}
+
+impl CurrentStage for SwingingSpools {
+    fn rest(&mut self, currents: Currents) -> Currents {
+        self.spools = [currents.lift_a, currents.lower_a].map(|current_a| Swinging {
+            input_a: current_a,
+            place_a: current_a,
+            speed_a_s: 0.0,
+        });
+        currents
+    }
+
+    fn advance(&mut self, currents: Currents, dt_s: f64) -> Currents {
+        if dt_s > 0.0 {
+            if self.free.dt_s != dt_s {
+                self.free = Free::new(self.frequency_rad_s, self.damping, dt_s);
+            }
+            let late_s = 2.0 * self.damping / self.frequency_rad_s;
+            let inputs_a = [currents.lift_a, currents.lower_a];
+            for (spool, input_a) in self.spools.iter_mut().zip(inputs_a) {
+                spool.advance(&self.free, late_s, input_a);
+            }
+        }
+        let [lift_a, lower_a] = self.spools.map(|spool| spool.place_a);
+        Currents { lift_a, lower_a }
+    }
+}

@@ -1,0 +1,184 @@
+//! `spool-stiction`: the spools stick, then jump.
+//!
+//! Two-parameter stick-slip: a spool stays until the current has gone `band` away from where it stuck, then jumps after
+//! it by the share `jump` of the band. 0.5 to 2 % of the current range with dither, 3 to 6 % on plain direct current.
+//! What comes next is a matter of how much less friction a moving spool has: it sticks again at once (Kano 2004), or
+//! follows the current, half of what the jump left of the band behind, until that turns or stands still (Choudhury,
+//! Thornhill and Shah 2005).
+
+use hitch_plant::hooks::sites::{CurrentStage, Sites};
+use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::{Currents, Valve};
+
+use crate::described::Described;
+
+/// Largest change of a current in a step, A: a jump is noticed at the end of a step, and what it is late on a fast ramp
+/// would be taken for a wider band.
+const CHANGE_A: f64 = 0.002;
+
+/// Change of the current under which it stands still, A/s: a cleaned record holds its plateaus to less.
+const STILL_A_S: f64 = 0.005;
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter {
+        name: "band",
+        unit: "A",
+        key: "band_a",
+        meaning: "change of current that a resting spool does not follow",
+        null: 0.0,
+        typical: 0.08,
+        low: 0.0,
+        high: 0.5,
+    },
+    Parameter {
+        name: "jump",
+        unit: "",
+        key: "jump",
+        meaning: "share of the band that it makes good in one jump",
+        null: 0.5,
+        typical: 0.9,
+        low: 0.5,
+        high: 1.0,
+    },
+];
+
+const CHANNELS: &[Channel] = &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle];
+
+/// Spools that stick again after every jump.
+pub static STICKING: Described = Described {
+    id: "spool-stiction",
+    form: None,
+    title: "Stiction of the spools",
+    equation: "|I - w| > band: w = w + sign(I - w) jump band; else w stays; Q = Q_table(w)",
+    source: "Kano et al. 2004; 0.5 to 2 % of 3.3 A with dither, 3 to 6 % on plain DC",
+    shows: "a slow ramp of current gives plateaus and jumps of flow; small reversals change nothing; \
+         on steps alone a twin of hysteresis",
+    parameters: PARAMETERS,
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Jumps,
+    refines: false,
+    attach: |values, _, sites| attach(values, sites, Jumping::default()),
+};
+
+/// Spools that follow the current once they are loose.
+pub static FOLLOWING: Described = Described {
+    id: "spool-stiction",
+    form: Some("following"),
+    title: "Stiction of the spools, which follow once loose",
+    equation: "stuck at I_0 until |I - I_0| > band; then w = I - sign(dI/dt) (1 - jump) band / 2 until \
+         I turns or stands still; Q = Q_table(w)",
+    source: "Choudhury, Thornhill & Shah 2005; 0.5 to 2 % of 3.3 A with dither, 3 to 6 % on plain DC",
+    shows: "a slow ramp of current starts late and with a jump, a staircase gives plateaus and jumps; \
+         small reversals change nothing; on steps alone a twin of hysteresis",
+    parameters: PARAMETERS,
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Ledges,
+    refines: false,
+    attach: |values, _, sites| attach(values, sites, Following::default()),
+};
+
+/// Attaches spools of a kind to both valves.
+fn attach<S: Spool + 'static>(values: &[f64], sites: &mut Sites, spool: S) {
+    sites.limit_change(CHANGE_A);
+    let band_a = values[0];
+    sites.currents.push(Box::new(Sticking {
+        friction: Friction {
+            band_a,
+            jump_a: band_a * values[1],
+        },
+        lift: spool,
+        lowering: spool,
+    }));
+}
+
+/// Stiction of a spool.
+#[derive(Debug, Clone, Copy)]
+struct Friction {
+    band_a: f64,
+    jump_a: f64,
+}
+
+/// A spool that sticks, in terms of the current.
+trait Spool: std::fmt::Debug + Copy + Default + Send + Sync {
+    /// Where it is, A, when the current has come to `current_a` within `dt_s`.
+    fn advance(&mut self, friction: Friction, current_a: f64, dt_s: f64) -> f64;
+}
+
+/// The spools of both valves.
+#[derive(Debug)]
+struct Sticking<S> {
+    friction: Friction,
+    lift: S,
+    lowering: S,
+}
+
+impl<S: Spool> CurrentStage for Sticking<S> {
+    /// Coming from zero, a spool that had to move has just jumped.
+    fn rest(&mut self, currents: Currents) -> Currents {
+        (self.lift, self.lowering) = (S::default(), S::default());
+        self.advance(currents, 0.0)
+    }
+
+    fn advance(&mut self, currents: Currents, dt_s: f64) -> Currents {
+        let friction = self.friction;
+        currents.map(|valve, current_a| {
+            let spool = match valve {
+                Valve::Lift => &mut self.lift,
+                Valve::Lowering => &mut self.lowering,
+            };
+            spool.advance(friction, current_a, dt_s)
+        })
+    }
+}
+
+/// A spool that sticks again after every jump.
+#[derive(Debug, Clone, Copy, Default)]
+struct Jumping {
+    place_a: f64,
+}
+
+impl Spool for Jumping {
+    /// Every jump starts where the current was just a band away, whenever the step notices.
+    fn advance(&mut self, friction: Friction, current_a: f64, _: f64) -> f64 {
+        let away_a = current_a - self.place_a;
+        let jumps = ((away_a.abs() - friction.band_a) / friction.jump_a)
+            .ceil()
+            .max(0.0);
+        self.place_a += (jumps * friction.jump_a).copysign(away_a);
+        self.place_a
+    }
+}
+
+/// A spool that follows once it is loose.
+#[derive(Debug, Clone, Copy, Default)]
+struct Following {
+    place_a: f64,
+    /// The current before.
+    before_a: f64,
+    /// The current at which it stuck.
+    stuck_a: f64,
+    /// Sign of its motion, zero while it sticks.
+    direction: f64,
+}
+
+impl Spool for Following {
+    fn advance(&mut self, friction: Friction, current_a: f64, dt_s: f64) -> f64 {
+        let change_a = current_a - self.before_a;
+        if self.direction != 0.0 && change_a * self.direction <= STILL_A_S * dt_s {
+            self.direction = 0.0;
+            self.stuck_a = self.before_a;
+        }
+        let away_a = current_a - self.stuck_a;
+        if self.direction == 0.0 && away_a.abs() > friction.band_a {
+            self.direction = away_a.signum();
+        }
+        if self.direction != 0.0 {
+            let behind_a = 0.5 * (friction.band_a - friction.jump_a);
+            self.place_a = current_a - self.direction * behind_a;
+        }
+        self.before_a = current_a;
+        self.place_a
+    }
+}

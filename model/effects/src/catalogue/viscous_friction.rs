@@ -1,0 +1,97 @@
+//! `viscous-friction`: friction that grows with speed.
+//!
+//! `F = f v`, oil sheared in seals and guides; 500 to 5000 N s/m, several times that when cold. In a guide's gap it goes
+//! with the viscosity, under a seal that floats on a film that grows with it with about its root (Jelali & Kroll 4.3). On
+//! the dynamic starting point it comes on top of the 12 000 N s/m declared there, and may take from them: together they
+//! are never less than none.
+
+use hitch_plant::components::oil::viscosity_m2_s;
+use hitch_plant::hooks::sites::Sites;
+use hitch_plant::{Channel, Dynamics, Parameter, Search};
+
+use crate::described::Described;
+
+/// Temperature at which the coefficient is told, degree Celsius.
+const TOLD_AT_C: f64 = 40.0;
+
+const COEFFICIENT: Parameter = Parameter {
+    name: "coefficient",
+    unit: "N s/m",
+    key: "coefficient_n_s_m",
+    meaning: "force over speed, with oil of 40 degC",
+    null: 0.0,
+    typical: 3000.0,
+    low: 0.0,
+    high: 100000.0,
+};
+
+const CHANNELS: &[Channel] = &[
+    Channel::PumpPressure,
+    Channel::CylinderPressure,
+    Channel::Flow,
+    Channel::RockerAngle,
+];
+
+/// Viscous friction alike at all temperatures.
+pub static EVEN: Described = Described {
+    id: "viscous-friction",
+    form: None,
+    title: "Viscous friction at the piston",
+    equation: "F = coefficient v",
+    source: "Jelali & Kroll 4.3; 500 to 5000 N s/m for seals of a 76 mm cylinder",
+    shows: "cylinder pressure higher while lifting and lower while lowering, the more the faster; \
+         slower lowering at high currents",
+    parameters: &[Parameter {
+        low: -100000.0,
+        ..COEFFICIENT
+    }],
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, conditions, sites| {
+        let declared_n_s_m = match conditions.constants.dynamics {
+            Dynamics::Steady => 0.0,
+            Dynamics::Dynamic => conditions.constants.cylinder.viscous_friction_n_s_m,
+        };
+        oppose(values[0].max(-declared_n_s_m), sites);
+    },
+};
+
+/// Viscous friction of cold, thick oil.
+pub static THICKENING: Described = Described {
+    id: "viscous-friction",
+    form: Some("thickening"),
+    title: "Viscous friction at the piston, in thick oil more",
+    equation: "F = coefficient (nu(T) / nu(40 C))^exponent v",
+    source: "Jelali & Kroll 4.3; 3 to 5 times as much when cold",
+    shows: "cylinder pressure higher while lifting and lower while lowering, the more the faster and the \
+         colder the oil",
+    parameters: &[
+        COEFFICIENT,
+        Parameter {
+            name: "exponent",
+            unit: "",
+            key: "exponent",
+            meaning: "power of the viscosity that it goes with",
+            null: 0.0,
+            typical: 0.7,
+            low: 0.0,
+            high: 1.5,
+        },
+    ],
+    channels: CHANNELS,
+    needs: None,
+    search: Search::Secants,
+    refines: false,
+    attach: |values, conditions, sites| {
+        let thickness = viscosity_m2_s(conditions.oil_temperature_c) / viscosity_m2_s(TOLD_AT_C);
+        oppose(values[0] * thickness.powf(values[1]), sites);
+    },
+};
+
+fn oppose(coefficient_n_s_m: f64, sites: &mut Sites) {
+    sites.friction.push(Box::new(move |state, _| {
+        coefficient_n_s_m * state.speed_m_s
+    }));
+}

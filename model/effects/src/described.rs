@@ -1,0 +1,74 @@
+//! An effect as data: its texts, its parameters, and a function that puts it into a plant.
+
+use hitch_plant::hooks::sites::{RunConditions, Sites};
+use hitch_plant::{Channel, Dynamics, Effect, Parameter, Search};
+
+/// An effect of the catalogue; every field is what the method of [`Effect`] of that name gives.
+pub struct Described {
+    pub(crate) id: &'static str,
+    pub(crate) form: Option<&'static str>,
+    pub(crate) title: &'static str,
+    pub(crate) equation: &'static str,
+    pub(crate) source: &'static str,
+    pub(crate) shows: &'static str,
+    pub(crate) parameters: &'static [Parameter],
+    pub(crate) channels: &'static [Channel],
+    pub(crate) needs: Option<Dynamics>,
+    pub(crate) search: Search,
+    pub(crate) refines: bool,
+    pub(crate) attach: fn(&[f64], RunConditions<'_>, &mut Sites),
+}
+
+impl Effect for Described {
+    fn id(&self) -> &'static str {
+        self.id
+    }
+
+    fn form(&self) -> Option<&'static str> {
+        self.form
+    }
+
+    fn title(&self) -> &'static str {
+        self.title
+    }
+
+    fn equation(&self) -> &'static str {
+        self.equation
+    }
+
+    fn source(&self) -> &'static str {
+        self.source
+    }
+
+    fn shows(&self) -> &'static str {
+        self.shows
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        self.parameters
+    }
+
+    fn channels(&self) -> &'static [Channel] {
+        self.channels
+    }
+
+    fn rank(&self) -> usize {
+        crate::catalogue::rank(self.id)
+    }
+
+    fn needs(&self) -> Option<Dynamics> {
+        self.needs
+    }
+
+    fn search(&self) -> Search {
+        self.search
+    }
+
+    fn refines(&self) -> bool {
+        self.refines
+    }
+
+    fn attach(&self, values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
+        (self.attach)(values, conditions, sites);
+    }
+}

@@ -1,0 +1,185 @@
+//! Infers the dimension of a formula, or says where its units do not agree.
+
+use hitch_input::fault::{Fault, shown};
+use hitch_input::{Dimension, Unit};
+use hitch_plant::hooks::signals::Signal;
+
+use crate::expression::operation::{Binary, Unary};
+use crate::expression::tree::{Kind, Node};
+
+/// The dimension of a formula whose parameters have these dimensions.
+///
+/// # Errors
+/// At the innermost part whose units do not agree.
+pub fn dimension(node: &Node, text: &str, parameters: &[Dimension]) -> Result<Dimension, Fault> {
+    Checker { text, parameters }.dimension(node)
+}
+
+struct Checker<'t> {
+    text: &'t str,
+    parameters: &'t [Dimension],
+}
+
+impl Checker<'_> {
+    fn dimension(&self, node: &Node) -> Result<Dimension, Fault> {
+        match &node.kind {
+            Kind::Number(_, dimension) => Ok(*dimension),
+            Kind::Signal(signal) => Ok(signal_dimension(signal)),
+            Kind::Parameter(index) => Ok(self.parameters[*index]),
+            Kind::Unary(operation, inner) => self.unary(node, *operation, self.dimension(inner)?),
+            Kind::Binary(operation, sides) => {
+                let dimensions = [self.dimension(&sides[0])?, self.dimension(&sides[1])?];
+                self.binary(node, *operation, sides, dimensions)
+            }
+        }
+    }
+
+    fn unary(&self, node: &Node, operation: Unary, inner: Dimension) -> Result<Dimension, Fault> {
+        match operation {
+            Unary::Negative | Unary::Abs | Unary::Ramp => Ok(inner),
+            Unary::Sign | Unary::Step => Ok(Dimension::NUMBER),
+            Unary::Sqrt | Unary::SignedSqrt => inner.power(0.5).ok_or_else(|| self.beyond(node)),
+            Unary::Exp | Unary::Ln | Unary::Tanh | Unary::Sin | Unary::Cos if inner.is_number() => {
+                Ok(inner)
+            }
+            Unary::Exp | Unary::Ln | Unary::Tanh | Unary::Sin | Unary::Cos => {
+                let what = format!(
+                    "the argument is {}, it has to be a pure number",
+                    inner.in_words()
+                );
+                Err(self.fault(node, &what, format!("divide it by something in {inner}")))
+            }
+        }
+    }
+
+    fn binary(
+        &self,
+        node: &Node,
+        operation: Binary,
+        sides: &[Node; 2],
+        [left, right]: [Dimension; 2],
+    ) -> Result<Dimension, Fault> {
+        match operation {
+            Binary::Multiply => left.times(right).ok_or_else(|| self.beyond(node)),
+            Binary::Divide => left.over(right).ok_or_else(|| self.beyond(node)),
+            Binary::Power => self.power(node, sides, [left, right]),
+            Binary::Add | Binary::Subtract | Binary::Min | Binary::Max if left == right => Ok(left),
+            Binary::Add | Binary::Subtract => {
+                let what = format!("left is {}, right {}", left.in_words(), right.in_words());
+                Err(self.fault(node, &what, self.reconcile(sides, [left, right])))
+            }
+            Binary::Min | Binary::Max => {
+                let what = format!(
+                    "one argument is {}, another {}",
+                    left.in_words(),
+                    right.in_words()
+                );
+                Err(self.fault(node, &what, self.reconcile(sides, [left, right])))
+            }
+        }
+    }
+
+    /// How to make two sides agree.
+    fn reconcile(&self, sides: &[Node; 2], dimensions: [Dimension; 2]) -> String {
+        for (side, other) in [(0, 1), (1, 0)] {
+            let node = &sides[side];
+            if matches!(node.kind, Kind::Number(_, dimension) if dimension.is_number()) {
+                let number = &self.text[node.span.clone()];
+                return format!("give the number a unit: {number}[{}]", dimensions[other]);
+            }
+        }
+        let piece = shown(&self.text[sides[1].span.clone()]);
+        match dimensions[0].over(dimensions[1]) {
+            Some(factor) => format!("multiply {piece} by something in {factor}"),
+            None => "give both the same unit".to_owned(),
+        }
+    }
+
+    fn power(
+        &self,
+        node: &Node,
+        [base, exponent]: &[Node; 2],
+        [base_dimension, exponent_dimension]: [Dimension; 2],
+    ) -> Result<Dimension, Fault> {
+        if !exponent_dimension.is_number() {
+            let what = format!(
+                "the exponent is {}, it has to be a pure number",
+                exponent_dimension.in_words()
+            );
+            return Err(self.fault(
+                node,
+                &what,
+                format!("divide it by something in {exponent_dimension}"),
+            ));
+        }
+        if base_dimension.is_number() {
+            return Ok(base_dimension);
+        }
+        let piece = |node: &Node| &self.text[node.span.clone()];
+        let mend = || {
+            format!(
+                "write (({}) / 1[{base_dimension}])^({})",
+                piece(base),
+                piece(exponent)
+            )
+        };
+        let Some(written) = written(exponent) else {
+            let what = format!(
+                "the base is {}, so its exponent has to be a written number such as 2, 0.5 or (1/3)",
+                base_dimension.in_words()
+            );
+            return Err(self.fault(node, &what, mend()));
+        };
+        base_dimension.power(written).ok_or_else(|| {
+            let what = format!(
+                "the base is {}, which has no power of {written}",
+                base_dimension.in_words()
+            );
+            self.fault(node, &what, mend())
+        })
+    }
+
+    fn beyond(&self, node: &Node) -> Fault {
+        self.fault(
+            node,
+            "its unit has a power that no quantity has",
+            "divide by written quantities first",
+        )
+    }
+
+    fn fault(&self, node: &Node, what: &str, mend: impl Into<String>) -> Fault {
+        let piece = shown(&self.text[node.span.clone()]);
+        Fault::at(self.text, node.span.start, format!("{piece}: {what}"), mend)
+    }
+}
+
+fn signal_dimension(signal: &Signal) -> Dimension {
+    Unit::parse(signal.unit)
+        .expect("the units of the table are units")
+        .dimension
+}
+
+/// The value of an exponent that holds nothing but written numbers.
+fn written(node: &Node) -> Option<f64> {
+    match &node.kind {
+        Kind::Number(value, _) => Some(*value),
+        Kind::Unary(operation, inner) => Some(operation.of(written(inner)?)),
+        Kind::Binary(operation, sides) => {
+            Some(operation.of(written(&sides[0])?, written(&sides[1])?))
+        }
+        Kind::Signal(_) | Kind::Parameter(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hitch_plant::hooks::signals::SIGNALS;
+
+    #[test]
+    fn every_signal_has_a_dimension() {
+        for signal in &SIGNALS {
+            signal_dimension(signal);
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! How somebody defines a term, and what can be wrong with it before its formula is looked at.
+
+use hitch_input::Unit;
+use hitch_input::fault::{Fault, shown};
+use hitch_plant::Place;
+use hitch_plant::hooks::signals::SIGNALS;
+
+use crate::expression::operation::Function;
+use crate::expression::token::is_whole_name;
+
+/// Most parameters of a term: measurements seldom tell more than two apart.
+const MOST_PARAMETERS: usize = 8;
+
+/// A parameter as somebody defines it. Values are in its unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParameterDefinition {
+    /// Name in the formula.
+    pub name: String,
+    /// Unit; empty for a pure number.
+    pub unit: String,
+    /// What it is; may be empty.
+    pub meaning: String,
+    /// Value that turns the term off. Of the first parameter only; the others keep their start value there.
+    pub null: f64,
+    /// Value to start a fit from: a size that is to be expected.
+    pub start: f64,
+    /// Smallest value that makes sense.
+    pub low: f64,
+    /// Largest value that makes sense.
+    pub high: f64,
+}
+
+/// A term as somebody defines it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TermDefinition {
+    /// Name in files, commands and reports.
+    pub id: String,
+    /// Name in words; may be empty.
+    pub title: String,
+    /// Where it acts.
+    pub place: Place,
+    /// The formula.
+    pub formula: String,
+    /// Its parameters; the first one is its size.
+    pub parameters: Vec<ParameterDefinition>,
+}
+
+/// The part of a definition that is at fault.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The name of the term.
+    Id,
+    /// The parameters as a whole.
+    Parameters,
+    /// A parameter, by its index, and its key in a model file.
+    Parameter(usize, &'static str),
+    /// The formula, at a byte.
+    Formula(usize),
+}
+
+/// What is wrong with the definition of a term, where, and how to mend it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TermError {
+    /// Where.
+    pub part: Part,
+    /// What.
+    pub what: String,
+    /// How to mend it.
+    pub mend: String,
+}
+
+impl std::fmt::Display for TermError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}; {}", self.what, self.mend)
+    }
+}
+
+impl std::error::Error for TermError {}
+
+impl From<Fault> for TermError {
+    fn from(fault: Fault) -> Self {
+        Self::new(Part::Formula(fault.byte), fault.what, fault.mend)
+    }
+}
+
+impl TermError {
+    /// A fault of a part.
+    pub fn new(part: Part, what: impl Into<String>, mend: impl Into<String>) -> Self {
+        let (what, mend) = (what.into(), mend.into());
+        Self { part, what, mend }
+    }
+}
+
+impl ParameterDefinition {
+    /// Its key in a model file: the name with the unit in it, `force_n`, `gain_lpm_per_bar`.
+    #[must_use]
+    pub fn key(&self) -> String {
+        let unit = self
+            .unit
+            .replace("l/min", "lpm")
+            .replace("/bar", "_per_bar")
+            .replace("degC", "c");
+        let words = unit
+            .split(|c: char| !c.is_ascii_alphanumeric())
+            .filter(|word| !word.is_empty());
+        words.fold(self.name.clone(), |key, word| {
+            key + "_" + &word.to_ascii_lowercase()
+        })
+    }
+}
+
+pub(crate) fn check_id(id: &str) -> Result<(), TermError> {
+    let good = id.split('-').all(|word| {
+        !word.is_empty()
+            && word
+                .chars()
+                .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit())
+    });
+    if good && id.len() <= 60 {
+        return Ok(());
+    }
+    let what = format!("{} cannot be the name of a term", shown(id));
+    Err(TermError::new(
+        Part::Id,
+        what,
+        "write words of small letters and digits joined by -, such as end-cushion",
+    ))
+}
+
+pub(crate) fn check_parameters(parameters: &[ParameterDefinition]) -> Result<Vec<Unit>, TermError> {
+    let count = parameters.len();
+    if count == 0 {
+        let mend = "add a [[term.parameter]]: the first one is the size of the term, which a fit looks for";
+        return Err(TermError::new(
+            Part::Parameters,
+            "the term has no parameter",
+            mend,
+        ));
+    }
+    if count > MOST_PARAMETERS {
+        let what = format!("the term has {count} parameters");
+        let mend = format!("it may have {MOST_PARAMETERS}; write known values as numbers");
+        return Err(TermError::new(Part::Parameters, what, mend));
+    }
+    let check = |(index, parameter): (usize, &ParameterDefinition)| {
+        check_name(index, parameters)?;
+        check_range(index, parameter)?;
+        let fault =
+            |fault: Fault| TermError::new(Part::Parameter(index, "unit"), fault.what, fault.mend);
+        Unit::parse(&parameter.unit).map_err(fault)
+    };
+    parameters.iter().enumerate().map(check).collect()
+}
+
+fn check_name(index: usize, parameters: &[ParameterDefinition]) -> Result<(), TermError> {
+    let parameter = &parameters[index];
+    let name = parameter.name.as_str();
+    let earlier = &parameters[..index];
+    let fault = |what: &str, mend: &str| {
+        Err(TermError::new(
+            Part::Parameter(index, "name"),
+            format!("{} {what}", shown(name)),
+            mend,
+        ))
+    };
+    if !is_whole_name(name) || name.len() > 40 {
+        return fault(
+            "cannot be the name of a parameter",
+            "write letters, digits and _, beginning with a letter",
+        );
+    }
+    if SIGNALS.iter().any(|signal| signal.name == name) || Function::named(name).is_some() {
+        return fault(
+            "is a signal or a function already",
+            "give the parameter another name",
+        );
+    }
+    let key = parameter.key();
+    if key == "id"
+        || earlier
+            .iter()
+            .any(|other| other.name == name || other.key() == key)
+    {
+        return fault("is there already", "give the parameter another name");
+    }
+    Ok(())
+}
+
+fn check_range(index: usize, parameter: &ParameterDefinition) -> Result<(), TermError> {
+    let ParameterDefinition {
+        name,
+        null,
+        start,
+        low,
+        high,
+        ..
+    } = parameter;
+    let fault = |key, what: String, mend: &str| {
+        Err(TermError::new(Part::Parameter(index, key), what, mend))
+    };
+    if !(low.is_finite() && high.is_finite() && low < high) {
+        return fault(
+            "low",
+            format!("the range of {name}, {low} to {high}, is empty"),
+            "low has to be below high",
+        );
+    }
+    let range = *low..=*high;
+    if !range.contains(start) {
+        return fault(
+            "start",
+            format!("start = {start} of {name} is outside of {low} to {high}"),
+            "widen the range",
+        );
+    }
+    if index == 0 && !range.contains(null) {
+        return fault(
+            "null",
+            format!("null = {null} of {name} is outside of {low} to {high}"),
+            "widen the range",
+        );
+    }
+    if index == 0 && start == null {
+        let mend = "let it start at a size that is to be expected";
+        return fault(
+            "start",
+            format!("{name} starts at its null value, so the term is off"),
+            mend,
+        );
+    }
+    Ok(())
+}

@@ -1,0 +1,115 @@
+//! A term: a formula with its parameters and the place where it acts, checked and ready to evaluate.
+
+use hitch_input::fault::shown;
+use hitch_input::{Dimension, Unit};
+use hitch_plant::Place;
+use hitch_plant::hooks::signals::Signals;
+
+use crate::expression::definition::{Part, TermDefinition, TermError, check_id, check_parameters};
+use crate::expression::evaluate::Code;
+use crate::expression::parse::parse;
+use crate::expression::tree::{Kind, Node};
+use crate::expression::{check, probe};
+
+/// A term whose syntax, units, ranges and null value are right.
+#[derive(Debug)]
+pub struct Term {
+    definition: TermDefinition,
+    units: Vec<Unit>,
+    code: Code,
+}
+
+impl Term {
+    /// Checks a definition and compiles its formula.
+    ///
+    /// # Errors
+    /// The first thing that is wrong with it: a name, a unit, a range, the syntax, the dimensions, a parameter that is
+    /// not used, a value that is not finite, or a null value that does not turn the term off.
+    pub fn new(definition: TermDefinition) -> Result<Self, TermError> {
+        check_id(&definition.id)?;
+        let units = check_parameters(&definition.parameters)?;
+        let formula = definition.formula.as_str();
+        let names: Vec<&str> = definition
+            .parameters
+            .iter()
+            .map(|p| p.name.as_str())
+            .collect();
+        let tree = parse(formula, &names)?;
+        let dimensions: Vec<Dimension> = units.iter().map(|unit| unit.dimension).collect();
+        check_place(
+            definition.place,
+            check::dimension(&tree, formula, &dimensions)?,
+        )?;
+        check_use(&tree, &names)?;
+        let code = Code::compile(&tree);
+        let term = Self {
+            definition,
+            units,
+            code,
+        };
+        probe::check(&term, &tree)?;
+        Ok(term)
+    }
+
+    /// The definition.
+    #[must_use]
+    pub fn definition(&self) -> &TermDefinition {
+        &self.definition
+    }
+
+    /// Values of the parameters in SI, from values in their units.
+    #[must_use]
+    pub fn si(&self, values: &[f64]) -> Vec<f64> {
+        values
+            .iter()
+            .zip(&self.units)
+            .map(|(value, unit)| value * unit.si)
+            .collect()
+    }
+
+    /// The value, in the SI unit of its place.
+    ///
+    /// It is finite for the ranges of parameters and signals that were probed at its definition; elsewhere (a fraction
+    /// whose denominator passes through zero) it may be infinite or not a number.
+    #[inline]
+    #[must_use]
+    pub fn evaluate(&self, parameters_si: &[f64], signals: &Signals) -> f64 {
+        self.code.evaluate(parameters_si, signals)
+    }
+}
+
+fn check_place(place: Place, found: Dimension) -> Result<(), TermError> {
+    let wanted = Unit::parse(place.unit()).map_or(Dimension::NUMBER, |unit| unit.dimension);
+    if found == wanted {
+        return Ok(());
+    }
+    let what = format!(
+        "the formula is {}, but {} takes {}",
+        found.in_words(),
+        place.id(),
+        wanted.in_words()
+    );
+    let mend = match wanted.over(found) {
+        Some(factor) => {
+            format!("multiply it by something in {factor}")
+        }
+        None => format!("write a formula in {wanted}"),
+    };
+    Err(TermError::new(Part::Formula(0), what, mend))
+}
+
+fn check_use(tree: &Node, names: &[&str]) -> Result<(), TermError> {
+    let unused = (0..names.len())
+        .find(|index| !tree.has(&|leaf| matches!(leaf, Kind::Parameter(used) if used == index)));
+    unused.map_or(Ok(()), |index| {
+        let what = format!(
+            "the formula does not hold the parameter {}",
+            shown(names[index])
+        );
+        Err(TermError::new(
+            Part::Parameter(index, "name"),
+            what,
+            "use it or delete it",
+        ))
+    })
+}

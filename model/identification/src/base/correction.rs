@@ -1,0 +1,57 @@
+//! Constants with their corrections applied.
+
+use hitch_model_file::Valve;
+use hitch_plant::{Constants, ValveCurve};
+use nalgebra::DVector;
+
+use crate::base::parameter::Parameter;
+
+/// The constants that corrections make of the declared ones. Flow curves stay monotone.
+pub fn corrected(
+    declared: &Constants,
+    parameters: &[Parameter],
+    theta: &DVector<f64>,
+) -> Constants {
+    let mut constants = declared.clone();
+    for (parameter, &value) in parameters.iter().zip(theta.iter()) {
+        if let Parameter::Scalar(scalar) = parameter {
+            *(scalar.place)(&mut constants) *= value.exp();
+        }
+    }
+    for valve in [Valve::Lift, Valve::Lower] {
+        let curve = curve(&valve.of(declared).curve, valve, parameters, theta);
+        valve.of_mut(&mut constants).curve = curve;
+    }
+    constants
+}
+
+fn curve(
+    declared: &ValveCurve,
+    valve: Valve,
+    parameters: &[Parameter],
+    theta: &DVector<f64>,
+) -> ValveCurve {
+    let mut flows = declared.flows_m3_s().to_vec();
+    let mut currents = declared.currents_a().to_vec();
+    let mut shift_a = 0.0;
+    for (parameter, &value) in parameters.iter().zip(theta.iter()) {
+        match *parameter {
+            Parameter::Flow(of, point) if of == valve => flows[point] *= value.exp(),
+            Parameter::Threshold(of) if of == valve => shift_a = value,
+            _ => {}
+        }
+    }
+    if shift_a == 0.0 && flows == declared.flows_m3_s() {
+        return declared.clone();
+    }
+    // A point at no current stays there.
+    let moved = usize::from(currents[0] == 0.0);
+    let shift_a = f64::max(shift_a, -0.9 * currents[moved]);
+    currents[moved..]
+        .iter_mut()
+        .for_each(|current| *current += shift_a);
+    for point in 1..flows.len() {
+        flows[point] = flows[point].max(flows[point - 1]);
+    }
+    ValveCurve::new(currents, flows).unwrap_or_else(|_| declared.clone())
+}

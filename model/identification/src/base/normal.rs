@@ -1,0 +1,247 @@
+//! Residuals of a campaign under corrected constants, their sensitivities, and the normal equations with each run's load
+//! error eliminated.
+
+use hitch_plant::Model;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::base::correction::corrected;
+use crate::base::parameter::Parameter;
+use crate::base::prior::Prior;
+use crate::data::experiment::{Experiment, LOAD_PRIOR, Nuisance};
+use crate::estimate::Estimate;
+use crate::estimation::jacobian::{dot, huber, huber_residuals, square_sum};
+use crate::residuals::whitening::Weights;
+
+/// Step of a difference quotient to either side, in sigmas of the prior. Quotients are central: some directions are hardly
+/// determined (cracking pressure against flow), and the curvature that a one-sided quotient takes for a slope would
+/// determine them.
+const STEP: f64 = 0.02;
+
+/// A campaign and a declared model whose constants are looked for.
+pub struct Problem<'a> {
+    /// The campaign.
+    pub experiment: &'a Experiment,
+    /// The declared model with the effects that it has.
+    pub declared: &'a Model,
+    /// The unknowns.
+    pub parameters: &'a [Parameter],
+    /// What is known of them.
+    pub prior: &'a Prior,
+    /// Unknowns that stay as they are.
+    pub held: &'a [bool],
+}
+
+/// Values of the unknowns with what they leave.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// Corrections.
+    pub theta: DVector<f64>,
+    /// Loads and clocks.
+    pub estimate: Estimate,
+    /// Cost with all priors; infinite if the constants make no model.
+    pub cost: f64,
+}
+
+/// Models to either side of a point.
+struct Sides {
+    down: Model,
+    up: Model,
+    /// How far the unknown is apart between the two.
+    apart: f64,
+}
+
+/// Sensitivities of one run.
+pub struct RunColumns {
+    residual: Vec<f64>,
+    /// A column for each unknown.
+    pub columns: Vec<Vec<f64>>,
+    load: Option<Vec<f64>>,
+    load_value: f64,
+}
+
+/// Normal equations of one run.
+struct RunNormal {
+    matrix: DMatrix<f64>,
+    right: DVector<f64>,
+    load: Option<LoadRow>,
+}
+
+/// What ties a run's load error to the unknowns.
+struct LoadRow {
+    coupling: DVector<f64>,
+    square: f64,
+    pull: f64,
+}
+
+/// Normal equations of all runs, without the prior.
+pub struct Normal {
+    /// Information of the campaign.
+    pub matrix: DMatrix<f64>,
+    /// Pull of the residuals.
+    pub right: DVector<f64>,
+    loads: Vec<Option<LoadRow>>,
+}
+
+impl Problem<'_> {
+    /// The model that corrections make; `None` if its dimensions make no linkage.
+    pub fn model(&self, theta: &DVector<f64>) -> Option<Model> {
+        let constants = corrected(self.declared.constants(), self.parameters, theta);
+        self.declared.with_constants(constants).ok()
+    }
+
+    /// What corrections, loads and clocks leave.
+    pub fn point(&self, weights: &Weights, theta: DVector<f64>, estimate: Estimate) -> Point {
+        let cost = self.model(&theta).map_or(f64::INFINITY, |model| {
+            let residuals = huber_residuals(self.experiment, &model, weights, &estimate);
+            square_sum(&residuals) + estimate.prior_cost() + self.prior.cost(&theta)
+        });
+        Point {
+            theta,
+            estimate,
+            cost,
+        }
+    }
+
+    /// Models a step up and down in each unknown, each with its step; `None` where an unknown is held or there is no such
+    /// model.
+    fn moved(&self, theta: &DVector<f64>) -> Vec<Option<Sides>> {
+        (0..theta.len())
+            .into_par_iter()
+            .map(|unknown| {
+                if self.held[unknown] {
+                    return None;
+                }
+                let step = STEP * self.prior.sigma[unknown];
+                let side = |step: f64| {
+                    let mut moved = theta.clone();
+                    moved[unknown] += step;
+                    self.model(&moved)
+                };
+                Some(Sides {
+                    down: side(-step)?,
+                    up: side(step)?,
+                    apart: 2.0 * step,
+                })
+            })
+            .collect()
+    }
+
+    /// Sensitivities of all runs at a point; `None` if it is no model.
+    pub fn columns(&self, weights: &Weights, point: &Point) -> Option<Vec<RunColumns>> {
+        let model = self.model(&point.theta)?;
+        let moved = self.moved(&point.theta);
+        let runs = (0..self.experiment.runs.len()).into_par_iter();
+        Some(
+            runs.map(|run| self.run_columns(weights, point, run, &model, &moved))
+                .collect(),
+        )
+    }
+
+    fn run_columns(
+        &self,
+        weights: &Weights,
+        point: &Point,
+        index: usize,
+        model: &Model,
+        moved: &[Option<Sides>],
+    ) -> RunColumns {
+        let run = &self.experiment.runs[index];
+        let estimate = &point.estimate;
+        let residual = |model: &Model, nuisance: Nuisance| {
+            let model = model.with_effects(estimate.effects.clone());
+            let trace = run.simulate(&model, nuisance, &estimate.clocks);
+            huber(vec![weights.runs[index].whiten(run, &trace)]).swap_remove(0)
+        };
+        let here = residual(model, estimate.nuisances[index]);
+        // The residual falls where the simulation rises.
+        let column = |down: Vec<f64>, up: Vec<f64>, apart: f64| -> Vec<f64> {
+            let both = down.iter().zip(up);
+            both.map(|(down, up)| (down - up) / apart).collect()
+        };
+        let nuisance = estimate.nuisances[index];
+        let columns = moved
+            .par_iter()
+            .map(|moved| match moved {
+                Some(Sides { down, up, apart }) => {
+                    column(residual(down, nuisance), residual(up, nuisance), *apart)
+                }
+                None => vec![0.0; here.len()],
+            })
+            .collect();
+        let load = run.on_hitch().then(|| {
+            let [down, up] = [-0.5, 0.5].map(|sigmas| {
+                let load = nuisance.load + sigmas * LOAD_PRIOR;
+                residual(model, Nuisance { load })
+            });
+            column(down, up, 1.0)
+        });
+        RunColumns {
+            columns,
+            load,
+            load_value: estimate.load(index),
+            residual: here,
+        }
+    }
+}
+
+impl RunColumns {
+    fn normal(&self) -> RunNormal {
+        let size = self.columns.len();
+        let mut matrix = DMatrix::zeros(size, size);
+        for i in 0..size {
+            for j in 0..=i {
+                let value = dot(&self.columns[i], &self.columns[j]);
+                matrix[(i, j)] = value;
+                matrix[(j, i)] = value;
+            }
+        }
+        let pulls = self.columns.iter().map(|c| dot(c, &self.residual));
+        let mut right = DVector::from_iterator(size, pulls);
+        let load = self.load.as_ref().map(|load| LoadRow {
+            coupling: DVector::from_iterator(size, self.columns.iter().map(|c| dot(c, load))),
+            square: dot(load, load) + 1.0,
+            pull: dot(load, &self.residual) - self.load_value,
+        });
+        if let Some(load) = &load {
+            matrix -= &load.coupling * load.coupling.transpose() / load.square;
+            right -= &load.coupling * (load.pull / load.square);
+        }
+        RunNormal {
+            matrix,
+            right,
+            load,
+        }
+    }
+}
+
+impl Normal {
+    /// The normal equations of all runs.
+    pub fn of(runs: &[RunColumns]) -> Self {
+        let size = runs.first().map_or(0, |run| run.columns.len());
+        let mut normal = Self {
+            matrix: DMatrix::zeros(size, size),
+            right: DVector::zeros(size),
+            loads: Vec::new(),
+        };
+        let parts: Vec<RunNormal> = runs.par_iter().map(RunColumns::normal).collect();
+        for run in parts {
+            normal.matrix += run.matrix;
+            normal.right += run.right;
+            normal.loads.push(run.load);
+        }
+        normal
+    }
+
+    /// Load errors after a step of the unknowns, set in an estimate.
+    pub fn with_loads(&self, estimate: &Estimate, step: &DVector<f64>) -> Estimate {
+        let mut moved = estimate.clone();
+        for (run, load) in self.loads.iter().enumerate() {
+            if let Some(load) = load {
+                let sigmas = (load.pull - load.coupling.dot(step)) / load.square;
+                moved.set_load(run, estimate.load(run) + sigmas);
+            }
+        }
+        moved
+    }
+}

@@ -1,0 +1,284 @@
+//! The fit of the base model from start to end, and what it determined.
+
+use hitch_model_file::Valve;
+use hitch_plant::Model;
+use hitch_plant::units::lpm_from_m3_s;
+use nalgebra::{DMatrix, DVector};
+
+use crate::base::descent::descend;
+use crate::base::normal::{Normal, Point, Problem, RunColumns};
+use crate::base::parameter::{Parameter, parameters};
+use crate::base::prior::Prior;
+use crate::data::experiment::Experiment;
+use crate::estimation::fit::{COARSE, Fit, evaluate_weighted, refine};
+use crate::explanation::explain::fit_base;
+use crate::residuals::whitening::Weights;
+use crate::selection::evidence::variance_inflation;
+
+/// A campaign determines what it knows to this share of the prior sigma.
+const DETERMINED: f64 = 0.7;
+
+/// So many times wider the data sheets of all other constants are taken when it is asked whether the campaign determines a
+/// constant: what only those determine (a length that trades with the bore) is left as declared.
+const WIDER: f64 = 3.0;
+
+/// Rounds of the fit: the first looks at flow and angle, as ringing pressures make valleys; each gets new weights.
+const ROUNDS: usize = 3;
+const JACOBIANS: usize = 5;
+
+/// No constant is better than this share: tables, areas and integration are not.
+const MODEL_ERROR: f64 = 0.002;
+
+/// Half width of a 95 % interval, in sigmas.
+const INTERVAL: f64 = 1.96;
+
+/// A constant with what a campaign says of it.
+#[derive(Debug, Clone)]
+pub struct FittedConstant {
+    /// `table.key` of a model file; of a threshold, table and `threshold_a`.
+    pub name: String,
+    /// Unit.
+    pub unit: &'static str,
+    /// Declared value.
+    pub declared: f64,
+    /// Fitted value; the declared one if it is not determined.
+    pub fitted: f64,
+    /// 95 % interval, data sheet and campaign together.
+    pub interval: (f64, f64),
+    /// Whether the campaign determines it.
+    pub determined: bool,
+    /// Whether it went as far from the declared value as is believed.
+    pub at_an_end: bool,
+}
+
+/// A point of a flow curve.
+#[derive(Debug, Clone)]
+pub struct CurvePoint {
+    /// Which valve.
+    pub valve: Valve,
+    /// Fitted current, A.
+    pub current_a: f64,
+    /// Declared flow at the reference drop, l/min.
+    pub declared_lpm: f64,
+    /// Fitted flow, l/min.
+    pub fitted_lpm: f64,
+    /// 95 % interval of the flow, l/min.
+    pub interval_lpm: (f64, f64),
+    /// Whether the campaign determines it; if not it follows its neighbours.
+    pub determined: bool,
+}
+
+/// The base model as a campaign has it.
+#[derive(Debug, Clone)]
+pub struct BaseFit {
+    /// The fitted model, with the effects of the declared one.
+    pub model: Model,
+    /// The declared model with loads and clocks fitted.
+    pub before: Fit,
+    /// The fitted model with loads and clocks fitted.
+    pub after: Fit,
+    /// The constants.
+    pub constants: Vec<FittedConstant>,
+    /// The flow curves, point by point.
+    pub curves: Vec<CurvePoint>,
+}
+
+/// Fits the constants of a model to a campaign; `say` is told of what is being done.
+#[must_use]
+pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&str)) -> BaseFit {
+    let parameters = parameters(declared.constants());
+    let prior = Prior::new(declared.constants(), &parameters);
+    let before = fit_base(experiment, declared);
+    let inseparable: Vec<bool> = parameters.iter().map(|one| !one.is_separable()).collect();
+    let mut problem = Problem {
+        experiment,
+        declared,
+        parameters: &parameters,
+        prior: &prior,
+        held: &inseparable,
+    };
+    let mut point = Point {
+        theta: DVector::zeros(parameters.len()),
+        estimate: before.estimate.clone(),
+        cost: f64::INFINITY,
+    };
+    for round in 0..ROUNDS {
+        say(&format!("constants, round {} of {}", round + 1, ROUNDS + 1));
+        point = improved(&problem, point, round == 0);
+    }
+    say("intervals");
+    let (sigma, determined) = posterior(&problem, &point);
+    let held = held(&parameters, &determined);
+    for k in (0..held.len()).filter(|&k| held[k]) {
+        point.theta[k] = 0.0;
+    }
+    problem.held = &held;
+    say(&format!("constants, round {0} of {0}", ROUNDS + 1));
+    let point = improved(&problem, point, false);
+    let model = problem.model(&point.theta);
+    let model = model.unwrap_or_else(|| declared.clone());
+    let after = refine(experiment, &model, point.estimate.clone());
+    let told = Told {
+        declared,
+        model: &model,
+        parameters: &parameters,
+        theta: &point.theta,
+        sigma: &sigma,
+        determined: &determined,
+        prior: &prior,
+    };
+    BaseFit {
+        constants: told.constants(),
+        curves: told.curves(),
+        model,
+        before,
+        after,
+    }
+}
+
+/// One round: constants and loads under new weights, then clocks and loads.
+fn improved(problem: &Problem<'_>, point: Point, coarse: bool) -> Point {
+    let Some(model) = problem.model(&point.theta) else {
+        return point;
+    };
+    let weights = Weights::new(problem.experiment, &model, &point.estimate);
+    let weights = match coarse {
+        true => weights.scaled(COARSE),
+        false => weights,
+    };
+    let mut point = descend(problem, &weights, &point, JACOBIANS);
+    if let Some(model) = problem.model(&point.theta) {
+        point.estimate = refine(problem.experiment, &model, point.estimate).estimate;
+    }
+    point
+}
+
+/// What stays as declared: constants that are not determined, and curves of which no point is.
+fn held(parameters: &[Parameter], determined: &[bool]) -> Vec<bool> {
+    let any_point = |valve: Valve| {
+        let mut all = parameters.iter().zip(determined);
+        all.any(|(parameter, &determined)| {
+            determined && matches!(parameter, Parameter::Flow(of, _) if *of == valve)
+        })
+    };
+    let all = parameters.iter().zip(determined);
+    all.map(|(parameter, &determined)| match parameter {
+        Parameter::Flow(valve, _) => !any_point(*valve),
+        Parameter::Scalar(_) | Parameter::Threshold(_) => !determined,
+    })
+    .collect()
+}
+
+/// One sigma of each unknown, campaign and prior together, and whether the campaign determines it. What the fit leaves
+/// beyond noise, and noise that is slow, make the campaign say less.
+fn posterior(problem: &Problem<'_>, point: &Point) -> (Vec<f64>, Vec<bool>) {
+    let prior = problem.prior;
+    let found = problem.model(&point.theta).and_then(|model| {
+        let weights = Weights::new(problem.experiment, &model, &point.estimate);
+        let columns = problem.columns(&weights, point)?;
+        let estimate = point.estimate.clone();
+        let fit = evaluate_weighted(problem.experiment, &model, estimate, weights);
+        Some((fit, columns))
+    });
+    let Some((fit, columns)) = found else {
+        return (prior.sigma.clone(), vec![false; prior.sigma.len()]);
+    };
+    let normal = Normal::of(&columns);
+    let unknowns = problem.parameters.iter().enumerate();
+    unknowns
+        .map(|(unknown, parameter)| {
+            let column = |run: &RunColumns| run.columns[unknown].clone();
+            let signature: Vec<Vec<f64>> = columns.iter().map(column).collect();
+            let inflation = variance_inflation(problem.experiment, &fit.residuals, &signature);
+            let information = &normal.matrix / (fit.variance() * inflation);
+            let largest = prior.sigma[unknown];
+            let sigma = sigma_of(&information + &prior.precision, unknown, largest);
+            let alone = match parameter.is_flow() {
+                true => sigma,
+                false => sigma_of(
+                    information + prior.widened(WIDER, unknown),
+                    unknown,
+                    largest,
+                ),
+            };
+            (sigma, alone <= DETERMINED * largest)
+        })
+        .unzip()
+}
+
+/// One sigma of an unknown, at most `largest`.
+fn sigma_of(information: DMatrix<f64>, unknown: usize, largest: f64) -> f64 {
+    let root = information.cholesky();
+    let variance = root.map(|root| root.inverse()[(unknown, unknown)] + MODEL_ERROR * MODEL_ERROR);
+    variance.map_or(largest, |variance| variance.sqrt().min(largest))
+}
+
+/// What is told of a fit.
+struct Told<'a> {
+    declared: &'a Model,
+    model: &'a Model,
+    parameters: &'a [Parameter],
+    theta: &'a DVector<f64>,
+    sigma: &'a [f64],
+    determined: &'a [bool],
+    prior: &'a Prior,
+}
+
+impl Told<'_> {
+    fn constants(&self) -> Vec<FittedConstant> {
+        let all = self.parameters.iter().enumerate();
+        all.filter_map(|(k, parameter)| self.constant(k, parameter))
+            .collect()
+    }
+
+    fn constant(&self, k: usize, parameter: &Parameter) -> Option<FittedConstant> {
+        let (value, half) = (self.theta[k], INTERVAL * self.sigma[k]);
+        let (name, unit, declared, at): (_, _, _, Box<dyn Fn(f64) -> f64>) = match parameter {
+            Parameter::Scalar(scalar) => {
+                let si = *(scalar.place)(&mut self.declared.constants().clone());
+                let declared = si / scalar.si;
+                let at = move |correction: f64| declared * correction.exp();
+                (scalar.name.to_owned(), scalar.unit, declared, Box::new(at))
+            }
+            Parameter::Threshold(valve) => {
+                let declared = valve.of(self.declared.constants()).curve.threshold_a();
+                let name = format!("{}.threshold_a", valve.table());
+                (name, "A", declared, Box::new(move |shift| declared + shift))
+            }
+            Parameter::Flow(..) => return None,
+        };
+        Some(FittedConstant {
+            name,
+            unit,
+            declared,
+            fitted: at(value),
+            interval: (at(value - half), at(value + half)),
+            determined: self.determined[k],
+            at_an_end: self.prior.is_at_an_end(self.theta, k),
+        })
+    }
+
+    fn curves(&self) -> Vec<CurvePoint> {
+        let all = self.parameters.iter().enumerate();
+        all.filter_map(|(k, parameter)| match *parameter {
+            Parameter::Flow(valve, point) => Some(self.curve_point(k, valve, point)),
+            Parameter::Scalar(_) | Parameter::Threshold(_) => None,
+        })
+        .collect()
+    }
+
+    fn curve_point(&self, k: usize, valve: Valve, point: usize) -> CurvePoint {
+        let curve = |model: &Model| valve.of(model.constants()).curve.clone();
+        let (declared, fitted) = (curve(self.declared), curve(self.model));
+        let fitted_lpm = lpm_from_m3_s(fitted.flows_m3_s()[point]);
+        let factor = (INTERVAL * self.sigma[k]).exp();
+        CurvePoint {
+            valve,
+            current_a: fitted.currents_a()[point],
+            declared_lpm: lpm_from_m3_s(declared.flows_m3_s()[point]),
+            fitted_lpm,
+            interval_lpm: (fitted_lpm / factor, fitted_lpm * factor),
+            determined: self.determined[k],
+        }
+    }
+}

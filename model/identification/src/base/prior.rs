@@ -1,0 +1,84 @@
+//! What is known of the unknowns before a campaign: data-sheet tolerances, and flow curves that are wrong smoothly.
+
+use hitch_plant::Constants;
+use nalgebra::{DMatrix, DVector};
+
+use crate::base::parameter::{Parameter, THRESHOLD_SIGMA_A};
+
+/// Sigma of the error that all points of a flow curve share, and of the one that changes over the current: 20 % together.
+const SHARED: f64 = 0.14;
+const CHANGING: f64 = 0.14;
+
+/// Current over which the error of a curve changes, as a share of the range from threshold to current limit.
+const REACH: f64 = 0.3;
+
+/// Error of a single point: reading a printed curve.
+const SINGLE: f64 = 0.02;
+
+/// Unknowns are never believed to be further off than this many sigmas.
+const FARTHEST: f64 = 4.0;
+
+/// Gaussian prior about the declared values.
+#[derive(Debug, Clone)]
+pub struct Prior {
+    /// One sigma of each unknown.
+    pub sigma: Vec<f64>,
+    /// Inverse of the covariance.
+    pub precision: DMatrix<f64>,
+}
+
+impl Prior {
+    /// The prior of a model's unknowns.
+    pub fn new(declared: &Constants, parameters: &[Parameter]) -> Self {
+        let size = parameters.len();
+        let covariance = DMatrix::from_fn(size, size, |i, j| {
+            covariance(declared, parameters[i], parameters[j], i == j)
+        });
+        let sigma = (0..size).map(|k| covariance[(k, k)].sqrt()).collect();
+        let precision = covariance
+            .cholesky()
+            .map_or_else(|| DMatrix::identity(size, size), |root| root.inverse());
+        Self { sigma, precision }
+    }
+
+    /// The precision with all unknowns but one, which goes with no other, known so many times worse.
+    pub fn widened(&self, times: f64, unknown: usize) -> DMatrix<f64> {
+        let mut precision = &self.precision / (times * times);
+        precision[(unknown, unknown)] = self.precision[(unknown, unknown)];
+        precision
+    }
+
+    /// Squared distance from the declared values, in sigmas.
+    pub fn cost(&self, theta: &DVector<f64>) -> f64 {
+        theta.dot(&(&self.precision * theta))
+    }
+
+    /// The nearest values that are not too far off to be believed.
+    pub fn bounded(&self, theta: &DVector<f64>) -> DVector<f64> {
+        DVector::from_fn(theta.len(), |k, _| {
+            let farthest = FARTHEST * self.sigma[k];
+            theta[k].clamp(-farthest, farthest)
+        })
+    }
+
+    /// Whether an unknown is as far off as is believed.
+    pub fn is_at_an_end(&self, theta: &DVector<f64>, unknown: usize) -> bool {
+        theta[unknown].abs() >= 0.999 * FARTHEST * self.sigma[unknown]
+    }
+}
+
+fn covariance(declared: &Constants, a: Parameter, b: Parameter, same: bool) -> f64 {
+    match (a, b) {
+        (Parameter::Scalar(scalar), _) if same => scalar.tolerance.powi(2),
+        (Parameter::Threshold(_), _) if same => THRESHOLD_SIGMA_A.powi(2),
+        (Parameter::Flow(valve, i), Parameter::Flow(other, j)) if valve == other => {
+            let curve = &valve.of(declared).curve;
+            let currents_a = curve.currents_a();
+            let range_a = currents_a[currents_a.len() - 1] - curve.threshold_a();
+            let apart = (currents_a[i] - currents_a[j]) / (REACH * range_a);
+            let single = if same { SINGLE * SINGLE } else { 0.0 };
+            SHARED * SHARED + CHANGING * CHANGING * (-0.5 * apart * apart).exp() + single
+        }
+        _ => 0.0,
+    }
+}

@@ -1,0 +1,127 @@
+//! Runs on fewer samples: means over short stretches in which the currents run straight.
+//!
+//! A search asks a thousand times how a simulation changes with an effect. Of a log at 50 Hz most samples say what their
+//! neighbours say, so those are simulated and compared as one, with the noise of their mean. After a jump of a current,
+//! where lags show, each sample stays. Fits and evidence take all samples.
+
+use std::ops::Range;
+
+use hitch_plant::Currents;
+use hitch_plant::simulation::Trace;
+
+use crate::data::conditioning::Drive;
+use crate::data::experiment::ReadyRun;
+
+/// Longest stretch that becomes one sample, s.
+const LONGEST_S: f64 = 0.1;
+
+/// How long after a jump of a current every sample stays, s: lags of spools and sensors show there.
+const AFTER_A_JUMP_S: f64 = 0.12;
+
+/// A current whose slope changes from one sample to the next by more than so many sigmas of its noise jumps.
+const JUMP_SIGMAS: f64 = 3.0;
+
+/// Stretches of samples of a run, one a sample of the condensed run.
+#[derive(Debug, Clone)]
+pub(crate) struct Stretches(Vec<Range<usize>>);
+
+impl Stretches {
+    /// Those of a run whose currents have this noise, one sigma, A.
+    pub fn of(run: &ReadyRun, noise: Currents) -> Self {
+        let samples = run.len();
+        let jumps = jumps(&run.drive, noise);
+        let mut stretches: Vec<Range<usize>> = Vec::new();
+        let mut jumped_s = f64::NEG_INFINITY;
+        let time_s = &run.drive.time_s;
+        for sample in 0..samples {
+            if jumps[sample] {
+                jumped_s = time_s[sample];
+            }
+            let straight = |stretch: &Range<usize>| {
+                stretch.start > 0
+                    && sample + 1 < samples
+                    && !jumps[sample]
+                    && !jumps[sample + 1]
+                    && time_s[sample] - jumped_s > AFTER_A_JUMP_S
+                    && time_s[sample + 1] - time_s[stretch.start] < LONGEST_S * (1.0 + 1e-6)
+                    && time_s[stretch.start] - jumped_s > AFTER_A_JUMP_S
+                    && !run.drive.turns_before(sample)
+                    && run.regimes[sample] == run.regimes[stretch.start]
+                    && run.compares_alike(stretch.start, sample)
+            };
+            match stretches.last_mut() {
+                Some(last) if straight(last) => last.end = sample + 1,
+                _ => stretches.push(sample..sample + 1),
+            }
+        }
+        Self(stretches)
+    }
+
+    /// Number of stretches.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// The first sample of each.
+    pub fn firsts(&self) -> impl Iterator<Item = usize> {
+        self.0.iter().map(|stretch| stretch.start)
+    }
+
+    /// Number of samples in each.
+    pub fn sizes(&self) -> Vec<f64> {
+        self.0.iter().map(|stretch| stretch.len() as f64).collect()
+    }
+
+    /// Mean over each stretch.
+    pub fn means(&self, values: &[f64]) -> Vec<f64> {
+        let mean = |stretch: &Range<usize>| {
+            values[stretch.clone()].iter().sum::<f64>() / stretch.len() as f64
+        };
+        self.0.iter().map(mean).collect()
+    }
+
+    /// Mean over each stretch of both currents, A.
+    pub fn mean_currents(&self, currents: &[Currents]) -> Vec<Currents> {
+        let mean = |stretch: &Range<usize>| {
+            let share = 1.0 / stretch.len() as f64;
+            let own = currents[stretch.clone()].iter();
+            own.fold(Currents::default(), |sum, current| Currents {
+                lift_a: sum.lift_a + share * current.lift_a,
+                lower_a: sum.lower_a + share * current.lower_a,
+            })
+        };
+        self.0.iter().map(mean).collect()
+    }
+
+    /// Mean over each stretch of every channel of a trace.
+    pub fn mean_trace(&self, trace: &Trace) -> Trace {
+        Trace {
+            channels: std::array::from_fn(|channel| self.means(&trace.channels[channel])),
+            true_angle_deg: self.means(&trace.true_angle_deg),
+            idle_pressure_bar: trace.idle_pressure_bar,
+        }
+    }
+}
+
+/// Where a current jumps, a sample.
+fn jumps(drive: &Drive, noise: Currents) -> Vec<bool> {
+    let currents = &drive.currents;
+    let bent = |before: f64, here: f64, after: f64, sigma_a: f64| {
+        (before - 2.0 * here + after).abs() > JUMP_SIGMAS * sigma_a
+    };
+    let mut jumps = vec![false; currents.len()];
+    for (before, around) in currents.windows(3).enumerate() {
+        jumps[before + 1] = bent(
+            around[0].lift_a,
+            around[1].lift_a,
+            around[2].lift_a,
+            noise.lift_a,
+        ) || bent(
+            around[0].lower_a,
+            around[1].lower_a,
+            around[2].lower_a,
+            noise.lower_a,
+        );
+    }
+    jumps
+}

@@ -1,0 +1,395 @@
+//! A campaign made ready for comparing and fitting: cleaned currents, instrument noise, regimes, masks.
+
+use std::sync::Arc;
+
+use hitch_campaign::{Bench, Campaign, Run};
+use hitch_plant::simulation::{Trace, simulate_in};
+use hitch_plant::solver::dynamic::Steps;
+use hitch_plant::{AddedEffect, Channel, Currents, Dynamics, HitchRig, Model, Rig, Search, units};
+use rayon::prelude::*;
+
+use crate::data::clocks::{Clocks, FARTHEST_S};
+use crate::data::condense::Stretches;
+use crate::data::conditioning::{Drive, jumps_within_s};
+use crate::data::defect_correction::Shortfall;
+use crate::data::noise::{
+    channel_noise, current_noise, current_persistence, median, persistence_block,
+};
+use crate::data::regime::{Regime, regimes};
+use crate::data::start_angle::{likely_deg, measured_deg};
+use crate::data::trace_cache::{CurrentShift, Traces};
+use crate::estimate::Estimate;
+
+/// How far, relative to the declared port pressure, a flow bench may be off and still count as set up.
+const PORT_TOLERANCE: f64 = 0.05;
+
+/// What a run may be off by without any physics missing: fitted with a prior for every run.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Nuisance {
+    /// Error of the weighed load, relative.
+    pub load: f64,
+}
+
+/// Prior sigma of [`Nuisance::load`]: a load is weighed to about half a percent (DATA.md).
+pub const LOAD_PRIOR: f64 = 0.005;
+
+/// One run, ready.
+#[derive(Debug, Clone)]
+pub struct ReadyRun {
+    /// File name, for reports.
+    pub file: String,
+    /// What the valve block was bolted to.
+    pub bench: Bench,
+    /// Oil temperature, degree Celsius.
+    pub oil_temperature_c: f64,
+    /// Cleaned currents.
+    pub drive: Drive,
+    /// Measured channels by [`Channel::index`], in their units; NaN where there is nothing to compare with.
+    pub measured: [Option<Vec<f64>>; 4],
+    /// What the plant was doing, a sample.
+    pub regimes: Vec<Regime>,
+    /// Rocker angle at the start, degree; NaN on a flow bench.
+    pub start_angle_deg: f64,
+    /// Number of samples of the log that each sample is the mean of: one, but in a condensed run.
+    pub averaged: Vec<f64>,
+    /// Samples left out because a flow bench had not reached its pressure yet.
+    pub settling_samples: usize,
+    traces: Traces,
+    /// What drafts of the run are short of; `None` where it is simulated finely.
+    shortfall: Option<Arc<Shortfall>>,
+}
+
+/// A campaign, ready.
+#[derive(Debug, Clone)]
+pub struct Experiment {
+    /// Name of the campaign.
+    pub name: String,
+    /// The runs.
+    pub runs: Vec<ReadyRun>,
+    /// One sigma of each channel by [`Channel::index`], in its unit; NaN for a channel that no run has.
+    pub noise: [f64; 4],
+    /// One sigma of the logged currents, A.
+    pub current_noise: Currents,
+    /// How far off all jumps of the logged currents may be together, s.
+    pub jumps_within_s: f64,
+    /// Variance of the mean of the currents' noise over half a second, in that of white noise: one and up.
+    pub current_persistence: f64,
+    /// How far a channel may be stamped off the currents, s; nothing where one clock stamps all.
+    pub clocks_within_s: f64,
+    /// Whether the model's pressures ring, so that phase and size of the ringing are to be borne with.
+    pub ringing: bool,
+}
+
+impl Experiment {
+    /// Makes a campaign ready; `model` says where the valves' thresholds and the ends of the stroke are.
+    #[must_use]
+    pub fn new(campaign: &Campaign, model: &Model) -> Self {
+        let noise = Channel::ALL.map(|channel| channel_noise(campaign, channel));
+        let sigma = current_noise(campaign);
+        let persistence = current_persistence(campaign, sigma);
+        // What of the noise no mean over half a second takes away.
+        let slow_share = (persistence - 1.0) / persistence_block(campaign) as f64;
+        let runs: Vec<_> = campaign
+            .runs
+            .par_iter()
+            .map(|run| ReadyRun::new(run, model, sigma, slow_share))
+            .map(|run| run.started(model, noise))
+            .collect();
+        let jumps_within_s = jumps_within_s(runs.iter().map(|run| &run.drive));
+        Self {
+            name: campaign.name.clone(),
+            runs,
+            noise,
+            current_noise: sigma,
+            jumps_within_s,
+            current_persistence: persistence,
+            clocks_within_s: match campaign.synchronous {
+                true => 0.0,
+                false => FARTHEST_S,
+            },
+            ringing: model.constants().dynamics == Dynamics::Dynamic,
+        }
+    }
+
+    /// The experiment with its runs drafted around an estimate: as good there, and for the search near it.
+    #[must_use]
+    pub fn drafted(&self, model: &Model, estimate: &Estimate) -> Self {
+        let model = model.with_effects(estimate.effects.clone());
+        let runs = self.runs.par_iter().zip(&estimate.nuisances);
+        Self {
+            runs: runs
+                .map(|(run, &nuisance)| run.drafted(&model, nuisance))
+                .collect(),
+            ..self.without_runs()
+        }
+    }
+
+    /// The experiment with its runs condensed around an estimate, where that takes away most of the samples and nothing
+    /// rings between those that are left; the same experiment where not.
+    #[must_use]
+    pub fn condensed(&self, model: &Model, estimate: &Estimate) -> Self {
+        if self.ringing {
+            return self.clone();
+        }
+        let model = model.with_effects(estimate.effects.clone());
+        let runs = self.runs.par_iter().zip(&estimate.nuisances);
+        let runs: Vec<ReadyRun> = runs
+            .map(|(run, &nuisance)| run.condensed(&model, nuisance, self.current_noise))
+            .collect();
+        let condensed = Self {
+            runs,
+            ..self.without_runs()
+        };
+        match 2 * condensed.samples() < self.samples() {
+            true => condensed,
+            false => self.clone(),
+        }
+    }
+
+    /// Number of samples of all runs.
+    #[must_use]
+    pub fn samples(&self) -> usize {
+        self.runs.iter().map(ReadyRun::len).sum()
+    }
+
+    /// Whether any run has a channel.
+    #[must_use]
+    pub fn measures(&self, channel: Channel) -> bool {
+        let mut runs = self.runs.iter();
+        runs.any(|run| run.measured[channel.index()].is_some())
+    }
+
+    /// Name and noise alone, to be filled with some of the runs.
+    #[must_use]
+    pub fn without_runs(&self) -> Self {
+        Self {
+            name: self.name.clone(),
+            runs: Vec::new(),
+            ..*self
+        }
+    }
+}
+
+impl ReadyRun {
+    fn new(run: &Run, model: &Model, sigma: Currents, slow_share: f64) -> Self {
+        let drive = Drive::new(
+            &run.time_s,
+            &run.lift_current_a,
+            &run.lower_current_a,
+            sigma,
+            slow_share,
+        );
+        let mut measured = run.channels.clone();
+        let settling_samples = settling_samples(run);
+        for values in measured.iter_mut().flatten() {
+            for value in values.iter_mut().take(settling_samples) {
+                *value = f64::NAN;
+            }
+        }
+        let regimes = regimes(model, &drive, run.channel(Channel::RockerAngle));
+        let samples = run.time_s.len();
+        Self {
+            file: run.file.clone(),
+            bench: run.bench,
+            oil_temperature_c: run.oil_temperature_c,
+            drive,
+            start_angle_deg: measured_deg(run).unwrap_or(f64::NAN),
+            measured,
+            regimes,
+            settling_samples,
+            averaged: vec![1.0; samples],
+            traces: Traces::new(samples),
+            shortfall: None,
+        }
+    }
+
+    /// The run from where it is likely to have begun if its log does not say.
+    fn started(self, model: &Model, noise: [f64; 4]) -> Self {
+        if self.on_hitch() && self.start_angle_deg.is_nan() {
+            self.started_at(likely_deg(&self, model, noise))
+        } else {
+            self
+        }
+    }
+
+    /// The run from another rocker angle, degree.
+    #[must_use]
+    pub(crate) fn started_at(&self, start_angle_deg: f64) -> Self {
+        Self {
+            start_angle_deg,
+            traces: Traces::new(self.len()),
+            ..self.clone()
+        }
+    }
+
+    /// The run drafted around a model and a nuisance; as it is if there are no drafts of it.
+    fn drafted(&self, model: &Model, nuisance: Nuisance) -> Self {
+        // A model without inertia takes long steps already.
+        let rings = model.constants().dynamics == Dynamics::Dynamic;
+        if !self.on_hitch() || !rings || bounces(model) {
+            return self.clone();
+        }
+        let in_step = CurrentShift::default();
+        let fine = self.trace(model, nuisance, in_step);
+        let drafted = self.driven(Steps::DRAFT, model, nuisance, in_step);
+        Self {
+            traces: Traces::new(self.len()),
+            shortfall: Some(Arc::new(Shortfall::new(&fine, &drafted))),
+            ..self.clone()
+        }
+    }
+
+    /// The run condensed around a model and a nuisance.
+    fn condensed(&self, model: &Model, nuisance: Nuisance, noise: Currents) -> Self {
+        let stretches = Stretches::of(self, noise);
+        let measured = self.measured.each_ref();
+        let mut condensed = Self {
+            file: self.file.clone(),
+            drive: self.drive.condensed(&stretches),
+            measured: measured.map(|values| values.as_ref().map(|all| stretches.means(all))),
+            regimes: stretches
+                .firsts()
+                .map(|first| self.regimes[first])
+                .collect(),
+            averaged: stretches.sizes(),
+            traces: Traces::new(stretches.len()),
+            shortfall: None,
+            ..*self
+        };
+        let in_step = CurrentShift::default();
+        let all = stretches.mean_trace(&self.trace(model, nuisance, in_step));
+        let few = condensed.driven(Steps::DRAFT, model, nuisance, in_step);
+        condensed.shortfall = Some(Arc::new(Shortfall::new(&all, &few)));
+        condensed
+    }
+
+    /// Whether two samples have the same channels to compare.
+    #[must_use]
+    pub(crate) fn compares_alike(&self, one: usize, other: usize) -> bool {
+        let mut channels = self.measured.iter().flatten();
+        channels.all(|values| values[one].is_finite() == values[other].is_finite())
+    }
+
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.drive.time_s.len()
+    }
+
+    /// Whether the run has no samples; a read campaign has no such run.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.drive.time_s.is_empty()
+    }
+
+    /// Whether the run has a load and a start angle to be unsure of.
+    #[must_use]
+    pub fn on_hitch(&self) -> bool {
+        matches!(self.bench, Bench::Hitch { .. })
+    }
+
+    /// The rig as the nuisance has it.
+    #[must_use]
+    pub fn rig(&self, nuisance: Nuisance) -> Rig {
+        match self.bench {
+            Bench::Hitch { load_kg } => Rig::Hitch(HitchRig {
+                load_kg: load_kg * (1.0 + nuisance.load),
+                start_angle_rad: self.start_angle_deg.to_radians(),
+            }),
+            Bench::Flow { port_pressure_bar } => Rig::Flow {
+                port_pressure_pa: units::pa_from_bar(port_pressure_bar),
+            },
+        }
+    }
+
+    /// The run simulated with every channel in step, driven by its cleaned currents as far as they are off by `shift`.
+    #[must_use]
+    pub fn trace(&self, model: &Model, nuisance: Nuisance, shift: CurrentShift) -> Arc<Trace> {
+        // A flow bench has no load that could be off.
+        let nuisance = if self.on_hitch() {
+            nuisance
+        } else {
+            Nuisance::default()
+        };
+        let simulated = || self.simulated(model, nuisance, shift);
+        self.traces.trace(model, nuisance, shift, simulated)
+    }
+
+    /// [`ReadyRun::trace`] made anew, even if it is kept.
+    #[must_use]
+    pub fn simulated(&self, model: &Model, nuisance: Nuisance, shift: CurrentShift) -> Trace {
+        match &self.shortfall {
+            Some(shortfall) if !bounces(model) => {
+                shortfall.added_to(self.driven(Steps::DRAFT, model, nuisance, shift))
+            }
+            _ => self.driven(Steps::FINE, model, nuisance, shift),
+        }
+    }
+
+    /// What the model makes of the run's currents in such steps.
+    fn driven(
+        &self,
+        steps: Steps,
+        model: &Model,
+        nuisance: Nuisance,
+        shift: CurrentShift,
+    ) -> Trace {
+        let currents = self.drive.shifted(shift.later_s, shift.spreads);
+        let rig = self.rig(nuisance);
+        let course_s = self.drive.course_s();
+        let mut trace = simulate_in(
+            steps,
+            model,
+            rig,
+            self.oil_temperature_c,
+            course_s,
+            &currents,
+        );
+        trace.keep(self.drive.samples());
+        trace
+    }
+
+    /// The run simulated as clocks with these errors would have logged it.
+    #[must_use]
+    pub fn simulate(&self, model: &Model, nuisance: Nuisance, clocks: &Clocks) -> Trace {
+        self.stamped(
+            &self.trace(model, nuisance, CurrentShift::default()),
+            clocks,
+        )
+    }
+
+    /// A trace as clocks with these errors would have logged it.
+    #[must_use]
+    pub fn stamped(&self, in_step: &Trace, clocks: &Clocks) -> Trace {
+        clocks.stamped(&self.drive.time_s, in_step)
+    }
+}
+
+/// Whether a hitch bounces on stiff ground: steps that are twice as long follow the ringing of load on oil, not that.
+fn bounces(model: &Model) -> bool {
+    let lands = |added: &AddedEffect| added.effect.search() == Search::Places && !added.is_null();
+    model.constants().dynamics == Dynamics::Dynamic && model.effects.iter().any(lands)
+}
+
+/// Samples at the start of a flow-bench run before the port has the pressure that it then keeps: by the gauge, which
+/// need not agree with the declared one.
+fn settling_samples(run: &Run) -> usize {
+    if !matches!(run.bench, Bench::Flow { .. }) {
+        return 0;
+    }
+    let Some(pressure) = run.channel(Channel::CylinderPressure) else {
+        return 0;
+    };
+    let finite = pressure.iter().copied().filter(|bar| bar.is_finite());
+    let Some(kept_bar) = median(finite.collect()) else {
+        return 0;
+    };
+    let tolerance_bar = (PORT_TOLERANCE * kept_bar).max(1.0);
+    let settled = pressure
+        .iter()
+        .position(|bar| (bar - kept_bar).abs() <= tolerance_bar);
+    // A bench that takes longer has a fault, which is to be shown, not hidden.
+    settled
+        .filter(|&samples| samples <= run.time_s.len() / 4)
+        .unwrap_or(0)
+}

@@ -1,0 +1,60 @@
+//! Where a hitch stood when its log began.
+//!
+//! A log with the angle says so. Without it the rest of the log has to: at rest the lever arms of the linkage make the
+//! pressure, and later the stops say how far it was to them.
+
+use hitch_campaign::Run;
+use hitch_plant::{Channel, Model};
+
+use crate::data::experiment::{Nuisance, ReadyRun};
+use crate::data::trace_cache::CurrentShift;
+
+/// Samples that a measured start is the mean of.
+const START_SAMPLES: usize = 5;
+
+/// Starts that are tried between two bounds, and how often the bounds close in on the best of them.
+const TRIED: u32 = 16;
+const ROUNDS: usize = 4;
+
+/// The rocker angle that a log begins with, degree; `None` if it has no angle.
+pub(crate) fn measured_deg(run: &Run) -> Option<f64> {
+    let angle = run.channel(Channel::RockerAngle)?;
+    let finite = angle.iter().copied().filter(|angle| angle.is_finite());
+    let seen: Vec<f64> = finite.take(START_SAMPLES).collect();
+    (!seen.is_empty()).then(|| seen.iter().sum::<f64>() / seen.len() as f64)
+}
+
+/// The rocker angle, degree, from which a model comes nearest to what else a run has.
+pub(crate) fn likely_deg(run: &ReadyRun, model: &Model, noise: [f64; 4]) -> f64 {
+    let left = |start_angle_deg: f64| left(run, model, noise, start_angle_deg);
+    let (low, high) = model.linkage().swing_rad();
+    let ends = [low.to_degrees(), high.to_degrees()];
+    let (mut low, mut high) = (ends[0], ends[1]);
+    let mut best = 0.5 * (low + high);
+    for _ in 0..ROUNDS {
+        let step = (high - low) / f64::from(TRIED);
+        let tried = (0..=TRIED).map(|index| low + f64::from(index) * step);
+        let ranked = tried.map(|angle_deg| (left(angle_deg), angle_deg));
+        best = ranked
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map_or(best, |(_, angle_deg)| angle_deg);
+        (low, high) = ((best - step).max(ends[0]), (best + step).min(ends[1]));
+    }
+    best
+}
+
+/// What a model leaves of a run from a start: the sum of magnitudes, for what is missing still may leave much in places.
+fn left(run: &ReadyRun, model: &Model, noise: [f64; 4], start_angle_deg: f64) -> f64 {
+    let started = run.started_at(start_angle_deg);
+    let trace = started.simulated(model, Nuisance::default(), CurrentShift::default());
+    let of_channel = |channel: Channel| {
+        let simulated = trace.channel(channel).iter();
+        let measured = run.measured[channel.index()].iter().flatten();
+        let apart = measured.zip(simulated).map(|(m, s)| (m - s).abs());
+        let apart = apart.filter(|apart| apart.is_finite());
+        apart.sum::<f64>() / noise[channel.index()]
+    };
+    let measured = Channel::ALL.into_iter();
+    let measured = measured.filter(|channel| run.measured[channel.index()].is_some());
+    measured.map(of_channel).sum()
+}

@@ -1,0 +1,217 @@
+//! The manoeuvre that tells most, a minute of rig time, of what a campaign leaves alike.
+
+use std::fmt;
+
+use hitch_plant::{Effect, Model};
+use rayon::prelude::*;
+
+use crate::data::experiment::Experiment;
+use crate::design::manoeuvre::MANOEUVRES;
+use crate::design::plan::Manoeuvre;
+use crate::design::sensor::telling_instrument;
+use crate::design::separation::{Bench, Known, Pair};
+use crate::selection::evidence::TOLD_APART;
+
+/// Expected likelihood ratio that decides for sure: a measured one scatters by twice its root, and this one stays above
+/// [`TOLD_APART`] in 19 of 20 measurements.
+const DECISIVE: f64 = 26.0;
+
+/// What to measure next.
+#[derive(Debug, Clone)]
+pub struct NextExperiment {
+    /// What to do, a sentence without its full stop.
+    pub manoeuvre: String,
+    /// What it is good for, a sentence without its full stop; empty if the first says it all.
+    pub why: String,
+    /// The effects that it would tell from each other.
+    pub separates: Vec<(&'static dyn Effect, &'static dyn Effect)>,
+    /// Smallest likelihood ratio to expect for these, by whose root times two a measured one scatters; of all listed
+    /// manoeuvres the largest if none separates anything, not a number if nothing was simulated.
+    pub expected_likelihood_ratio: f64,
+    /// Rig time, minutes, with setting up; not a number if no manoeuvre is proposed.
+    pub minutes: f64,
+}
+
+impl fmt::Display for NextExperiment {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.manoeuvre)?;
+        if !self.why.is_empty() {
+            write!(f, ": {}", self.why)?;
+        }
+        Ok(())
+    }
+}
+
+impl NextExperiment {
+    /// What a campaign lacks altogether, without which nothing can be simulated.
+    #[must_use]
+    pub fn missing(what: &str) -> Self {
+        Self {
+            manoeuvre: what.to_owned(),
+            why: String::new(),
+            separates: Vec::new(),
+            expected_likelihood_ratio: f64::NAN,
+            minutes: f64::NAN,
+        }
+    }
+
+    fn of(
+        manoeuvre: &Manoeuvre,
+        judged: &Judged,
+        pairs: &[Pair],
+        bar: f64,
+        instrument: Option<&str>,
+    ) -> Self {
+        let told = |above: bool| {
+            let ratios = pairs.iter().zip(&judged.likelihood_ratios);
+            let chosen = ratios.filter(move |(_, ratio)| (**ratio >= bar) == above);
+            chosen.map(|(pair, _)| (pair.named.effect, pair.other.effect))
+        };
+        let (ratio, minutes) = (judged.smallest(bar), manoeuvre.minutes());
+        let left = distinct(told(false).map(|(a, b)| either(a, b)));
+        let mut why = format!(
+            "it would tell {} apart (expected likelihood ratio {}, about {} minutes)",
+            distinct(told(true).map(|(a, b)| both(a, b))).join(", and "),
+            rounded(ratio),
+            rounded(minutes),
+        );
+        if !left.is_empty() {
+            why += &format!("; it would still leave open {}", left.join(" and "));
+        }
+        if let Some(name) = instrument {
+            why += &format!("; that is little, {name} would show more");
+        }
+        Self {
+            manoeuvre: manoeuvre.instruction.to_owned(),
+            why,
+            separates: told(true).collect(),
+            expected_likelihood_ratio: ratio,
+            minutes,
+        }
+    }
+
+    fn none(best: f64, pairs: &[Pair], instrument: Option<&str>) -> Self {
+        let named = pairs.iter();
+        let named = distinct(named.map(|pair| both(pair.named.effect, pair.other.effect)));
+        let instead = instrument.map_or_else(
+            || "and in every quantity of the plant, so that either name will do".to_owned(),
+            |name| format!("an additional sensor is needed: {name}"),
+        );
+        Self {
+            manoeuvre: format!(
+                "none of the listed manoeuvres would tell {} apart",
+                named.join(", or ")
+            ),
+            why: format!("they act alike on every channel that is measured; {instead}"),
+            separates: Vec::new(),
+            expected_likelihood_ratio: best,
+            minutes: f64::NAN,
+        }
+    }
+}
+
+/// A manoeuvre's expected likelihood ratios, a pair each.
+struct Judged {
+    likelihood_ratios: Vec<f64>,
+}
+
+impl Judged {
+    fn told(&self, bar: f64) -> impl Iterator<Item = f64> {
+        let ratios = self.likelihood_ratios.iter().copied();
+        ratios.filter(move |ratio| *ratio >= bar)
+    }
+
+    /// Smallest ratio of the pairs that are told apart.
+    fn smallest(&self, bar: f64) -> f64 {
+        self.told(bar).fold(f64::INFINITY, f64::min)
+    }
+
+    fn largest(&self) -> f64 {
+        self.told(0.0).fold(0.0, f64::max)
+    }
+}
+
+/// The listed manoeuvre that separates the most pairs, and of these the one whose smallest likelihood ratio a minute is
+/// largest; or, if none separates any, what else to measure. `None` without pairs.
+#[must_use]
+pub fn next_experiment(
+    experiment: &Experiment,
+    model: &Model,
+    pairs: &[Pair],
+) -> Option<NextExperiment> {
+    let bench = Bench::new(experiment, model, pairs.first()?.named.fit);
+    let known: Vec<Known> = pairs.iter().map(|pair| bench.known(*pair)).collect();
+    let judged: Vec<Judged> = MANOEUVRES
+        .par_iter()
+        .map(|manoeuvre| Judged {
+            likelihood_ratios: bench.likelihood_ratios(manoeuvre, &known),
+        })
+        .collect();
+    let best = judged.iter().map(Judged::largest).fold(0.0, f64::max);
+    let instrument = (best < DECISIVE)
+        .then(|| telling_instrument(&bench, MANOEUVRES, pairs[0]))
+        .flatten();
+    if best < TOLD_APART {
+        return Some(NextExperiment::none(best, pairs, instrument));
+    }
+    let bar = if best >= DECISIVE {
+        DECISIVE
+    } else {
+        TOLD_APART
+    };
+    let merit = |(manoeuvre, judged): &(&Manoeuvre, &Judged)| {
+        (
+            judged.told(bar).count(),
+            judged.smallest(bar) / manoeuvre.minutes(),
+        )
+    };
+    MANOEUVRES
+        .iter()
+        .zip(&judged)
+        .filter(|(_, judged)| judged.told(bar).count() > 0)
+        .max_by(|a, b| {
+            let ((a_count, a_rate), (b_count, b_rate)) = (merit(a), merit(b));
+            a_count.cmp(&b_count).then(a_rate.total_cmp(&b_rate))
+        })
+        .map(|(manoeuvre, judged)| NextExperiment::of(manoeuvre, judged, pairs, bar, instrument))
+}
+
+/// Texts without repetitions: two forms of an effect have one name.
+fn distinct(texts: impl Iterator<Item = String>) -> Vec<String> {
+    let mut distinct: Vec<String> = Vec::new();
+    for text in texts {
+        if !distinct.contains(&text) {
+            distinct.push(text);
+        }
+    }
+    distinct
+}
+
+fn both(a: &dyn Effect, b: &dyn Effect) -> String {
+    format!("{} and {}", a.id(), b.id())
+}
+
+fn either(a: &dyn Effect, b: &dyn Effect) -> String {
+    format!("{} or {}", a.id(), b.id())
+}
+
+/// A number as precise as an expectation is: two digits.
+fn rounded(value: f64) -> String {
+    if value < 10.0 {
+        return format!("{value:.1}");
+    }
+    let unit = 10_f64.powf(value.log10().floor() - 1.0);
+    format!("{:.0}", (value / unit).round() * unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded;
+
+    #[test]
+    fn expectations_have_two_digits() {
+        assert_eq!(rounded(6.42), "6.4");
+        assert_eq!(rounded(26.4), "26");
+        assert_eq!(rounded(12_345.0), "12000");
+    }
+}

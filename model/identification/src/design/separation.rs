@@ -1,0 +1,262 @@
+//! What a manoeuvre would tell of two rival effects, before it is measured.
+//!
+//! The manoeuvre is simulated as if one rival were the truth; the model with the other is then compared with that log
+//! as a measured one would be, under the same weights. The other's parameters, the loads and the clocks adapt as far as
+//! the campaign lets them: its normal matrix is the prior (T-optimality with refit, Atkinson & Fedorov 1975, to first
+//! order). What is left, in units of the residuals' variance and of its inflation by slow noise as the campaign shows
+//! it, is the likelihood ratio to expect. Either rival may be the true one; the smaller ratio counts.
+
+use hitch_campaign::{Campaign, Noise};
+use hitch_plant::simulation::simulate;
+use hitch_plant::{Effect, Model};
+use nalgebra::DMatrix;
+
+use crate::data::experiment::{Experiment, Nuisance, ReadyRun};
+use crate::design::plan::Manoeuvre;
+use crate::estimate::{Estimate, Shared};
+use crate::estimation::fit::Fit;
+use crate::estimation::jacobian::{Jacobian, square_sum, subtract};
+use crate::residuals::whitening::Weights;
+use crate::selection::evidence::{expected_inflation, persistence};
+
+/// An effect, and the fit of the campaign in which it stands.
+#[derive(Debug, Clone, Copy)]
+pub struct Rival<'a> {
+    /// Which effect.
+    pub effect: &'static dyn Effect,
+    /// The campaign's fit with it.
+    pub fit: &'a Fit,
+}
+
+/// Two effects that explain a campaign alike.
+#[derive(Debug, Clone, Copy)]
+pub struct Pair<'a> {
+    /// The named one.
+    pub named: Rival<'a>,
+    /// The one that could stand in its place.
+    pub other: Rival<'a>,
+}
+
+impl<'a> Pair<'a> {
+    /// Both rivals.
+    #[must_use]
+    pub fn rivals(&self) -> [Rival<'a>; 2] {
+        [self.named, self.other]
+    }
+}
+
+/// What manoeuvres are judged by: the campaign's instruments and the noise that it shows.
+pub struct Bench<'a> {
+    model: &'a Model,
+    experiment: &'a Experiment,
+    rate_hz: f64,
+    /// Mean square of what the named model leaves, one at least.
+    variance: f64,
+    /// Autocorrelation of what the named model leaves, by channel.
+    persistence: [Vec<f64>; 4],
+}
+
+/// A pair with what the campaign says of either's parameters.
+pub struct Known<'a> {
+    pair: Pair<'a>,
+    normals: [Normal; 2],
+}
+
+/// Normal matrix of a fit, with the parameters that its rows belong to.
+struct Normal {
+    shared: Vec<Shared>,
+    matrix: DMatrix<f64>,
+}
+
+impl<'a> Bench<'a> {
+    /// The bench of a campaign whose best fit is `fit`.
+    #[must_use]
+    pub fn new(experiment: &'a Experiment, model: &'a Model, fit: &Fit) -> Self {
+        let compared = fit.weights.count().max(1) as f64;
+        Self {
+            model,
+            experiment,
+            rate_hz: rate_hz(experiment),
+            variance: (square_sum(&fit.residuals) / compared).max(1.0),
+            persistence: persistence(experiment, &fit.residuals),
+        }
+    }
+
+    /// A pair with what the campaign says of either's parameters.
+    #[must_use]
+    pub fn known(&self, pair: Pair<'a>) -> Known<'a> {
+        let normals = pair.rivals().map(|rival| {
+            let (experiment, fit) = (self.experiment, rival.fit);
+            let jacobian = Jacobian::new(experiment, self.model, &fit.weights, &fit.estimate);
+            Normal {
+                matrix: jacobian.reduced(&fit.estimate).0,
+                shared: jacobian.shared,
+            }
+        });
+        Known { pair, normals }
+    }
+
+    /// Likelihood ratio to expect of a manoeuvre for each pair, whichever rival is true.
+    #[must_use]
+    pub fn likelihood_ratios(&self, manoeuvre: &Manoeuvre, pairs: &[Known]) -> Vec<f64> {
+        pairs
+            .iter()
+            .map(|known| {
+                let [named, other] = known.pair.rivals();
+                let [of_named, of_other] = &known.normals;
+                let forth = self.likelihood_ratio(manoeuvre, named, other, of_other);
+                let back = self.likelihood_ratio(manoeuvre, other, named, of_named);
+                forth.min(back)
+            })
+            .collect()
+    }
+
+    /// The model with a rival's effects.
+    #[must_use]
+    pub fn with(&self, rival: Rival) -> Model {
+        self.model.with_effects(rival.fit.estimate.effects.clone())
+    }
+
+    /// The sample rate, Hz.
+    #[must_use]
+    pub fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    /// Whether the campaign measures each channel, by `Channel::index`.
+    #[must_use]
+    pub fn channels(&self) -> [bool; 4] {
+        self.experiment.noise.map(f64::is_finite)
+    }
+
+    /// Likelihood ratio against `wrong` if `truth` is there, once `wrong` has adapted.
+    fn likelihood_ratio(
+        &self,
+        manoeuvre: &Manoeuvre,
+        truth: Rival,
+        wrong: Rival,
+        normal: &Normal,
+    ) -> f64 {
+        let logged = self.measured(manoeuvre, truth);
+        let estimate = |rival: Rival| Estimate::new(&logged, rival.fit.estimate.effects.clone());
+        let weights = Weights::new(&logged, self.model, &estimate(truth));
+        let wrong = estimate(wrong);
+        let jacobian = Jacobian::new(&logged, self.model, &weights, &wrong);
+        let Some((cost, left)) = adapted(&jacobian, &wrong, normal) else {
+            return 0.0;
+        };
+        cost / (self.variance * expected_inflation(&logged, &self.persistence, &left))
+    }
+
+    /// A manoeuvre as the campaign's instruments would log it without noise if a rival were there, with their noise
+    /// declared.
+    fn measured(&self, manoeuvre: &Manoeuvre, truth: Rival) -> Experiment {
+        let noise = self.experiment.noise;
+        let sigma = self.experiment.current_noise;
+        let campaign = Campaign {
+            name: manoeuvre.name.to_owned(),
+            description: String::new(),
+            sample_rate_hz: self.rate_hz,
+            synchronous: self.experiment.clocks_within_s == 0.0,
+            noise: Noise {
+                lift_current_a: Some(sigma.lift_a),
+                lower_current_a: Some(sigma.lower_a),
+                channels: noise.map(|sigma| sigma.is_finite().then_some(sigma)),
+                oil_temperature_c: None,
+            },
+            runs: manoeuvre.log(&self.with(truth), self.rate_hz, self.channels()),
+        };
+        let mut logged = Experiment {
+            current_persistence: self.experiment.current_persistence,
+            ..Experiment::new(&campaign, self.model)
+        };
+        let truth = self.with(truth);
+        for run in &mut logged.runs {
+            as_cleaned(run, &truth);
+        }
+        logged
+    }
+}
+
+/// Replaces what a run measured by what `truth` gives under the currents as they were cleaned: cleaning rounds corners
+/// by less than the currents' noise, which must not count as a difference between rivals.
+fn as_cleaned(run: &mut ReadyRun, truth: &Model) {
+    let (rig, drive) = (run.rig(Nuisance::default()), &run.drive);
+    let trace = simulate(
+        truth,
+        rig,
+        run.oil_temperature_c,
+        &drive.time_s,
+        &drive.currents,
+    );
+    for (measured, simulated) in run.measured.iter_mut().zip(trace.channels) {
+        if let Some(measured) = measured {
+            *measured = simulated;
+        }
+    }
+}
+
+/// Cost that stays, and residuals, once all that is free has adapted: the effects' parameters and the clocks against
+/// the campaign's normal matrix, each run's load against its prior. `None` if nothing can be solved.
+fn adapted(
+    jacobian: &Jacobian,
+    estimate: &Estimate,
+    normal: &Normal,
+) -> Option<(f64, Vec<Vec<f64>>)> {
+    let (matrix, right) = jacobian.reduced(estimate);
+    let known = normal.of(&jacobian.shared);
+    let mut whole = matrix + &known;
+    for k in 0..whole.nrows() {
+        whole[(k, k)] += 1e-9;
+    }
+    let step = whole.cholesky()?.solve(&right);
+    let mut cost = step.dot(&(known * &step));
+    let left: Vec<Vec<f64>> = jacobian
+        .runs
+        .iter()
+        .map(|run| {
+            let mut left = run.residual.clone();
+            for (column, &share) in run.shared.iter().zip(step.iter()) {
+                subtract(&mut left, share, column);
+            }
+            if let Some((load, square, pull)) = run.load_pull(&left) {
+                let share = pull / square;
+                cost += share * share;
+                subtract(&mut left, share, load);
+            }
+            left
+        })
+        .collect();
+    cost += square_sum(&left);
+    Some((cost, left))
+}
+
+impl Normal {
+    /// Its rows and columns in another order of the parameters; nothing is known of one that it does not have.
+    fn of(&self, shared: &[Shared]) -> DMatrix<f64> {
+        let places: Vec<Option<usize>> = shared
+            .iter()
+            .map(|wanted| self.shared.iter().position(|has| has == wanted))
+            .collect();
+        DMatrix::from_fn(shared.len(), shared.len(), |row, column| {
+            match (places[row], places[column]) {
+                (Some(row), Some(column)) => self.matrix[(row, column)],
+                _ => 0.0,
+            }
+        })
+    }
+}
+
+/// Sample rate of a campaign, Hz: that of its first run.
+fn rate_hz(experiment: &Experiment) -> f64 {
+    const USUAL_HZ: f64 = 50.0;
+    /// No logger of a hitch is slower or faster; a log may still say so.
+    const LOGGERS_HZ: (f64, f64) = (1.0, 1000.0);
+    let time_s = experiment.runs.first().map(|run| &run.drive.time_s);
+    time_s
+        .and_then(|time_s| Some((time_s.len(), time_s.first()?, time_s.last()?)))
+        .filter(|(_, first, last)| last > first)
+        .map_or(USUAL_HZ, |(samples, first, last)| {
+            ((samples - 1) as f64 / (last - first)).clamp(LOGGERS_HZ.0, LOGGERS_HZ.1)
+        })
+}

@@ -1,0 +1,301 @@
+//! What a fit may change, and its scaling.
+
+use hitch_plant::{AddedEffect, Parameter, Search};
+use nalgebra::DVector;
+
+use crate::data::clocks::{Clocks, OFFSET_PRIOR_S};
+use crate::data::experiment::{Experiment, LOAD_PRIOR, Nuisance};
+use crate::estimation::jacobian::Step;
+
+/// Values of everything that is free: the effects' parameters, and the nuisances with a prior.
+#[derive(Debug, Clone)]
+pub struct Estimate {
+    /// The model's effects with their present values.
+    pub effects: Vec<AddedEffect>,
+    /// What the log's clocks are off by.
+    pub clocks: Clocks,
+    /// Effects that the model had before a search, as they were adopted.
+    pub adopted: Vec<Adopted>,
+    /// What each run may be off by.
+    pub nuisances: Vec<Nuisance>,
+    /// How far a channel may be stamped off the currents, s.
+    pub clocks_within_s: f64,
+}
+
+/// A nuisance is never believed to be further off than this many prior sigmas.
+const FARTHEST: f64 = 5.0;
+
+/// What a load error loses when it is told in sigmas.
+const ROUNDING: f64 = 1e-9;
+
+/// An effect that a model had before a search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Adopted {
+    /// Its id.
+    pub id: &'static str,
+    /// Its size then, in the unit of its parameter.
+    pub size: f64,
+    /// What of it a fit leaves as it is.
+    pub held: Held,
+}
+
+/// Which parameters of an effect keep their values in a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Held {
+    /// All of them.
+    All,
+    /// All but the size.
+    Shape,
+}
+
+/// A parameter that all runs share.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shared {
+    /// Parameter of an effect, by the two indices.
+    Effect(usize, usize),
+    /// How late a channel is stamped, by its index.
+    Offset(usize),
+}
+
+/// The shared nuisances, in the order of their columns.
+pub const CLOCKS: [Shared; 4] = [
+    Shared::Offset(0),
+    Shared::Offset(1),
+    Shared::Offset(2),
+    Shared::Offset(3),
+];
+
+impl Shared {
+    /// Whether it is a nuisance with a prior of one scale about nothing.
+    #[must_use]
+    pub fn has_prior(self) -> bool {
+        !matches!(self, Self::Effect(..))
+    }
+}
+
+impl Estimate {
+    /// The effects as they are, nothing off.
+    #[must_use]
+    pub fn new(experiment: &Experiment, effects: Vec<AddedEffect>) -> Self {
+        Self {
+            effects,
+            clocks: Clocks::default(),
+            adopted: Vec::new(),
+            nuisances: vec![Nuisance::default(); experiment.runs.len()],
+            clocks_within_s: experiment.clocks_within_s,
+        }
+    }
+
+    /// Every shared parameter that is free, effects first, then [`CLOCKS`].
+    #[must_use]
+    pub fn shared(&self) -> Vec<Shared> {
+        let effects = self.effects.iter().enumerate().flat_map(|(effect, added)| {
+            let free = self.free_parameters(added.effect.id());
+            let parameters = 0..added.values.len().min(free);
+            parameters.map(move |parameter| Shared::Effect(effect, parameter))
+        });
+        effects.chain(CLOCKS).collect()
+    }
+
+    /// How many parameters of an effect are free, counted from its size; more than it has if all are.
+    #[must_use]
+    pub fn free_parameters(&self, id: &str) -> usize {
+        match self.adopted_as(id).map(|adopted| adopted.held) {
+            None => usize::MAX,
+            Some(Held::Shape) => 1,
+            Some(Held::All) => 0,
+        }
+    }
+
+    /// The same with its effects adopted: a fit leaves them as they are.
+    #[must_use]
+    pub fn with_adopted(mut self) -> Self {
+        let adopted = |added: &AddedEffect| Adopted {
+            id: added.effect.id(),
+            size: added.values[0],
+            held: Held::All,
+        };
+        self.adopted = self.effects.iter().map(adopted).collect();
+        self
+    }
+
+    /// Frees the size of an adopted effect.
+    pub fn release(&mut self, id: &str) {
+        let mut adopted = self.adopted.iter_mut();
+        if let Some(adopted) = adopted.find(|adopted| adopted.id == id) {
+            adopted.held = Held::Shape;
+        }
+    }
+
+    /// How an effect was adopted; `None` if it was not.
+    #[must_use]
+    pub fn adopted_as(&self, id: &str) -> Option<&Adopted> {
+        self.adopted.iter().find(|adopted| adopted.id == id)
+    }
+
+    /// Whether an effect, by its index, is as it was adopted.
+    #[must_use]
+    pub fn is_unchanged(&self, effect: usize) -> bool {
+        let adopted = self.adopted_as(self.effects[effect].effect.id());
+        adopted.is_some_and(|adopted| adopted.held == Held::All)
+    }
+
+    /// The size at which an effect, by its index, counts as absent: as it was adopted, or its null value.
+    #[must_use]
+    pub fn off(&self, effect: usize) -> f64 {
+        let own = self.effects[effect].effect;
+        let adopted = self.adopted_as(own.id());
+        adopted.map_or(own.parameters()[0].null, |adopted| adopted.size)
+    }
+
+    /// Description of an effect's parameter.
+    #[must_use]
+    pub fn parameter(&self, effect: usize, parameter: usize) -> &'static Parameter {
+        &self.effects[effect].effect.parameters()[parameter]
+    }
+
+    /// How a shared parameter is looked for: of an effect that is met at a place, only the size is one.
+    #[must_use]
+    pub fn search(&self, shared: Shared) -> Search {
+        match shared {
+            Shared::Effect(effect, parameter) => match self.effects[effect].effect.search() {
+                Search::Places if parameter > 0 => Search::Secants,
+                search => search,
+            },
+            Shared::Offset(_) => Search::Secants,
+        }
+    }
+
+    /// A natural size of a shared parameter, in its unit: its step in a fit is one of these.
+    #[must_use]
+    pub fn scale(&self, shared: Shared) -> f64 {
+        match shared {
+            Shared::Effect(effect, parameter) => self.parameter(effect, parameter).scale(),
+            Shared::Offset(_) => OFFSET_PRIOR_S,
+        }
+    }
+
+    /// Value of a shared parameter, in its unit.
+    #[must_use]
+    pub fn get(&self, shared: Shared) -> f64 {
+        match shared {
+            Shared::Effect(effect, parameter) => self.effects[effect].values[parameter],
+            Shared::Offset(channel) => self.clocks.offsets_s[channel],
+        }
+    }
+
+    /// How far a shared parameter may go down and up from where it stands, in its scales.
+    #[must_use]
+    pub fn room(&self, shared: Shared) -> (f64, f64) {
+        let (low, high) = self.range(shared);
+        let (value, scale) = (self.get(shared), self.scale(shared));
+        ((low - value) / scale, (high - value) / scale)
+    }
+
+    /// Smallest and largest value of a shared parameter, in its unit.
+    #[must_use]
+    pub fn range(&self, shared: Shared) -> (f64, f64) {
+        match shared {
+            Shared::Effect(effect, parameter) => {
+                let range = self.parameter(effect, parameter);
+                (range.low, range.high)
+            }
+            Shared::Offset(_) => (-self.clocks_within_s, self.clocks_within_s),
+        }
+    }
+
+    /// Whether a shared parameter stands at an end of its range.
+    #[must_use]
+    pub fn is_at_an_end(&self, shared: Shared) -> bool {
+        let (value, (low, high)) = (self.get(shared), self.range(shared));
+        value <= low || value >= high
+    }
+
+    /// Sets a shared parameter, within its range.
+    pub fn set(&mut self, shared: Shared, value: f64) {
+        let (low, high) = self.range(shared);
+        let value = value.max(low).min(high);
+        match shared {
+            Shared::Effect(effect, parameter) => self.effects[effect].values[parameter] = value,
+            Shared::Offset(channel) => self.clocks.offsets_s[channel] = value,
+        }
+    }
+
+    /// The estimate after a step, within all ranges.
+    #[must_use]
+    pub fn moved(&self, parameters: &[Shared], step: &Step) -> Self {
+        let mut moved = self.clone();
+        for (&shared, &scales) in parameters.iter().zip(step.shared.iter()) {
+            moved.set(shared, self.get(shared) + scales * self.scale(shared));
+        }
+        for (run, &sigmas) in step.loads.iter().enumerate() {
+            moved.set_load(run, self.load(run) + sigmas);
+        }
+        moved
+    }
+
+    /// The step that leads here from another estimate: less than was asked for where a range ends.
+    #[must_use]
+    pub fn step_from(&self, from: &Self, parameters: &[Shared]) -> Step {
+        let shared = parameters
+            .iter()
+            .map(|&shared| (self.get(shared) - from.get(shared)) / self.scale(shared));
+        let loads = (0..self.nuisances.len()).map(|run| self.load(run) - from.load(run));
+        Step {
+            shared: DVector::from_iterator(parameters.len(), shared),
+            loads: loads.collect(),
+        }
+    }
+
+    /// Load error of a run, in prior sigmas.
+    #[must_use]
+    pub fn load(&self, run: usize) -> f64 {
+        self.nuisances[run].load / LOAD_PRIOR
+    }
+
+    /// Whether a run's load error stands at an end of its range and a `pull` of the residuals on it, in costs a sigma,
+    /// would move it out.
+    #[must_use]
+    pub fn load_would_leave(&self, run: usize, pull: f64) -> bool {
+        let load = self.load(run);
+        load.abs() >= FARTHEST - ROUNDING && (pull - load) * load > 0.0
+    }
+
+    /// Sets the load error of a run, in prior sigmas.
+    pub fn set_load(&mut self, run: usize, sigmas: f64) {
+        self.nuisances[run].load = sigmas.clamp(-FARTHEST, FARTHEST) * LOAD_PRIOR;
+    }
+
+    /// The same without one of the effects, by its index; one that was adopted is as it was then.
+    #[must_use]
+    pub fn without(&self, effect: usize) -> Self {
+        let mut lighter = self.clone();
+        let id = self.effects[effect].effect.id();
+        let mut adopted = lighter.adopted.iter_mut();
+        match adopted.find(|adopted| adopted.id == id) {
+            Some(adopted) => {
+                adopted.held = Held::All;
+                lighter.effects[effect].values[0] = adopted.size;
+            }
+            None => {
+                lighter.effects.remove(effect);
+            }
+        }
+        lighter
+    }
+
+    /// Cost of the priors: squared distance in prior sigmas.
+    #[must_use]
+    pub fn prior_cost(&self) -> f64 {
+        let loads: f64 = self
+            .nuisances
+            .iter()
+            .map(|nuisance| (nuisance.load / LOAD_PRIOR).powi(2))
+            .sum();
+        let clocks: f64 = CLOCKS
+            .iter()
+            .map(|&clock| (self.get(clock) / self.scale(clock)).powi(2))
+            .sum();
+        loads + clocks
+    }
+}

@@ -1,0 +1,82 @@
+//! The clocks of channels that ring.
+//!
+//! A pressure that rings fits nearly as well a whole period too late, and a descent from a wrong stiffness or a wrong
+//! friction ends there: no gradient leads back. Moving a channel of a trace costs nothing, so all offsets are tried.
+
+use hitch_plant::Model;
+use rayon::prelude::*;
+
+use crate::data::clocks::{Clocks, FARTHEST_S, OFFSET_PRIOR_S};
+use crate::data::experiment::Experiment;
+use crate::data::trace_cache::CurrentShift;
+use crate::estimate::Estimate;
+use crate::estimation::jacobian::{dot, huber};
+use crate::residuals::whitening::Weights;
+
+/// From one offset to the next, s: a tenth of the fastest period that a sample of 20 ms still shows.
+const STEP_S: f64 = 0.004;
+
+/// The estimate with the clocks that fit best as everything else is; as it is where nothing rings or the clocks are
+/// known.
+pub(crate) fn synchronised(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    estimate: Estimate,
+) -> Estimate {
+    if !experiment.ringing || experiment.clocks_within_s == 0.0 {
+        return estimate;
+    }
+    let steps = (FARTHEST_S / STEP_S).round() as i32;
+    let tried: Vec<Clocks> = (-steps..=steps)
+        .map(|step| Clocks {
+            offsets_s: [f64::from(step) * STEP_S; 4],
+        })
+        .chain([estimate.clocks])
+        .collect();
+    let costs = costs(experiment, model, weights, &estimate, &tried);
+    let mut better = estimate;
+    for (channel, offset_s) in better.clocks.offsets_s.iter_mut().enumerate() {
+        let best = costs
+            .iter()
+            .zip(&tried)
+            .min_by(|a, b| a.0[channel].total_cmp(&b.0[channel]));
+        if let Some((_, clocks)) = best {
+            *offset_s = clocks.offsets_s[channel];
+        }
+    }
+    better
+}
+
+/// Cost of each channel under each of some clocks, with the clocks' prior.
+fn costs(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    estimate: &Estimate,
+    tried: &[Clocks],
+) -> Vec<[f64; 4]> {
+    let model = model.with_effects(estimate.effects.clone());
+    let of_runs: Vec<Vec<[f64; 4]>> = experiment
+        .runs
+        .par_iter()
+        .enumerate()
+        .map(|(index, run)| {
+            let in_step = run.trace(&model, estimate.nuisances[index], CurrentShift::default());
+            let cost = |clocks: &Clocks| {
+                let trace = run.stamped(&in_step, clocks);
+                let whitened = huber(vec![weights.runs[index].whiten(run, &trace)]).swap_remove(0);
+                let of = |channel: usize| &whitened[channel * run.len()..(channel + 1) * run.len()];
+                std::array::from_fn(|channel| dot(of(channel), of(channel)))
+            };
+            tried.iter().map(cost).collect()
+        })
+        .collect();
+    let total = |(at, clocks): (usize, &Clocks)| {
+        std::array::from_fn(|channel| {
+            let prior = (clocks.offsets_s[channel] / OFFSET_PRIOR_S).powi(2);
+            prior + of_runs.iter().map(|run| run[at][channel]).sum::<f64>()
+        })
+    };
+    tried.iter().enumerate().map(total).collect()
+}

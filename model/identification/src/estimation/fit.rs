@@ -1,0 +1,255 @@
+//! Fits of effects, clocks and each run's nuisances, output error throughout.
+//!
+//! Simulated trajectories are compared, never one-step predictions: those feed the measured pressure back and hide
+//! leakage and friction.
+
+use hitch_plant::Model;
+
+use crate::data::experiment::Experiment;
+use crate::estimate::Estimate;
+use crate::estimation::clock_synchronisation::synchronised;
+use crate::estimation::jacobian::{huber, load_steps, residuals, square_sum};
+use crate::estimation::least_squares::{Descent, Moves, descend};
+use crate::residuals::whitening::Weights;
+
+/// Coarse weights of the channels (pump pressure, cylinder pressure, flow, angle): ringing pressures make valleys
+/// that a fit falls into, so the first round looks at flow and angle.
+pub(crate) const COARSE: [f64; 4] = [0.04, 0.04, 0.15, 0.25];
+
+/// Iterations of the coarse and of each fine round.
+const COARSE_ITERATIONS: usize = 4;
+const FINE_ITERATIONS: usize = 12;
+
+/// Iterations from a start that is all but there.
+const LAST_ITERATIONS: usize = 2;
+
+/// A fitted model.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// The values found.
+    pub estimate: Estimate,
+    /// Weights under these values.
+    pub weights: Weights,
+    /// Whitened residuals of each run, channel after channel.
+    pub residuals: Vec<Vec<f64>>,
+    /// Sum of Huber's losses plus the cost of the priors.
+    pub cost: f64,
+}
+
+/// Sums of squares of whitened residuals and numbers of samples, by channel.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ErrorSums {
+    squares: [f64; 4],
+    counts: [usize; 4],
+}
+
+impl ErrorSums {
+    /// Sums over all runs of a fit.
+    #[must_use]
+    pub fn of(fit: &Fit) -> Self {
+        Self::summed(&fit.residuals, fit.weights.counts)
+    }
+
+    /// The same with the residuals as a fit sees them.
+    #[must_use]
+    pub fn seen(fit: &Fit) -> Self {
+        Self::summed(&huber(fit.residuals.clone()), fit.weights.counts)
+    }
+
+    fn summed(residuals: &[Vec<f64>], counts: [usize; 4]) -> Self {
+        let mut sums = Self {
+            squares: [0.0; 4],
+            counts,
+        };
+        for run in residuals {
+            let samples = run.len() / 4;
+            for (channel, square) in sums.squares.iter_mut().enumerate() {
+                let part = &run[channel * samples..(channel + 1) * samples];
+                *square += part.iter().map(|e| e * e).sum::<f64>();
+            }
+        }
+        sums
+    }
+
+    /// Sums of sums.
+    #[must_use]
+    pub fn total(parts: &[Self]) -> Self {
+        let mut total = Self::default();
+        for part in parts {
+            for channel in 0..4 {
+                total.squares[channel] += part.squares[channel];
+                total.counts[channel] += part.counts[channel];
+            }
+        }
+        total
+    }
+
+    /// Root mean square of one channel; NaN without samples.
+    #[must_use]
+    pub fn channel(&self, channel: usize) -> f64 {
+        (self.squares[channel] / self.counts[channel] as f64).sqrt()
+    }
+
+    /// Error over all channels that have samples, each weighted alike; NaN without any.
+    #[must_use]
+    pub fn error(&self) -> f64 {
+        let compared: Vec<f64> = (0..4)
+            .filter(|&channel| self.counts[channel] > 0)
+            .map(|channel| self.channel(channel).powi(2))
+            .collect();
+        (compared.iter().sum::<f64>() / compared.len() as f64).sqrt()
+    }
+}
+
+impl Fit {
+    /// Its cost under the yardsticks of another fit, or its own if that is less, for those compare as well. A spool that
+    /// sticks does not follow the noise of the currents: under its own yardsticks what it leaves weighs four times as
+    /// much. A threshold that is off makes a hitch miss a stop, where under the other's nothing was compared.
+    #[must_use]
+    pub fn cost_beside(&self, experiment: &Experiment, model: &Model, other: &Self) -> f64 {
+        let (estimate, weights) = (self.estimate.clone(), other.weights.clone());
+        let beside = evaluate_weighted(experiment, model, estimate, weights).cost;
+        beside.min(self.cost)
+    }
+
+    /// Error of one channel by its index: root mean square of its whitened residuals; NaN without samples.
+    #[must_use]
+    pub fn channel_error(&self, channel: usize) -> f64 {
+        ErrorSums::of(self).channel(channel)
+    }
+
+    /// Error over all channels, each weighted alike.
+    #[must_use]
+    pub fn error(&self) -> f64 {
+        ErrorSums::of(self).error()
+    }
+
+    /// Mean square of the residuals, at least that of noise alone: one.
+    #[must_use]
+    pub fn variance(&self) -> f64 {
+        (square_sum(&self.residuals) / self.weights.count() as f64).max(1.0)
+    }
+}
+
+/// Evaluates an estimate without changing it.
+#[must_use]
+pub fn evaluate(experiment: &Experiment, model: &Model, estimate: Estimate) -> Fit {
+    let weights = Weights::new(experiment, model, &estimate);
+    evaluate_weighted(experiment, model, estimate, weights)
+}
+
+/// Evaluates an estimate under given weights.
+#[must_use]
+pub fn evaluate_weighted(
+    experiment: &Experiment,
+    model: &Model,
+    estimate: Estimate,
+    weights: Weights,
+) -> Fit {
+    let residuals = residuals(experiment, model, &weights, &estimate);
+    let cost = square_sum(&huber(residuals.clone())) + estimate.prior_cost();
+    Fit {
+        estimate,
+        weights,
+        residuals,
+        cost,
+    }
+}
+
+/// Fits everything that is free, from `start`, coarse to fine.
+#[must_use]
+pub fn fit(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
+    let weights = Weights::new(experiment, model, &start);
+    let start = coarsely(experiment, model, &weights, start);
+    refine(experiment, model, start)
+}
+
+/// Where a start leads under weights that look at flow and angle first.
+fn coarsely(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    start: Estimate,
+) -> Estimate {
+    let (coarse, moves) = (weights.clone().scaled(COARSE), Moves::All);
+    descend(experiment, model, &coarse, start, moves, COARSE_ITERATIONS).estimate
+}
+
+/// Fits roughly, under given weights, to see whether an effect deserves a full fit. From `far` away it starts coarse.
+#[must_use]
+pub fn sketch(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    start: Estimate,
+    far: bool,
+) -> Descent {
+    let start = if far {
+        coarsely(experiment, model, weights, start)
+    } else {
+        start
+    };
+    descend(
+        experiment,
+        model,
+        weights,
+        start,
+        Moves::All,
+        COARSE_ITERATIONS,
+    )
+}
+
+/// Fits from a start that is already near.
+#[must_use]
+pub fn refine(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
+    let found = |weights: &Weights, start: Estimate| {
+        let start = synchronised(experiment, model, weights, start);
+        let moves = Moves::All;
+        descend(experiment, model, weights, start, moves, FINE_ITERATIONS).estimate
+    };
+    let weights = Weights::new(experiment, model, &start);
+    let near = found(&weights, start);
+    // The weights belong to the values: once more with those of the values found.
+    let weights = Weights::new(experiment, model, &near);
+    let there = found(&weights, near);
+    evaluate_weighted(experiment, model, there, weights)
+}
+
+/// One round under given weights from a start that is all but there already. The sizes of what jumps stay: a slope that
+/// leads some runs a little further down misses the jumps of all others.
+#[must_use]
+pub fn refine_once(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    start: Estimate,
+) -> Estimate {
+    let moves = Moves::AllButJumps;
+    descend(experiment, model, weights, start, moves, LAST_ITERATIONS).estimate
+}
+
+/// Fits only each run's load error, under given weights: two Gauss-Newton steps, it is all but linear.
+#[must_use]
+pub fn fit_loads(
+    experiment: &Experiment,
+    model: &Model,
+    weights: &Weights,
+    start: Estimate,
+) -> Estimate {
+    let mut estimate = start;
+    for _ in 0..2 {
+        let steps = load_steps(experiment, model, weights, &estimate);
+        for (run, step) in steps.into_iter().enumerate() {
+            estimate.set_load(run, estimate.load(run) + step);
+        }
+    }
+    estimate
+}
+
+/// The same fit with one effect moved to the end of the list.
+pub(crate) fn with_last(experiment: &Experiment, model: &Model, fit: &Fit, effect: usize) -> Fit {
+    let mut estimate = fit.estimate.clone();
+    let moved = estimate.effects.remove(effect);
+    estimate.effects.push(moved);
+    evaluate(experiment, model, estimate)
+}

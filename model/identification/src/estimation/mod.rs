@@ -1,0 +1,9 @@
+//! Least squares: sensitivities, nuisances projected out, fits, intervals.
+
+pub mod central_differences;
+pub mod clock_synchronisation;
+pub mod fit;
+pub mod jacobian;
+pub mod least_squares;
+pub mod nuisance_projection;
+pub mod profile_likelihood;

@@ -1,0 +1,306 @@
+//! What the parameters that are already free could absorb, taken out of residuals and signatures.
+
+use std::borrow::Borrow;
+use std::ops::Range;
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use crate::estimate::Estimate;
+use crate::estimation::jacobian::{Jacobian, RunJacobian, dot, square_sum, subtract};
+
+/// Columns of a Jacobian that are free, ready to be projected out, with every run's load.
+pub struct Frame<J> {
+    jacobian: J,
+    kept: Vec<usize>,
+    /// Normal matrix of the kept columns, the loads eliminated, and its root.
+    matrix: DMatrix<f64>,
+    normal: Option<Cholesky<f64, Dyn>>,
+    /// How far each kept parameter may still go within its range, in scales.
+    room: Vec<(f64, f64)>,
+    /// Each run's load.
+    loads: Vec<Option<Load>>,
+    /// Pull of the priors of the shared parameters.
+    priors: DVector<f64>,
+    /// Products of the frame's own residuals.
+    own: Products,
+    /// [`Frame::cost_after`] of the frame's own residuals.
+    here: f64,
+}
+
+/// A run's load in a frame.
+struct Load {
+    /// Squared length of its column, with the unit prior.
+    square: f64,
+    /// Present load error, in prior sigmas.
+    value: f64,
+    /// Products of its column with the kept ones.
+    coupling: DVector<f64>,
+}
+
+/// Products of residuals with the columns of a frame: all of theirs that is linear in them.
+#[derive(Clone)]
+struct Products {
+    /// With each run's load.
+    loads: Vec<f64>,
+    /// With the kept columns.
+    columns: DVector<f64>,
+}
+
+impl Products {
+    /// Those of twice the residuals whose products these are, less others.
+    fn twice_less(&self, less: &Self) -> Self {
+        let loads = self.loads.iter().zip(&less.loads);
+        Self {
+            loads: loads.map(|(own, less)| 2.0 * own - less).collect(),
+            columns: 2.0 * &self.columns - &less.columns,
+        }
+    }
+}
+
+impl<J: Borrow<Jacobian>> Frame<J> {
+    /// All shared parameters of the Jacobian but the columns `left_out`, and but those that stand at an end of their
+    /// range: a clock that cannot move on absorbs nothing.
+    #[must_use]
+    pub fn new(owner: J, estimate: &Estimate, left_out: Range<usize>) -> Self {
+        Self::keeping(owner, estimate, |column| !left_out.contains(&column))
+    }
+
+    /// The columns that `keeps` says by their index, but those that stand at an end of their range.
+    #[must_use]
+    pub fn keeping(owner: J, estimate: &Estimate, keeps: impl Fn(usize) -> bool) -> Self {
+        let jacobian: &Jacobian = owner.borrow();
+        let (mut matrix, right) = jacobian.reduced(estimate);
+        for k in 0..matrix.nrows() {
+            matrix[(k, k)] += 1e-9;
+        }
+        let kept: Vec<usize> = (0..jacobian.shared.len())
+            .filter(|&column| keeps(column))
+            .filter(|&column| !estimate.is_at_an_end(jacobian.shared[column]))
+            .collect();
+        let matrix = matrix.select_rows(&kept).select_columns(&kept);
+        let room = |&column: &usize| estimate.room(jacobian.shared[column]);
+        let room = kept.iter().map(room).collect();
+        let load = |run: &RunJacobian| {
+            let column = run.load.as_deref()?;
+            let products = kept.iter().map(|&kept| dot(&run.shared[kept], column));
+            Some(Load {
+                square: dot(column, column) + 1.0,
+                value: run.load_value,
+                coupling: DVector::from_iterator(kept.len(), products),
+            })
+        };
+        let loads = jacobian.runs.iter().map(load).collect();
+        let nothing = Products {
+            loads: Vec::new(),
+            columns: DVector::zeros(kept.len()),
+        };
+        let mut frame = Self {
+            jacobian: owner,
+            normal: matrix.clone().cholesky(),
+            matrix,
+            room,
+            loads,
+            priors: DVector::zeros(kept.len()),
+            own: nothing,
+            here: 0.0,
+            kept,
+        };
+        let runs = &frame.jacobian().runs;
+        let own: Vec<&[f64]> = runs.iter().map(|run| run.residual.as_slice()).collect();
+        let square = own.iter().map(|run| dot(run, run)).sum();
+        let products = frame.products(own);
+        frame.priors = right.select_rows(&frame.kept) - frame.pull(&products);
+        frame.here = frame.cost(square, &products);
+        frame.own = products;
+        frame
+    }
+
+    /// Removes from a signature what the free parameters and the loads can imitate.
+    #[must_use]
+    pub fn project(&self, signature: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        self.project_at_a_price(signature).0
+    }
+
+    /// [`Frame::project`], and what the imitation costs in priors: a load far from what was weighed speaks against it.
+    #[must_use]
+    pub fn project_at_a_price(&self, signature: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, f64) {
+        let shares = self.shares(&self.coupling(&signature));
+        self.without(signature, &shares)
+    }
+
+    /// [`Frame::project_at_a_price`] of what is there as it stands, not of a direction: no parameter imitates it
+    /// beyond the end of its range.
+    #[must_use]
+    pub fn project_within_range(&self, signature: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, f64) {
+        let coupling = self.coupling(&signature);
+        let mut shares = self.shares(&coupling);
+        let mut held: Vec<usize> = Vec::new();
+        let beyond = |shares: &DVector<f64>, held: &[usize]| {
+            let mut free = (0..shares.len()).filter(|row| !held.contains(row));
+            free.find(|&row| shares[row] < self.room[row].0 || shares[row] > self.room[row].1)
+        };
+        while let Some(row) = beyond(&shares, &held) {
+            held.push(row);
+            let at = held.iter().map(|&row| {
+                let (low, high) = self.room[row];
+                (row, shares[row].clamp(low, high))
+            });
+            let at: Vec<(usize, f64)> = at.collect();
+            let Some(others) = self.shares_beside(&coupling, &at) else {
+                break;
+            };
+            shares = others;
+        }
+        self.without(signature, &shares)
+    }
+
+    /// Shares of the free parameters with some of them held; `None` if they cannot be told apart.
+    fn shares_beside(
+        &self,
+        coupling: &DVector<f64>,
+        held: &[(usize, f64)],
+    ) -> Option<DVector<f64>> {
+        let (mut matrix, mut right) = (self.matrix.clone(), coupling.clone());
+        for &(row, share) in held {
+            right -= self.matrix.column(row) * share;
+        }
+        for &(row, share) in held {
+            matrix.row_mut(row).fill(0.0);
+            matrix.column_mut(row).fill(0.0);
+            matrix[(row, row)] = 1.0;
+            right[row] = share;
+        }
+        Some(matrix.cholesky()?.solve(&right))
+    }
+
+    /// A signature less shares of the free columns and what the loads can imitate of the rest, and the price of both.
+    fn without(&self, mut signature: Vec<Vec<f64>>, shares: &DVector<f64>) -> (Vec<Vec<f64>>, f64) {
+        let with_prior = |&(&kept, _): &(&usize, &f64)| self.jacobian().shared[kept].has_prior();
+        let clocks = self.kept.iter().zip(shares.iter()).filter(with_prior);
+        let mut price: f64 = clocks.map(|(_, share)| share * share).sum();
+        let runs = self.jacobian().runs.iter().zip(&self.loads);
+        for ((run, load), left) in runs.zip(&mut signature) {
+            for (&kept, &share) in self.kept.iter().zip(shares.iter()) {
+                subtract(left, share, &run.shared[kept]);
+            }
+            if let (Some(column), Some(load)) = (&run.load, load) {
+                let share = dot(column, left) / load.square;
+                subtract(left, share, column);
+                price += share * share;
+            }
+        }
+        (signature, price)
+    }
+
+    /// Cost that would be left if the free parameters took from `residuals` what they can, to first order; `residuals`
+    /// belong to the frame's estimate with something else changed.
+    #[must_use]
+    pub fn cost_after(&self, residuals: &[Vec<f64>]) -> f64 {
+        self.cost(square_sum(residuals), &self.products(residuals))
+    }
+
+    /// An estimate that leaves `residuals`, with its clocks where they take from those what they can, to first order.
+    #[must_use]
+    pub fn synchronised(&self, estimate: &Estimate, residuals: &[Vec<f64>]) -> Estimate {
+        let pull = self.pull(&self.products(residuals)) + &self.priors;
+        let shares = self.shares(&pull);
+        let mut synchronised = estimate.clone();
+        for (&kept, &share) in self.kept.iter().zip(shares.iter()) {
+            let shared = self.jacobian().shared[kept];
+            if shared.has_prior() {
+                let moved = estimate.get(shared) + share * estimate.scale(shared);
+                synchronised.set(shared, moved);
+            }
+        }
+        synchronised
+    }
+
+    /// [`Frame::cost_after`] of the frame's own residuals: what there is without anything changed.
+    #[must_use]
+    pub fn here(&self) -> f64 {
+        self.here
+    }
+
+    /// How far to go from the frame's own residuals to `residuals` for the least [`Frame::cost_after`], within `low` to
+    /// `high` times the way, and that cost: a parabola through both ends and the same way backwards.
+    #[must_use]
+    pub fn along(&self, residuals: &[Vec<f64>], low: f64, high: f64) -> (f64, f64) {
+        let (mut own, mut mixed, mut moved) = (0.0, 0.0, 0.0);
+        for (run, residual) in self.jacobian().runs.iter().zip(residuals) {
+            own += dot(&run.residual, &run.residual);
+            mixed += dot(&run.residual, residual);
+            moved += dot(residual, residual);
+        }
+        let products = self.products(residuals);
+        let ahead = self.cost(moved, &products);
+        let behind = self.cost(4.0 * (own - mixed) + moved, &self.own.twice_less(&products));
+        let here = self.here;
+        let (slope, bend) = (0.5 * (ahead - behind), 0.5 * (ahead + behind) - here);
+        if bend <= 0.0 {
+            return (1.0, ahead);
+        }
+        let share = (-0.5 * slope / bend).clamp(low, high);
+        (share, here + share * (slope + share * bend))
+    }
+
+    /// [`Frame::cost_after`] of residuals with this sum of squares and these products.
+    fn cost(&self, square: f64, products: &Products) -> f64 {
+        let runs = self.jacobian().runs.iter();
+        let mut cost = square + runs.map(|run| run.load_value.powi(2)).sum::<f64>();
+        for (load, product) in self.loads.iter().zip(&products.loads) {
+            if let Some(load) = load {
+                cost -= (product - load.value).powi(2) / load.square;
+            }
+        }
+        let pull = self.pull(products) + &self.priors;
+        cost - pull.dot(&self.shares(&pull))
+    }
+
+    fn products<R: AsRef<[f64]>>(&self, residuals: impl AsRef<[R]>) -> Products {
+        let runs = self.jacobian().runs.iter().zip(residuals.as_ref());
+        let mut columns = DVector::zeros(self.kept.len());
+        let loads = runs
+            .map(|(run, residual)| {
+                let residual = residual.as_ref();
+                for (sum, &kept) in columns.iter_mut().zip(&self.kept) {
+                    *sum += dot(&run.shared[kept], residual);
+                }
+                run.load.as_ref().map_or(0.0, |load| dot(load, residual))
+            })
+            .collect();
+        Products { loads, columns }
+    }
+
+    /// Pull of residuals with these products on the free parameters, the loads eliminated.
+    fn pull(&self, products: &Products) -> DVector<f64> {
+        let mut pull = products.columns.clone();
+        for (load, product) in self.loads.iter().zip(&products.loads) {
+            if let Some(load) = load {
+                pull -= &load.coupling * ((product - load.value) / load.square);
+            }
+        }
+        pull
+    }
+
+    /// Products of a signature with the free columns, the loads eliminated.
+    fn coupling(&self, signature: &[Vec<f64>]) -> DVector<f64> {
+        let products = self.products(signature);
+        let mut coupling = products.columns;
+        for (load, product) in self.loads.iter().zip(&products.loads) {
+            if let Some(load) = load {
+                coupling -= &load.coupling * (product / load.square);
+            }
+        }
+        coupling
+    }
+
+    fn shares(&self, pull: &DVector<f64>) -> DVector<f64> {
+        self.normal
+            .as_ref()
+            .map_or_else(|| DVector::zeros(pull.len()), |normal| normal.solve(pull))
+    }
+
+    fn jacobian(&self) -> &Jacobian {
+        self.jacobian.borrow()
+    }
+}

@@ -1,0 +1,435 @@
+//! Which physics is missing: the set of effects that a campaign asks for, stated as steps from the model to it.
+//!
+//! The search ([`crate::search::subset`]) finds the set. Here its members are put in the order of what they explain, each is
+//! weighed beside all others (size, interval, detectability, probability), what could stand in its place is named, and
+//! what is left is judged.
+
+use hitch_plant::{Effect, Model};
+
+use crate::adequacy::attribution::{Attribution, attribute};
+use crate::adequacy::lack_of_fit::{Cell, adequate, cells, cells_since};
+use crate::data::experiment::Experiment;
+use crate::data::regime::Regime;
+use crate::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
+use crate::estimate::Estimate;
+use crate::estimation::fit::{Fit, evaluate, fit, refine, with_last};
+use crate::explanation::undetected::{Unseen, unseen};
+use crate::search::candidates::{Progress, showing};
+use crate::search::single::{confidences, try_each};
+use crate::search::subset::{Found, Options, search};
+use crate::selection::candidate::{Candidate, weigh};
+use crate::selection::evidence::TOLD_APART;
+use crate::selection::hold_out::{HeldOut, held_out};
+use crate::selection::posterior::{Weighed, key_of};
+
+/// Fewest compared samples that anything is concluded from.
+const FEWEST_SAMPLES: usize = 50;
+
+/// What an explanation comes to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The model was adequate as it was.
+    NothingMissing,
+    /// With the named effects the model is adequate.
+    Explained,
+    /// Adequate, but some named effect could be another.
+    Ambiguous,
+    /// Something is left that is not in the catalogue.
+    Unexplained,
+    /// The campaign cannot decide.
+    NotEnoughData,
+}
+
+impl Verdict {
+    /// Name in reports and JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NothingMissing => "nothing-missing",
+            Self::Explained => "explained",
+            Self::Ambiguous => "ambiguous",
+            Self::Unexplained => "unexplained",
+            Self::NotEnoughData => "not-enough-data",
+        }
+    }
+}
+
+/// An effect that was added.
+#[derive(Debug, Clone)]
+pub struct Step {
+    /// Which effect.
+    pub effect: &'static dyn Effect,
+    /// Error of the model before the step.
+    pub error_before: f64,
+    /// Error with the effect.
+    pub error_after: f64,
+    /// What the model before the step leaves in held-out runs.
+    pub held_out_before: HeldOut,
+    /// What it leaves there with the effect.
+    pub held_out_after: HeldOut,
+    /// Probability that the effect is there beside the other steps', shared evenly with those that it cannot be told
+    /// from.
+    pub confidence: f64,
+    /// Root mean square of its projected signature, in sigmas.
+    pub detectability: f64,
+    /// Of the mean square that would be left beyond noise without it, where it shows, the share that it explains.
+    pub explained_share: f64,
+    /// Effects that would explain the campaign as well in its place.
+    pub indistinguishable: Vec<Alternative>,
+    /// Other forms of it that would explain the campaign as well; `None` is the usual one.
+    pub other_forms: Vec<Option<&'static str>>,
+    /// Values of its parameters in the final model.
+    pub values: Vec<f64>,
+    /// Their 95 % intervals.
+    pub intervals: Vec<(f64, f64)>,
+    /// The size with which the effect was adopted; `None` if it is new.
+    pub changed_from: Option<f64>,
+    /// The model after the step, as it was fitted then.
+    pub fit: Fit,
+}
+
+/// The way from a model to one that explains a campaign.
+#[derive(Debug, Clone)]
+pub struct Explanation {
+    /// The model before, with its nuisances fitted and its effects as they were adopted.
+    pub before: Fit,
+    /// The model before with its effects fitted anew; `None` if it has none.
+    pub refitted: Option<Fit>,
+    /// The model after the last step.
+    pub after: Fit,
+    /// The steps in order.
+    pub steps: Vec<Step>,
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// Cells of the residuals after the last step, worst first.
+    pub cells: Vec<Cell>,
+    /// What the rest goes with; empty if the rest is noise.
+    pub rest: Attribution,
+    /// What to measure next if the campaign cannot decide, or not between two effects.
+    pub next_experiment: Option<NextExperiment>,
+    /// Effects that the campaign would not show; empty if what it does show is not explained.
+    pub unseen: Vec<Unseen>,
+    /// Whether the time was up before the search had ended.
+    pub unfinished: bool,
+}
+
+/// A campaign and a model with every effect of the catalogue tried once.
+#[derive(Debug, Clone)]
+pub struct Diagnosis {
+    /// The model as it is, with its nuisances fitted.
+    pub base: Fit,
+    /// Effects tried, the most likely first.
+    pub candidates: Vec<Candidate>,
+    /// Probability of each candidate among all and none.
+    pub confidences: Vec<f64>,
+}
+
+/// Fits loads and clocks to a model whose effects stay as they are.
+#[must_use]
+pub fn fit_base(experiment: &Experiment, model: &Model) -> Fit {
+    let start = Estimate::new(experiment, model.effects.clone());
+    refine(experiment, model, start.with_adopted())
+}
+
+/// Fits a model with all its effects.
+#[must_use]
+pub fn fit_freely(experiment: &Experiment, model: &Model) -> Fit {
+    let start = Estimate::new(experiment, model.effects.clone());
+    fit(experiment, model, start)
+}
+
+/// Tries every effect that the model does not have.
+#[must_use]
+pub fn diagnose(
+    experiment: &Experiment,
+    model: &Model,
+    base: Fit,
+    progress: Progress,
+) -> Diagnosis {
+    diagnose_each(experiment, model, base, progress, &|_, _| {})
+}
+
+/// [`diagnose`] that tells of each form as soon as it is weighed, in any order, and of how many there are.
+#[must_use]
+pub fn diagnose_each(
+    experiment: &Experiment,
+    model: &Model,
+    base: Fit,
+    progress: Progress,
+    weighed: &(dyn Fn(&Candidate, usize) + Sync),
+) -> Diagnosis {
+    let absent = showing(experiment, model, &base.estimate);
+    let told = |candidate: &Candidate| weighed(candidate, absent.len());
+    let candidates = try_each(experiment, model, &base, &absent, progress, &told);
+    let confidences = confidences(&candidates);
+    Diagnosis {
+        base,
+        candidates,
+        confidences,
+    }
+}
+
+/// Finds what is missing and what of the model has changed.
+#[must_use]
+pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Explanation {
+    explain_with(experiment, model, Options::default(), progress)
+}
+
+/// [`explain`] with options.
+#[must_use]
+pub fn explain_with(
+    experiment: &Experiment,
+    model: &Model,
+    options: Options<'_>,
+    progress: Progress,
+) -> Explanation {
+    let before = fit_base(experiment, model);
+    let adopted = !model.effects.is_empty();
+    let refitted = adopted.then(|| fit_freely(experiment, model));
+    let mut found = if enough(&before) {
+        search(experiment, model, &before, options, progress)
+    } else {
+        Found::nothing(&before)
+    };
+    progress("how sure that is");
+    let mut steps = steps(experiment, model, &before, &found);
+    while let Some(doubtful) = steps.iter().position(may_be_nothing) {
+        let effect = found.order[doubtful];
+        let lighter = found.fit.estimate.without(effect);
+        let removed = lighter.effects.len() < found.fit.estimate.effects.len();
+        found.fit = refine(experiment, model, lighter);
+        found.held_out = held_out(experiment, model, &found.fit);
+        found.order.remove(doubtful);
+        for other in &mut found.order {
+            *other -= usize::from(removed && *other > effect);
+        }
+        steps = self::steps(experiment, model, &before, &found);
+    }
+    let base = (before, refitted);
+    concluded(experiment, model, base, found, steps)
+}
+
+/// Whether the interval of a step's size holds its absence. One jump that the noise of a current decided is as much
+/// evidence as anybody could ask for, and says nothing.
+fn may_be_nothing(step: &Step) -> bool {
+    let null = step.effect.parameters()[0].null;
+    let off = step.changed_from.unwrap_or(null);
+    match step.intervals.as_slice() {
+        [(low, high)] => (*low..=*high).contains(&off),
+        _ => false,
+    }
+}
+
+/// The members of the set that was found as steps, those first that explain most beside the ones before.
+fn steps(experiment: &Experiment, model: &Model, before: &Fit, found: &Found) -> Vec<Step> {
+    let weighed = found.refitted.weighed(experiment, model, &found.fit);
+    let mut steps: Vec<Step> = Vec::new();
+    for (count, &effect) in found.order.iter().enumerate() {
+        let last = count + 1 == found.order.len();
+        let fit = match last {
+            true => found.fit.clone(),
+            false => with_some(experiment, model, found, &found.order[..=count]),
+        };
+        let (error_before, held_out_before) = match steps.last() {
+            Some(step) => (step.error_after, step.held_out_after),
+            None => (before.error(), held_out(experiment, model, before)),
+        };
+        let held_out_after = match last {
+            true => found.held_out,
+            false => held_out(experiment, model, &fit),
+        };
+        let whole = with_last(experiment, model, &found.fit, effect);
+        let candidate = beside_others(experiment, model, whole.clone());
+        let estimate = &found.fit.estimate;
+        let id = estimate.effects[effect].effect.id();
+        let with_it = weighed
+            .iter()
+            .filter(|set| set.key.ids().any(|own| own == id));
+        steps.push(Step {
+            effect: candidate.effect,
+            error_before,
+            error_after: fit.error(),
+            held_out_before,
+            held_out_after,
+            confidence: with_it.map(|set| set.probability).sum::<f64>() * candidate.genuine(),
+            detectability: candidate.detectability,
+            explained_share: candidate.explained_share,
+            other_forms: other_forms(&found.fit, id, &weighed),
+            indistinguishable: alternatives(experiment, model, &whole, &weighed),
+            values: candidate.values().to_vec(),
+            intervals: candidate.intervals,
+            changed_from: estimate.adopted_as(id).map(|adopted| adopted.size),
+            fit,
+        });
+    }
+    steps
+}
+
+/// The fit with some of the effects that were added or changed, by their indices.
+fn with_some(experiment: &Experiment, model: &Model, found: &Found, effects: &[usize]) -> Fit {
+    let mut estimate = found.fit.estimate.clone();
+    for effect in (0..estimate.effects.len()).rev() {
+        if !estimate.is_unchanged(effect) && !effects.contains(&effect) {
+            estimate = estimate.without(effect);
+        }
+    }
+    match found.refitted.fit_of(&key_of(&estimate)) {
+        Some(fit) => fit.clone(),
+        None => refine(experiment, model, estimate),
+    }
+}
+
+/// The last effect of a fit weighed beside all others.
+fn beside_others(experiment: &Experiment, model: &Model, whole: Fit) -> Candidate {
+    let last = whole.estimate.effects.len() - 1;
+    let named = whole.estimate.effects[last].effect;
+    let without = whole.estimate.without(last);
+    let base = evaluate(experiment, model, without);
+    weigh(experiment, model, &base, named, whole)
+}
+
+/// Forms of an effect of a fit that explain the campaign as well in the place of its own.
+fn other_forms(fit: &Fit, id: &str, weighed: &[Weighed]) -> Vec<Option<&'static str>> {
+    let own = key_of(&fit.estimate);
+    let near = weighed.iter().filter(|set| set.likelier > -TOLD_APART);
+    near.filter_map(|set| own.form_in_place(set.key, id))
+        .collect()
+}
+
+/// Effects that explain the campaign as well in the place of the last one of a fit.
+fn alternatives(
+    experiment: &Experiment,
+    model: &Model,
+    whole: &Fit,
+    weighed: &[Weighed],
+) -> Vec<Alternative> {
+    let last = whole.estimate.effects.len() - 1;
+    let named = whole.estimate.effects[last].effect.id();
+    let own = key_of(&whole.estimate);
+    let own: Vec<&str> = own.ids().collect();
+    let other = |set: &&Weighed| -> Option<&'static str> {
+        let mut others = set.key.ids().filter(|id| !own.contains(id));
+        let other = others.next()?;
+        let kept = own.iter().filter(|&&id| id != named);
+        let same = set.key.len() == own.len()
+            && others.next().is_none()
+            && kept
+                .into_iter()
+                .all(|&id| set.key.ids().any(|its| its == id));
+        (same && set.likelier > -TOLD_APART).then_some(other)
+    };
+    let mut alternatives: Vec<Alternative> = weighed
+        .iter()
+        .filter_map(|set| {
+            let id = other(&set)?;
+            let effects = &set.fit.estimate.effects;
+            let index = effects.iter().position(|added| added.effect.id() == id)?;
+            let its = with_last(experiment, model, set.fit, index);
+            Alternative::new(experiment, model, whole, (its, set.likelier))
+        })
+        .collect();
+    alternatives.sort_by(|a, b| b.likelier.total_cmp(&a.likelier));
+    alternatives
+}
+
+fn concluded(
+    experiment: &Experiment,
+    model: &Model,
+    (before, refitted): (Fit, Option<Fit>),
+    found: Found,
+    steps: Vec<Step>,
+) -> Explanation {
+    let after = found.fit;
+    let cells = cells_since(&cells(experiment, &before), experiment, &after);
+    let missing = missing_manoeuvre(experiment, &after);
+    let verdict = verdict(experiment, &cells, &steps, &after, missing);
+    let rest = if verdict == Verdict::Unexplained {
+        attribute(experiment, &before, &after)
+    } else {
+        Attribution::default()
+    };
+    let next_experiment = match verdict {
+        Verdict::Ambiguous => next_experiment(experiment, model, &pairs(&after, &steps)),
+        Verdict::NotEnoughData => missing.map(NextExperiment::missing),
+        _ => None,
+    };
+    let unseen = match verdict {
+        Verdict::Unexplained => Vec::new(),
+        _ => unseen(experiment, model, &after),
+    };
+    Explanation {
+        before,
+        refitted,
+        after,
+        steps,
+        verdict,
+        cells,
+        rest,
+        next_experiment,
+        unseen,
+        unfinished: found.unfinished,
+    }
+}
+
+/// Every named effect with each that could stand in its place.
+fn pairs<'a>(after: &'a Fit, steps: &'a [Step]) -> Vec<Pair<'a>> {
+    let of_step = |step: &'a Step| {
+        step.indistinguishable.iter().map(|alternative| Pair {
+            named: Rival {
+                effect: step.effect,
+                fit: after,
+            },
+            other: Rival {
+                effect: alternative.effect,
+                fit: &alternative.fit,
+            },
+        })
+    };
+    steps.iter().flat_map(of_step).collect()
+}
+
+fn verdict(
+    experiment: &Experiment,
+    cells: &[Cell],
+    steps: &[Step],
+    after: &Fit,
+    missing: Option<&str>,
+) -> Verdict {
+    if !enough(after) {
+        Verdict::NotEnoughData
+    } else if !adequate(experiment, cells, after) {
+        Verdict::Unexplained
+    } else if steps.is_empty() && missing.is_some() {
+        Verdict::NotEnoughData
+    } else if steps.is_empty() {
+        Verdict::NothingMissing
+    } else if steps.iter().any(|step| !step.indistinguishable.is_empty()) {
+        Verdict::Ambiguous
+    } else {
+        Verdict::Explained
+    }
+}
+
+/// Whether there is anything to tell an effect from noise by.
+fn enough(fit: &Fit) -> bool {
+    fit.weights.count() >= FEWEST_SAMPLES
+}
+
+/// The manoeuvre without which a campaign cannot clear a model, if it lacks one.
+fn missing_manoeuvre(experiment: &Experiment, fit: &Fit) -> Option<&'static str> {
+    let seen = |wanted: Regime| {
+        let regimes = experiment.runs.iter().flat_map(|run| &run.regimes);
+        regimes.filter(|&&regime| regime == wanted).count() >= FEWEST_SAMPLES
+    };
+    if !enough(fit) {
+        Some(
+            "log at least a few seconds of pressure, flow or angle while lifting, holding and lowering",
+        )
+    } else if !seen(Regime::Lifting) {
+        Some("lift at two currents or more: no run keeps the lift valve open")
+    } else if !seen(Regime::Lowering) {
+        Some("lower at two currents or more: no run keeps the lowering valve open")
+    } else {
+        None
+    }
+}

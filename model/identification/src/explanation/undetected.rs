@@ -1,0 +1,61 @@
+//! What a campaign could not show if it were there.
+//!
+//! "Nothing missing" only holds for what would have been seen. A pump that slips shows where the demand exceeds what
+//! it delivers, a relief valve at a stop: duty cycles have neither, and then a clean answer says nothing of them.
+
+use hitch_plant::{AddedEffect, Channel, Effect, Model};
+use rayon::prelude::*;
+
+use crate::data::experiment::Experiment;
+use crate::estimation::fit::Fit;
+use crate::estimation::jacobian::{Jacobian, difference, huber, huber_residuals};
+use crate::estimation::nuisance_projection::Frame;
+use crate::search::candidates::absent;
+use crate::selection::evidence::{VISIBLE, detectability};
+
+/// An effect of typical size that a campaign would not show.
+#[derive(Debug, Clone)]
+pub struct Unseen {
+    /// Which effect.
+    pub effect: &'static dyn Effect,
+    /// Root mean square of what it would change and nothing that is free could imitate, in sigmas.
+    pub detectability: f64,
+    /// Channels that it shows in and the campaign does not have.
+    pub missing: Vec<Channel>,
+}
+
+/// Effects, at their typical size, that a campaign would not show beside what a fit has; the faintest first.
+#[must_use]
+pub fn unseen(experiment: &Experiment, model: &Model, fit: &Fit) -> Vec<Unseen> {
+    let experiment = &experiment.drafted(model, &fit.estimate);
+    let base = huber(fit.residuals.clone());
+    let (weights, estimate) = (&fit.weights, &fit.estimate);
+    let jacobian = Jacobian::new(experiment, model, weights, estimate);
+    let frame = Frame::new(&jacobian, estimate, 0..0);
+    let mut unseen: Vec<Unseen> = absent(model, estimate)
+        .into_par_iter()
+        .filter(|effect| effect.form().is_none())
+        .map(|effect| {
+            let mut with = estimate.clone();
+            with.effects.push(AddedEffect::typical(effect));
+            let with = huber_residuals(experiment, model, weights, &with);
+            let (left, price) = frame.project_within_range(difference(&base, &with));
+            Unseen {
+                effect,
+                detectability: detectability(&left, price, weights.count()),
+                missing: missing(experiment, effect),
+            }
+        })
+        .filter(|unseen| unseen.detectability < VISIBLE)
+        .collect();
+    unseen.sort_by(|a, b| a.detectability.total_cmp(&b.detectability));
+    unseen
+}
+
+/// Channels that an effect shows in and no run has.
+fn missing(experiment: &Experiment, effect: &dyn Effect) -> Vec<Channel> {
+    let channels = effect.channels().iter().copied();
+    channels
+        .filter(|channel| !experiment.measures(*channel))
+        .collect()
+}

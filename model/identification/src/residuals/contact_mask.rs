@@ -1,0 +1,49 @@
+//! Where a hitch without inertia comes down on the ground or leaves it.
+//!
+//! Its flow ends there within a few milliseconds, and a sample that was taken just before or just after is off by the
+//! whole flow: a tenth of a degree decides on which side it lies.
+
+use hitch_plant::simulation::Trace;
+use hitch_plant::solver::root;
+use hitch_plant::{Dynamics, Model};
+
+use crate::data::experiment::ReadyRun;
+
+/// The id of the effect that brings the ground.
+const GROUND: &str = "ground-contact";
+
+/// Samples next to a landing or a lift-off in either of two traces of a run. A ringing hitch bounces instead, which lasts.
+pub(crate) fn landings(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
+    let mut near = vec![false; run.len()];
+    let (true, Some(ground_deg)) = (run.on_hitch(), ground_deg(model)) else {
+        return near;
+    };
+    for trace in traces {
+        let above: Vec<bool> = trace
+            .true_angle_deg
+            .iter()
+            .map(|&angle_deg| angle_deg > ground_deg)
+            .collect();
+        for (sample, pair) in above.windows(2).enumerate() {
+            if pair[0] != pair[1] {
+                let last = (sample + 2).min(run.len() - 1);
+                near[sample.saturating_sub(1)..=last].fill(true);
+            }
+        }
+    }
+    near
+}
+
+/// Rocker angle at which the hitch touches the ground, degree, in a quasi-static model that has ground.
+fn ground_deg(model: &Model) -> Option<f64> {
+    let mut effects = model.effects.iter();
+    let ground = effects.find(|added| added.effect.id() == GROUND && !added.is_null())?;
+    if model.constants().dynamics == Dynamics::Dynamic {
+        return None;
+    }
+    let linkage = model.linkage();
+    let height_m = linkage.at(0.0).height_m + ground.values[0];
+    let above_m = |piston_m: f64| linkage.at(piston_m).height_m - height_m;
+    let piston_m = root::rising(above_m, 0.0, model.constants().cylinder.stroke_m, 1e-6);
+    Some(linkage.at(piston_m).rocker_angle_rad.to_degrees())
+}

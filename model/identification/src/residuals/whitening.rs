@@ -1,0 +1,346 @@
+//! Measured minus simulated, in units of what the instruments and the logged current leave unknown.
+//!
+//! * Pressures and flow: the yardstick of a sample is the instrument's noise and, in quadrature, what the uncertainty
+//!   of the logged current and of the time of sampling make of the simulated value. Samples that a log cannot say at
+//!   all (a pressure edge that may lie on either side of the sample) are left out.
+//! * The angle integrates the flow, so errors of the logged current add up in it as a random walk whose steps are
+//!   known. A scalar Kalman filter takes that walk out: what is compared is each sample with its prediction from the
+//!   model and the samples before (Kristensen, Madsen & Jorgensen 2004, with the diffusion known instead of fitted).
+//!   Drift without flow through a valve is not excused. The start angle's uncertainty is the walk's first step.
+//!
+//! Both are linear in the difference, so sensitivities go through the same filter.
+
+use std::sync::Arc;
+
+use hitch_plant::simulation::Trace;
+use hitch_plant::{Channel, Currents, Model, units};
+use rayon::prelude::*;
+
+use crate::data::experiment::{Experiment, ReadyRun};
+use crate::data::trace_cache::CurrentShift;
+use crate::estimate::Estimate;
+use crate::residuals::contact_mask::landings;
+
+/// A sample whose yardstick grows beyond this many times the instrument's noise is left out.
+const UNKNOWABLE: f64 = 8.0;
+
+/// This near to an end of the swing, degree, the hitch stands against the stop. What the angle's walk has added up is
+/// lost there: the hitch arrives a little earlier or later than simulated, and then stands where it must.
+const AT_A_STOP_DEG: f64 = 0.2;
+
+/// How long after a stop what was trapped there still rings, s: a heavy load loses three quarters of it in this time.
+const AFTER_A_STOP_S: f64 = 1.5;
+
+/// What remains unknown of when a sample was taken, one sigma, s: a twentieth of a 50 Hz sample. On ramps it moves the
+/// flow, after a switch it turns the phase of a ringing pressure.
+const TIMING_S: f64 = 0.001;
+
+/// Part of a pressure's swing within [`RINGING_S`] of a sample that a dynamic model may be off by: frequency and
+/// damping of the ringing hang on oil, hose, seals and stops, whose constants nobody knows to better than some percent.
+const RINGING_SHARE: f64 = 0.07;
+const RINGING_S: f64 = 0.1;
+
+/// How one run's differences are whitened.
+#[derive(Debug, Clone)]
+pub struct RunWeights {
+    /// One over the yardstick of every sample, channel after channel; zero where nothing can be compared.
+    pub scale: Vec<f64>,
+    /// Gain of the angle's filter at every sample.
+    gain: Vec<f64>,
+}
+
+/// How all differences are whitened.
+#[derive(Debug, Clone)]
+pub struct Weights {
+    /// One entry a run.
+    pub runs: Vec<RunWeights>,
+    /// Compared samples of each channel by [`Channel::index`].
+    pub counts: [usize; 4],
+}
+
+impl Weights {
+    /// Weights as they are under `estimate`.
+    #[must_use]
+    pub fn new(experiment: &Experiment, model: &Model, estimate: &Estimate) -> Self {
+        let model = model.with_effects(estimate.effects.clone());
+        let runs: Vec<RunWeights> = (0..experiment.runs.len())
+            .into_par_iter()
+            .map(|index| RunWeights::new(experiment, index, &model, estimate))
+            .collect();
+        Self::counted(runs)
+    }
+
+    /// The weights of some of the runs.
+    #[must_use]
+    pub fn of_runs(&self, picked: &[usize]) -> Self {
+        let runs = picked.iter().map(|&run| self.runs[run].clone()).collect();
+        Self::counted(runs)
+    }
+
+    fn counted(runs: Vec<RunWeights>) -> Self {
+        let mut counts = [0; 4];
+        for run in &runs {
+            for (channel, count) in counts.iter_mut().enumerate() {
+                *count += run.compared(channel);
+            }
+        }
+        Self { runs, counts }
+    }
+
+    /// Number of compared samples.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.counts.iter().sum()
+    }
+
+    /// The same weights with each channel's multiplied by a factor.
+    #[must_use]
+    pub fn scaled(mut self, factors: [f64; 4]) -> Self {
+        for run in &mut self.runs {
+            let samples = run.gain.len();
+            for (channel, factor) in factors.into_iter().enumerate() {
+                for scale in &mut run.scale[channel * samples..(channel + 1) * samples] {
+                    *scale *= factor;
+                }
+            }
+        }
+        self
+    }
+}
+
+impl RunWeights {
+    fn new(experiment: &Experiment, index: usize, model: &Model, estimate: &Estimate) -> Self {
+        let run = &experiment.runs[index];
+        let nuisance = estimate.nuisances[index];
+        let clocks = &estimate.clocks;
+        let trace = |later_s: f64, spreads: f64| {
+            run.trace(model, nuisance, CurrentShift { later_s, spreads })
+        };
+        let [below, above] = [-1.0, 1.0].map(|spreads| trace(0.0, spreads));
+        let edges = run.measured[Channel::PumpPressure.index()]
+            .as_ref()
+            .map(|_| pump_edges(run, [-EDGE_SPREADS, EDGE_SPREADS].map(|s| trace(0.0, s))));
+        let [below, above] = [below, above].map(|trace| run.stamped(&trace, clocks));
+        let [early, late] =
+            [-TIMING_S, TIMING_S].map(|later_s| run.stamped(&trace(later_s, 0.0), clocks));
+        let mut weights = Self {
+            scale: vec![0.0; 4 * run.len()],
+            gain: vec![0.0; run.len()],
+        };
+        let at_an_edge = |sample: usize| edges.as_ref().is_some_and(|edges| edges[sample]);
+        let stops = at_a_stop(run, model, [&below, &above]);
+        let landings = landings(run, model, [&below, &above]);
+        let hangs_on_a_hair = |sample: usize| stops[sample] || landings[sample];
+        let ringing = experiment.ringing;
+        for channel in [
+            Channel::PumpPressure,
+            Channel::CylinderPressure,
+            Channel::Flow,
+        ] {
+            let Some(measured) = &run.measured[channel.index()] else {
+                continue;
+            };
+            let sigma = experiment.noise[channel.index()];
+            let offset = channel.index() * run.len();
+            let tolerance = if ringing && channel != Channel::Flow {
+                ringing_tolerance(&run.drive.time_s, below.channel(channel))
+            } else {
+                vec![0.0; run.len()]
+            };
+            for (sample, value) in measured.iter().enumerate() {
+                let spread =
+                    0.5 * (above.channel(channel)[sample] - below.channel(channel)[sample]);
+                let shift = 0.5 * (late.channel(channel)[sample] - early.channel(channel)[sample]);
+                let noise = sigma / run.averaged[sample].sqrt();
+                let yardstick = noise.hypot(spread).hypot(shift).hypot(tolerance[sample]);
+                let known = yardstick <= UNKNOWABLE * sigma
+                    && !hangs_on_a_hair(sample)
+                    && !(channel == Channel::PumpPressure && at_an_edge(sample));
+                if value.is_finite() && known {
+                    weights.scale[offset + sample] = 1.0 / yardstick;
+                }
+            }
+        }
+        weights.filter_angle(experiment, run, model, [&below, &above]);
+        weights
+    }
+
+    /// Gains of the scalar filter for the random walk that the noise of the currents makes of the angle.
+    fn filter_angle(
+        &mut self,
+        experiment: &Experiment,
+        run: &ReadyRun,
+        model: &Model,
+        traces: [&Trace; 2],
+    ) {
+        let Some(measured) = &run.measured[Channel::RockerAngle.index()] else {
+            return;
+        };
+        let of_sample = experiment.noise[Channel::RockerAngle.index()].powi(2);
+        let offset = Channel::RockerAngle.index() * run.len();
+        let steps = walk_steps_deg(experiment, run, model, traces);
+        // The first guess of the start angle is good to one sigma of the sensor.
+        let mut variance = of_sample;
+        for (sample, value) in measured.iter().enumerate() {
+            variance += steps[sample] * steps[sample];
+            let noise = of_sample / run.averaged[sample];
+            if value.is_finite() {
+                let total = variance + noise;
+                self.scale[offset + sample] = 1.0 / total.sqrt();
+                self.gain[sample] = variance / total;
+                variance *= noise / total;
+            }
+        }
+    }
+
+    /// Number of compared samples of a channel.
+    #[must_use]
+    pub fn compared(&self, channel: usize) -> usize {
+        let samples = self.gain.len();
+        let part = &self.scale[channel * samples..(channel + 1) * samples];
+        part.iter().filter(|&&scale| scale > 0.0).count()
+    }
+
+    /// Whitened residuals of the run, channel after channel; zero where nothing is compared.
+    #[must_use]
+    pub fn whiten(&self, run: &ReadyRun, trace: &Trace) -> Vec<f64> {
+        let mut residual = vec![0.0; 4 * run.len()];
+        for channel in Channel::ALL {
+            let Some(measured) = &run.measured[channel.index()] else {
+                continue;
+            };
+            let offset = channel.index() * run.len();
+            let simulated = trace.channel(channel);
+            let mut walk = 0.0;
+            for sample in 0..run.len() {
+                let scale = self.scale[offset + sample];
+                if scale > 0.0 {
+                    let surprise = measured[sample] - simulated[sample] - walk;
+                    residual[offset + sample] = surprise * scale;
+                    if channel == Channel::RockerAngle {
+                        walk += self.gain[sample] * surprise;
+                    }
+                }
+            }
+        }
+        residual
+    }
+}
+
+/// What a ringing pressure may be off by at each sample, in its unit: a share of its standard deviation nearby.
+fn ringing_tolerance(time_s: &[f64], pressure: &[f64]) -> Vec<f64> {
+    let step_s = (time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64;
+    let reach = (RINGING_S / step_s).round().max(1.0) as usize;
+    (0..pressure.len())
+        .map(|sample| {
+            let last = (sample + reach).min(pressure.len() - 1);
+            let near = &pressure[sample.saturating_sub(reach)..=last];
+            let count = near.len() as f64;
+            let mean = near.iter().sum::<f64>() / count;
+            let variance = near.iter().map(|p| (p - mean).powi(2)).sum::<f64>() / count;
+            RINGING_SHARE * variance.sqrt()
+        })
+        .collect()
+}
+
+/// How many samples on either side of a jump of the pump pressure are left out: a log whose channels may be a sample
+/// out of step cannot say on which side of the jump they lie.
+const EDGE_SAMPLES: usize = 2;
+
+/// How far the current may be off, in its sigmas, where it decides whether the lift valve opens at all: a plateau of a
+/// staircase that lies at the threshold says nothing of the pump pressure.
+const EDGE_SPREADS: f64 = 3.0;
+
+/// Samples next to a jump of the pump pressure between idle and load pressure.
+fn pump_edges(run: &ReadyRun, traces: [Arc<Trace>; 2]) -> Vec<bool> {
+    let last = run.len() - 1;
+    let lifts = |sample: usize| {
+        let high = |trace: &Arc<Trace>| {
+            (trace.channel(Channel::PumpPressure)[sample] - trace.idle_pressure_bar).abs() > 1e-6
+        };
+        traces.each_ref().map(high)
+    };
+    (0..=last)
+        .map(|sample| {
+            let around = sample.saturating_sub(EDGE_SAMPLES)..=(sample + EDGE_SAMPLES).min(last);
+            let number = 2 * around.clone().count();
+            let on = around.flat_map(lifts).filter(|&lifting| lifting).count();
+            on != 0 && on != number
+        })
+        .collect()
+}
+
+/// Samples at which the hitch stands against a stop, measured or simulated: pressure and flow there hang on the stop's
+/// stiffness and on how hard it was met. What a simulated sensor shows, that may read wrong, does not matter.
+fn at_a_stop(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
+    let (low_rad, high_rad) = model.linkage().swing_rad();
+    let stops_deg = [low_rad.to_degrees(), high_rad.to_degrees()];
+    let touches = |angle_deg: f64| {
+        stops_deg
+            .iter()
+            .any(|stop_deg| (angle_deg - stop_deg).abs() < AT_A_STOP_DEG)
+    };
+    let measured = run.measured[Channel::RockerAngle.index()].as_ref();
+    let mut left_s = f64::NEG_INFINITY;
+    (0..run.len())
+        .map(|sample| {
+            let simulated = |trace: &&Trace| touches(trace.true_angle_deg[sample]);
+            if measured.is_some_and(|angle_deg| touches(angle_deg[sample]))
+                || traces.iter().any(simulated)
+            {
+                left_s = run.drive.time_s[sample];
+            }
+            run.drive.time_s[sample] - left_s <= AFTER_A_STOP_S
+        })
+        .collect()
+}
+
+/// Standard deviation of the angle's walk from one sample to the next, degree.
+fn walk_steps_deg(
+    experiment: &Experiment,
+    run: &ReadyRun,
+    model: &Model,
+    [below, above]: [&Trace; 2],
+) -> Vec<f64> {
+    let area_m2 = model.constants().cylinder.area_m2();
+    let linkage = model.linkage();
+    let time_s = &run.drive.time_s;
+    let noise = experiment.current_noise;
+    let stops = at_a_stop(run, model, [below, above]);
+    (0..run.len())
+        .map(|sample| {
+            if sample == 0 {
+                return 0.0;
+            }
+            let flow_lpm = 0.5
+                * (above.channel(Channel::Flow)[sample] - below.channel(Channel::Flow)[sample])
+                    .abs();
+            if flow_lpm == 0.0 {
+                return 0.0;
+            }
+            if stops[sample] {
+                return AT_A_STOP_DEG;
+            }
+            let share = active(noise, run.drive.currents[sample])
+                / active(run.drive.spread[sample], run.drive.currents[sample]);
+            let angle_deg = above.channel(Channel::RockerAngle)[sample];
+            let travel_m = units::m3_s_from_lpm(flow_lpm * share) / area_m2
+                * (time_s[sample] - time_s[sample - 1]);
+            // Of independent steps the squares add up.
+            travel_m / run.averaged[sample].sqrt()
+                * linkage
+                    .angle_slope_rad_m(angle_deg.to_radians())
+                    .to_degrees()
+        })
+        .map(|step| step * experiment.current_persistence.sqrt())
+        .collect()
+}
+
+/// The value that belongs to the valve that is on.
+fn active(values: Currents, currents: Currents) -> f64 {
+    if currents.lift_a > currents.lower_a {
+        values.lift_a
+    } else {
+        values.lower_a
+    }
+}

@@ -1,0 +1,124 @@
+//! The best subsets of a dictionary's columns by a quadratic cost.
+//!
+//! Subsets of up to [`EXACT`] columns are all looked at. Larger ones grow from the best [`BEAM`] of one fewer: of three
+//! columns that explain a campaign the two that matter most are among those.
+
+use std::collections::HashSet;
+
+use rayon::prelude::*;
+
+use crate::search::entry::Entry;
+use crate::search::gram::Gram;
+
+/// Size up to which every subset is looked at.
+const EXACT: usize = 2;
+
+/// Subsets of one size from which larger ones grow.
+const BEAM: usize = 400;
+
+/// Most columns of a subset.
+pub(crate) const MOST: usize = 6;
+
+/// Sweeps of the coordinate descent that finds shares within their ranges.
+const SWEEPS: usize = 12;
+
+/// A subset of the columns with the shares that fit best.
+#[derive(Debug, Clone)]
+pub(crate) struct Subset {
+    /// Indices of the columns, rising.
+    pub columns: Vec<usize>,
+    /// Share of each.
+    pub shares: Vec<f64>,
+    /// Cost that is left.
+    pub cost: f64,
+}
+
+/// The subsets of each size up to `largest`, by size and then by their cost.
+pub(crate) fn best_subsets(gram: &Gram, entries: &[Entry], largest: usize) -> Vec<Vec<Subset>> {
+    let empty = Subset {
+        columns: Vec::new(),
+        shares: Vec::new(),
+        cost: gram.square,
+    };
+    let mut sizes = vec![vec![empty]];
+    for size in 1..=largest.min(MOST) {
+        let beam = if size <= EXACT { usize::MAX } else { BEAM };
+        let grown = grown(gram, entries, &sizes[size - 1], beam);
+        if grown.is_empty() {
+            break;
+        }
+        sizes.push(grown);
+    }
+    sizes
+}
+
+/// All subsets with one column more than the best of some, each once, by their cost.
+fn grown(gram: &Gram, entries: &[Entry], smaller: &[Subset], beam: usize) -> Vec<Subset> {
+    let mut seen = HashSet::new();
+    let mut wanted = Vec::new();
+    for subset in smaller.iter().take(beam) {
+        for column in 0..entries.len() {
+            let id = entries[column].id();
+            if subset.columns.iter().any(|&own| entries[own].id() == id) {
+                continue;
+            }
+            let mut columns = subset.columns.clone();
+            columns.push(column);
+            columns.sort_unstable();
+            if seen.insert(columns.clone()) {
+                wanted.push(columns);
+            }
+        }
+    }
+    let mut grown: Vec<Subset> = wanted
+        .into_par_iter()
+        .map(|columns| fitted(gram, entries, columns))
+        .collect();
+    grown.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    grown
+}
+
+/// The shares of some columns that leave the least cost within their ranges.
+pub(crate) fn fitted(gram: &Gram, entries: &[Entry], columns: Vec<usize>) -> Subset {
+    let count = columns.len();
+    let mut shares = [0.0; MOST];
+    // The slope of half the cost.
+    let mut slope = [0.0; MOST];
+    for (slope, &column) in slope.iter_mut().zip(&columns) {
+        *slope = -gram.pull[column];
+    }
+    for sweep in 0..SWEEPS {
+        let mut moved: f64 = 0.0;
+        for k in 0..count {
+            let column = columns[k];
+            let square = gram.matrix[(column, column)];
+            let (low, high) = entries[column].share;
+            let wanted = if square > 0.0 {
+                (shares[k] - slope[k] / square).clamp(low, high)
+            } else {
+                low.max(0.0).min(high)
+            };
+            let step = wanted - shares[k];
+            if step != 0.0 {
+                shares[k] = wanted;
+                for (slope, &other) in slope.iter_mut().zip(&columns) {
+                    *slope += step * gram.matrix[(other, column)];
+                }
+                moved = moved.max(step.abs());
+            }
+        }
+        if moved < 1e-4 && sweep > 0 {
+            break;
+        }
+    }
+    // `square - 2 pull x + x matrix x` with `matrix x - pull` the slope.
+    let cost = gram.square
+        + (0..count)
+            .map(|k| shares[k] * (slope[k] - gram.pull[columns[k]]))
+            .sum::<f64>();
+    Subset {
+        shares: shares[..count].to_vec(),
+        columns,
+        cost,
+    }
+}

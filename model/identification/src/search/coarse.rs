@@ -1,0 +1,53 @@
+//! What a search looks at before it fits: a fit seen on a condensed experiment.
+
+use hitch_plant::Model;
+
+use crate::data::experiment::Experiment;
+use crate::estimation::fit::{Fit, evaluate, evaluate_weighted};
+
+/// A fit and what it was fitted to, both condensed where that saves most of the work.
+pub(crate) struct Coarse<'a> {
+    /// All samples.
+    pub experiment: &'a Experiment,
+    /// The model that effects are added to.
+    pub model: &'a Model,
+    /// The fit to all samples.
+    pub present: &'a Fit,
+    /// The experiment on fewer samples.
+    pub few: Experiment,
+    /// What the same estimate leaves there.
+    pub seen: Fit,
+    /// The same runs drafted around it.
+    pub drafted: Experiment,
+}
+
+impl<'a> Coarse<'a> {
+    /// A fit seen coarsely.
+    pub fn new(experiment: &'a Experiment, model: &'a Model, present: &'a Fit) -> Self {
+        let few = experiment.condensed(model, &present.estimate);
+        let seen = match few.samples() < experiment.samples() {
+            true => evaluate(&few, model, present.estimate.clone()),
+            false => present.clone(),
+        };
+        let drafted = few.drafted(model, &present.estimate);
+        Self {
+            experiment,
+            model,
+            present,
+            few,
+            seen,
+            drafted,
+        }
+    }
+
+    /// The cost of another fit there, under the yardsticks of this one or its own, whichever is less.
+    pub fn cost(&self, fit: &Fit) -> f64 {
+        let estimate = || fit.estimate.clone();
+        if fit.cost == self.present.cost {
+            return self.seen.cost;
+        }
+        let weights = self.seen.weights.clone();
+        let under_these = evaluate_weighted(&self.few, self.model, estimate(), weights).cost;
+        under_these.min(evaluate(&self.few, self.model, estimate()).cost)
+    }
+}

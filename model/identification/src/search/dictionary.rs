@@ -1,0 +1,278 @@
+//! The dictionary: every way in which a model may be wrong, simulated around a fit.
+
+use hitch_plant::{AddedEffect, Effect, Search};
+use rayon::prelude::*;
+
+use crate::data::experiment::Experiment;
+use crate::estimate::{Estimate, Shared};
+use crate::estimation::jacobian::{Jacobian, difference, huber, subtract};
+use crate::estimation::nuisance_projection::Frame;
+use crate::search::best_subset::Subset;
+use crate::search::candidates::possible;
+use crate::search::coarse::Coarse;
+use crate::search::entry::{Entry, Kind};
+use crate::search::gram::Gram;
+use crate::search::scan_cache::Scans;
+use crate::search::screen::Screen;
+use crate::search::secant_ends::FARTHEST;
+use crate::search::shape_starts::scaled;
+use crate::selection::candidate::{jacobian_by, slow_columns};
+
+/// Sizes to which an adopted effect is changed: shares of its own and of its typical size that are added.
+const CHANGES: [(f64, f64); 4] = [(-0.5, 0.0), (-1.0, 0.0), (0.5, 0.25), (1.5, 1.0)];
+
+/// Sizes of a form that has another beside it, in typical ones.
+const BESIDE: [f64; 3] = [0.1, 0.3, 1.0];
+
+/// Largest share of a secant to a changed size.
+const CHANGED: f64 = 1.5;
+
+/// The ways in which a fitted model may be wrong.
+pub(crate) struct Dictionary {
+    /// The columns.
+    pub entries: Vec<Entry>,
+    /// Their products, all nuisances projected out, from a model without any of them.
+    pub gram: Gram,
+    /// Whether it has what fine searches find of effects whose cost has many valleys.
+    pub is_thorough: bool,
+    /// Residuals without any of them.
+    without: Vec<Vec<f64>>,
+    /// Sensitivities to what adapts, at the fit that it was made around.
+    pub jacobian: Jacobian,
+    estimate: Estimate,
+}
+
+impl Dictionary {
+    fn new(
+        entries: Vec<Entry>,
+        without: Vec<Vec<f64>>,
+        jacobian: Jacobian,
+        estimate: &Estimate,
+    ) -> Self {
+        let nuisances = nuisances(&jacobian);
+        let gram = Gram::new(&jacobian, estimate, &nuisances, &without, &entries);
+        Self {
+            entries,
+            gram,
+            is_thorough: false,
+            without,
+            jacobian,
+            estimate: estimate.clone(),
+        }
+    }
+
+    /// Whether a column is at a size that a fit can start from: what jumps or is met at a place does so where a fine
+    /// search has found it.
+    pub fn is_start(&self, column: usize) -> bool {
+        let entry = &self.entries[column];
+        let search = entry.added.effect.search();
+        let is_sought = matches!(search, Search::Jumps | Search::Places);
+        self.is_thorough || entry.kind != Kind::New || !is_sought
+    }
+
+    /// The residuals that a subset leaves to first order, once all nuisances have adapted.
+    pub fn left(&self, subset: &Subset) -> Vec<Vec<f64>> {
+        let mut left = self.without.clone();
+        for (&column, &share) in subset.columns.iter().zip(&subset.shares) {
+            for (left, change) in left.iter_mut().zip(&self.entries[column].change) {
+                subtract(left, share, change);
+            }
+        }
+        Frame::new(&self.jacobian, &self.estimate, 0..0).project(left)
+    }
+}
+
+/// What a dictionary is made around.
+pub(crate) struct Around<'a> {
+    pub coarse: &'a Coarse<'a>,
+    /// Effects that are looked for.
+    pub effects: Vec<&'static dyn Effect>,
+    /// Whether adopted effects may have changed.
+    pub changes: bool,
+    pub scans: &'a Scans,
+    /// Fall of the cost that an effect has to promise to be worth a closer look.
+    pub worthwhile: f64,
+}
+
+impl Around<'_> {
+    /// The dictionary around a fit.
+    pub fn dictionary(&self) -> Dictionary {
+        let Coarse {
+            few, model, seen, ..
+        } = self.coarse;
+        let slow = slow_columns(few, model, seen);
+        let jacobian = jacobian_by(few, model, seen, &slow);
+        let here = huber(seen.residuals.clone());
+        let fine = self.screen(few, &jacobian, &here);
+        let own = self.own(&fine);
+        let mut without = here.clone();
+        for entry in &own {
+            add(&mut without, &entry.change);
+        }
+        let rough = self.screen(&self.coarse.drafted, &jacobian, &here);
+        let new = rough.columns(self.effects.clone());
+        let forms = self.other_forms(&fine, &own);
+        let changed = match self.changes {
+            true => self.changed(&rough),
+            false => Vec::new(),
+        };
+        drop((fine, rough));
+        let entries = own.into_iter().chain(forms).chain(new).chain(changed);
+        Dictionary::new(entries.collect(), without, jacobian, &seen.estimate)
+    }
+
+    /// A dictionary with what fine searches find of effects whose cost has many valleys.
+    pub fn thorough(&self, dictionary: Dictionary) -> Dictionary {
+        let seen = &self.coarse.seen;
+        let Dictionary {
+            entries,
+            without,
+            jacobian,
+            ..
+        } = dictionary;
+        let here = huber(seen.residuals.clone());
+        let entries = self
+            .screen(&self.coarse.drafted, &jacobian, &here)
+            .fine_columns(entries);
+        Dictionary {
+            is_thorough: true,
+            ..Dictionary::new(entries, without, jacobian, &seen.estimate)
+        }
+    }
+
+    fn screen<'s>(
+        &'s self,
+        experiment: &'s Experiment,
+        jacobian: &'s Jacobian,
+        here: &'s [Vec<f64>],
+    ) -> Screen<'s> {
+        Screen {
+            experiment,
+            coarse: self.coarse,
+            scans: self.scans,
+            worthwhile: self.worthwhile,
+            here,
+            frame: Frame::new(jacobian, &self.coarse.seen.estimate, 0..0),
+        }
+    }
+
+    /// What the search has added or changed so far, each from nothing to where it stands: taking it away again is judged
+    /// exactly.
+    fn own(&self, screen: &Screen) -> Vec<Entry> {
+        let estimate = &self.coarse.present.estimate;
+        let indices = 0..estimate.effects.len();
+        let column = |index: usize| Entry {
+            kind: Kind::Present(index),
+            off: estimate.off(index),
+            change: difference(&screen.residuals(&estimate.without(index)), screen.here),
+            share: (0.0, FARTHEST),
+            added: estimate.effects[index].clone(),
+        };
+        let own = indices.into_par_iter();
+        own.filter(|&index| !estimate.is_unchanged(index))
+            .map(column)
+            .collect()
+    }
+
+    /// What the search has added, in the other forms of the same effects.
+    fn other_forms(&self, screen: &Screen, own: &[Entry]) -> Vec<Entry> {
+        let estimate = &self.coarse.present.estimate;
+        let added = own.par_iter().filter_map(|entry| match entry.kind {
+            Kind::Present(index) if estimate.adopted_as(entry.id()).is_none() => {
+                Some((index, entry))
+            }
+            _ => None,
+        });
+        let forms = added.flat_map_iter(|(index, entry)| {
+            let other = |form: &&'static dyn Effect| {
+                form.id() == entry.id() && form.form() != entry.added.effect.form()
+            };
+            let forms = possible(self.coarse.model).filter(other);
+            let forms = forms.flat_map(|form| in_form(&entry.added, form));
+            forms.map(move |added| (index, entry, added))
+        });
+        let column = |(index, entry, added): (usize, &Entry, AddedEffect)| {
+            let form = added.effect;
+            let mut other = estimate.clone();
+            other.effects[index] = added.clone();
+            let mut change = difference(screen.here, &screen.residuals(&other));
+            add(&mut change, &entry.change);
+            Entry {
+                kind: Kind::New,
+                off: form.parameters()[0].null,
+                change,
+                share: (0.0, FARTHEST),
+                added,
+            }
+        };
+        forms.map(column).collect()
+    }
+
+    /// The adopted effects that are as they were, at other sizes.
+    fn changed(&self, screen: &Screen) -> Vec<Entry> {
+        let estimate = &self.coarse.present.estimate;
+        let indices = (0..estimate.effects.len()).into_par_iter();
+        let unchanged = indices.filter(|&index| estimate.is_unchanged(index));
+        let sizes = unchanged.flat_map_iter(|index| {
+            let sizes = changed_sizes(&estimate.effects[index]).into_iter();
+            sizes.map(move |size| (index, size))
+        });
+        let column = |(index, size): (usize, f64)| {
+            let mut other = estimate.clone();
+            let off = other.effects[index].values[0];
+            other.effects[index].values[0] = size;
+            Entry {
+                kind: Kind::Change(index),
+                off,
+                change: difference(screen.here, &screen.residuals(&other)),
+                share: (0.0, CHANGED),
+                added: other.effects[index].clone(),
+            }
+        };
+        sizes.map(column).collect()
+    }
+}
+
+/// An effect in another form. Where the size of that is no parameter of its own form, it has all of that beside it, and a
+/// little is tried as well: from much of it no share of the whole leads back.
+fn in_form(added: &AddedEffect, form: &'static dyn Effect) -> Vec<AddedEffect> {
+    let other = added.in_form(form);
+    let size = &form.parameters()[0];
+    let mut own = added.effect.parameters().iter();
+    match own.any(|parameter| parameter.name == size.name) {
+        true => vec![other],
+        false => BESIDE.map(|share| scaled(&other, share)).to_vec(),
+    }
+}
+
+/// Sizes to which an adopted effect is changed, within its range.
+fn changed_sizes(adopted: &AddedEffect) -> Vec<f64> {
+    let range = &adopted.effect.parameters()[0];
+    let own = adopted.values[0] - range.null;
+    let typical = range.scale().copysign(own);
+    let size = |(of_own, of_typical): &(f64, f64)| {
+        let size = adopted.values[0] + of_own * own + of_typical * typical;
+        size.clamp(range.low, range.high)
+    };
+    let mut sizes: Vec<f64> = CHANGES.iter().map(size).collect();
+    sizes.retain(|&size| size != adopted.values[0]);
+    sizes.dedup();
+    sizes
+}
+
+/// Columns that adapt to whatever entries do: clocks, and the shapes of effects that are there.
+fn nuisances(jacobian: &Jacobian) -> Vec<usize> {
+    let adapts = |shared: &Shared| !matches!(shared, Shared::Effect(_, 0));
+    let columns = jacobian.shared.iter().enumerate();
+    columns
+        .filter(|(_, shared)| adapts(shared))
+        .map(|(column, _)| column)
+        .collect()
+}
+
+/// Adds columns to others.
+fn add(columns: &mut [Vec<f64>], others: &[Vec<f64>]) {
+    for (column, other) in columns.iter_mut().zip(others) {
+        subtract(column, -1.0, other);
+    }
+}

@@ -1,0 +1,56 @@
+//! What adapts to a set of effects: what is free at the present fit and part of the set as well.
+
+use std::sync::OnceLock;
+
+use hitch_plant::is_same;
+
+use crate::estimate::{Estimate, Shared};
+use crate::estimation::jacobian::Jacobian;
+use crate::estimation::nuisance_projection::Frame;
+
+/// The frames of sets that have some of the effects of the present fit.
+pub(crate) struct Frames<'a> {
+    jacobian: &'a Jacobian,
+    present: &'a Estimate,
+    /// One a subset of the effects that are free at the present fit, by the bits of its number.
+    frames: Vec<OnceLock<Frame<&'a Jacobian>>>,
+    /// The effects that are free at the present fit, by their indices.
+    free: Vec<usize>,
+}
+
+impl<'a> Frames<'a> {
+    /// Of the sensitivities at the present fit.
+    pub fn new(jacobian: &'a Jacobian, present: &'a Estimate) -> Self {
+        let effects = 0..present.effects.len();
+        let free: Vec<usize> = effects
+            .filter(|&index| !present.is_unchanged(index))
+            .collect();
+        Self {
+            frames: (0..1usize << free.len()).map(|_| OnceLock::new()).collect(),
+            jacobian,
+            present,
+            free,
+        }
+    }
+
+    /// The frame for residuals of an estimate. An effect of the present fit that it is without adapts to nothing.
+    pub fn of(&self, estimate: &Estimate) -> &Frame<&'a Jacobian> {
+        let has = |&index: &usize| {
+            let own = self.present.effects[index].effect;
+            (0..estimate.effects.len()).any(|other| {
+                is_same(estimate.effects[other].effect, own) && !estimate.is_unchanged(other)
+            })
+        };
+        let bits = self.free.iter().enumerate();
+        let subset = bits
+            .map(|(bit, index)| usize::from(has(index)) << bit)
+            .sum::<usize>();
+        self.frames[subset].get_or_init(|| {
+            let keeps = |column: usize| match self.jacobian.shared[column] {
+                Shared::Effect(index, _) => has(&index),
+                Shared::Offset(_) => true,
+            };
+            Frame::keeping(self.jacobian, self.present, keeps)
+        })
+    }
+}

@@ -1,0 +1,153 @@
+//! Which subsets of a dictionary are worth a fit with the full model.
+
+use hitch_plant::Model;
+
+use crate::estimate::Estimate;
+use crate::estimation::fit::Fit;
+use crate::search::best_subset::{MOST, Subset, best_subsets, fitted};
+use crate::search::coarse::Coarse;
+use crate::search::dictionary::Dictionary;
+use crate::search::entry::{Entry, Kind, with_entries};
+use crate::selection::penalty::Price;
+use crate::selection::posterior::{Key, Refitted, key};
+
+/// Subsets of each size that are looked at, and how many of all are fitted.
+const LOOKED_AT: usize = 40;
+const FITTED: usize = 12;
+
+/// Starts of one set of effects where the cost of one of them has many valleys.
+pub(crate) const VALLEYS: usize = 2;
+
+/// Share of the fall of the cost, or of what an effect explains that is replaced, that a secant's promise may be off by:
+/// a further effect that promises less is left to the next dictionary.
+const INEXACT: f64 = 0.04;
+
+/// A subset is fitted if it leaves at most this share of what it has not in common with the most promising one
+/// unexplained, or costs that differ by no more likelihood ratios than this.
+pub(crate) const NEAR: f64 = 0.15;
+pub(crate) const CLOSE: f64 = 60.0;
+
+/// Where fits start, and the price of effects beside what the dictionary promises to leave.
+pub(crate) struct Starts {
+    pub estimates: Vec<Estimate>,
+    pub price: Price,
+}
+
+/// Starts of the subsets that promise as much as the best one, or nearly, were not fitted yet, and have at most so many
+/// effects more than the present ones.
+pub(crate) fn starts(
+    coarse: &Coarse,
+    dictionary: &Dictionary,
+    refitted: &Refitted,
+    more: usize,
+) -> Starts {
+    let Coarse {
+        model,
+        present,
+        few,
+        seen,
+        ..
+    } = coarse;
+    let own = key(present);
+    let largest = (own.len() + more).min(MOST);
+    let sizes = best_subsets(&dictionary.gram, &dictionary.entries, largest);
+    let firsts = sizes.iter().filter_map(|subsets| subsets.first());
+    let lowest = firsts.min_by(|a, b| a.cost.total_cmp(&b.cost));
+    let lowest = lowest.expect("the empty subset is there");
+    let left = dictionary.left(lowest);
+    let variance = lowest.cost / seen.weights.count() as f64;
+    let price = Price::new(few, present.weights.count(), variance, &left);
+    let whole = with_all_present(dictionary);
+    let promise = |subset: &Subset| {
+        let explained = (seen.cost - lowest.cost).max(apart(dictionary, subset, &whole));
+        let inexact = INEXACT * explained.max(0.0);
+        let members = subset
+            .columns
+            .iter()
+            .map(|&column| &dictionary.entries[column]);
+        let prices = members.map(|entry| {
+            let own = price.of(&entry.added, entry.parameters());
+            match entry.kind {
+                Kind::Present(_) => own,
+                Kind::New | Kind::Change(_) => own.max(inexact),
+            }
+        });
+        subset.cost + prices.sum::<f64>()
+    };
+    let looked_at = sizes
+        .iter()
+        .flat_map(|subsets| subsets.iter().take(LOOKED_AT));
+    let mut ranked: Vec<(f64, &Subset)> =
+        looked_at.map(|subset| (promise(subset), subset)).collect();
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (best, leader) = ranked[0];
+    let close = CLOSE * price.unit;
+    let mut taken: Vec<Key> = vec![own];
+    let mut estimates = Vec::new();
+    for (promise, subset) in ranked {
+        let near = best + (NEAR * apart(dictionary, subset, leader)).max(close);
+        let key = key_of(dictionary, subset);
+        let known = taken.iter().filter(|taken| **taken == key).count();
+        let is_rough =
+            |&column: &usize| dictionary.entries[column].added.effect.search().is_rough();
+        let most = if subset.columns.iter().any(is_rough) {
+            VALLEYS
+        } else {
+            1
+        };
+        if promise > near || is_more(subset, leader) || known >= most {
+            continue;
+        }
+        let starts = |&column: &usize| dictionary.is_start(column);
+        if !refitted.contains(&key) && subset.columns.iter().all(starts) {
+            estimates.push(start(dictionary, present, model, subset));
+        }
+        taken.push(key);
+        if taken.len() > FITTED {
+            break;
+        }
+    }
+    Starts { estimates, price }
+}
+
+/// The subset of all effects that are there.
+fn with_all_present(dictionary: &Dictionary) -> Subset {
+    let columns = dictionary.entries.iter().enumerate();
+    let present = columns.filter(|(_, entry)| matches!(entry.kind, Kind::Present(_)));
+    let present = present.map(|(column, _)| column).collect();
+    fitted(&dictionary.gram, &dictionary.entries, present)
+}
+
+/// What the leading subset explains beyond what another has in common with it.
+fn apart(dictionary: &Dictionary, subset: &Subset, leader: &Subset) -> f64 {
+    let common = subset.columns.iter().copied();
+    let common = common
+        .filter(|column| leader.columns.contains(column))
+        .collect();
+    fitted(&dictionary.gram, &dictionary.entries, common).cost - leader.cost
+}
+
+/// Whether a subset has all of another, and more.
+fn is_more(subset: &Subset, other: &Subset) -> bool {
+    let has = |column: &usize| subset.columns.contains(column);
+    subset.columns.len() > other.columns.len() && other.columns.iter().all(has)
+}
+
+fn start(dictionary: &Dictionary, present: &Fit, model: &Model, subset: &Subset) -> Estimate {
+    let members = subset.columns.iter().zip(&subset.shares);
+    let members: Vec<(&Entry, f64)> = members
+        .map(|(&column, &share)| {
+            let entry = &dictionary.entries[column];
+            (entry, entry.start(share))
+        })
+        .collect();
+    with_entries(&present.estimate, &model.effects, &members)
+}
+
+fn key_of(dictionary: &Dictionary, subset: &Subset) -> Key {
+    let members = subset.columns.iter().map(|&column| {
+        let effect = dictionary.entries[column].added.effect;
+        (effect.id(), effect.form())
+    });
+    Key::new(members.collect())
+}

@@ -1,0 +1,244 @@
+//! Promising sets of effects fitted with the full model.
+
+use hitch_plant::Search;
+use rayon::prelude::*;
+
+use crate::data::clocks::Clocks;
+use crate::estimate::Estimate;
+use crate::estimation::fit::{Fit, evaluate_weighted, refine, sketch, with_last};
+use crate::estimation::jacobian::{Jacobian, huber_residuals, square_sum};
+use crate::estimation::least_squares::Descent;
+use crate::search::candidates::Progress;
+use crate::search::coarse::Coarse;
+use crate::search::delays::on_time;
+use crate::search::line_search::threaded;
+use crate::search::projections::Frames;
+use crate::search::promise::{CLOSE, NEAR, VALLEYS};
+use crate::search::subset::Options;
+use crate::selection::penalty::Price;
+use crate::selection::posterior::{Refitted, key, key_of};
+
+/// Most starts that are sketched, and sketches that are refined.
+const SKETCHED: usize = 5;
+const REFINED: usize = 3;
+
+/// Error from which a sketch may be in a valley of its own, so that it starts coarse as well.
+const ASTRAY: f64 = 2.0;
+
+/// How many times the least cost what jumps may leave on fewer samples and still be the best on all.
+const MISSED: f64 = 2.0;
+
+/// What sets are fitted around.
+pub(crate) struct Refits<'a> {
+    pub coarse: &'a Coarse<'a>,
+    /// The cost of the best fit so far with its price, seen as coarsely.
+    pub best: f64,
+    pub price: Price,
+    pub options: Options<'a>,
+}
+
+impl Refits<'_> {
+    /// Fits of some starts: each is simulated once and rid of members that do not keep their promise, the best ones are
+    /// sketched under the present yardsticks, the best of those fitted coarsely, and the likely ones to all samples.
+    ///
+    /// `jacobian` has the sensitivities at the coarse fit.
+    pub fn of(
+        &self,
+        starts: Vec<Estimate>,
+        jacobian: &Jacobian,
+        known: &Refitted,
+        progress: Progress,
+    ) -> Vec<Fit> {
+        let Coarse {
+            experiment,
+            model,
+            seen: present,
+            drafted,
+            ..
+        } = self.coarse;
+        let frames = Frames::new(jacobian, &present.estimate);
+        let residuals =
+            |estimate: &Estimate| huber_residuals(drafted, model, &present.weights, estimate);
+        // The clocks have stood in for what is missing: where a start gives them back, slopes lead nowhere.
+        let cost = |estimate: &Estimate| {
+            let frame = frames.of(estimate);
+            let left = residuals(estimate);
+            let promised = frame.cost_after(&left);
+            let synchronised = frame.synchronised(estimate, &left);
+            let kept = square_sum(&residuals(&synchronised)) + synchronised.prior_cost();
+            let price = self.price.of_all(estimate);
+            match kept < promised {
+                true => (kept + price, synchronised),
+                false => (promised + price, estimate.clone()),
+            }
+        };
+        let starts = starts.into_par_iter();
+        let starts = starts.map(|start| lightened(start, cost)).collect();
+        let mut starts = distinct(starts);
+        starts.retain(|(_, start)| !known.contains(&key_of(start)));
+        let sketch = |start: Estimate| {
+            let found = self.sketched(start);
+            (
+                found.cost + self.price.of_all(&found.estimate),
+                found.estimate,
+            )
+        };
+        let unless_over = |start: Estimate| (!self.options.is_over()).then(|| sketch(start));
+        let starts = self.nearest(starts, SKETCHED).into_par_iter();
+        let sketches: Vec<(f64, Estimate)> = starts.filter_map(unless_over).collect();
+        let nearest = self.nearest(sketches, REFINED).into_par_iter();
+        let approached: Vec<(f64, Fit)> = nearest
+            .map(|start| {
+                let fit = on_time(drafted, model, refine(drafted, model, start));
+                let (estimate, weights) = (fit.estimate.clone(), present.weights.clone());
+                let under_present = evaluate_weighted(drafted, model, estimate, weights).cost;
+                let cost = fit.cost.min(under_present) + self.price.of_all(&fit.estimate);
+                (cost, fit)
+            })
+            .collect();
+        let likely = self.likely(approached).into_par_iter();
+        let refined = likely.map(|estimate| {
+            let fit = on_time(experiment, model, refine(experiment, model, estimate));
+            let fit = self.threaded(fit);
+            progress(&key(&fit).name());
+            fit
+        });
+        refined.collect()
+    }
+
+    /// Those of some coarse fits that may be the best to all samples: whose cost with its price is near the least one.
+    /// Sizes of effects that jump are less exact on fewer samples.
+    fn likely(&self, approached: Vec<(f64, Fit)>) -> Vec<Estimate> {
+        let Some((least, best)) = approached.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else {
+            return Vec::new();
+        };
+        let least = least.min(self.best);
+        let near = least + CLOSE * Price::beside(&self.coarse.drafted, best).unit;
+        let near_for_jumps = MISSED * least;
+        let is_near = |(cost, fit): &(f64, Fit)| {
+            *cost <= near || (is_rough(&fit.estimate) && *cost <= near_for_jumps)
+        };
+        let near = approached.iter().filter(|approached| is_near(approached));
+        near.map(|(_, fit)| fit.estimate.clone()).collect()
+    }
+
+    /// At most so many estimates whose cost with its price is near the least one.
+    fn nearest(&self, mut priced: Vec<(f64, Estimate)>, most: usize) -> Vec<Estimate> {
+        priced.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let least = priced
+            .first()
+            .map_or(self.best, |(cost, _)| cost.min(self.best));
+        let present = &self.coarse.seen;
+        let here = present.cost + self.price.of_all(&present.estimate);
+        let near = least + (NEAR * (here - least)).max(CLOSE * self.price.unit);
+        let near = priced.into_iter().filter(|(cost, _)| *cost <= near);
+        near.take(most).map(|(_, estimate)| estimate).collect()
+    }
+
+    /// The fit from one start. Where the clocks are off, one with all in step is tried as well: what is late may be the
+    /// effect, and between two valleys no slope leads.
+    pub fn one(&self, start: Estimate) -> Fit {
+        let Coarse {
+            experiment, model, ..
+        } = self.coarse;
+        let from = |start: Estimate| {
+            let found = self.sketched(start);
+            let fit = refine(experiment, model, found.estimate);
+            self.threaded(on_time(experiment, model, fit))
+        };
+        let in_step = start.clocks.are_off().then(|| {
+            let clocks = Clocks::default();
+            from(Estimate {
+                clocks,
+                ..start.clone()
+            })
+        });
+        let fit = from(start);
+        match in_step {
+            Some(other) if other.cost < fit.cost => other,
+            _ => fit,
+        }
+    }
+
+    /// Where a start leads under the present yardsticks; far from the data also by way of a coarse fit.
+    fn sketched(&self, start: Estimate) -> Descent {
+        let Coarse {
+            model,
+            seen,
+            drafted,
+            ..
+        } = self.coarse;
+        let weights = &seen.weights;
+        let from = |far: bool| sketch(drafted, model, weights, start.clone(), far);
+        let near = from(false);
+        let samples = weights.count() as f64;
+        if (near.cost / samples).sqrt() <= ASTRAY {
+            return near;
+        }
+        let far = from(true);
+        if far.cost < near.cost { far } else { near }
+    }
+
+    /// A fit with the size of what jumps looked for finely.
+    fn threaded(&self, fit: Fit) -> Fit {
+        let estimate = &fit.estimate;
+        let jumps = (0..estimate.effects.len()).find(|&index| {
+            let search = estimate.effects[index].effect.search();
+            matches!(search, Search::Jumps | Search::Ledges) && !estimate.is_unchanged(index)
+        });
+        match jumps {
+            Some(index) => {
+                let Coarse {
+                    experiment, model, ..
+                } = self.coarse;
+                let last = with_last(experiment, model, &fit, index);
+                threaded(experiment, model, last)
+            }
+            None => fit,
+        }
+    }
+}
+
+/// An estimate without those members that do not explain as much as they have to, and its cost with their price; `cost`
+/// gives that and the estimate adapted.
+fn lightened(start: Estimate, cost: impl Fn(&Estimate) -> (f64, Estimate)) -> (f64, Estimate) {
+    let (mut least, mut estimate) = cost(&start);
+    let mut index = 0;
+    while index < estimate.effects.len() {
+        if !estimate.is_unchanged(index) {
+            let lighter = estimate.without(index);
+            let (without, adapted) = cost(&lighter);
+            if without < least {
+                let removed = adapted.effects.len() < estimate.effects.len();
+                (estimate, least) = (adapted, without);
+                index += usize::from(!removed);
+                continue;
+            }
+        }
+        index += 1;
+    }
+    (least, estimate)
+}
+
+/// Whether the cost does not fall smoothly along the size of some effect.
+fn is_rough(estimate: &Estimate) -> bool {
+    let mut effects = estimate.effects.iter();
+    effects.any(|added| added.effect.search().is_rough())
+}
+
+/// Of each set the estimate with the least cost, or the best few where there are many valleys.
+fn distinct(mut priced: Vec<(f64, Estimate)>) -> Vec<(f64, Estimate)> {
+    priced.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut distinct: Vec<(f64, Estimate)> = Vec::new();
+    for (cost, estimate) in priced {
+        let key = key_of(&estimate);
+        let known = distinct
+            .iter()
+            .filter(|(_, other)| key_of(other) == key)
+            .count();
+        if known < if is_rough(&estimate) { VALLEYS } else { 1 } {
+            distinct.push((cost, estimate));
+        }
+    }
+    distinct
+}

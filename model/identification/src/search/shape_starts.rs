@@ -1,0 +1,66 @@
+//! Sizes and shapes at which an effect is simulated to see what it may explain.
+
+use hitch_plant::{AddedEffect, Channel, Effect, Parameter, Search};
+
+use crate::data::experiment::Experiment;
+use crate::search::size_scan::{Grid, JUMPS, PLACES, PLACES_AT_REST, RINGING};
+
+/// An effect at a multiple of its size.
+pub(crate) fn scaled(added: &AddedEffect, share: f64) -> AddedEffect {
+    let null = added.effect.parameters()[0].null;
+    let mut scaled = added.clone();
+    scaled.values[0] = null + share * (scaled.values[0] - null);
+    scaled
+}
+
+/// How to look through an effect's cost if that has many valleys: the phase of a ringing pressure makes them, and what
+/// jumps or bounces.
+pub(crate) fn valleys(experiment: &Experiment, effect: &dyn Effect) -> Option<&'static Grid> {
+    let pressure_alone = effect.channels() == [Channel::CylinderPressure];
+    match effect.search() {
+        Search::Jumps => Some(&JUMPS),
+        Search::Places if experiment.ringing => Some(&PLACES),
+        Search::Places => Some(&PLACES_AT_REST),
+        Search::Secants if experiment.ringing && pressure_alone => Some(&RINGING),
+        Search::Secants | Search::Ledges => None,
+    }
+}
+
+/// An effect at its typical size with each parameter of its shape that may have either sign at both ends of its range:
+/// an arm that grows over the stroke and one that is there all over it have nothing in common, and where one is hidden
+/// no secant of the other leads anywhere.
+pub(crate) fn with_opposite_shapes(effect: &'static dyn Effect) -> Vec<AddedEffect> {
+    let typical = AddedEffect::typical(effect);
+    with_shapes(&typical, |shape| shape.low < 0.0 && shape.high > 0.0)
+}
+
+/// An effect with each parameter of its shape towards either end of its range in turn; none without a shape.
+pub(crate) fn with_extreme_shapes(at: &AddedEffect) -> Vec<AddedEffect> {
+    with_shapes(at, |_| true)
+}
+
+/// [`with_extreme_shapes`] of those parameters that are `chosen`.
+fn with_shapes(at: &AddedEffect, chosen: impl Fn(&Parameter) -> bool) -> Vec<AddedEffect> {
+    let parameters = at.effect.parameters().iter().enumerate().skip(1);
+    parameters
+        .filter(|(_, range)| chosen(range))
+        .flat_map(|(index, range)| {
+            let ends = [range.low, range.high].into_iter();
+            ends.filter(|end| end.is_finite()).map(move |end| {
+                let mut added = at.clone();
+                added.values[index] = extreme(range, end);
+                added
+            })
+        })
+        .collect()
+}
+
+/// A value as extreme as is of use for a start: the end of the range, unless that is an order of magnitude away.
+/// There, where the ground is all but rigid, the slopes vanish that would lead back.
+fn extreme(range: &Parameter, end: f64) -> f64 {
+    if range.is_by_magnitude() {
+        (range.typical * end).sqrt()
+    } else {
+        end
+    }
+}

@@ -1,0 +1,140 @@
+//! Effects tried one at a time on a fitted model.
+
+use hitch_plant::{AddedEffect, Effect, Model, is_same};
+use rayon::prelude::*;
+
+use crate::data::experiment::Experiment;
+use crate::estimate::Estimate;
+use crate::estimation::fit::{Fit, evaluate_weighted};
+use crate::search::best_subset::fitted;
+use crate::search::candidates::Progress;
+use crate::search::coarse::Coarse;
+use crate::search::dictionary::Around;
+use crate::search::entry::Kind;
+use crate::search::refit::Refits;
+use crate::search::scan_cache::Scans;
+use crate::search::subset::Options;
+use crate::selection::candidate::{Candidate, slow_columns, weigh, weigh_by};
+use crate::selection::evidence::shares;
+use crate::selection::penalty::Price;
+
+/// Forms that are fitted in full, the most promising ones; of the others the start of a fit is weighed.
+const FITTED: usize = 8;
+
+/// Told of a form of an effect that was weighed.
+pub type Weighed<'a> = &'a (dyn Fn(&Candidate) + Sync);
+
+/// Each effect in its best form beside a fit, weighed; the likeliest first.
+#[must_use]
+pub fn try_effects(
+    experiment: &Experiment,
+    model: &Model,
+    base: &Fit,
+    effects: &[&'static dyn Effect],
+    progress: Progress,
+) -> Vec<Candidate> {
+    try_each(experiment, model, base, effects, progress, &|_| {})
+}
+
+/// [`try_effects`] that tells of each form as soon as it is weighed, in any order.
+#[must_use]
+pub fn try_each(
+    experiment: &Experiment,
+    model: &Model,
+    base: &Fit,
+    effects: &[&'static dyn Effect],
+    progress: Progress,
+    weighed: Weighed,
+) -> Vec<Candidate> {
+    let scans = Scans::default();
+    let price = Price::beside(experiment, base);
+    let coarse = Coarse::new(experiment, model, base);
+    let around = Around {
+        coarse: &coarse,
+        effects: effects.to_vec(),
+        changes: false,
+        scans: &scans,
+        worthwhile: 0.5 * price.of_nothing(),
+    };
+    let dictionary = around.thorough(around.dictionary());
+    let (gram, entries) = (&dictionary.gram, dictionary.entries.as_slice());
+    let start = |effect: &'static dyn Effect| -> Option<(f64, Estimate)> {
+        let own = |&column: &usize| {
+            let entry = &entries[column];
+            entry.kind == Kind::New && is_same(entry.added.effect, effect)
+        };
+        let columns = (0..entries.len()).filter(own);
+        let subsets = columns.map(|column| fitted(gram, entries, vec![column]));
+        let best = subsets.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+        let added = entries[best.columns[0]].at(best.shares[0]);
+        let mut estimate = base.estimate.clone();
+        estimate.effects.push(added.clone());
+        (!added.is_null()).then_some((best.cost, estimate))
+    };
+    let mut starts: Vec<(f64, &'static dyn Effect, Option<Estimate>)> = effects
+        .iter()
+        .map(|&effect| match start(effect) {
+            Some((cost, estimate)) => (cost, effect, Some(estimate)),
+            None => (f64::INFINITY, effect, None),
+        })
+        .collect();
+    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let refits = Refits {
+        coarse: &coarse,
+        best: coarse.seen.cost,
+        price,
+        options: Options::default(),
+    };
+    let slow = slow_columns(experiment, model, base);
+    let promising = |cost: f64| coarse.seen.cost - cost > around.worthwhile || effects.len() == 1;
+    let tried = starts.into_par_iter().enumerate();
+    let tried = tried.map(|(rank, (cost, effect, estimate))| {
+        progress(effect.id());
+        let candidate = match estimate {
+            Some(estimate) if promising(cost) && rank < FITTED => {
+                weigh(experiment, model, base, effect, refits.one(estimate))
+            }
+            Some(estimate) if promising(cost) => {
+                let fit = evaluate_weighted(experiment, model, estimate, base.weights.clone());
+                weigh_by(experiment, model, base, effect, fit, &slow)
+            }
+            _ => {
+                let mut fit = base.clone();
+                fit.estimate.effects.push(AddedEffect::null(effect));
+                Candidate::absent(effect, fit)
+            }
+        };
+        weighed(&candidate);
+        candidate
+    });
+    likeliest_forms(tried.collect())
+}
+
+/// Probability of each candidate among all and none, all other differences aside, that it is what it is called.
+#[must_use]
+pub fn confidences(candidates: &[Candidate]) -> Vec<f64> {
+    let none = 0.0;
+    let odds = candidates.iter().map(Candidate::log_odds);
+    let odds: Vec<f64> = odds.chain([none]).collect();
+    let mut confidences = shares(&odds);
+    confidences.truncate(candidates.len());
+    for (confidence, candidate) in confidences.iter_mut().zip(candidates) {
+        *confidence *= candidate.genuine();
+    }
+    confidences
+}
+
+/// Of each effect the likeliest form, the likeliest effect first.
+fn likeliest_forms(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
+    candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
+    let mut forms: Vec<Candidate> = Vec::new();
+    for candidate in candidates {
+        if forms
+            .iter()
+            .all(|form| form.effect.id() != candidate.effect.id())
+        {
+            forms.push(candidate);
+        }
+    }
+    forms
+}

@@ -1,0 +1,348 @@
+//! Which set of effects a campaign asks for, found as a whole.
+//!
+//! 1. Dictionary: every way in which the model may be wrong is simulated at a few sizes around the present fit.
+//! 2. Best subset: in the linear space of those columns, nuisances projected out, the best subsets of each size are
+//!    found without a simulation.
+//! 3. Refit: the most promising ones are fitted with the full model and judged by what they leave and by the price of
+//!    what they say. Around the best of them a new dictionary is made, until the set stays.
+//! 4. Posterior: the weights of all sets that were refitted give the probability of each effect.
+//!
+//! A forward search takes the best single effect first, which may stand for two others, and needs rules to get rid of
+//! it again. A subset is judged with all its members at once.
+
+use std::time::Instant;
+
+use hitch_plant::{Effect, Model};
+
+use crate::data::clocks::Clocks;
+use crate::data::experiment::Experiment;
+use crate::estimation::fit::{Fit, evaluate, evaluate_weighted};
+use crate::search::candidates::{Progress, showing};
+use crate::search::coarse::Coarse;
+use crate::search::dictionary::{Around, Dictionary};
+use crate::search::promise::starts;
+use crate::search::refit::Refits;
+use crate::search::rivals::rivals;
+use crate::search::scan_cache::Scans;
+use crate::search::screen::EXPLAINED;
+use crate::search::{delays, limits};
+use crate::selection::hold_out::{HeldOut, held_out};
+use crate::selection::penalty::Price;
+use crate::selection::posterior::{Refitted, key};
+
+/// Most dictionaries that are made.
+const ROUNDS: usize = 6;
+
+/// How many effects more than the present ones a set may have that a dictionary leads to.
+const MORE: usize = 2;
+
+/// Largest error without an effect at which an effect that jumps may explain as much in its place. Above it the instants
+/// of the jumps tell the two apart.
+const FAINT: f64 = 1.5;
+
+/// Sets that are tried on held-out runs in one round.
+const TRIED: usize = 3;
+
+/// What a search may do.
+#[derive(Clone, Copy)]
+pub struct Options<'a> {
+    /// Whether effects that the model had before the search may have changed.
+    pub changes: bool,
+    /// When the search has to end with what it has.
+    pub deadline: Option<Instant>,
+    /// Receives each fit that becomes the best one while the search goes on.
+    pub improved: &'a (dyn Fn(&Fit) + Sync),
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Self {
+            changes: true,
+            deadline: None,
+            improved: &|_| {},
+        }
+    }
+}
+
+impl std::fmt::Debug for Options<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Options")
+            .field("changes", &self.changes)
+            .field("deadline", &self.deadline)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Options<'_> {
+    /// Whether the time is up.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.deadline
+            .is_some_and(|deadline| Instant::now() >= deadline)
+    }
+}
+
+/// What a search came to.
+pub(crate) struct Found {
+    /// The best fit.
+    pub fit: Fit,
+    /// What it leaves in held-out runs.
+    pub held_out: HeldOut,
+    /// All sets that were fitted in full.
+    pub refitted: Refitted,
+    /// The effects of the best fit, by their indices, those first that explain most beside the ones before.
+    pub order: Vec<usize>,
+    /// Whether the time was up before the set stayed.
+    pub unfinished: bool,
+}
+
+impl Found {
+    /// Nothing beyond the model.
+    pub fn nothing(base: &Fit) -> Self {
+        Self {
+            fit: base.clone(),
+            held_out: HeldOut::NONE,
+            refitted: Refitted::new(base),
+            order: Vec::new(),
+            unfinished: false,
+        }
+    }
+}
+
+/// The set of effects that explains a campaign best, from a fit of the model without any.
+pub(crate) fn search(
+    experiment: &Experiment,
+    model: &Model,
+    base: &Fit,
+    options: Options<'_>,
+    progress: Progress,
+) -> Found {
+    let mut search = Search {
+        experiment,
+        model,
+        options,
+        progress,
+        scans: Scans::default(),
+        refitted: Refitted::new(base),
+        present: base.clone(),
+        left: held_out(experiment, model, base),
+        order: Vec::new(),
+        rivals: Vec::new(),
+    };
+    let mut unfinished = true;
+    for _ in 0..ROUNDS {
+        if options.is_over() {
+            break;
+        }
+        if search.looks_further() || search.looks_for_rivals() {
+            let added = base.estimate.effects.len()..search.present.estimate.effects.len();
+            search.order = added.collect();
+        } else {
+            unfinished = options.is_over();
+            break;
+        }
+    }
+    search.found(unfinished)
+}
+
+/// A search under way.
+struct Search<'a> {
+    experiment: &'a Experiment,
+    model: &'a Model,
+    options: Options<'a>,
+    progress: Progress<'a>,
+    scans: Scans,
+    refitted: Refitted,
+    /// The best fit so far, and what it leaves in held-out runs.
+    present: Fit,
+    left: HeldOut,
+    /// Its effects, those first that explain most.
+    order: Vec<usize>,
+    /// Its effects with the ids of those that may stand in the place of each.
+    rivals: Vec<(usize, Vec<&'static str>)>,
+}
+
+impl Search<'_> {
+    /// Makes a dictionary around the present fit and goes on to the best set that it leads to; whether there is one.
+    fn looks_further(&mut self) -> bool {
+        let name = key(&self.present).name();
+        (self.progress)(&format!("what is missing beside {name}"));
+        let present = self.present.clone();
+        let coarse = Coarse::new(self.experiment, self.model, &present);
+        let around = self.around(&coarse, |_| true);
+        let dictionary = around.dictionary();
+        self.tries(&coarse, &dictionary, MORE);
+        let effects = 0..present.estimate.effects.len();
+        let own = effects.filter(|&index| !present.estimate.is_unchanged(index));
+        self.rivals = own
+            .map(|index| (index, rivals(&dictionary, index)))
+            .collect();
+        self.order = in_order(&dictionary);
+        // Beside an effect that was found already, a plain dictionary goes on as long as it leads anywhere.
+        if key(&present).len() > 0 && self.goes_on() {
+            return true;
+        }
+        if self.refitted.least_error() > EXPLAINED {
+            let dictionary = self.around(&coarse, |_| true).thorough(dictionary);
+            self.tries(&coarse, &dictionary, MORE);
+            self.looks_in_step(&present);
+        }
+        self.goes_on()
+    }
+
+    /// Tries what is late while clocks stand in for it.
+    fn looks_in_step(&mut self, present: &Fit) {
+        let in_step = synchronous(self.experiment, self.model, present);
+        if let Some(in_step) = in_step
+            && self.refitted.least_error() > EXPLAINED
+        {
+            let coarse = Coarse::new(self.experiment, self.model, &in_step);
+            let dictionary = self.around(&coarse, delays::is_delay).dictionary();
+            // Sets that were fitted with clocks that are off may be in another valley with all in step.
+            let known = Refitted::new(present);
+            self.tries_beside(&known, &coarse, &dictionary, MORE);
+        }
+    }
+
+    /// Looks for what stands in the place of each effect of the present fit, and goes on to it if it is better; whether
+    /// there is one. What explains the same does not show beside it.
+    fn looks_for_rivals(&mut self) -> bool {
+        let estimate = self.present.estimate.clone();
+        for (index, rivals) in std::mem::take(&mut self.rivals) {
+            if rivals.is_empty() || self.options.is_over() {
+                continue;
+            }
+            let id = estimate.effects[index].effect.id();
+            (self.progress)(&format!("what is there in place of {id}"));
+            let weights = self.present.weights.clone();
+            let without = estimate.without(index);
+            let center = evaluate_weighted(self.experiment, self.model, without, weights);
+            let coarse = Coarse::new(self.experiment, self.model, &center);
+            let around = self.around(&coarse, |effect| rivals.contains(&effect.id()));
+            let dictionary = match center.error() < FAINT {
+                true => around.thorough(around.dictionary()),
+                false => around.dictionary(),
+            };
+            self.tries(&coarse, &dictionary, 1);
+        }
+        self.goes_on()
+    }
+
+    /// What a dictionary is made of around a fit, of the effects whose ids are wanted.
+    fn around<'a>(
+        &'a self,
+        coarse: &'a Coarse,
+        wanted: impl Fn(&dyn Effect) -> bool,
+    ) -> Around<'a> {
+        let (experiment, model) = (self.experiment, self.model);
+        let mut effects = showing(experiment, model, &coarse.present.estimate);
+        effects.retain(|effect| wanted(*effect));
+        Around {
+            coarse,
+            effects,
+            changes: self.options.changes,
+            scans: &self.scans,
+            worthwhile: 0.5 * Price::beside(experiment, coarse.present).of_nothing(),
+        }
+    }
+
+    /// Fits the most promising sets of a dictionary around a fit, with at most so many effects more than that.
+    fn tries(&mut self, coarse: &Coarse, dictionary: &Dictionary, more: usize) {
+        let known = self.refitted.clone();
+        self.tries_beside(&known, coarse, dictionary, more);
+    }
+
+    /// The same without those sets that are known.
+    fn tries_beside(
+        &mut self,
+        known: &Refitted,
+        coarse: &Coarse,
+        dictionary: &Dictionary,
+        more: usize,
+    ) {
+        let starts = starts(coarse, dictionary, known, more);
+        let refits = Refits {
+            coarse,
+            best: coarse.cost(&self.present) + starts.price.of_all(&self.present.estimate),
+            price: starts.price,
+            options: self.options,
+        };
+        for fit in refits.of(starts.estimates, &dictionary.jacobian, known, self.progress) {
+            if limits::is_told(self.experiment, &fit.estimate) {
+                self.refitted.insert(fit);
+            }
+        }
+    }
+
+    /// Goes on to the best set that is better than the present one and leaves less in held-out runs; whether there is one.
+    fn goes_on(&mut self) -> bool {
+        let (experiment, model) = (self.experiment, self.model);
+        let better = self.refitted.better(experiment, model, &self.present);
+        let admitted = better.into_iter().take(TRIED).find_map(|fit| {
+            let its = held_out(experiment, model, fit);
+            let fewer = key(fit).len() < key(&self.present).len();
+            let gain = self.left.excess() - its.excess();
+            // A campaign of one run has no held-out runs; it is not held against what explains it.
+            (fewer || gain.is_nan() || gain > 0.0).then(|| (fit.clone(), its))
+        });
+        let found = admitted.is_some();
+        if let Some((fit, its)) = admitted {
+            (self.options.improved)(&fit);
+            (self.present, self.left) = (fit, its);
+        }
+        found
+    }
+
+    fn found(self, unfinished: bool) -> Found {
+        let present = self.present;
+        let effects = 0..present.estimate.effects.len();
+        let missing = effects.filter(|&effect| !present.estimate.is_unchanged(effect));
+        let mut order = self.order;
+        let missing: Vec<usize> = missing.filter(|effect| !order.contains(effect)).collect();
+        order.extend(missing);
+        Found {
+            fit: present,
+            held_out: self.left,
+            refitted: self.refitted,
+            order,
+            unfinished,
+        }
+    }
+}
+
+/// A fit with its clocks in step, if they are off: what is missing may be late, and while clocks stand in for that no
+/// secant shows it.
+fn synchronous(experiment: &Experiment, model: &Model, fit: &Fit) -> Option<Fit> {
+    fit.estimate.clocks.are_off().then(|| {
+        let mut estimate = fit.estimate.clone();
+        estimate.clocks = Clocks::default();
+        evaluate(experiment, model, estimate)
+    })
+}
+
+/// The effects that are there, those first that explain most beside the ones before.
+fn in_order(dictionary: &Dictionary) -> Vec<usize> {
+    use crate::search::best_subset::fitted;
+    use crate::search::entry::Kind;
+    let (gram, entries) = (&dictionary.gram, dictionary.entries.as_slice());
+    let mut rest: Vec<(usize, usize)> = (0..entries.len())
+        .filter_map(|column| match entries[column].kind {
+            Kind::Present(effect) => Some((column, effect)),
+            Kind::New | Kind::Change(_) => None,
+        })
+        .collect();
+    let (mut taken, mut order) = (Vec::new(), Vec::new());
+    while !rest.is_empty() {
+        let with = |&(column, _): &(usize, usize)| {
+            let mut columns: Vec<usize> = taken.clone();
+            columns.push(column);
+            fitted(gram, entries, columns).cost
+        };
+        let costs: Vec<f64> = rest.iter().map(with).collect();
+        let best = (0..rest.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b]));
+        let (column, effect) = rest.swap_remove(best.unwrap_or(0));
+        taken.push(column);
+        order.push(effect);
+    }
+    order
+}

@@ -1,0 +1,126 @@
+//! Error in runs that were not used to fit.
+
+use hitch_plant::Model;
+use rayon::prelude::*;
+
+use crate::data::experiment::Experiment;
+use crate::estimate::Estimate;
+use crate::estimation::fit::{ErrorSums, Fit, evaluate_weighted, fit_loads, refine_once};
+use crate::residuals::whitening::Weights;
+
+/// Number of parts that the runs are dealt into, each held out once.
+const FOLDS: usize = 4;
+
+/// How much more the other fit leaves under stricter yardsticks than under its own.
+const STRICTER: f64 = 1.5;
+
+/// What a model leaves in runs that were not used to fit, sigmas.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeldOut {
+    /// Its error, as [`crate::estimation::fit::Fit::error`] counts it.
+    pub error: f64,
+    /// The same of the residuals as a fit sees them, by which models are compared. While a second effect is missing one
+    /// run may be simulated against a stop that the hitch never reached, and its dead-head pressure would be all that
+    /// the error tells of the first.
+    pub loss: f64,
+}
+
+impl HeldOut {
+    /// Nothing was held out, or not yet.
+    pub const NONE: Self = Self {
+        error: f64::NAN,
+        loss: f64::NAN,
+    };
+
+    /// Squared loss above that of noise.
+    #[must_use]
+    pub fn excess(self) -> f64 {
+        self.loss * self.loss - 1.0
+    }
+}
+
+/// What a model leaves in held-out runs after it was fitted to all.
+///
+/// The runs are dealt round-robin, whole: samples of one run are never on both sides. Shared parameters come from the
+/// other runs; a held-out run only chooses its own load error, within its prior. The yardsticks are those of the fit to
+/// all runs. [`HeldOut::NONE`] with fewer than two runs.
+#[must_use]
+pub fn held_out(experiment: &Experiment, model: &Model, fit: &Fit) -> HeldOut {
+    let folds = FOLDS.min(experiment.runs.len());
+    if folds < 2 {
+        return HeldOut::NONE;
+    }
+    let parts: Vec<(ErrorSums, ErrorSums)> = (0..folds)
+        .into_par_iter()
+        .map(|fold| {
+            let outside = |run: usize| run % folds != fold;
+            let (train, weights, start) = part(experiment, fit, outside);
+            let trained = refine_once(&train, model, &weights, start);
+            let (test, weights, test_start) = part(experiment, fit, |run| !outside(run));
+            let start = Estimate {
+                effects: trained.effects,
+                adopted: trained.adopted,
+                clocks: trained.clocks,
+                nuisances: test_start.nuisances,
+                clocks_within_s: test_start.clocks_within_s,
+            };
+            let loaded = fit_loads(&test, model, &weights, start);
+            let tested = evaluate_weighted(&test, model, loaded, weights);
+            (ErrorSums::of(&tested), ErrorSums::seen(&tested))
+        })
+        .collect();
+    let (errors, losses): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+    HeldOut {
+        error: ErrorSums::total(&errors).error(),
+        loss: ErrorSums::total(&losses).error(),
+    }
+}
+
+/// What it leaves under the yardsticks of the fit that it is compared with, if its own are so much stricter that the two
+/// are no measure of each other: a spool that sticks does not follow the noise of the currents.
+#[must_use]
+pub fn held_out_beside(
+    experiment: &Experiment,
+    model: &Model,
+    fit: &Fit,
+    other: &Fit,
+) -> Option<HeldOut> {
+    let (estimate, weights) = (other.estimate.clone(), fit.weights.clone());
+    let under_its = evaluate_weighted(experiment, model, estimate, weights).cost;
+    let stricter = under_its > STRICTER * other.cost;
+    stricter.then(|| {
+        let weights = other.weights.clone();
+        held_out(
+            experiment,
+            model,
+            &Fit {
+                weights,
+                ..fit.clone()
+            },
+        )
+    })
+}
+
+/// The runs that `chosen` picks, with their weights and the estimate for them.
+fn part(
+    experiment: &Experiment,
+    fit: &Fit,
+    chosen: impl Fn(usize) -> bool,
+) -> (Experiment, Weights, Estimate) {
+    let picked: Vec<usize> = (0..experiment.runs.len())
+        .filter(|&run| chosen(run))
+        .collect();
+    let mut part = experiment.without_runs();
+    part.runs = picked
+        .iter()
+        .map(|&run| experiment.runs[run].clone())
+        .collect();
+    let estimate = Estimate {
+        nuisances: picked
+            .iter()
+            .map(|&run| fit.estimate.nuisances[run])
+            .collect(),
+        ..fit.estimate.clone()
+    };
+    (part, fit.weights.of_runs(&picked), estimate)
+}

@@ -1,0 +1,183 @@
+//! Sets of effects that were fitted, and how probable each is.
+
+use std::collections::HashMap;
+
+use hitch_plant::Model;
+
+use crate::data::experiment::Experiment;
+use crate::estimate::Estimate;
+use crate::estimation::fit::{Fit, evaluate_weighted};
+use crate::selection::evidence::shares;
+use crate::selection::penalty::Price;
+
+/// Least fall of the cost with its price by which a set is better than another: numbers that differ by less are equal.
+const BETTER: f64 = 1.0;
+
+/// A set of effects: the names of its members and their forms, sorted.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) struct Key(Vec<(&'static str, Option<&'static str>)>);
+
+impl Key {
+    /// The key of some members.
+    pub fn new(mut members: Vec<(&'static str, Option<&'static str>)>) -> Self {
+        members.sort_unstable();
+        Self(members)
+    }
+
+    /// Number of members.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// The members' ids.
+    pub fn ids(&self) -> impl Iterator<Item = &'static str> {
+        self.0.iter().map(|(id, _)| *id)
+    }
+
+    /// The members: their ids and forms.
+    pub fn members(&self) -> impl Iterator<Item = (&'static str, Option<&'static str>)> {
+        self.0.iter().copied()
+    }
+
+    /// The form in which a member differs from the one of the same id in another key that has all other members alike.
+    pub fn form_in_place(&self, other: &Self, id: &str) -> Option<Option<&'static str>> {
+        let others = |key: &Self| -> Vec<_> { key.members().filter(|own| own.0 != id).collect() };
+        let form = |key: &Self| key.members().find(|own| own.0 == id).map(|own| own.1);
+        let (own, its) = (form(self)?, form(other)?);
+        (own != its && others(self) == others(other)).then_some(its)
+    }
+
+    /// The names of the members.
+    pub fn name(&self) -> String {
+        let names = self.0.iter().map(|(id, form)| match form {
+            Some(form) => format!("{id}/{form}"),
+            None => (*id).to_owned(),
+        });
+        let names: Vec<String> = names.collect();
+        match names.is_empty() {
+            true => "the model".to_owned(),
+            false => names.join(" + "),
+        }
+    }
+}
+
+/// What a fit has beyond the model: effects that were added, and adopted ones that changed.
+pub(crate) fn key(fit: &Fit) -> Key {
+    key_of(&fit.estimate)
+}
+
+/// What an estimate has beyond the model.
+pub(crate) fn key_of(estimate: &Estimate) -> Key {
+    let beyond = (0..estimate.effects.len()).filter(|&index| !estimate.is_unchanged(index));
+    let members = beyond.map(|index| {
+        let effect = estimate.effects[index].effect;
+        (effect.id(), effect.form())
+    });
+    Key::new(members.collect())
+}
+
+/// Sets that were fitted in full, the best fit of each.
+#[derive(Debug, Clone)]
+pub(crate) struct Refitted {
+    fits: HashMap<Key, Fit>,
+}
+
+impl Refitted {
+    /// With the model alone.
+    pub fn new(base: &Fit) -> Self {
+        let fits = HashMap::from([(key(base), base.clone())]);
+        Self { fits }
+    }
+
+    /// Whether a set was fitted.
+    pub fn contains(&self, key: &Key) -> bool {
+        self.fits.contains_key(key)
+    }
+
+    /// The fit of a set, if it was fitted.
+    pub fn fit_of(&self, key: &Key) -> Option<&Fit> {
+        self.fits.get(key)
+    }
+
+    /// The least error that a set leaves.
+    pub fn least_error(&self) -> f64 {
+        let errors = self.fits.values().map(Fit::error);
+        errors.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Adds a fit, unless there is a better one of the same set.
+    pub fn insert(&mut self, fit: Fit) {
+        let key = key(&fit);
+        let better = self
+            .fits
+            .get(&key)
+            .is_none_or(|known| fit.cost < known.cost);
+        if better {
+            self.fits.insert(key, fit);
+        }
+    }
+
+    /// Sets that are better than the present one, the best first.
+    pub fn better(&self, experiment: &Experiment, model: &Model, present: &Fit) -> Vec<&Fit> {
+        let price = self.price(experiment);
+        let here = priced(experiment, model, present, present, price);
+        let own = key(present);
+        let others = self.fits.iter().filter(|(key, _)| **key != own);
+        let mut better: Vec<(f64, &Fit)> = others
+            .map(|(_, fit)| (priced(experiment, model, fit, present, price), fit))
+            .filter(|(cost, _)| *cost < here - BETTER)
+            .collect();
+        better.sort_by(|a, b| a.0.total_cmp(&b.0));
+        better.into_iter().map(|(_, fit)| fit).collect()
+    }
+
+    /// The price of effects beside what the best fit leaves.
+    fn price(&self, experiment: &Experiment) -> Price {
+        let fits = self.fits.values();
+        let least = fits.min_by(|a, b| a.cost.total_cmp(&b.cost));
+        Price::beside(experiment, least.expect("the model alone is there"))
+    }
+
+    /// The probability of each set beside the best one, and by how much its likelihood ratio with its price is less.
+    pub fn weighed(&self, experiment: &Experiment, model: &Model, best: &Fit) -> Vec<Weighed<'_>> {
+        let price = Price::beside(experiment, best);
+        let here = priced(experiment, model, best, best, price);
+        let mut weighed: Vec<Weighed> = self
+            .fits
+            .iter()
+            .map(|(key, fit)| {
+                let cost = priced(experiment, model, fit, best, price);
+                Weighed {
+                    key,
+                    fit,
+                    likelier: (here - cost) / price.unit,
+                    probability: 0.0,
+                }
+            })
+            .collect();
+        // A map's order is another every time.
+        weighed.sort_by(|a, b| a.key.cmp(b.key));
+        let odds: Vec<f64> = weighed.iter().map(|set| 0.5 * set.likelier).collect();
+        for (set, share) in weighed.iter_mut().zip(shares(&odds)) {
+            set.probability = share;
+        }
+        weighed
+    }
+}
+
+/// A set with its weight.
+pub(crate) struct Weighed<'a> {
+    pub key: &'a Key,
+    pub fit: &'a Fit,
+    /// Likelihood ratio by which it is better than the best one, prices paid.
+    pub likelier: f64,
+    pub probability: f64,
+}
+
+/// The cost of a fit with the price of what it says, under the yardsticks of another or its own, whichever is less: a
+/// spool that sticks does not follow the noise of the currents, and under its own yardsticks what it leaves weighs more.
+fn priced(experiment: &Experiment, model: &Model, fit: &Fit, beside: &Fit, price: Price) -> f64 {
+    let (estimate, weights) = (fit.estimate.clone(), beside.weights.clone());
+    let under_its = evaluate_weighted(experiment, model, estimate, weights).cost;
+    under_its.min(fit.cost) + price.of_all(&fit.estimate)
+}

@@ -1,0 +1,230 @@
+//! A formula for what the catalogue does not explain: a candidate for a user's own term, never an identified cause.
+//!
+//! A typed grammar (`shapes`) writes terms at every place whose channels are off, of the signals that the residuals go
+//! with. Each is a real [`TermEffect`]: it is simulated at a small size, and what its change of the trajectories
+//! explains once all that is free has adapted ranks it (`screen`). The best few are fitted like effects of the
+//! catalogue and judged by the error in held-out runs of the simulated model, not by how well a curve follows the
+//! residual.
+//!
+//! Before the catalogue gives up it may have added effects that stand in for the true one. The search therefore starts
+//! twice, from the model without them and from the model with them, and prefers the former where it is as good.
+
+mod screen;
+mod shapes;
+mod spread;
+
+use hitch_effects::TermEffect;
+use hitch_effects::expression::TermDefinition;
+use hitch_plant::{AddedEffect, Effect, Model};
+
+use crate::data::experiment::Experiment;
+use crate::estimation::fit::{Fit, evaluate, refine};
+use crate::explanation::explain::{Explanation, Verdict};
+use crate::search::candidates::Progress;
+use crate::search::single::try_effects;
+use crate::selection::candidate::{Candidate, weigh};
+use crate::selection::evidence::BELIEVED;
+use crate::selection::hold_out::{HeldOut, held_out};
+
+/// Screened terms that are fitted, of either start.
+const FITTED: usize = 5;
+
+/// The same for a plant that rings, which is far dearer to simulate.
+const FITTED_RINGING: usize = 3;
+
+/// Fitted terms that are tried on held-out runs, of either start.
+const HELD_OUT: usize = 2;
+
+/// Part of the held-out squared error above the noise that a term has to take to be offered.
+const WORTH_OFFERING: f64 = 0.25;
+
+/// Part of it that may stay for the search to end with the first start.
+const SETTLED: f64 = 0.1;
+
+/// Growth of what is left in held-out runs that one parameter less is worth.
+const PER_PARAMETER: f64 = 0.01;
+
+/// Significant digits of the values that are written into the definition.
+const DIGITS: usize = 3;
+
+/// A term that would help.
+#[derive(Debug, Clone)]
+pub struct Suggestion {
+    /// The term, its parameters starting at the fitted values.
+    pub term: &'static TermEffect,
+    /// Its fitted values.
+    pub values: Vec<f64>,
+    /// Their 95 % intervals.
+    pub intervals: Vec<(f64, f64)>,
+    /// What the model that the explanation ended with leaves in held-out runs.
+    pub held_out_before: HeldOut,
+    /// What it leaves there with the term.
+    pub held_out_after: HeldOut,
+    /// The model with the term, and of the explanation's steps those that are needed beside it.
+    pub fit: Fit,
+    /// Steps of the explanation that are not needed once the term is there.
+    pub needless: Vec<&'static dyn Effect>,
+}
+
+/// Looks for a term where an explanation ended with something unexplained.
+#[must_use]
+pub fn suggest(
+    experiment: &Experiment,
+    model: &Model,
+    found: &Explanation,
+    progress: Progress,
+) -> Option<Suggestion> {
+    if found.verdict != Verdict::Unexplained {
+        return None;
+    }
+    let last = found.steps.last().map(|step| step.held_out_after);
+    let present = last.unwrap_or_else(|| held_out(experiment, model, &found.before));
+    let excess = |left: HeldOut| left.excess().max(0.0);
+    let mut tried = trials(experiment, model, found, &found.before, progress);
+    let least = tried
+        .iter()
+        .map(|trial| excess(trial.held_out))
+        .fold(excess(present), f64::min);
+    if !found.steps.is_empty() && least > SETTLED * excess(present) {
+        tried.extend(trials(experiment, model, found, &found.after, progress));
+    }
+    let best = tried
+        .into_iter()
+        .min_by(|a, b| a.score().total_cmp(&b.score()))?;
+    let left = excess(best.held_out) / excess(present);
+    (left < 1.0 - WORTH_OFFERING).then(|| best.suggestion(experiment, model, found, present))
+}
+
+/// A term fitted on a start, and what it leaves in held-out runs.
+struct Trial {
+    term: &'static TermEffect,
+    candidate: Candidate,
+    held_out: HeldOut,
+}
+
+impl Trial {
+    /// What is left in held-out runs, the more parameters of effects the dearer.
+    fn score(&self) -> f64 {
+        let effects = &self.candidate.fit.estimate.effects;
+        let parameters: usize = effects.iter().map(|added| added.values.len()).sum();
+        self.held_out.loss * (1.0 + PER_PARAMETER * parameters as f64)
+    }
+
+    fn suggestion(
+        self,
+        experiment: &Experiment,
+        model: &Model,
+        found: &Explanation,
+        held_out_before: HeldOut,
+    ) -> Suggestion {
+        let given = model.effects.len();
+        let (candidate, dropped) = without_needless(experiment, model, self.candidate, given);
+        let held_out_after = if dropped {
+            held_out(experiment, model, &candidate.fit)
+        } else {
+            self.held_out
+        };
+        let mut fit = candidate.fit.clone();
+        let term = settled(self.term, candidate.values());
+        if let Some(last) = fit.estimate.effects.last_mut() {
+            last.effect = term;
+        }
+        let kept = |effect: &dyn Effect| {
+            let mut effects = fit.estimate.effects.iter();
+            effects.any(|added| added.effect.id() == effect.id())
+        };
+        let steps = found.steps.iter().map(|step| step.effect);
+        let needless = steps.filter(|effect| !kept(*effect)).collect();
+        Suggestion {
+            term,
+            values: candidate.values().to_vec(),
+            intervals: candidate.intervals,
+            held_out_before,
+            held_out_after,
+            needless,
+            fit,
+        }
+    }
+}
+
+/// The most promising terms beside what a start has, fitted and tried on held-out runs.
+fn trials(
+    experiment: &Experiment,
+    model: &Model,
+    found: &Explanation,
+    start: &Fit,
+    progress: Progress,
+) -> Vec<Trial> {
+    let definitions = shapes::definitions(experiment, model, start, &found.rest.depends_on);
+    let count = if experiment.ringing {
+        FITTED_RINGING
+    } else {
+        FITTED
+    };
+    let terms = screen::best(experiment, model, start, definitions, count);
+    let effects: Vec<&'static dyn Effect> = terms.iter().map(|term| *term as &dyn Effect).collect();
+    let tried = try_effects(experiment, model, start, &effects, progress);
+    tried
+        .iter()
+        .filter(|candidate| candidate.likelihood_ratio >= BELIEVED)
+        .take(HELD_OUT)
+        .filter_map(|candidate| {
+            let id = candidate.effect.id();
+            let term = terms.iter().copied().find(|term| term.id() == id)?;
+            Some(Trial {
+                term,
+                held_out: held_out(experiment, model, &candidate.fit),
+                candidate: candidate.clone(),
+            })
+        })
+        .filter(|trial| trial.held_out.loss.is_finite())
+        .collect()
+}
+
+/// The candidate without the steps that are not needed beside it, and whether there were any.
+fn without_needless(
+    experiment: &Experiment,
+    model: &Model,
+    mut candidate: Candidate,
+    given: usize,
+) -> (Candidate, bool) {
+    let mut dropped = false;
+    let mut index = given;
+    while index + 1 < candidate.fit.estimate.effects.len() {
+        let mut lighter = candidate.fit.estimate.clone();
+        let AddedEffect { effect, .. } = lighter.effects.remove(index);
+        let lighter = refine(experiment, model, lighter);
+        let mut whole = candidate.fit.estimate.clone();
+        let moved = whole.effects.remove(index);
+        whole.effects.push(moved);
+        let whole = evaluate(experiment, model, whole);
+        let needed = weigh(experiment, model, &lighter, effect, whole).likelihood_ratio >= BELIEVED;
+        if needed {
+            index += 1;
+        } else {
+            dropped = true;
+            candidate.fit = lighter;
+        }
+    }
+    if dropped {
+        let mut without = candidate.fit.estimate.clone();
+        without.effects.pop();
+        let base = refine(experiment, model, without);
+        candidate = weigh(experiment, model, &base, candidate.effect, candidate.fit);
+    }
+    (candidate, dropped)
+}
+
+/// The same term with its parameters starting at their fitted values, rounded.
+fn settled(term: &'static TermEffect, values: &[f64]) -> &'static TermEffect {
+    let mut definition: TermDefinition = term.term().definition().clone();
+    for (parameter, value) in definition.parameters.iter_mut().zip(values) {
+        parameter.start = rounded(*value).clamp(parameter.low, parameter.high);
+    }
+    TermEffect::define(definition).unwrap_or(term)
+}
+
+fn rounded(value: f64) -> f64 {
+    let last = DIGITS - 1;
+    format!("{value:.last$e}").parse().unwrap_or(value)
+}

@@ -1,0 +1,86 @@
+//! A cheap ranking of terms: one simulation each, and what its signature explains of the residuals.
+
+use hitch_effects::TermEffect;
+use hitch_effects::expression::TermDefinition;
+use hitch_plant::{AddedEffect, Effect, Model};
+use rayon::prelude::*;
+
+use crate::data::experiment::Experiment;
+use crate::estimation::fit::Fit;
+use crate::estimation::jacobian::{Jacobian, dot, huber_residuals};
+use crate::estimation::nuisance_projection::Frame;
+
+/// Size of the secant, in usual sizes: large enough for what sets in late, small enough to scale.
+const SIZE: f64 = 0.5;
+
+/// The terms that explain most of what a fit leaves, each shape of a signal at a place once, the best first.
+#[must_use]
+pub fn best(
+    experiment: &Experiment,
+    model: &Model,
+    fit: &Fit,
+    definitions: Vec<TermDefinition>,
+    count: usize,
+) -> Vec<&'static TermEffect> {
+    let jacobian = Jacobian::new(experiment, model, &fit.weights, &fit.estimate);
+    let frame = Frame::new(&jacobian, &fit.estimate, 0..0);
+    let base: Vec<Vec<f64>> = jacobian.runs.iter().map(|r| r.residual.clone()).collect();
+    let left = frame.project(base.clone());
+    let mut ranked: Vec<(f64, &'static TermEffect)> = definitions
+        .into_par_iter()
+        .filter_map(|definition| TermEffect::define(definition).ok())
+        .map(|term| {
+            let (size, moved) = secant(experiment, model, fit, &base, term);
+            (explained(term, size, &left, &frame.project(moved)), term)
+        })
+        .collect();
+    ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.id().cmp(b.1.id())));
+    let mut chosen: Vec<&'static TermEffect> = Vec::new();
+    for (_, term) in ranked {
+        if chosen.len() == count {
+            break;
+        }
+        if chosen.iter().all(|other| other.id() != term.id()) {
+            chosen.push(term);
+        }
+    }
+    chosen
+}
+
+/// The size of a small step, and how the residuals fall with it.
+fn secant(
+    experiment: &Experiment,
+    model: &Model,
+    fit: &Fit,
+    base: &[Vec<f64>],
+    term: &'static TermEffect,
+) -> (f64, Vec<Vec<f64>>) {
+    let mut added = AddedEffect::typical(term);
+    added.values[0] *= SIZE;
+    let size = added.values[0];
+    let mut estimate = fit.estimate.clone();
+    estimate.effects.push(added);
+    let moved = huber_residuals(experiment, model, &fit.weights, &estimate);
+    let signature = base
+        .iter()
+        .zip(moved)
+        .map(|(base, moved)| base.iter().zip(moved).map(|(b, m)| b - m).collect())
+        .collect();
+    (size, signature)
+}
+
+/// Part of the cost that a term explains at its best size within its range, to first order.
+fn explained(term: &TermEffect, size: f64, left: &[Vec<f64>], signature: &[Vec<f64>]) -> f64 {
+    let product =
+        |a: &[Vec<f64>], b: &[Vec<f64>]| -> f64 { a.iter().zip(b).map(|(a, b)| dot(a, b)).sum() };
+    let square = product(signature, signature);
+    // A signature of a thousandth of a sigma at a sample is rounding.
+    let samples: usize = left.iter().map(Vec::len).sum();
+    if square.is_nan() || square < 1e-6 * samples as f64 {
+        return 0.0;
+    }
+    let pull = product(signature, left);
+    let range = &term.parameters()[0];
+    let steps = (pull / square).clamp(range.low / size, range.high / size);
+    steps * (2.0 * pull - steps * square)
+}

@@ -1,0 +1,263 @@
+//! The grammar of suggestions: places, signals and shapes that make a term with a physical meaning.
+
+use hitch_effects::expression::{ParameterDefinition, TermDefinition};
+use hitch_plant::{Model, Place};
+
+use crate::data::experiment::Experiment;
+use crate::estimation::fit::Fit;
+use crate::suggestion::spread;
+
+/// A place with the unit of sizes there, a usual size and the largest, and the signals that physics has it depend on,
+/// the most usual first.
+struct Ground {
+    place: Place,
+    unit: &'static str,
+    usual: f64,
+    largest: f64,
+    signals: &'static [&'static str],
+}
+
+const fn ground(
+    place: Place,
+    unit: &'static str,
+    [usual, largest]: [f64; 2],
+    signals: &'static [&'static str],
+) -> Ground {
+    Ground {
+        place,
+        unit,
+        usual,
+        largest,
+        signals,
+    }
+}
+
+static GROUNDS: [Ground; 12] = [
+    ground(
+        Place::LowerFlowFactor,
+        "",
+        [0.2, 1.0],
+        &["x", "q_lower", "p_cyl", "i_lower", "t_oil"],
+    ),
+    ground(
+        Place::LiftFlowFactor,
+        "",
+        [0.2, 1.0],
+        &["x", "q_lift", "p_cyl", "i_lift", "t_oil"],
+    ),
+    ground(
+        Place::LowerCurrent,
+        "A",
+        [0.05, 0.6],
+        &["i_lower", "x", "p_cyl", "t_oil"],
+    ),
+    ground(
+        Place::LiftCurrent,
+        "A",
+        [0.05, 0.6],
+        &["i_lift", "x", "p_cyl", "t_oil"],
+    ),
+    ground(
+        Place::Leakage,
+        "l/min",
+        [0.2, 10.0],
+        &["p_cyl", "x", "t_oil"],
+    ),
+    ground(
+        Place::Friction,
+        "N",
+        [400.0, 8000.0],
+        &["x", "v", "p_cyl", "t_oil"],
+    ),
+    ground(Place::Weight, "N", [400.0, 8000.0], &["x"]),
+    ground(
+        Place::CylinderPressureSensor,
+        "bar",
+        [0.5, 20.0],
+        &["p_cyl", "x", "t_oil"],
+    ),
+    ground(
+        Place::AngleSensor,
+        "deg",
+        [1.0, 15.0],
+        &["rocker_angle", "t_oil"],
+    ),
+    ground(
+        Place::FlowSensor,
+        "l/min",
+        [0.5, 10.0],
+        &["q_lift", "q_lower"],
+    ),
+    ground(
+        Place::ReturnPressure,
+        "bar",
+        [1.0, 30.0],
+        &["q_lower", "t_oil"],
+    ),
+    ground(
+        Place::CompensatorMargin,
+        "bar",
+        [0.3, 4.0],
+        &["p_cyl", "q_lift", "i_lift", "t_oil"],
+    ),
+];
+
+/// How a term follows its signal: name, formula with `S` for the signal and `W` for the parameter of its scale.
+const SHAPES: [(&str, &str); 6] = [
+    ("below", "c * ramp(1 - S / W)"),
+    ("above", "c * ramp(S / W - 1)"),
+    ("saturating", "c * tanh(S / W)"),
+    ("bump", "c * exp(-(S / W - 1)^2 / 0.1)"),
+    ("wave", "c * sin(W * S + phase)"),
+    ("limit", "-c * ramp(1 - W / max(S, 0.1[l/min]))"),
+];
+
+/// A signal's unit for readers, and one of it in SI.
+fn unit(signal: &str) -> (&'static str, f64) {
+    match signal {
+        "x" => ("mm", 1e-3),
+        "v" => ("mm/s", 1e-3),
+        "rocker_angle" => ("deg", 1f64.to_radians()),
+        "p_cyl" => ("bar", 1e5),
+        "q_lift" | "q_lower" => ("l/min", 1e-3 / 60.0),
+        "i_lift" | "i_lower" => ("A", 1.0),
+        _ => ("degC", 1.0),
+    }
+}
+
+/// Signals of formulas that go with a name of the attribution.
+fn signals_of(name: &str) -> &'static [&'static str] {
+    match name {
+        "rocker_angle_deg" => &["x", "rocker_angle"],
+        "cylinder_pressure_bar" | "load_kg" => &["p_cyl"],
+        "flow_lpm" => &["q_lift", "q_lower", "v"],
+        "lift_current_a" => &["i_lift", "q_lift"],
+        "lower_current_a" => &["i_lower", "q_lower"],
+        "oil_temperature_c" => &["t_oil"],
+        _ => &[],
+    }
+}
+
+/// Names of the attribution whose signals are tried.
+const FIRST_NAMES: usize = 3;
+
+/// Error of a channel from which it counts as off.
+const OFF: f64 = 1.05;
+
+/// Terms to screen on a fitted model whose residuals go with signals, by the attribution's names, best first.
+#[must_use]
+pub fn definitions(
+    experiment: &Experiment,
+    model: &Model,
+    fit: &Fit,
+    depends_on: &[String],
+) -> Vec<TermDefinition> {
+    let wanted: Vec<&str> = depends_on
+        .iter()
+        .take(FIRST_NAMES)
+        .flat_map(|name| signals_of(name).iter().copied())
+        .collect();
+    let off = |place: Place| {
+        let mut channels = place.channels().iter();
+        channels.any(|channel| fit.channel_error(channel.index()) > OFF)
+    };
+    let mut definitions = Vec::new();
+    for ground in GROUNDS.iter().filter(|ground| off(ground.place)) {
+        let signals = ground.signals.iter().enumerate();
+        for (_, signal) in signals.filter(|(rank, signal)| *rank == 0 || wanted.contains(signal)) {
+            if let Some(scales) = spread::quantiles(experiment, model, signal) {
+                ground.push(signal, scales, &mut definitions);
+            }
+        }
+    }
+    definitions
+}
+
+impl Ground {
+    /// Terms of a signal, with the scales of their shapes started at each of `scales`, SI.
+    fn push(&self, signal: &str, scales: [f64; 3], definitions: &mut Vec<TermDefinition>) {
+        for (shape, formula) in SHAPES {
+            if !self.suits(shape, signal) {
+                continue;
+            }
+            for (rank, scale) in scales.into_iter().enumerate() {
+                definitions.push(self.definition(shape, formula, signal, scale, rank));
+            }
+        }
+    }
+
+    fn suits(&self, shape: &str, signal: &str) -> bool {
+        let flow = signal.starts_with("q_");
+        match shape {
+            "limit" => flow && self.unit.is_empty(),
+            "wave" => signal == "rocker_angle",
+            "bump" => signal == "x" || signal == "rocker_angle",
+            "saturating" => signal == "v" || flow,
+            _ => signal != "rocker_angle",
+        }
+    }
+
+    fn definition(
+        &self,
+        shape: &str,
+        formula: &str,
+        signal: &str,
+        scale: f64,
+        rank: usize,
+    ) -> TermDefinition {
+        let (unit, one) = unit(signal);
+        let limit = shape == "limit";
+        let mut size = parameter("c", self.unit, self.usual, -self.largest, self.largest);
+        if limit {
+            (size.start, size.low, size.high) = (0.9, 0.0, 1.0);
+        }
+        let scale = if shape == "wave" {
+            // Turns of an eccentric or a universal joint for one of the shaft.
+            parameter("turns", "", [1.0, 2.0, 4.0][rank], 0.5, 12.0)
+        } else {
+            let start = digits(scale / one).max(1e-3);
+            let name = match shape {
+                "limit" => "limit",
+                "bump" => "at",
+                "below" => "below",
+                "above" => "above",
+                _ => "width",
+            };
+            parameter(name, unit, start, start / 5.0, start * 5.0)
+        };
+        let directed = if self.place == Place::Friction && signal != "v" {
+            formula.replacen("c *", "c * tanh(v / 3[mm/s]) *", 1)
+        } else {
+            formula.to_owned()
+        };
+        let formula = directed.replace('S', signal).replace('W', &scale.name);
+        let mut parameters = vec![size, scale];
+        if shape == "wave" {
+            parameters.push(parameter("phase", "deg", 30.0, -200.0, 200.0));
+        }
+        TermDefinition {
+            id: format!("{}-{shape}-{}", self.place.id(), signal.replace('_', "-")),
+            title: String::new(),
+            place: self.place,
+            formula,
+            parameters,
+        }
+    }
+}
+
+fn parameter(name: &str, unit: &str, start: f64, low: f64, high: f64) -> ParameterDefinition {
+    ParameterDefinition {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        meaning: String::new(),
+        null: 0.0,
+        start,
+        low: digits(low),
+        high: digits(high),
+    }
+}
+
+/// A number to two digits: what is written into a file, and as few different definitions as need be.
+fn digits(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}

@@ -1,0 +1,113 @@
+//! What is wrong with an input file, and where.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// A fault in a file that somebody wrote: what it is, where it is and how to mend it.
+///
+/// It prints as one line, `file:line:column: what; how to mend it`, whatever the file contains.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct InputError {
+    /// The file, or the folder, that is at fault.
+    pub file: PathBuf,
+    /// Line and column, both counted from 1; `None` if the file as a whole is at fault.
+    pub place: Option<Place>,
+    /// What is wrong.
+    pub what: String,
+    /// How to mend it; empty if `what` says so already.
+    pub mend: String,
+}
+
+/// A place in a text file, as editors count it: from 1, columns in characters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Place {
+    /// Line, the first is 1.
+    pub line: usize,
+    /// Character in the line, the first is 1.
+    pub column: usize,
+}
+
+impl InputError {
+    /// A fault of the file as a whole.
+    pub fn of_file(file: &Path, what: impl Into<String>, mend: impl Into<String>) -> Self {
+        Self {
+            file: file.to_path_buf(),
+            place: None,
+            what: what.into(),
+            mend: mend.into(),
+        }
+    }
+
+    /// A fault at one place of the file.
+    pub fn at(file: &Path, place: Place, what: impl Into<String>, mend: impl Into<String>) -> Self {
+        Self {
+            place: Some(place),
+            ..Self::of_file(file, what, mend)
+        }
+    }
+}
+
+impl fmt::Display for InputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", one_line(&self.file.display().to_string()))?;
+        if let Some(Place { line, column }) = self.place {
+            write!(f, ":{line}:{column}")?;
+        }
+        write!(f, ": {}", one_line(&self.what))?;
+        if !self.mend.is_empty() {
+            write!(f, "; {}", one_line(&self.mend))?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for InputError {}
+
+/// Quotes a piece of a file for an error message: escaped, and cut where it gets long.
+pub fn quote(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let mut shown: String = text.chars().take(LONGEST).collect();
+    if shown.len() < text.len() {
+        shown.push('…');
+    }
+    format!("{shown:?}")
+}
+
+/// Escapes what would break a line or steer a terminal.
+fn one_line(text: &str) -> String {
+    let mut line = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() {
+            line.extend(c.escape_default())
+        } else {
+            line.push(c)
+        }
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prints_one_line_whatever_it_holds() {
+        let place = Place { line: 3, column: 7 };
+        let error = InputError::at(
+            Path::new("a\nb.csv"),
+            place,
+            "bad\r\nthing",
+            "mend\u{1b}[2J it",
+        );
+        assert_eq!(
+            error.to_string(),
+            r"a\nb.csv:3:7: bad\r\nthing; mend\u{1b}[2J it"
+        );
+    }
+
+    #[test]
+    fn quotes_and_cuts() {
+        assert_eq!(quote("a\"b"), r#""a\"b""#);
+        assert_eq!(quote(&"x".repeat(60)).chars().count(), 40 + 1 + 2);
+    }
+}

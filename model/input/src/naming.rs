@@ -1,0 +1,91 @@
+//! Helps somebody who wrote a name that is not known.
+//!
+//! Names of quantities end in their unit (`flow_lpm`), so a name that differs from a known one only behind the last
+//! underscore is that quantity in a unit that is not known.
+
+use crate::input_error::quote;
+
+/// Spelling similarity (Jaro-Winkler, 0 to 1) from which on a known name is worth offering.
+const SIMILAR_ENOUGH: f64 = 0.84;
+
+/// Says what is wrong with `given`, a `kind` ("column", "key", "effect") that is none of `known`.
+pub fn unknown_name(kind: &str, given: &str, known: &[&str]) -> String {
+    if let Some((unit, right)) = wrong_unit(given, known) {
+        return format!("unit {} is not known, this {kind} is {right}", plain(unit));
+    }
+    format!("{kind} {} is not known", quote(given))
+}
+
+/// Offers the nearest of the known names, or all of them if none is near.
+pub fn offer_names(given: &str, known: &[&str]) -> String {
+    if let Some((_, right)) = wrong_unit(given, known) {
+        return format!("convert the values and name it {right}");
+    }
+    match nearest(given, known) {
+        Some(name) => format!("did you mean {name}?"),
+        None => format!("known: {}", known.join(", ")),
+    }
+}
+
+/// The known name that is spelt most like `given`, if any comes near.
+pub fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
+    let given = given.to_lowercase();
+    known
+        .iter()
+        .map(|name| (strsim::jaro_winkler(&given, &name.to_lowercase()), *name))
+        .filter(|(similarity, _)| *similarity >= SIMILAR_ENOUGH)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, name)| name)
+}
+
+/// Splits `given` into its unit and the known name of the same quantity.
+fn wrong_unit<'a, 'k>(given: &'a str, known: &[&'k str]) -> Option<(&'a str, &'k str)> {
+    let (quantity, unit) = given.rsplit_once('_')?;
+    let right = known.iter().find(|name| {
+        name.rsplit_once('_')
+            .is_some_and(|(known, _)| known == quantity)
+    })?;
+    (*right != given && !unit.is_empty()).then_some((unit, *right))
+}
+
+/// A unit as it stands, or quoted if it is not a plain word.
+fn plain(unit: &str) -> String {
+    let is_word = unit.len() <= 20 && unit.chars().all(char::is_alphanumeric);
+    if is_word {
+        unit.to_owned()
+    } else {
+        quote(unit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KNOWN: [&str; 3] = ["time_s", "flow_lpm", "rocker_angle_deg"];
+
+    #[test]
+    fn tells_a_unit_from_a_name() {
+        let what = unknown_name("column", "rocker_angle_rad", &KNOWN);
+        assert_eq!(
+            what,
+            "unit rad is not known, this column is rocker_angle_deg"
+        );
+        assert_eq!(
+            unknown_name("column", "speed", &KNOWN),
+            "column \"speed\" is not known"
+        );
+    }
+
+    #[test]
+    fn offers_the_nearest_or_all() {
+        assert_eq!(
+            offer_names("roker_angle", &KNOWN),
+            "did you mean rocker_angle_deg?"
+        );
+        assert_eq!(
+            offer_names("zzz", &KNOWN),
+            "known: time_s, flow_lpm, rocker_angle_deg"
+        );
+    }
+}

@@ -1,0 +1,428 @@
+//! Reads TOML tables key by key, so that every fault has a line and a column.
+
+use std::ops::{Range, RangeInclusive};
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::input_error::{InputError, quote};
+use crate::naming::{offer_names, unknown_name};
+use crate::source_file::SourceFile;
+
+/// One table of a TOML file.
+#[derive(Debug, Clone)]
+pub struct TomlTable<'a> {
+    source: &'a SourceFile,
+    name: String,
+    span: Range<usize>,
+    entries: DeTable<'a>,
+}
+
+impl<'a> TomlTable<'a> {
+    /// Parses a file; the table returned is its top level.
+    ///
+    /// # Errors
+    /// If the text is not TOML.
+    pub fn parse(source: &'a SourceFile) -> Result<Self, InputError> {
+        let entries = DeTable::parse(&source.text).map_err(|error| {
+            let byte = error.span().map_or(0, |span| span.start);
+            let what = format!("is not TOML: {}", error.message());
+            source.error_at(byte, what, mend_of(error.message()))
+        })?;
+        let name = "the top level".to_owned();
+        Ok(Self {
+            source,
+            name,
+            span: entries.span(),
+            entries: entries.into_inner(),
+        })
+    }
+
+    /// A fault of this table.
+    pub fn error(&self, what: impl Into<String>, mend: impl Into<String>) -> InputError {
+        self.source.error_at(self.span.start, what, mend)
+    }
+
+    /// A fault of the value of `key`; of the table if there is no such key.
+    pub fn error_at(
+        &self,
+        key: &str,
+        what: impl Into<String>,
+        mend: impl Into<String>,
+    ) -> InputError {
+        let byte = self
+            .entries
+            .get(key)
+            .map_or(self.span.start, |value| value.span().start);
+        self.source.error_at(byte, what, mend)
+    }
+
+    /// A fault of the text of `key`, at a byte of the text; at its beginning if it is written with escapes.
+    pub fn error_inside(
+        &self,
+        key: &str,
+        byte: usize,
+        what: impl Into<String>,
+        mend: impl Into<String>,
+    ) -> InputError {
+        let inside = || {
+            let value = self.entries.get(key)?;
+            let DeValue::String(text) = value.get_ref() else {
+                return None;
+            };
+            let written = self.source.text.get(value.span())?;
+            // One quote or three; what stands between them is the text itself unless it is escaped.
+            Some(value.span().start + written.find(text.as_ref())?.max(1) + byte)
+        };
+        match inside() {
+            Some(byte) => self.source.error_at(byte, what, mend),
+            None => self.error_at(key, what, mend),
+        }
+    }
+
+    /// The file this table stands in.
+    pub fn source(&self) -> &'a SourceFile {
+        self.source
+    }
+
+    /// True if the table has this key.
+    pub fn has(&self, key: &str) -> bool {
+        self.entries.contains_key(key)
+    }
+
+    /// True if the value of this key is a table.
+    pub fn is_table(&self, key: &str) -> bool {
+        let value = self.entries.get(key).map(Spanned::get_ref);
+        matches!(value, Some(DeValue::Table(_)))
+    }
+
+    /// The keys of the table, in alphabetical order.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        self.entries.keys().map(|key| key.get_ref().as_ref())
+    }
+
+    /// Refuses keys that are none of `known`.
+    ///
+    /// # Errors
+    /// At the first such key of the file.
+    pub fn only(&self, known: &[&str]) -> Result<(), InputError> {
+        let unknown = self
+            .entries
+            .keys()
+            .filter(|key| !known.contains(&key.get_ref().as_ref()));
+        match unknown.min_by_key(|key| key.span().start) {
+            None => Ok(()),
+            Some(key) => {
+                let what = format!(
+                    "{} in {}",
+                    unknown_name("key", key.get_ref(), known),
+                    self.name
+                );
+                Err(self
+                    .source
+                    .error_at(key.span().start, what, offer_names(key.get_ref(), known)))
+            }
+        }
+    }
+
+    /// A number within a range; `None` if the key is missing.
+    ///
+    /// # Errors
+    /// If the value is not a finite number of the range.
+    pub fn number(&self, key: &str, range: RangeInclusive<f64>) -> Result<Option<f64>, InputError> {
+        let Some(value) = self.entries.get(key) else {
+            return Ok(None);
+        };
+        let Some(number) = as_number(value.get_ref()) else {
+            let what = format!("{key} has to be a number, not {}", kind(value.get_ref()));
+            return Err(self.error_at(
+                key,
+                what,
+                format!("write for example {key} = {}", example(&range)),
+            ));
+        };
+        if range.contains(&number) {
+            return Ok(Some(number));
+        }
+        let what = format!("{key} = {number} is out of range");
+        let mend = format!("it may be {} to {}", range.start(), range.end());
+        Err(self.error_at(key, what, mend))
+    }
+
+    /// A number that has to be there.
+    ///
+    /// # Errors
+    /// If the key is missing, or its value is not a finite number of the range.
+    pub fn required_number(
+        &self,
+        key: &str,
+        range: RangeInclusive<f64>,
+    ) -> Result<f64, InputError> {
+        self.number(key, range)?.ok_or_else(|| self.missing(key))
+    }
+
+    /// A list of numbers within a range; `None` if the key is missing.
+    ///
+    /// # Errors
+    /// If the value is not a list, or one of its values is not a finite number of the range.
+    pub fn numbers(
+        &self,
+        key: &str,
+        range: RangeInclusive<f64>,
+    ) -> Result<Option<Vec<f64>>, InputError> {
+        let Some(value) = self.entries.get(key) else {
+            return Ok(None);
+        };
+        let DeValue::Array(items) = value.get_ref() else {
+            let what = format!(
+                "{key} has to be a list of numbers, not {}",
+                kind(value.get_ref())
+            );
+            return Err(self.error_at(
+                key,
+                what,
+                format!("write for example {key} = [{}]", example(&range)),
+            ));
+        };
+        let number = |item: &Spanned<DeValue<'_>>| {
+            as_number(item.get_ref())
+                .filter(|number| range.contains(number))
+                .ok_or_else(|| {
+                    let what = format!("{key} holds a value that is not a number of its range");
+                    let mend = format!("they may be {} to {}", range.start(), range.end());
+                    self.source.error_at(item.span().start, what, mend)
+                })
+        };
+        items.iter().map(number).collect::<Result<_, _>>().map(Some)
+    }
+
+    /// A text; `None` if the key is missing.
+    ///
+    /// # Errors
+    /// If the value is not a text.
+    pub fn text(&self, key: &str) -> Result<Option<&str>, InputError> {
+        match self.entries.get(key).map(Spanned::get_ref) {
+            None => Ok(None),
+            Some(DeValue::String(text)) => Ok(Some(text)),
+            Some(other) => {
+                let what = format!("{key} has to be a text, not {}", kind(other));
+                Err(self.error_at(key, what, format!("write {key} = \"...\"")))
+            }
+        }
+    }
+
+    /// A text that has to be there.
+    ///
+    /// # Errors
+    /// If the key is missing or its value is not a text.
+    pub fn required_text(&self, key: &str) -> Result<&str, InputError> {
+        self.text(key)?.ok_or_else(|| self.missing(key))
+    }
+
+    /// The table `[key]`; `None` if it is missing.
+    ///
+    /// # Errors
+    /// If the value is not a table.
+    pub fn table(&self, key: &str) -> Result<Option<TomlTable<'a>>, InputError> {
+        let Some(value) = self.entries.get(key) else {
+            return Ok(None);
+        };
+        let DeValue::Table(entries) = value.get_ref() else {
+            let what = format!("{key} has to be a table, not {}", kind(value.get_ref()));
+            return Err(self.error_at(
+                key,
+                what,
+                format!("write a line [{}] and its keys below it", self.path(key)),
+            ));
+        };
+        let name = format!("[{}]", self.path(key));
+        Ok(Some(self.inner(name, value.span(), entries)))
+    }
+
+    /// The tables `[[key]]`, in the order of the file; none if there is none.
+    ///
+    /// # Errors
+    /// If the value is not a list of tables.
+    pub fn tables(&self, key: &str) -> Result<Vec<TomlTable<'a>>, InputError> {
+        let Some(value) = self.entries.get(key) else {
+            return Ok(Vec::new());
+        };
+        let name = format!("[[{}]]", self.path(key));
+        let mend = format!("write a line {name} and its keys below it");
+        let DeValue::Array(items) = value.get_ref() else {
+            let what = format!(
+                "{key} has to be a list of tables, not {}",
+                kind(value.get_ref())
+            );
+            return Err(self.error_at(key, what, mend));
+        };
+        let table = |item: &Spanned<DeValue<'a>>| match item.get_ref() {
+            DeValue::Table(entries) => Ok(self.inner(name.clone(), item.span(), entries)),
+            other => {
+                let what = format!(
+                    "{key} has to be a list of tables, but holds {}",
+                    kind(other)
+                );
+                Err(self.source.error_at(item.span().start, what, mend.clone()))
+            }
+        };
+        items.iter().map(table).collect()
+    }
+
+    /// The fault that a key is missing.
+    pub fn missing(&self, key: &str) -> InputError {
+        self.error(
+            format!("{} has no {key}", self.name),
+            format!("add a line {key} = ..."),
+        )
+    }
+
+    /// A key of this table as a heading names it.
+    fn path(&self, key: &str) -> String {
+        let own = self.name.trim_matches(['[', ']']);
+        if own == self.name {
+            key.to_owned()
+        } else {
+            format!("{own}.{key}")
+        }
+    }
+
+    fn inner(&self, name: String, span: Range<usize>, entries: &DeTable<'a>) -> TomlTable<'a> {
+        TomlTable {
+            source: self.source,
+            name,
+            span,
+            entries: entries.clone(),
+        }
+    }
+}
+
+/// How to mend what the parser of TOML complains of.
+fn mend_of(message: &str) -> &'static str {
+    if message.contains("duplicate key") {
+        "delete one of the two, or give it another name"
+    } else if message.contains("recurs") {
+        "take brackets and dots out; nothing here nests deeper than lists in tables"
+    } else if message.contains("carriage return") {
+        "save it with line ends of Unix (LF) or Windows (CR LF)"
+    } else {
+        "write it as key = value"
+    }
+}
+
+/// A number of a range that somebody would write.
+fn example(range: &RangeInclusive<f64>) -> f64 {
+    /// Beyond this an end is no choice of anybody.
+    const LARGE: f64 = 1e5;
+    match *range.start() {
+        start if start.abs() <= LARGE => start,
+        _ if range.contains(&1.0) => 1.0,
+        start => start,
+    }
+}
+
+fn as_number(value: &DeValue<'_>) -> Option<f64> {
+    let number: f64 = match value {
+        DeValue::Float(float) => float.as_str().parse().ok()?,
+        DeValue::Integer(integer) => {
+            i64::from_str_radix(integer.as_str(), integer.radix()).ok()? as f64
+        }
+        _ => return None,
+    };
+    number.is_finite().then_some(number)
+}
+
+fn kind(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(text) => format!("the text {}", quote(text)),
+        DeValue::Integer(number) => quote(number.as_str()),
+        DeValue::Float(number) => quote(number.as_str()),
+        DeValue::Boolean(value) => value.to_string(),
+        DeValue::Datetime(_) => "a date".to_owned(),
+        DeValue::Array(_) => "a list".to_owned(),
+        DeValue::Table(_) => "a table".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(text: &str) -> SourceFile {
+        SourceFile {
+            path: "m.toml".into(),
+            text: text.to_owned(),
+        }
+    }
+
+    fn fault(text: &str, check: impl Fn(&TomlTable<'_>) -> Result<(), InputError>) -> String {
+        let source = source(text);
+        match TomlTable::parse(&source).and_then(|table| check(&table)) {
+            Ok(()) => "no fault".to_owned(),
+            Err(error) => error.to_string(),
+        }
+    }
+
+    #[test]
+    fn faults_have_a_place() {
+        let unknown = fault("relief_psi = 1\n", |table| table.only(&["relief_bar"]));
+        assert!(
+            unknown.starts_with("m.toml:1:1: unit psi is not known, this key is relief_bar"),
+            "{unknown}"
+        );
+        let range = fault("\na = 7\n", |table| table.number("a", 0.0..=5.0).map(drop));
+        assert!(
+            range.starts_with("m.toml:2:5: a = 7 is out of range"),
+            "{range}"
+        );
+        let syntax = fault("a = 1\nb = = 2\n", |_| Ok(()));
+        assert!(syntax.starts_with("m.toml:2:"), "{syntax}");
+        let list = fault("a = [1, 'x']", |table| {
+            table.numbers("a", 0.0..=5.0).map(drop)
+        });
+        assert!(list.starts_with("m.toml:1:9:"), "{list}");
+    }
+
+    #[test]
+    fn mends_are_what_somebody_would_do() {
+        let mend = |text: &str| {
+            fault(text, |table| {
+                table.number("a", f64::MIN..=f64::MAX).map(drop)
+            })
+        };
+        for (text, expected) in [
+            ("a = \"1\"", "write for example a = 1"),
+            ("a = nan", "write for example a = 1"),
+            ("a = 1\na = 2", "delete one of the two"),
+            ("a = 1\rb = 2", "save it with line ends"),
+            ("a = = 1", "write it as key = value"),
+        ] {
+            let said = mend(text);
+            assert!(said.contains(expected) && said.len() < 200, "{said}");
+        }
+        for deep in [
+            format!("a = {}", "[".repeat(5_000)),
+            format!("[{}]", ["a"; 5_000].join(".")),
+        ] {
+            assert!(
+                mend(&deep).contains("take brackets and dots out"),
+                "{}",
+                mend(&deep)
+            );
+        }
+    }
+
+    #[test]
+    fn numbers_may_be_written_as_integers_but_not_as_nan() {
+        let text = source("a = 4\nb = 4.5\nc = nan\nd = 1e999\ne = 0x10\nf = 99999999999999999999");
+        let table = TomlTable::parse(&text).unwrap();
+        let everything = f64::MIN..=f64::MAX;
+        assert_eq!(table.number("a", everything.clone()).unwrap(), Some(4.0));
+        assert_eq!(table.number("b", everything.clone()).unwrap(), Some(4.5));
+        assert_eq!(table.number("e", everything.clone()).unwrap(), Some(16.0));
+        assert_eq!(table.number("z", everything.clone()).unwrap(), None);
+        for key in ["c", "d", "f"] {
+            assert!(table.number(key, everything.clone()).is_err(), "{key}");
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! The constants of a model file: table, key, unit and range of each.
+
+use std::ops::RangeInclusive;
+
+use hitch_plant::units::{M3_S_PER_LPM, PA_PER_BAR};
+use hitch_plant::{
+    CheckValve, Compensator, Constants, Cylinder, Dynamics, LinkageDimensions, Masses, Oil,
+    OrificeValve, Pump, ReliefValve, ValveCurve,
+};
+
+const M3_PER_L: f64 = 1e-3;
+const S_PER_MS: f64 = 1e-3;
+const M_PER_MM: f64 = 1e-3;
+
+/// One number of a model file.
+pub struct Constant {
+    /// Table it stands in.
+    pub table: &'static str,
+    /// Key, with the unit in it.
+    pub key: &'static str,
+    /// One unit of the key in SI.
+    pub unit: f64,
+    /// Values that make sense, in the unit of the key.
+    pub range: RangeInclusive<f64>,
+    /// Where the model keeps it, in SI.
+    pub place: fn(&mut Constants) -> &mut f64,
+}
+
+/// A valve's characteristic, which is a table of numbers.
+pub struct Curve {
+    /// Table it stands in.
+    pub table: &'static str,
+    /// Where the model keeps it.
+    pub place: fn(&mut Constants) -> &mut OrificeValve,
+}
+
+/// Key of the currents of a characteristic, A.
+pub const CURRENT: &str = "current_a";
+/// Key of the flows of a characteristic, l/min.
+pub const FLOW: &str = "flow_lpm";
+
+/// Characteristics.
+pub const CURVES: [Curve; 2] = [
+    Curve {
+        table: "lift_valve",
+        place: |c| &mut c.lift_valve,
+    },
+    Curve {
+        table: "lower_valve",
+        place: |c| &mut c.lower_valve,
+    },
+];
+
+/// Tables, in the order in which they are written.
+pub const TABLES: [&str; 11] = [
+    "pump",
+    "relief_valve",
+    "compensator",
+    "check_valve",
+    "lift_valve",
+    "lower_valve",
+    "spool",
+    "cylinder",
+    "oil",
+    "linkage",
+    "masses",
+];
+
+const fn constant(
+    (table, key): (&'static str, &'static str),
+    unit: f64,
+    range: RangeInclusive<f64>,
+    place: fn(&mut Constants) -> &mut f64,
+) -> Constant {
+    Constant {
+        table,
+        key,
+        unit,
+        range,
+        place,
+    }
+}
+
+/// Every number but the characteristics.
+#[rustfmt::skip]
+pub static CONSTANTS: [Constant; 27] = [
+    constant(("pump", "theoretical_flow_lpm"), M3_S_PER_LPM, 0.1..=1000.0, |c| &mut c.pump.theoretical_flow_m3_s),
+    constant(("pump", "volumetric_efficiency"), 1.0, 0.01..=1.0, |c| &mut c.pump.volumetric_efficiency),
+    constant(("relief_valve", "set_pressure_bar"), PA_PER_BAR, 1.0..=1000.0, |c| &mut c.relief_valve.set_pressure_pa),
+    constant(("compensator", "margin_bar"), PA_PER_BAR, 0.1..=100.0, |c| &mut c.compensator.margin_pa),
+    constant(("check_valve", "cracking_pressure_bar"), PA_PER_BAR, 0.0..=100.0, |c| &mut c.check_valve.cracking_pressure_pa),
+    constant(("lift_valve", "reference_drop_bar"), PA_PER_BAR, 0.01..=500.0, |c| &mut c.lift_valve.reference_drop_pa),
+    constant(("lift_valve", "transition_drop_bar"), PA_PER_BAR, 0.0..=10.0, |c| &mut c.lift_valve.transition_drop_pa),
+    constant(("lower_valve", "reference_drop_bar"), PA_PER_BAR, 0.01..=500.0, |c| &mut c.lower_valve.reference_drop_pa),
+    constant(("lower_valve", "transition_drop_bar"), PA_PER_BAR, 0.0..=10.0, |c| &mut c.lower_valve.transition_drop_pa),
+    constant(("spool", "time_constant_ms"), S_PER_MS, 0.0..=10_000.0, |c| &mut c.spool_time_constant_s),
+    constant(("cylinder", "bore_mm"), M_PER_MM, 5.0..=1000.0, |c| &mut c.cylinder.bore_m),
+    constant(("cylinder", "stroke_mm"), M_PER_MM, 5.0..=5000.0, |c| &mut c.cylinder.stroke_m),
+    constant(("cylinder", "dead_volume_l"), M3_PER_L, 0.001..=100.0, |c| &mut c.cylinder.dead_volume_m3),
+    constant(("cylinder", "viscous_friction_n_s_m"), 1.0, 0.0..=1e7, |c| &mut c.cylinder.viscous_friction_n_s_m),
+    constant(("oil", "density_kg_m3"), 1.0, 500.0..=1500.0, |c| &mut c.oil.density_kg_m3),
+    constant(("oil", "bulk_modulus_pa"), 1.0, 1e7..=1e10, |c| &mut c.oil.bulk_modulus_pa),
+    constant(("linkage", "rocker_arm_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.rocker_arm_m),
+    constant(("linkage", "lift_arm_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lift_arm_m),
+    constant(("linkage", "lift_rod_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lift_rod_m),
+    constant(("linkage", "lower_link_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lower_link_m),
+    constant(("linkage", "lift_rod_joint_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lift_rod_joint_m),
+    constant(("linkage", "connecting_rod_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.connecting_rod_m),
+    constant(("linkage", "pivot_x_m"), 1.0, -10.0..=10.0, |c| &mut c.linkage.pivot_x_m),
+    constant(("linkage", "pivot_y_m"), 1.0, -10.0..=10.0, |c| &mut c.linkage.pivot_y_m),
+    constant(("linkage", "cylinder_axis_y_m"), 1.0, -10.0..=10.0, |c| &mut c.linkage.cylinder_axis_y_m),
+    constant(("masses", "dead_weight_kg"), 1.0, 0.0..=10_000.0, |c| &mut c.masses.dead_weight_kg),
+    constant(("masses", "piston_kg"), 1.0, 0.1..=10_000.0, |c| &mut c.masses.piston_kg),
+];
+
+/// The keys of a table.
+pub fn keys(table: &str) -> Vec<&'static str> {
+    let numbers = CONSTANTS
+        .iter()
+        .filter(|constant| constant.table == table)
+        .map(|constant| constant.key);
+    let is_curve = CURVES.iter().any(|curve| curve.table == table);
+    numbers
+        .chain([CURRENT, FLOW].into_iter().filter(|_| is_curve))
+        .collect()
+}
+
+/// Constants that are all still to be read: not a number, so that one that is forgotten cannot go unnoticed.
+pub fn unset() -> Constants {
+    const UNSET: f64 = f64::NAN;
+    let valve = || OrificeValve {
+        curve: ValveCurve::shut(),
+        reference_drop_pa: UNSET,
+        transition_drop_pa: UNSET,
+    };
+    Constants {
+        dynamics: Dynamics::Steady,
+        pump: Pump {
+            theoretical_flow_m3_s: UNSET,
+            volumetric_efficiency: UNSET,
+        },
+        relief_valve: ReliefValve {
+            set_pressure_pa: UNSET,
+        },
+        compensator: Compensator { margin_pa: UNSET },
+        check_valve: CheckValve {
+            cracking_pressure_pa: UNSET,
+        },
+        lift_valve: valve(),
+        lower_valve: valve(),
+        spool_time_constant_s: UNSET,
+        cylinder: Cylinder {
+            bore_m: UNSET,
+            stroke_m: UNSET,
+            dead_volume_m3: UNSET,
+            viscous_friction_n_s_m: UNSET,
+        },
+        oil: Oil {
+            density_kg_m3: UNSET,
+            bulk_modulus_pa: UNSET,
+        },
+        linkage: LinkageDimensions {
+            rocker_arm_m: UNSET,
+            lift_arm_m: UNSET,
+            lift_rod_m: UNSET,
+            lower_link_m: UNSET,
+            lift_rod_joint_m: UNSET,
+            connecting_rod_m: UNSET,
+            pivot_x_m: UNSET,
+            pivot_y_m: UNSET,
+            cylinder_axis_y_m: UNSET,
+        },
+        masses: Masses {
+            dead_weight_kg: UNSET,
+            piston_kg: UNSET,
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_names_every_constant() {
+        let mut constants = unset();
+        for constant in &CONSTANTS {
+            *(constant.place)(&mut constants) = 0.0;
+        }
+        let shown = format!("{constants:?}");
+        assert!(!shown.contains("NaN"), "{shown}");
+    }
+}

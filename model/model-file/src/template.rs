@@ -1,0 +1,224 @@
+//! A commented model file, to be filled in from data sheets.
+
+use std::fmt::Write as _;
+
+use hitch_input::input_error::InputError;
+use hitch_input::naming::offer_names;
+use hitch_input::source_file::SourceFile;
+use hitch_plant::{Constants, Dynamics, Model, OrificeValve, ValveCurve};
+
+use crate::constants::{CONSTANTS, CURVES, Constant, TABLES};
+use crate::meaning::meaning_of;
+use crate::round_trip::decimal;
+use crate::write::{curve_lines, quoted};
+
+const HEAD: &str = "\
+# Model of an electro-hydraulic tractor hitch. Replace the values by those of your data sheets.
+# hitch compare CAMPAIGN --model THIS-FILE   shows how well it agrees with a campaign
+# hitch model fit CAMPAIGN --model THIS-FILE --out FITTED-FILE   estimates the constants from a campaign
+";
+
+/// A model file under construction.
+#[derive(Debug, Clone)]
+pub struct Template {
+    name: String,
+    constants: Constants,
+}
+
+/// Which of the two valves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Valve {
+    /// The lift valve.
+    Lift,
+    /// The lowering valve.
+    Lower,
+}
+
+impl Valve {
+    /// Its table in a model file.
+    #[must_use]
+    pub fn table(self) -> &'static str {
+        match self {
+            Self::Lift => "lift_valve",
+            Self::Lower => "lower_valve",
+        }
+    }
+
+    /// The valve among a model's constants.
+    #[must_use]
+    pub fn of(self, constants: &Constants) -> &OrificeValve {
+        match self {
+            Self::Lift => &constants.lift_valve,
+            Self::Lower => &constants.lower_valve,
+        }
+    }
+
+    /// The valve among a model's constants, to be changed.
+    pub fn of_mut(self, constants: &mut Constants) -> &mut OrificeValve {
+        match self {
+            Self::Lift => &mut constants.lift_valve,
+            Self::Lower => &mut constants.lower_valve,
+        }
+    }
+}
+
+impl Template {
+    /// A template with the constants of a model.
+    #[must_use]
+    pub fn of(name: &str, model: &Model) -> Self {
+        Self {
+            name: name.to_owned(),
+            constants: model.constants().clone(),
+        }
+    }
+
+    /// Value of a constant in the unit of its key, as a model file writes it.
+    ///
+    /// # Errors
+    /// If there is no such constant: what is wrong and how to mend it.
+    pub fn get(&self, name: &str) -> Result<String, String> {
+        let constant = find(name)?;
+        let value = *(constant.place)(&mut self.constants.clone());
+        Ok(decimal(value, constant.unit))
+    }
+
+    /// Sets a constant, `table.key`, in the unit of its key.
+    ///
+    /// # Errors
+    /// If there is no such constant, or it may not have that value: what is wrong and how to mend it.
+    pub fn set(&mut self, name: &str, value: &str) -> Result<(), String> {
+        let constant = find(name)?;
+        let number = value.trim().replace(',', ".").parse::<f64>().ok();
+        match number.filter(|number| constant.range.contains(number)) {
+            Some(number) => {
+                *(constant.place)(&mut self.constants) = number * constant.unit;
+                Ok(())
+            }
+            None => {
+                let (low, high) = (constant.range.start(), constant.range.end());
+                Err(format!(
+                    "{name} is {value:?}; it is a number from {low} to {high}"
+                ))
+            }
+        }
+    }
+
+    /// The flow curve of a valve.
+    #[must_use]
+    pub fn curve(&self, valve: Valve) -> &ValveCurve {
+        &valve.of(&self.constants).curve
+    }
+
+    /// Sets the flow curve of a valve.
+    pub fn set_curve(&mut self, valve: Valve, curve: ValveCurve) {
+        valve.of_mut(&mut self.constants).curve = curve;
+    }
+
+    /// The text of the model file.
+    ///
+    /// # Errors
+    /// If the constants make no model, by line and column of the text.
+    pub fn text(&self) -> Result<String, InputError> {
+        let text = self.written();
+        crate::parse(&SourceFile {
+            path: "model file".into(),
+            text: text.clone(),
+        })?;
+        Ok(text)
+    }
+
+    /// The text. (Writing to a string cannot fail, so the results are dropped.)
+    fn written(&self) -> String {
+        let dynamics = match self.constants.dynamics {
+            Dynamics::Steady => "steady",
+            Dynamics::Dynamic => "dynamic",
+        };
+        let mut text = format!(
+            "{HEAD}format = 1\nname = {}\n# steady: no inertia, stiff oil; dynamic: spool lag, compressible oil, inertia.\ndynamics = \"{dynamics}\"\n",
+            quoted(&self.name)
+        );
+        let mut constants = self.constants.clone();
+        for table in TABLES {
+            if let Some(meaning) = meaning_of(table, "") {
+                let _ = write!(text, "\n# {}", meaning.what);
+            }
+            let _ = write!(text, "\n[{table}]\n");
+            for constant in CONSTANTS.iter().filter(|constant| constant.table == table) {
+                comment(&mut text, table, constant.key);
+                let value = decimal(*(constant.place)(&mut constants), constant.unit);
+                let _ = writeln!(text, "{} = {value}", constant.key);
+            }
+            for curve in CURVES.iter().filter(|curve| curve.table == table) {
+                for (key, line) in curve_lines(&(curve.place)(&mut constants).curve) {
+                    comment(&mut text, table, key);
+                    text += &line;
+                }
+            }
+        }
+        text
+    }
+}
+
+fn comment(text: &mut String, table: &str, key: &str) {
+    if let Some(meaning) = meaning_of(table, key) {
+        let _ = writeln!(text, "# {}. {}.", meaning.what, meaning.found);
+    }
+}
+
+/// The constant of a name `table.key`.
+fn find(name: &str) -> Result<&'static Constant, String> {
+    let named = |constant: &Constant| format!("{}.{}", constant.table, constant.key);
+    let mut all = CONSTANTS.iter();
+    all.find(|constant| named(constant) == name).ok_or_else(|| {
+        let known: Vec<String> = CONSTANTS.iter().map(named).collect();
+        let known: Vec<&str> = known.iter().map(String::as_str).collect();
+        format!(
+            "there is no constant {name:?}; {}",
+            offer_names(name, &known)
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constants::keys;
+
+    #[test]
+    fn every_constant_has_a_meaning() {
+        for table in TABLES {
+            assert!(meaning_of(table, "").is_some(), "{table}");
+            for key in keys(table) {
+                assert!(meaning_of(table, key).is_some(), "{table}.{key}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_template_is_the_model_that_it_was_made_of() {
+        for model in [crate::nominal(), crate::dynamic()] {
+            let text = Template::of("copy", &model).text().expect("a sound file");
+            let read = crate::parse(&SourceFile {
+                path: "copy.toml".into(),
+                text,
+            });
+            assert_eq!(
+                read.expect("a sound file").constants(),
+                model.constants(),
+                "{}",
+                model.name
+            );
+        }
+    }
+
+    #[test]
+    fn wrong_values_are_refused_with_what_would_do() {
+        let mut template = Template::of("new", &crate::nominal());
+        assert_eq!(template.set("cylinder.bore_mm", "80,5"), Ok(()));
+        assert_eq!(template.get("cylinder.bore_mm").as_deref(), Ok("80.5"));
+        let said = template.set("cylinder.bore_mm", "1").unwrap_err();
+        assert!(said.ends_with("a number from 5 to 1000"), "{said}");
+        let said = template.set("cylinder.boar_mm", "80").unwrap_err();
+        assert!(said.contains("cylinder.bore_mm"), "{said}");
+    }
+}

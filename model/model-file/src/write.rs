@@ -1,0 +1,88 @@
+//! Writes a model file.
+
+use std::fmt::Write as _;
+
+use hitch_effects::TermEffect;
+use hitch_plant::units::M3_S_PER_LPM;
+use hitch_plant::{AddedEffect, Constants, Dynamics, Model, ValveCurve};
+
+use crate::constants::{CONSTANTS, CURRENT, CURVES, Curve, FLOW, TABLES};
+use crate::round_trip::decimal;
+use crate::terms;
+
+/// The text of a complete model file. (Writing to a string cannot fail, so the results are dropped.)
+pub fn model(model: &Model) -> String {
+    let mut constants = model.constants().clone();
+    let dynamics = match constants.dynamics {
+        Dynamics::Steady => "steady",
+        Dynamics::Dynamic => "dynamic",
+    };
+    let mut text = format!(
+        "format = 1\nname = {}\ndynamics = \"{dynamics}\"\n",
+        quoted(&model.name)
+    );
+    for table in TABLES {
+        let _ = write!(text, "\n[{table}]\n");
+        for constant in CONSTANTS.iter().filter(|constant| constant.table == table) {
+            let value = decimal(*(constant.place)(&mut constants), constant.unit);
+            let _ = writeln!(text, "{} = {value}", constant.key);
+        }
+        for curve in CURVES.iter().filter(|curve| curve.table == table) {
+            write_curve(&mut text, curve, &mut constants);
+        }
+    }
+    for term in model.terms.iter().filter_map(|term| TermEffect::of(*term)) {
+        terms::write(&mut text, term);
+    }
+    for effect in &model.effects {
+        write_effect(&mut text, effect);
+    }
+    text
+}
+
+fn write_curve(text: &mut String, curve: &Curve, constants: &mut Constants) {
+    for (_, line) in curve_lines(&(curve.place)(constants).curve) {
+        *text += &line;
+    }
+}
+
+/// The two lines of a flow curve, each with its key.
+pub fn curve_lines(curve: &ValveCurve) -> [(&'static str, String); 2] {
+    [
+        (CURRENT, list(curve.currents_a(), 1.0)),
+        (FLOW, list(curve.flows_m3_s(), M3_S_PER_LPM)),
+    ]
+    .map(|(key, list)| (key, format!("{key} = {list}\n")))
+}
+
+fn list(values: &[f64], unit: f64) -> String {
+    let items: Vec<String> = values.iter().map(|value| decimal(*value, unit)).collect();
+    format!("[{}]", items.join(", "))
+}
+
+fn write_effect(text: &mut String, added: &AddedEffect) {
+    let _ = write!(text, "\n[[effect]]\nid = \"{}\"\n", added.effect.id());
+    if let Some(form) = added.effect.form() {
+        let _ = writeln!(text, "form = \"{form}\"");
+    }
+    for (parameter, value) in added.effect.parameters().iter().zip(&added.values) {
+        let _ = writeln!(text, "{} = {}", parameter.key, decimal(*value, 1.0));
+    }
+}
+
+/// A TOML basic string.
+#[must_use]
+pub fn quoted(text: &str) -> String {
+    let mut quoted = String::from('"');
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => {
+                let _ = write!(quoted, "\\u{:04X}", u32::from(c));
+            }
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
+}

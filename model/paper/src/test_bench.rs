@@ -1,0 +1,217 @@
+//! The paper's flow test as a campaign: what its test bench would have logged.
+//!
+//! Table 5 is all that the paper prints of its measurement: where the flow begins and where it ends. The valve between
+//! is taken to be Table 2's, with its threshold shifted and its flow scaled to Table 5. The lift threshold stays where
+//! Table 2 has it: the currents were raised by 0.1 A, so "1.1 A" does not contradict the table's 1.126 A, while the
+//! lowering valve's "1.25 A" does contradict its 0.999 A.
+
+use hitch_campaign::{Bench, Campaign, Noise, Run};
+use hitch_plant::{Channel, Valve};
+
+use crate::flow_table::table_2;
+use crate::tables::{LOWER_DROP_BAR, Measured, TABLE_5_LIFT, TABLE_5_LOWER};
+
+/// Step of the current, A (section 3.4).
+const STEP_A: f64 = 0.1;
+/// Highest current, A (section 3.4).
+const HIGHEST_A: f64 = 3.5;
+/// How long each current is held, s; chosen.
+const HOLD_S: f64 = 1.0;
+/// Time from one current to the next, s; chosen: a knob, not a relay.
+const RAMP_S: f64 = 0.2;
+/// Sample rate, Hz; chosen.
+const SAMPLE_RATE_HZ: f64 = 50.0;
+/// One sigma of the flow meter, l/min; chosen, a gear meter of this size.
+const FLOW_SIGMA_LPM: f64 = 0.15;
+/// Port pressures of the lift runs, bar; chosen. Two, so that a compensator that gives way would show.
+const LIFT_PORTS_BAR: [f64; 2] = [20.0, 70.0];
+/// Port pressures of the lowering runs, bar: the one of Table 2B and, chosen, one above it.
+const LOWER_PORTS_BAR: [f64; 2] = [LOWER_DROP_BAR, 40.0];
+
+/// How the measured valve differs from Table 2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deviation {
+    /// Shift of the threshold, A.
+    pub threshold_shift_a: f64,
+    /// Relative change of the flow.
+    pub flow_scale: f64,
+}
+
+/// What Table 5 says of a valve against Table 2.
+pub fn deviation(valve: Valve) -> Deviation {
+    let table = table_2(valve);
+    let saturation_lpm = table
+        .iter()
+        .map(|(_, flow_lpm)| *flow_lpm)
+        .fold(0.0, f64::max);
+    let threshold_shift_a = match valve {
+        Valve::Lift => 0.0,
+        Valve::Lowering => TABLE_5_LOWER.threshold_a - threshold_a(table),
+    };
+    Deviation {
+        threshold_shift_a,
+        flow_scale: table_5(valve).saturation_lpm / saturation_lpm - 1.0,
+    }
+}
+
+/// The column of Table 5 of a valve.
+pub fn table_5(valve: Valve) -> Measured {
+    match valve {
+        Valve::Lift => TABLE_5_LIFT,
+        Valve::Lowering => TABLE_5_LOWER,
+    }
+}
+
+/// Last current of a table without flow, A.
+pub fn threshold_a(table: &[(f64, f64)]) -> f64 {
+    table
+        .iter()
+        .filter(|(_, flow_lpm)| *flow_lpm == 0.0)
+        .map(|(current_a, _)| *current_a)
+        .fold(0.0, f64::max)
+}
+
+/// First current of a table with the full flow, A.
+pub fn saturation_a(table: &[(f64, f64)]) -> f64 {
+    let saturation_lpm = table
+        .iter()
+        .map(|(_, flow_lpm)| *flow_lpm)
+        .fold(0.0, f64::max);
+    table
+        .iter()
+        .filter(|(_, flow_lpm)| *flow_lpm == saturation_lpm)
+        .map(|(current_a, _)| *current_a)
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// The flow test of both valves.
+pub fn campaign() -> Campaign {
+    let lift = LIFT_PORTS_BAR.map(|port_bar| (Valve::Lift, port_bar));
+    let lower = LOWER_PORTS_BAR.map(|port_bar| (Valve::Lowering, port_bar));
+    let mut noise = Noise {
+        lift_current_a: None,
+        lower_current_a: None,
+        ..Noise::default()
+    };
+    noise.channels[Channel::Flow.index()] = Some(FLOW_SIGMA_LPM);
+    let mut gauss = Gauss::new();
+    let runs = lift
+        .into_iter()
+        .chain(lower)
+        .map(|(valve, port_bar)| run(valve, port_bar, &mut gauss))
+        .collect();
+    Campaign {
+        name: "paper-flow-test".to_owned(),
+        description: "Flow test of both valves, from Tables 2 and 5".to_owned(),
+        sample_rate_hz: SAMPLE_RATE_HZ,
+        synchronous: false,
+        noise,
+        runs,
+    }
+}
+
+fn run(valve: Valve, port_pressure_bar: f64, gauss: &mut Gauss) -> Run {
+    let steps = (HIGHEST_A / STEP_A).round();
+    let samples = ((steps + 1.0) * HOLD_S * SAMPLE_RATE_HZ) as usize;
+    let time_s: Vec<f64> = (0..samples)
+        .map(|sample| sample as f64 / SAMPLE_RATE_HZ)
+        .collect();
+    let current_a: Vec<f64> = time_s.iter().map(|time_s| staircase_a(*time_s)).collect();
+    let flow_lpm = current_a.iter().map(|current_a| {
+        measured_lpm(valve, *current_a, port_pressure_bar) + FLOW_SIGMA_LPM * gauss.next()
+    });
+    let mut channels = [const { None }; 4];
+    channels[Channel::Flow.index()] = Some(flow_lpm.collect());
+    let off_a = vec![0.0; samples];
+    let (lift_current_a, lower_current_a, name) = match valve {
+        Valve::Lift => (current_a, off_a, "lift"),
+        Valve::Lowering => (off_a, current_a, "lower"),
+    };
+    Run {
+        file: format!("flow_{name}_{port_pressure_bar:03.0}bar.csv"),
+        bench: Bench::Flow { port_pressure_bar },
+        oil_temperature_c: 40.0,
+        time_s,
+        lift_current_a,
+        lower_current_a,
+        channels,
+        oil_temperature_log_c: None,
+    }
+}
+
+/// Current of the test at a time: held, then raised by a step, A.
+fn staircase_a(time_s: f64) -> f64 {
+    let step = (time_s / HOLD_S).floor();
+    let ramp = ((time_s - step * HOLD_S) / RAMP_S).min(1.0);
+    (STEP_A * (step - 1.0 + ramp)).max(0.0)
+}
+
+/// Flow of the measured valve, l/min, positive into the cylinder.
+fn measured_lpm(valve: Valve, current_a: f64, port_pressure_bar: f64) -> f64 {
+    let deviation = deviation(valve);
+    let flow_lpm = (1.0 + deviation.flow_scale)
+        * interpolate(table_2(valve), current_a - deviation.threshold_shift_a);
+    match valve {
+        Valve::Lift => flow_lpm,
+        Valve::Lowering => -flow_lpm * (port_pressure_bar / LOWER_DROP_BAR).sqrt(),
+    }
+}
+
+/// Linear between the points of a table, level beyond.
+fn interpolate(table: &[(f64, f64)], at: f64) -> f64 {
+    let segment = table.windows(2).find(|pair| at < pair[1].0);
+    match segment {
+        Some(&[(from, low), (to, high)]) => {
+            low + (high - low) * ((at - from) / (to - from)).max(0.0)
+        }
+        _ => table.last().map_or(0.0, |(_, flow)| *flow),
+    }
+}
+
+/// Reproducible normal deviates: a 64-bit linear congruential generator (Knuth's constants) and Box-Muller.
+struct Gauss(u64);
+
+impl Gauss {
+    fn new() -> Self {
+        Self(20_200_850)
+    }
+
+    fn uniform(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+    }
+
+    fn next(&mut self) -> f64 {
+        let radius = (-2.0 * self.uniform().ln()).sqrt();
+        radius * (std::f64::consts::TAU * self.uniform()).cos()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_measured_valve_is_table_5_s() {
+        assert!((measured_lpm(Valve::Lift, 3.5, 70.0) - 37.27).abs() < 1e-9);
+        assert!((measured_lpm(Valve::Lowering, 3.5, 15.0) + 56.74).abs() < 1e-9);
+        assert_eq!(measured_lpm(Valve::Lowering, 1.25, 15.0), 0.0);
+        assert!(measured_lpm(Valve::Lowering, 1.26, 15.0) < 0.0);
+    }
+
+    #[test]
+    fn the_log_is_a_staircase_with_the_noise_it_declares() {
+        let campaign = campaign();
+        let run = &campaign.runs[0];
+        assert_eq!(run.lift_current_a.first(), Some(&0.0));
+        assert!((run.lift_current_a.last().unwrap() - 3.5).abs() < 1e-9);
+        let flow = run.channel(Channel::Flow).unwrap();
+        let still: Vec<f64> = flow[..500].to_vec();
+        let sigma =
+            (still.iter().map(|value| value * value).sum::<f64>() / still.len() as f64).sqrt();
+        assert!((sigma / FLOW_SIGMA_LPM - 1.0).abs() < 0.1, "{sigma}");
+    }
+}

@@ -1,0 +1,14 @@
+//! The components, one file each: constants and equations.
+
+pub mod check_valve;
+pub mod compensator;
+pub mod cylinder;
+pub mod lag;
+pub mod linkage;
+pub mod linkage_error;
+pub mod load;
+pub mod oil;
+pub mod orifice_valve;
+pub mod pump;
+pub mod relief_valve;
+pub mod valve_curve;

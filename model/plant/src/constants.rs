@@ -1,0 +1,44 @@
+//! Every constant of the plant.
+
+use crate::{
+    CheckValve, Compensator, Cylinder, LinkageDimensions, Masses, Oil, OrificeValve, Pump,
+    ReliefValve,
+};
+
+/// Which of the two starting points a model is (RIG.md).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dynamics {
+    /// Quasi-static: no inertia, stiff oil, spools without lag.
+    Steady,
+    /// With compressibility, inertia, viscous friction and spool lag.
+    Dynamic,
+}
+
+/// Every constant of the plant, SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constants {
+    /// Steady or dynamic.
+    pub dynamics: Dynamics,
+    /// The pump.
+    pub pump: Pump,
+    /// The relief valve at the pump.
+    pub relief_valve: ReliefValve,
+    /// The pressure compensator.
+    pub compensator: Compensator,
+    /// The check valve.
+    pub check_valve: CheckValve,
+    /// The lift valve.
+    pub lift_valve: OrificeValve,
+    /// The lowering valve.
+    pub lower_valve: OrificeValve,
+    /// First-order lag of either spool behind its current, s; used by the dynamic plant.
+    pub spool_time_constant_s: f64,
+    /// The cylinder.
+    pub cylinder: Cylinder,
+    /// The oil.
+    pub oil: Oil,
+    /// The linkage.
+    pub linkage: LinkageDimensions,
+    /// The moving masses without the load.
+    pub masses: Masses,
+}

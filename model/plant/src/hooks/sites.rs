@@ -1,0 +1,454 @@
+//! The places in the plant where a physical effect can act.
+//!
+//! An effect (see [`hitch_effects`]) attaches closures or small stateful parts here; the plant calls them where the
+//! physics has them. With nothing attached every sum is empty and the plant is the paper's.
+
+use std::sync::Arc;
+
+use crate::hooks::place::Place;
+use crate::hooks::signals::Signals;
+use crate::{Constants, Linkage, MechanicalState, Reading};
+
+/// Which of the two solenoid valves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Valve {
+    /// The lift valve, pump to cylinder.
+    Lift,
+    /// The lowering valve, cylinder to tank.
+    Lowering,
+}
+
+/// The two coil currents, A.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Currents {
+    /// Lift solenoid, A.
+    pub lift_a: f64,
+    /// Lowering solenoid, A.
+    pub lower_a: f64,
+}
+
+impl Currents {
+    /// The same change to both currents.
+    #[must_use]
+    pub fn map(self, mut change: impl FnMut(Valve, f64) -> f64) -> Self {
+        Self {
+            lift_a: change(Valve::Lift, self.lift_a),
+            lower_a: change(Valve::Lowering, self.lower_a),
+        }
+    }
+
+    /// The currents at a share of the way to others.
+    #[must_use]
+    pub fn towards(self, to: Self, share: f64) -> Self {
+        Self {
+            lift_a: self.lift_a + (to.lift_a - self.lift_a) * share,
+            lower_a: self.lower_a + (to.lower_a - self.lower_a) * share,
+        }
+    }
+
+    /// By how much the current differs that differs more, A.
+    #[must_use]
+    pub fn furthest_from_a(self, other: Self) -> f64 {
+        let lift_a = (self.lift_a - other.lift_a).abs();
+        lift_a.max((self.lower_a - other.lower_a).abs())
+    }
+}
+
+/// A part between coil current and effective spool current; it may remember (hysteresis, lag).
+pub trait CurrentStage: Send + Sync + std::fmt::Debug {
+    /// Puts the part at rest under these currents and returns what it passes on.
+    fn rest(&mut self, currents: Currents) -> Currents;
+    /// Goes on by `dt_s` while the currents run linearly to `currents`; returns what it passes on.
+    fn advance(&mut self, currents: Currents, dt_s: f64) -> Currents;
+}
+
+/// A part between a physical quantity and what its instrument shows; it may remember (lag).
+pub trait SensorStage: Send + Sync + std::fmt::Debug {
+    /// Puts the instrument at rest at this reading.
+    fn rest(&mut self, reading: &mut Reading);
+    /// Goes on by `dt_s` to `reading` and turns it into what is shown.
+    fn advance(&mut self, reading: &mut Reading, dt_s: f64);
+    /// The rocker angle, degree, at which an instrument at rest shows `shown_deg`.
+    fn angle_behind_deg(&self, shown_deg: f64) -> f64 {
+        shown_deg
+    }
+}
+
+/// A quantity as a function of one other; units where it is used.
+pub type Law = Box<dyn Fn(f64) -> f64 + Send + Sync>;
+/// A factor on the weight's force, from the piston travel, m, and the load's share in the weight; the rest is the links'.
+pub type WeightFactor = Box<dyn Fn(f64, f64) -> f64 + Send + Sync>;
+/// A force on the piston against its motion, N, from its state and the weight's force on it, N.
+pub type FrictionForce = Box<dyn Fn(&MechanicalState, f64) -> f64 + Send + Sync>;
+
+/// A relief valve whose pressure rises with the flow through it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReliefOverride {
+    /// Rise of the pressure from cracking to the pump's whole flow, Pa.
+    pub override_pa: f64,
+    /// How far below its setting it cracks, Pa.
+    pub below_setting_pa: f64,
+}
+
+/// What takes pressure in line with an orifice: a pipe, a filter, an open seat.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Line {
+    /// Pressure over the square of the flow, Pa s2/m6.
+    pub turbulent_pa_s2_m6: f64,
+    /// Pressure over the flow, Pa s/m3.
+    pub laminar_pa_s_m3: f64,
+}
+
+impl Line {
+    /// Whether it holds nothing back.
+    #[must_use]
+    pub fn is_free(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Pressure before it, Pa, at a flow through it, m3/s.
+    #[must_use]
+    pub fn pressure_pa(&self, flow_m3_s: f64) -> f64 {
+        (self.laminar_pa_s_m3 + self.turbulent_pa_s2_m6 * flow_m3_s) * flow_m3_s
+    }
+
+    /// Flow through an orifice in line with it, m3/s, where a pressure, Pa, would drive `free_m3_s` through the
+    /// orifice alone: the root of `p = (p / Q_free^2 + turbulent) Q^2 + laminar Q`.
+    #[must_use]
+    pub fn behind_orifice_m3_s(&self, free_m3_s: f64, pressure_pa: f64) -> f64 {
+        let narrower = 1.0 + self.turbulent_pa_s2_m6 * free_m3_s * free_m3_s / pressure_pa;
+        let half = 0.5 * self.laminar_pa_s_m3 * free_m3_s / pressure_pa;
+        free_m3_s / (half + (half * half + narrower).sqrt())
+    }
+}
+
+/// What a valve's flow is multiplied by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlowFactor {
+    /// At half the largest flow.
+    pub at_half: f64,
+    /// What it grows by from there to the largest flow.
+    pub growth: f64,
+}
+
+impl Default for FlowFactor {
+    fn default() -> Self {
+        Self {
+            at_half: 1.0,
+            growth: 0.0,
+        }
+    }
+}
+
+impl FlowFactor {
+    /// The factor where the table has a flow, which is `largest` at most.
+    #[must_use]
+    pub fn at(&self, flow: f64, largest: f64) -> f64 {
+        if self.growth == 0.0 || largest <= 0.0 {
+            return self.at_half;
+        }
+        self.at_half + self.growth * (2.0 * flow / largest - 1.0)
+    }
+}
+
+/// Ground under the hitch: a spring and damper that can only push; its damping starts from nothing (Hunt & Crossley 1975)
+/// or is there at once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ground {
+    /// Height of the ground over the shaft, m, where the hitch point touches it.
+    pub height_m: f64,
+    /// Stiffness, N/m.
+    pub stiffness_n_m: f64,
+    /// Damping, s/m: share by which the force grows for each metre a second of approach; the dynamic plant only.
+    pub damping_s_m: f64,
+    /// Damping that goes with the speed alone, N s/m; the dynamic plant only.
+    pub damping_n_s_m: f64,
+}
+
+impl Ground {
+    /// Force on the hitch point, N, upwards, at its height, m, and speed, m/s.
+    #[must_use]
+    pub fn force_n(&self, height_m: f64, speed_m_s: f64) -> f64 {
+        let depth_m = self.height_m - height_m;
+        if depth_m <= 0.0 {
+            return 0.0;
+        }
+        let spring_n = self.stiffness_n_m * depth_m;
+        let damped_n = spring_n * (1.0 - self.damping_s_m * speed_m_s);
+        (damped_n - self.damping_n_s_m * speed_m_s).max(0.0)
+    }
+}
+
+/// Dry friction that remembers: bristles between piston and seal bend before they slip (Dahl 1968; LuGre with a level
+/// that does not hang on the speed, Canudas de Wit 1995), and straighten at rest as far as the machine trembles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bristles {
+    /// Force of bristles that slip, N.
+    pub force_n: f64,
+    /// How far they are bent then, m.
+    pub reach_m: f64,
+    /// Speed of the piston at which their straightening takes half of the force, m/s; it goes on at rest.
+    pub creep_m_s: f64,
+}
+
+impl Bristles {
+    /// How far they are bent, m, once the piston has moved on: `z' = v - (|v| + creep) z / reach`, exactly for an
+    /// even speed.
+    #[must_use]
+    pub fn bent_m(&self, before_m: f64, moved_m: f64, dt_s: f64) -> f64 {
+        let share = (moved_m.abs() + self.creep_m_s * dt_s) / self.reach_m;
+        if share <= 0.0 {
+            return before_m;
+        }
+        let end_m = moved_m / share;
+        end_m + (before_m - end_m) * (-share).exp()
+    }
+}
+
+/// A hose whose wall swells with the pressure: partly at once, and partly creeping after it (a spring beside a spring
+/// with a damper, the standard linear solid; Ferry, Viscoelastic Properties of Polymers, 1980, ch. 1).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Hose {
+    /// What it takes up at once, m3/Pa.
+    pub at_once_m3_pa: f64,
+    /// What it takes up in the long run besides, m3/Pa.
+    pub creeping_m3_pa: f64,
+    /// How fast that catches up with a pressure that stands still, 1/s of what it is behind.
+    pub catching_up_1_s: f64,
+}
+
+impl Hose {
+    /// Flow, m3/s, that its creeping wall takes while it is so far behind the pressure, Pa.
+    #[inline(always)]
+    #[must_use]
+    pub fn creep_m3_s(&self, behind_pa: f64) -> f64 {
+        self.creeping_m3_pa * self.catching_up_1_s * behind_pa
+    }
+}
+
+/// A term of a user's own, in the SI unit of its place, from the state of the plant.
+pub type TermFunction = Box<dyn Fn(&Signals) -> f64 + Send + Sync>;
+
+/// What the active effects have attached to one plant.
+pub struct Sites {
+    /// Between coil current and effective spool current, in order.
+    pub currents: Vec<Box<dyn CurrentStage>>,
+    /// Factor on the lift valve's flow.
+    pub lift_flow_factor: FlowFactor,
+    /// Factor on the lowering valve's flow.
+    pub lower_flow_factor: FlowFactor,
+    /// Factors on the lowering valve's flow, from its pressure drop, Pa.
+    pub lower_drop_factor: Vec<Law>,
+    /// Factors on how far the lowering spool is beyond where it opens, from the valve's pressure drop, Pa.
+    pub lower_travel_factor: Vec<Law>,
+    /// What the flow through either valve turns laminar with: twice its flow number over the critical one is this times
+    /// the current beyond the threshold, A, and the root of the drop, Pa. None if it stays turbulent.
+    pub flow_number_1_a_sqrt_pa: Option<f64>,
+    /// Added to the compensator's margin, Pa, from the cylinder pressure, Pa.
+    pub margin: Vec<Law>,
+    /// Added to the pump pressure with the lift valve shut, Pa.
+    pub idle_extra_pa: f64,
+    /// Added to the model's own lag of the spools, s; negative where they are quicker than declared.
+    pub spool_lag_extra_s: f64,
+    /// What the compensator's margin loses for each lift flow, Pa/(m3/s).
+    pub margin_lost_to_flow_pa_s_m3: f64,
+    /// How long the compensator takes to get to its pressure, s.
+    pub compensator_lag_s: f64,
+    /// Added to the check valve's cracking pressure, Pa.
+    pub cracking_extra_pa: f64,
+    /// What the open check valve takes.
+    pub check_valve: Line,
+    /// Pump flow lost to slip, m3/s, from the pump pressure, Pa.
+    pub pump_slip: Vec<Law>,
+    /// What the relief valve lacks of an ideal one.
+    pub relief: Option<ReliefOverride>,
+    /// What is behind the lowering valve.
+    pub return_line: Line,
+    /// Flow out of the cylinder past the valves, m3/s, from the cylinder pressure, Pa.
+    pub leakage: Vec<Law>,
+    /// Factors on the oil's bulk modulus, from the cylinder pressure, Pa; the dynamic plant only.
+    pub stiffness_factor: Vec<Law>,
+    /// What hoses and fittings take up besides the oil; the dynamic plant only.
+    pub hose: Hose,
+    /// Friction at the piston.
+    pub friction: Vec<FrictionForce>,
+    /// Friction at the piston that remembers.
+    pub bristles: Option<Bristles>,
+    /// Factors on the weight's force.
+    pub weight_factor: Vec<WeightFactor>,
+    /// Inertia that comes on top of the model's own, as a share of load and dead weight.
+    pub inertia_share: f64,
+    /// Inertia on the rocker shaft that comes on top, kg m2, whatever the load.
+    pub shaft_inertia_kg_m2: f64,
+    /// Longest step, s, that follows what is sudden: a pressure that goes with the change of speed over the last step,
+    /// or a sensor that remembers; the quasi-static plant only.
+    pub longest_step_s: f64,
+    /// Largest change of a coil current in a step of the spools, A, that tells when one jumps.
+    pub largest_change_a: f64,
+    /// Ground under the hitch.
+    pub ground: Option<Ground>,
+    /// Instruments, in order.
+    pub sensors: Vec<Box<dyn SensorStage>>,
+    /// Terms of a user's own, with the place where each acts.
+    pub terms: Vec<(Place, TermFunction)>,
+}
+
+impl Default for Sites {
+    fn default() -> Self {
+        Self {
+            currents: Vec::new(),
+            lift_flow_factor: FlowFactor::default(),
+            lower_flow_factor: FlowFactor::default(),
+            lower_drop_factor: Vec::new(),
+            lower_travel_factor: Vec::new(),
+            flow_number_1_a_sqrt_pa: None,
+            margin: Vec::new(),
+            idle_extra_pa: 0.0,
+            spool_lag_extra_s: 0.0,
+            margin_lost_to_flow_pa_s_m3: 0.0,
+            compensator_lag_s: 0.0,
+            cracking_extra_pa: 0.0,
+            check_valve: Line::default(),
+            pump_slip: Vec::new(),
+            relief: None,
+            return_line: Line::default(),
+            leakage: Vec::new(),
+            stiffness_factor: Vec::new(),
+            hose: Hose::default(),
+            friction: Vec::new(),
+            bristles: None,
+            weight_factor: Vec::new(),
+            inertia_share: 0.0,
+            shaft_inertia_kg_m2: 0.0,
+            longest_step_s: f64::INFINITY,
+            largest_change_a: f64::INFINITY,
+            ground: None,
+            sensors: Vec::new(),
+            terms: Vec::new(),
+        }
+    }
+}
+
+fn sum(laws: &[Law], of: f64) -> f64 {
+    laws.iter().map(|law| law(of)).sum()
+}
+
+fn product(laws: &[Law], of: f64) -> f64 {
+    laws.iter().map(|law| law(of)).product()
+}
+
+impl Sites {
+    /// Whether a term of a user's own acts at a place.
+    #[inline(always)]
+    #[must_use]
+    pub fn has_term(&self, place: Place) -> bool {
+        self.terms.iter().any(|(at, _)| *at == place)
+    }
+
+    /// Has the quasi-static plant take steps of at most `longest_s`, s.
+    pub fn limit_step(&mut self, longest_s: f64) {
+        self.longest_step_s = self.longest_step_s.min(longest_s);
+    }
+
+    /// Has the spools take steps in which no current changes by more than `largest_a`, A, and with them the quasi-static
+    /// plant, whose piston follows at once.
+    pub fn limit_change(&mut self, largest_a: f64) {
+        self.largest_change_a = self.largest_change_a.min(largest_a);
+    }
+
+    /// Sum of the terms at a place, in its SI unit; one that is not finite is left out.
+    #[must_use]
+    pub fn term(&self, place: Place, signals: &Signals) -> f64 {
+        let here = self.terms.iter().filter(|(at, _)| *at == place);
+        let values = here.map(|(_, term)| term(signals));
+        values.filter(|value| value.is_finite()).sum()
+    }
+
+    /// Sum of the friction forces, N, in a state under a weight's force, N.
+    #[must_use]
+    pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {
+        let forces = self.friction.iter();
+        forces.map(|force| force(state, weight_n)).sum()
+    }
+
+    /// Force of bristles, N, that are bent so far, m.
+    #[must_use]
+    pub fn bristles_n(&self, bent_m: f64) -> f64 {
+        self.bristles
+            .map_or(0.0, |bristles| bristles.force_n * bent_m / bristles.reach_m)
+    }
+
+    /// [`Bristles::bent_m`]; nothing without any.
+    #[must_use]
+    pub fn bent_m(&self, before_m: f64, moved_m: f64, dt_s: f64) -> f64 {
+        self.bristles
+            .map_or(0.0, |bristles| bristles.bent_m(before_m, moved_m, dt_s))
+    }
+
+    /// Factor on the weight's force at a piston travel, m, if the load makes so much of the weight.
+    #[must_use]
+    pub fn weight_factor(&self, piston_m: f64, load_share: f64) -> f64 {
+        let factors = self.weight_factor.iter();
+        factors.map(|factor| factor(piston_m, load_share)).product()
+    }
+
+    /// Pressure behind the lowering valve, Pa, at a flow through it, m3/s.
+    #[must_use]
+    pub fn return_pressure_pa(&self, flow_m3_s: f64) -> f64 {
+        self.return_line.pressure_pa(flow_m3_s)
+    }
+
+    /// Whether a hitch at rest behind two shut valves stays as it is.
+    #[must_use]
+    pub fn holds_still(&self) -> bool {
+        let straighten = |bristles: Bristles| bristles.creep_m_s > 0.0;
+        self.leakage.is_empty() && self.terms.is_empty() && !self.bristles.is_some_and(straighten)
+    }
+
+    /// Sum of the leakages, m3/s, at a cylinder pressure, Pa.
+    #[must_use]
+    pub fn leakage_m3_s(&self, cylinder_pressure_pa: f64) -> f64 {
+        sum(&self.leakage, cylinder_pressure_pa)
+    }
+
+    /// Factor on the lowering valve's flow at its pressure drop, Pa.
+    #[must_use]
+    pub fn lower_drop_factor(&self, drop_pa: f64) -> f64 {
+        product(&self.lower_drop_factor, drop_pa)
+    }
+
+    /// Factor on the lowering spool's travel beyond where it opens, at the valve's pressure drop, Pa.
+    #[must_use]
+    pub fn lower_travel_factor(&self, drop_pa: f64) -> f64 {
+        product(&self.lower_travel_factor, drop_pa)
+    }
+
+    /// What comes on top of the compensator's margin, Pa, at a cylinder pressure, Pa.
+    #[must_use]
+    pub fn margin_pa(&self, cylinder_pressure_pa: f64) -> f64 {
+        sum(&self.margin, cylinder_pressure_pa)
+    }
+
+    /// Pump flow lost to slip, m3/s, at a pump pressure, Pa.
+    #[must_use]
+    pub fn pump_slip_m3_s(&self, pump_pressure_pa: f64) -> f64 {
+        sum(&self.pump_slip, pump_pressure_pa)
+    }
+
+    /// Factor on the oil's bulk modulus at a cylinder pressure, Pa.
+    #[must_use]
+    pub fn stiffness_factor(&self, cylinder_pressure_pa: f64) -> f64 {
+        product(&self.stiffness_factor, cylinder_pressure_pa)
+    }
+}
+
+/// What an effect may know of the run and of the plant that it is attached to.
+#[derive(Debug, Clone, Copy)]
+pub struct RunConditions<'m> {
+    /// Oil temperature, degree Celsius.
+    pub oil_temperature_c: f64,
+    /// Constants of the plant's components.
+    pub constants: &'m Constants,
+    /// The plant's linkage.
+    pub linkage: &'m Arc<Linkage>,
+}

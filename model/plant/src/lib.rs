@@ -1,0 +1,50 @@
+//! The plant of an electro-hydraulic three-point hitch, in SI units.
+//!
+//! ```text
+//!                 relief                       load
+//!                   |                           |
+//!   pump ---+---- PC valve -> tank           linkage
+//!           |                                   |
+//!           +-- lift valve -- check valve --+-- cylinder
+//!                                           |
+//!                                  lowering valve -> return line -> tank
+//! ```
+//!
+//! From below: [`units`] and [`Channel`]; [`components`], one file each; their [`Constants`] and what a run has as
+//! [state](MechanicalState); [`hooks`], the places where physical effects act; [`Model`]; the [`solver`], which balances
+//! the hydraulics at one instant and moves the piston; [`Plant`]; and the [`simulation`] of whole runs.
+//!
+//! Depends on no other crate of the project.
+#![forbid(unsafe_code)]
+
+pub mod channel;
+pub mod components;
+mod constants;
+pub mod hooks;
+mod model;
+mod plant;
+pub mod simulation;
+pub mod solver;
+mod state;
+pub mod units;
+
+pub use channel::Channel;
+pub use components::check_valve::CheckValve;
+pub use components::compensator::Compensator;
+pub use components::cylinder::Cylinder;
+pub use components::linkage::{Linkage, LinkageDimensions, Posture};
+pub use components::linkage_error::LinkageError;
+pub use components::load::Masses;
+pub use components::oil::Oil;
+pub use components::orifice_valve::OrificeValve;
+pub use components::pump::Pump;
+pub use components::relief_valve::ReliefValve;
+pub use components::valve_curve::{ValveCurve, ValveCurveError};
+pub use constants::{Constants, Dynamics};
+pub use hooks::effect::{AddedEffect, Effect, Parameter, Search, full_name, is_same};
+pub use hooks::place::Place;
+pub use hooks::reading::Reading;
+pub use hooks::sites::{Currents, Valve};
+pub use model::Model;
+pub use plant::Plant;
+pub use state::{HitchRig, MechanicalState, Rig};

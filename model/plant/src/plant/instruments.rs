@@ -1,0 +1,31 @@
+//! What the instruments show of the plant.
+
+use super::Plant;
+use crate::hooks::place::Place;
+use crate::hooks::reading::Reading;
+use crate::units;
+
+impl Plant<'_> {
+    /// The quantities themselves, in the instruments' units.
+    pub(crate) fn truth(&self) -> Reading {
+        Reading {
+            pump_pressure_bar: units::bar_from_pa(self.flows.pump_pressure_pa),
+            cylinder_pressure_bar: units::bar_from_pa(self.state.pressure_pa),
+            flow_lpm: units::lpm_from_m3_s(self.flows.metered_m3_s()),
+            rocker_angle_deg: self.rocker_angle_rad().to_degrees(),
+        }
+    }
+
+    /// A reading with what terms of a user's own add to it.
+    pub(crate) fn with_sensor_terms(&self, mut reading: Reading) -> Reading {
+        let term = |place| self.sites.term(place, &self.signals);
+        if !self.sites.terms.is_empty() {
+            reading.pump_pressure_bar += units::bar_from_pa(term(Place::PumpPressureSensor));
+            reading.cylinder_pressure_bar +=
+                units::bar_from_pa(term(Place::CylinderPressureSensor));
+            reading.flow_lpm += units::lpm_from_m3_s(term(Place::FlowSensor));
+            reading.rocker_angle_deg += term(Place::AngleSensor).to_degrees();
+        }
+        reading
+    }
+}

@@ -1,0 +1,384 @@
+//! The plant in motion.
+
+mod instruments;
+mod rest;
+
+use crate::components::lag::Lag;
+use crate::hooks::effect::AddedEffect;
+use crate::hooks::place::Place;
+use crate::hooks::reading::Reading;
+use crate::hooks::signals::Signals;
+use crate::hooks::sites::{Currents, RunConditions, Sites};
+use crate::solver::circuit::{Circuit, Flows, Openings};
+use crate::solver::dynamic::Steps;
+use crate::solver::forces::Forces;
+use crate::solver::moment::Moment;
+use crate::solver::{dynamic, steady};
+use crate::{Dynamics, HitchRig, MechanicalState, Model, Rig};
+
+/// Steps of the spools within one of the quasi-static piston, at most, while a current runs.
+const SPOOL_STEPS: f64 = 2.0;
+
+/// The plant in motion.
+pub struct Plant<'m> {
+    model: &'m Model,
+    rig: Rig,
+    steps: Steps,
+    sites: Sites,
+    spools: [Lag; 2],
+    spool_currents: Currents,
+    /// How fast the spools' currents changed over the last step, A/s.
+    turning_a_s: f64,
+    openings: Openings,
+    state: MechanicalState,
+    /// Whether the quasi-static piston stood at either end of the last step: nothing of its inertia is left.
+    stands: bool,
+    lowest_m: f64,
+    flows: Flows,
+    input: Currents,
+    reading: Reading,
+    /// Kept up only for terms of a user's own.
+    signals: Signals,
+}
+
+impl<'m> Plant<'m> {
+    /// A plant at rest under the currents `at_rest`, with the model's effects attached.
+    #[must_use]
+    pub fn new(model: &'m Model, rig: Rig, oil_temperature_c: f64, at_rest: Currents) -> Self {
+        let mut sites = Sites::default();
+        for effect in in_the_order_of_the_machine(&model.effects) {
+            let conditions = RunConditions {
+                oil_temperature_c,
+                constants: model.constants(),
+                linkage: model.linkage(),
+            };
+            effect.attach(conditions, &mut sites);
+        }
+        let effective = sites
+            .currents
+            .iter_mut()
+            .fold(at_rest, |currents, stage| stage.rest(currents));
+        let spools = [effective.lift_a, effective.lower_a];
+        let lag_s = (model.spool_lag_s() + sites.spool_lag_extra_s).max(0.0);
+        let spools = spools.map(|a| Lag::at_rest(lag_s, a));
+        let mut plant = Self {
+            model,
+            rig,
+            steps: Steps::FINE,
+            sites,
+            spools,
+            spool_currents: effective,
+            turning_a_s: 0.0,
+            openings: Openings::default(),
+            state: MechanicalState::default(),
+            stands: false,
+            lowest_m: 0.0,
+            flows: Flows::default(),
+            input: at_rest,
+            reading: Reading::default(),
+            signals: rest::signals_of_run(rig, oil_temperature_c),
+        };
+        plant.state = plant.state_at_rest();
+        if let Rig::Hitch(rig) = rig {
+            plant.lowest_m = plant.forces(&rig).lowest_m();
+            plant.stand_on_the_ground(&rig);
+        }
+        plant.remember();
+        plant.shift(effective.lift_a, effective.lower_a);
+        plant.refresh();
+        plant.remember();
+        let mut reading = plant.truth();
+        for sensor in &mut plant.sites.sensors {
+            sensor.rest(&mut reading);
+        }
+        plant.reading = plant.with_sensor_terms(reading);
+        plant
+    }
+
+    /// The plant in other steps.
+    #[must_use]
+    pub fn in_steps(self, steps: Steps) -> Self {
+        Self { steps, ..self }
+    }
+
+    /// Goes on by `dt_s` while the coil currents run linearly to `currents`.
+    pub fn step(&mut self, currents: Currents, dt_s: f64) {
+        let longest_s = self.longest_step_s(currents.furthest_from_a(self.input) / dt_s);
+        // A hair of slack: 0.02 s read from a log as a difference must not become one piece more.
+        let pieces = (dt_s / longest_s - 1e-6).ceil().max(1.0) as usize;
+        let (from, spools) = (self.input, self.spool_currents);
+        for piece in 1..=pieces {
+            let share = piece as f64 / pieces as f64;
+            self.integrate(from.towards(currents, share), dt_s / pieces as f64);
+            if piece == pieces || !self.sites.sensors.is_empty() {
+                self.read(dt_s / pieces as f64);
+            }
+        }
+        self.turning_a_s = self.spool_currents.furthest_from_a(spools) / dt_s;
+    }
+
+    /// Longest step, s, while the coil currents change by so much, A/s.
+    fn longest_step_s(&self, driven_a_s: f64) -> f64 {
+        let turning_a_s = self.turning_a_s.max(driven_a_s);
+        match (self.rig, self.model.constants().dynamics) {
+            (Rig::Hitch(rig), Dynamics::Dynamic) => {
+                let (forces, circuit) = (self.forces(&rig), self.circuit());
+                dynamic::longest_step_s(&forces, &circuit, self.state, self.steps)
+            }
+            (Rig::Hitch(rig), Dynamics::Steady) => {
+                let lands = steady::lands(&self.forces(&rig), self.state.piston_m);
+                let own_s = steady::longest_step_s(self.steps, &self.sites, turning_a_s, lands);
+                // A spool that is driven fast does not stick.
+                match driven_a_s <= steady::JUMP_A_S {
+                    true => own_s.min(SPOOL_STEPS * self.sites.largest_change_a / driven_a_s),
+                    false => own_s,
+                }
+            }
+            (Rig::Flow { .. }, _) => {
+                steady::longest_step_s(self.steps, &self.sites, turning_a_s, false)
+            }
+        }
+    }
+
+    /// Reads the instruments `dt_s` after the last time.
+    fn read(&mut self, dt_s: f64) {
+        self.refresh_unless_balanced();
+        let mut reading = self.truth();
+        for sensor in &mut self.sites.sensors {
+            sensor.advance(&mut reading, dt_s);
+        }
+        self.reading = self.with_sensor_terms(reading);
+    }
+
+    /// What the instruments show now.
+    #[must_use]
+    pub fn reading(&self) -> Reading {
+        self.reading
+    }
+
+    /// Piston travel, speed and cylinder pressure now.
+    #[must_use]
+    pub fn state(&self) -> MechanicalState {
+        self.state
+    }
+
+    /// Flows and pump pressure now.
+    #[must_use]
+    pub fn flows(&self) -> Flows {
+        self.flows
+    }
+
+    /// Rocker angle, rad; on a flow bench not a number.
+    #[must_use]
+    pub fn rocker_angle_rad(&self) -> f64 {
+        match self.rig {
+            Rig::Hitch(_) => {
+                self.model
+                    .linkage()
+                    .at(self.state.piston_m)
+                    .rocker_angle_rad
+            }
+            Rig::Flow { .. } => f64::NAN,
+        }
+    }
+
+    /// Pump pressure with the lift valve shut, Pa.
+    #[must_use]
+    pub fn idle_pressure_pa(&self) -> f64 {
+        self.circuit().idle_pressure_pa()
+    }
+
+    fn circuit(&self) -> Circuit<'_> {
+        Circuit {
+            constants: self.model.constants(),
+            sites: &self.sites,
+            moment: self.moment(),
+        }
+    }
+
+    fn forces<'a>(&'a self, rig: &'a HitchRig) -> Forces<'a> {
+        Forces {
+            model: self.model,
+            sites: &self.sites,
+            rig,
+            moment: self.moment(),
+        }
+    }
+
+    fn moment(&self) -> Moment<'_> {
+        Moment {
+            model: self.model,
+            sites: &self.sites,
+            before: &self.signals,
+        }
+    }
+
+    /// Begins a step of a lagging compensator on the quasi-static plant.
+    fn catch_up(&mut self, start: Openings, dt_s: f64) {
+        let circuit = self.circuit();
+        let (reached_pa, share) = circuit.catching_up(start, &self.state, dt_s);
+        (self.state.compensator_pa, self.state.catching_up) = (reached_pa, share);
+    }
+
+    /// Ends it.
+    fn settle(&mut self, end: Openings) {
+        if self.sites.compensator_lag_s > 0.0 {
+            self.state.compensator_pa = self.circuit().compensator_pa(end.lift, &self.state);
+        }
+        self.state.catching_up = 0.0;
+    }
+
+    /// One integration step.
+    fn integrate(&mut self, currents: Currents, dt_s: f64) {
+        let from = self.input;
+        self.input = currents;
+        match (self.rig, self.model.constants().dynamics) {
+            (Rig::Flow { .. }, _) => {
+                let start = self.openings;
+                let end = self.open(from, currents, dt_s);
+                self.catch_up(start, dt_s);
+                self.settle(end);
+            }
+            (Rig::Hitch(rig), Dynamics::Steady) => {
+                let start = self.openings;
+                let end = self.open(from, currents, dt_s);
+                let idles = self.circuit().idles(&self.state);
+                if self.stands && self.sites.holds_still() && start.shut() && end.shut() && idles {
+                    return;
+                }
+                self.catch_up(start, dt_s);
+                let before = steady::Before {
+                    speed_m_s: self.state.speed_m_s,
+                    dt_s,
+                };
+                let (forces, circuit) = (self.forces(&rig), self.circuit());
+                let piston_m =
+                    steady::step(&forces, &circuit, self.state, end, self.lowest_m, dt_s);
+                let moved_m = piston_m - self.state.piston_m;
+                self.state.bristles_m = self.sites.bent_m(self.state.bristles_m, moved_m, dt_s);
+                self.state.piston_m = piston_m;
+                self.balance(&rig, Some(before));
+                self.settle(end);
+                self.stands = before.speed_m_s == 0.0 && self.state.speed_m_s == 0.0;
+            }
+            (Rig::Hitch(rig), Dynamics::Dynamic) => {
+                let middle = from.towards(currents, 0.5);
+                let start = self.openings;
+                let half = self.open(from, middle, 0.5 * dt_s);
+                let end = self.open(middle, currents, 0.5 * dt_s);
+                let openings = [start, half, end];
+                let (forces, circuit) = (self.forces(&rig), self.circuit());
+                if dynamic::rests(&forces, &circuit, &self.state, &openings) {
+                    return;
+                }
+                self.state = dynamic::step(&forces, &circuit, &self.state, &openings, dt_s);
+            }
+        }
+        if !self.sites.terms.is_empty() {
+            self.refresh_unless_balanced();
+            self.remember();
+        }
+    }
+
+    /// Takes the currents through effects and spools to openings while they run linearly from one value to another.
+    ///
+    /// In pieces in which none changes by more than tells when a spool jumps: a load on oil does not mind what happens
+    /// within a step of its own, but whether it happened.
+    #[inline(always)]
+    fn open(&mut self, from: Currents, to: Currents, dt_s: f64) -> Openings {
+        let changes = to.furthest_from_a(from) / self.sites.largest_change_a;
+        if changes > 1.0 {
+            let pieces = changes.ceil();
+            let piece_s = dt_s / pieces;
+            for piece in 1..pieces as usize {
+                self.take_spools(from.towards(to, piece as f64 / pieces), piece_s);
+            }
+            self.take_spools(to, piece_s);
+        } else {
+            self.take_spools(to, dt_s);
+        }
+        let Currents { lift_a, lower_a } = self.spool_currents;
+        self.shift(lift_a, lower_a)
+    }
+
+    /// Takes the spools to where the currents have them after `dt_s`.
+    #[inline(always)]
+    fn take_spools(&mut self, currents: Currents, dt_s: f64) {
+        let effective = self
+            .sites
+            .currents
+            .iter_mut()
+            .fold(currents, |currents, stage| stage.advance(currents, dt_s));
+        self.spool_currents = Currents {
+            lift_a: self.spools[0].advance(effective.lift_a, dt_s),
+            lower_a: self.spools[1].advance(effective.lower_a, dt_s),
+        };
+    }
+
+    /// Shifts the spools as far as effective currents, A, and terms of a user's own tell.
+    #[inline(always)]
+    fn shift(&mut self, lift_a: f64, lower_a: f64) -> Openings {
+        let (mut lift_a, mut lower_a) = (lift_a, lower_a);
+        if !self.sites.terms.is_empty() {
+            self.signals.lift_current_a = lift_a;
+            self.signals.lower_current_a = lower_a;
+            lift_a += self.sites.term(Place::LiftCurrent, &self.signals);
+            lower_a += self.sites.term(Place::LowerCurrent, &self.signals);
+            self.signals.lift_current_a = lift_a;
+            self.signals.lower_current_a = lower_a;
+        }
+        let openings = self.circuit().openings(lift_a, lower_a);
+        self.openings = openings;
+        openings
+    }
+
+    /// Notes the signals of the present for the terms of the next step.
+    fn remember(&mut self) {
+        if self.sites.terms.is_empty() {
+            return;
+        }
+        let now = self.moment().signals(&self.state);
+        self.signals = Signals {
+            pump_pressure_pa: self.flows.pump_pressure_pa,
+            lift_flow_m3_s: self.flows.lift_m3_s,
+            lower_flow_m3_s: self.flows.lower_m3_s,
+            ..now
+        };
+    }
+
+    /// Brings the quasi-static speed, pressure and flows up to the present openings and travel.
+    fn balance(&mut self, rig: &HitchRig, before: Option<steady::Before>) {
+        let (forces, circuit) = (self.forces(rig), self.circuit());
+        let balance = steady::balance(&forces, &circuit, self.openings, self.state, before);
+        self.state.speed_m_s = balance.speed_m_s;
+        self.state.pressure_pa = balance.pressure_pa;
+        self.flows = balance.flows;
+    }
+
+    /// Brings the flows up to the present state if the step has not done so itself.
+    fn refresh_unless_balanced(&mut self) {
+        if !matches!(
+            (self.rig, self.model.constants().dynamics),
+            (Rig::Hitch(_), Dynamics::Steady)
+        ) {
+            self.refresh();
+        }
+    }
+
+    /// Brings the flows up to the present state.
+    fn refresh(&mut self) {
+        match (self.rig, self.model.constants().dynamics) {
+            (Rig::Hitch(rig), Dynamics::Steady) => self.balance(&rig, None),
+            _ => self.flows = self.circuit().solve(self.openings, &self.state),
+        }
+    }
+}
+
+/// Effects in the order in which the machine has them, terms of a user's own behind them: from the coil to the
+/// instruments, whichever was added first. A spool that sticks behind a solenoid with hysteresis is not the same the
+/// other way round.
+fn in_the_order_of_the_machine(effects: &[AddedEffect]) -> Vec<&AddedEffect> {
+    let mut ordered: Vec<&AddedEffect> = effects.iter().collect();
+    ordered.sort_by_key(|added| added.effect.rank());
+    ordered
+}

@@ -1,0 +1,102 @@
+//! The plant at rest, as a run begins.
+
+use crate::components::oil;
+use crate::hooks::place::Place;
+use crate::hooks::signals::Signals;
+use crate::solver::root;
+use crate::{Dynamics, HitchRig, MechanicalState, Plant, Rig};
+
+/// A hitch that is seen to stand no further from where the ground bears it lies there, m of travel: 0.15 degree. Its
+/// sensor is no better, and a hard floor turns that into the pressure of the whole weight.
+const HAIR_M: f64 = 0.3e-3;
+
+impl Plant<'_> {
+    /// The plant at rest with the angle that its sensor shows.
+    pub(crate) fn state_at_rest(&self) -> MechanicalState {
+        match self.rig {
+            Rig::Flow { port_pressure_pa } => MechanicalState {
+                pressure_pa: port_pressure_pa,
+                ..self.idle()
+            },
+            Rig::Hitch(rig) => {
+                let piston_m = self.piston_at_rest_m(&rig);
+                self.held_at(&rig, piston_m)
+            }
+        }
+    }
+
+    /// Puts a hitch that is seen at rest below the ground, or a hair above, on it. In the quasi-static plant it stays
+    /// where it is seen: below it stands in a hollow, and ground that is a hair higher carries it as well.
+    pub(crate) fn stand_on_the_ground(&mut self, rig: &HitchRig) {
+        let dynamic = self.model.constants().dynamics == Dynamics::Dynamic;
+        let off_m = self.state.piston_m - self.lowest_m;
+        if self.sites.ground.is_some() && dynamic && off_m < HAIR_M {
+            self.state = self.held_at(rig, self.lowest_m);
+        }
+        self.lowest_m = self.lowest_m.min(self.state.piston_m);
+    }
+
+    /// The hitch held at a piston travel.
+    fn held_at(&self, rig: &HitchRig, piston_m: f64) -> MechanicalState {
+        let forces = self.forces(rig);
+        let held_n = forces.weight_n(piston_m) - forces.ground_n(piston_m, 0.0);
+        MechanicalState {
+            piston_m,
+            speed_m_s: 0.0,
+            pressure_pa: held_n.max(0.0) / self.model.constants().cylinder.area_m2(),
+            ..self.idle()
+        }
+    }
+
+    /// Nothing moves, and the pump's flow passes the compensator.
+    fn idle(&self) -> MechanicalState {
+        MechanicalState {
+            compensator_pa: self.idle_pressure_pa(),
+            ..MechanicalState::default()
+        }
+    }
+
+    /// Piston travel, m, at which the angle sensor shows the start angle.
+    fn piston_at_rest_m(&self, rig: &HitchRig) -> f64 {
+        let linkage = self.model.linkage();
+        let shown_deg = rig.start_angle_rad.to_degrees();
+        let angle_behind_rad = |shown_deg: f64| {
+            let stages = self.sites.sensors.iter().rev();
+            let angle_deg = stages.fold(shown_deg, |deg, stage| stage.angle_behind_deg(deg));
+            angle_deg.to_radians()
+        };
+        if !self.sites.has_term(Place::AngleSensor) {
+            return linkage.piston_m(angle_behind_rad(shown_deg));
+        }
+        let excess_rad = |piston_m: f64| {
+            let signals = self.moment().signals(&self.held_at(rig, piston_m));
+            let term_deg = self.sites.term(Place::AngleSensor, &signals).to_degrees();
+            signals.rocker_angle_rad - angle_behind_rad(shown_deg - term_deg)
+        };
+        let stroke_m = self.model.constants().cylinder.stroke_m;
+        root::rising(excess_rad, 0.0, stroke_m, 1e-7)
+    }
+}
+
+/// The signals that a run has from its start.
+pub(crate) fn signals_of_run(rig: Rig, oil_temperature_c: f64) -> Signals {
+    let run = Signals {
+        oil_temperature_c,
+        viscosity_m2_s: oil::viscosity_m2_s(oil_temperature_c),
+        ..Signals::default()
+    };
+    match rig {
+        Rig::Hitch(rig) => Signals {
+            load_kg: rig.load_kg,
+            ..run
+        },
+        Rig::Flow { .. } => Signals {
+            travel_m: f64::NAN,
+            speed_m_s: f64::NAN,
+            rocker_angle_rad: f64::NAN,
+            load_kg: f64::NAN,
+            weight_n: f64::NAN,
+            ..run
+        },
+    }
+}

@@ -1,0 +1,426 @@
+//! The hydraulic circuit at one instant: which flows and which pump pressure go with a cylinder pressure.
+
+use crate::hooks::place::Place;
+use crate::hooks::sites::{FlowFactor, Sites};
+use crate::solver::moment::Moment;
+use crate::{Constants, MechanicalState, OrificeValve, ValveCurve};
+
+/// Within how much of its pressure a lagging compensator, and a hose's creeping wall, is at rest, Pa.
+pub const AT_REST_PA: f64 = 10.0;
+
+/// How far a valve is open.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Opening {
+    /// Flow at the reference drop, m3/s.
+    pub flow_m3_s: f64,
+    /// How far its current is beyond the threshold, A; zero where nothing depends on it.
+    pub beyond_threshold_a: f64,
+}
+
+impl Opening {
+    /// Whether the valve is shut.
+    #[must_use]
+    pub fn shut(&self) -> bool {
+        self.flow_m3_s <= 0.0
+    }
+
+    /// The opening at a share of the way to another.
+    fn towards(self, to: Self, share: f64) -> Self {
+        let between = |from: f64, to: f64| from + (to - from) * share;
+        Self {
+            flow_m3_s: between(self.flow_m3_s, to.flow_m3_s),
+            beyond_threshold_a: between(self.beyond_threshold_a, to.beyond_threshold_a),
+        }
+    }
+
+    /// The same opening with its flow multiplied.
+    fn scaled(self, factor: f64) -> Self {
+        Self {
+            flow_m3_s: self.flow_m3_s * factor,
+            ..self
+        }
+    }
+}
+
+/// How far the two valves are open.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Openings {
+    /// Lift valve.
+    pub lift: Opening,
+    /// Lowering valve.
+    pub lower: Opening,
+}
+
+impl Openings {
+    /// Whether both valves are shut.
+    #[must_use]
+    pub fn shut(&self) -> bool {
+        self.lift.shut() && self.lower.shut()
+    }
+
+    /// Whether both valves together are open further than in others.
+    #[must_use]
+    pub fn wider_than(&self, others: &Self) -> bool {
+        let width = |of: &Self| of.lift.flow_m3_s + of.lower.flow_m3_s;
+        width(self) > width(others)
+    }
+
+    /// The openings at a share of the way to others.
+    #[must_use]
+    pub fn towards(self, to: Self, share: f64) -> Self {
+        Self {
+            lift: self.lift.towards(to.lift, share),
+            lower: self.lower.towards(to.lower, share),
+        }
+    }
+}
+
+/// Flows and pump pressure of the circuit.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Flows {
+    /// Through the lift valve into the cylinder, m3/s.
+    pub lift_m3_s: f64,
+    /// Through the lowering valve to tank, m3/s.
+    pub lower_m3_s: f64,
+    /// Out of the cylinder past the valves, m3/s.
+    pub leakage_m3_s: f64,
+    /// Pump pressure, Pa.
+    pub pump_pressure_pa: f64,
+}
+
+impl Flows {
+    /// What the flow meter in the cylinder line sees, m3/s, positive into the cylinder.
+    #[must_use]
+    pub fn metered_m3_s(&self) -> f64 {
+        self.lift_m3_s - self.lower_m3_s
+    }
+
+    /// What the oil in the cylinder gains, m3/s.
+    #[must_use]
+    pub fn net_m3_s(&self) -> f64 {
+        self.metered_m3_s() - self.leakage_m3_s
+    }
+}
+
+/// The circuit between pump, tank and cylinder port.
+pub struct Circuit<'a> {
+    /// The components.
+    pub constants: &'a Constants,
+    /// What the effects attach to them.
+    pub sites: &'a Sites,
+    /// What terms may depend on.
+    pub moment: Moment<'a>,
+}
+
+/// Greatest factor that terms can bring to a valve's flow.
+const GREATEST_FACTOR: f64 = 10.0;
+
+impl Circuit<'_> {
+    /// Opens the valves as far as effective currents, A, tell.
+    #[inline(always)]
+    #[must_use]
+    pub fn openings(&self, lift_a: f64, lower_a: f64) -> Openings {
+        let flow_m3_s = |curve: &ValveCurve, current_a: f64, factor: FlowFactor| {
+            let table_m3_s = curve.flow_m3_s(current_a);
+            table_m3_s * factor.at(table_m3_s, curve.saturation_m3_s())
+        };
+        let opening = |valve: &OrificeValve, current_a: f64, factor: FlowFactor| Opening {
+            flow_m3_s: flow_m3_s(&valve.curve, current_a, factor),
+            beyond_threshold_a: match self.depends_on_travel() {
+                true => (current_a - valve.curve.threshold_a()).max(0.0),
+                false => 0.0,
+            },
+        };
+        let Constants {
+            lift_valve,
+            lower_valve,
+            ..
+        } = self.constants;
+        Openings {
+            lift: opening(lift_valve, lift_a, self.sites.lift_flow_factor),
+            lower: opening(lower_valve, lower_a, self.sites.lower_flow_factor),
+        }
+    }
+
+    fn depends_on_travel(&self) -> bool {
+        self.sites.flow_number_1_a_sqrt_pa.is_some() || !self.sites.lower_travel_factor.is_empty()
+    }
+
+    /// The lowering valve's opening with its spool as far as the oil lets it go over a drop, Pa.
+    fn travelled(&self, opening: Opening, drop_pa: f64) -> Opening {
+        if self.sites.lower_travel_factor.is_empty() {
+            return opening;
+        }
+        let curve = &self.constants.lower_valve.curve;
+        let flow_m3_s = |beyond_a: f64| curve.flow_m3_s(curve.threshold_a() + beyond_a);
+        let beyond_a = opening.beyond_threshold_a * self.sites.lower_travel_factor(drop_pa);
+        let free_m3_s = flow_m3_s(opening.beyond_threshold_a);
+        if free_m3_s <= 0.0 {
+            return opening;
+        }
+        Opening {
+            flow_m3_s: opening.flow_m3_s * flow_m3_s(beyond_a) / free_m3_s,
+            beyond_threshold_a: beyond_a,
+        }
+    }
+
+    /// Discharge of a valve's gap over that of a wide one: `tanh` of its flow number (McCloy & Martin).
+    fn discharge(&self, opening: Opening, drop_pa: f64) -> f64 {
+        let Some(flow_number) = self.sites.flow_number_1_a_sqrt_pa else {
+            return 1.0;
+        };
+        (flow_number * opening.beyond_threshold_a * drop_pa.max(0.0).sqrt()).tanh()
+    }
+
+    /// Solves the circuit with the piston and the oil under it in a state.
+    #[inline]
+    #[must_use]
+    pub fn solve(&self, openings: Openings, state: &MechanicalState) -> Flows {
+        let (lift_m3_s, pump_pressure_pa) = self.lift(openings.lift, state);
+        let leakage_m3_s = self.sites.leakage_m3_s(state.pressure_pa);
+        Flows {
+            lift_m3_s,
+            lower_m3_s: self.lower_m3_s(openings.lower, state),
+            leakage_m3_s: leakage_m3_s + self.moment.term(Place::Leakage, state, |_| ()),
+            pump_pressure_pa,
+        }
+    }
+
+    /// Pump pressure, Pa, that the compensator sets while lifting against the cylinder pressure of a state.
+    #[must_use]
+    pub fn lifting_pressure_pa(&self, state: &MechanicalState) -> f64 {
+        let compensator = &self.constants.compensator;
+        compensator.lifting_pressure_pa(state.pressure_pa)
+            + self.sites.margin_pa(state.pressure_pa)
+            + self.moment.term(Place::CompensatorMargin, state, |_| ())
+    }
+
+    /// What terms of a user's own leave of the lift valve's opening.
+    fn lift_opening(&self, opening: Opening, state: &MechanicalState) -> Opening {
+        if self.sites.terms.is_empty() {
+            return opening;
+        }
+        let term = self.moment.term(Place::LiftFlowFactor, state, |signals| {
+            signals.lift_flow_m3_s = opening.flow_m3_s;
+        });
+        opening.scaled((1.0 + term).clamp(0.0, GREATEST_FACTOR))
+    }
+
+    /// What terms of a user's own leave of the lowering valve's opening.
+    fn lower_opening(&self, opening: Opening, state: &MechanicalState) -> Opening {
+        if self.sites.terms.is_empty() {
+            return opening;
+        }
+        let term = self.moment.term(Place::LowerFlowFactor, state, |signals| {
+            signals.lower_flow_m3_s = self.lower_valve_m3_s(opening, state.pressure_pa);
+        });
+        opening.scaled((1.0 + term).clamp(0.0, GREATEST_FACTOR))
+    }
+
+    /// Pressure behind the lowering valve, Pa, at a flow through it, m3/s.
+    fn return_pressure_pa(&self, flow_m3_s: f64, state: &MechanicalState) -> f64 {
+        let term = self.moment.term(Place::ReturnPressure, state, |signals| {
+            signals.lower_flow_m3_s = flow_m3_s;
+        });
+        self.sites.return_pressure_pa(flow_m3_s) + term
+    }
+
+    /// What the lift orifice keeps of the drop from pump to cylinder, Pa.
+    #[must_use]
+    pub fn lift_drop_pa(&self, pump_pressure_pa: f64, cylinder_pressure_pa: f64) -> f64 {
+        let check_valve = &self.constants.check_valve;
+        let load_pa = cylinder_pressure_pa + self.sites.cracking_extra_pa;
+        check_valve.remaining_drop_pa(pump_pressure_pa, load_pa)
+    }
+
+    /// Flow through lift valve and check valve, m3/s, over the drop that the cracking pressure leaves, Pa.
+    fn lift_valve_m3_s(&self, opening: Opening, drop_pa: f64) -> f64 {
+        let lift_valve = &self.constants.lift_valve;
+        let flow_m3_s =
+            lift_valve.flow_m3_s(opening.flow_m3_s, drop_pa) * self.discharge(opening, drop_pa);
+        let check_valve = &self.sites.check_valve;
+        if check_valve.is_free() || flow_m3_s == 0.0 {
+            return flow_m3_s;
+        }
+        check_valve.behind_orifice_m3_s(flow_m3_s, drop_pa)
+    }
+
+    /// Lift flow, m3/s, and pump pressure, Pa.
+    fn lift(&self, opening: Opening, state: &MechanicalState) -> (f64, f64) {
+        let constants = self.constants;
+        let wanted_pa = self.compensator_pa(opening, state);
+        if opening.shut() {
+            return (0.0, wanted_pa);
+        }
+        let flow_at = self.lift_flow_at(opening, state);
+        let pumped_m3_s = |pump_pressure_pa: f64| {
+            constants.pump.flow_m3_s() - self.sites.pump_slip_m3_s(pump_pressure_pa)
+        };
+        let flow_m3_s = flow_at(wanted_pa);
+        if flow_m3_s <= pumped_m3_s(wanted_pa) {
+            return (flow_m3_s, wanted_pa);
+        }
+        // The compensator is shut and still short of its margin: the pump's whole flow sets the drop (equation 5).
+        let drop_pa = self.lift_drop_pa(wanted_pa, state.pressure_pa);
+        let turbulent = self.sites.flow_number_1_a_sqrt_pa.is_none();
+        let short_pa = if self.sites.pump_slip.is_empty() && turbulent {
+            let ratio = pumped_m3_s(wanted_pa) / flow_m3_s;
+            drop_pa * (1.0 - ratio * ratio)
+        } else {
+            let spare =
+                |short_pa: f64| pumped_m3_s(wanted_pa - short_pa) - flow_at(wanted_pa - short_pa);
+            crate::solver::root::rising(spare, 0.0, drop_pa, 10.0)
+        };
+        (pumped_m3_s(wanted_pa - short_pa), wanted_pa - short_pa)
+    }
+
+    /// Lift flow, m3/s, over pump pressure, Pa.
+    fn lift_flow_at(&self, opening: Opening, state: &MechanicalState) -> impl Fn(f64) -> f64 {
+        let opening = self.lift_opening(opening, state);
+        let cylinder_pressure_pa = state.pressure_pa;
+        move |pump_pressure_pa| {
+            let drop_pa = self.lift_drop_pa(pump_pressure_pa, cylinder_pressure_pa);
+            self.lift_valve_m3_s(opening, drop_pa)
+        }
+    }
+
+    /// Pump pressure, Pa, that compensator and relief valve seek with the lift valve so far open.
+    fn sought_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
+        if opening.shut() {
+            return self.idle_pressure_pa();
+        }
+        let flow_at = self.lift_flow_at(opening, state);
+        let without_flow_pa = self.lifting_pressure_pa(state);
+        self.relieved_pa(self.drooped_pa(without_flow_pa, &flow_at), &flow_at)
+    }
+
+    /// Whether a lagging compensator has come to rest without a lift, or does not lag.
+    #[must_use]
+    pub fn idles(&self, state: &MechanicalState) -> bool {
+        (state.compensator_pa - self.idle_pressure_pa()).abs() < AT_REST_PA
+    }
+
+    /// Pump pressure with the lift valve shut, Pa.
+    #[must_use]
+    pub fn idle_pressure_pa(&self) -> f64 {
+        self.constants.compensator.idle_pressure_pa() + self.sites.idle_extra_pa
+    }
+
+    /// How fast a lagging compensator gets to the pump pressure that it seeks, Pa/s; nothing without a lag.
+    #[must_use]
+    pub fn compensator_pa_s(&self, openings: Openings, state: &MechanicalState) -> f64 {
+        let lag_s = self.sites.compensator_lag_s;
+        match lag_s > 0.0 {
+            true => (self.sought_pa(openings.lift, state) - state.compensator_pa) / lag_s,
+            false => 0.0,
+        }
+    }
+
+    /// What a lagging compensator starts a step of the quasi-static plant from, Pa, and the share of what that lacks at the
+    /// step's end that it has then caught up: exact for a sought pressure that moves evenly meanwhile,
+    /// `p_1 = e p_0 + b s_0 + (1 - e - b) s_1` with `e = exp(-dt / lag)` and `b = (1 - e) lag / dt - e`.
+    #[must_use]
+    pub fn catching_up(
+        &self,
+        openings: Openings,
+        state: &MechanicalState,
+        dt_s: f64,
+    ) -> (f64, f64) {
+        let lag_s = self.sites.compensator_lag_s;
+        if lag_s == 0.0 {
+            return (state.compensator_pa, 0.0);
+        }
+        let left = (-dt_s / lag_s).exp();
+        let before = (1.0 - left) * lag_s / dt_s - left;
+        let reached_pa =
+            left * state.compensator_pa + before * self.sought_pa(openings.lift, state);
+        (reached_pa / (left + before), 1.0 - left - before)
+    }
+
+    /// Pump pressure that the compensator has got to with the lift valve so far open, Pa.
+    #[must_use]
+    pub fn compensator_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
+        if self.sites.compensator_lag_s == 0.0 {
+            return self.sought_pa(opening, state);
+        }
+        if state.catching_up == 0.0 {
+            return state.compensator_pa;
+        }
+        let lacking_pa = self.sought_pa(opening, state) - state.compensator_pa;
+        state.compensator_pa + state.catching_up * lacking_pa
+    }
+
+    /// The pump pressure, Pa, that the compensator sets over the lift flow `flow_at` it, where it would set `wanted_pa`
+    /// without any.
+    fn drooped_pa(&self, wanted_pa: f64, flow_at: &impl Fn(f64) -> f64) -> f64 {
+        let lost_pa_s_m3 = self.sites.margin_lost_to_flow_pa_s_m3;
+        if lost_pa_s_m3 == 0.0 {
+            return wanted_pa;
+        }
+        let lost_pa = |pressure_pa: f64| lost_pa_s_m3 * flow_at(pressure_pa);
+        let excess = |pressure_pa: f64| pressure_pa + lost_pa(pressure_pa) - wanted_pa;
+        crate::solver::root::rising(excess, wanted_pa - lost_pa(wanted_pa), wanted_pa, 10.0)
+    }
+
+    /// The pump pressure, Pa, that the relief valve leaves of what the compensator wants; `flow_at` is the lift flow
+    /// over it.
+    fn relieved_pa(&self, wanted_pa: f64, flow_at: &impl Fn(f64) -> f64) -> f64 {
+        let Some(relief) = &self.sites.relief else {
+            return self.constants.relief_valve.limit_pa(wanted_pa);
+        };
+        let crack_pa = self.constants.relief_valve.set_pressure_pa - relief.below_setting_pa;
+        if wanted_pa <= crack_pa || relief.override_pa <= 0.0 {
+            return wanted_pa.min(crack_pa);
+        }
+        // It passes at most what the lift valve leaves of the pump's flow: p - p_crack = override (1 - Q/Q_pump).
+        let pump_m3_s = self.constants.pump.flow_m3_s();
+        let excess = |pressure_pa: f64| {
+            let left = 1.0 - flow_at(pressure_pa) / pump_m3_s;
+            pressure_pa - crack_pa - relief.override_pa * left
+        };
+        let highest_pa = wanted_pa.min(crack_pa + relief.override_pa);
+        crate::solver::root::rising(excess, crack_pa, highest_pa, 10.0)
+    }
+
+    /// Flow through the lowering valve, m3/s, over a drop, Pa.
+    fn lower_valve_m3_s(&self, opening: Opening, drop_pa: f64) -> f64 {
+        let lower_valve = &self.constants.lower_valve;
+        let opening = self.travelled(opening, drop_pa);
+        let flow_m3_s = lower_valve.flow_m3_s(opening.flow_m3_s, drop_pa);
+        flow_m3_s * self.sites.lower_drop_factor(drop_pa) * self.discharge(opening, drop_pa)
+    }
+
+    /// Lowering flow, m3/s: the valve's drop is what the return line leaves.
+    fn lower_m3_s(&self, opening: Opening, state: &MechanicalState) -> f64 {
+        if opening.shut() {
+            return 0.0;
+        }
+        let opening = self.lower_opening(opening, state);
+        let free_m3_s = self.lower_valve_m3_s(opening, state.pressure_pa);
+        let terms = self.sites.has_term(Place::ReturnPressure);
+        let line = &self.sites.return_line;
+        if (line.is_free() && !terms) || free_m3_s == 0.0 {
+            return free_m3_s;
+        }
+        let square_root_law = self.constants.lower_valve.transition_drop_pa == 0.0
+            && self.sites.lower_drop_factor.is_empty()
+            && self.sites.lower_travel_factor.is_empty()
+            && self.sites.flow_number_1_a_sqrt_pa.is_none();
+        if square_root_law && !terms {
+            return line.behind_orifice_m3_s(free_m3_s, state.pressure_pa);
+        }
+        let passed_m3_s = |flow_m3_s: f64| {
+            let drop_pa = state.pressure_pa - self.return_pressure_pa(flow_m3_s, state);
+            self.lower_valve_m3_s(opening, drop_pa)
+        };
+        // Root of f(Q) = Q - valve(p - p_T(Q)): it rises in Q, and lies between no flow and the free flow, or above
+        // that where a term draws oil off.
+        let highest_m3_s = if terms {
+            free_m3_s.max(passed_m3_s(0.0)).max(passed_m3_s(free_m3_s))
+        } else {
+            free_m3_s
+        };
+        let excess = |flow_m3_s: f64| flow_m3_s - passed_m3_s(flow_m3_s);
+        crate::solver::root::rising(excess, 0.0, highest_m3_s, highest_m3_s * 1e-7)
+    }
+}

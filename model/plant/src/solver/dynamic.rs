@@ -1,0 +1,391 @@
+//! The dynamic plant: oil compressibility, inertia, viscous friction, end stops.
+//!
+//! `p' = (Q_lift - Q_lower - Q_leak - Q_hose - A v) / (V(x)/E + C)`,
+//! `M(x) v' = p A - F_weight(x) - M'(x) v^2 / 2 - b v - F_friction(v)`, `x' = v` (RIG.md). Classical
+//! Runge-Kutta of order four: the ringing at 10 to 40 Hz wants a high order, the noisy measured current makes step
+//! control pointless, and a fixed rhythm keeps the result smooth in the parameters. Where a nearly drained orifice makes
+//! the pressure stiff, the step is cut to stay stable.
+//!
+//! Oil does not pull: a piston that flies on when its valve shuts leaves a void behind, which has to close before the
+//! pressure rises again. Within a step the pressure runs on below the vacuum as the account of that void.
+//!
+//! The end stops are stiff: they take the piston's speed, and what pushes it on. Neither gives way under the 70 kN of a
+//! dead-headed pump by as much as the oil does, so a spring would say nothing but how to step it.
+
+use crate::solver::circuit::{AT_REST_PA, Circuit, Openings};
+use crate::solver::forces::Forces;
+use crate::{Constants, MechanicalState, Model};
+
+/// How long the integrator's steps may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steps {
+    /// In rad of the ringing of load on oil.
+    longest_rad: f64,
+    /// In s, however slow the ringing: the spools' lag bends the openings.
+    longest_s: f64,
+    /// In s, of the quasi-static plant while the spools stand or follow a ramp.
+    pub(crate) quasi_static_s: f64,
+    /// The same while a current jumps or a spool lags behind one that did, and where the hitch comes down on the ground:
+    /// the flow is no straight line then.
+    pub(crate) jump_s: f64,
+    /// How much longer they may be than the effects ask for.
+    pub(crate) longer: f64,
+}
+
+impl Steps {
+    /// Classical Runge-Kutta keeps the amplitude of the ringing to 2e-3 a period and its phase to 5e-3 rad (`h^6 / 144`
+    /// and `h^5 / 120` a step).
+    pub const FINE: Self = Self {
+        longest_rad: 0.55,
+        longest_s: 0.004,
+        // A sample of a 50 Hz log.
+        quasi_static_s: 0.02,
+        jump_s: 0.005,
+        longer: 1.0,
+    };
+
+    /// For differences between simulations in the same steps. The amplitude is off by 4e-2 a period and the phase by
+    /// 5e-2 rad, most of which cancels there; three times as much, in steps a quarter longer, no longer does.
+    pub const DRAFT: Self = Self {
+        longest_rad: 1.0,
+        longest_s: 0.008,
+        quasi_static_s: 0.1,
+        jump_s: 0.02,
+        longer: 4.0,
+    };
+}
+
+/// Speed, m/s, and acceleration, m/s2, below which a hitch that nothing drives is at rest: what is left of the ringing
+/// is less than a hundredth of any instrument's last digit.
+const AT_REST_M_S: f64 = 5e-7;
+const AT_REST_M_S2: f64 = 4e-5;
+
+/// Largest rate times step that the integrator is given; its stability ends at 2.78.
+const STABLE: f64 = 1.5;
+
+/// To within how much a working compensator keeps its margin in the solution of the circuit, Pa.
+const TOLERANCE_PA: f64 = 100.0;
+
+/// Drop, Pa, under which an orifice's flow no longer counts.
+const SMALLEST_DROP_PA: f64 = 1000.0;
+
+/// A cylinder cannot hold more than a vacuum, Pa gauge.
+const VACUUM_PA: f64 = -1.0e5;
+
+/// Rates of travel, speed, pressure, of what the hose's wall is behind, and of the compensator's pressure.
+type Derivative = [f64; 5];
+
+/// [`Derivative`] of a state: the innermost loop, in place, since what is handed over by value waits for its stores.
+#[inline(always)]
+fn derivative(
+    forces: &Forces,
+    circuit: &Circuit,
+    openings: &Openings,
+    state: &MechanicalState,
+) -> Derivative {
+    let model = forces.model;
+    let cylinder = &circuit.constants.cylinder;
+    let area_m2 = cylinder.area_m2();
+    let torn = state.pressure_pa < VACUUM_PA;
+    let pressure_pa = state.pressure_pa.max(VACUUM_PA);
+    let state = MechanicalState {
+        pressure_pa,
+        ..*state
+    };
+    let hose = &circuit.sites.hose;
+    let flows = circuit.solve(*openings, &state);
+    let (dh_dx, d2h_dx2_1_m) = model.linkage().transmission(state.piston_m);
+    let masses = &circuit.constants.masses;
+    let load_kg = forces.rig.load_kg;
+    let heavier = 1.0 + circuit.sites.inertia_share;
+    let (shaft_kg, shaft_kg_m) = forces.shaft_inertia_kg(state.piston_m);
+    let inertia_kg = masses.inertia_kg(load_kg, dh_dx) * heavier + shaft_kg;
+    let slope = masses.half_inertia_slope_kg_m(load_kg, dh_dx, d2h_dx2_1_m) * heavier + shaft_kg_m;
+    let speed_m_s = state.speed_m_s;
+    let weight_n = forces.weight_at_n(dh_dx, &state);
+    let force_n = pressure_pa * area_m2 - weight_n + forces.ground_n(state.piston_m, speed_m_s)
+        - slope * speed_m_s * speed_m_s
+        - cylinder.viscous_friction_n_s_m * speed_m_s
+        - forces.friction_n(&state, weight_n);
+    let stopped = cylinder.stops(state.piston_m, speed_m_s, force_n);
+    let (speed_m_s, force_n) = if stopped {
+        (0.0, 0.0)
+    } else {
+        (speed_m_s, force_n)
+    };
+    let gained_m3_s =
+        flows.net_m3_s() - hose.creep_m3_s(state.wall_behind_pa) - area_m2 * speed_m_s;
+    let rise_pa_s = stiffness_pa_m3(circuit, state.piston_m, pressure_pa) * gained_m3_s;
+    let seen_pa_s = if torn { 0.0 } else { rise_pa_s };
+    [
+        speed_m_s,
+        force_n / inertia_kg,
+        rise_pa_s,
+        seen_pa_s - hose.catching_up_1_s * state.wall_behind_pa,
+        circuit.compensator_pa_s(*openings, &state),
+    ]
+}
+
+/// How much the pressure rises for a volume of oil, Pa/m3: one over `V/E(p) + C`, oil and hoses.
+fn stiffness_pa_m3(circuit: &Circuit, piston_m: f64, pressure_pa: f64) -> f64 {
+    let constants = circuit.constants;
+    let modulus_pa = constants.oil.bulk_modulus_pa * circuit.sites.stiffness_factor(pressure_pa);
+    let volume_m3 = constants.cylinder.volume_m3(piston_m.max(0.0));
+    modulus_pa / (volume_m3 + circuit.sites.hose.at_once_m3_pa * modulus_pa)
+}
+
+/// The oil's own stiffness, without air and hoses, Pa/m3: what a void counts by while the oil column is torn.
+fn oil_stiffness_pa_m3(constants: &Constants, piston_m: f64) -> f64 {
+    constants.oil.bulk_modulus_pa / constants.cylinder.volume_m3(piston_m.max(0.0))
+}
+
+/// The state with its void as pressure below the vacuum.
+fn stretched(model: &Model, state: &MechanicalState) -> MechanicalState {
+    if state.void_m3 == 0.0 {
+        return *state;
+    }
+    let missing_pa = oil_stiffness_pa_m3(model.constants(), state.piston_m) * state.void_m3;
+    MechanicalState {
+        pressure_pa: state.pressure_pa - missing_pa,
+        void_m3: 0.0,
+        ..*state
+    }
+}
+
+/// The state with pressure below the vacuum as a void.
+fn torn(model: &Model, state: MechanicalState) -> MechanicalState {
+    let missing_pa = VACUUM_PA - state.pressure_pa;
+    if missing_pa <= 0.0 {
+        return MechanicalState {
+            void_m3: 0.0,
+            ..state
+        };
+    }
+    MechanicalState {
+        pressure_pa: VACUUM_PA,
+        void_m3: missing_pa / oil_stiffness_pa_m3(model.constants(), state.piston_m),
+        ..state
+    }
+}
+
+/// The state with a piston beyond a stop put back to it, at rest; the oil has less room for it, or more.
+fn within_stops(circuit: &Circuit, state: MechanicalState) -> MechanicalState {
+    let cylinder = &circuit.constants.cylinder;
+    let piston_m = state.piston_m.clamp(0.0, cylinder.stroke_m);
+    let beyond_m = state.piston_m - piston_m;
+    if beyond_m == 0.0 {
+        return state;
+    }
+    let stiffness = stiffness_pa_m3(circuit, piston_m, state.pressure_pa.max(VACUUM_PA));
+    MechanicalState {
+        piston_m,
+        speed_m_s: 0.0,
+        pressure_pa: state.pressure_pa + stiffness * cylinder.area_m2() * beyond_m,
+        ..state
+    }
+}
+
+fn moved(state: &MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalState {
+    MechanicalState {
+        piston_m: state.piston_m + dt_s * rate[0],
+        speed_m_s: state.speed_m_s + dt_s * rate[1],
+        pressure_pa: state.pressure_pa + dt_s * rate[2],
+        wall_behind_pa: state.wall_behind_pa + dt_s * rate[3],
+        compensator_pa: state.compensator_pa + dt_s * rate[4],
+        ..*state
+    }
+}
+
+/// How fast the orifices alone settle the pressure within a step, 1/s: `E/V dQ/dp`, with `dQ/dp = Q / 2 dp` of each
+/// orifice whose drop hangs on the cylinder pressure. A flow goes with the root of its drop, and ends the more abruptly
+/// the smaller the drop gets: what counts is the drop that the step comes to.
+fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState, dt_s: f64) -> f64 {
+    let constants = circuit.constants;
+    let flows = circuit.solve(openings, state);
+    let stiffness = oil_stiffness_pa_m3(constants, state.piston_m);
+    let gained_m3_s = flows.net_m3_s() - constants.cylinder.area_m2() * state.speed_m_s;
+    let rise_pa = stiffness * gained_m3_s * dt_s;
+    let slope = |flow_m3_s: f64, drop_pa: f64, lost_pa: f64, transition_pa: f64| {
+        let least_pa = (0.5 * transition_pa).max(SMALLEST_DROP_PA);
+        let [before_pa, after_pa] =
+            [drop_pa, drop_pa - lost_pa.max(0.0)].map(|pa| pa.max(least_pa));
+        0.5 * flow_m3_s / (before_pa * after_pa).sqrt()
+    };
+    let lower = slope(
+        flows.lower_m3_s,
+        state.pressure_pa,
+        -rise_pa,
+        constants.lower_valve.transition_drop_pa,
+    );
+    // A working compensator keeps the lift valve's drop whatever the cylinder pressure is, up to the relief valve's,
+    // unless it lags.
+    let drooped_pa = circuit.sites.margin_lost_to_flow_pa_s_m3 * flows.lift_m3_s;
+    let wanted_pa = circuit.lifting_pressure_pa(state);
+    let lagging = circuit.sites.compensator_lag_s > 0.0;
+    let keeps = flows.pump_pressure_pa + drooped_pa >= wanted_pa - TOLERANCE_PA;
+    let compensated = keeps && !lagging;
+    let room_pa = match compensated {
+        true => (constants.relief_valve.set_pressure_pa - wanted_pa).max(0.0),
+        false => 0.0,
+    };
+    let lift = if compensated && rise_pa <= room_pa {
+        0.0
+    } else if lagging {
+        // The flow sets in at any moment, and while the drop is small it goes by the faster.
+        1.5 * openings.lift.flow_m3_s / constants.lift_valve.reference_drop_pa
+    } else {
+        let drop_pa = circuit.lift_drop_pa(flows.pump_pressure_pa, state.pressure_pa);
+        slope(
+            flows.lift_m3_s,
+            drop_pa,
+            rise_pa - room_pa,
+            constants.lift_valve.transition_drop_pa,
+        )
+    };
+    (lower + lift) * stiffness
+}
+
+/// How fast a hose's wall settles the pressure and itself, 1/s.
+fn creeping_rate(circuit: &Circuit, state: &MechanicalState) -> f64 {
+    let hose = &circuit.sites.hose;
+    if hose.creeping_m3_pa == 0.0 {
+        return 0.0;
+    }
+    let stiffness = stiffness_pa_m3(circuit, state.piston_m, state.pressure_pa.max(VACUUM_PA));
+    hose.catching_up_1_s * (1.0 + hose.creeping_m3_pa * stiffness)
+}
+
+/// How fast a lagging compensator settles, 1/s.
+fn lagging_rate(circuit: &Circuit) -> f64 {
+    match circuit.sites.compensator_lag_s {
+        0.0 => 0.0,
+        lag_s => 1.0 / lag_s,
+    }
+}
+
+/// Longest step, s, that follows the ringing of load and oil where the piston stands.
+#[must_use]
+pub fn longest_step_s(
+    forces: &Forces,
+    circuit: &Circuit,
+    state: MechanicalState,
+    steps: Steps,
+) -> f64 {
+    let dh_dx = forces.model.linkage().dh_dx(state.piston_m);
+    let area_m2 = circuit.constants.cylinder.area_m2();
+    let stiffness_n_m = area_m2 * area_m2 * oil_stiffness_pa_m3(circuit.constants, state.piston_m);
+    let masses = &circuit.constants.masses;
+    let ringing_rad_s = (stiffness_n_m / masses.inertia_kg(forces.rig.load_kg, dh_dx)).sqrt();
+    (steps.longest_rad / ringing_rad_s).min(steps.longest_s)
+}
+
+/// Whether a step with these openings would leave the hitch where it stands.
+#[must_use]
+pub fn rests(
+    forces: &Forces,
+    circuit: &Circuit,
+    state: &MechanicalState,
+    openings: &[Openings; 3],
+) -> bool {
+    circuit.sites.holds_still()
+        && openings.iter().all(Openings::shut)
+        && state.void_m3 == 0.0
+        && state.speed_m_s.abs() < AT_REST_M_S
+        && state.wall_behind_pa.abs() < AT_REST_PA
+        && circuit.idles(state)
+        && derivative(forces, circuit, &Openings::default(), state)[1].abs() < AT_REST_M_S2
+}
+
+/// One step with the openings at its start, middle and end.
+#[must_use]
+pub fn step(
+    forces: &Forces,
+    circuit: &Circuit,
+    state: &MechanicalState,
+    openings: &[Openings; 3],
+    dt_s: f64,
+) -> MechanicalState {
+    // The wider an orifice is open, the faster it settles.
+    let [first, _, last] = openings;
+    let widest = if first.wider_than(last) { first } else { last };
+    let settling = match widest.shut() {
+        true => 0.0,
+        false => settling_rate(circuit, *widest, state, dt_s),
+    };
+    let rate = creeping_rate(circuit, state)
+        .max(lagging_rate(circuit))
+        .max(settling);
+    let pieces = rate * dt_s / STABLE;
+    if pieces <= 1.0 || pieces.is_nan() {
+        return runge_kutta(forces, circuit, state, openings, dt_s);
+    }
+    let pieces = pieces.ceil().min(256.0) as usize;
+    let piece_s = dt_s / pieces as f64;
+    let mut state = *state;
+    for piece in 0..pieces {
+        let share = |part: f64| (piece as f64 + part) / pieces as f64;
+        let ends = [0.0, 0.5, 1.0].map(|part| between(openings, share(part)));
+        state = runge_kutta(forces, circuit, &state, &ends, piece_s);
+    }
+    state
+}
+
+/// Openings at a share of the step, linear between start, middle and end.
+fn between(openings: &[Openings; 3], share: f64) -> Openings {
+    let (from, to, part) = if share <= 0.5 {
+        (openings[0], openings[1], 2.0 * share)
+    } else {
+        (openings[1], openings[2], 2.0 * share - 1.0)
+    };
+    from.towards(to, part)
+}
+
+fn runge_kutta(
+    forces: &Forces,
+    circuit: &Circuit,
+    state: &MechanicalState,
+    openings: &[Openings; 3],
+    dt_s: f64,
+) -> MechanicalState {
+    let moved = |state: &MechanicalState, rate, dt_s| {
+        let mut moved = moved(state, rate, dt_s);
+        let travel_m = moved.piston_m - state.piston_m;
+        moved.bristles_m = circuit.sites.bent_m(state.bristles_m, travel_m, dt_s);
+        moved
+    };
+    let start = stretched(forces.model, state);
+    let [first, middle, last] = openings;
+    // One place that asks for the rates lets the compiler keep them there.
+    let stages = [
+        (0.0, 1.0, first),
+        (0.5, 2.0, middle),
+        (0.5, 2.0, middle),
+        (1.0, 1.0, last),
+    ];
+    let (mut rate, mut sum) = ([0.0; 5], [0.0; 5]);
+    for (share, weight, openings) in stages {
+        rate = derivative(
+            forces,
+            circuit,
+            openings,
+            &moved(&start, rate, share * dt_s),
+        );
+        for (sum, rate) in sum.iter_mut().zip(rate) {
+            *sum += weight * rate;
+        }
+    }
+    let mean = sum.map(|sum| sum / 6.0);
+    let end = torn(
+        forces.model,
+        within_stops(circuit, moved(&start, mean, dt_s)),
+    );
+    // A force that no integrator can follow, from a term or from constants far off: the plant stands still.
+    if end.is_finite() {
+        end
+    } else {
+        MechanicalState {
+            speed_m_s: 0.0,
+            ..*state
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! The forces on the piston besides the oil's pressure, with what the effects add to them.
+
+use crate::hooks::place::Place;
+use crate::hooks::sites::Sites;
+use crate::solver::moment::Moment;
+use crate::{HitchRig, MechanicalState, Model};
+
+/// Forces on the piston of one hitch.
+#[derive(Clone, Copy)]
+pub struct Forces<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// What the effects attach.
+    pub sites: &'a Sites,
+    /// The load.
+    pub rig: &'a HitchRig,
+    /// What terms may depend on.
+    pub moment: Moment<'a>,
+}
+
+impl Forces<'_> {
+    /// Static force of load and dead weight, N, downwards, at piston travel `piston_m`, all else as it was before.
+    #[must_use]
+    pub fn weight_n(&self, piston_m: f64) -> f64 {
+        let dh_dx = self.model.linkage().dh_dx(piston_m);
+        self.weight_at_n(dh_dx, &self.before(piston_m))
+    }
+
+    /// Static force of load and dead weight, N, downwards, in a state where the linkage has the transmission `dh_dx`.
+    #[must_use]
+    pub fn weight_at_n(&self, dh_dx: f64, state: &MechanicalState) -> f64 {
+        let masses = &self.model.constants().masses;
+        let load_share = masses.load_share(self.rig.load_kg);
+        let factor = self.sites.weight_factor(state.piston_m, load_share);
+        masses.weight_force_n(self.rig.load_kg, dh_dx) * factor
+            + self.moment.term(Place::Weight, state, |_| ())
+    }
+
+    /// Inertia at the piston, kg, of what turns with the rocker shaft on top of the model's own, and half its derivative
+    /// over piston travel, kg/m: `J (dphi/dx)^2`.
+    #[must_use]
+    pub fn shaft_inertia_kg(&self, piston_m: f64) -> (f64, f64) {
+        let inertia_kg_m2 = self.sites.shaft_inertia_kg_m2;
+        if inertia_kg_m2 == 0.0 {
+            return (0.0, 0.0);
+        }
+        let (turn_rad_m, bend_rad_m2) = self.model.linkage().shaft_transmission(piston_m);
+        (
+            inertia_kg_m2 * turn_rad_m * turn_rad_m,
+            inertia_kg_m2 * turn_rad_m * bend_rad_m2,
+        )
+    }
+
+    /// A state at a piston travel, with speed and pressure of the step before.
+    #[must_use]
+    pub fn before(&self, piston_m: f64) -> MechanicalState {
+        MechanicalState {
+            piston_m,
+            speed_m_s: self.moment.before.speed_m_s,
+            pressure_pa: self.moment.before.cylinder_pressure_pa,
+            ..MechanicalState::default()
+        }
+    }
+
+    /// Force of the ground under the hitch, N, upwards, at a piston travel, m, and speed, m/s.
+    #[must_use]
+    pub fn ground_n(&self, piston_m: f64, speed_m_s: f64) -> f64 {
+        let Some(ground) = &self.sites.ground else {
+            return 0.0;
+        };
+        let posture = self.model.linkage().at(piston_m);
+        ground.force_n(posture.height_m, speed_m_s * posture.dh_dx) * posture.dh_dx
+    }
+
+    /// Friction against the motion, N, in a state under a weight's force, N.
+    #[must_use]
+    pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {
+        self.sites.friction_n(state, weight_n)
+            + self.sites.bristles_n(state.bristles_m)
+            + self.moment.term(Place::Friction, state, |_| ())
+    }
+
+    /// Lowest travel that the piston can sink to, m: the end of the stroke, or where the ground bears the weight.
+    #[must_use]
+    pub fn lowest_m(&self) -> f64 {
+        if self.sites.ground.is_none() {
+            return 0.0;
+        }
+        let stroke_m = self.model.constants().cylinder.stroke_m;
+        let excess = |piston_m: f64| self.weight_n(piston_m) - self.ground_n(piston_m, 0.0);
+        crate::solver::root::rising(excess, 0.0, stroke_m, 1e-6)
+    }
+}

@@ -1,0 +1,175 @@
+//! The quasi-static plant: the paper's model.
+//!
+//! Stiff oil and no inertia: the piston's speed comes from the flow balance `A v = Q_lift - Q_lower - Q_leak`, the
+//! cylinder pressure from the static balance `p A = F_weight(x) + F_friction(v)`.
+//!
+//! The balance knows no contact force, so at a stop the piston stands while pressure and flow stay what they were
+//! (RIG.md defines it so); dead-heading the pump over the relief valve is the dynamic plant's business.
+
+use crate::MechanicalState;
+use crate::hooks::place::Place;
+use crate::hooks::sites::Sites;
+use crate::solver::circuit::{Circuit, Flows, Openings};
+use crate::solver::dynamic::Steps;
+use crate::solver::forces::Forces;
+
+/// Currents that change faster than this jump, A/s.
+pub(crate) const JUMP_A_S: f64 = 2.5;
+
+/// Travel that the piston may sink by in a step, m.
+const STEP_M: f64 = 0.003;
+
+/// Speed beyond all others by which terms of a user's own could move the piston, m/s.
+const FASTEST_M_S: f64 = 0.5;
+
+/// Whether the hitch stands on the ground or may come down on it within a step.
+#[must_use]
+pub fn lands(forces: &Forces, piston_m: f64) -> bool {
+    forces.sites.ground.is_some() && forces.ground_n(piston_m - STEP_M, 0.0) > 0.0
+}
+
+/// Longest step, s, with what the effects attach, while the spools' currents change by so much, A/s, or the hitch lands.
+#[must_use]
+pub fn longest_step_s(steps: Steps, sites: &Sites, turning_a_s: f64, lands: bool) -> f64 {
+    let own_s = if turning_a_s > JUMP_A_S || lands {
+        steps.jump_s
+    } else {
+        steps.quasi_static_s
+    };
+    own_s.min(steps.longer * sites.longest_step_s)
+}
+
+/// What the balances give at one instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Balance {
+    /// Piston speed, m/s.
+    pub speed_m_s: f64,
+    /// Cylinder pressure, Pa.
+    pub pressure_pa: f64,
+    /// Flows and pump pressure.
+    pub flows: Flows,
+}
+
+/// Where the motion comes from, for the inertia of an accelerated load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Before {
+    /// Piston speed then, m/s.
+    pub speed_m_s: f64,
+    /// Time since, s.
+    pub dt_s: f64,
+}
+
+/// Flow and force balance where the piston stands, its bristles bent as they are there.
+#[must_use]
+pub fn balance(
+    forces: &Forces,
+    circuit: &Circuit,
+    openings: Openings,
+    MechanicalState {
+        piston_m,
+        bristles_m,
+        compensator_pa,
+        catching_up,
+        ..
+    }: MechanicalState,
+    before: Option<Before>,
+) -> Balance {
+    let area_m2 = circuit.constants.cylinder.area_m2();
+    let weight_n = forces.weight_n(piston_m);
+    let held_n = (weight_n - forces.ground_n(piston_m, 0.0)).max(0.0);
+    let last = MechanicalState {
+        bristles_m,
+        compensator_pa,
+        catching_up,
+        ..forces.before(piston_m)
+    };
+    let at_force = |speed_m_s: f64, force_n: f64| {
+        let pressure_pa = force_n / area_m2;
+        let state = MechanicalState {
+            pressure_pa,
+            ..last
+        };
+        let flows = circuit.solve(openings, &state);
+        Balance {
+            speed_m_s,
+            pressure_pa,
+            flows,
+        }
+    };
+    let friction_n = |speed_m_s: f64| {
+        let state = MechanicalState { speed_m_s, ..last };
+        forces.friction_n(&state, weight_n)
+    };
+    let terms = circuit.sites.has_term(Place::Friction);
+    // Bent bristles press on a piston at rest, too, and so may a term: a spring does.
+    let free = at_force(0.0, held_n + friction_n(0.0));
+    let free_m_s = free.flows.net_m3_s() / area_m2;
+    let inertia_kg = inertia_kg(forces, piston_m);
+    let before = before.filter(|_| inertia_kg > 0.0);
+    if before.is_none() && ((circuit.sites.friction.is_empty() && !terms) || free_m_s == 0.0) {
+        return Balance {
+            speed_m_s: free_m_s,
+            ..free
+        };
+    }
+    // Friction and inertia oppose a change of speed, so the speed lies between rest, the speed before and the free
+    // speed.
+    let at = |speed_m_s: f64| {
+        let inertia_n = before.map_or(0.0, |b| inertia_kg * (speed_m_s - b.speed_m_s) / b.dt_s);
+        at_force(speed_m_s, held_n + friction_n(speed_m_s) + inertia_n)
+    };
+    let excess = |speed_m_s: f64| {
+        let balance = at(speed_m_s);
+        (speed_m_s - balance.flows.net_m3_s() / area_m2, balance)
+    };
+    let speed_before = before.map_or(0.0, |b| b.speed_m_s);
+    // A term may be a force that drives: then the speed can be any that the valves let through.
+    let beyond_m_s = if terms { FASTEST_M_S } else { 0.0 };
+    let low = free_m_s.min(speed_before).min(0.0) - beyond_m_s;
+    let high = free_m_s.max(speed_before).max(0.0) + beyond_m_s;
+    crate::solver::root::steep(excess, free_m_s, (low, high), 1e-9)
+}
+
+/// Inertia at the piston that the effects give the quasi-static plant, kg.
+fn inertia_kg(forces: &Forces, piston_m: f64) -> f64 {
+    let (share, (shaft_kg, _)) = (
+        forces.sites.inertia_share,
+        forces.shaft_inertia_kg(piston_m),
+    );
+    if share == 0.0 {
+        return shaft_kg;
+    }
+    let dh_dx = forces.model.linkage().dh_dx(piston_m);
+    let masses = &forces.model.constants().masses;
+    share * masses.inertia_kg(forces.rig.load_kg, dh_dx) + shaft_kg
+}
+
+/// One step of Heun's method from a known balance to the openings at its end; returns the piston's travel there, m.
+///
+/// `lowest_m` is the travel at which the piston rests on its stop or the hitch on the ground.
+#[must_use]
+pub fn step(
+    forces: &Forces,
+    circuit: &Circuit,
+    state: MechanicalState,
+    end: Openings,
+    lowest_m: f64,
+    dt_s: f64,
+) -> f64 {
+    let stroke_m = circuit.constants.cylinder.stroke_m;
+    let within = |piston_m: f64| piston_m.clamp(lowest_m, stroke_m);
+    let guess_m = within(state.piston_m + dt_s * state.speed_m_s);
+    let before = Before {
+        speed_m_s: state.speed_m_s,
+        dt_s,
+    };
+    let guess = MechanicalState {
+        piston_m: guess_m,
+        bristles_m: circuit
+            .sites
+            .bent_m(state.bristles_m, guess_m - state.piston_m, dt_s),
+        ..state
+    };
+    let there = balance(forces, circuit, end, guess, Some(before));
+    within(state.piston_m + 0.5 * dt_s * (state.speed_m_s + there.speed_m_s))
+}
