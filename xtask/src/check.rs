@@ -36,7 +36,7 @@ fn lint_images(way: Way) -> Result<()> {
     for feature in std::iter::once("emulated").chain(image::PARTS) {
         let mut command = way.cargo(subcommand)?;
         command
-            .args(["--package", "hitch-firmware", "--lib", "--bins"])
+            .args(["--package", "hitch-ecu", "--lib", "--bins"])
             .args(["--features", feature]);
         process::run(command.env("RUSTFLAGS", "--deny warnings"))?;
     }

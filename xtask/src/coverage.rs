@@ -15,7 +15,7 @@ use llvm_profparser::{CoverageMapping, merge_profiles};
 use crate::{process, workspace};
 
 /// What has to be covered, from the workspace's root.
-const COVERED: &str = "firmware/src/control/safety";
+const COVERED: &str = "firmware/safety/src";
 /// Tells this program that cargo has started it in the compiler's place.
 const COUNTING: &str = "HITCH_COUNTING_RUSTC";
 
@@ -25,7 +25,7 @@ pub fn run() -> Result<()> {
     // Counters of earlier runs belong to other programs.
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).with_context(|| format!("can't make {}", folder.display()))?;
-    let tests = ["--package", "hitch-firmware", "--test", "envelope"];
+    let tests = ["--package", "hitch-safety", "--test", "envelope"];
     let test = build(&tests, &folder)?;
     let counters = folder.join("envelope.profraw");
     process::run(
