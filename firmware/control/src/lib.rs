@@ -19,7 +19,8 @@
 //! * [`motion`]: laws of motion, from a set point or a button to a demanded speed,
 //! * [`sequencing`]: the check valve's conditions, the compensator's, and a hitch that leaves its place,
 //! * [`current`]: the regulation of a coil's current,
-//! * [`commissioning`]: how a machine is taught.
+//! * [`commissioning`]: how a machine is taught,
+//! * [`controller`]: all of it, a step a millisecond: [`Control`].
 //!
 //! Quantities are integers with their unit in the type; their arithmetic saturates. The calibration has been validated, so
 //! that nothing here has to doubt it again.
@@ -44,6 +45,7 @@ extern crate std;
 
 pub mod adaptation;
 pub mod commissioning;
+pub mod controller;
 pub mod current;
 pub mod estimation;
 pub mod motion;
@@ -51,3 +53,5 @@ pub mod operator;
 pub mod sensing;
 pub mod sequencing;
 pub mod valve;
+
+pub use controller::{Control, Request};

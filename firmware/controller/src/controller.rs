@@ -1,133 +1,54 @@
-//! One millisecond of control.
+//! A step in two parts: control asks for currents, protection decides what the coils get.
 
-use hitch_control::adaptation::learning::Learning;
-use hitch_control::commissioning::teach::{Taught, Teach, TeachError};
+use hitch_control::Control;
+use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_control::current::Regulation;
-use hitch_control::estimation::load::LoadEstimate;
-use hitch_control::estimation::motion::{Motion, Slack};
-use hitch_control::estimation::rest::RestPosition;
-use hitch_control::motion::position::{PositionControl, Reason};
-use hitch_control::motion::rate::RateControl;
-use hitch_control::operator::lever::SteadyLever;
-use hitch_control::operator::mode::Mode;
-use hitch_control::operator::{
-    ButtonGuard, EngineWatch, Float, QuickLift, lowering_limit, upper_limit,
-};
-use hitch_control::sensing::sensors::{Sensed, Sensors};
-use hitch_control::sequencing::saturation::{SaturationWatch, goes_no_further};
-use hitch_control::sequencing::sink::SinkWatch;
-use hitch_control::valve::closing::Closing;
-use hitch_control::valve::drop_scale::DropScale;
-use hitch_control::valve::phase::{Demand, Direction, Phase};
-use hitch_control::valve::valve_map::ValveCurves;
-use hitch_quantities::piston::{flow, piston_speed};
-use hitch_quantities::units::{
-    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliAmp, MilliDegree,
-    MilliDegreePerSecond,
-};
-use hitch_quantities::{CoilCurrents, Fault, Inputs, Trip, ValidCalibration};
-use hitch_safety::{Command, Envelope};
+use hitch_control::operator::EngineWatch;
+use hitch_quantities::{Inputs, Outputs, Trip, ValidCalibration};
+use hitch_safety::{Command, Envelope, Limits, Machine};
 
 use crate::memory_check::MemoryCheck;
 
 #[cfg(test)]
 mod damage;
-mod report;
-mod stepping;
 
-/// The controller: a calibration and a state.
+/// The controller: control, the envelope that judges it, and the regulation of what the envelope lets pass.
 #[derive(Clone, Debug)]
 pub struct Controller {
-    calibration: ValidCalibration,
-    sensors: Sensors,
-    mode: Mode,
-    engine: EngineWatch,
-    button: ButtonGuard,
-    quick_lift: QuickLift,
-    float: Float,
-    lever: SteadyLever,
-    position: PositionControl,
-    rate: RateControl,
-    motion: Motion,
-    closing: Closing,
-    slack: Slack,
-    /// Set point and its travel: looked up when it changes.
-    target: (MilliDegree, Micrometre),
-    load: LoadEstimate,
-    phase: Phase,
-    sink: SinkWatch,
-    saturation: SaturationWatch,
     envelope: Envelope,
     memory: MemoryCheck,
     /// What control asked for last.
     command: Command,
-    /// Last believable angle.
-    angle: MilliDegree,
     regulation: Regulation,
-    rest: RestPosition,
-    scale: DropScale,
-    learning: Learning,
-    teach: Teach,
-    /// Fastest speed that the valve in use can give.
-    available: MicrometrePerSecond,
-    /// Flow asked of the valves, positive into the cylinder.
-    demanded_flow: MicroLitrePerSecond,
     // The largest comes last, so that the others are close to the controller's address.
-    curves: ValveCurves,
+    control: Control,
 }
 
 impl Controller {
-    /// A controller as it is after power-up: locked. Not inlined: a copy of the controller would take its place on the
-    /// stack of the caller for good.
+    /// A controller as it is after power-up: locked.
     #[must_use]
-    #[inline(never)]
     pub fn new(calibration: ValidCalibration) -> Self {
-        let load = LoadEstimate::new(&calibration.hydraulics);
-        let mut curves = ValveCurves::EMPTY;
-        curves.fill(&calibration);
-        let scale = curves.scale(load.drop());
-        let closing = Closing::of(&calibration);
-        let origin = calibration.linkage.travel(MilliDegree::ZERO);
+        Self::with(calibration, EngineWatch::default())
+    }
+
+    /// The same, with what the engine has told so far. Not inlined: a copy of the controller would take its place on the
+    /// stack of the caller for good.
+    #[inline(never)]
+    fn with(calibration: ValidCalibration, engine: EngineWatch) -> Self {
         Self {
-            regulation: Regulation::new(&calibration.current),
-            calibration,
-            sensors: Sensors::default(),
-            mode: Mode::default(),
-            engine: EngineWatch::default(),
-            button: ButtonGuard::default(),
-            quick_lift: QuickLift::default(),
-            float: Float::default(),
-            lever: SteadyLever::default(),
-            position: PositionControl::default(),
-            rate: RateControl::default(),
-            motion: Motion::default(),
-            closing,
-            slack: Slack::default(),
-            target: (MilliDegree::ZERO, origin),
-            load,
-            phase: Phase::default(),
-            sink: SinkWatch::default(),
-            saturation: SaturationWatch::default(),
             envelope: Envelope::default(),
             memory: MemoryCheck::default(),
             command: Command::default(),
-            angle: MilliDegree::ZERO,
-            rest: RestPosition::default(),
-            curves,
-            scale,
-            learning: Learning::default(),
-            teach: Teach::default(),
-            available: MicrometrePerSecond::ZERO,
-            demanded_flow: MicroLitrePerSecond::ZERO,
+            regulation: Regulation::new(&calibration.current),
+            control: Control::new(calibration, engine),
         }
     }
 
     /// Takes a calibration that makes it another machine: everything begins anew, but an engine that has told its speed
     /// still has to, and a final trip stays.
     pub fn restart(&mut self, calibration: ValidCalibration) {
-        let (engine, envelope) = (self.engine, self.envelope);
-        *self = Self::new(calibration);
-        self.engine = engine;
+        let envelope = self.envelope;
+        *self = Self::with(calibration, self.control.engine());
         if envelope.tripped().is_some_and(Trip::is_final) {
             self.envelope = envelope;
         }
@@ -136,346 +57,69 @@ impl Controller {
     /// The calibration in use.
     #[must_use]
     pub fn calibration(&self) -> &ValidCalibration {
-        &self.calibration
+        self.control.calibration()
     }
 
     /// Takes another calibration of the same machine: one whose ramps, gains or limits differ. The hitch may be moving,
-    /// and goes on from where it is. What was learnt of the valves' curves goes with the curves.
+    /// and goes on from where it is.
     pub fn recalibrate(&mut self, calibration: ValidCalibration) {
-        self.closing = Closing::of(&calibration);
-        let measured_at = |calibration: &ValidCalibration| calibration.hydraulics.reference_drop;
-        if (&calibration.lift, &calibration.lower)
-            != (&self.calibration.lift, &self.calibration.lower)
-        {
-            self.learning.forget_curves();
-            self.curves.fill(&calibration);
-        } else if measured_at(&calibration) != measured_at(&self.calibration) {
-            self.curves.fill(&calibration);
-        }
-        self.calibration = calibration;
+        self.control.recalibrate(calibration);
         self.memory.begin_anew();
     }
 
     /// What teaching found, if the machine has been taught since power-up.
     #[must_use]
     pub const fn taught(&self) -> Option<Result<Taught, TeachError>> {
-        self.teach.result()
+        self.control.taught()
     }
 
-    /// A step with believable sensors.
-    fn run(&mut self, sensed: &Sensed, inputs: &Inputs) -> Result<CoilCurrents, Fault> {
-        self.estimate(sensed);
-        let jog = self.button.pass(inputs.jog);
-        self.change_mode(jog.is_some(), inputs);
-        if matches!(self.mode, Mode::Teach) {
-            return Ok(self.teach.step(sensed.angle, self.scale, &self.calibration));
-        }
-        let demand = match &mut self.mode {
-            Mode::Locked(lock) => {
-                if lock.picked_up(sensed.set_point, sensed.angle, &self.calibration.lock) {
-                    self.mode = Mode::Position;
-                }
-                None
-            }
-            Mode::Position => self.follow_lever(sensed, inputs),
-            // A released button has no demand: the abort ramp stops the hitch, faster than the button's own.
-            Mode::Jog => jog.map(|rate| self.follow_button(rate, sensed.angle, inputs)),
-            Mode::Hold | Mode::Teach | Mode::TransportLock | Mode::Fault { .. } => None,
-        };
-        self.advance(demand)?;
-        self.watch_saturation(sensed)?;
-        Ok(self.currents())
+    /// One step of 1 ms: both parts.
+    pub fn step(&mut self, inputs: &Inputs) -> Outputs {
+        self.control(inputs);
+        self.protect(inputs)
     }
 
-    /// Motion, load and the place of rest, from the sensors and the last currents.
-    fn estimate(&mut self, sensed: &Sensed) {
-        let calibration = &self.calibration;
-        let measured = calibration.linkage.travel(sensed.angle);
-        self.motion
-            .update(measured, self.phase, &calibration.motion);
-        self.motion
-            .follow_trail(measured, self.phase, &calibration.motion);
-        self.load.update(
-            sensed.cylinder_pressure,
-            self.phase,
-            &self.motion,
-            &calibration.hydraulics,
-        );
-        self.scale = self.curves.scale(self.load.drop());
-        self.rest
-            .update(self.motion.position(), self.phase, &calibration.hold);
-        self.sink.tick(&calibration.hold);
-        self.learn();
-    }
-
-    /// Learns from where the hitch is on its way from rest to rest.
-    fn learn(&mut self) {
-        let Some(course) = self.learning.follow(self.phase, &self.motion) else {
-            return;
-        };
-        let calibration = &self.calibration;
-        let rest = self.rest.position();
-        let told = course.told(rest, self.scale, calibration.hydraulics.piston_area);
-        let of_offset = self.learning.offsets().blamed(&told);
-        if self
-            .motion
-            .learn_lag(&told, of_offset, rest, &calibration.motion)
-        {
-            self.learning.learn(&told);
-        }
-    }
-
-    /// Mode transitions that don't depend on the lever.
-    fn change_mode(&mut self, jog_requested: bool, inputs: &Inputs) {
-        let taught = matches!(self.mode, Mode::Teach);
-        let engine = self
-            .engine
-            .permits(inputs.engine_speed, &self.calibration.lock);
-        self.mode = self.mode.switched(inputs.switches, engine);
-        let was_fault = self.mode.fault().is_some();
-        self.mode = self.mode.healthy(&self.calibration.lock);
-        if was_fault && self.mode.fault().is_none() {
+    /// The first part of a step: computes the command. Nothing reaches the coils before [`Self::protect`].
+    pub fn control(&mut self, inputs: &Inputs) {
+        let request = self.control.step(inputs, self.envelope.holds_back());
+        if request.recovered {
             self.envelope.reset();
-            self.saturation.forget();
-            self.sink.new_set_point();
         }
-        // A released button ramps down before the lock falls shut.
-        let jogged = jog_requested || self.phase.is_moving();
-        let in_jog = matches!(self.mode, Mode::Jog);
-        self.mode = self.mode.jogged(
-            if in_jog { jogged } else { jog_requested },
-            inputs.switches.teach && !self.phase.is_moving(),
-        );
-        match (taught, matches!(self.mode, Mode::Teach)) {
-            (false, true) => self.teach = Teach::default(),
-            (true, false) => self.teach.abort(),
-            _ => {}
-        }
-        if jog_requested && !in_jog {
-            self.rate = RateControl::default();
-            self.position = PositionControl::default();
-        }
-        let follows_lever = matches!(self.mode, Mode::Position);
-        self.quick_lift
-            .press(inputs.switches.quick_lift, follows_lever);
-        if !follows_lever {
-            self.float.end();
-        }
-    }
-
-    /// Jog mode: the demand that follows from the button. The dials bind it as they bind the lever.
-    fn follow_button(
-        &mut self,
-        rate: MilliDegreePerSecond,
-        angle: MilliDegree,
-        inputs: &Inputs,
-    ) -> Demand {
-        let calibration = &self.calibration;
-        let highest = upper_limit(inputs.upper_limit, &calibration.position);
-        let demand = self
-            .rate
-            .demand(rate, angle, highest, &self.motion, calibration);
-        if demand.direction == Direction::Lift {
-            return demand;
-        }
-        let limit = lowering_limit(
-            inputs.lowering_dial,
-            &calibration.operator,
-            &calibration.position,
-        );
-        Demand {
-            speed: demand.speed.min(limit),
-            ..demand
-        }
-    }
-
-    /// Position mode: the demand that follows from the lever.
-    fn follow_lever(&mut self, sensed: &Sensed, inputs: &Inputs) -> Option<Demand> {
-        let moving = self.phase.is_moving();
-        let calibration = &self.calibration;
-        let trembles = calibration.position.lever_deadband;
-        let lever = self.lever.follow(sensed.set_point, trembles + trembles);
-        let lever = self.quick_lift.set_point(lever, &calibration.operator);
-        let highest = upper_limit(inputs.upper_limit, &calibration.position);
-        let changed = self
-            .position
-            .follow(lever, highest, moving, &calibration.position);
-        if changed && !moving {
-            self.sink.new_set_point();
-            self.saturation.forget();
-        }
-        let set_point = self.position.set_point(sensed.angle);
-        if set_point != self.target.0 {
-            self.target = (set_point, calibration.linkage.travel(set_point));
-        }
-        let target = self.target.1;
-        // While the valves close the hitch may fly past the set point: that is no arrival.
-        let rest = self.rest.position();
-        let resting = matches!(self.phase, Phase::Holding)
-            && match self
-                .position
-                .reason_to_move(target, rest, &calibration.position)
-            {
-                Some(Reason::SetPoint) => false,
-                Some(Reason::Drift) => self.learning.hurries(rest - target, &mut self.motion),
-                None => true,
-            };
-        let operator = &calibration.operator;
-        let floats = self.float.update(lever, sensed.angle, resting, operator);
-        // Until the valves are shut nobody asks for a demand.
-        if floats || resting || matches!(self.phase, Phase::Settling { .. }) {
-            return None;
-        }
-        let parameters = &calibration.position;
-        let lower_speed = lowering_limit(inputs.lowering_dial, operator, parameters);
-        let demand = self.position.demand(
-            target,
-            self.phase,
-            &self.motion,
-            &self.closing,
-            self.scale,
-            calibration,
-        );
-        Some(self.position.paced(demand, lower_speed, parameters))
-    }
-
-    /// The next phase; starting a move forgets the last one's bias, and counts it if nobody asked for it.
-    fn advance(&mut self, demand: Option<Demand>) -> Result<(), Fault> {
-        let calibration = &self.calibration;
-        if self.mode.is_still() {
-            self.phase = self.phase.cut();
-        }
-        let resting = self.saturation.is_resting(&calibration.saturation);
-        let demand = demand.filter(|_| !resting);
-        // A move that is called off ends on its own valve.
-        let direction = match self.phase {
-            Phase::Moving { direction, .. } => Some(direction),
-            _ => demand.map(|demand| demand.direction),
+        self.command = Command {
+            currents: request.currents,
+            step: self.envelope.step(),
         };
-        self.available = direction.map_or(MicrometrePerSecond::ZERO, |direction| {
-            self.available(direction)
-        });
-        let still = self.motion.model_speed() == MicrometrePerSecond::ZERO;
-        let next = self.phase.step(
-            demand,
-            self.available,
-            still,
-            &calibration.position,
-            &calibration.hold,
-        );
-        let next = match self.envelope.holds_back() {
-            true => next.no_faster_than(self.phase),
-            false => next,
-        };
-        if next.is_moving() && !self.phase.is_moving() {
-            self.motion.forget_bias();
-            self.begin(next)?;
-        }
-        if self.phase.is_moving() && !next.is_moving() {
-            self.motion.cut(&self.closing, &self.calibration);
-        }
-        self.phase = next;
-        let follows_lever = matches!(self.mode, Mode::Position);
-        if next.is_moving() && follows_lever && self.position.has_arrived() {
-            let speed = self.motion.model_speed();
-            self.sink.correcting(speed, &self.calibration.hold)?;
-        }
-        Ok(())
     }
 
-    /// A move begins: counts it if nobody asked for it. Only moves to a set point teach: a leak has a part in corrections.
-    fn begin(&mut self, next: Phase) -> Result<(), Fault> {
-        self.learning.obstruct();
-        let Phase::Moving { direction, .. } = next else {
-            return Ok(());
+    /// The second part: the envelope limits the command, the regulation makes pulse widths of it, and the envelope
+    /// releases them. It has to run in each step. A command that control hasn't renewed since the last one is stale.
+    pub fn protect(&mut self, inputs: &Inputs) -> Outputs {
+        let calibration = self.control.calibration();
+        let limits = Limits {
+            safety: &calibration.safety,
+            sensors: &calibration.sensors,
+            damaged: self.memory.step(calibration),
+            machine: Machine::of(calibration),
+            slow_start: self.control.teaches(),
         };
-        if !matches!(self.mode, Mode::Position) {
-            return Ok(());
+        let currents = self.envelope.pass(self.command, inputs, limits);
+        if let Some(trip) = self.envelope.objection() {
+            self.control.fail(trip.fault());
         }
-        match self.position.start() {
-            Reason::SetPoint => {
-                self.motion.count_late();
-                self.learning.begin(direction, self.rest.position());
-            }
-            Reason::Drift => self.sink.correct(&self.calibration.hold)?,
+        if self.envelope.has_landed() {
+            self.control.land();
         }
-        Ok(())
-    }
-
-    /// Cuts the coil when flow is demanded and nothing moves.
-    fn watch_saturation(&mut self, sensed: &Sensed) -> Result<(), Fault> {
-        let calibration = &self.calibration;
-        let (phase, pump) = (self.phase, sensed.pump_pressure);
-        if !self.saturation.stalled(
-            phase,
-            &self.motion,
-            pump,
-            &calibration.saturation,
-            &calibration.hydraulics,
-        ) {
-            return Ok(());
+        self.control.passed(currents);
+        let parameters = &self.control.calibration().current;
+        let duties = self.regulation.drive(currents, inputs, parameters);
+        let duties = self.envelope.release(duties);
+        Outputs {
+            lift_current: currents.lift,
+            lower_current: currents.lower,
+            lift_duty: duties.lift,
+            lower_duty: duties.lower,
+            trip: self.envelope.tripped(),
+            ..self.control.outputs()
         }
-        self.stop_where_it_is();
-        let lifts = phase.speed() > MicrometrePerSecond::ZERO;
-        if goes_no_further(lifts, sensed, &self.calibration) {
-            self.position.accept();
-            return Ok(());
-        }
-        self.saturation.rest(&self.calibration.saturation)
-    }
-
-    /// Cuts the coil of a hitch that stands still: nothing is learnt of this move.
-    fn stop_where_it_is(&mut self) {
-        self.phase = self.phase.cut();
-        self.learning.obstruct();
-        self.motion.obstruct();
-    }
-
-    /// Fastest speed that the valve of a direction can give now.
-    fn available(&self, direction: Direction) -> MicrometrePerSecond {
-        let map = self.curves.at(self.scale);
-        let flow = match direction {
-            Direction::Lift => map.lift_saturation(),
-            Direction::Lower => map.lower_saturation(),
-        };
-        piston_speed(flow, self.calibration.hydraulics.piston_area)
-    }
-
-    /// Speed along the way that the map is asked for: the ramped one less what the map gets wrong.
-    fn mapped_speed(&self) -> MicrometrePerSecond {
-        let Phase::Moving { direction, speed } = self.phase else {
-            return MicrometrePerSecond::ZERO;
-        };
-        let excess = MicrometrePerSecond(direction.sign(self.motion.bias().0));
-        let further = match self.mode {
-            Mode::Jog => -self.rate.trim(),
-            _ => self.motion.damping(direction),
-        };
-        // Full demand is a fully open valve, whatever it gives; from there on the correction comes in with the ramp.
-        let excess = match excess > MicrometrePerSecond::ZERO {
-            true => excess.min((self.available - speed).max(MicrometrePerSecond::ZERO)),
-            false => excess,
-        };
-        let wanted = (speed - excess + further).limited(MicrometrePerSecond(1), self.available);
-        MicrometrePerSecond(direction.sign(wanted.0))
-    }
-
-    /// Coil currents of the present phase.
-    fn currents(&mut self) -> CoilCurrents {
-        let flow = flow(self.mapped_speed(), self.calibration.hydraulics.piston_area);
-        self.demanded_flow = flow;
-        let (speed, hydraulics) = (self.phase.speed(), &self.calibration.hydraulics);
-        let slack = self.slack.take_up(speed.magnitude(), hydraulics.hysteresis);
-        let map = self.curves.at(self.scale);
-        let offsets = self.learning.offsets();
-        let with = |current: MilliAmp, offset| (current - slack + offset).max(MilliAmp::ZERO);
-        // No flow is no current, whatever the valve.
-        let mut currents = CoilCurrents::OFF;
-        if flow.0 > 0 {
-            currents.lift = with(map.lift_current(flow), offsets.lift());
-        } else if flow.0 < 0 {
-            currents.lower = with(map.lower_current(-flow), offsets.lower());
-        }
-        currents
     }
 }

@@ -1,13 +1,12 @@
-//! What a controller says of itself.
+//! What control says of itself.
 
-use hitch_control::operator::mode::Mode;
-use hitch_control::valve::phase::{Direction, Phase};
-use hitch_quantities::units::MilliDegree;
-use hitch_quantities::{CoilCurrents, Duties, Outputs, State};
+use hitch_quantities::{Outputs, State};
 
-use crate::controller::Controller;
+use super::Control;
+use crate::operator::mode::Mode;
+use crate::valve::phase::{Direction, Phase};
 
-impl Controller {
+impl Control {
     fn state(&self) -> State {
         match (&self.mode, self.phase) {
             (Mode::Fault { .. }, _) => State::Fault,
@@ -35,27 +34,19 @@ impl Controller {
         }
     }
 
-    /// The outputs of a step that ends with these currents and duties.
-    pub(super) fn outputs(
-        &self,
-        currents: CoilCurrents,
-        duties: Duties,
-        angle: MilliDegree,
-    ) -> Outputs {
+    /// What control has to say of a step. Currents, pulse widths and trip are not its own: they are left out.
+    #[must_use]
+    pub fn outputs(&self) -> Outputs {
         Outputs {
-            lift_current: currents.lift,
-            lower_current: currents.lower,
             state: self.state(),
             fault: self.mode.fault(),
-            trip: self.envelope.tripped(),
-            target: self.position.set_point(angle),
+            target: self.position.set_point(self.angle),
             travel: self.motion.position(),
             demanded_speed: self.phase.speed(),
             demanded_flow: self.demanded_flow,
             speed: self.motion.speed(),
             drop: self.load.drop(),
-            lift_duty: duties.lift,
-            lower_duty: duties.lower,
+            ..Outputs::default()
         }
     }
 }
