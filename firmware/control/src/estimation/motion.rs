@@ -332,7 +332,7 @@ impl Motion {
 
     /// Share of the spool's part that is left of it if the coil is cut now, in thousandths.
     ///
-    /// The spool then makes for zero current, not for its threshold, and is shut sooner; see [`ClosingCurve`].
+    /// The spool then makes for zero current, not for its threshold, and is shut sooner; see [`crate::valve::closing`].
     #[must_use]
     pub fn share_of_cut(&self, closing: &Closing) -> i32 {
         let [lift, lower] = self.spools;

@@ -1,8 +1,6 @@
 //! The valve map and its inverse: which current lets which flow through.
 //!
-//! A table holds flow over current from the threshold (the last current without flow) to saturation
-//! (the first current with all of it), with the breakpoints where the valve has its kinks: straight
-//! lines between them are the valve's curve, not an approximation on a grid.
+//! The curve itself is a table of the calibration ([`hitch_quantities::calibration::valve_table`]).
 //!
 //! * No flow is no current, and no current is no flow.
 //! * The smallest flow asks for just more than the threshold, any flow beyond saturation for the

@@ -65,7 +65,7 @@ impl ValveTable {
     }
 
     /// How far apart in flow two of its points have to be at least: 0.25 % of the largest flow, and 5 ul/s. Then no two are
-    /// in one cell of the inverse map ([`super::inverse_curve`]), and a kink is found with one comparison.
+    /// in one cell of the inverse map (`inverse_curve` of hitch-control), and a kink is found with one comparison.
     #[must_use]
     pub fn least_gap(&self) -> MicroLitrePerSecond {
         Self::least_gap_of(self.saturation())
