@@ -9,7 +9,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
-use hitch_firmware::control::signals::{INPUT_BYTES, OUTPUT_BYTES};
+use hitch_quantities::signals::{INPUT_BYTES, OUTPUT_BYTES};
 use hitch_workbench::ecu::{IMAGE_VARIABLE, Mode, emulator_command};
 
 /// Far longer than any trace takes; an image that hangs must not hang the tests.

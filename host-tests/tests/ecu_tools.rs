@@ -6,8 +6,8 @@ use std::process::{Child, ChildStdin, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use hitch_firmware::storage::CalibrationStore;
 use hitch_model::campaign::Campaign;
+use hitch_protocols::storage::CalibrationStore;
 use hitch_workbench::ecu::CutFlash;
 use host_tests::program::{hitch, run};
 

@@ -1,10 +1,10 @@
 //! The whole way: valves whose curves differ in several ways are measured, explained, calibrated and driven.
 
-use hitch_firmware::control::{Calibration, ValidCalibration};
 use hitch_model::Model;
 use hitch_model::effects::{AddedEffect, find};
 use hitch_model::identification::experiment::Experiment;
 use hitch_model::identification::explain::{Verdict, explain};
+use hitch_quantities::{Calibration, ValidCalibration};
 use hitch_workbench::calibrate::calibrate;
 use hitch_workbench::closed_loop::{LoopRun, Scenario, run};
 use host_tests::simulated_lab::campaign;

@@ -2,7 +2,7 @@
 use std::io::{self, IsTerminal, Write};
 use std::time::Duration;
 
-use hitch_firmware::control::{Fault, State};
+use hitch_quantities::{Fault, State};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::ecu::Moment;

@@ -1,16 +1,15 @@
 //! `hitch calibrate`: an identified model turned into the firmware's calibration.
 use std::path::PathBuf;
 
-use hitch_firmware::control::calibration::Calibration;
-use hitch_firmware::control::valve_map::ValveTable;
 use hitch_model::Model;
+use hitch_quantities::Calibration;
+use hitch_quantities::calibration::valve_table::ValveTable;
 
 use super::loop_::read_files;
 use crate::calibrate::calibrate;
-use crate::calibration_file;
 use crate::error::Error;
-use crate::output;
 use crate::outputs::Outputs;
+use crate::{calibration_file, output};
 
 /// Arguments of `hitch calibrate`.
 #[derive(Debug, clap::Args)]

@@ -2,15 +2,15 @@
 use std::io::{self, BufRead, Write};
 use std::path::{Path, PathBuf};
 
-use hitch_firmware::control::{Controller, Outputs, State};
+use hitch_controller::Controller;
 use hitch_model::input_error::{InputError, Place};
+use hitch_quantities::{Outputs, State};
 
 use super::loop_::calibration;
 use crate::error::Error;
 use crate::input_stream::{Columns, LineError};
-use crate::output;
-use crate::outputs;
 use crate::teaching::{self, Teaching};
+use crate::{output, outputs};
 
 /// Header of what the command prints.
 const HEADER: &str = "lift_current_a,lower_current_a,state";

@@ -7,8 +7,8 @@ use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use hitch_firmware::can::Frame;
 use hitch_model::Model;
+use hitch_protocols::can::Frame;
 
 use super::loop_::{calibration, load_kg};
 use crate::can_door::CanDoor;

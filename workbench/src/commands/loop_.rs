@@ -1,8 +1,8 @@
 //! `hitch loop`: the firmware's controller in closed loop with the plant.
 use std::path::PathBuf;
 
-use hitch_firmware::control::ValidCalibration;
 use hitch_model::Model;
+use hitch_quantities::ValidCalibration;
 use serde::Serialize;
 
 use crate::calibration_file;
@@ -116,7 +116,7 @@ pub fn changed(
 pub fn calibration(path: Option<&PathBuf>) -> Result<ValidCalibration, Error> {
     match path {
         Some(path) => Ok(calibration_file::read(path)?),
-        None => hitch_firmware::control::Calibration::nominal()
+        None => hitch_quantities::Calibration::nominal()
             .validate()
             .map_err(|error| {
                 Error::Failed(format!("the nominal calibration is refused: {error:?}"))

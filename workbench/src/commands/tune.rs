@@ -1,19 +1,18 @@
 //! `hitch tune`: gains, ramps and limits for a plant.
 use std::path::PathBuf;
 
-use hitch_firmware::control::Calibration;
 use hitch_model::Model;
+use hitch_quantities::Calibration;
 
 use crate::calibrate::calibrate;
-use crate::calibration_file;
 use crate::closed_loop::{Scenario, Summary};
 use crate::commands::loop_::{changed, read_files};
 use crate::error::Error;
-use crate::output;
 use crate::outputs::Outputs;
 use crate::progress::Progress;
 use crate::text::{Table, known};
 use crate::tuning::{Judged, Trial, changes};
+use crate::{calibration_file, output};
 
 /// Arguments of `hitch tune`.
 #[derive(Debug, clap::Args)]

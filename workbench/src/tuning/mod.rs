@@ -9,9 +9,9 @@ mod cost;
 mod knobs;
 
 use cmaes::{CMAESOptions, DVector};
-use hitch_firmware::control::{Calibration, ValidCalibration};
 use hitch_model::Model;
 use hitch_model::effects::{AddedEffect, find};
+use hitch_quantities::{Calibration, ValidCalibration};
 
 use crate::closed_loop::{Course, Move, MoveResult, Summary, courses, figures};
 pub use cost::cost;

@@ -1,7 +1,7 @@
 //! Storing a calibration.
 
 use anyhow::{Context, Result, ensure};
-use hitch_firmware::ecu::Contact;
+use hitch_ecu::Contact;
 use hitch_model::Model;
 
 use super::Setup;
