@@ -5,12 +5,10 @@
 
 use anyhow::Result;
 use fastrand::Rng;
-use hitch_firmware::can::{ExtendedId, Frame, Id, StandardId};
-use hitch_firmware::control::State;
-use hitch_firmware::control::safety::Trip;
-use hitch_firmware::ecu::link::{Reply, Request, frame_to_bytes};
-use hitch_firmware::ecu::{AdcCode, Contact, Contacts, Panel, Samples};
-use hitch_plant::Model;
+use hitch_ecu::link::{Reply, Request, frame_to_bytes};
+use hitch_ecu::{AdcCode, Contact, Contacts, Panel, Samples};
+use hitch_protocols::can::{ExtendedId, Frame, Id, StandardId};
+use hitch_quantities::{State, Trip};
 use hitch_workbench::ecu::{Bench, CutFlash, EcuMachine, OnHost, Operator};
 
 /// What the ECU was told and what it said, as bytes on its link, and its flash at the end.

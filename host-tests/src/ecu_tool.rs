@@ -1,10 +1,10 @@
 //! A tuning tool on the ECU's bus: as much of XCP as it takes to change a number and keep it.
 
 use anyhow::{Result, ensure};
-use hitch_firmware::can::{ExtendedId, Frame};
-use hitch_firmware::control::calibration_words::{GROUPS, SCALARS_WORD};
-use hitch_firmware::ecu::Contact;
-use hitch_firmware::xcp::map::CALIBRATION_BASE;
+use hitch_ecu::Contact;
+use hitch_protocols::can::{ExtendedId, Frame};
+use hitch_protocols::xcp::map::CALIBRATION_BASE;
+use hitch_quantities::calibration::calibration_words::{GROUPS, SCALARS_WORD};
 use hitch_workbench::ecu::{Bench, EcuMachine};
 
 /// Milliseconds after which an ECU has its address: it waits 250 after its claim.

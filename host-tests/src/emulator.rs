@@ -1,15 +1,15 @@
 //! Runs the firmware's image on an emulated Cortex-M4, from a file to a file.
 
-use std::env;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ExitStatus, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
+use std::{env, fs};
 
 use anyhow::{Context, Result, bail, ensure};
-use hitch_firmware::control::signals::{INPUT_BYTES, OUTPUT_BYTES};
+use hitch_quantities::signals::{INPUT_BYTES, OUTPUT_BYTES};
 use hitch_workbench::ecu::{IMAGE_VARIABLE, Mode, emulator_command};
 
 /// Far longer than any trace takes; an image that hangs must not hang the tests.

@@ -4,8 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use hitch_firmware::ecu::{AdcCode, Contact, Contacts};
-use hitch_plant::Model;
+use hitch_ecu::{AdcCode, Contact, Contacts};
 use hitch_workbench::can_door::CanDoor;
 use hitch_workbench::ecu::{Bench, Bus, EcuMachine, Order};
 

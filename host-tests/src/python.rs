@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, bail};
-use hitch_firmware::crc32::Crc32;
+use hitch_quantities::crc32::Crc32;
 
 /// Runs a command; what it said.
 ///

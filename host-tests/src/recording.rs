@@ -3,13 +3,13 @@
 //! The plant is the dynamic one; its sensors have noise. The script holds moves both ways, reversals, both ends of the
 //! stroke, the button, and every way in which a signal can be missing or absurd.
 
-use hitch_firmware::control::signals::INPUT_BYTES;
-use hitch_firmware::control::units::{
+use hitch_plant::{Currents, HitchRig, Plant, Rig};
+use hitch_quantities::signals::INPUT_BYTES;
+use hitch_quantities::units::{
     Duty, Microsecond, MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond,
     MilliVolt,
 };
-use hitch_firmware::control::{Inputs, Outputs};
-use hitch_plant::{Currents, HitchRig, Model, Plant, Rig};
+use hitch_quantities::{Inputs, Outputs};
 use hitch_workbench::closed_loop::Coil;
 
 use crate::replay;

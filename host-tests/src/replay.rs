@@ -1,7 +1,8 @@
 //! Runs recorded inputs through the controller on the host.
 
-use hitch_firmware::control::signals::{INPUT_BYTES, OUTPUT_BYTES};
-use hitch_firmware::control::{Calibration, Controller, Inputs, Outputs};
+use hitch_controller::Controller;
+use hitch_quantities::signals::{INPUT_BYTES, OUTPUT_BYTES};
+use hitch_quantities::{Calibration, Inputs, Outputs};
 
 /// The controller at power-up, with the nominal calibration: as in the image.
 pub fn controller() -> Controller {

@@ -1,10 +1,10 @@
 //! Teaching a plant's controller, as service does it.
 
+use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_effects::find;
-use hitch_firmware::control::teach::{Taught, TeachError};
-use hitch_firmware::control::units::MilliDegreePerSecond;
-use hitch_firmware::control::{Calibration, Inputs, ValidCalibration};
 use hitch_plant::{AddedEffect, Model};
+use hitch_quantities::units::MilliDegreePerSecond;
+use hitch_quantities::{Calibration, Inputs, ValidCalibration};
 use hitch_workbench::closed_loop::ClosedLoop;
 
 /// The calibration of an untaught machine.

@@ -1,9 +1,9 @@
 //! The controller in closed loop with the dynamic plant, and what a wrong and a right calibration do to it.
 
 use hitch_effects::find;
-use hitch_firmware::control::units::{MicrometrePerSecond, PerMille};
-use hitch_firmware::control::{Calibration, ValidCalibration};
 use hitch_plant::{AddedEffect, Model};
+use hitch_quantities::units::{MicrometrePerSecond, PerMille};
+use hitch_quantities::{Calibration, ValidCalibration};
 use hitch_workbench::calibrate::calibrate;
 use hitch_workbench::calibration_file::with_settings;
 use hitch_workbench::closed_loop::{ClosedLoop, LoopRun, Scenario, run};
@@ -118,7 +118,7 @@ fn near_the_ends_of_travel_it_is_no_worse() {
 fn the_calibration_of_the_nominal_model_is_the_nominal_one() {
     let calibration = calibrated(&hitch_model_file::dynamic());
     for milliampere in 0..3_500 {
-        let current = hitch_firmware::control::units::MilliAmp(milliampere);
+        let current = hitch_quantities::units::MilliAmp(milliampere);
         for (taught, printed) in [
             (&calibration.lift, &nominal().lift),
             (&calibration.lower, &nominal().lower),
@@ -166,7 +166,7 @@ fn a_leaking_lowering_valve_is_corrected_and_then_reported() {
     let mut closed_loop = ClosedLoop::new(&leaking, &nominal(), 150.0, 40.0, 90.0, 7);
     closed_loop.pick_up();
     let fault = (0..200_000).find_map(|_| closed_loop.step(90.0).outputs.fault);
-    assert_eq!(fault, Some(hitch_firmware::control::Fault::Sinking));
+    assert_eq!(fault, Some(hitch_quantities::Fault::Sinking));
 }
 
 /// Time from the lever's drop to the bottom until the hitch is within half a degree of it, s.

@@ -1,10 +1,9 @@
 //! Currents of the valve map become currents in coils: the firmware's regulation on a model of coil and driver.
 
-use hitch_firmware::control::Inputs;
-use hitch_firmware::control::current::Regulation;
-use hitch_firmware::control::design_parameters::CurrentParameters;
-use hitch_firmware::control::safety::CoilCurrents;
-use hitch_firmware::control::units::{MilliAmp, MilliVolt};
+use hitch_control::current::Regulation;
+use hitch_quantities::calibration::design_parameters::CurrentParameters;
+use hitch_quantities::units::{MilliAmp, MilliVolt};
+use hitch_quantities::{CoilCurrents, Inputs};
 use hitch_workbench::closed_loop::Coil;
 
 const PARAMETERS: CurrentParameters = CurrentParameters::NOMINAL;

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p host-tests --bin drive-drawn-hitches` does it with many more.
 
-use hitch_firmware::control::Calibration;
+use hitch_quantities::Calibration;
 use host_tests::drawn_hitches::draw::{Drawn, draw};
 use host_tests::drawn_hitches::figures::{FIGURES, beyond, spread, table, worst};
 use host_tests::drawn_hitches::session::{MoveFigures, drive};

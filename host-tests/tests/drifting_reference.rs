@@ -1,9 +1,9 @@
 //! A converter whose reference drifts, and a sensor supply that drifts, under the whole application in closed loop: the
 //! hitch hardly moves, and it is reported.
 
-use hitch_firmware::control::{Fault, State, ValidCalibration};
-use hitch_firmware::ecu::{AdcCode, Contacts, Samples};
+use hitch_ecu::{AdcCode, Contacts, Samples};
 use hitch_plant::Model;
+use hitch_quantities::{Fault, State, ValidCalibration};
 use hitch_workbench::ecu::{Bench, CutFlash, Moment, OnHost, delivered};
 
 const START_DEG: f64 = 90.0;

@@ -7,7 +7,7 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use hitch_campaign::Campaign;
-use hitch_firmware::storage::CalibrationStore;
+use hitch_protocols::storage::CalibrationStore;
 use hitch_workbench::ecu::CutFlash;
 use host_tests::program::{hitch, run};
 

@@ -5,10 +5,9 @@
 
 use std::time::{Duration, Instant};
 
-use hitch_firmware::control::ValidCalibration;
-use hitch_firmware::ecu::link::{FRAME_BYTES, REPLY_BYTES, Reply};
-use hitch_firmware::storage::{CalibrationStore, Source};
-use hitch_plant::Model;
+use hitch_ecu::link::{FRAME_BYTES, REPLY_BYTES, Reply};
+use hitch_protocols::storage::{CalibrationStore, Source};
+use hitch_quantities::ValidCalibration;
 use hitch_workbench::ecu::{Bench, CALIBRATION_BYTES, CutFlash, Emulator, Mode, delivered};
 use host_tests::{ecu_day, ecu_tool, emulator};
 

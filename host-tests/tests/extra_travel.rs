@@ -1,11 +1,9 @@
 //! How much further a hitch travels for a fault than if both coils had been cut the moment it appeared: measured on
 //! the dynamic plant, both ways, at several loads, in every phase of a long move.
 
-use hitch_firmware::control::units::{
-    Count, Microsecond, MilliAmp, MilliDegree, MilliVolt, PerMille,
-};
-use hitch_firmware::control::{Calibration, Fault, Inputs, Outputs};
 use hitch_plant::{Currents, Model};
+use hitch_quantities::units::{Count, Microsecond, MilliAmp, MilliDegree, MilliVolt, PerMille};
+use hitch_quantities::{Calibration, Fault, Inputs, Outputs};
 use hitch_workbench::closed_loop::{ClosedLoop, Sample};
 
 /// What is done to a hitch in motion.

@@ -1,11 +1,10 @@
 //! A bus gone mad beside a hitch at work: nothing on it changes what the controller does by a bit.
 
 use fastrand::Rng;
-use hitch_firmware::can::{ExtendedId, Frame, StandardId};
-use hitch_firmware::ecu::link::Reply;
-use hitch_firmware::j1939::Pgn;
-use hitch_firmware::xcp::TOOL_ADDRESS;
-use hitch_plant::Model;
+use hitch_ecu::link::Reply;
+use hitch_protocols::can::{ExtendedId, Frame, StandardId};
+use hitch_protocols::j1939::Pgn;
+use hitch_protocols::xcp::TOOL_ADDRESS;
 use hitch_workbench::ecu::{Bench, CutFlash, OnHost, Order};
 
 const ECU: u8 = 0x80;

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use hitch_firmware::control::Calibration;
+use hitch_quantities::Calibration;
 use hitch_workbench::calibration_file;
 use hitch_workbench::ecu::{Bench, CutFlash, OnHost, Order, delivered};
 use host_tests::program::run;

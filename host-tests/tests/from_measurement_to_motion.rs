@@ -1,10 +1,10 @@
 //! The whole way: valves whose curves differ in several ways are measured, explained, calibrated and driven.
 
 use hitch_effects::find;
-use hitch_firmware::control::{Calibration, ValidCalibration};
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::explanation::explain::{Verdict, explain};
-use hitch_plant::{AddedEffect, Model};
+use hitch_plant::AddedEffect;
+use hitch_quantities::{Calibration, ValidCalibration};
 use hitch_workbench::calibrate::calibrate;
 use hitch_workbench::closed_loop::{LoopRun, Scenario, run};
 use host_tests::simulated_lab::campaign;

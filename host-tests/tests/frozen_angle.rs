@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p host-tests --bin freeze-the-angle` does it with many more.
 
-use hitch_firmware::control::Calibration;
+use hitch_quantities::Calibration;
 use host_tests::frozen_angle::freeze::{Case, Cost};
 use host_tests::frozen_angle::healthy::{FalseTrip, first_fault};
 use host_tests::frozen_angle::quantiles::quantiles_deg;

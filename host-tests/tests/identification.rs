@@ -13,7 +13,7 @@ use hitch_identification::data::trace_cache::CurrentShift;
 use hitch_identification::explanation::explain::{Verdict, explain};
 use hitch_identification::selection::evidence::variance_inflation;
 use hitch_plant::simulation::Trace;
-use hitch_plant::{AddedEffect, Channel, Currents, Model};
+use hitch_plant::{AddedEffect, Channel, Currents};
 
 /// Standard normal numbers (Box & Muller).
 fn normal(rng: &mut Rng) -> f64 {

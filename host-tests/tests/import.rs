@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use hitch_campaign::{Campaign, Run};
-use hitch_plant::{Channel, Linkage, Model};
+use hitch_plant::{Channel, Linkage};
 use host_tests::program::run;
 use host_tests::python;
 use host_tests::python::{installed, scripts};

@@ -1,9 +1,9 @@
 //! Power cuts lose no calibration and move no hitch, whenever they come.
 
 use fastrand::Rng;
-use hitch_firmware::control::{State, ValidCalibration};
-use hitch_firmware::storage::{CalibrationStore, Source};
 use hitch_plant::Model;
+use hitch_protocols::storage::{CalibrationStore, Source};
+use hitch_quantities::{State, ValidCalibration};
 use hitch_workbench::ecu::{Bench, CutFlash, OnHost, delivered};
 use host_tests::ecu_tool;
 

@@ -2,9 +2,9 @@
 //! temperature, both ways, with sensors of pressure and without, on plants as they are met, taught by the firmware
 //! itself.
 
-use hitch_firmware::control::units::MilliDegreePerSecond;
-use hitch_firmware::control::{Inputs, ValidCalibration};
 use hitch_plant::Model;
+use hitch_quantities::units::MilliDegreePerSecond;
+use hitch_quantities::{Inputs, ValidCalibration};
 use hitch_workbench::closed_loop::ClosedLoop;
 use host_tests::teaching::{taught_calibration, typical};
 use rayon::prelude::*;

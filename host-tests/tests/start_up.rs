@@ -1,10 +1,10 @@
 //! From power-up on the line that enables the coils' drivers is low until the operator has picked the hitch up,
 //! whatever else goes on.
 
-use hitch_firmware::can::{ExtendedId, Frame};
-use hitch_firmware::control::{State, ValidCalibration};
-use hitch_firmware::ecu::{Contact, Panel};
+use hitch_ecu::{Contact, Panel};
 use hitch_plant::Model;
+use hitch_protocols::can::{ExtendedId, Frame};
+use hitch_quantities::{State, ValidCalibration};
 use hitch_workbench::ecu::{Bench, CutFlash, Moment, OnHost, delivered};
 
 const START_DEG: f64 = 90.0;

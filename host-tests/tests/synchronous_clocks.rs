@@ -6,7 +6,7 @@ use std::path::Path;
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::explanation::explain::{Explanation, Verdict, explain};
-use hitch_plant::{Channel, Model};
+use hitch_plant::Channel;
 
 /// The clean campaign with its angle a sample late, explained.
 fn explained(synchronous: bool) -> Explanation {

@@ -1,9 +1,9 @@
 //! The firmware teaches itself thresholds and ends on plants whose valves and sensors are off.
 
-use hitch_firmware::control::teach::{Taught, TeachError};
-use hitch_firmware::control::units::MilliDegree;
-use hitch_firmware::control::{Inputs, State};
+use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_plant::Model;
+use hitch_quantities::units::MilliDegree;
+use hitch_quantities::{Inputs, State};
 use hitch_workbench::closed_loop::{ClosedLoop, LoopRun, Scenario, run};
 use host_tests::teaching::{dynamic_with, nominal, teach as taught, teach_with as taught_with};
 

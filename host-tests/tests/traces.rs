@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use hitch_firmware::control::{Inputs, Outputs};
+use hitch_quantities::{Inputs, Outputs};
 use host_tests::{replay, trace};
 
 fn names(outputs: &[Outputs]) -> (BTreeSet<&'static str>, BTreeSet<&'static str>) {

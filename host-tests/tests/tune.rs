@@ -87,7 +87,7 @@ fn a_value_set_by_hand_is_left_alone_by_the_search() {
         line.unwrap().rsplit(' ').next().unwrap().to_owned()
     };
     assert_eq!(value("creep_speed"), "9.0");
-    let nominal = hitch_firmware::control::Calibration::nominal();
+    let nominal = hitch_quantities::Calibration::nominal();
     let searched = value("approach_gain").parse::<f64>().unwrap();
     assert_ne!(searched, f64::from(nominal.position.approach_gain.0));
     // The reason is that of the default.

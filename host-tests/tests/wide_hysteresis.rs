@@ -2,7 +2,7 @@
 //!
 //! The machines are the second rig's: no dither takes their hysteresis away.
 
-use hitch_firmware::control::{Calibration, ValidCalibration};
+use hitch_quantities::{Calibration, ValidCalibration};
 use host_tests::drawn_hitches::draw::{Drawn, draw};
 use host_tests::drawn_hitches::figures::{FIGURES, beyond, spread, table, worst};
 use host_tests::drawn_hitches::session::{MoveFigures, drive};

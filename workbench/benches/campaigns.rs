@@ -9,12 +9,11 @@ use std::time::Duration;
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use hitch_campaign::Campaign;
-use hitch_effects;
 use hitch_identification::data::clocks::Clocks;
 use hitch_identification::data::experiment::{Experiment, Nuisance, ReadyRun};
 use hitch_identification::data::trace_cache::CurrentShift;
 use hitch_identification::explanation::explain::explain;
-use hitch_plant::{AddedEffect, Channel, Model};
+use hitch_plant::{AddedEffect, Channel};
 use hitch_workbench::demonstration;
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
@@ -33,7 +32,7 @@ fn lab(name: &str) -> Campaign {
 /// A lab campaign measured on a rig that is the dynamic plant with Coulomb friction: the currents and instruments of a
 /// measured one, always the same noise.
 fn measured_on_a_dynamic_rig() -> Campaign {
-    let friction = effects::find("coulomb-friction").expect("the effect is in the catalogue");
+    let friction = hitch_effects::find("coulomb-friction").expect("the effect is in the catalogue");
     let rig = hitch_model_file::dynamic().with_effects(vec![AddedEffect::typical(friction)]);
     let mut campaign = lab("clean-dynamic");
     let experiment = Experiment::new(&campaign, &rig);

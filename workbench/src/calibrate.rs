@@ -1,14 +1,14 @@
 //! From an identified model to the firmware's calibration.
 
-use hitch_firmware::control::calibration::{Calibration, CalibrationError};
-use hitch_firmware::control::linkage::LINKAGE_POINTS;
-use hitch_firmware::control::units::{
-    MicroLitrePerSecond, Micrometre, MilliAmp, MilliBar, MilliDegree, Millisecond, SquareMillimetre,
-};
-use hitch_firmware::control::valve_map::{VALVE_POINTS, ValvePoint, ValveTable};
-use hitch_firmware::control::{Controller, ValidCalibration};
+use hitch_controller::Controller;
 use hitch_plant::units::{bar_from_pa, lpm_from_m3_s, m3_s_from_lpm};
 use hitch_plant::{Dynamics, Model, Valve};
+use hitch_quantities::calibration::linkage::LINKAGE_POINTS;
+use hitch_quantities::calibration::valve_table::{VALVE_POINTS, ValvePoint, ValveTable};
+use hitch_quantities::units::{
+    MicroLitrePerSecond, Micrometre, MilliAmp, MilliBar, MilliDegree, Millisecond, SquareMillimetre,
+};
+use hitch_quantities::{Calibration, CalibrationError, ValidCalibration};
 
 use crate::valve_survey::{CurvePoint, LOWERING_PORT_BAR, survey};
 

@@ -23,14 +23,14 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use hitch_firmware::control::calibration::{Calibration, CalibrationError, ValidCalibration};
-use hitch_firmware::control::linkage::LINKAGE_POINTS;
-use hitch_firmware::control::parameter::{ParameterGroup, ParameterInfo};
-use hitch_firmware::control::units::{MicroLitrePerSecond, Micrometre, MilliAmp, MilliDegree};
-use hitch_firmware::control::valve_map::{VALVE_POINTS, ValvePoint, ValveTable};
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 use hitch_input::toml_reader::TomlTable;
+use hitch_quantities::calibration::linkage::LINKAGE_POINTS;
+use hitch_quantities::calibration::parameter::{ParameterGroup, ParameterInfo};
+use hitch_quantities::calibration::valve_table::{VALVE_POINTS, ValvePoint, ValveTable};
+use hitch_quantities::units::{MicroLitrePerSecond, Micrometre, MilliAmp, MilliDegree};
+use hitch_quantities::{Calibration, CalibrationError, ValidCalibration};
 
 /// Version of the file format.
 const FORMAT: f64 = 1.0;

@@ -3,11 +3,12 @@
 //!
 //! It is one bus: what a connection sends reaches the ECU and all other connections. Nothing here waits.
 
-use std::io::{self, ErrorKind, Read, Write};
+use std::io;
+use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream, ToSocketAddrs};
 
-use hitch_firmware::can::Frame;
-use hitch_firmware::can::slcan::{Adapter, encode};
+use hitch_protocols::can::Frame;
+use hitch_protocols::can::slcan::{Adapter, encode};
 
 /// Connections at a time; more have to wait.
 const MOST_CONNECTIONS: usize = 8;
@@ -168,7 +169,7 @@ fn is_harmless(error: &io::Error) -> bool {
 mod tests {
     use std::time::{Duration, Instant};
 
-    use hitch_firmware::can::ExtendedId;
+    use hitch_protocols::can::ExtendedId;
 
     use super::*;
 

@@ -1,12 +1,12 @@
 //! Lines of CSV from a running plant, turned into the controller's inputs.
 
-use hitch_firmware::control::units::{
+use hitch_input::input_error::quote;
+use hitch_input::naming::{offer_names, unknown_name};
+use hitch_quantities::units::{
     MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt, PerMille,
     RevolutionPerMinute,
 };
-use hitch_firmware::control::{Inputs, Switches};
-use hitch_input::input_error::quote;
-use hitch_input::naming::{offer_names, unknown_name};
+use hitch_quantities::{Inputs, Switches};
 
 /// Columns that have to be there.
 const NEEDED: [&str; 3] = ["time_s", "lever_deg", "rocker_angle_deg"];

@@ -1,8 +1,7 @@
 //! The valve map rebuilt from an identified model, and what the closed loop gains by it.
 
-use hitch_firmware::control::ValidCalibration;
-use hitch_firmware::control::calibration::Calibration;
 use hitch_plant::Model;
+use hitch_quantities::{Calibration, ValidCalibration};
 
 use crate::calibrate::calibrate;
 use crate::closed_loop;

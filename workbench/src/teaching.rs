@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use hitch_firmware::control::teach::{Taught, TeachError};
-use hitch_firmware::control::{Controller, State};
+use hitch_control::commissioning::teach::{Taught, TeachError};
+use hitch_controller::Controller;
+use hitch_quantities::State;
 
-use crate::calibration_file;
 use crate::error::Error;
-use crate::output;
+use crate::{calibration_file, output};
 
 /// Watches whether the machine has been taught.
 #[derive(Debug, Default)]

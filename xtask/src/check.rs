@@ -1,15 +1,16 @@
-//! Formatting, lints and documentation, with warnings denied.
+//! Formatting, the order of folders, lints and documentation, with warnings denied.
 
 use anyhow::Result;
 
 use crate::toolchain::Way;
-use crate::{image, process, setup, workspace};
+use crate::{image, layers, process, setup, workspace};
 
 /// Runs all checks; the first that fails ends it.
 pub fn run(way: Option<Way>) -> Result<()> {
     let cargo =
         |arguments: &[&str]| process::run(&mut process::command(workspace::cargo(), arguments));
     cargo(&["fmt", "--all", "--check"])?;
+    layers::check()?;
     cargo(&[
         "clippy",
         "--locked",
@@ -36,7 +37,7 @@ fn lint_images(way: Way) -> Result<()> {
     for feature in std::iter::once("emulated").chain(image::PARTS) {
         let mut command = way.cargo(subcommand)?;
         command
-            .args(["--package", "hitch-firmware", "--lib", "--bins"])
+            .args(["--package", "hitch-ecu", "--lib", "--bins"])
             .args(["--features", feature]);
         process::run(command.env("RUSTFLAGS", "--deny warnings"))?;
     }

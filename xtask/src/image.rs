@@ -24,7 +24,7 @@ pub struct Emulated {
     pub stack: Bound,
 }
 
-/// Builds the control layer as the ECU takes it, proves that it can't panic, builds all images and holds them to their
+/// Builds the library as the ECU takes it, proves that it can't panic, builds all images and holds them to their
 /// budgets.
 pub fn build_all(way: Way) -> Result<Emulated> {
     let folder = folder(way);
@@ -113,7 +113,7 @@ fn build(way: Way, what: &[&str]) -> Result<()> {
     let mut command = way.cargo("build")?;
     process::run(
         command
-            .args(["--package", "hitch-firmware", "--profile", PROFILE])
+            .args(["--package", "hitch-ecu", "--profile", PROFILE])
             .args(what),
     )
 }

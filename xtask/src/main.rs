@@ -5,6 +5,7 @@ mod budget;
 mod check;
 mod coverage;
 mod image;
+mod layers;
 mod mutants;
 mod process;
 mod programming;
@@ -26,7 +27,7 @@ const USAGE: &str = "\
 usage: cargo xtask <task> [--arm rustup|debian]
 
   test    set up what is missing, build the ARM images, run every test, say how many passed
-  check   formatting, clippy and rustdoc, with warnings denied
+  check   formatting, the order of folders, clippy and rustdoc, with warnings denied
   ci      check, coverage, mutants, then test
   arm     build the ARM images, say how large they are, and hold them to their budgets
   sizes   write down how large the images are and how deep their stacks get, in firmware/sizes.txt

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use crc::{CRC_64_XZ, Crc};
-use hitch_firmware::control::design_parameters::{
+use hitch_quantities::calibration::design_parameters::{
     PositionParameters, SafetyParameters, SensorParameters,
 };
 
@@ -23,10 +23,13 @@ struct Part {
     changed: &'static [&'static str],
     /// What else decides whether a change is noticed, its tests included.
     decides: &'static [&'static str],
-    /// Tests of the package `hitch-firmware`, as options of cargo.
+    /// The packages that are changed.
+    packages: &'static [&'static str],
+    /// The package whose tests have to notice.
+    tested: &'static str,
+    /// Its tests, as options of cargo.
     tests: &'static [&'static str],
-    /// Tests that are left out: random ones whose steps would take most of the time, and those of the whole controller,
-    /// for much more decides about them than the part.
+    /// Tests that are left out: random ones whose steps would take most of the time.
     skipped: Option<&'static str>,
     /// A change to this function makes a loop endless, which the tests notice by their time, and on the ECU the watchdog.
     looping: Option<&'static str>,
@@ -40,71 +43,84 @@ const SAFETY: &str = "safety";
 const PARTS: [Part; 4] = [
     Part {
         name: "storage",
-        changed: &["firmware/src/storage/store.rs"],
+        changed: &["firmware/protocols/src/storage/store.rs"],
         decides: &[
-            "firmware/src/storage",
-            "firmware/src/control/calibration_words.rs",
-            "firmware/src/crc32.rs",
-            "firmware/tests/storage",
+            "firmware/protocols/src/storage",
+            "firmware/quantities/src/calibration/calibration_words.rs",
+            "firmware/quantities/src/crc32.rs",
+            "firmware/protocols/tests/storage",
         ],
+        packages: &["hitch-protocols"],
+        tested: "hitch-protocols",
         tests: &["--test=storage"],
         skipped: None,
         looping: Some("Reader<'_, F>::entries"),
     },
     Part {
         name: "remote",
-        changed: &["firmware/src/j1939/remote.rs"],
+        changed: &["firmware/protocols/src/j1939/remote.rs"],
         decides: &[
-            "firmware/src/j1939/hitch.rs",
-            "firmware/src/j1939/node.rs",
-            "firmware/src/j1939/remote.rs",
-            "firmware/src/j1939/time.rs",
-            "firmware/tests/j1939",
+            "firmware/protocols/src/j1939/hitch.rs",
+            "firmware/protocols/src/j1939/node.rs",
+            "firmware/protocols/src/j1939/remote.rs",
+            "firmware/protocols/src/j1939/time.rs",
+            "firmware/protocols/tests/j1939",
         ],
+        packages: &["hitch-protocols"],
+        tested: "hitch-protocols",
         tests: &["--test=j1939"],
         skipped: None,
         looping: None,
     },
     Part {
         name: POSITION,
-        changed: &["firmware/src/control/position.rs"],
+        changed: &["firmware/control/src/motion/position.rs"],
         decides: &[
-            "firmware/src/control/closing.rs",
-            "firmware/src/control/drop_scale.rs",
-            "firmware/src/control/fixed.rs",
-            "firmware/src/control/motion.rs",
-            "firmware/src/control/position.rs",
-            "firmware/src/control/units.rs",
-            "firmware/src/control/valve_logic.rs",
-            "firmware/tests/position.rs",
+            "firmware/control/src/valve/closing.rs",
+            "firmware/control/src/valve/drop_scale.rs",
+            "firmware/quantities/src/fixed.rs",
+            "firmware/control/src/estimation/motion.rs",
+            "firmware/control/src/motion/position.rs",
+            "firmware/quantities/src/units.rs",
+            "firmware/control/src/valve/phase.rs",
+            "firmware/quantities/src/piston.rs",
+            "firmware/control/tests/position.rs",
         ],
+        packages: &["hitch-control"],
+        tested: "hitch-control",
         tests: &["--lib", "--test=position"],
-        skipped: Some("controller::damage::"),
+        skipped: None,
         looping: None,
     },
     Part {
         name: SAFETY,
         changed: &[
-            "firmware/src/control/safety/angle.rs",
-            "firmware/src/control/safety/arming.rs",
-            "firmware/src/control/safety/coils.rs",
-            "firmware/src/control/safety/command.rs",
-            "firmware/src/control/safety/following.rs",
-            "firmware/src/control/safety/measuring.rs",
-            "firmware/src/control/safety/mod.rs",
-            "firmware/src/control/safety/rows.rs",
-            "firmware/src/control/safety/supply.rs",
-            "firmware/src/control/safety/tremble.rs",
+            "firmware/safety/src/angle.rs",
+            "firmware/safety/src/arming.rs",
+            "firmware/safety/src/coils.rs",
+            "firmware/safety/src/command.rs",
+            "firmware/safety/src/following.rs",
+            "firmware/safety/src/measuring.rs",
+            "firmware/safety/src/lib.rs",
+            "firmware/safety/src/rows.rs",
+            "firmware/safety/src/supply.rs",
+            "firmware/safety/src/tremble.rs",
+            "firmware/quantities/src/signals/trip.rs",
         ],
         decides: &[
-            "firmware/src/control/safety",
-            "firmware/src/control/linkage.rs",
-            "firmware/src/control/mode.rs",
-            "firmware/src/control/signals.rs",
-            "firmware/src/control/units.rs",
-            "firmware/src/control/valve_map.rs",
-            "firmware/tests/envelope",
+            "firmware/safety/src",
+            "firmware/quantities/src/calibration/linkage.rs",
+            "firmware/quantities/src/calibration/valve_table.rs",
+            "firmware/quantities/src/piston.rs",
+            "firmware/quantities/src/signals/fault.rs",
+            "firmware/quantities/src/signals/coils.rs",
+            "firmware/quantities/src/signals/mod.rs",
+            "firmware/quantities/src/signals/trip.rs",
+            "firmware/quantities/src/units.rs",
+            "firmware/safety/tests/envelope",
         ],
+        packages: &["hitch-safety", "hitch-quantities"],
+        tested: "hitch-safety",
         tests: &["--test=envelope"],
         skipped: Some("any_inputs::"),
         looping: Some("Debounce::judge"),
@@ -219,7 +235,8 @@ impl Part {
         let mut command = process::command(program()?, &["mutants", "--no-config"]);
         command
             .args(["--jobs", JOBS, "--minimum-test-timeout", TEST_TIME])
-            .args(["--package", "hitch-firmware"])
+            .args(self.packages.iter().flat_map(|name| ["--package", name]))
+            .args(["--test-package", self.tested])
             .args(self.changed.iter().flat_map(|file| ["--file", file]))
             .args(self.tests.iter().map(|test| format!("--cargo-arg={test}")))
             .arg("--output")

@@ -1,4 +1,4 @@
-//! The checksum that a board's image carries of itself (see `firmware/src/bin/ecu/board/image_check.rs`).
+//! The checksum that a board's image carries of itself (see `firmware/ecu/src/bin/ecu/board/image_check.rs`).
 
 use std::fs;
 use std::path::Path;

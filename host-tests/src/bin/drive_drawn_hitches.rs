@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use clap::Parser;
-use hitch_firmware::control::{Calibration, ValidCalibration};
+use hitch_quantities::{Calibration, ValidCalibration};
 use host_tests::drawn_hitches::draw::{Drawn, draw};
 use host_tests::drawn_hitches::figures::{table, worst};
 use host_tests::drawn_hitches::session::{MoveFigures, drive, drive_watched};

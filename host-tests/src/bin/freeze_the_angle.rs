@@ -1,7 +1,7 @@
 //! Freezes the angle sensor of drawn machines at random instants, and drives healthy ones for hours.
 
 use clap::Parser;
-use hitch_firmware::control::Calibration;
+use hitch_quantities::Calibration;
 use host_tests::frozen_angle::freeze::{Case, Cost, Kind};
 use host_tests::frozen_angle::healthy::{FalseTrip, MACHINE_MS, first_fault, first_fault_watched};
 use host_tests::frozen_angle::quantiles::quantiles_deg;

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use embedded_can::{ExtendedId, Id, StandardId};
-use hitch_firmware::can::Frame;
+use hitch_protocols::can::Frame;
 
 use super::part::{CAN, FDCAN_RAM, Part};
 use super::registers::Registers;

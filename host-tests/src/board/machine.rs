@@ -5,9 +5,9 @@ use std::io;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
-use hitch_firmware::can::Frame;
-use hitch_firmware::ecu::link::Reply;
-use hitch_firmware::ecu::{Contacts, Samples};
+use hitch_ecu::link::Reply;
+use hitch_ecu::{Contacts, Samples};
+use hitch_protocols::can::Frame;
 use hitch_workbench::ecu::{EcuMachine, MachineError};
 
 use super::chip::{Chip, Stop};

@@ -1,9 +1,9 @@
 //! One machine from power-up on: the hitch is picked up, moved, and watched for a minute.
 
-use hitch_firmware::control::safety::Trip;
-use hitch_firmware::control::teach::{Taught, TeachError};
-use hitch_firmware::control::units::{MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliVolt};
-use hitch_firmware::control::{Controller, Fault, Inputs, ValidCalibration};
+use hitch_control::commissioning::teach::{Taught, TeachError};
+use hitch_controller::Controller;
+use hitch_quantities::units::{MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliVolt};
+use hitch_quantities::{Fault, Inputs, Trip, ValidCalibration};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;

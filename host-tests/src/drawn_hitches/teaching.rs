@@ -1,8 +1,8 @@
 //! The firmware teaches itself a drawn machine, as service does it.
 
-use hitch_firmware::control::ValidCalibration;
-use hitch_firmware::control::teach::TeachError;
-use hitch_firmware::control::units::MilliDegreePerSecond;
+use hitch_control::commissioning::teach::TeachError;
+use hitch_quantities::ValidCalibration;
+use hitch_quantities::units::MilliDegreePerSecond;
 
 use super::draw::Drawn;
 use super::session::Session;

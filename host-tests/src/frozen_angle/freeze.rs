@@ -1,8 +1,7 @@
 //! One freeze: a drawn machine, a move, and the instant at which its angle sensor freezes.
 
-use hitch_firmware::control::safety::Trip;
-use hitch_firmware::control::units::MilliDegree;
-use hitch_firmware::control::{Fault, ValidCalibration};
+use hitch_quantities::units::MilliDegree;
+use hitch_quantities::{Fault, Trip, ValidCalibration};
 use rand::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;

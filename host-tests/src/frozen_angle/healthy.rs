@@ -1,9 +1,8 @@
 //! Machines with good sensors that do what looks like a frozen one: they stick, creep, are corrected, land on the
 //! ground and run into their end stops.
 
-use hitch_firmware::control::safety::Trip;
-use hitch_firmware::control::units::{MilliDegree, PerMille};
-use hitch_firmware::control::{Fault, ValidCalibration};
+use hitch_quantities::units::{MilliDegree, PerMille};
+use hitch_quantities::{Fault, Trip, ValidCalibration};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 

@@ -4,7 +4,7 @@
 mod rig;
 
 use differential_equations::prelude::{IVP, ImplicitRungeKutta};
-use hitch_plant::{Currents, HitchRig, Model, Plant};
+use hitch_plant::{Currents, HitchRig, Plant};
 use rig::{Rig, State, linkage};
 
 /// The logger's rate, and so the longest step that the plant is asked for.

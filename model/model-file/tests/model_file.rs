@@ -6,7 +6,7 @@ use hitch_effects::expression::{ParameterDefinition, TermDefinition};
 use hitch_effects::{CATALOGUE, TermEffect, available};
 use hitch_model_file::to_toml;
 use hitch_plant::hooks::signals::Signals;
-use hitch_plant::{AddedEffect, Effect, Model, Place, full_name};
+use hitch_plant::{AddedEffect, Model, Place, full_name};
 use proptest::prelude::*;
 use tempfile::TempDir;
 
@@ -314,7 +314,9 @@ fn a_term_acts_in_si_from_values_in_its_units() {
         travel_m: 0.011,
         ..Signals::default()
     };
-    let cushion = TermEffect::of(model.terms[0]).unwrap().function(&[0.4, 22.0]);
+    let cushion = TermEffect::of(model.terms[0])
+        .unwrap()
+        .function(&[0.4, 22.0]);
     assert!((cushion(&signals) + 0.2).abs() < 1e-15);
 }
 

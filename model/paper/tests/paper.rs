@@ -1,7 +1,7 @@
 //! What the paper says of lifting and lowering times (section 4.3, Figure 12), of both starting points.
 
 use hitch_paper::travel_time::panel;
-use hitch_plant::{Model, Valve};
+use hitch_plant::Valve;
 
 #[test]
 fn lifting_time_does_not_depend_on_load() {

@@ -2,7 +2,7 @@
 
 use hitch_effects::find;
 use hitch_plant::units::{bar_from_pa, lpm_from_m3_s, pa_from_bar};
-use hitch_plant::{AddedEffect, Currents, HitchRig, Model, Plant, Rig};
+use hitch_plant::{AddedEffect, Currents, HitchRig, Plant, Rig};
 use proptest::prelude::*;
 
 const STEP_S: f64 = 0.002;

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use hitch_firmware::control::calibration::Calibration;
-use hitch_firmware::control::parameter::ParameterInfo;
+use hitch_quantities::Calibration;
+use hitch_quantities::calibration::parameter::ParameterInfo;
 
 use super::key;
 use super::setting::visit_scalars;

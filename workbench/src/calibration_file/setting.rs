@@ -1,9 +1,9 @@
 //! Single scalars of a calibration by name, as on a command line: `position.approach_gain=30`.
 
-use hitch_firmware::control::calibration::{Calibration, ValidCalibration};
-use hitch_firmware::control::parameter::{ParameterGroup, ParameterInfo};
 use hitch_input::input_error::{InputError, quote};
 use hitch_input::naming::offer_names;
+use hitch_quantities::calibration::parameter::{ParameterGroup, ParameterInfo};
+use hitch_quantities::{Calibration, ValidCalibration};
 
 use super::{is_exact, key, objection};
 

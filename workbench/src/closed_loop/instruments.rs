@@ -1,8 +1,8 @@
 //! Sensors and current driver as a tractor has them: noisy, quantised, the same for the same seed.
 
-use hitch_firmware::control::Inputs;
-use hitch_firmware::control::units::{MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliVolt};
 use hitch_plant::{Currents, Reading};
+use hitch_quantities::Inputs;
+use hitch_quantities::units::{MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliVolt};
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64Mcg;

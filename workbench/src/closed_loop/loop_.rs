@@ -1,8 +1,9 @@
 //! One hitch with its controller, a millisecond at a time.
 
-use hitch_firmware::control::units::Duty;
-use hitch_firmware::control::{Controller, Inputs, Outputs, ValidCalibration};
+use hitch_controller::Controller;
 use hitch_plant::{Currents, Model};
+use hitch_quantities::units::Duty;
+use hitch_quantities::{Inputs, Outputs, ValidCalibration};
 
 use super::driven_plant::DrivenPlant;
 use super::instruments::Instruments;

@@ -1,7 +1,7 @@
 //! Drives moves and judges them, on all cores.
 
-use hitch_firmware::control::ValidCalibration;
 use hitch_plant::Model;
+use hitch_quantities::ValidCalibration;
 use rayon::prelude::*;
 
 use super::ideal_ramp::IdealRamp;

@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use hitch_firmware::control::calibration::Calibration;
-use hitch_firmware::control::valve_map::ValveTable;
-use hitch_plant::Model;
+use hitch_quantities::Calibration;
+use hitch_quantities::calibration::valve_table::ValveTable;
 
 use super::loop_::read_files;
 use crate::calibrate::calibrate;

@@ -4,8 +4,9 @@ use std::io;
 use std::io::{BufRead, Write};
 use std::path::{Path, PathBuf};
 
-use hitch_firmware::control::{Controller, Outputs, State};
+use hitch_controller::Controller;
 use hitch_input::input_error::{InputError, Place};
+use hitch_quantities::{Outputs, State};
 
 use super::loop_::calibration;
 use crate::error::Error;

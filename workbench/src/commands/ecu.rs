@@ -9,8 +9,8 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::{Duration, Instant};
 use std::{io, thread};
 
-use hitch_firmware::can::Frame;
 use hitch_plant::Model;
+use hitch_protocols::can::Frame;
 
 use super::loop_::{calibration, load_kg};
 use crate::can_door::CanDoor;

@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use hitch_firmware::control::ValidCalibration;
-use hitch_plant::Model;
+use hitch_quantities::ValidCalibration;
 use serde::Serialize;
 
 use crate::closed_loop::{MoveResult, Scenario, Summary};
@@ -117,7 +116,7 @@ pub fn changed(
 pub fn calibration(path: Option<&PathBuf>) -> Result<ValidCalibration, Error> {
     match path {
         Some(path) => Ok(calibration_file::read(path)?),
-        None => hitch_firmware::control::Calibration::nominal()
+        None => hitch_quantities::Calibration::nominal()
             .validate()
             .map_err(|error| {
                 Error::Failed(format!("the nominal calibration is refused: {error:?}"))

@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use hitch_firmware::control::Calibration;
-use hitch_plant::Model;
+use hitch_quantities::Calibration;
 
 use crate::calibrate::calibrate;
 use crate::closed_loop::{Scenario, Summary};

@@ -1,10 +1,10 @@
 //! The hitch that the ECU sits on: plant, coils, drivers, sensors and operator.
 
-use hitch_firmware::can::Frame;
-use hitch_firmware::control::units::PerMille;
-use hitch_firmware::ecu::link::Reply;
-use hitch_firmware::ecu::{BoardScaling, Contacts};
+use hitch_ecu::link::Reply;
+use hitch_ecu::{BoardScaling, Contacts};
 use hitch_plant::Model;
+use hitch_protocols::can::Frame;
+use hitch_quantities::units::PerMille;
 
 use super::converters::{Converters, Signals};
 use super::machine::{EcuMachine, MachineError};

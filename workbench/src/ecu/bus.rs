@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use hitch_firmware::can::Frame;
+use hitch_protocols::can::Frame;
 
 use crate::can_door::CanDoor;
 

@@ -1,6 +1,6 @@
 //! From quantities to the converters' codes, with the noise that sensors and wires add.
 
-use hitch_firmware::ecu::{AdcCode, BoardScaling, Samples};
+use hitch_ecu::{AdcCode, BoardScaling, Samples};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
@@ -94,7 +94,7 @@ fn code(share: f64) -> AdcCode {
 
 #[cfg(test)]
 mod tests {
-    use hitch_firmware::ecu::Conversion;
+    use hitch_ecu::Conversion;
 
     use super::*;
 

@@ -6,11 +6,11 @@ use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
 use std::thread;
 use std::time::Duration;
 
-use hitch_firmware::can::Frame;
-use hitch_firmware::ecu::Contacts;
-use hitch_firmware::ecu::link::{
+use hitch_ecu::Contacts;
+use hitch_ecu::link::{
     FRAME_BYTES, MOST_FRAMES, REPLY_BYTES, Reply, Request, frame_from_bytes, frame_to_bytes,
 };
+use hitch_protocols::can::Frame;
 
 use super::machine::{EcuMachine, MachineError};
 

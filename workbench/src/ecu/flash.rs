@@ -7,9 +7,9 @@ use std::rc::Rc;
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
-use hitch_firmware::control::ValidCalibration;
-use hitch_firmware::ecu::FlashRegions;
-use hitch_firmware::storage::CalibrationStore;
+use hitch_ecu::FlashRegions;
+use hitch_protocols::storage::CalibrationStore;
+use hitch_quantities::ValidCalibration;
 
 /// Size of the emulated ECU's flash: two copies of the calibration, then two pages of the log of faults.
 pub const FLASH_BYTES: usize = CALIBRATION_BYTES + 2 * PAGE_BYTES;

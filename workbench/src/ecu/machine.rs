@@ -2,9 +2,9 @@
 
 use std::io;
 
-use hitch_firmware::can::Frame;
-use hitch_firmware::ecu::link::Reply;
-use hitch_firmware::ecu::{BoardScaling, Contacts, Machine};
+use hitch_ecu::link::Reply;
+use hitch_ecu::{BoardScaling, Contacts, Machine};
+use hitch_protocols::can::Frame;
 
 use super::flash::CutFlash;
 

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use hitch_firmware::ecu::{Contact, Panel};
+use hitch_ecu::{Contact, Panel};
 
 /// A hand moves the lever this fast, degree a second.
 const HAND_DEG_PER_S: f64 = 60.0;

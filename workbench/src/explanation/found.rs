@@ -102,7 +102,7 @@ impl Explained {
         experiment: &Experiment,
         model: &Model,
         options: Options<'_>,
-        progress: Progress<'_>,
+        progress: hitch_identification::Progress<'_>,
     ) -> Self {
         let explanation = explain::explain_with(experiment, model, options, progress);
         let suggestion = (!options.is_over()).then(|| {

@@ -1,5 +1,6 @@
 //! The rebuilt valve map and the closed loop with it, as sections of a report.
-use hitch_firmware::control::valve_map::ValveTable;
+
+use hitch_quantities::calibration::valve_table::ValveTable;
 use maud::{Markup, html};
 
 use super::chart::{Chart, Line, Stroke, legend};
@@ -32,7 +33,7 @@ pub fn sections(rebuild: &Rebuild) -> Markup {
 
 fn map(caption: &str, nominal: &ValveTable, rebuilt: &ValveTable) -> Markup {
     let points = |table: &ValveTable| -> (Vec<f64>, Vec<f64>) {
-        let point = |point: &hitch_firmware::control::valve_map::ValvePoint| {
+        let point = |point: &hitch_quantities::calibration::valve_table::ValvePoint| {
             (
                 f64::from(point.current.0) * 1e-3,
                 f64::from(point.flow.0) * LPM_PER_UL_S,

@@ -11,7 +11,7 @@ use hitch_identification::residuals::whitening::Weights;
 use hitch_identification::search::single::try_effects;
 use hitch_identification::search::subset::Options;
 use hitch_identification::selection::hold_out::held_out;
-use hitch_identification::suggestion::{Suggestion, suggest};
+use hitch_identification::suggestion::Suggestion;
 use hitch_plant::{AddedEffect, Effect, Model, full_name};
 use serde::Deserialize;
 

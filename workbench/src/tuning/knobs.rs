@@ -1,6 +1,6 @@
 //! What may be turned, and by how much.
 
-use hitch_firmware::control::{Calibration, ValidCalibration};
+use hitch_quantities::{Calibration, ValidCalibration};
 
 use super::Change;
 use crate::calibration_file::{scalar, set};

@@ -10,8 +10,8 @@ mod knobs;
 
 use cmaes::{CMAESOptions, DVector};
 use hitch_effects::find;
-use hitch_firmware::control::{Calibration, ValidCalibration};
 use hitch_plant::{AddedEffect, Model};
+use hitch_quantities::{Calibration, ValidCalibration};
 use knobs::{Least, with_values, without};
 
 use crate::closed_loop::{Course, Move, MoveResult, Summary, courses, figures};

@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use hitch_firmware::control::ValidCalibration;
-use hitch_firmware::control::calibration_words::word_range;
-use hitch_firmware::xcp::map::CALIBRATION_BASE;
+use hitch_protocols::xcp::map::CALIBRATION_BASE;
+use hitch_quantities::ValidCalibration;
+use hitch_quantities::calibration::calibration_words::word_range;
 
 use super::session::{Session, ToolError};
 
@@ -81,7 +81,7 @@ fn write_word(session: &mut Session, index: usize, value: i32) -> Result<(), Too
 fn words(session: &mut Session) -> Result<Vec<i32>, ToolError> {
     let bytes = session.read(
         CALIBRATION_BASE,
-        hitch_firmware::control::calibration::CALIBRATION_BYTES,
+        hitch_quantities::calibration::CALIBRATION_BYTES,
     )?;
     let (words, _) = bytes.as_chunks::<WORD_BYTES>();
     Ok(words.iter().map(|word| i32::from_le_bytes(*word)).collect())

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use hitch_firmware::xcp::map::{MEASUREMENT_BASE, SLOT_BYTES};
-use hitch_firmware::xcp::measurements::{INFO, Width};
+use hitch_protocols::xcp::map::{MEASUREMENT_BASE, SLOT_BYTES};
+use hitch_protocols::xcp::measurements::{INFO, Width};
 
 use super::session::{Session, ToolError};
 

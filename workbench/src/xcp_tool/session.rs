@@ -3,9 +3,9 @@
 use std::io;
 use std::time::{Duration, Instant};
 
-use hitch_firmware::can::Frame;
-use hitch_firmware::j1939::{Id, Pgn};
-use hitch_firmware::xcp::map::{IDENTITY, IDENTITY_BASE};
+use hitch_protocols::can::Frame;
+use hitch_protocols::j1939::{Id, Pgn};
+use hitch_protocols::xcp::map::{IDENTITY, IDENTITY_BASE};
 
 use super::slcan_client::SlcanClient;
 

@@ -1,11 +1,11 @@
 //! A client of an slcan adapter on a TCP port.
 
-use std::io::{self, ErrorKind, Read, Write};
+use std::io;
+use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-use hitch_firmware::can::Frame;
-use hitch_firmware::can::slcan;
+use hitch_protocols::can::{Frame, slcan};
 
 /// How long a read waits before the deadline is looked at again.
 const PATIENCE: Duration = Duration::from_millis(20);

@@ -2,10 +2,9 @@
 
 use std::fmt::Write as _;
 
-use hitch_firmware::control::safety::Trip;
-use hitch_firmware::control::{Fault, State};
-use hitch_firmware::xcp::measurements::MeasurementInfo;
-use hitch_firmware::xcp::pages::Applied;
+use hitch_protocols::xcp::measurements::MeasurementInfo;
+use hitch_protocols::xcp::pages::Applied;
+use hitch_quantities::{Fault, State, Trip};
 
 /// How raw values are shown.
 #[derive(Clone, Debug, PartialEq, Eq)]

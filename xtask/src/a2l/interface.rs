@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use hitch_firmware::j1939::{Id, PREFERRED_ADDRESS, Pgn};
-use hitch_firmware::xcp::{Event, TOOL_ADDRESS};
+use hitch_protocols::j1939::{Id, PREFERRED_ADDRESS, Pgn};
+use hitch_protocols::xcp::{Event, TOOL_ADDRESS};
 
 /// What the blocks below consist of, after ASAM's AML for XCP 1.4.
 pub const AML: &str = include_str!("xcp.aml");

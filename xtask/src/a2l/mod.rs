@@ -11,17 +11,18 @@ use std::fmt::Write as _;
 use std::fs;
 
 use anyhow::{Context, Result};
-use hitch_firmware::control::calibration::CALIBRATION_BYTES;
-use hitch_firmware::control::calibration_words::{
-    GROUPS, LIFT_WORD, LINKAGE_WORD, LONGEST_TRAVEL, LOWER_WORD, SCALARS_WORD,
-};
-use hitch_firmware::control::linkage::LINKAGE_POINTS;
-use hitch_firmware::control::parameter::ParameterInfo;
-use hitch_firmware::control::valve_map::VALVE_POINTS;
-use hitch_firmware::xcp::map::{
+use hitch_protocols::xcp::map::{
     CALIBRATION_BASE, IDENTITY, IDENTITY_BASE, MEASUREMENT_BASE, SLOT_BYTES,
 };
-use hitch_firmware::xcp::measurements::{self, MeasurementInfo, Width};
+use hitch_protocols::xcp::measurements;
+use hitch_protocols::xcp::measurements::{MeasurementInfo, Width};
+use hitch_quantities::calibration::CALIBRATION_BYTES;
+use hitch_quantities::calibration::calibration_words::{
+    GROUPS, LIFT_WORD, LINKAGE_WORD, LONGEST_TRAVEL, LOWER_WORD, SCALARS_WORD,
+};
+use hitch_quantities::calibration::linkage::LINKAGE_POINTS;
+use hitch_quantities::calibration::parameter::ParameterInfo;
+use hitch_quantities::calibration::valve_table::VALVE_POINTS;
 
 use crate::workspace;
 use conversion::Conversion;

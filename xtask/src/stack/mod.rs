@@ -32,7 +32,7 @@ use program::Program;
 const EXCEPTION_BYTES: i32 = 0x68 + 4;
 
 /// All that may compute in floating point: a display of a tool.
-const FLOATING: [&str; 1] = ["hitch_firmware::xcp::angle_noise::rms_deg_bits"];
+const FLOATING: [&str; 1] = ["hitch_protocols::xcp::angle_noise::rms_deg_bits"];
 
 /// What allocates, by the names that allocators have.
 const ALLOCATORS: [&str; 6] = [

@@ -5,7 +5,7 @@ mod reset;
 
 use std::collections::BTreeSet;
 
-use hitch_firmware::can::Frame;
+use hitch_protocols::can::Frame;
 
 use crate::board::adc::Converter;
 use crate::board::audit;

@@ -2,8 +2,7 @@
 
 use anyhow::{Result, ensure};
 use embedded_can::{ExtendedId, Id, StandardId};
-use hitch_firmware::can::Frame;
-use hitch_plant::Model;
+use hitch_protocols::can::Frame;
 
 use super::Setup;
 use super::rig::Rig;

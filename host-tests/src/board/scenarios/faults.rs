@@ -1,8 +1,7 @@
 //! Each electrical fault of the safety table, with its reaction time at the pin.
 
 use anyhow::{Context, Result, ensure};
-use hitch_firmware::ecu::{AdcCode, Contacts};
-use hitch_plant::Model;
+use hitch_ecu::{AdcCode, Contacts};
 use hitch_workbench::ecu::Order;
 
 use super::Setup;

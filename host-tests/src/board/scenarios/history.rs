@@ -1,11 +1,10 @@
 //! The fault history in flash.
 
 use anyhow::{Context, Result, ensure};
-use hitch_firmware::ecu::fault_history::MOST_WRITES;
-use hitch_firmware::ecu::{AdcCode, Contacts};
-use hitch_firmware::j1939::{Id, Pgn, Trouble};
-use hitch_firmware::storage::fault_log::{Entry, FaultLog, MOST_SLOTS};
-use hitch_plant::Model;
+use hitch_ecu::{AdcCode, Contacts};
+use hitch_protocols::j1939::{Id, Pgn, Trouble};
+use hitch_protocols::storage::fault_history::MOST_WRITES;
+use hitch_protocols::storage::fault_log::{Entry, FaultLog, MOST_SLOTS};
 use hitch_workbench::ecu::{CALIBRATION_BYTES, CutFlash, FLASH_BYTES};
 
 use super::Setup;

@@ -1,7 +1,6 @@
 //! Normal work.
 
 use anyhow::{Result, ensure};
-use hitch_plant::Model;
 
 use super::Setup;
 use super::rig::Rig;

@@ -1,8 +1,7 @@
 //! Random operation with faults: an operator who moves the hitch most of the time, wires that break and mend, a busy bus.
 
 use anyhow::{Result, ensure};
-use hitch_firmware::ecu::Contact;
-use hitch_plant::Model;
+use hitch_ecu::Contact;
 use hitch_workbench::ecu::Order;
 
 use super::Setup;

@@ -1,9 +1,9 @@
 //! A board with plant, operator and bus, and the steps that scenarios are made of.
 
 use anyhow::{Result, ensure};
-use hitch_firmware::can::Frame;
-use hitch_firmware::ecu::Contacts;
+use hitch_ecu::Contacts;
 use hitch_plant::Model;
+use hitch_protocols::can::Frame;
 use hitch_workbench::ecu::{Bench, Moment, Order};
 
 use super::Setup;

@@ -1,7 +1,6 @@
 //! Power-up.
 
 use anyhow::{Result, ensure};
-use hitch_plant::Model;
 
 use super::Setup;
 use super::rig::{READY_MS, Rig};

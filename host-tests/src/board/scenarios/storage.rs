@@ -1,8 +1,7 @@
 //! Storing a calibration.
 
 use anyhow::{Context, Result, ensure};
-use hitch_firmware::ecu::Contact;
-use hitch_plant::Model;
+use hitch_ecu::Contact;
 
 use super::Setup;
 use super::rig::{READY_MS, Rig};

@@ -115,7 +115,6 @@ fn number(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hitch_plant::Model;
 
     fn read_text(text: &str) -> Result<ValveCurve, InputError> {
         let file = tempfile::NamedTempFile::new().expect("a file");

@@ -2,9 +2,8 @@
 //!
 //! `y = (1 + g) angle`; 0.5 to 1 % of full scale is usual for a hall sensor, more for a worn lever or a wrong supply.
 
-use hitch_plant::Reading;
 use hitch_plant::hooks::sites::{RunConditions, SensorStage, Sites};
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::{Channel, Parameter, Reading, Search};
 
 use crate::described::Described;
 

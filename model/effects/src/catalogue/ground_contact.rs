@@ -4,9 +4,8 @@
 //! which the implement touches (Bekker with n = 1, damped as by Hunt & Crossley). Floors have 1e6 to 1e7 N/m, soil 5e4
 //! to 5e5 N/m. Where the ground itself damps, `F = k z + d z'` with 1e3 to 1e4 N s/m.
 
-use hitch_plant::Dynamics;
 use hitch_plant::hooks::sites::{Ground, RunConditions};
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::{Channel, Dynamics, Parameter, Search};
 
 use crate::described::Described;
 

@@ -7,8 +7,7 @@
 use std::sync::Arc;
 
 use hitch_plant::hooks::sites::{RunConditions, SensorStage, Sites};
-use hitch_plant::{Channel, Parameter, Search};
-use hitch_plant::{Linkage, Reading};
+use hitch_plant::{Channel, Linkage, Parameter, Reading, Search};
 
 use crate::described::Described;
 

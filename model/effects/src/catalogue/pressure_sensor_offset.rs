@@ -2,9 +2,8 @@
 //!
 //! `y = p + o`; 0.25 to 1 % of a full scale of 250 or 350 bar is 0.6 to 3.5 bar, more with temperature.
 
-use hitch_plant::Reading;
 use hitch_plant::hooks::sites::{RunConditions, SensorStage, Sites};
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::{Channel, Parameter, Reading, Search};
 
 use crate::described::Described;
 

@@ -7,10 +7,9 @@
 //! current runs linearly. On the dynamic starting point it comes on top of the 45 ms that are declared there; a negative
 //! lag takes from those, down to none.
 
-use hitch_plant::Currents;
 use hitch_plant::components::lag::Lag;
 use hitch_plant::hooks::sites::{CurrentStage, RunConditions, Sites};
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::{Channel, Currents, Parameter, Search};
 
 use crate::described::Described;
 

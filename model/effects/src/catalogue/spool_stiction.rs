@@ -7,8 +7,7 @@
 //! Thornhill and Shah 2005).
 
 use hitch_plant::hooks::sites::{CurrentStage, Sites};
-use hitch_plant::{Channel, Parameter, Search};
-use hitch_plant::{Currents, Valve};
+use hitch_plant::{Channel, Currents, Parameter, Search, Valve};
 
 use crate::described::Described;
 

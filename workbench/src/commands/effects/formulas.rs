@@ -64,7 +64,7 @@ mod tests {
             path: "term.toml".into(),
             text: format!("format = 1\nbase = \"nominal\"\n{}", term.join("\n")),
         };
-        let model = hitch_plant::hitch_model_file::parse(&source).unwrap();
+        let model = hitch_model_file::parse(&source).unwrap();
         assert_eq!(model.terms.len(), 1);
     }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use hitch_campaign::flow_curve;
 use hitch_model_file::{Template, Valve};
-use hitch_plant::{Model, ValveCurve};
+use hitch_plant::ValveCurve;
 
 use crate::error::Error;
 use crate::output;

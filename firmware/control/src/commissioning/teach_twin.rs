@@ -1,0 +1,48 @@
+//! The twin that goes through teaching beside the hitch: what the calibration makes of the same current.
+
+use hitch_quantities::Calibration;
+use hitch_quantities::fixed::Divisor;
+use hitch_quantities::piston::piston_speed;
+use hitch_quantities::units::{Micrometre, MilliAmp};
+
+use crate::estimation::lag::known_lags;
+use crate::valve::drop_scale::DropScale;
+use crate::valve::phase::Direction;
+
+/// The calibration's valve, spool and piston.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Twin {
+    spool_ua: i32,
+    travel_nm: i32,
+    filtered_nm: i32,
+}
+
+impl Twin {
+    /// One step with a current; how far it has moved, through the filter that the hitch's angle goes through.
+    pub fn step(
+        &mut self,
+        current_ua: i32,
+        direction: Direction,
+        scale: DropScale,
+        calibration: &Calibration,
+    ) -> Micrometre {
+        let [lift_lag, lower_lag] = known_lags(&calibration.hydraulics);
+        let lag = match direction {
+            Direction::Lift => lift_lag,
+            Direction::Lower => lower_lag,
+        };
+        let error = current_ua.saturating_sub(self.spool_ua);
+        self.spool_ua = self.spool_ua.saturating_add(lag.divisor().divide(error));
+        let spool = MilliAmp(Divisor::THOUSAND.divide(self.spool_ua));
+        let flow = match direction {
+            Direction::Lift => calibration.lift.flow(spool),
+            Direction::Lower => scale.to_present(calibration.lower.flow(spool)),
+        };
+        let speed = piston_speed(flow, calibration.hydraulics.piston_area);
+        self.travel_nm = self.travel_nm.saturating_add(speed.0);
+        let time = calibration.teach.filter_time.divisor();
+        let behind = self.travel_nm.saturating_sub(self.filtered_nm);
+        self.filtered_nm = self.filtered_nm.saturating_add(time.divide(behind));
+        Micrometre(Divisor::THOUSAND.divide(self.filtered_nm))
+    }
+}

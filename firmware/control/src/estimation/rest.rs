@@ -1,0 +1,37 @@
+//! Where the hitch rests: the position estimate, averaged long enough to tell a leak from noise and from
+//! a load that still swings on its oil.
+
+use hitch_quantities::calibration::design_parameters::HoldParameters;
+use hitch_quantities::fixed::Divisor;
+use hitch_quantities::units::Micrometre;
+
+use crate::valve::phase::Phase;
+
+/// Averaged position; follows at once at the start and while the hitch isn't resting.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RestPosition {
+    started: bool,
+    nanometre: i32,
+}
+
+impl RestPosition {
+    /// One step.
+    pub fn update(&mut self, position: Micrometre, phase: Phase, parameters: &HoldParameters) {
+        let time = match phase {
+            Phase::Holding if self.started => parameters.rest_time.divisor(),
+            _ => Divisor::ONE,
+        };
+        self.started = true;
+        let error = position
+            .0
+            .saturating_mul(1000)
+            .saturating_sub(self.nanometre);
+        self.nanometre = self.nanometre.saturating_add(time.divide(error));
+    }
+
+    /// The average.
+    #[must_use]
+    pub fn position(&self) -> Micrometre {
+        Micrometre(Divisor::THOUSAND.divide(self.nanometre))
+    }
+}

@@ -1,0 +1,256 @@
+//! What the operator sets besides the lever: engine, rate dial, quick lift, float and the button outside.
+
+pub mod lever;
+pub mod lock;
+pub mod mode;
+
+use hitch_quantities::calibration::design_parameters::{
+    LockParameters, OperatorParameters, PositionParameters,
+};
+use hitch_quantities::fixed::interpolate;
+use hitch_quantities::units::{
+    MicrometrePerSecond, MilliDegree, MilliDegreePerSecond, Millisecond, PerMille,
+    RevolutionPerMinute,
+};
+
+/// Knows whether the engine has been running for long enough.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EngineWatch {
+    running_for: Millisecond,
+    /// The engine speed has been known: from then on silence counts as a stopped engine.
+    was_known: bool,
+}
+
+impl EngineWatch {
+    /// One step; true if the hitch may be used. A machine that has never told its engine speed may always, unless the
+    /// calibration requires it.
+    pub fn permits(
+        &mut self,
+        speed: Option<RevolutionPerMinute>,
+        parameters: &LockParameters,
+    ) -> bool {
+        self.was_known |= speed.is_some();
+        let Some(speed) = speed else {
+            self.running_for = Millisecond::ZERO;
+            return !self.was_known && parameters.engine_required.0 == 0;
+        };
+        self.running_for = match speed > parameters.engine_running {
+            true => self.running_for.next().min(parameters.engine_settling),
+            false => Millisecond::ZERO,
+        };
+        self.running_for >= parameters.engine_settling && speed > parameters.engine_running
+    }
+}
+
+/// Lets a button through only once it has been seen released: one that is pressed at power-up or
+/// during a fault is stuck, or somebody leans on it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ButtonGuard {
+    seen_released: bool,
+}
+
+impl ButtonGuard {
+    /// One step with the button's request.
+    pub fn pass(&mut self, jog: Option<MilliDegreePerSecond>) -> Option<MilliDegreePerSecond> {
+        self.seen_released |= jog.is_none();
+        jog.filter(|_| self.seen_released)
+    }
+
+    /// The button has to be seen released again.
+    pub fn distrust(&mut self) {
+        self.seen_released = false;
+    }
+}
+
+/// Quick lift: one press raises the hitch, the next returns it to the lever.
+///
+/// ```text
+///            press                 press, or anything that ends position control
+/// +-------+ ------> +--------+ ---------------------------------------------------+
+/// | Lever |         | Raised |                                                    |
+/// +-------+ <------ +--------+ <--------------------------------------------------+
+/// ```
+#[derive(Clone, Copy, Debug, Default)]
+pub struct QuickLift {
+    raised: bool,
+    pressed: bool,
+}
+
+impl QuickLift {
+    /// One step with the button; `follows_lever`: the controller is in position control.
+    pub fn press(&mut self, pressed: bool, follows_lever: bool) {
+        if pressed && !self.pressed {
+            self.raised = !self.raised;
+        }
+        self.pressed = pressed;
+        self.raised &= follows_lever;
+    }
+
+    /// The set point: the lever's, or the raised one.
+    #[must_use]
+    pub fn set_point(&self, lever: MilliDegree, parameters: &OperatorParameters) -> MilliDegree {
+        match self.raised {
+            true => parameters.quick_lift_angle,
+            false => lever,
+        }
+    }
+}
+
+/// Float: with the lever at its bottom stop and the hitch down, both coils stay off and the hitch may
+/// settle wherever ground and implement take it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Float {
+    floating: bool,
+    lifted_for: Millisecond,
+}
+
+impl Float {
+    /// One step; true while floating. `resting`: the hitch has arrived and nothing moves it.
+    pub fn update(
+        &mut self,
+        lever: MilliDegree,
+        angle: MilliDegree,
+        resting: bool,
+        parameters: &OperatorParameters,
+    ) -> bool {
+        if !self.floating {
+            let down = lever <= parameters.float_lever && angle <= parameters.float_angle;
+            *self = Self {
+                floating: down && resting,
+                lifted_for: Millisecond::ZERO,
+            };
+            return self.floating;
+        }
+        self.lifted_for = match lever >= parameters.float_exit {
+            true => self.lifted_for.next(),
+            false => Millisecond::ZERO,
+        };
+        self.floating =
+            lever < parameters.float_exit || self.lifted_for < parameters.float_exit_time;
+        self.floating
+    }
+
+    /// Position control has ended.
+    pub fn end(&mut self) {
+        *self = Self::default();
+    }
+
+    /// True while floating.
+    #[must_use]
+    pub const fn is_floating(&self) -> bool {
+        self.floating
+    }
+}
+
+/// The highest set point: the calibration's, or the operator's dial if that is lower. A dial below the
+/// lower limit asks for the lower limit.
+#[must_use]
+pub fn upper_limit(dial: Option<MilliDegree>, position: &PositionParameters) -> MilliDegree {
+    dial.map_or(position.upper_limit, |dial| {
+        dial.limited(position.lower_limit, position.upper_limit)
+    })
+}
+
+/// Fastest lowering that the rate dial allows: nothing at its shut end, the speed of a new machine in
+/// the middle, all of it at its open end, straight in between. Without a dial it is all of it.
+#[must_use]
+pub fn lowering_limit(
+    dial: Option<PerMille>,
+    operator: &OperatorParameters,
+    position: &PositionParameters,
+) -> MicrometrePerSecond {
+    const MIDDLE: PerMille = PerMille(500);
+    let Some(dial) = dial else {
+        return position.lower_speed;
+    };
+    let middle = (MIDDLE.0, operator.dial_middle_speed.0);
+    let speed = if dial < operator.dial_shut {
+        0
+    } else if dial < MIDDLE {
+        interpolate((operator.dial_shut.0, 0), middle, dial.0)
+    } else {
+        let open = (operator.dial_open.0, position.lower_speed.0);
+        interpolate(middle, open, dial.min(operator.dial_open).0)
+    };
+    MicrometrePerSecond(speed).min(position.lower_speed)
+}
+
+#[cfg(test)]
+mod tests {
+    use hitch_quantities::units::Count;
+
+    use super::*;
+
+    const OPERATOR: OperatorParameters = OperatorParameters::NOMINAL;
+
+    #[test]
+    fn the_dial_is_two_straight_pieces_between_its_ends() {
+        let speed = |dial| {
+            lowering_limit(
+                Some(PerMille(dial)),
+                &OPERATOR,
+                &PositionParameters::NOMINAL,
+            )
+            .0
+        };
+        assert_eq!([speed(i32::MIN), speed(0), speed(139), speed(140)], [0; 4]);
+        assert_eq!([speed(320), speed(500)], [37_500, 75_000]);
+        assert_eq!(
+            [speed(730), speed(960), speed(1_000), speed(i32::MAX)],
+            [187_500, 300_000, 300_000, 300_000]
+        );
+    }
+
+    #[test]
+    fn a_cranking_engine_permits_nothing_until_it_has_settled() {
+        let parameters = LockParameters::NOMINAL;
+        let mut engine = EngineWatch::default();
+        let mut permits =
+            |rpm: Option<i32>| engine.permits(rpm.map(RevolutionPerMinute), &parameters);
+        assert!(permits(None), "a machine without this signal");
+        assert!((0..2_000).all(|_| !permits(Some(400))));
+        assert_eq!((0..2_000).position(|_| permits(Some(401))), Some(499));
+        assert!(!permits(Some(0)), "stalled");
+        assert_eq!((0..2_000).position(|_| permits(Some(800))), Some(499));
+        assert!(!permits(None), "silent");
+        assert_eq!((0..2_000).position(|_| permits(Some(800))), Some(499));
+    }
+
+    #[test]
+    fn an_engine_that_is_required_has_to_be_heard_before_the_hitch_is_used() {
+        let parameters = LockParameters {
+            engine_required: Count(1),
+            ..LockParameters::NOMINAL
+        };
+        let mut engine = EngineWatch::default();
+        assert!((0..2_000).all(|_| !engine.permits(None, &parameters)));
+        let speed = Some(RevolutionPerMinute(800));
+        assert_eq!(
+            (0..2_000).position(|_| engine.permits(speed, &parameters)),
+            Some(499)
+        );
+    }
+
+    #[test]
+    fn a_button_that_was_never_released_does_nothing() {
+        let mut guard = ButtonGuard::default();
+        let up = Some(MilliDegreePerSecond(5_000));
+        assert!((0..1_000).all(|_| guard.pass(up).is_none()));
+        assert_eq!((guard.pass(None), guard.pass(up)), (None, up));
+        guard.distrust();
+        assert_eq!(guard.pass(up), None);
+    }
+
+    #[test]
+    fn float_ends_only_with_a_lever_that_stays_up() {
+        let mut float = Float::default();
+        let (down, up) = (MilliDegree(44_600), OPERATOR.float_exit);
+        let angle = MilliDegree(45_000);
+        let mut update = |lever, resting| float.update(lever, angle, resting, &OPERATOR);
+        assert!(!update(down, false), "still on its way");
+        assert!(update(down, true));
+        assert!((0..199).all(|_| update(up, true)));
+        assert!(update(up - MilliDegree(1), true), "knocked");
+        assert_eq!((0..1_000).position(|_| !update(up, true)), Some(199));
+    }
+}

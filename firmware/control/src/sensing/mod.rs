@@ -1,0 +1,3 @@
+//! What the sensors say, judged.
+
+pub mod sensors;

@@ -1,0 +1,312 @@
+//! The application: its parts, and the order in which a millisecond goes through them.
+
+use embedded_storage::nor_flash::NorFlash;
+use heapless::Deque;
+use hitch_controller::Controller;
+use hitch_protocols::can::Frame;
+use hitch_protocols::j1939::{
+    MeasuredBroadcast, NameFields, Node, PREFERRED_ADDRESS, Remote, Settings, TroubleFinder,
+    Variant,
+};
+use hitch_protocols::storage::CalibrationStore;
+use hitch_protocols::storage::fault_history::FaultHistory;
+use hitch_protocols::xcp::angle_noise::AngleNoise;
+use hitch_protocols::xcp::map::IDENTITY;
+use hitch_protocols::xcp::measurements::{EcuState, Measurements};
+use hitch_protocols::xcp::{Access, EcuMemory, Event, Slave};
+use hitch_quantities::signals::charge::CoilCharge;
+use hitch_quantities::{Inputs, Outputs, State};
+
+use super::arbiter::Arbiter;
+use super::converter::Conversion;
+use super::drive::Drive;
+use super::enable_line::EnableLine;
+use super::flow::{FlowMonitor, Kick, Task};
+use super::hardware::{Contacts, FlashRegions, Hardware};
+use super::pace::Pace;
+use super::panel::Contact;
+use super::scaling::BoardScaling;
+use super::service::{Service, Storing};
+use super::status::status;
+use crate::service;
+
+/// Most frames that are heard in a millisecond: twice what a bus of 250 kbit/s carries at its fullest.
+const MOST_HEARD: usize = 8;
+/// Most frames that are made in a millisecond.
+const MOST_SAID: usize = 4;
+/// Frames that wait for the bus.
+const OUTBOX: usize = 8;
+/// The address of a node that has none.
+const NO_ADDRESS: u8 = 254;
+
+/// The ECU.
+#[derive(Debug)]
+pub struct Ecu<F> {
+    controller: Controller,
+    conversion: Conversion,
+    pwm_steps: u16,
+    enable_line: EnableLine,
+    arbiter: Arbiter,
+    service: Service<F>,
+    history: FaultHistory<F>,
+    node: Node,
+    measured: MeasuredBroadcast,
+    trouble_finder: TroubleFinder,
+    slave: Slave,
+    measurements: Measurements,
+    charge: CoilCharge,
+    angle_noise: AngleNoise,
+    outbox: Deque<Frame, OUTBOX>,
+    pace: Pace,
+    flow: FlowMonitor,
+    inputs: Inputs,
+    outputs: Outputs,
+}
+
+impl<F: NorFlash> Ecu<F> {
+    /// The ECU as it is after power-up, with the calibration and the fault history that `flash` holds. `serial_number`
+    /// tells its node from others on the bus; `scaling` is the board's. The function is not inlined, so that its
+    /// stack is released before the loop begins.
+    #[must_use]
+    #[inline(never)]
+    pub fn start(flash: FlashRegions<F>, serial_number: u32, scaling: BoardScaling) -> Self {
+        let mut store = CalibrationStore::new(flash.calibration);
+        let (calibration, troubles) = service::load(&mut store, scaling.second_track);
+        let history = FaultHistory::open(flash.fault_log);
+        let settings = Settings {
+            name: NameFields::rear_hitch(serial_number).into(),
+            preferred_address: PREFERRED_ADDRESS,
+            variant: Variant::J1939,
+            occurrences: *history.stored(),
+            software: &IDENTITY,
+        };
+        Self {
+            service: Service::new(store, &calibration, troubles),
+            history,
+            controller: Controller::new(calibration),
+            conversion: Conversion::new(scaling),
+            pwm_steps: scaling.pwm_steps,
+            enable_line: EnableLine::default(),
+            arbiter: Arbiter::default(),
+            node: Node::new(settings),
+            measured: MeasuredBroadcast::default(),
+            trouble_finder: TroubleFinder::default(),
+            slave: Slave::new(),
+            measurements: Measurements::default(),
+            charge: CoilCharge::default(),
+            angle_noise: AngleNoise::default(),
+            outbox: Deque::new(),
+            pace: Pace::default(),
+            flow: FlowMonitor::default(),
+            inputs: Inputs::default(),
+            outputs: Outputs::default(),
+        }
+    }
+
+    /// One millisecond. The watchdog may be kicked with what it gives; it gives nothing unless every task has run.
+    /// Not inlined: the depth of its stack is counted apart from that of the start.
+    #[inline(never)]
+    pub fn tick(&mut self, contacts: &Contacts, hardware: &mut impl Hardware) -> Option<Kick> {
+        self.sample(contacts);
+        self.flow.passed(Task::Sample);
+        self.controller.control(&self.inputs);
+        self.flow.passed(Task::Control);
+        self.outputs = self.controller.protect(&self.inputs);
+        let wanted = Drive::new(&self.outputs, self.pwm_steps);
+        let has_feedback = contacts.enable_feedback.is_some();
+        hardware.drive(self.enable_line.pass(wanted, has_feedback));
+        self.flow.passed(Task::Drive);
+        self.serve_bus(contacts, hardware);
+        self.flow.passed(Task::Bus);
+        self.flow.end()
+    }
+
+    /// Whether a calibration is being stored, with both coils off and locked: milliseconds take as long as flash does
+    /// then.
+    #[must_use]
+    pub const fn is_storing(&self) -> bool {
+        self.service.is_storing()
+    }
+
+    /// What the controller was told in the last millisecond.
+    #[must_use]
+    pub const fn inputs(&self) -> &Inputs {
+        &self.inputs
+    }
+
+    /// What it asked for.
+    #[must_use]
+    pub const fn outputs(&self) -> &Outputs {
+        &self.outputs
+    }
+
+    fn sample(&mut self, contacts: &Contacts) {
+        let mut inputs = contacts
+            .panel
+            .added_to(self.conversion.inputs(&contacts.samples));
+        inputs.step_time = self.pace.begin(contacts.clock_us);
+        inputs.clock_ratio = contacts.clock_ratio;
+        inputs.engine_speed = self.node.engine_speed(self.pace.now_ms());
+        inputs.enable_line_fault = self.enable_line.read(contacts.enable_feedback);
+        // Many a part stands still while its flash is erased: nothing may move then.
+        inputs.switches.transport_lock |= self.service.is_storing();
+        let limits = &self.controller.calibration().position;
+        self.inputs = self.arbiter.decide(inputs, self.node.remote(), limits);
+    }
+
+    fn serve_bus(&mut self, contacts: &Contacts, hardware: &mut impl Hardware) {
+        let access = self.access(contacts);
+        self.measure(hardware.frames_dropped());
+        self.hear(access, contacts.clock_us, hardware);
+        self.sample_for_tool(access, contacts.clock_us);
+        let at_rest = is_at_rest(&self.outputs);
+        let stored = self
+            .service
+            .update(&mut self.controller, &mut self.slave, at_rest);
+        self.say(hardware);
+        // One change of the flash a millisecond.
+        let kept = stored == Storing::Idle && at_rest && self.keep_history();
+        if stored == Storing::Busy || kept {
+            self.pace.forgive();
+        }
+    }
+
+    /// Brings the fault history in flash up to date and returns whether flash was programmed. Nothing is written while
+    /// the supply is out of its limits: power may be failing, which would tear the entry, and each power-off would be
+    /// counted as a low supply.
+    fn keep_history(&mut self) -> bool {
+        let limits = &self.controller.calibration().safety;
+        let is_supplied = self
+            .inputs
+            .supply
+            .is_some_and(|supply| (limits.supply_min..=limits.supply_max).contains(&supply));
+        is_supplied && !self.service.is_storing() && self.history.update(self.node.occurrences())
+    }
+
+    /// What a tool may write: nothing unless somebody at the machine has switched service on.
+    fn access(&self, contacts: &Contacts) -> Access {
+        if self.service.is_storing() || !contacts.panel.is_closed(Contact::Service) {
+            return Access::Locked;
+        }
+        match is_at_rest(&self.outputs) {
+            true => Access::AtRest,
+            false => Access::Moving,
+        }
+    }
+
+    fn measure(&mut self, frames_dropped: u16) {
+        self.charge = self.charge.after(&self.inputs);
+        self.angle_noise.update(self.inputs.rocker_angle);
+        let state = EcuState {
+            remote_set_point: match self.node.remote() {
+                Remote::Position(position) => position.0,
+                Remote::Idle => -1,
+            },
+            address: self.node.address().unwrap_or(NO_ADDRESS),
+            charge: self.charge,
+            calibration_state: self.service.pages.applied() as u8,
+            longest_step_us: self.pace.longest_us(),
+            frames_dropped,
+            angle_squares: self.angle_noise.sum_of_squares(),
+        };
+        self.measurements
+            .sample(&self.inputs, &self.outputs, &state);
+    }
+
+    fn hear(&mut self, access: Access, now_us: u32, hardware: &mut impl Hardware) {
+        self.slave.set_address(self.node.address());
+        for _ in 0..MOST_HEARD {
+            let Some(frame) = hardware.receive() else {
+                return;
+            };
+            self.node.receive(&frame, self.pace.now_ms());
+            let mut memory = EcuMemory {
+                pages: &mut self.service.pages,
+                measurements: &self.measurements,
+                access,
+            };
+            self.slave.receive(&frame, &mut memory, now_us);
+        }
+    }
+
+    fn sample_for_tool(&mut self, access: Access, now_us: u32) {
+        let now_ms = self.pace.now_ms();
+        let memory = EcuMemory {
+            pages: &mut self.service.pages,
+            measurements: &self.measurements,
+            access,
+        };
+        let events = [
+            (1, Event::Every1Ms),
+            (10, Event::Every10Ms),
+            (100, Event::Every100Ms),
+        ];
+        for (period_ms, event) in events {
+            if now_ms.is_multiple_of(period_ms) {
+                self.slave.event(event, &memory, now_us);
+            }
+        }
+    }
+
+    /// Makes the frames that are due and hands over what the bus takes.
+    fn say(&mut self, hardware: &mut impl Hardware) {
+        let found = self.trouble_finder.update(&self.inputs, &self.outputs);
+        let status = status(
+            &self.inputs,
+            &self.outputs,
+            &self.controller.calibration().position,
+            self.service.troubles().union(found),
+            self.arbiter.is_overridden(),
+        );
+        // The node's time goes on whether or not the bus takes anything: what is old then gives way.
+        for _ in 0..MOST_SAID {
+            let Some(frame) = self.node.poll(self.pace.now_ms(), &status) else {
+                break;
+            };
+            self.push(frame);
+        }
+        self.tell_loggers();
+        while self.outbox.len() < OUTBOX
+            && let Some(frame) = self.slave.poll()
+        {
+            self.push(frame);
+        }
+        while let Some(frame) = self.outbox.front()
+            && hardware.send(frame)
+        {
+            self.outbox.pop_front();
+        }
+    }
+
+    /// Sends what was measured, if that is due and the node has an address to send it from.
+    fn tell_loggers(&mut self) {
+        let Some(source) = self.node.address() else {
+            return;
+        };
+        let period = self.controller.calibration().bus.measured_period;
+        let now_ms = self.pace.now_ms();
+        let frames = self
+            .measured
+            .poll(source, now_ms, period, &self.inputs, self.charge);
+        frames
+            .into_iter()
+            .flatten()
+            .for_each(|frame| self.push(frame));
+    }
+
+    fn push(&mut self, frame: Frame) {
+        if self.outbox.is_full() {
+            self.outbox.pop_front();
+        }
+        // There is room now.
+        let _ = self.outbox.push_back(frame);
+    }
+}
+
+/// Both coils are off and stay off until the operator picks the hitch up.
+const fn is_at_rest(outputs: &Outputs) -> bool {
+    matches!(
+        outputs.state,
+        State::Locked | State::TransportLock | State::Fault
+    )
+}

@@ -1,0 +1,100 @@
+//! Pulse-width outputs for the coils, the enable line, and the trigger of the converters: all from TIM1.
+//!
+//! ```text
+//!   counter   /\    /\    /\         up and down: 2 x 5 250 steps of 168 MHz, 16 kHz
+//!            /  \  /  \  /  \        output high while below the compare value
+//!   update   ^ every 32nd turning point = every millisecond, in the middle between two edges:
+//!              TRGO starts the injected conversions, when the coil's current passes its mean
+//! ```
+//!
+//! One timer paces everything, so the controller can't run at another rate than the drivers. Compare values
+//! take effect at once: waiting for the next update would add a millisecond of dead time to the current regulation.
+
+use core::convert::Infallible;
+
+use embedded_hal::pwm::{ErrorType, SetDutyCycle};
+use hitch_ecu::CoilDriver;
+use stm32_metapac::timer::vals::{Bkp, Cms, Mms, Ocm, Ossi};
+use stm32_metapac::{DBGMCU, GPIOA, GPIOB, TIM1};
+
+use super::part::scaling::SCALING;
+use super::pins::{self, Pin};
+
+/// Turning points of the counter in a millisecond: two a pulse, 16 pulses.
+const TURNING_POINTS: u16 = 32;
+const LIFT: usize = 0;
+const LOWER: usize = 1;
+/// PB10.
+const ENABLE_PIN: usize = 10;
+/// PB11: the enable line as the drivers see it.
+const FEEDBACK_PIN: usize = 11;
+
+/// The coils' drivers on this board.
+pub type Coils = CoilDriver<Channel, Channel, Pin, Pin>;
+
+/// A pulse-width output of TIM1.
+pub struct Channel(usize);
+
+impl ErrorType for Channel {
+    type Error = Infallible;
+}
+
+impl SetDutyCycle for Channel {
+    fn max_duty_cycle(&self) -> u16 {
+        SCALING.pwm_steps
+    }
+
+    fn set_duty_cycle(&mut self, duty: u16) -> Result<(), Infallible> {
+        TIM1.ccr(self.0).write(|w| w.set_ccr(duty));
+        Ok(())
+    }
+}
+
+/// Outputs low, counter stopped. `function` is TIM1's alternate function on PA8 and PA9.
+pub fn start(function: u8) -> Coils {
+    // A debugger that halts the processor stops the timer and so disables its outputs.
+    DBGMCU.apb2fzr().modify(|w| w.set_tim1(true));
+    pins::output(GPIOB, ENABLE_PIN);
+    pins::input(GPIOB, FEEDBACK_PIN);
+    TIM1.arr().write(|w| w.set_arr(SCALING.pwm_steps));
+    TIM1.rcr().write(|w| w.set_rep(TURNING_POINTS - 1));
+    TIM1.cr1().write(|w| w.set_cms(Cms::CENTER_ALIGNED1));
+    TIM1.cr2().write(|w| w.set_mms(Mms::UPDATE));
+    for channel in [LIFT, LOWER] {
+        TIM1.ccmr_output(0)
+            .modify(|w| w.set_ocm(channel, Ocm::PWM_MODE1));
+        TIM1.ccer().modify(|w| w.set_cce(channel, true));
+    }
+    // The clock security system is a break source: when the crystal fails, hardware cuts the outputs, which are then
+    // driven to their idle level, low. The pin BKIN isn't used; its input is low.
+    TIM1.bdtr().modify(|w| {
+        w.set_bke(0, true);
+        w.set_bkp(0, Bkp::ACTIVE_HIGH);
+        w.set_ossi(Ossi::IDLE_LEVEL);
+    });
+    TIM1.bdtr().modify(|w| w.set_moe(true));
+    // Loads the shadow registers.
+    TIM1.egr().write(|w| w.set_ug(true));
+    pins::alternate(GPIOA, 8, function);
+    pins::alternate(GPIOA, 9, function);
+    CoilDriver::new(
+        Channel(LIFT),
+        Channel(LOWER),
+        Pin::new(GPIOB, ENABLE_PIN),
+        Pin::new(GPIOB, FEEDBACK_PIN),
+    )
+}
+
+/// Starts the counter, and with it the conversions.
+pub fn run() {
+    TIM1.cr1().modify(|w| w.set_cen(true));
+}
+
+/// Cuts both coils for good, whatever state the program is in: the enable line drops and the timer lets go of its
+/// outputs, which pull-down resistors then hold low.
+pub fn cut() {
+    GPIOB.bsrr().write(|w| w.set_br(ENABLE_PIN, true));
+    TIM1.bdtr().modify(|w| w.set_moe(false));
+    TIM1.ccr(LIFT).write(|w| w.set_ccr(0));
+    TIM1.ccr(LOWER).write(|w| w.set_ccr(0));
+}

@@ -1,0 +1,134 @@
+//! Where the calibration and the log of faults are kept: the part's last sectors or pages, far from the program.
+
+use embedded_storage::nor_flash::{
+    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+};
+use hitch_ecu::FlashRegions;
+use stm32_metapac::FLASH;
+
+use super::part::flash::{
+    BASE, CALIBRATION_PIECES, LOG_PIECES, PIECE_BYTES, WORD_BYTES, erase_piece, finish, is_usable,
+    program, take_damaged_read, unlock,
+};
+
+/// A region of the flash.
+pub struct DataFlash {
+    first_piece: usize,
+    pieces: usize,
+}
+
+/// The flash refused, or was asked for what it can't do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FlashError(NorFlashErrorKind);
+
+impl NorFlashError for FlashError {
+    fn kind(&self) -> NorFlashErrorKind {
+        self.0
+    }
+}
+
+/// The regions, which nothing else in the program touches: the log of faults, and the calibration behind it.
+pub fn regions() -> FlashRegions<DataFlash> {
+    FlashRegions {
+        calibration: DataFlash {
+            first_piece: LOG_PIECES,
+            pieces: CALIBRATION_PIECES,
+        },
+        fault_log: DataFlash {
+            first_piece: 0,
+            pieces: LOG_PIECES,
+        },
+    }
+}
+
+impl DataFlash {
+    const fn capacity_bytes(&self) -> usize {
+        self.pieces * PIECE_BYTES
+    }
+
+    const fn address(&self, offset: u32) -> usize {
+        BASE + self.first_piece * PIECE_BYTES + offset as usize
+    }
+
+    fn check(&self, offset: u32, length: usize, unit: usize) -> Result<(), FlashError> {
+        let offset = offset as usize;
+        if !offset.is_multiple_of(unit) || !length.is_multiple_of(unit) {
+            return Err(FlashError(NorFlashErrorKind::NotAligned));
+        }
+        let capacity = self.capacity_bytes();
+        match offset <= capacity && length <= capacity - offset {
+            true => Ok(()),
+            false => Err(FlashError(NorFlashErrorKind::OutOfBounds)),
+        }
+    }
+}
+
+impl ErrorType for DataFlash {
+    type Error = FlashError;
+}
+
+impl ReadNorFlash for DataFlash {
+    const READ_SIZE: usize = 1;
+
+    /// Bytes whose error correction fails read as zeros: the checksum then marks the copy or the entry as damaged.
+    fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
+        self.check(offset, bytes.len(), 1)?;
+        let first = self.address(offset);
+        for (index, byte) in bytes.iter_mut().enumerate() {
+            // SAFETY: inside the region, as checked above; volatile, for the flash changes under the compiler.
+            *byte = unsafe { ((first + index) as *const u8).read_volatile() };
+        }
+        if take_damaged_read() {
+            bytes.fill(0);
+        }
+        Ok(())
+    }
+
+    fn capacity(&self) -> usize {
+        self.capacity_bytes()
+    }
+}
+
+impl NorFlash for DataFlash {
+    const WRITE_SIZE: usize = WORD_BYTES;
+    const ERASE_SIZE: usize = PIECE_BYTES;
+
+    fn erase(&mut self, from: u32, to: u32) -> Result<(), FlashError> {
+        self.check(from, to.saturating_sub(from) as usize, PIECE_BYTES)?;
+        changed(|| {
+            for piece in from as usize / PIECE_BYTES..to as usize / PIECE_BYTES {
+                erase_piece((self.first_piece + piece) as u8);
+            }
+        })
+    }
+
+    fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
+        self.check(offset, bytes.len(), WORD_BYTES)?;
+        changed(|| {
+            let first = self.address(offset);
+            for (index, word) in bytes.as_chunks().0.iter().enumerate() {
+                // SAFETY: an aligned word inside the region, as checked above.
+                unsafe { program(first + index * WORD_BYTES, word) };
+            }
+        })
+    }
+}
+
+/// Unlocks the flash, changes it, and locks it again. The data cache is off meanwhile and is reset afterwards: it is not
+/// kept up to date (RM0090, 3.5.3; RM0440, 3.3.4), and may be corrupted by reads while the other bank is written.
+fn changed(work: impl FnOnce()) -> Result<(), FlashError> {
+    if !is_usable() {
+        return Err(FlashError(NorFlashErrorKind::Other));
+    }
+    FLASH.acr().modify(|w| w.set_dcen(false));
+    unlock();
+    work();
+    let good = finish();
+    FLASH.acr().modify(|w| w.set_dcrst(true));
+    FLASH.acr().modify(|w| w.set_dcrst(false));
+    FLASH.acr().modify(|w| w.set_dcen(true));
+    match good {
+        true => Ok(()),
+        false => Err(FlashError(NorFlashErrorKind::Other)),
+    }
+}

@@ -1,0 +1,91 @@
+//! The program in flash, checked at the start and over and over while it runs.
+//!
+//! The checksum is that of all that is programmed, from the vector table to the initial values of variables; `cargo
+//! xtask arm` writes it into the image ([`SEAL`]). An image that was built without that task has no checksum: then what
+//! was found at the start counts, which notices changes while the program runs, but none before.
+
+use hitch_quantities::crc32::Crc32;
+
+/// Bytes that are looked at in a millisecond: 128 KiB take half a second.
+const BYTES: usize = 256;
+/// First address of flash.
+const START: usize = 0x0800_0000;
+/// Words in front of and behind the checksum, by which the task finds its place.
+const MAGIC: [u32; 2] = [0x4B43_4548, 0xA5C3_1E7D];
+/// What erased flash holds: no checksum.
+const UNSEALED: u32 = u32::MAX;
+
+/// Place of the checksum, behind [`MAGIC`]. It counts as erased while the checksum is worked out.
+#[used]
+#[unsafe(no_mangle)]
+static IMAGE_SEAL: [u32; 3] = [MAGIC[0], MAGIC[1], UNSEALED];
+
+unsafe extern "C" {
+    static __sidata: u32;
+    static __sdata: u32;
+    static __edata: u32;
+}
+
+/// Address of the first byte behind the image.
+fn end() -> usize {
+    let [from, to] = [&raw const __sdata, &raw const __edata].map(|address| address as usize);
+    (&raw const __sidata) as usize + (to - from)
+}
+
+/// Address of the checksum.
+fn place() -> usize {
+    (&raw const IMAGE_SEAL) as usize + 8
+}
+
+/// The check.
+pub struct ImageCheck {
+    expected: u32,
+    at: usize,
+    checksum: Crc32,
+}
+
+impl ImageCheck {
+    /// Checks the whole image; none if it isn't what the task has built.
+    pub fn start() -> Option<Self> {
+        // SAFETY: an aligned word of the image; volatile, for the task changes it after the compiler has seen it.
+        let sealed = unsafe { (place() as *const u32).read_volatile() };
+        let mut checksum = Crc32::default();
+        take(&mut checksum, START, end());
+        let found = checksum.value();
+        (sealed == UNSEALED || sealed == found).then(|| Self {
+            expected: found,
+            at: START,
+            checksum: Crc32::default(),
+        })
+    }
+
+    /// Looks at the next bytes; false if the image has changed.
+    pub fn step(&mut self) -> bool {
+        let until = (self.at + BYTES).min(end());
+        take(&mut self.checksum, self.at, until);
+        self.at = until;
+        if until < end() {
+            return true;
+        }
+        self.at = START;
+        core::mem::take(&mut self.checksum).value() == self.expected
+    }
+}
+
+/// Goes on with the bytes from `from` until `to`; those of the checksum count as erased.
+fn take(checksum: &mut Crc32, from: usize, to: usize) {
+    let seal = place()..place() + 4;
+    take_bytes(checksum, from, to.min(seal.start));
+    for _ in seal.start.max(from)..seal.end.min(to) {
+        checksum.update(&[0xFF]);
+    }
+    take_bytes(checksum, from.max(seal.end), to);
+}
+
+fn take_bytes(checksum: &mut Crc32, from: usize, to: usize) {
+    let Some(length) = to.checked_sub(from) else {
+        return;
+    };
+    // SAFETY: inside the image, which is in flash and read only; should it change after all, any bytes will do.
+    checksum.update(unsafe { core::slice::from_raw_parts(from as *const u8, length) });
+}

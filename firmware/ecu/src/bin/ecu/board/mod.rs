@@ -1,0 +1,87 @@
+//! Registers, and nothing else: what differs from part to part is in the part's file and in the drivers that it names.
+//!
+//! The register layouts come from `stm32-metapac`, whose accesses are safe; a reserved bit or a wrong order of writes
+//! is what reading the reference manuals (RM0090 for the STM32F405, RM0440 for the STM32G474) has to prevent.
+
+mod clock;
+mod coils;
+mod converters;
+mod factory_reference;
+mod flash;
+mod image_check;
+mod inbox;
+mod pins;
+mod ram_test;
+mod register_check;
+mod reset;
+mod serial_number;
+mod slow_clock;
+mod switches;
+mod watchdog;
+
+#[cfg(feature = "stm32f405")]
+#[path = "stm32f405/mod.rs"]
+mod part;
+#[cfg(feature = "stm32g474")]
+#[path = "stm32g474/mod.rs"]
+mod part;
+
+#[cfg(all(feature = "stm32f405", feature = "stm32g474"))]
+compile_error!("an image is for one part: choose the feature `stm32f405` or `stm32g474`");
+
+use hitch_ecu::FlashRegions;
+
+pub use clock::Clock;
+pub use coils::{Coils, cut, run};
+pub use converters::Converters;
+pub use factory_reference::scaling;
+pub use flash::DataFlash;
+pub use image_check::ImageCheck;
+pub use part::Can;
+pub use part::flash::note_damaged_read;
+pub use register_check::RegisterCheck;
+pub use reset::reset_cause;
+pub use serial_number::serial_number;
+pub use slow_clock::SlowClock;
+pub use switches::Switches;
+pub use watchdog::Watchdog;
+
+/// Everything that the ECU's board has.
+pub struct Board {
+    /// The pulse-width outputs and the enable line.
+    pub coils: Coils,
+    /// The converters, which also pace the milliseconds.
+    pub converters: Converters,
+    /// The bus.
+    pub can: Can,
+    /// The operator's contacts.
+    pub switches: Switches,
+    /// The clock that the controller checks its pace by.
+    pub clock: Clock,
+    /// Measures the main clock against the watchdog's oscillator.
+    pub slow_clock: SlowClock,
+    /// Resets the ECU unless it is kicked.
+    pub watchdog: Watchdog,
+    /// Where the calibration and the log of faults are kept.
+    pub flash: FlashRegions<DataFlash>,
+}
+
+impl Board {
+    /// Sets everything up; the coils are off. The watchdog comes first: a crystal that doesn't start leads to a reset.
+    pub fn start() -> Self {
+        let watchdog = Watchdog::start();
+        part::start_clocks();
+        let coils = coils::start(part::TIMER_FUNCTION);
+        let converters = Converters::start();
+        Self {
+            switches: switches::start(),
+            clock: Clock::start(part::TIMER_HZ),
+            slow_clock: SlowClock::start(),
+            can: Can::start(),
+            flash: flash::regions(),
+            coils,
+            converters,
+            watchdog,
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! FDCAN as a classic CAN at 250 kbit/s on PA11 and PA12.
+//!
+//! Registers instead of the crate `fdcan`: that one panics on frames longer than the buffer it is given, and its claim
+//! to the registers is `unsafe` to make.
+
+use embedded_can::{ExtendedId, Id, StandardId};
+use hitch_protocols::can::Frame;
+use stm32_metapac::can::vals::{Anfe, Anfs};
+use stm32_metapac::{FDCAN1, FDCANRAM1, GPIOA};
+
+use crate::board::inbox::Inbox;
+use crate::board::pins;
+
+/// FDCAN1 on PA11 and PA12 (data sheet, table 13).
+const FUNCTION: u8 = 9;
+/// Words of an element of the message memory: two of header, room for 64 bytes.
+const ELEMENT_WORDS: usize = 18;
+/// Elements in a queue.
+const ELEMENTS: usize = 3;
+/// Bits of the first word of an element (RM0440, table 402).
+const EXTENDED: u32 = 1 << 30;
+const REMOTE: u32 = 1 << 29;
+
+/// The bus.
+pub struct Can {
+    inbox: Inbox,
+}
+
+impl Can {
+    /// Joins the bus; it is synchronised after eleven recessive bits, for which nobody waits here.
+    pub fn start() -> Self {
+        pins::alternate(GPIOA, 11, FUNCTION);
+        pins::alternate(GPIOA, 12, FUNCTION);
+        FDCAN1.cccr().modify(|w| w.set_init(true));
+        while !FDCAN1.cccr().read().init() {}
+        FDCAN1.cccr().modify(|w| w.set_cce(true));
+        // 8 MHz / 2 = 4 MHz: 16 quanta a bit, sampled after 14 (87.5 %).
+        FDCAN1.nbtp().write(|w| {
+            w.set_nbrp(2 - 1);
+            w.set_ntseg1(13 - 1);
+            w.set_ntseg2(2 - 1);
+            w.set_nsjw(2 - 1);
+        });
+        FDCAN1.rxgfc().modify(|w| {
+            w.set_anfe(Anfe::ACCEPT_FIFO_0);
+            w.set_anfs(Anfs::ACCEPT_FIFO_0);
+        });
+        FDCAN1.cccr().modify(|w| w.set_init(false));
+        Self {
+            inbox: Inbox::new(),
+        }
+    }
+
+    /// Empties the controller's queue, which holds three frames.
+    pub fn listen(&mut self) {
+        while let Some(frame) = received() {
+            self.inbox.put(frame);
+        }
+        if FDCAN1.rxfs(0).read().rfl() {
+            // Writing one clears.
+            FDCAN1.ir().write(|w| w.set_rfl(0, true));
+            self.inbox.count_dropped();
+        }
+    }
+
+    /// The oldest frame that was heard.
+    pub fn next_heard(&mut self) -> Option<Frame> {
+        self.inbox.take()
+    }
+
+    /// Frames that were heard and for which there was no room.
+    pub const fn dropped(&self) -> u16 {
+        self.inbox.dropped()
+    }
+
+    /// Hands a frame over; false if the queue is full. A controller that was thrown off the bus is let back on.
+    pub fn send(&mut self, frame: &Frame) -> bool {
+        if FDCAN1.psr().read().bo() && FDCAN1.cccr().read().init() {
+            // 129 times eleven recessive bits later it takes part again.
+            FDCAN1.cccr().modify(|w| w.set_init(false));
+        }
+        let queue = FDCAN1.txfqs().read();
+        if queue.tfqf() {
+            return false;
+        }
+        let element = usize::from(queue.tfqpi()) % ELEMENTS;
+        let header = match frame.id() {
+            Id::Standard(id) => u32::from(id.as_raw()) << 18,
+            Id::Extended(id) => EXTENDED | id.as_raw(),
+        };
+        let remote = if frame.is_remote() { REMOTE } else { 0 };
+        let mut bytes = [0; Frame::MOST_BYTES];
+        bytes
+            .iter_mut()
+            .zip(frame.data())
+            .for_each(|(target, &byte)| *target = byte);
+        let [a, b, c, d, e, f, g, h] = bytes;
+        let words = [
+            header | remote,
+            u32::from(frame.length()) << 16,
+            u32::from_le_bytes([a, b, c, d]),
+            u32::from_le_bytes([e, f, g, h]),
+        ];
+        for (index, word) in words.into_iter().enumerate() {
+            FDCANRAM1
+                .txbuf(element * ELEMENT_WORDS + index)
+                .write_value(word);
+        }
+        FDCAN1.txbar().write(|w| w.set_ar(element, true));
+        true
+    }
+}
+
+/// The oldest frame in the controller's queue.
+fn received() -> Option<Frame> {
+    let state = FDCAN1.rxfs(0).read();
+    if state.ffl() == 0 {
+        return None;
+    }
+    let element = state.fgi();
+    let word = |index| {
+        FDCANRAM1
+            .rxfifo0(usize::from(element) % ELEMENTS * ELEMENT_WORDS + index)
+            .read()
+    };
+    let (header, second) = (word(0), word(1));
+    let (low, high) = (word(2), word(3));
+    FDCAN1.rxfa(0).write(|w| w.set_fai(element));
+    frame(header, second >> 16 & 0xF, [low, high])
+}
+
+fn frame(header: u32, length: u32, [low, high]: [u32; 2]) -> Option<Frame> {
+    let id = match header & EXTENDED != 0 {
+        true => Id::Extended(ExtendedId::new(header & ExtendedId::MAX.as_raw())?),
+        false => Id::Standard(StandardId::new((header >> 18 & 0x7FF) as u16)?),
+    };
+    let length = length.min(8) as usize;
+    if header & REMOTE != 0 {
+        return Frame::remote_frame(id, length);
+    }
+    let [a, b, c, d] = low.to_le_bytes();
+    let [e, f, g, h] = high.to_le_bytes();
+    Frame::data_frame(id, [a, b, c, d, e, f, g, h].get(..length)?)
+}

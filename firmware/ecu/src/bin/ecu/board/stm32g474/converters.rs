@@ -1,0 +1,116 @@
+//! Which channels the signals are on the STM32G474, and how its converters are set up and asked.
+
+use embedded_hal::delay::DelayNs;
+use hitch_ecu::Signal;
+use stm32_metapac::adc::Adc;
+use stm32_metapac::adc::vals::{Adcaldif, Exten, SampleTime};
+use stm32_metapac::adccommon::vals::Ckmode;
+use stm32_metapac::{ADC12_COMMON, ADC345_COMMON, GPIOA, GPIOB, GPIOC};
+
+use super::delay::CycleDelay;
+use crate::board::pins;
+
+/// TIM1_TRGO for ADC1 and 2 and for ADC3 (RM0440, tables of `JEXTSEL`).
+const TIM1_TRGO: u8 = 0;
+/// The channels of the three sequences in the order of their ranks, and what they measure.
+pub const SEQUENCES: [[(u8, Signal); 4]; 3] = [
+    [
+        (3, Signal::LiftCurrent),      // PA2
+        (1, Signal::RockerAngle),      // PA0
+        (4, Signal::UpperLimit),       // PA3
+        (8, Signal::CylinderPressure), // PC2
+    ],
+    [
+        (6, Signal::LowerCurrent), // PC0
+        (2, Signal::Lever),        // PA1
+        (7, Signal::LoweringDial), // PC1
+        (13, Signal::SecondAngle), // PA5
+    ],
+    [
+        (1, Signal::PumpPressure), // PB1
+        (12, Signal::Supply),      // PB0
+        (5, Signal::SensorSupply), // PB13
+        (REFERENCE, Signal::Reference),
+    ],
+];
+
+/// VREFINT, on ADC1 and ADC3.
+const REFERENCE: u8 = 18;
+
+/// Makes the pins analogue and sets the converters' clock.
+pub fn start_pins_and_clocks() {
+    for pin in 0..=3 {
+        pins::analog(GPIOA, pin);
+    }
+    for pin in 0..=2 {
+        pins::analog(GPIOC, pin);
+    }
+    for pin in [0, 1, 13] {
+        pins::analog(GPIOB, pin);
+    }
+    pins::analog(GPIOA, 5);
+    // 168 MHz / 4 = 42 MHz, of 60 MHz allowed.
+    for common in [ADC12_COMMON, ADC345_COMMON] {
+        common.ccr().modify(|w| {
+            w.set_ckmode(Ckmode::SYNC_DIV4);
+            w.set_vrefen(true);
+        });
+    }
+}
+
+/// True once a sequence has run.
+pub fn is_done(adc: Adc) -> bool {
+    adc.isr().read().jeos()
+}
+
+/// Makes ready for the next one.
+pub fn clear(adc: Adc) {
+    // Writing one clears.
+    adc.isr().write(|w| w.set_jeos(true));
+}
+
+/// Four channels take 4 * (92.5 + 12.5) / 42 MHz = 10 us; the internal reference has to be sampled for 4 us, and takes
+/// 6 us.
+pub fn start_sequence(adc: Adc, sequence: &[(u8, Signal); 4]) {
+    wake_and_calibrate(adc);
+    for &(channel, _) in sequence {
+        let time = match channel {
+            REFERENCE => SampleTime::CYCLES247_5,
+            _ => SampleTime::CYCLES92_5,
+        };
+        let channel = usize::from(channel);
+        match channel.checked_sub(10) {
+            Some(high) => adc.smpr2().modify(|w| w.set_smp(high, time)),
+            None => adc.smpr().modify(|w| w.set_smp(channel, time)),
+        }
+    }
+    adc.isr().write(|w| w.set_adrdy(true));
+    adc.cr().modify(|w| w.set_aden(true));
+    while !adc.isr().read().adrdy() {}
+    // Without the queue of contexts the sequence stays when it has run.
+    adc.cfgr().modify(|w| w.set_jqdis(true));
+    adc.jsqr().write(|w| {
+        w.set_jl(3);
+        w.set_jextsel(TIM1_TRGO);
+        w.set_jexten(Exten::RISING_EDGE);
+        for (index, &(channel, _)) in sequence.iter().enumerate() {
+            w.set_jsq(index, channel);
+        }
+    });
+    adc.cr().modify(|w| w.set_jadstart(true));
+}
+
+/// From deep sleep to a calibrated converter (RM0440, 21.4.6 and 21.4.8).
+fn wake_and_calibrate(adc: Adc) {
+    adc.cr().write(|w| w.set_advregen(true));
+    // 20 us for the regulator.
+    CycleDelay.delay_us(20);
+    adc.cr().write(|w| {
+        w.set_advregen(true);
+        w.set_adcaldif(Adcaldif::SINGLE_ENDED);
+        w.set_adcal(true);
+    });
+    while adc.cr().read().adcal() {}
+    // The converter may be enabled four of its cycles later.
+    cortex_m::asm::delay(32);
+}

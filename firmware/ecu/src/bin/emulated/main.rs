@@ -1,0 +1,145 @@
+//! The firmware on an emulated Cortex-M4 (QEMU `mps2-an386`).
+//!
+//! Told `ecu` by the emulator (`-semihosting-config arg=ecu`), it is the ECU: the application in lock step with whoever
+//! is at the emulator's standard input and output. Told `parts`, it measures what the parts of a step take. Otherwise
+//! it steps the controller alone. At the end of the input it says on the console what it did and how much stack that
+//! took, and ends the emulator with a status.
+
+#![no_std]
+#![no_main]
+
+mod application;
+mod command_line;
+mod console;
+mod flash_file;
+mod host_file;
+mod link;
+mod parts;
+mod stack;
+mod steps;
+mod stopwatch;
+
+use core::hint::spin_loop;
+use core::panic::PanicInfo;
+
+use cortex_m_rt::{ExceptionFrame, entry, exception};
+use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
+
+use hitch_quantities::CalibrationError;
+
+use console::{Word, say};
+use host_file::HostFileError;
+use link::Link;
+use stopwatch::Stopwatch;
+
+/// Why the image ends early.
+enum Failure {
+    HostFile(HostFileError),
+    Calibration,
+}
+
+impl From<CalibrationError> for Failure {
+    fn from(_: CalibrationError) -> Self {
+        Self::Calibration
+    }
+}
+
+impl From<HostFileError> for Failure {
+    fn from(error: HostFileError) -> Self {
+        Self::HostFile(error)
+    }
+}
+
+#[entry]
+fn main() -> ! {
+    match run() {
+        Ok(done) => {
+            say(&[
+                Word::Text("steps="),
+                Word::Number(done.ticks),
+                Word::Text("\nlongest_ticks="),
+                Word::Number(done.longest),
+                Word::Text("\nlongest_working_ticks="),
+                Word::Number(done.longest_working),
+                Word::Text("\nlongest_storing_ticks="),
+                Word::Number(done.longest_storing),
+                Word::Text("\nlongest_control_ticks="),
+                Word::Number(done.longest_control),
+                Word::Text("\nstack_bytes="),
+                Word::Number(stack::high_water_mark()),
+                Word::Text("\n"),
+            ]);
+            debug::exit(EXIT_SUCCESS);
+        }
+        Err(Failure::HostFile(error)) => fail(&error.words()),
+        Err(Failure::Calibration) => fail(&[Word::Text("the nominal calibration is refused\n")]),
+    }
+    halt()
+}
+
+fn run() -> Result<Done, Failure> {
+    let stopwatch = Stopwatch::start();
+    if command_line::is(b"parts") {
+        return parts::run(&stopwatch).map(|()| Done::default());
+    }
+    let mut link = Link::open()?;
+    match command_line::is(b"ecu") {
+        true => application::run(&mut link, &stopwatch),
+        false => steps::run(&mut link, &stopwatch),
+    }
+}
+
+/// What was done.
+#[derive(Default)]
+struct Done {
+    /// Steps or milliseconds.
+    ticks: u32,
+    /// The longest of them, in ticks of the stopwatch; those below are left out if they are told apart.
+    longest: u32,
+    /// The longest of those with a coil on.
+    longest_working: u32,
+    /// The longest of those in which a calibration is stored.
+    longest_storing: u32,
+    /// The longest way from the sampled codes to the pulses, the controller's step in it.
+    longest_control: u32,
+}
+
+fn fail(words: &[Word<'_>]) {
+    say(words);
+    debug::exit(EXIT_FAILURE);
+}
+
+fn halt() -> ! {
+    loop {
+        spin_loop();
+    }
+}
+
+#[panic_handler]
+fn on_panic(info: &PanicInfo<'_>) -> ! {
+    let (file, line) = info
+        .location()
+        .map_or(("?", 0), |place| (place.file(), place.line()));
+    fail(&[
+        Word::Text("panicked at "),
+        Word::Text(file),
+        Word::Text(":"),
+        Word::Number(line),
+        Word::Text(": "),
+        Word::Text(info.message().as_str().unwrap_or("no fixed text")),
+        Word::Text("\n"),
+    ]);
+    halt()
+}
+
+#[exception]
+unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    fail(&[
+        Word::Text("hard fault at address "),
+        Word::Number(frame.pc()),
+        Word::Text(", called from "),
+        Word::Number(frame.lr()),
+        Word::Text("\n"),
+    ]);
+    halt()
+}

@@ -1,0 +1,176 @@
+//! What the parts of a step take: the valve maps, the proportional and integral part of a coil's current, and all of the
+//! currents' regulation.
+//!
+//! A part is called by address, and so is a function that does nothing; the difference is the part's own.
+
+use core::hint::black_box;
+
+use hitch_control::current::Regulation;
+use hitch_control::current::pi::{Gains, ProportionalIntegral, VoltageRange};
+use hitch_control::valve::valve_map::{ValveCurves, ValveMap};
+use hitch_quantities::units::{MicroLitrePerSecond, MilliAmp, MilliBar, MilliVolt};
+use hitch_quantities::{Calibration, CoilCurrents, Inputs, ValidCalibration};
+
+use crate::Failure;
+use crate::console::{Word, say};
+use crate::stopwatch::Stopwatch;
+
+/// From no flow to beyond saturation, ul/s.
+const FLOWS: core::ops::RangeInclusive<i32> = 0..=1_000_000;
+const FLOW_STEP: usize = 997;
+
+/// Says the most ticks that each part took. Not merged into its caller, whose stack it would take for good.
+#[inline(never)]
+pub fn run(stopwatch: &Stopwatch) -> Result<(), Failure> {
+    let calibration = Calibration::nominal().validate()?;
+    time_maps(stopwatch, &calibration);
+    time_pi(stopwatch, &calibration);
+    time_regulation(stopwatch, &calibration);
+    Ok(())
+}
+
+/// A part: what it works on, and what is asked of it.
+type Part<T> = fn(&T, MicroLitrePerSecond, MilliBar) -> MilliAmp;
+
+/// The most ticks of a part over all flows, and drops from 1 to 200 bar.
+#[inline(never)]
+fn most_ticks<T>(stopwatch: &Stopwatch, part: Part<T>, on: &T) -> u32 {
+    let nothing: Part<T> = |_, _, _| MilliAmp::ZERO;
+    let mut most = 0;
+    for flow in FLOWS.step_by(FLOW_STEP) {
+        let drop = MilliBar(1_000 + flow / 5);
+        let ticks = [part, nothing].map(|part| {
+            ticks_of_call(
+                stopwatch,
+                black_box(part),
+                on,
+                MicroLitrePerSecond(flow),
+                drop,
+            )
+        });
+        most = ticks[0].saturating_sub(ticks[1]).max(most);
+    }
+    most
+}
+
+/// The ticks of one call. There is one copy of this code, so that all parts, and the one that does nothing, are called alike.
+#[inline(never)]
+fn ticks_of_call<T>(
+    stopwatch: &Stopwatch,
+    part: Part<T>,
+    on: &T,
+    flow: MicroLitrePerSecond,
+    drop: MilliBar,
+) -> u32 {
+    stopwatch.ticks_of(|| part(on, flow, drop)).1
+}
+
+#[inline(never)]
+fn time_maps(stopwatch: &Stopwatch, calibration: &ValidCalibration) {
+    let curves = ValveCurves::of(calibration);
+    let map = curves.at(curves.scale(MilliBar(7_000)));
+    let lift: Part<ValveMap<'_>> = |map, flow, _| map.lift_current(flow);
+    let lower: Part<ValveMap<'_>> = |map, flow, _| map.lower_current(flow);
+    let both: Part<ValveCurves> =
+        |curves, flow, drop| curves.at(curves.scale(drop)).lower_current(flow);
+    report("lift_map=", most_ticks(stopwatch, lift, &map));
+    report("lower_map=", most_ticks(stopwatch, lower, &map));
+    report(
+        "lower_map_of_flow_and_drop=",
+        most_ticks(stopwatch, both, &curves),
+    );
+}
+
+/// What proportional and integral part work on, as far as it doesn't change from step to step.
+struct PiLoop {
+    pi: ProportionalIntegral,
+    gains: Gains,
+    given: VoltageRange,
+}
+
+/// A step of theirs, for the current that is wanted, the one that is measured and the voltage that is needed at rest.
+type PiStep = fn(&mut PiLoop, MilliAmp, MilliAmp, i32) -> i32;
+
+/// The most ticks of proportional and integral part, over errors, rests and supplies that reach every branch: what is
+/// asked for is beyond the supply, or below nothing, and the integral grows there, or stops, or is cut short.
+#[inline(never)]
+fn time_pi(stopwatch: &Stopwatch, calibration: &ValidCalibration) {
+    let step: PiStep =
+        |on, wanted, measured, rest_uv| on.pi.step(on.gains, wanted - measured, rest_uv, &on.given);
+    let nothing: PiStep = |_, _, _, _| 0;
+    let mut on = PiLoop {
+        pi: ProportionalIntegral::NEW,
+        gains: Gains::of(&calibration.current),
+        given: VoltageRange {
+            least_uv: -700_000,
+            most_uv: 0,
+        },
+    };
+    let mut most = 0;
+    for at in 0..6_000 {
+        // Without a common divisor these meet in every way.
+        let wanted = MilliAmp(at % 89 * 200 - 7_900);
+        let rest_uv = at % 31 * 1_000_000;
+        on.given.most_uv = 4_000_000 + at % 7 * 2_500_000;
+        let ticks = [step, nothing].map(|part| {
+            let part = black_box(part);
+            ticks_of_pi(stopwatch, part, &mut on, wanted, rest_uv)
+        });
+        most = ticks[0].saturating_sub(ticks[1]).max(most);
+    }
+    report("pi=", most);
+}
+
+/// The ticks of one such step: see [`ticks_of_call`].
+#[inline(never)]
+fn ticks_of_pi(
+    stopwatch: &Stopwatch,
+    step: PiStep,
+    on: &mut PiLoop,
+    wanted: MilliAmp,
+    rest_uv: i32,
+) -> u32 {
+    let measured = MilliAmp(1_000);
+    stopwatch.ticks_of(|| step(on, wanted, measured, rest_uv)).1
+}
+
+#[inline(never)]
+fn time_regulation(stopwatch: &Stopwatch, calibration: &ValidCalibration) {
+    type Step = fn(&mut Regulation, CoilCurrents, &Inputs, &Calibration) -> i32;
+    let drive: Step = |regulation, asked, inputs, calibration| {
+        let duties = regulation.drive(asked, inputs, &calibration.current);
+        duties.lift.0 ^ duties.lower.0
+    };
+    let nothing: Step = |_, _, _, _| 0;
+    let mut regulation = Regulation::new(&calibration.current);
+    let mut most = [0; 2];
+    for step in 0..4_000 {
+        let current = MilliAmp(step / 100 % 20 * 150);
+        let both = step >= 2_000;
+        let asked = CoilCurrents {
+            lift: current,
+            lower: if both { current } else { MilliAmp::ZERO },
+        };
+        let measured = Some(current - MilliAmp(step % 100));
+        let inputs = Inputs {
+            supply: Some(MilliVolt(13_800)),
+            lift_current: measured,
+            lower_current: measured,
+            ..Inputs::default()
+        };
+        let ticks = [drive, nothing].map(|part| {
+            let part = black_box(part);
+            stopwatch
+                .ticks_of(|| part(&mut regulation, asked, &inputs, calibration))
+                .1
+        });
+        let most = &mut most[usize::from(both)];
+        *most = ticks[0].saturating_sub(ticks[1]).max(*most);
+    }
+    report("regulation_of_one_coil=", most[0]);
+    report("regulation_of_both_coils=", most[1]);
+}
+
+fn report(name: &str, ticks: u32) {
+    say(&[Word::Text(name), Word::Number(ticks), Word::Text("\n")]);
+}

@@ -1,0 +1,447 @@
+//! From converter codes to quantities.
+//!
+//! The sensors are ratiometric: they give 10 to 90 % of the sensor supply, so that a broken wire and a short are outside.
+//! Their signals are divided by the measured sensor supply, so neither a drift of that supply nor of the converters'
+//! reference moves them. Currents and voltages are absolute. They are corrected by the internal band gap, whose code
+//! falls when the reference rises. Nothing here can be taught: the error of a machine's sensor is in the
+//! calibration's linkage.
+
+use hitch_quantities::Inputs;
+use hitch_quantities::units::{MilliAmp, MilliBar, MilliDegree, MilliVolt, PerMille};
+
+use super::scaling::BoardScaling;
+
+/// A code of the converter: 0 to 4095.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct AdcCode(u16);
+
+impl AdcCode {
+    /// Full scale.
+    pub const MAX: Self = Self(4095);
+
+    /// The code of a converter's data register; the bits above the twelfth are dropped.
+    #[must_use]
+    pub const fn new(register: u16) -> Self {
+        Self(register & Self::MAX.0)
+    }
+
+    /// The code as a number.
+    #[must_use]
+    pub const fn get(self) -> u16 {
+        self.0
+    }
+
+    const fn wide(self) -> i32 {
+        self.0 as i32
+    }
+}
+
+/// A ratiometric signal in its healthy range: 0 at 10 % of the sensor supply, 32 768 at 90 %.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Ratio(i32);
+
+impl Ratio {
+    const ONE: i32 = 32_768;
+
+    /// The same share of the way from `low` to `high`, which may be 65 000 apart.
+    const fn between(self, low: i32, high: i32) -> i32 {
+        let part = (high - low).saturating_mul(self.0);
+        low.saturating_add(part.saturating_add(Self::ONE / 2) / Self::ONE)
+    }
+
+    /// Angle of rocker or lever: 35 to 145 degrees, in steps of 5 millidegrees so that the product fits.
+    const fn angle(self) -> MilliDegree {
+        MilliDegree(self.between(7_000, 29_000).saturating_mul(5))
+    }
+
+    /// Angle of a track that falls while the angle rises.
+    const fn inverted_angle(self) -> MilliDegree {
+        MilliDegree(self.between(29_000, 7_000).saturating_mul(5))
+    }
+
+    /// Pressure: 0 to 250 bar.
+    const fn pressure(self) -> MilliBar {
+        MilliBar(self.between(0, 50_000).saturating_mul(5))
+    }
+
+    /// Dial: shut at 10 %, open at 90 %.
+    fn dial(self) -> PerMille {
+        PerMille(self.between(0, 1_000).clamp(0, 1_000))
+    }
+}
+
+/// What a converter channel measures, in the order of [`Samples::codes`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Signal {
+    /// [`Samples::rocker_angle`].
+    RockerAngle,
+    /// [`Samples::lever`].
+    Lever,
+    /// [`Samples::upper_limit`].
+    UpperLimit,
+    /// [`Samples::lowering_dial`].
+    LoweringDial,
+    /// [`Samples::lift_current`].
+    LiftCurrent,
+    /// [`Samples::lower_current`].
+    LowerCurrent,
+    /// [`Samples::supply`].
+    Supply,
+    /// [`Samples::cylinder_pressure`].
+    CylinderPressure,
+    /// [`Samples::pump_pressure`].
+    PumpPressure,
+    /// [`Samples::second_angle`].
+    SecondAngle,
+    /// [`Samples::sensor_supply`].
+    SensorSupply,
+    /// [`Samples::reference`].
+    Reference,
+}
+
+/// What the converters give in a millisecond.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Samples {
+    /// Rocker-arm angle.
+    pub rocker_angle: AdcCode,
+    /// Lever.
+    pub lever: AdcCode,
+    /// Upper-limit dial.
+    pub upper_limit: AdcCode,
+    /// Lowering-rate dial.
+    pub lowering_dial: AdcCode,
+    /// Current of the lift coil.
+    pub lift_current: AdcCode,
+    /// Current of the lowering coil.
+    pub lower_current: AdcCode,
+    /// Supply voltage.
+    pub supply: AdcCode,
+    /// Cylinder pressure.
+    pub cylinder_pressure: AdcCode,
+    /// Pump pressure.
+    pub pump_pressure: AdcCode,
+    /// Second track of the rocker-arm angle, inverted.
+    pub second_angle: AdcCode,
+    /// Supply of the sensors.
+    pub sensor_supply: AdcCode,
+    /// Internal band gap: its code falls when the converters' reference rises.
+    pub reference: AdcCode,
+}
+
+impl Samples {
+    /// Number of converter channels.
+    pub const CHANNELS: usize = 12;
+
+    /// The codes in the order of the fields.
+    #[must_use]
+    pub const fn codes(&self) -> [AdcCode; Self::CHANNELS] {
+        [
+            self.rocker_angle,
+            self.lever,
+            self.upper_limit,
+            self.lowering_dial,
+            self.lift_current,
+            self.lower_current,
+            self.supply,
+            self.cylinder_pressure,
+            self.pump_pressure,
+            self.second_angle,
+            self.sensor_supply,
+            self.reference,
+        ]
+    }
+
+    /// The samples whose [`codes`](Self::codes) these are.
+    #[must_use]
+    pub const fn from_codes(codes: [AdcCode; Self::CHANNELS]) -> Self {
+        let [
+            rocker_angle,
+            lever,
+            upper_limit,
+            lowering_dial,
+            lift_current,
+            lower_current,
+            supply,
+            cylinder_pressure,
+            pump_pressure,
+            second_angle,
+            sensor_supply,
+            reference,
+        ] = codes;
+        Self {
+            rocker_angle,
+            lever,
+            upper_limit,
+            lowering_dial,
+            lift_current,
+            lower_current,
+            supply,
+            cylinder_pressure,
+            pump_pressure,
+            second_angle,
+            sensor_supply,
+            reference,
+        }
+    }
+}
+
+/// A reading of 1 with the nominal reference, in the factor that corrects absolute readings.
+const UNCORRECTED: u32 = 1 << 16;
+/// Change of the sensor supply's code that counts. Its last digit flips in a healthy machine, and would make every
+/// ratiometric signal tremble.
+const SUPPLY_STEP: u16 = 2;
+/// Share by which a code may differ from its nominal one and still be used: beyond it the measurement itself is faulty,
+/// and its row of the safety envelope trips.
+const MOST_DEVIATION: u32 = 5;
+
+/// Turns the codes of each millisecond into the inputs of a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Conversion {
+    scaling: BoardScaling,
+    /// Code of the sensor supply that the ratiometric signals are divided by.
+    sensor_supply: u16,
+    /// Ratio of a signal's code to 40 960 times its share of the sensor supply, in 2^-16.
+    signal_factor: u32,
+}
+
+impl Conversion {
+    /// The conversion of a board.
+    #[must_use]
+    pub fn new(scaling: BoardScaling) -> Self {
+        Self {
+            scaling,
+            sensor_supply: 0,
+            signal_factor: 10 << 16,
+        }
+    }
+
+    /// The inputs of a step, as far as converters know them. A dial whose wire is broken counts as its safest
+    /// position: no lowering, and no limit beyond the calibration's, for a hitch that can't be raised is stuck.
+    #[must_use]
+    pub fn inputs(&mut self, samples: &Samples) -> Inputs {
+        let correction = self.correction(samples.reference);
+        let sensor_supply = absolute(
+            samples.sensor_supply,
+            self.scaling.sensor_supply.0,
+            correction,
+        );
+        self.follow_sensor_supply(samples.sensor_supply, sensor_supply);
+        let ratio = |code| self.ratio(code);
+        let current = |code| MilliAmp(absolute(code, self.scaling.current.0, correction));
+        Inputs {
+            lever: ratio(samples.lever).map(Ratio::angle),
+            rocker_angle: ratio(samples.rocker_angle).map(Ratio::angle),
+            second_angle: ratio(samples.second_angle).map(Ratio::inverted_angle),
+            cylinder_pressure: ratio(samples.cylinder_pressure).map(Ratio::pressure),
+            pump_pressure: ratio(samples.pump_pressure).map(Ratio::pressure),
+            upper_limit: ratio(samples.upper_limit).map(Ratio::angle),
+            lowering_dial: Some(ratio(samples.lowering_dial).map_or(PerMille::ZERO, Ratio::dial)),
+            supply: Some(MilliVolt(absolute(
+                samples.supply,
+                self.scaling.supply.0,
+                correction,
+            ))),
+            lift_current: Some(current(samples.lift_current)),
+            lower_current: Some(current(samples.lower_current)),
+            sensor_supply: Some(MilliVolt(sensor_supply)),
+            reference: Some(self.reference(samples.reference)),
+            ..Inputs::default()
+        }
+    }
+
+    /// The converters' reference by the band gap, per mille of its nominal value; 0 if there is no band gap.
+    fn reference(&self, band_gap: AdcCode) -> PerMille {
+        let nominal = u32::from(self.scaling.reference.get()) * 1_000;
+        let share = nominal
+            .checked_div(u32::from(band_gap.get()))
+            .unwrap_or_default();
+        PerMille(share.cast_signed())
+    }
+
+    /// The factor of absolute readings in 2^-16; 1 if the band gap's code is absurd.
+    fn correction(&self, band_gap: AdcCode) -> u32 {
+        let nominal = u32::from(self.scaling.reference.get());
+        let measured = u32::from(band_gap.get());
+        if measured.abs_diff(nominal) > nominal / MOST_DEVIATION {
+            return UNCORRECTED;
+        }
+        (nominal * UNCORRECTED)
+            .checked_div(measured)
+            .unwrap_or(UNCORRECTED)
+    }
+
+    /// Takes a changed sensor supply for the ratiometric signals, unless it is absurd.
+    fn follow_sensor_supply(&mut self, code: AdcCode, millivolts: i32) {
+        let most = MilliVolt(NOMINAL_SENSOR_SUPPLY.0 / MOST_DEVIATION.cast_signed());
+        let absurd = (MilliVolt(millivolts) - NOMINAL_SENSOR_SUPPLY).magnitude() > most;
+        if absurd || code.get().abs_diff(self.sensor_supply) < SUPPLY_STEP {
+            return;
+        }
+        let full_scale = |value: MilliVolt| u64::from(value.0.unsigned_abs());
+        let signal = full_scale(self.scaling.signal) * (40_960 << 16);
+        let supply = full_scale(self.scaling.sensor_supply) * u64::from(code.get());
+        let factor = signal.checked_div(supply).unwrap_or_default();
+        self.sensor_supply = code.get();
+        self.signal_factor = u32::try_from(factor).unwrap_or(u32::MAX);
+    }
+
+    /// A ratiometric signal; none if its wire is broken or shorted.
+    fn ratio(&self, code: AdcCode) -> Option<Ratio> {
+        let product = u64::from(code.get()) * u64::from(self.signal_factor);
+        let share = i32::try_from(product >> 16).unwrap_or(i32::MAX);
+        let part = |limit: PerMille| limit.0.clamp(0, 1_000) * 40_960 / 1_000;
+        let healthy = part(self.scaling.wire_min)..=part(self.scaling.wire_max);
+        healthy
+            .contains(&share)
+            .then(|| Ratio(share.saturating_sub(4_096)))
+    }
+}
+
+/// Nominal supply of the sensors.
+const NOMINAL_SENSOR_SUPPLY: MilliVolt = MilliVolt(5_000);
+
+/// An absolute quantity: the share of its full scale, corrected.
+fn absolute(code: AdcCode, full_scale: i32, correction: u32) -> i32 {
+    let share = (i64::from(code.wide()) * i64::from(full_scale) + 2_048) >> 12;
+    let corrected = share.wrapping_mul(i64::from(correction)) >> 16;
+    i32::try_from(corrected).unwrap_or(i32::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::*;
+
+    /// Samples with signals at `volts`, a sensor supply of `sensor_supply` volts and a reference that is `share` of its
+    /// nominal value.
+    fn samples(volts: f64, sensor_supply: f64, share: f64) -> Samples {
+        let code = |of_full_scale: f64| AdcCode((of_full_scale / share * 4096.0).round() as u16);
+        Samples {
+            supply: code(12.0 / 24.576),
+            lift_current: code(0.5),
+            sensor_supply: code(sensor_supply / 6.6),
+            reference: code(1_502.0 / 4096.0),
+            ..Samples::from_codes([code(volts / 5.0); Samples::CHANNELS])
+        }
+    }
+
+    fn inputs(samples: &Samples) -> Inputs {
+        Conversion::new(BoardScaling::NOMINAL).inputs(samples)
+    }
+
+    #[test]
+    fn a_ratiometric_angle_runs_from_a_tenth_of_the_sensor_supply_to_nine_tenths() {
+        // A code is 34 millidegrees.
+        for (volts, millidegrees) in [(0.5, 35_000), (2.5, 90_000), (4.5, 145_000)] {
+            let found = inputs(&samples(volts, 5.0, 1.0));
+            let (first, second) = (found.rocker_angle.unwrap().0, found.second_angle.unwrap().0);
+            assert!((first - millidegrees).abs() <= 20, "{volts} V: {first}");
+            assert!((first + second - 180_000).abs() <= 40, "{first} {second}");
+        }
+        for broken in [0.2, 4.8] {
+            assert_eq!(inputs(&samples(broken, 5.0, 1.0)).rocker_angle, None);
+        }
+    }
+
+    #[test]
+    fn neither_the_reference_nor_the_sensor_supply_moves_a_reading() {
+        for (supply, share) in [(5.0, 0.92), (5.0, 1.06), (4.6, 1.0), (5.3, 0.97)] {
+            let found = inputs(&samples(0.7 * supply, supply, share));
+            let angle = found.rocker_angle.unwrap().0;
+            assert!((angle - 117_500).abs() < 60, "{supply} {share}: {angle}");
+            let (coil, battery) = (found.lift_current.unwrap().0, found.supply.unwrap().0);
+            assert!((coil - 2_500).abs() <= 5, "{coil}");
+            assert!((battery - 12_000).abs() <= 15, "{battery}");
+            let sensors = found.sensor_supply.unwrap().0;
+            assert!(
+                (f64::from(sensors) - supply * 1e3).abs() <= 8.0,
+                "{sensors}"
+            );
+            let reference = found.reference.unwrap().0;
+            assert!(
+                (f64::from(reference) - share * 1e3).abs() <= 1.5,
+                "{reference}"
+            );
+        }
+    }
+
+    #[test]
+    fn absurd_codes_of_reference_and_sensor_supply_divide_nothing() {
+        let mut conversion = Conversion::new(BoardScaling::NOMINAL);
+        let healthy = samples(3.5, 5.0, 1.0);
+        let before = conversion.inputs(&healthy);
+        for absurd in [AdcCode(0), AdcCode(1), AdcCode::MAX] {
+            let found = conversion.inputs(&Samples {
+                sensor_supply: absurd,
+                reference: absurd,
+                ..healthy
+            });
+            assert_eq!(found.rocker_angle, before.rocker_angle);
+            assert_eq!(found.lift_current, before.lift_current);
+            assert_ne!(found.reference, before.reference);
+        }
+    }
+
+    #[test]
+    fn every_code_gives_more_than_the_one_before() {
+        let mut conversion = Conversion::new(BoardScaling::NOMINAL);
+        let found: Vec<_> = (205..=3_890)
+            .map(|code| {
+                conversion.inputs(&Samples {
+                    rocker_angle: AdcCode(code),
+                    lift_current: AdcCode(code),
+                    ..samples(2.5, 5.0, 1.0)
+                })
+            })
+            .collect();
+        assert!(found.is_sorted_by(|low, high| low.rocker_angle < high.rocker_angle));
+        assert!(found.is_sorted_by(|low, high| low.lift_current < high.lift_current));
+    }
+
+    #[test]
+    fn a_broken_dial_lowers_nothing() {
+        let healthy = samples(2.5, 5.0, 1.0);
+        let dial = |samples| inputs(&samples).lowering_dial.unwrap().0;
+        assert!((dial(healthy) - 500).abs() <= 1);
+        let broken = Samples {
+            lowering_dial: AdcCode::default(),
+            ..healthy
+        };
+        assert_eq!(dial(broken), 0);
+    }
+
+    #[test]
+    fn codes_go_round() {
+        let codes = core::array::from_fn(|index| AdcCode::new(index as u16 * 100));
+        assert_eq!(Samples::from_codes(codes).codes(), codes);
+    }
+
+    #[test]
+    fn the_code_of_a_signal_is_its_sample() {
+        const CODE: AdcCode = AdcCode::new(1_000);
+        let none = Samples::default();
+        #[rustfmt::skip]
+        let samples = [
+            (Signal::RockerAngle, Samples { rocker_angle: CODE, ..none }),
+            (Signal::Lever, Samples { lever: CODE, ..none }),
+            (Signal::UpperLimit, Samples { upper_limit: CODE, ..none }),
+            (Signal::LoweringDial, Samples { lowering_dial: CODE, ..none }),
+            (Signal::LiftCurrent, Samples { lift_current: CODE, ..none }),
+            (Signal::LowerCurrent, Samples { lower_current: CODE, ..none }),
+            (Signal::Supply, Samples { supply: CODE, ..none }),
+            (Signal::CylinderPressure, Samples { cylinder_pressure: CODE, ..none }),
+            (Signal::PumpPressure, Samples { pump_pressure: CODE, ..none }),
+            (Signal::SecondAngle, Samples { second_angle: CODE, ..none }),
+            (Signal::SensorSupply, Samples { sensor_supply: CODE, ..none }),
+            (Signal::Reference, Samples { reference: CODE, ..none }),
+        ];
+        assert_eq!(samples.len(), Samples::CHANNELS);
+        for (signal, expected) in samples {
+            let mut codes = none.codes();
+            codes[signal as usize] = CODE;
+            assert_eq!(Samples::from_codes(codes), expected, "{signal:?}");
+        }
+    }
+}

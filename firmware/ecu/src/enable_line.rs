@@ -1,0 +1,195 @@
+//! The line that enables the coils' drivers: tested before it is first used, and watched by its read-back from then on.
+//!
+//! ```text
+//!  power-up   +-----+  low for SETTLING   +----------+  first drive   +--------+  high after SETTLING   +--------+
+//! ----------> | Low | ------------------> | Untested | -------------> | Raised | ---------------------> | Proven |
+//!             +-----+                     +----------+                +--------+                        +--------+
+//!                |                             |                          |  pulses at zero                  |
+//!                +-----------------------------+--------------------------+----------------------------------+
+//!                                              |  read-back differs for SETTLING
+//!                                              v
+//!                                          +--------+
+//!                                          | Faulty |  until restart
+//!                                          +--------+
+//! ```
+//!
+//! A line that is stuck low moves nothing. One that is stuck high takes the second way of cutting the coils away, which
+//! shows only while the line is meant to be low. So both levels have to be seen before the first current.
+
+use super::drive::{Compare, Drive};
+
+/// Time for which the read-back has to agree, or may disagree, ms: far longer than a driver's enable input and its
+/// filter take, and shorter than a spool needs to follow.
+const SETTLING_MS: u8 = 5;
+
+/// What is known of the line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum State {
+    /// Low since power-up.
+    #[default]
+    Low,
+    /// Has been low, and was read back as low.
+    Untested,
+    /// High for the first time, with both pulse widths at zero.
+    Raised,
+    /// Has been both.
+    Proven,
+    /// Its read-back differs from its command.
+    Faulty,
+}
+
+/// Tests and watches the line.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EnableLine {
+    state: State,
+    /// Level that was asked for in the last millisecond.
+    asked: bool,
+    /// For how long the read-back has agreed in the present state, ms.
+    agreed_ms: u8,
+    /// For how long it has disagreed, ms.
+    differed_ms: u8,
+}
+
+impl EnableLine {
+    /// A millisecond begins: takes the read-back of the line; a board that has none is trusted. True if the line is
+    /// faulty.
+    pub fn read(&mut self, feedback: Option<bool>) -> bool {
+        let Some(level) = feedback else {
+            return self.state == State::Faulty;
+        };
+        let agrees = level == self.asked;
+        self.agreed_ms = if agrees {
+            self.agreed_ms.saturating_add(1)
+        } else {
+            0
+        };
+        self.differed_ms = if agrees {
+            0
+        } else {
+            self.differed_ms.saturating_add(1)
+        };
+        let settled = self.agreed_ms >= SETTLING_MS;
+        self.state = match self.state {
+            _ if self.differed_ms >= SETTLING_MS => State::Faulty,
+            State::Low if settled => State::Untested,
+            State::Raised if settled => State::Proven,
+            state => state,
+        };
+        self.state == State::Faulty
+    }
+
+    /// What the drivers get of what they are meant to get.
+    pub fn pass(&mut self, wanted: Drive, has_feedback: bool) -> Drive {
+        let drive = match self.state {
+            State::Faulty => Drive::OFF,
+            _ if !has_feedback => wanted,
+            State::Low => Drive::OFF,
+            State::Untested if wanted.enable => {
+                self.state = State::Raised;
+                self.agreed_ms = 0;
+                RAISED
+            }
+            State::Raised if wanted.enable => RAISED,
+            State::Raised => {
+                // Called off before the line was proven: tested anew with the next drive.
+                self.state = State::Untested;
+                Drive::OFF
+            }
+            State::Untested | State::Proven => wanted,
+        };
+        self.asked = drive.enable;
+        drive
+    }
+}
+
+/// The line without pulses.
+const RAISED: Drive = Drive {
+    lift: Compare::OFF,
+    lower: Compare::OFF,
+    enable: true,
+};
+
+#[cfg(test)]
+mod tests {
+    use hitch_quantities::units::Duty;
+
+    use super::*;
+
+    fn wanted() -> Drive {
+        Drive {
+            lift: Compare::of(Duty(40_000), 5_250),
+            lower: Compare::OFF,
+            enable: true,
+        }
+    }
+
+    /// Runs a line whose level is `level(asked)`; the drive of each millisecond and whether it was faulty at its start.
+    fn run(
+        line: &mut EnableLine,
+        drives: &[Drive],
+        level: impl Fn(bool) -> bool,
+    ) -> std::vec::Vec<(Drive, bool)> {
+        let mut asked = line.asked;
+        drives
+            .iter()
+            .map(|&drive| {
+                let faulty = line.read(Some(level(asked)));
+                let given = line.pass(drive, true);
+                asked = given.enable;
+                (given, faulty)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_first_drive_waits_until_the_line_was_seen_low_and_high() {
+        let mut line = EnableLine::default();
+        let given = run(&mut line, &[wanted(); 20], |asked| asked);
+        let drives: std::vec::Vec<Drive> = given.iter().map(|(drive, _)| *drive).collect();
+        assert_eq!(drives[..4], [Drive::OFF; 4]);
+        assert_eq!(drives[4..9], [RAISED; 5]);
+        assert_eq!(drives[9..], [wanted(); 11]);
+        assert!(given.iter().all(|(_, faulty)| !faulty));
+        run(&mut line, &[Drive::OFF; 100], |asked| asked);
+        let again = run(&mut line, &[wanted()], |asked| asked);
+        assert_eq!(again[0], (wanted(), false), "tested once");
+    }
+
+    #[test]
+    fn a_line_that_is_stuck_gets_no_pulse_until_restart() {
+        for stuck in [false, true] {
+            let mut line = EnableLine::default();
+            let given = run(&mut line, &[wanted(); 100], |_| stuck);
+            assert!(given.iter().all(|(drive, _)| drive.lift == Compare::OFF));
+            assert!(given[20..].iter().all(|given| *given == (Drive::OFF, true)));
+            let healed = run(&mut line, &[wanted(); 1_000], |asked| asked);
+            assert!(healed.iter().all(|given| *given == (Drive::OFF, true)));
+        }
+    }
+
+    #[test]
+    fn a_read_back_that_disagrees_in_operation_trips_after_its_time() {
+        for stuck in [false, true] {
+            let mut line = EnableLine::default();
+            run(&mut line, &[wanted(); 20], |asked| asked);
+            let drive = if stuck { Drive::OFF } else { wanted() };
+            run(&mut line, &[drive; 20], |asked| asked);
+            let given = run(&mut line, &[drive; 20], |_| stuck);
+            let tripped = given.iter().position(|(_, faulty)| *faulty);
+            assert_eq!(tripped, Some(usize::from(SETTLING_MS) - 1), "{stuck}");
+            let mut line = EnableLine::default();
+            run(&mut line, &[wanted(); 20], |asked| asked);
+            run(&mut line, &[drive; 20], |asked| asked);
+            run(&mut line, &[drive; 4], |_| stuck);
+            let given = run(&mut line, &[drive; 20], |asked| asked);
+            assert!(given.iter().all(|(_, faulty)| !faulty), "a short glitch");
+        }
+    }
+
+    #[test]
+    fn a_board_without_a_read_back_is_trusted() {
+        let mut line = EnableLine::default();
+        assert!(!line.read(None));
+        assert_eq!(line.pass(wanted(), false), wanted());
+    }
+}

@@ -1,0 +1,115 @@
+//! The ECU behind a link: a request in, a reply out, on whatever machine.
+
+use embedded_storage::nor_flash::NorFlash;
+use heapless::{Deque, Vec};
+use hitch_protocols::can::Frame;
+
+use super::application::Ecu;
+use super::drive::Drive;
+use super::hardware::{Contacts, FlashRegions, Hardware};
+use super::link::{MOST_FRAMES, Reply};
+use super::scaling::BoardScaling;
+
+/// Watches a millisecond from inside.
+pub trait Probe {
+    /// The samples are there.
+    fn sampled(&mut self);
+    /// The controller's step is done, and its pulses go to the drivers.
+    fn driven(&mut self);
+}
+
+/// Nobody watches.
+impl Probe for () {
+    fn sampled(&mut self) {}
+    fn driven(&mut self) {}
+}
+
+/// The ECU with wires that end in requests and replies.
+#[derive(Debug)]
+pub struct Machine<F, P = ()> {
+    ecu: Ecu<F>,
+    wires: Wires<P>,
+}
+
+#[derive(Debug, Default)]
+struct Wires<P> {
+    probe: P,
+    drive: Drive,
+    heard: Deque<Frame, MOST_FRAMES>,
+    said: Vec<Frame, MOST_FRAMES>,
+}
+
+impl<P: Probe> Hardware for Wires<P> {
+    fn drive(&mut self, drive: Drive) {
+        self.probe.driven();
+        self.drive = drive;
+    }
+
+    fn receive(&mut self) -> Option<Frame> {
+        self.heard.pop_front()
+    }
+
+    fn send(&mut self, frame: &Frame) -> bool {
+        self.said.push(*frame).is_ok()
+    }
+
+    fn frames_dropped(&self) -> u16 {
+        0
+    }
+}
+
+impl<F: NorFlash, P: Probe + Default> Machine<F, P> {
+    /// The ECU as it is after power-up. Not inlined, as [`Ecu::start`].
+    #[must_use]
+    #[inline(never)]
+    pub fn start(flash: FlashRegions<F>, serial_number: u32, scaling: BoardScaling) -> Self {
+        Self {
+            ecu: Ecu::start(flash, serial_number, scaling),
+            wires: Wires::default(),
+        }
+    }
+
+    /// One millisecond; what it says on the bus is in [`Self::said`].
+    pub fn tick(&mut self, contacts: &Contacts, heard: &[Frame]) -> Reply {
+        self.wires.said.clear();
+        for frame in heard.iter().take(MOST_FRAMES) {
+            // The last tick has emptied the queue, so there is room.
+            let _ = self.wires.heard.push_back(*frame);
+        }
+        self.wires.probe.sampled();
+        let kicked = self.ecu.tick(contacts, &mut self.wires).is_some();
+        let (drive, outputs) = (self.wires.drive, self.ecu.outputs());
+        let milliampere = |value: i32| i16::try_from(value).unwrap_or(i16::MAX);
+        Reply {
+            lift: drive.lift.get(),
+            lower: drive.lower.get(),
+            enable: drive.enable,
+            kicked,
+            state: outputs.state as u8,
+            fault: outputs.fault.map_or(0, |fault| fault as u8),
+            trip: outputs.trip.map_or(0, |trip| trip as u8),
+            frames: u8::try_from(self.wires.said.len()).unwrap_or(u8::MAX),
+            target_mdeg: outputs.target.0,
+            lift_ma: milliampere(outputs.lift_current.0),
+            lower_ma: milliampere(outputs.lower_current.0),
+        }
+    }
+
+    /// What the last tick said on the bus.
+    #[must_use]
+    pub fn said(&self) -> &[Frame] {
+        &self.wires.said
+    }
+
+    /// Who watches.
+    #[must_use]
+    pub const fn probe(&self) -> &P {
+        &self.wires.probe
+    }
+
+    /// The application.
+    #[must_use]
+    pub const fn ecu(&self) -> &Ecu<F> {
+        &self.ecu
+    }
+}

@@ -1,0 +1,63 @@
+//! Time: milliseconds by the number of ticks, and how long the last one took by another clock.
+
+use hitch_quantities::units::Microsecond;
+
+/// Both clocks.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pace {
+    now_ms: u32,
+    last_us: Option<u32>,
+    longest_us: u16,
+}
+
+impl Pace {
+    /// A tick begins; the time since the last one began.
+    pub fn begin(&mut self, clock_us: u32) -> Option<Microsecond> {
+        self.now_ms = self.now_ms.wrapping_add(1);
+        let last_us = self.last_us.replace(clock_us)?;
+        let step_us = clock_us.wrapping_sub(last_us);
+        self.longest_us = self
+            .longest_us
+            .max(u16::try_from(step_us).unwrap_or(u16::MAX));
+        Some(Microsecond(i32::try_from(step_us).unwrap_or(i32::MAX)))
+    }
+
+    /// This tick was made to wait on purpose, with both coils off: the next one isn't late.
+    pub const fn forgive(&mut self) {
+        self.last_us = None;
+    }
+
+    /// Milliseconds since the start; wraps.
+    #[must_use]
+    pub const fn now_ms(&self) -> u32 {
+        self.now_ms
+    }
+
+    /// Longest time between two ticks, us.
+    #[must_use]
+    pub const fn longest_us(&self) -> u16 {
+        self.longest_us
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_that_wraps_is_no_overrun() {
+        let mut pace = Pace::default();
+        assert_eq!(pace.begin(u32::MAX - 300), None);
+        assert_eq!(pace.begin(699), Some(Microsecond(1_000)));
+        assert_eq!((pace.now_ms(), pace.longest_us()), (2, 1_000));
+    }
+
+    #[test]
+    fn a_wait_on_purpose_is_forgiven_once() {
+        let mut pace = Pace::default();
+        pace.begin(0);
+        pace.forgive();
+        assert_eq!(pace.begin(1_000_000), None);
+        assert_eq!(pace.begin(1_900_000), Some(Microsecond(900_000)));
+    }
+}

@@ -1,0 +1,113 @@
+//! The operator's buttons and switches as contacts.
+
+use hitch_quantities::units::MilliDegreePerSecond;
+use hitch_quantities::{Inputs, Switches};
+
+/// Contacts of buttons and switches. All of them close to ground, so that a broken wire reads as open.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Panel(u8);
+
+/// One contact of the panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Contact {
+    /// Button outside: up.
+    Up = 1 << 0,
+    /// Button outside: down.
+    Down = 1 << 1,
+    /// Closed on the field. Open, by hand or by a broken wire, the hitch is locked for the road.
+    FieldMode = 1 << 2,
+    /// Hold.
+    Hold = 1 << 3,
+    /// Quick lift.
+    QuickLift = 1 << 4,
+    /// Service: the buttons outside teach.
+    Service = 1 << 5,
+}
+
+impl Panel {
+    /// Contacts in the order of their bits.
+    pub const CONTACTS: [Contact; 6] = [
+        Contact::Up,
+        Contact::Down,
+        Contact::FieldMode,
+        Contact::Hold,
+        Contact::QuickLift,
+        Contact::Service,
+    ];
+
+    /// A tractor in the field with nothing pressed.
+    pub const FIELD: Self = Self(Contact::FieldMode as u8);
+
+    /// The panel with these bits; those without a contact are dropped.
+    #[must_use]
+    pub const fn from_bits(bits: u8) -> Self {
+        Self(bits & 0b11_1111)
+    }
+
+    /// A bit a contact, set if it is closed.
+    #[must_use]
+    pub const fn bits(self) -> u8 {
+        self.0
+    }
+
+    /// The panel with one contact closed or opened.
+    #[must_use]
+    pub const fn with(self, contact: Contact, closed: bool) -> Self {
+        match closed {
+            true => Self(self.0 | contact as u8),
+            false => Self(self.0 & !(contact as u8)),
+        }
+    }
+
+    /// True if the contact is closed.
+    #[must_use]
+    pub const fn is_closed(self, contact: Contact) -> bool {
+        self.0 & contact as u8 != 0
+    }
+
+    /// What the operator asks for by the buttons outside: as fast as the calibration's rate limit lets it. Both at
+    /// once are none.
+    fn jog(self) -> Option<MilliDegreePerSecond> {
+        match (self.is_closed(Contact::Up), self.is_closed(Contact::Down)) {
+            (true, false) => Some(MilliDegreePerSecond(i32::MAX)),
+            (false, true) => Some(MilliDegreePerSecond(-i32::MAX)),
+            _ => None,
+        }
+    }
+
+    /// Adds what the panel says to the inputs of a step.
+    #[must_use]
+    pub fn added_to(self, inputs: Inputs) -> Inputs {
+        Inputs {
+            jog: self.jog(),
+            switches: Switches {
+                transport_lock: !self.is_closed(Contact::FieldMode),
+                hold: self.is_closed(Contact::Hold),
+                quick_lift: self.is_closed(Contact::QuickLift),
+                teach: self.is_closed(Contact::Service),
+            },
+            ..inputs
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panel_without_wires_is_locked_and_asks_for_nothing() {
+        let inputs = Panel::default().added_to(Inputs::default());
+        assert!(inputs.switches.transport_lock);
+        assert_eq!(inputs.jog, None);
+    }
+
+    #[test]
+    fn both_buttons_are_none() {
+        let up = Panel::FIELD.with(Contact::Up, true);
+        assert!(up.added_to(Inputs::default()).jog.is_some());
+        let both = up.with(Contact::Down, true);
+        assert_eq!(both.added_to(Inputs::default()).jog, None);
+    }
+}

@@ -1,0 +1,68 @@
+//! What the bus is told of a step.
+
+use hitch_protocols::j1939::{ExitCode, HitchStatus, Limit, Troubles};
+use hitch_quantities::calibration::design_parameters::PositionParameters;
+use hitch_quantities::{Fault, Inputs, Outputs, State};
+
+use crate::arbiter;
+
+/// As long as the hitch is further from its set point, valves and ramps decide how fast it moves: 2 degrees.
+const UNDER_WAY_MDEG: i32 = 2_000;
+/// A set point this close to a limit of the travel is at it: 0.1 degree.
+const AT_LIMIT_MDEG: i32 = 100;
+
+/// The hitch's status after a step. `taken_back`: the operator has moved the lever under an implement.
+#[must_use]
+pub fn status(
+    inputs: &Inputs,
+    outputs: &Outputs,
+    limits: &PositionParameters,
+    troubles: Troubles,
+    taken_back: bool,
+) -> HitchStatus {
+    let exit = exit_code(outputs);
+    HitchStatus {
+        position: inputs
+            .rocker_angle
+            .map(|angle| arbiter::position(angle, limits)),
+        in_work: None,
+        limit: limit(inputs, outputs, limits),
+        exit,
+        remote_permitted: exit == ExitCode::Clear && !inputs.switches.hold && !taken_back,
+        troubles,
+    }
+}
+
+fn limit(inputs: &Inputs, outputs: &Outputs, limits: &PositionParameters) -> Limit {
+    let to_go = inputs
+        .rocker_angle
+        .map_or(0, |angle| (outputs.target - angle).magnitude().0);
+    let is_under_way = to_go > UNDER_WAY_MDEG;
+    let below_top = (limits.upper_limit - outputs.target).0;
+    let above_bottom = (outputs.target - limits.lower_limit).0;
+    match outputs.trip.is_some_and(|trip| trip.is_final()) {
+        true => Limit::NonRecoverable,
+        // A set point further on makes a hitch that is under way no faster.
+        false if is_under_way && outputs.state == State::Lifting => Limit::High,
+        false if is_under_way && outputs.state == State::Lowering => Limit::Low,
+        false if below_top <= AT_LIMIT_MDEG => Limit::High,
+        false if above_bottom <= AT_LIMIT_MDEG => Limit::Low,
+        false => Limit::None,
+    }
+}
+
+/// Why an implement can't have the hitch.
+fn exit_code(outputs: &Outputs) -> ExitCode {
+    match outputs.state {
+        State::Locked | State::TransportLock => ExitCode::LockedOut,
+        State::Teaching => ExitCode::OperatorOverride,
+        State::Fault if outputs.fault == Some(Fault::Lever) => ExitCode::ControlFault,
+        State::Fault => ExitCode::FunctionFault,
+        State::Holding
+        | State::Lifting
+        | State::Lowering
+        | State::Settling
+        | State::Stalled
+        | State::Floating => ExitCode::Clear,
+    }
+}

@@ -1,0 +1,260 @@
+//! Hitch messages: rear hitch status and hitch commands (ISO 11783-7).
+//!
+//! A one-byte quantity is data up to 250; 251 to 253 are reserved, 254 says that the sender's signal is
+//! bad, 255 that there is none. Unused bits are ones.
+
+use hitch_quantities::units::PerMille;
+
+use super::trouble::Troubles;
+
+/// Largest raw value of a one-byte quantity that is data.
+const LARGEST: u8 = 250;
+/// Raw value: the signal is bad.
+const ERROR: u8 = 254;
+/// Raw value: not available; in a command, nothing is asked for.
+const NOT_AVAILABLE: u8 = 255;
+/// Positions have 0.4 % a bit.
+const PER_MILLE_PER_BIT: i32 = 4;
+
+/// What the controller tells the bus about the hitch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct HitchStatus {
+    /// Position, 0 is lowest; `None` if the sensor is bad.
+    pub position: Option<PerMille>,
+    /// In work; `None` if that isn't known.
+    pub in_work: Option<bool>,
+    /// What limits the set point just now.
+    pub limit: Limit,
+    /// Why the hitch can't be commanded, or [`ExitCode::Clear`].
+    pub exit: ExitCode,
+    /// True while the operator lets an implement command the hitch. Taking it away ends remote control.
+    pub remote_permitted: bool,
+    /// What is wrong.
+    pub troubles: Troubles,
+}
+
+/// What limits the set point, as the controller sees it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Limit {
+    /// Nothing.
+    #[default]
+    None,
+    /// It is as high as it may be (or rises as fast as it may): only lower values act.
+    High,
+    /// It is as low as it may be (or falls as fast as it may): only higher values act.
+    Low,
+    /// A fault that only a restart clears.
+    NonRecoverable,
+}
+
+/// Position limit status (SPN 5151), 3 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum LimitStatus {
+    /// The command acts.
+    NotLimited = 0,
+    /// The operator has control.
+    OperatorLimited = 1,
+    /// Only lower values act.
+    LimitedHigh = 2,
+    /// Only higher values act.
+    LimitedLow = 3,
+    /// 4 and 5.
+    Reserved = 4,
+    /// Fault that only a restart clears.
+    NonRecoverable = 6,
+    /// Not available.
+    NotAvailable = 7,
+}
+
+impl LimitStatus {
+    const fn from_bits(bits: u8) -> Self {
+        match bits & 0x07 {
+            0 => Self::NotLimited,
+            1 => Self::OperatorLimited,
+            2 => Self::LimitedHigh,
+            3 => Self::LimitedLow,
+            6 => Self::NonRecoverable,
+            7 => Self::NotAvailable,
+            _ => Self::Reserved,
+        }
+    }
+}
+
+macro_rules! exit_codes {
+    ($($(#[$doc:meta])+ $name:ident = $code:literal,)+) => {
+        /// Exit or reason code (SPN 5819), 6 bits: why the hitch left remote control, or can't be in it.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[repr(u8)]
+        pub enum ExitCode {
+            $($(#[$doc])+ $name = $code,)+
+        }
+
+        impl ExitCode {
+            /// The reason of 6 bits; reserved ones are not available.
+            #[must_use]
+            pub const fn from_bits(bits: u8) -> Self {
+                match bits & 0x3F {
+                    $($code => Self::$name,)+
+                    _ => Self::NotAvailable,
+                }
+            }
+        }
+    };
+}
+
+exit_codes! {
+    /// No reason, all clear.
+    #[default]
+    Clear = 0,
+    /// Required level of operator presence not detected.
+    NoOperator = 1,
+    /// The implement gave control back.
+    Released = 2,
+    /// The operator took control.
+    OperatorOverride = 3,
+    /// Operator control not in a valid position.
+    ControlNotValid = 4,
+    /// The commands stopped.
+    Timeout = 5,
+    /// A command was out of range.
+    OutOfRange = 6,
+    /// Not calibrated.
+    NotCalibrated = 7,
+    /// The operator control is faulty.
+    ControlFault = 8,
+    /// The function is faulty.
+    FunctionFault = 9,
+    /// Oil level too low.
+    OilLevelLow = 20,
+    /// Hitch locked out.
+    LockedOut = 21,
+    /// Error.
+    Error = 62,
+    /// Not available.
+    NotAvailable = 63,
+}
+
+/// Rear hitch status as it is on the bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StatusMessage {
+    /// Position, raw: 0.4 % a bit.
+    pub position: u8,
+    /// In work; `None` if not available.
+    pub in_work: Option<bool>,
+    /// Limit status.
+    pub limit: LimitStatus,
+    /// Nominal lower link force, raw: 0.8 % a bit from -100 %.
+    pub lower_link_force: u8,
+    /// Draft, raw: 10 N a bit from -320 kN.
+    pub draft: u16,
+    /// Exit or reason code.
+    pub exit: ExitCode,
+}
+
+impl StatusMessage {
+    /// The status of a hitch without force sensors.
+    #[must_use]
+    pub fn new(status: &HitchStatus, limit: LimitStatus, exit: ExitCode) -> Self {
+        Self {
+            position: raw_position(status.position),
+            in_work: status.in_work,
+            limit,
+            lower_link_force: NOT_AVAILABLE,
+            draft: u16::MAX,
+            exit,
+        }
+    }
+
+    /// As in the message.
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; 8] {
+        let in_work = match self.in_work {
+            Some(false) => 0b00,
+            Some(true) => 0b01,
+            None => 0b11,
+        };
+        let [draft_low, draft_high] = self.draft.to_le_bytes();
+        [
+            self.position,
+            (in_work << 6) | ((self.limit as u8) << 3) | 0b111,
+            self.lower_link_force,
+            draft_low,
+            draft_high,
+            0b1100_0000 | self.exit as u8,
+            0xFF,
+            0xFF,
+        ]
+    }
+
+    /// From a message.
+    #[must_use]
+    pub fn from_bytes(bytes: &[u8; 8]) -> Self {
+        let [position, flags, lower_link_force, low, high, exit, _, _] = *bytes;
+        Self {
+            position,
+            in_work: match flags >> 6 {
+                0b00 => Some(false),
+                0b01 => Some(true),
+                _ => None,
+            },
+            limit: LimitStatus::from_bits(flags >> 3),
+            lower_link_force,
+            draft: u16::from_le_bytes([low, high]),
+            exit: ExitCode::from_bits(exit),
+        }
+    }
+}
+
+/// What there is of the facilities of a tractor (ISO 11783-7, tractor facilities response): the position of the rear
+/// hitch, its commands and their limit status. A bit that is 0 promises nothing.
+pub const FACILITIES: [u8; 8] = [0, 0b1000_0000, 0, 0b1000_1000, 0, 0, 0, 0];
+
+/// What an implement asks of the rear hitch (SPN 1875).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HitchCommand {
+    /// Nothing: control is given back.
+    None,
+    /// A position, raw: 0.4 % a bit.
+    Position(u8),
+    /// A reserved value, or the implement's own "error".
+    OutOfRange,
+}
+
+impl HitchCommand {
+    /// The command in a message of hitch and PTO commands.
+    #[must_use]
+    pub const fn from_bytes([_front, rear, ..]: &[u8; 8]) -> Self {
+        match *rear {
+            NOT_AVAILABLE => Self::None,
+            raw if raw <= LARGEST => Self::Position(raw),
+            _ => Self::OutOfRange,
+        }
+    }
+
+    /// The message that asks for this and nothing else.
+    #[must_use]
+    pub const fn to_bytes(self) -> [u8; 8] {
+        let rear = match self {
+            Self::None => NOT_AVAILABLE,
+            Self::Position(raw) => raw,
+            Self::OutOfRange => ERROR,
+        };
+        [0xFF, rear, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF]
+    }
+}
+
+/// The raw value of a position, rounded to nearest; what is beyond the ends is at the end.
+#[must_use]
+pub fn raw_position(position: Option<PerMille>) -> u8 {
+    position.map_or(ERROR, |position| {
+        let rounded = (position.0.clamp(0, 1000) + PER_MILLE_PER_BIT / 2) / PER_MILLE_PER_BIT;
+        u8::try_from(rounded).unwrap_or(LARGEST)
+    })
+}
+
+/// The position of a raw value.
+#[must_use]
+pub fn position(raw: u8) -> PerMille {
+    PerMille(i32::from(raw.min(LARGEST)) * PER_MILLE_PER_BIT)
+}

@@ -1,0 +1,378 @@
+//! The hitch as a node on the bus: what it hears, and what it says when.
+
+use hitch_quantities::units::RevolutionPerMinute;
+
+use super::claim::AddressClaim;
+use super::diagnostics::{Diagnostics, LONGEST_MESSAGE, Message, Occurrences, Variant};
+use super::engine::EngineSpeed;
+use super::heartbeat;
+use super::heartbeat::{Heartbeat, Monitor};
+use super::hitch::{FACILITIES, HitchCommand, HitchStatus, StatusMessage};
+use super::id::{GLOBAL, Id, NULL, Pgn};
+use super::name::Name;
+use super::reception::Reception;
+use super::remote::{Remote, RemoteControl};
+use super::request::{Control, Request, Requests, acknowledgement};
+use super::time::since_ms;
+use super::transport::Transport;
+use crate::can::Frame;
+
+/// The rear hitch status is repeated this often, ms.
+const STATUS_PERIOD_MS: u32 = 100;
+/// A status that has changed comes no closer to the last one than this, ms: a moving hitch changes it all the time.
+const STATUS_SPACING_MS: u32 = 20;
+/// Nobody is asked for a heartbeat more often than this, ms.
+const ASKING_SPACING_MS: u32 = 1_000;
+/// Characters of the software's identification at most.
+const LONGEST_IDENTIFICATION: usize = 40;
+/// Priority of the rear hitch status.
+const STATUS_PRIORITY: u8 = 3;
+/// Priority of the heartbeat.
+const HEARTBEAT_PRIORITY: u8 = 3;
+/// Priority of diagnostic messages and of whatever else has no hurry.
+const DIAGNOSTIC_PRIORITY: u8 = 6;
+
+/// The address that a node asks for first unless told otherwise: the first that self-configurable nodes may take.
+pub const PREFERRED_ADDRESS: u8 = 128;
+
+/// What a node is told once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Its NAME; two nodes on a bus must differ in it.
+    pub name: Name,
+    /// The address that it asks for first.
+    pub preferred_address: u8,
+    /// How trouble codes are reported.
+    pub variant: Variant,
+    /// How often each trouble has occurred before this start.
+    pub occurrences: Occurrences,
+    /// What answers a request for the software's identification, at most 40 characters and no `*`.
+    pub software: &'static [u8],
+}
+
+/// The node.
+#[derive(Clone, Debug)]
+pub struct Node {
+    claim: AddressClaim,
+    remote: RemoteControl,
+    remote_permitted: bool,
+    diagnostics: Diagnostics,
+    software: &'static [u8],
+    requests: Requests,
+    transport: Transport,
+    reception: Reception,
+    engine: EngineSpeed,
+    heartbeat: Heartbeat,
+    /// The heartbeat of an implement.
+    monitor: Option<Monitor>,
+    /// Who is to be asked for a heartbeat.
+    unwatched: Option<u8>,
+    /// When somebody was asked last.
+    asked_ms: Option<u32>,
+    last_status: Option<([u8; 8], u32)>,
+}
+
+impl Node {
+    /// A node that will claim its address with the first [`Self::poll`].
+    #[must_use]
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            claim: AddressClaim::new(settings.name, settings.preferred_address),
+            remote: RemoteControl::default(),
+            remote_permitted: false,
+            diagnostics: Diagnostics::new(settings.variant, &settings.occurrences),
+            software: settings.software,
+            requests: Requests::default(),
+            transport: Transport::default(),
+            reception: Reception::default(),
+            engine: EngineSpeed::default(),
+            heartbeat: Heartbeat::default(),
+            monitor: None,
+            unwatched: None,
+            asked_ms: None,
+            last_status: None,
+        }
+    }
+
+    /// The node's address, once it may be used. It changes when another node wins it.
+    #[must_use]
+    pub const fn address(&self) -> Option<u8> {
+        self.claim.address()
+    }
+
+    /// What an implement asks of the hitch just now.
+    #[must_use]
+    pub fn remote(&self) -> Remote {
+        self.remote.remote()
+    }
+
+    /// Engine speed; none while no engine tells it.
+    #[must_use]
+    pub fn engine_speed(&self, now_ms: u32) -> Option<RevolutionPerMinute> {
+        self.engine.speed(now_ms)
+    }
+
+    /// How often each trouble has occurred.
+    #[must_use]
+    pub const fn occurrences(&self) -> &Occurrences {
+        self.diagnostics.occurrences()
+    }
+
+    /// Takes a frame from the bus. What isn't J1939, isn't for this node or is malformed changes nothing.
+    pub fn receive(&mut self, frame: &Frame, now_ms: u32) {
+        let Some(id) = frame.extended_data_id().map(Id::unpack) else {
+            return;
+        };
+        if id.pgn == Pgn::REQUEST {
+            if let Some(request) = Request::from_message(&id, frame.data()) {
+                self.requested(request, id.destination, now_ms);
+            }
+        } else if let (Pgn::HEARTBEAT, &[number]) = (id.pgn, frame.data()) {
+            self.monitor = Monitor::heard(self.monitor, id.source, number, now_ms);
+        } else if let Some(bytes) = frame.eight() {
+            self.receive_eight(&id, bytes, now_ms);
+        }
+    }
+
+    fn receive_eight(&mut self, id: &Id, bytes: &[u8; 8], now_ms: u32) {
+        if id.pgn == Pgn::ADDRESS_CLAIMED {
+            let name = Name::from_bytes(*bytes);
+            return self.claim.heard_claim(id.source, name, now_ms);
+        }
+        if id.source >= NULL {
+            return;
+        }
+        if Some(id.source) == self.address() {
+            return self.claim.address_violated(now_ms);
+        }
+        let for_us = Some(id.destination) == self.address();
+        let for_all = id.destination == GLOBAL;
+        match id.pgn {
+            Pgn::HITCH_COMMANDS => {
+                self.commanded(HitchCommand::from_bytes(bytes), id.source, now_ms);
+            }
+            Pgn::ENGINE => self.engine.hear(bytes, id.source, now_ms),
+            Pgn::TRANSPORT_CONNECTION if for_us || for_all => {
+                self.reception.manage(bytes, id.source, for_all, now_ms);
+                if for_us {
+                    self.transport.receive(bytes, id.source, now_ms);
+                }
+            }
+            Pgn::TRANSPORT_DATA if for_us || for_all => {
+                let message = self.reception.packet(bytes, id.source, for_all, now_ms);
+                // Nothing else is received: a NAME and the address that it has to take.
+                if let Some([name @ .., address]) =
+                    message.and_then(|bytes| bytes.into_array::<9>().ok())
+                    && Name::from_bytes(name) == self.claim.name()
+                {
+                    self.claim.commanded(address, now_ms);
+                }
+            }
+            Pgn::REPETITION_RATE if for_us || for_all => {
+                let [a, b, c, ..] = *bytes;
+                if Pgn::from_bytes([a, b, c]) == Pgn::HEARTBEAT {
+                    self.heartbeat.asked();
+                }
+            }
+            Pgn::REQUIRED_FACILITIES if self.address().is_some() => self.requests.push(Request {
+                group: Pgn::TRACTOR_FACILITIES,
+                from: id.source,
+                global: true,
+            }),
+            _ => {}
+        }
+    }
+
+    /// An implement commands the hitch. Who begins to is asked for a heartbeat, and so is one whose heartbeat is
+    /// broken.
+    fn commanded(&mut self, command: HitchCommand, source: u8, now_ms: u32) {
+        let condemned = self.is_condemned(source, now_ms);
+        let before = self.remote.owner();
+        let permitted = self.remote_permitted && !condemned;
+        self.remote.command(command, source, permitted, now_ms);
+        let begins = before.is_none() && self.remote.owner().is_some();
+        if begins || condemned {
+            self.unwatched = Some(source);
+        }
+    }
+
+    /// True if the heartbeat of a node says that it doesn't think any more.
+    fn is_condemned(&self, node: u8, now_ms: u32) -> bool {
+        self.monitor
+            .is_some_and(|monitor| monitor.condemns(node, now_ms))
+    }
+
+    fn requested(&mut self, request: Request, destination: u8, now_ms: u32) {
+        if !request.global && Some(destination) != self.claim.claimed_or_claiming() {
+        } else if request.group == Pgn::ADDRESS_CLAIMED {
+            self.claim.asked(now_ms);
+        } else if self.address().is_some() {
+            self.requests.push(request);
+        }
+    }
+
+    /// The next frame that is due. Called once a millisecond or more, until it gives none.
+    pub fn poll(&mut self, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
+        self.remote_permitted = status.remote_permitted;
+        self.engine.update(now_ms);
+        let owner = self.remote.owner();
+        let condemned = owner.is_some_and(|owner| self.is_condemned(owner, now_ms));
+        self.remote.update(status, condemned, now_ms);
+        self.diagnostics.update(status.troubles);
+        let claim = self.claim.poll(now_ms);
+        let Some(source) = self.claim.address() else {
+            // What was begun under an address ends with it.
+            self.transport.reset();
+            self.requests.clear();
+            self.reception = Reception::default();
+            self.heartbeat = Heartbeat::default();
+            self.unwatched = None;
+            return claim;
+        };
+        claim
+            .or_else(|| self.hitch_status(source, now_ms, status))
+            .or_else(|| self.beat(source, now_ms))
+            .or_else(|| self.transport.poll(source, now_ms))
+            .or_else(|| self.periodic_dm1(source, now_ms))
+            .or_else(|| self.reception.poll(source, now_ms))
+            .or_else(|| self.ask_for_heartbeat(source, now_ms))
+            .or_else(|| self.answer(source, now_ms, status))
+    }
+
+    fn hitch_status(&mut self, source: u8, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
+        let message = self.status_message(status, now_ms);
+        let bytes = message.to_bytes();
+        if let Some((last, sent_ms)) = self.last_status {
+            let age_ms = since_ms(sent_ms, now_ms);
+            let changed = differs(&bytes, &last) && age_ms >= STATUS_SPACING_MS;
+            if !changed && age_ms < STATUS_PERIOD_MS {
+                return None;
+            }
+        }
+        self.last_status = Some((bytes, now_ms));
+        self.remote.reported(message.position);
+        Some(broadcast(Pgn::REAR_HITCH_STATUS, STATUS_PRIORITY, source).frame(bytes))
+    }
+
+    fn status_message(&self, status: &HitchStatus, now_ms: u32) -> StatusMessage {
+        StatusMessage::new(
+            status,
+            self.remote.limit_status(status),
+            self.remote.exit_code(status, now_ms),
+        )
+    }
+
+    fn periodic_dm1(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
+        if !self.diagnostics.due(now_ms) || !self.transport.has_room(GLOBAL) {
+            return None;
+        }
+        self.diagnostics.sent(now_ms);
+        let message = self.diagnostics.dm1();
+        self.send(Pgn::DM1, &message, GLOBAL, source, now_ms)
+    }
+
+    fn beat(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
+        let number = self.heartbeat.poll(now_ms)?;
+        let id = broadcast(Pgn::HEARTBEAT, HEARTBEAT_PRIORITY, source).pack();
+        Frame::data_frame(id.into(), &[number])
+    }
+
+    fn ask_for_heartbeat(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
+        let spaced = self
+            .asked_ms
+            .is_none_or(|asked| since_ms(asked, now_ms) >= ASKING_SPACING_MS);
+        let destination = self.unwatched.filter(|_| spaced)?;
+        self.unwatched = None;
+        self.asked_ms = Some(now_ms);
+        let [a, b, c] = Pgn::HEARTBEAT.to_bytes();
+        let id = Id {
+            priority: DIAGNOSTIC_PRIORITY,
+            pgn: Pgn::REPETITION_RATE,
+            destination,
+            source,
+        };
+        Some(id.frame([a, b, c, heartbeat::PERIOD_MS as u8, 0, 0xFF, 0xFF, 0xFF]))
+    }
+
+    fn answer(&mut self, source: u8, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
+        let request = self.requests.next(now_ms)?;
+        let message = match request.group {
+            Pgn::REAR_HITCH_STATUS => {
+                let bytes = self.status_message(status, now_ms).to_bytes();
+                return Some(broadcast(request.group, STATUS_PRIORITY, source).frame(bytes));
+            }
+            Pgn::TRACTOR_FACILITIES => {
+                return Some(
+                    broadcast(request.group, DIAGNOSTIC_PRIORITY, source).frame(FACILITIES),
+                );
+            }
+            Pgn::DM1 => self.diagnostics.dm1(),
+            Pgn::DM2 => self.diagnostics.dm2(),
+            Pgn::SOFTWARE_IDENTIFICATION => identification(self.software),
+            Pgn::DM3 => {
+                self.diagnostics.clear_previous();
+                return acknowledged(Control::Positive, &request, source);
+            }
+            _ => return acknowledged(Control::Negative, &request, source),
+        };
+        let destination = if request.global { GLOBAL } else { request.from };
+        if self.transport.has_room(destination) {
+            self.send(request.group, &message, destination, source, now_ms)
+        } else if request.global {
+            // Nobody can be told to ask again, so it waits for the end of the broadcast that is under way.
+            self.requests.push(request);
+            None
+        } else {
+            acknowledged(Control::CannotRespond, &request, source)
+        }
+    }
+
+    /// The frame of a message that fits into one, filled up with ones; else the first of a longer transport.
+    fn send(
+        &mut self,
+        group: Pgn,
+        message: &Message,
+        destination: u8,
+        source: u8,
+        now_ms: u32,
+    ) -> Option<Frame> {
+        if message.len() > Frame::MOST_BYTES {
+            self.transport
+                .send(group, message.clone(), destination, now_ms);
+            return self.transport.poll(source, now_ms);
+        }
+        let mut bytes = [0xFF; Frame::MOST_BYTES];
+        for (target, byte) in bytes.iter_mut().zip(message) {
+            *target = *byte;
+        }
+        Some(broadcast(group, DIAGNOSTIC_PRIORITY, source).frame(bytes))
+    }
+}
+
+/// Software identification: one field, ended by a `*`.
+fn identification(software: &[u8]) -> Message {
+    const FIELDS: u8 = 1;
+    let text = software.iter().take(LONGEST_IDENTIFICATION).copied();
+    let message = core::iter::once(FIELDS).chain(text).chain([b'*']);
+    message.take(LONGEST_MESSAGE).collect()
+}
+
+/// True if a status says something new. A position that trembles between two values doesn't.
+fn differs(status: &[u8; 8], last: &[u8; 8]) -> bool {
+    let ([position, rest @ ..], [last_position, last_rest @ ..]) = (status, last);
+    rest != last_rest || position.abs_diff(*last_position) > 1
+}
+
+/// An acknowledgement; requests to everybody aren't acknowledged.
+fn acknowledged(control: Control, request: &Request, source: u8) -> Option<Frame> {
+    (!request.global).then(|| acknowledgement(control, request, source))
+}
+
+const fn broadcast(pgn: Pgn, priority: u8, source: u8) -> Id {
+    Id {
+        priority,
+        pgn,
+        destination: GLOBAL,
+        source,
+    }
+}

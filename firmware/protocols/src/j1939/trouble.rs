@@ -1,0 +1,304 @@
+//! What can be wrong, as trouble codes: a number of what is meant (SPN) and how it fails (FMI).
+//!
+//! SPNs are those of J1939 where there is one, and else from the range for manufacturers (520 192 on).
+//! FMIs: 2 erratic, 3 voltage high, 4 voltage low, 5 current low or open, 6 current high or grounded,
+//! 7 mechanical system doesn't respond, 8 abnormal frequency, 9 abnormal update rate, 10 abnormal rate of change, 12 bad unit,
+//! 13 out of calibration, 31 condition exists.
+
+use hitch_quantities::units::{MilliAmp, MilliVolt};
+use hitch_quantities::{Fault, Inputs, Outputs, Trip};
+
+/// A diagnostic trouble code without its count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Code {
+    /// Suspect parameter number, 19 bits.
+    pub spn: u32,
+    /// Failure mode identifier, 5 bits.
+    pub fmi: u8,
+}
+
+/// Battery potential.
+const SUPPLY: u32 = 168;
+/// Rear hitch position.
+const POSITION: u32 = 1873;
+/// First of our own numbers.
+const OWN: u32 = 520_192;
+const LEVER: u32 = OWN;
+const LIFT_VALVE: u32 = OWN + 1;
+const LOWERING_VALVE: u32 = OWN + 2;
+const COILS: u32 = OWN + 3;
+const HITCH: u32 = OWN + 4;
+const CONTROLLER: u32 = OWN + 5;
+const CALIBRATION: u32 = OWN + 6;
+const CYLINDER_PRESSURE: u32 = OWN + 7;
+const PUMP_PRESSURE: u32 = OWN + 8;
+const REFERENCE: u32 = OWN + 9;
+const ANGLE_TRACKS: u32 = OWN + 10;
+const ENABLE_LINE: u32 = OWN + 11;
+/// Sensor supply voltage 1.
+const SENSOR_SUPPLY: u32 = 3509;
+
+macro_rules! troubles {
+    ($($(#[$doc:meta])+ $name:ident = $spn:ident / $fmi:literal,)+) => {
+        /// Everything that this unit can report.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        pub enum Trouble {
+            $($(#[$doc])+ $name,)+
+        }
+
+        impl Trouble {
+            /// All of them, in the order of their bits.
+            pub const ALL: &'static [Self] = &[$(Self::$name,)+];
+
+            /// The code of it.
+            #[must_use]
+            pub const fn code(self) -> Code {
+                match self {
+                    $(Self::$name => Code { spn: $spn, fmi: $fmi },)+
+                }
+            }
+        }
+    };
+}
+
+troubles! {
+    /// Supply above its limit.
+    SupplyHigh = SUPPLY / 3,
+    /// Supply below its limit.
+    SupplyLow = SUPPLY / 4,
+    /// Lever: missing, out of range.
+    LeverMissing = LEVER / 31,
+    /// Lever: voltage too high.
+    LeverHigh = LEVER / 3,
+    /// Lever: voltage too low.
+    LeverLow = LEVER / 4,
+    /// Angle: missing, out of range.
+    AngleMissing = POSITION / 31,
+    /// Angle: voltage too high.
+    AngleHigh = POSITION / 3,
+    /// Angle: voltage too low.
+    AngleLow = POSITION / 4,
+    /// Angle: jumps.
+    AngleJumps = POSITION / 10,
+    /// Angle: stands still although the hitch moves.
+    AngleFrozen = POSITION / 9,
+    /// Angle: noisy.
+    AngleNoisy = POSITION / 2,
+    /// The hitch doesn't follow an open valve, or stops under it.
+    NotFollowing = HITCH / 7,
+    /// The hitch sinks: lowering valve or check valve leaks.
+    Sinking = HITCH / 31,
+    /// The hitch moves against the energised coil: wires or sensor swapped.
+    Against = HITCH / 14,
+    /// Lift coil open.
+    LiftCoilOpen = LIFT_VALVE / 5,
+    /// Lift coil shorted, or its driver stuck.
+    LiftCoilShort = LIFT_VALVE / 6,
+    /// Lowering coil open.
+    LoweringCoilOpen = LOWERING_VALVE / 5,
+    /// Lowering coil shorted, or its driver stuck.
+    LoweringCoilShort = LOWERING_VALVE / 6,
+    /// A coil or driver; which one isn't known.
+    Coils = COILS / 31,
+    /// The controller was late.
+    Overrun = CONTROLLER / 9,
+    /// The controller asked for what must not be.
+    Controller = CONTROLLER / 12,
+    /// No valid calibration was found: the factory's is in use.
+    CalibrationLost = CALIBRATION / 13,
+    /// One of the two stored calibrations is damaged.
+    CalibrationCopyLost = CALIBRATION / 31,
+    /// Cylinder pressure sensor out of range.
+    CylinderPressure = CYLINDER_PRESSURE / 2,
+    /// Pump pressure sensor out of range.
+    PumpPressure = PUMP_PRESSURE / 2,
+    /// The converters' reference is off.
+    Reference = REFERENCE / 13,
+    /// Supply of the sensors above its limit.
+    SensorSupplyHigh = SENSOR_SUPPLY / 3,
+    /// Supply of the sensors below its limit.
+    SensorSupplyLow = SENSOR_SUPPLY / 4,
+    /// The tracks of the angle sensor disagree.
+    AngleTracks = ANGLE_TRACKS / 2,
+    /// The main clock has another rate than at the start.
+    Clock = CONTROLLER / 8,
+    /// The enable line of the coils' drivers: its read-back differs from its command.
+    EnableLine = ENABLE_LINE / 12,
+    /// The calibration in use has changed in memory.
+    Memory = CALIBRATION / 12,
+}
+
+/// A set of troubles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Troubles(u32);
+
+const _: () = assert!(Trouble::ALL.len() <= 32, "a set has 32 bits");
+
+impl Troubles {
+    /// None.
+    pub const NONE: Self = Self(0);
+
+    /// With one more.
+    pub const fn insert(&mut self, trouble: Trouble) {
+        self.0 |= 1 << trouble as u32;
+    }
+
+    /// True if it is in the set.
+    #[must_use]
+    pub const fn contains(self, trouble: Trouble) -> bool {
+        self.0 & (1 << trouble as u32) != 0
+    }
+
+    /// True if nothing is in the set.
+    #[must_use]
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// How many are in the set.
+    #[must_use]
+    pub const fn count(self) -> u32 {
+        self.0.count_ones()
+    }
+
+    /// What is in either.
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// What is in this one and not in the other.
+    #[must_use]
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
+    /// Its elements, in the order of [`Trouble::ALL`].
+    pub fn iter(self) -> impl Iterator<Item = Trouble> {
+        Trouble::ALL
+            .iter()
+            .copied()
+            .filter(move |&trouble| self.contains(trouble))
+    }
+}
+
+impl From<Trouble> for Troubles {
+    fn from(trouble: Trouble) -> Self {
+        let mut set = Self::NONE;
+        set.insert(trouble);
+        set
+    }
+}
+
+/// Coil that was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Coil {
+    Lift,
+    Lowering,
+}
+
+/// Turns what the controller finds into troubles. Which coil or which side of a limit is meant shows at the moment when
+/// something trips, and no longer when both coils are off; so it is settled then.
+#[derive(Clone, Debug, Default)]
+pub struct TroubleFinder {
+    last_asked: Option<Coil>,
+    tripped: Option<(Trip, Trouble)>,
+}
+
+impl TroubleFinder {
+    /// What a step of the controller found.
+    pub fn update(&mut self, inputs: &Inputs, outputs: &Outputs) -> Troubles {
+        if outputs.lift_current > MilliAmp::ZERO {
+            self.last_asked = Some(Coil::Lift);
+        } else if outputs.lower_current > MilliAmp::ZERO {
+            self.last_asked = Some(Coil::Lowering);
+        }
+        let Some(trip) = outputs.trip else {
+            self.tripped = None;
+            let fault = outputs.fault.map(|fault| of_fault(fault, inputs));
+            return fault.map_or(Troubles::NONE, Troubles::from);
+        };
+        let trouble = match self.tripped {
+            Some((known, trouble)) if known == trip => trouble,
+            _ => self.of_trip(trip, inputs),
+        };
+        self.tripped = Some((trip, trouble));
+        trouble.into()
+    }
+
+    fn of_trip(&self, trip: Trip, inputs: &Inputs) -> Trouble {
+        match trip {
+            Trip::Stale | Trip::BothCoils => Trouble::Controller,
+            Trip::Overrun => Trouble::Overrun,
+            Trip::Supply => of_supply(inputs),
+            Trip::Lever => Trouble::LeverMissing,
+            Trip::AngleMissing => Trouble::AngleMissing,
+            Trip::AngleJumps => Trouble::AngleJumps,
+            Trip::AngleFrozen => Trouble::AngleFrozen,
+            Trip::AngleNoisy => Trouble::AngleNoisy,
+            Trip::NotFollowing => Trouble::NotFollowing,
+            Trip::Against => Trouble::Against,
+            Trip::CoilOpen => match self.last_asked {
+                Some(Coil::Lift) => Trouble::LiftCoilOpen,
+                Some(Coil::Lowering) => Trouble::LoweringCoilOpen,
+                None => Trouble::Coils,
+            },
+            Trip::CoilShort | Trip::CoilStuck => of_short(inputs),
+            Trip::Reference => Trouble::Reference,
+            Trip::SensorSupply => of_sensor_supply(inputs),
+            Trip::AngleTracks => Trouble::AngleTracks,
+            Trip::Clock => Trouble::Clock,
+            Trip::EnableLine => Trouble::EnableLine,
+            Trip::Memory => Trouble::Memory,
+        }
+    }
+}
+
+/// Above it a supply out of its limits is too high, else too low.
+const MIDDLE_OF_SUPPLY: MilliVolt = MilliVolt(12_000);
+
+fn of_supply(inputs: &Inputs) -> Trouble {
+    match inputs.supply {
+        Some(supply) if supply > MIDDLE_OF_SUPPLY => Trouble::SupplyHigh,
+        _ => Trouble::SupplyLow,
+    }
+}
+
+/// Above it a supply of the sensors out of its limits is too high, else too low.
+const NOMINAL_SENSOR_SUPPLY: MilliVolt = MilliVolt(5_000);
+
+fn of_sensor_supply(inputs: &Inputs) -> Trouble {
+    match inputs.sensor_supply {
+        Some(supply) if supply > NOMINAL_SENSOR_SUPPLY => Trouble::SensorSupplyHigh,
+        _ => Trouble::SensorSupplyLow,
+    }
+}
+
+/// The coil with too much current is the one with more.
+fn of_short(inputs: &Inputs) -> Trouble {
+    match (inputs.lift_current, inputs.lower_current) {
+        (Some(lift), Some(lower)) if lift > lower => Trouble::LiftCoilShort,
+        (Some(lift), Some(lower)) if lower > lift => Trouble::LoweringCoilShort,
+        (Some(_), None) => Trouble::LiftCoilShort,
+        (None, Some(_)) => Trouble::LoweringCoilShort,
+        _ => Trouble::Coils,
+    }
+}
+
+fn of_fault(fault: Fault, inputs: &Inputs) -> Trouble {
+    match fault {
+        Fault::Lever => Trouble::LeverMissing,
+        Fault::Angle => Trouble::AngleMissing,
+        Fault::Sinking => Trouble::Sinking,
+        Fault::NotMoving | Fault::NotFollowing => Trouble::NotFollowing,
+        Fault::Envelope => Trouble::Controller,
+        Fault::Coil => Trouble::Coils,
+        Fault::Supply => of_supply(inputs),
+        Fault::Overrun => Trouble::Overrun,
+        Fault::Reference => Trouble::Reference,
+        Fault::SensorSupply => of_sensor_supply(inputs),
+        Fault::EnableLine => Trouble::EnableLine,
+        Fault::Memory => Trouble::Memory,
+    }
+}

@@ -1,0 +1,183 @@
+//! The ECU's addresses: a map of slots, no pointers.
+//!
+//! | from | what | slot |
+//! |---|---|---|
+//! | [`CALIBRATION_BASE`] | the calibration block, on the page that is chosen | a word each, signed |
+//! | [`MEASUREMENT_BASE`] | the measurements | four bytes each; the first ones count |
+//! | [`IDENTITY_BASE`] | what a description file has to agree with, and names | text |
+//!
+//! A word of the calibration is checked and changed as a whole; see [`CalibrationPages::write`].
+
+use hitch_quantities::calibration::{CALIBRATION_BYTES, calibration_words};
+
+use super::error::Refusal;
+use super::measurements;
+use super::measurements::Measurements;
+use super::memory::{Memory, Page, Place, Text};
+use super::pages::CalibrationPages;
+use super::slave::Event;
+
+/// Bytes of a slot.
+pub const SLOT_BYTES: u32 = 4;
+/// Where the calibration begins.
+pub const CALIBRATION_BASE: u32 = 0x1000_0000;
+/// Where the measurements begin.
+pub const MEASUREMENT_BASE: u32 = 0x2000_0000;
+/// Where the identity stands.
+pub const IDENTITY_BASE: u32 = 0x3000_0000;
+
+/// Version of this map: what a description file has to agree with. Made from the names, units and places of everything
+/// in the calibration and the measurements.
+pub static IDENTITY: [u8; IDENTITY_BYTES] = identity();
+const IDENTITY_BYTES: usize = 14;
+/// The beginning of the identity is the name of the description file.
+const FILE_NAME_BYTES: u8 = 5;
+/// Names of the events, one after the other, behind the identity.
+static EVENT_NAMES: &[u8] = b"1 ms10 ms100 ms";
+
+const fn identity() -> [u8; IDENTITY_BYTES] {
+    let mut text = *b"hitch ########";
+    let hash = measurements::hash(calibration_words::hash());
+    let mut place = 0;
+    while place < 8 {
+        text[6 + place] = b"0123456789ABCDEF"[(hash >> (28 - 4 * place) & 0xF) as usize];
+        place += 1;
+    }
+    text
+}
+
+/// What may be written just now.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Access {
+    /// Nothing: nobody at the machine has enabled tuning.
+    #[default]
+    Locked,
+    /// What is harmless while the hitch moves.
+    Moving,
+    /// Everything, and the working page may be stored: both coils are off and stay off.
+    AtRest,
+}
+
+/// What is behind the addresses of the ECU, for as long as a command takes.
+#[derive(Debug)]
+pub struct EcuMemory<'a> {
+    /// The calibration.
+    pub pages: &'a mut CalibrationPages,
+    /// The measurements.
+    pub measurements: &'a Measurements,
+    /// What may be written just now.
+    pub access: Access,
+}
+
+impl EcuMemory<'_> {
+    /// What changes everything at once is for a hitch at rest only.
+    fn at_rest(&self) -> Result<(), Refusal> {
+        match self.access {
+            Access::Locked => Err(Refusal::AccessLocked),
+            Access::Moving => Err(Refusal::AccessDenied),
+            Access::AtRest => Ok(()),
+        }
+    }
+
+    /// The byte at an address.
+    fn byte(&self, address: u32) -> Result<u8, Refusal> {
+        let slot = |base: u32| {
+            let offset = address.wrapping_sub(base);
+            usize::try_from(offset / SLOT_BYTES).unwrap_or(usize::MAX)
+        };
+        let word = if address >= IDENTITY_BASE {
+            let offset = address.wrapping_sub(IDENTITY_BASE);
+            let index = usize::try_from(offset).unwrap_or(usize::MAX);
+            let byte = IDENTITY.iter().chain(EVENT_NAMES).nth(index);
+            return byte.copied().ok_or(Refusal::AccessDenied);
+        } else if address >= MEASUREMENT_BASE {
+            self.measurements.slot(slot(MEASUREMENT_BASE))
+        } else if address >= CALIBRATION_BASE {
+            self.pages.word(slot(CALIBRATION_BASE))
+        } else {
+            None
+        };
+        let [a, b, c, d] = word.ok_or(Refusal::AccessDenied)?.to_le_bytes();
+        Ok(match address % SLOT_BYTES {
+            0 => a,
+            1 => b,
+            2 => c,
+            _ => d,
+        })
+    }
+}
+
+/// Offset of an address into the calibration, if it lies there.
+fn calibration_offset(address: u32) -> Option<usize> {
+    let offset = usize::try_from(address.checked_sub(CALIBRATION_BASE)?).ok()?;
+    (offset < CALIBRATION_BYTES).then_some(offset)
+}
+
+impl Memory for EcuMemory<'_> {
+    fn read(&self, address: u32, target: &mut [u8]) -> Result<(), Refusal> {
+        for (address, byte) in (address..=u32::MAX).zip(target) {
+            *byte = self.byte(address)?;
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, address: u32, bytes: &[u8]) -> Result<(), Refusal> {
+        let offset = calibration_offset(address).ok_or(Refusal::AccessDenied)?;
+        match self.access {
+            Access::Locked => Err(Refusal::AccessLocked),
+            Access::Moving => self.pages.write(offset, bytes, true),
+            Access::AtRest => self.pages.write(offset, bytes, false),
+        }
+    }
+
+    fn segment(&self) -> (u32, u32) {
+        (CALIBRATION_BASE, CALIBRATION_BYTES as u32)
+    }
+
+    fn text(&self, text: Text) -> Place {
+        let (offset, length) = match text {
+            Text::Identity => (0, IDENTITY_BYTES as u8),
+            Text::DescriptionFile => (0, FILE_NAME_BYTES),
+            Text::Event(Event::Every1Ms) => (IDENTITY_BYTES as u8, 4),
+            Text::Event(Event::Every10Ms) => (IDENTITY_BYTES as u8 + 4, 5),
+            Text::Event(Event::Every100Ms) => (IDENTITY_BYTES as u8 + 9, 6),
+        };
+        Place {
+            address: IDENTITY_BASE | u32::from(offset),
+            length,
+        }
+    }
+
+    fn may_calibrate(&self) -> bool {
+        self.access != Access::Locked
+    }
+
+    fn may_store(&self) -> bool {
+        self.access == Access::AtRest
+    }
+
+    fn tool_page(&self) -> Page {
+        self.pages.tool_page()
+    }
+
+    fn controller_page(&self) -> Page {
+        self.pages.controller_page()
+    }
+
+    fn set_tool_page(&mut self, page: Page) -> Result<(), Refusal> {
+        self.pages.set_tool_page(page);
+        Ok(())
+    }
+
+    fn set_controller_page(&mut self, page: Page) -> Result<(), Refusal> {
+        self.at_rest()?;
+        self.pages.set_controller_page(page);
+        Ok(())
+    }
+
+    fn restore_working_page(&mut self) -> Result<(), Refusal> {
+        self.at_rest()?;
+        self.pages.restore_working_page();
+        Ok(())
+    }
+}

@@ -1,0 +1,383 @@
+//! The slave's end of the connection: commands in, answers and samples out.
+
+use heapless::Deque;
+
+use super::checksum::Checksum;
+use super::command::{code, event, identifier};
+use super::daq::Daq;
+use super::error::Refusal;
+use super::memory::{Memory, Place, Text};
+use super::packet::{Answer, MOST_BYTES, Packet, done, packet, response};
+use super::{checksum, measuring, paging};
+use crate::can::Frame;
+use crate::j1939::{Id, Pgn};
+
+/// Answers and events that wait for the bus.
+const QUEUE: usize = 4;
+/// Priority on the bus: the lowest but one, so that tuning never holds up the tractor.
+const PRIORITY: u8 = 6;
+/// Address of the tool, as diagnostic tools have it (249: off-board service tool).
+pub const TOOL_ADDRESS: u8 = 249;
+
+/// Resources: calibrating and paging, measuring.
+const CALIBRATION: u8 = 0x01;
+const MEASURING: u8 = 0x04;
+/// Communication mode: little-endian, bytes; GET_COMM_MODE_INFO tells more.
+const MORE_INFORMATION: u8 = 0x80;
+/// Versions of the layers, their first figure, and of this slave, 1.0.
+const PROTOCOL_VERSION: u8 = 1;
+const TRANSPORT_VERSION: u8 = 1;
+const DRIVER_VERSION: u8 = 0x10;
+/// States of a session.
+const STORE_REQUESTED: u8 = 0x01;
+const DAQ_RUNNING: u8 = 0x40;
+
+/// When measurements are sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Event {
+    /// With every step of the controller.
+    Every1Ms = 0,
+    /// With every tenth.
+    Every10Ms = 1,
+    /// With every hundredth.
+    Every100Ms = 2,
+}
+
+impl Event {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Self; 3] = [Self::Every1Ms, Self::Every10Ms, Self::Every100Ms];
+
+    /// The event with a number.
+    #[must_use]
+    pub fn from_number(number: u16) -> Option<Self> {
+        Self::ALL.get(usize::from(number)).copied()
+    }
+
+    /// Time between two of them, ms.
+    #[must_use]
+    pub const fn period_ms(self) -> u8 {
+        match self {
+            Self::Every1Ms => 1,
+            Self::Every10Ms => 10,
+            Self::Every100Ms => 100,
+        }
+    }
+}
+
+/// The slave. It talks to one tool at a time, on proprietary J1939 groups: commands to our address from the
+/// tool's, answers back.
+#[derive(Clone, Debug, Default)]
+pub struct Slave {
+    address: Option<u8>,
+    connected: bool,
+    /// Memory transfer address: where the next upload or download begins.
+    transfer_address: u32,
+    daq: Daq,
+    checksum: Option<Checksum>,
+    queue: Deque<Packet, QUEUE>,
+    store: Store,
+}
+
+/// Storing the working page.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Store {
+    #[default]
+    Idle,
+    /// The application hasn't been told yet.
+    Requested,
+    UnderWay,
+}
+
+impl Slave {
+    /// A slave that nobody is connected to.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Our address on the bus, `None` while there is none: then nothing is said. A connection ends with the address
+    /// that it was made to.
+    pub fn set_address(&mut self, address: Option<u8>) {
+        if address != self.address {
+            self.disconnect();
+            self.address = address;
+        }
+    }
+
+    /// True while a tool is connected.
+    #[must_use]
+    pub const fn is_connected(&self) -> bool {
+        self.connected
+    }
+
+    /// Takes a frame from the bus. What isn't a command for us changes nothing.
+    pub fn receive(&mut self, frame: &Frame, memory: &mut impl Memory, now_us: u32) {
+        let Some(id) = frame.extended_data_id().map(Id::unpack) else {
+            return;
+        };
+        let for_us = id.pgn == Pgn::PROPRIETARY_A
+            && self.address == Some(id.destination)
+            && id.source == TOOL_ADDRESS;
+        let Some((&command, rest)) = frame.data().split_first().filter(|_| for_us) else {
+            return;
+        };
+        // Until a tool has connected, nothing but CONNECT is answered.
+        if !self.connected && command != code::CONNECT {
+            return;
+        }
+        match self.obey(command, rest, memory, now_us) {
+            Ok(Some(answer)) => self.say(answer),
+            Ok(None) => {}
+            Err(refusal) => self.say(packet(identifier::ERROR, &[refusal as u8])),
+        }
+    }
+
+    /// Samples what is to be measured with this event. Called once a step for each event that is due, those of one
+    /// millisecond included: they also carry on what takes longer than a step.
+    pub fn event(&mut self, event: Event, memory: &impl Memory, now_us: u32) {
+        if event == Event::Every1Ms {
+            self.carry_on(memory);
+        }
+        self.daq.sample(event, memory, now_us);
+        if self.daq.take_overload() {
+            self.say(packet(identifier::EVENT, &[event::OVERLOAD]));
+        }
+    }
+
+    /// The next frame for the bus: answers first, then samples. Called while there is room for one.
+    pub fn poll(&mut self) -> Option<Frame> {
+        let id = Id {
+            priority: PRIORITY,
+            pgn: Pgn::PROPRIETARY_A,
+            destination: TOOL_ADDRESS,
+            source: self.address?,
+        };
+        let packet = self.queue.pop_front();
+        let packet = packet.or_else(|| self.daq.next_packet())?;
+        Frame::data_frame(id.pack().into(), &packet)
+    }
+
+    /// True once after a tool has asked for the working page to be stored. The application stores it, and says how
+    /// it went with [`Self::stored`].
+    pub fn take_store_request(&mut self) -> bool {
+        let requested = self.store == Store::Requested;
+        if requested {
+            self.store = Store::UnderWay;
+        }
+        requested
+    }
+
+    /// The storing that was asked for is over.
+    pub fn stored(&mut self, success: bool) {
+        if self.store == Store::Idle {
+            return;
+        }
+        self.store = Store::Idle;
+        let event = if success {
+            event::STORED
+        } else {
+            event::NOT_STORED
+        };
+        if self.connected {
+            self.say(packet(identifier::EVENT, &[event]));
+        }
+    }
+
+    /// Tools wait for an answer before the next command, so there is room unless they don't.
+    fn say(&mut self, packet: Packet) {
+        let _ = self.queue.push_back(packet);
+    }
+
+    fn carry_on(&mut self, memory: &impl Memory) {
+        let answer = self
+            .checksum
+            .as_mut()
+            .and_then(|checksum| checksum.advance(memory));
+        if let Some(answer) = answer {
+            self.checksum = None;
+            self.say(answer);
+        }
+    }
+
+    fn obey(&mut self, command: u8, rest: &[u8], memory: &mut impl Memory, now_us: u32) -> Answer {
+        match command {
+            code::CONNECT => Ok(Some(self.connect())),
+            code::DISCONNECT => {
+                self.disconnect();
+                done()
+            }
+            code::GET_STATUS => self.status(memory),
+            code::SYNCH => Err(Refusal::Synchronised),
+            code::GET_COMM_MODE_INFO => response(&[0, 0, 0, 0, 0, 0, DRIVER_VERSION]),
+            code::GET_ID => self.identity(rest, memory),
+            code::SET_REQUEST => self.request_store(rest, memory),
+            code::GET_SEED => seed(rest, memory),
+            // There is no key: tuning is enabled at the machine.
+            code::UNLOCK => Err(Refusal::Sequence),
+            code::SET_MTA => self.set_transfer_address(rest),
+            code::UPLOAD => self.upload(rest, memory),
+            code::SHORT_UPLOAD => self.short_upload(rest, memory),
+            code::BUILD_CHECKSUM => self.build_checksum(rest),
+            code::DOWNLOAD | code::DOWNLOAD_MAX => self.download(command, rest, memory),
+            code::SET_CAL_PAGE => paging::set_page(rest, memory),
+            code::GET_CAL_PAGE => paging::page(rest, memory),
+            code::GET_PAG_PROCESSOR_INFO => paging::info(),
+            code::GET_SEGMENT_INFO => paging::segment_info(rest, memory),
+            code::GET_PAGE_INFO => paging::page_info(rest),
+            code::COPY_CAL_PAGE => paging::copy(rest, memory),
+            code::GET_DAQ_EVENT_INFO => {
+                let (name, answer) = measuring::event_info(rest, memory)?;
+                self.transfer_address = name.address;
+                Ok(Some(answer))
+            }
+            _ => measuring::obey(&mut self.daq, command, rest, memory, now_us),
+        }
+    }
+
+    /// A new connection begins from nothing, even if the last one wasn't ended.
+    fn connect(&mut self) -> Packet {
+        self.disconnect();
+        self.connected = true;
+        packet(
+            identifier::RESPONSE,
+            &[
+                CALIBRATION | MEASURING,
+                MORE_INFORMATION,
+                MOST_BYTES as u8,
+                MOST_BYTES as u8,
+                0,
+                PROTOCOL_VERSION,
+                TRANSPORT_VERSION,
+            ],
+        )
+    }
+
+    fn disconnect(&mut self) {
+        self.connected = false;
+        self.checksum = None;
+        self.daq.free();
+        self.queue.clear();
+    }
+
+    fn status(&self, memory: &impl Memory) -> Answer {
+        let mut session = 0;
+        if self.store != Store::Idle {
+            session |= STORE_REQUESTED;
+        }
+        if self.daq.is_running() {
+            session |= DAQ_RUNNING;
+        }
+        let protected = if memory.may_calibrate() {
+            0
+        } else {
+            CALIBRATION
+        };
+        response(&[session, protected, 0, 0, 0])
+    }
+
+    /// Texts are put under the transfer address.
+    fn identity(&mut self, rest: &[u8], memory: &impl Memory) -> Answer {
+        let [kind, ..] = *rest else {
+            return Err(Refusal::Syntax);
+        };
+        let text = match kind {
+            0 => memory.text(Text::Identity),
+            1 => memory.text(Text::DescriptionFile),
+            _ => Place::default(),
+        };
+        self.transfer_address = text.address;
+        response(&[0, 0, 0, text.length, 0, 0, 0])
+    }
+
+    fn request_store(&mut self, rest: &[u8], memory: &impl Memory) -> Answer {
+        const STORE_CALIBRATION: u8 = 0x01;
+        match rest {
+            [STORE_CALIBRATION, ..] if !memory.may_calibrate() => Err(Refusal::AccessLocked),
+            [STORE_CALIBRATION, ..] if !memory.may_store() => Err(Refusal::AccessDenied),
+            [STORE_CALIBRATION, ..] => {
+                if self.store == Store::Idle {
+                    self.store = Store::Requested;
+                }
+                done()
+            }
+            [_, ..] => Err(Refusal::OutOfRange),
+            [] => Err(Refusal::Syntax),
+        }
+    }
+
+    fn set_transfer_address(&mut self, rest: &[u8]) -> Answer {
+        let [_, _, extension, a, b, c, d, ..] = *rest else {
+            return Err(Refusal::Syntax);
+        };
+        self.transfer_address = address(extension, [a, b, c, d])?;
+        done()
+    }
+
+    fn short_upload(&mut self, rest: &[u8], memory: &impl Memory) -> Answer {
+        let [_, _, extension, a, b, c, d, ..] = *rest else {
+            return Err(Refusal::Syntax);
+        };
+        self.transfer_address = address(extension, [a, b, c, d])?;
+        self.upload(rest, memory)
+    }
+
+    fn upload(&mut self, rest: &[u8], memory: &impl Memory) -> Answer {
+        let [count, ..] = *rest else {
+            return Err(Refusal::Syntax);
+        };
+        let mut bytes = [0; MOST_BYTES - 1];
+        let target = bytes.get_mut(..usize::from(count));
+        let target = target.ok_or(Refusal::OutOfRange)?;
+        memory.read(self.transfer_address, target)?;
+        self.transfer_address = self.transfer_address.wrapping_add(count.into());
+        response(target)
+    }
+
+    fn build_checksum(&mut self, rest: &[u8]) -> Answer {
+        let [_, _, _, a, b, c, d, ..] = *rest else {
+            return Err(Refusal::Syntax);
+        };
+        let length = u32::from_le_bytes([a, b, c, d]);
+        if length > checksum::LONGEST {
+            return Ok(Some(checksum::too_long()));
+        }
+        self.checksum = Some(Checksum::new(self.transfer_address, length));
+        self.transfer_address = self.transfer_address.wrapping_add(length);
+        // The answer comes when it is done.
+        Ok(None)
+    }
+
+    fn download(&mut self, command: u8, rest: &[u8], memory: &mut impl Memory) -> Answer {
+        let data = if command == code::DOWNLOAD_MAX {
+            rest.get(..MOST_BYTES - 1)
+        } else {
+            rest.split_first()
+                .and_then(|(&count, data)| data.get(..usize::from(count)))
+        };
+        let data = data.ok_or(Refusal::Syntax)?;
+        memory.write(self.transfer_address, data)?;
+        let written = u32::try_from(data.len()).unwrap_or(0);
+        self.transfer_address = self.transfer_address.wrapping_add(written);
+        done()
+    }
+}
+
+/// With tuning enabled at the machine nothing is protected (a seed of no bytes); without, no key would help.
+fn seed(rest: &[u8], memory: &impl Memory) -> Answer {
+    match rest {
+        [0, CALIBRATION, ..] if !memory.may_calibrate() => Err(Refusal::AccessLocked),
+        [0, _, ..] => response(&[0]),
+        [_, _, ..] => Err(Refusal::Sequence),
+        _ => Err(Refusal::Syntax),
+    }
+}
+
+/// There is one address space.
+const fn address(extension: u8, bytes: [u8; 4]) -> Result<u32, Refusal> {
+    if extension == 0 {
+        Ok(u32::from_le_bytes(bytes))
+    } else {
+        Err(Refusal::AccessDenied)
+    }
+}

@@ -1,0 +1,125 @@
+//! A bus in virtual time for tests of a node: what the node sends, and when.
+
+use hitch_protocols::can::Frame;
+use hitch_protocols::j1939::diagnostics::KINDS;
+use hitch_protocols::j1939::{
+    ExitCode, HitchStatus, Id, Name, NameFields, Node, Pgn, Settings, Variant,
+};
+use hitch_quantities::units::PerMille;
+
+/// Somebody else's address.
+pub const OTHER: u8 = 0x26;
+/// The address that the node asks for.
+pub const OURS: u8 = 0x80;
+
+/// A frame that the node sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sent {
+    pub at_ms: u32,
+    pub id: Id,
+    pub frame: Frame,
+}
+
+impl Sent {
+    pub fn data(&self) -> &[u8] {
+        self.frame.data()
+    }
+}
+
+/// A node, and what it has sent.
+pub struct Bus {
+    pub node: Node,
+    pub status: HitchStatus,
+    pub now_ms: u32,
+    pub sent: Vec<Sent>,
+}
+
+impl Bus {
+    /// A bus with a node that hasn't said anything yet. Time starts shortly before the counter wraps.
+    pub fn new(variant: Variant) -> Self {
+        let settings = Settings {
+            name: name(1),
+            preferred_address: OURS,
+            variant,
+            occurrences: [0; KINDS],
+            software: b"hitch 1",
+        };
+        Self {
+            node: Node::new(settings),
+            status: HitchStatus {
+                position: Some(PerMille(620)),
+                in_work: Some(true),
+                remote_permitted: true,
+                exit: ExitCode::Clear,
+                ..HitchStatus::default()
+            },
+            now_ms: u32::MAX - 700,
+            sent: Vec::new(),
+        }
+    }
+
+    /// A bus with a node that has its address.
+    pub fn claimed(variant: Variant) -> Self {
+        let mut bus = Self::new(variant);
+        bus.run(251);
+        assert_eq!(bus.node.address(), Some(OURS));
+        bus.sent.clear();
+        bus
+    }
+
+    /// Lets time pass, polling every millisecond.
+    pub fn run(&mut self, ms: u32) {
+        for _ in 0..ms {
+            self.step();
+        }
+    }
+
+    /// One millisecond; how many frames it gave.
+    pub fn step(&mut self) -> usize {
+        let before = self.sent.len();
+        while let Some(frame) = self.node.poll(self.now_ms, &self.status) {
+            let id = Id::unpack(frame.extended_data_id().expect("J1939 has no other frames"));
+            self.sent.push(Sent {
+                at_ms: self.now_ms,
+                id,
+                frame,
+            });
+            assert!(self.sent.len() < before + 10, "polling doesn't end");
+        }
+        self.now_ms = self.now_ms.wrapping_add(1);
+        self.sent.len() - before
+    }
+
+    /// Another node sends.
+    pub fn hear(&mut self, pgn: Pgn, destination: u8, source: u8, data: &[u8]) {
+        let id = Id {
+            priority: 6,
+            pgn,
+            destination,
+            source,
+        };
+        let frame = Frame::data_frame(id.pack().into(), data).unwrap();
+        self.node.receive(&frame, self.now_ms);
+    }
+
+    /// Another node claims an address.
+    pub fn hear_claim(&mut self, address: u8, name: Name) {
+        self.hear(Pgn::ADDRESS_CLAIMED, 0xFF, address, &name.to_bytes());
+    }
+
+    /// Another node asks for a group.
+    pub fn ask(&mut self, group: Pgn, destination: u8) {
+        self.hear(Pgn::REQUEST, destination, OTHER, &group.to_bytes());
+    }
+
+    /// What was sent of a group, and forgets everything that was sent.
+    pub fn take(&mut self, pgn: Pgn) -> Vec<Sent> {
+        let sent = std::mem::take(&mut self.sent);
+        sent.into_iter().filter(|sent| sent.id.pgn == pgn).collect()
+    }
+}
+
+/// The NAME of a hitch with this serial number; smaller ones win.
+pub fn name(identity: u32) -> Name {
+    NameFields::rear_hitch(identity + 1_000).into()
+}

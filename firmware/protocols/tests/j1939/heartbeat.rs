@@ -1,0 +1,151 @@
+//! Heartbeats, the node's own and an implement's, and the facilities that it promises.
+
+use hitch_protocols::j1939::hitch::StatusMessage;
+use hitch_protocols::j1939::{ExitCode, HitchCommand, Pgn, Remote, Variant};
+use hitch_quantities::units::PerMille;
+
+use crate::bus::{Bus, OTHER, OURS};
+
+const HERE: u8 = 155;
+const ACTIVE: Remote = Remote::Position(PerMille(620));
+
+fn beat(bus: &mut Bus, number: u8) {
+    bus.hear(Pgn::HEARTBEAT, 0xFF, OTHER, &[number]);
+}
+
+/// Commands every 100 ms, with these heartbeats.
+fn commanded(bus: &mut Bus, beats: impl IntoIterator<Item = u8>) {
+    for number in beats {
+        beat(bus, number);
+        command(bus, 1);
+    }
+}
+
+fn command(bus: &mut Bus, times: u32) {
+    for _ in 0..times {
+        let bytes = HitchCommand::Position(HERE).to_bytes();
+        bus.hear(Pgn::HITCH_COMMANDS, 0xFF, OTHER, &bytes);
+        bus.run(100);
+    }
+}
+
+fn exit(bus: &mut Bus) -> ExitCode {
+    let statuses = bus.take(Pgn::REAR_HITCH_STATUS);
+    let last = statuses.last().unwrap().data().try_into().unwrap();
+    StatusMessage::from_bytes(last).exit
+}
+
+/// A bus on which an implement has the hitch and has sent 251, 0, ... 9.
+fn watched() -> Bus {
+    let mut bus = Bus::claimed(Variant::Iso11783);
+    bus.run(100);
+    commanded(&mut bus, [251].into_iter().chain(0..10));
+    assert_eq!(bus.node.remote(), ACTIVE);
+    bus
+}
+
+#[test]
+fn who_asks_gets_it_every_100_ms() {
+    let mut bus = Bus::claimed(Variant::Iso11783);
+    bus.run(500);
+    assert!(bus.take(Pgn::HEARTBEAT).is_empty());
+    let request = [0xE4, 0xF0, 0, 100, 0, 0xFF, 0xFF, 0xFF];
+    bus.hear(Pgn::REPETITION_RATE, OURS, OTHER, &request);
+    bus.run(26_000);
+    let beats = bus.take(Pgn::HEARTBEAT);
+    let gaps = beats
+        .windows(2)
+        .map(|pair| pair[1].at_ms.wrapping_sub(pair[0].at_ms));
+    assert!(gaps.into_iter().all(|gap_ms| gap_ms == 100));
+    let numbers: Vec<u8> = beats.iter().flat_map(|sent| sent.data().to_vec()).collect();
+    let expected = [251].into_iter().chain(0..=250).chain(0..=7);
+    assert_eq!(numbers, expected.collect::<Vec<u8>>());
+    // A group that isn't repeated.
+    let mut bus = Bus::claimed(Variant::Iso11783);
+    bus.hear(
+        Pgn::REPETITION_RATE,
+        OURS,
+        OTHER,
+        &[0xCA, 0xFE, 0, 100, 0, 0xFF, 0xFF, 0xFF],
+    );
+    bus.run(500);
+    assert!(bus.take(Pgn::HEARTBEAT).is_empty());
+}
+
+#[test]
+fn who_takes_the_hitch_is_asked_for_one_and_may_have_none() {
+    let mut bus = Bus::claimed(Variant::Iso11783);
+    bus.run(100);
+    command(&mut bus, 20);
+    assert_eq!(bus.node.remote(), ACTIVE);
+    let asked = bus.take(Pgn::REPETITION_RATE);
+    assert_eq!(asked.len(), 1);
+    assert_eq!(asked[0].id.destination, OTHER);
+    assert_eq!(asked[0].data(), [0xE4, 0xF0, 0, 100, 0, 0xFF, 0xFF, 0xFF]);
+}
+
+#[test]
+fn a_heartbeat_that_goes_wrong_ends_remote_control_until_eight_are_good() {
+    // The same again, too far on, backwards, the sender's own "broken", and a reserved value.
+    for wrong in [9, 13, 8, 254, 252] {
+        let mut bus = watched();
+        commanded(&mut bus, [wrong]);
+        assert_eq!(bus.node.remote(), Remote::Idle, "{wrong}");
+        assert_eq!(exit(&mut bus), ExitCode::Timeout);
+        // The first of these is measured against the wrong one.
+        commanded(&mut bus, 100..108);
+        assert_eq!(bus.node.remote(), Remote::Idle, "seven good ones");
+        commanded(&mut bus, 108..110);
+        assert_eq!(bus.node.remote(), ACTIVE, "nine");
+    }
+}
+
+#[test]
+fn one_that_is_lost_or_goes_round_is_forgiven() {
+    let mut bus = watched();
+    commanded(&mut bus, [12, 15]);
+    assert_eq!(bus.node.remote(), ACTIVE);
+    commanded(&mut bus, (16..=250).chain([2, 3]));
+    assert_eq!(bus.node.remote(), ACTIVE);
+}
+
+#[test]
+fn silence_ends_remote_control_though_commands_go_on() {
+    let mut bus = watched();
+    command(&mut bus, 4);
+    assert_eq!(bus.node.remote(), Remote::Idle);
+    let asked = bus.take(Pgn::REPETITION_RATE);
+    assert!(!asked.is_empty(), "asked for it again");
+    command(&mut bus, 50);
+    assert_eq!(bus.node.remote(), Remote::Idle);
+    let asked = bus.take(Pgn::REPETITION_RATE);
+    assert!(
+        (4..=6).contains(&asked.len()),
+        "{} times in 5 s",
+        asked.len()
+    );
+    // Its sender begins anew.
+    commanded(&mut bus, [251].into_iter().chain(0..10));
+    assert_eq!(bus.node.remote(), ACTIVE);
+}
+
+#[test]
+fn one_that_stops_on_purpose_is_missed_by_nobody() {
+    let mut bus = watched();
+    beat(&mut bus, 255);
+    command(&mut bus, 20);
+    assert_eq!(bus.node.remote(), ACTIVE);
+}
+
+#[test]
+fn facilities_are_told_who_asks_or_says_what_it_needs() {
+    let mut bus = Bus::claimed(Variant::Iso11783);
+    bus.ask(Pgn::TRACTOR_FACILITIES, 0xFF);
+    bus.run(10);
+    // Position in byte 2; commands and their limit status in byte 4.
+    let expected = [0, 0x80, 0, 0x88, 0, 0, 0, 0];
+    assert_eq!(bus.take(Pgn::TRACTOR_FACILITIES)[0].data(), expected);
+    bus.hear(Pgn::REQUIRED_FACILITIES, 0xFF, OTHER, &[0xFF; 8]);
+    bus.run(10);
+    assert_eq!(bus.take(Pgn::TRACTOR_FACILITIES)[0].data(), expected);
+}

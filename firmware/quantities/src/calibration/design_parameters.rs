@@ -1,0 +1,384 @@
+//! Every number of the controller that isn't a curve, with its unit, its range and its reason.
+//!
+//! The reasons refer to the rig this project starts from: 45.37 cm2 cylinder with 158 mm stroke, valves
+//! of the EHR5 class, 50 to 250 kg on the hitch. Times are in steps of the controller, 1 ms each.
+
+use super::parameter::parameter_group;
+use crate::units::{
+    AmperePerSecond, Count, Micrometre, MicrometrePerSecond, Microsecond, MilliAmp,
+    MilliAmpPerSecond, MilliBar, MilliDegree, MilliDegreePerSecond, MilliOhm, MilliOhmPerSecond,
+    MilliVolt, MillimetrePerSecondSquared, Millisecond, PerMille, PerSecond, RevolutionPerMinute,
+    SquareMillimetre,
+};
+
+parameter_group! {
+    /// The hydraulic circuit, as far as the controller has to know it.
+    HydraulicParameters, "hydraulics" {
+        /// Piston area: turns piston speed into flow. 76 mm bore.
+        piston_area: SquareMillimetre = 4537, 500..=50_000;
+        /// Time constant of the lift valve's solenoid and spool: what flows on after the coil has been told to stop.
+        spool_lag: Millisecond = 40, 0..=500;
+        /// The same of the lowering valve: of one kind, but by 10 ms and more another unit.
+        lower_spool_lag: Millisecond = 40, 0..=500;
+        /// Hysteresis of coil and spool: how much further the current has to fall than it rose for the same flow. 2 % of the range, half of what valves have with dither, for a machine that hasn't been taught: teaching finds more, and believes it.
+        hysteresis: MilliAmp = 80, 0..=1_000;
+        /// Pressure drop at which the lowering table was measured.
+        reference_drop: MilliBar = 15_000, 1_000..=250_000;
+        /// Drop taken for lowering until a sensor or a lowering move tells better: a 150 kg load holds near it.
+        assumed_drop: MilliBar = 15_000, 1_000..=250_000;
+        /// Smallest drop that the lowering map believes: below it friction decides, and the square root would ask for any current.
+        smallest_drop: MilliBar = 1_000, 200..=10_000;
+        /// Largest drop that the lowering map believes: above the relief valve only shocks remain.
+        largest_drop: MilliBar = 200_000, 20_000..=350_000;
+        /// Low-pass on the cylinder pressure: slower than the load swinging on its oil (4 Hz with air in it, and up), whose damping a faster map would cancel.
+        pressure_filter: Millisecond = 240, 1..=1_000;
+        /// Time in which the load estimate follows the sinking speed when there is no pressure sensor.
+        drop_learning: Millisecond = 250, 20..=5_000;
+        /// Setting of the pump's relief valve.
+        relief_pressure: MilliBar = 154_000, 20_000..=350_000;
+        /// Pump pressure this close to the relief setting means that the compensator has no margin left: 1 % of the setting, ten times the sensor's noise.
+        relief_margin: MilliBar = 1_500, 100..=20_000;
+    }
+}
+
+parameter_group! {
+    /// What the sensors can plausibly say.
+    SensorParameters, "sensors" {
+        /// Smallest rocker angle that a healthy sensor shows: the lower end less mounting error.
+        angle_min: MilliDegree = 40_000, -360_000..=360_000;
+        /// Largest rocker angle that a healthy sensor shows: the upper end plus mounting error.
+        angle_max: MilliDegree = 140_000, -360_000..=360_000;
+        /// Largest change in one step: the fastest drop is 0.2 degree, the rest is ten sigma of noise.
+        angle_jump: MilliDegree = 1_000, 100..=20_000;
+        /// Smallest lever position that a healthy lever shows: below it the wire is broken.
+        lever_min: MilliDegree = 30_000, -360_000..=360_000;
+        /// Largest lever position that a healthy lever shows: above it the wire is shorted.
+        lever_max: MilliDegree = 150_000, -360_000..=360_000;
+        /// Smallest pressure that a healthy sensor shows: zero less offset.
+        pressure_min: MilliBar = -5_000, -50_000..=0;
+        /// Largest pressure that a healthy sensor shows: shock valve plus margin.
+        pressure_max: MilliBar = 260_000, 20_000..=600_000;
+        /// How long a bad angle or lever sample is bridged by the last good one before it is a fault: at full speed the hitch moves less than 1 degree.
+        bridged: Millisecond = 5, 0..=100;
+        /// 1 if the angle sensor has a second, inverted track: then it has to agree with the first.
+        second_track: Count = 0, 0..=1;
+    }
+}
+
+parameter_group! {
+    /// The start-up lock.
+    LockParameters, "lock" {
+        /// The lever has to come this close to the hitch, or past it: 1 % of the range.
+        pick_up_window: MilliDegree = 1_000, 100..=5_000;
+        /// ... and to have moved this far: 0.8 % of the range, beyond lever noise.
+        lever_movement: MilliDegree = 730, 100..=10_000;
+        /// ... within this time: a lever that creeps at less than 3.7 degrees a second isn't being moved by a hand.
+        lever_time: Millisecond = 200, 50..=10_000;
+        /// How long everything has to be healthy before a fault gives way to the lock.
+        healthy_time: Millisecond = 500, 10..=60_000;
+        /// Engine speed up to which the lock stays shut: a starter turns the engine slower, and shakes lever and supply.
+        engine_running: RevolutionPerMinute = 400, 0..=2_000;
+        /// ... and for this long after the engine has come up: until its supply has settled.
+        engine_settling: Millisecond = 500, 0..=10_000;
+        /// 1 if the hitch is locked while no engine speed is known. With 0, a machine that has never told its engine speed since power-up isn't locked for it; one that has told it and falls silent is.
+        engine_required: Count = 0, 0..=1;
+    }
+}
+
+parameter_group! {
+    /// What the operator sets besides the lever.
+    OperatorParameters, "operator" {
+        /// Lowering-rate dial below which nothing is lowered: the dial's shut end with room for its tolerance.
+        dial_shut: PerMille = 140, 0..=450;
+        /// Lowering speed with the dial in the middle, as delivered: 158 mm in 2.1 s, since full lowering shouldn't take less than 2 s.
+        dial_middle_speed: MicrometrePerSecond = 75_000, 1_000..=1_000_000;
+        /// Dial from which lowering is as fast as `position.lower_speed`: the dial's open end with room for its tolerance.
+        dial_open: PerMille = 960, 550..=1_000;
+        /// Where quick lift goes: 88 % of the range, short of the upper end so that a drive shaft isn't bent by habit.
+        quick_lift_angle: MilliDegree = 124_900, -360_000..=360_000;
+        /// Lever at or below which a hitch that has come down floats: the lever's bottom stop, 0.1 degree above the lowest set point.
+        float_lever: MilliDegree = 44_700, -360_000..=360_000;
+        /// ... if the hitch is below this: 6 % of the range.
+        float_angle: MilliDegree = 49_600, -360_000..=360_000;
+        /// Lever from which floating ends: 0.8 % of the range beyond where it begins, clear of lever noise.
+        float_exit: MilliDegree = 45_450, -360_000..=360_000;
+        /// ... and for how long: a lever that is knocked isn't meant.
+        float_exit_time: Millisecond = 200, 0..=5_000;
+    }
+}
+
+parameter_group! {
+    /// The motion estimator.
+    MotionParameters, "motion" {
+        /// Time constant of the position estimate: averages the angle noise to a sixth, and stays below the load's own frequency.
+        position_time: Millisecond = 30, 1..=500;
+        /// The same while lowering, where load and oil make the map more wrong than the swing does.
+        lowering_time: Millisecond = 17, 1..=500;
+        /// By how much a hitch trails its lift valve beyond the lag of its spool: its load has to be accelerated on its oil.
+        lift_trail: Microsecond = 6_500, 0..=100_000;
+        /// The same of the lowering valve: oil, friction and the load's own fall.
+        lowering_trail: Microsecond = 11_500, 0..=100_000;
+        /// Furthest that a machine's spools may be slower or faster than the calibration says.
+        lag_limit: Millisecond = 30, 0..=200;
+        /// Lag of the lift valve beyond the lowering valve's from which the load swings on a compensator that lags: valves of one machine, one of them off its curve, seem to differ by up to 12 ms.
+        swing_lag: Millisecond = 14, 0..=200;
+        /// Largest error of the valve map that the estimator may blame on it: 0.25 A of threshold at 15 bar is 34 mm/s.
+        bias_limit: MicrometrePerSecond = 80_000, 0..=500_000;
+    }
+}
+
+parameter_group! {
+    /// Position control.
+    PositionParameters, "position" {
+        /// Lowest set point that is obeyed: half a degree above the mechanical end, so the end stop isn't worked against.
+        lower_limit: MilliDegree = 44_600, -360_000..=360_000;
+        /// Highest set point that is obeyed: half a degree below the mechanical end.
+        upper_limit: MilliDegree = 135_400, -360_000..=360_000;
+        /// A resting hitch follows the lever only when it moves by more than this: 0.2 % of the range, beyond lever noise.
+        lever_deadband: MilliDegree = 200, 0..=5_000;
+        /// The coil is cut when that would bring the hitch this close: 0.1 degree short, so that a load swings about a place with room beyond.
+        stop_band: Micrometre = 170, 0..=5_000;
+        /// A resting hitch that is further off than this is corrected: 0.35 degree, inside the 0.5 degree that is asked for.
+        restart_band: Micrometre = 600, 20..=10_000;
+        /// Speed per remaining distance at the end of the approach: 10 Hz, about the frequency at which a load swings on its oil, which is damped while it is lifted.
+        approach_gain: PerSecond = 60, 1..=200;
+        /// Slowest approach: cutting the coil at this speed swings a load on oil with air in it, 5 Hz, by 0.07 degree. Corrections are three times as fast.
+        creep_speed: MicrometrePerSecond = 3_700, 0..=100_000;
+        /// Fastest lifting: beyond the valve's saturation, so it doesn't limit.
+        lift_speed: MicrometrePerSecond = 150_000, 1_000..=1_000_000;
+        /// Fastest lowering, and the only limit of a machine without a dial: 250 kg through the fully open valve. That full lowering takes 2 s is asked of a dial as delivered; a machine that has none and shall keep to it gets 75 mm/s here.
+        lower_speed: MicrometrePerSecond = 300_000, 1_000..=1_000_000;
+        /// Acceleration when lifting: full speed in 40 ms, which the lag of the spool rounds to the edge of a normal manoeuvre.
+        lift_acceleration: MillimetrePerSecondSquared = 3_800, 50..=20_000;
+        /// Deceleration when lifting: full speed in 210 ms; a gravity-loaded piston would bounce from 3 m/s2 on at light load, and the time lost against it is little.
+        lift_deceleration: MillimetrePerSecondSquared = 700, 50..=20_000;
+        /// Acceleration when lifting a load that swings on its compensator: full speed in 280 ms, most of a period behind the open valve.
+        swinging_acceleration: MillimetrePerSecondSquared = 540, 50..=20_000;
+        /// Deceleration when lifting a load that swings on its compensator: full speed in half a second, an eighth of what gravity alone could do.
+        swinging_deceleration: MillimetrePerSecondSquared = 290, 50..=20_000;
+        /// Acceleration when lowering, at the reference drop; it goes with the speed that the load gives. 250 kg keep half of their pressure.
+        lower_acceleration: MillimetrePerSecondSquared = 3_200, 50..=20_000;
+        /// Deceleration when lowering, at the reference drop: what stops 250 kg adds half of their pressure, and thick oil still lets the estimate follow.
+        lower_deceleration: MillimetrePerSecondSquared = 850, 50..=20_000;
+        /// Deceleration when a move is called off or reversed: twice the ramp, for the operator has changed their mind.
+        abort_deceleration: MillimetrePerSecondSquared = 3_000, 50..=20_000;
+    }
+}
+
+parameter_group! {
+    /// Rate control (hold-to-run buttons).
+    RateParameters, "rate" {
+        /// Fastest speed that may be asked for: a person stands beside the implement.
+        rate_limit: MilliDegreePerSecond = 15_000, 100..=200_000;
+        /// Ramp of the rocker speed: full speed in half a second, with room for second thoughts.
+        rate_slope: MilliDegreePerSecond = 30_000, 1_000..=1_000_000;
+        /// Time of the integral on what is left of the speed's error: slower than estimate and spool together.
+        trim_time: Millisecond = 250, 20..=10_000;
+        /// Most that it takes off or adds: what 0.1 A are on the steep part of the lowering valve's curve.
+        trim_limit: MicrometrePerSecond = 14_000, 0..=200_000;
+    }
+}
+
+parameter_group! {
+    /// Check-valve logic: resting on the check valve.
+    HoldParameters, "hold" {
+        /// Both coils stay off this long between two moves: the check valve seats, the spool centres, the pressure calms down.
+        dwell: Millisecond = 150, 20..=2_000;
+        /// Time constant of the resting position: slow against noise and swinging, fast against a leak.
+        rest_time: Millisecond = 250, 1..=5_000;
+        /// How often a hitch that left its place by itself is brought back before that is a fault.
+        corrections: Count = 5, 0..=100;
+        /// How far a hitch that leaves its place by itself is brought back, all corrections together: each rightful one is less than 1 degree.
+        corrected_travel: Micrometre = 4_500, 500..=50_000;
+        /// A correction is forgotten after this time: a seated valve sinks less in it than a correction makes good, 0.25 degree.
+        correction_memory: Millisecond = 740_000, 1_000..=86_400_000;
+    }
+}
+
+parameter_group! {
+    /// Compensator logic: flow that doesn't arrive.
+    SaturationParameters, "saturation" {
+        /// Window over which demanded and measured travel are compared.
+        window: Millisecond = 400, 50..=5_000;
+        /// Demanded travel in a window from which a comparison says something: twenty times the noise of its measurement.
+        demanded_travel: Micrometre = 3_000, 200..=100_000;
+        /// Pump pressure has to stay near the relief valve this long: longer than the swing at the start of a lift.
+        relief_time: Millisecond = 60, 5..=2_000;
+        /// Rest after a stall before the next attempt.
+        retry_time: Millisecond = 1_500, 100..=60_000;
+        /// Attempts before a hitch that doesn't move is a fault.
+        attempts: Count = 3, 1..=100;
+    }
+}
+
+parameter_group! {
+    /// Teaching thresholds and ends.
+    TeachParameters, "teach" {
+        /// Rest before each ramp: a load has swung out, and the angle's average has settled.
+        rest_time: Millisecond = 600, 50..=10_000;
+        /// Average of the angle: takes its noise to a sixth.
+        filter_time: Millisecond = 16, 1..=500;
+        /// Where a ramp begins: below the lowest threshold of this kind of valve.
+        ramp_start: MilliAmp = 600, 0..=5_000;
+        /// How fast it rises: the hitch gets no faster than a walking snail before it is noticed to move.
+        ramp_slope: MilliAmpPerSecond = 400, 10..=10_000;
+        /// Where it gives up: beyond the highest threshold, where the valve is a quarter open.
+        ramp_end: MilliAmp = 2_000, 100..=5_000;
+        /// What counts as moved: 0.17 degree, twenty times what is left of the noise.
+        moved: Micrometre = 300, 20..=10_000;
+        /// Furthest that a threshold may be off the curve: valves of one kind differ by 0.1 A, and plugs age.
+        most_shift: MilliAmp = 300, 10..=1_000;
+        /// Furthest that the ramps of one valve may be apart: what its friction leaves uncertain.
+        most_spread: MilliAmp = 30, 2..=500;
+        /// Current above the threshold on the way up to the end: 17 mm/s, slow enough for an end stop.
+        lift_excess: MilliAmp = 250, 20..=2_000;
+        /// Current above the threshold on the way down: the same, beyond the metering notch.
+        lower_excess: MilliAmp = 620, 20..=2_000;
+        /// A hitch that hasn't moved for this long is at an end.
+        look_time: Millisecond = 300, 50..=5_000;
+        /// Longest way to an end.
+        longest_drive: Millisecond = 60_000, 1_000..=600_000;
+        /// Stroke of the cylinder, from end to end.
+        stroke: Micrometre = 158_000, 10_000..=2_000_000;
+        /// How far the sensor may be turned against the linkage: beyond it is mounted a tooth off.
+        most_offset: MilliDegree = 3_000, 100..=45_000;
+        /// How far the travel may differ from what the linkage allows: an obstacle, or another linkage.
+        most_stretch: MilliDegree = 1_500, 100..=45_000;
+        /// Set points stay this far inside the ends, so that the end stops aren't worked against.
+        end_margin: MilliDegree = 500, 0..=10_000;
+    }
+}
+
+parameter_group! {
+    /// Regulating the coils' currents.
+    CurrentParameters, "current" {
+        /// Resistance of a coil at 20 C with wiring and driver, where the estimate starts.
+        nominal_resistance: MilliOhm = 2_300, 500..=20_000;
+        /// Lowest resistance that the estimate may take: a coil at -40 C, less the spread of new ones.
+        lowest_resistance: MilliOhm = 1_500, 100..=20_000;
+        /// Highest: a coil at 120 C.
+        highest_resistance: MilliOhm = 3_300, 500..=50_000;
+        /// How fast the estimate follows: 30 % of a coil within its first fifth of a second; a step is 0.1 % of it.
+        adaptation: MilliOhmPerSecond = 3_000, 0..=10_000;
+        /// Time after a change of the request before the estimate learns: four time constants of a coil.
+        settling_time: Millisecond = 30, 1..=1_000;
+        /// Voltage for each ampere that is missing: closes the gap in three steps of 1 ms on 12 mH.
+        proportional: MilliOhm = 5_000, 0..=50_000;
+        /// The same for each step that it has been missing: cancels the coil's own time constant of 5 ms.
+        integral: MilliOhm = 1_000, 0..=20_000;
+        /// Drop over the diode through which the current flows on while the driver is off.
+        freewheel_drop: MilliVolt = 700, 0..=2_000;
+        /// Supply where it isn't measured: a running alternator.
+        assumed_supply: MilliVolt = 13_500, 6_000..=36_000;
+        /// Amplitude of the dither: 3 % of the largest current, which halves the hysteresis of a spool on plain current.
+        dither_amplitude: MilliAmp = 100, 0..=400;
+        /// Period of the dither: 125 Hz, above what a spool follows and below what a coil swallows.
+        dither_period: Millisecond = 8, 4..=20;
+    }
+}
+
+parameter_group! {
+    /// What is sent on the bus.
+    BusParameters, "bus" {
+        /// How often loggers are sent currents, angle and pressures; 0 is never. 50 Hz are what a campaign has, and take 6 % of a bus of 250 kbit/s.
+        measured_period: Millisecond = 20, 0..=1_000;
+    }
+}
+
+parameter_group! {
+    /// The safety envelope.
+    SafetyParameters, "safety" {
+        /// Largest current of the lift coil: what the coil bears.
+        lift_current_limit: MilliAmp = 3_500, 100..=5_000;
+        /// Largest current of the lowering coil: what the coil bears.
+        lower_current_limit: MilliAmp = 3_500, 100..=5_000;
+        /// A current may start at once up to here: below and just above the threshold nothing moves yet.
+        free_current: MilliAmp = 1_500, 0..=5_000;
+        /// Above it currents rise no faster than this: full flow in 50 ms at the earliest. Falling is always free.
+        current_slope: AmperePerSecond = 40, 1..=10_000;
+        /// How far the lever has to move since power-up or the last trip before any coil is switched on: half of what opens the lock, clear of noise.
+        arming_movement: MilliDegree = 350, 50..=5_000;
+        /// Age at which a command is stale and both coils go off for good: at full speed the hitch moves less than 1 degree.
+        command_age: Millisecond = 5, 1..=1_000;
+        /// How long a signal has to be missing, out of range or jumping: the same.
+        sensor_time: Millisecond = 5, 1..=100;
+        /// A step that begins later than this after the last is an overrun: half a step of slack.
+        longest_step: Microsecond = 1_500, 1_000..=100_000;
+        /// A step that begins sooner than this after the last is one as well: half a step of slack.
+        shortest_step: Microsecond = 500, 0..=999;
+        /// How long steps have to be late or early: one may be, for a flash page that is written.
+        overrun_time: Millisecond = 2, 1..=100;
+        /// Lowest supply voltage: below it the largest current no longer fits through a hot coil, and converters lose their reference.
+        supply_min: MilliVolt = 8_000, 5_000..=24_000;
+        /// Highest supply voltage: a charging fault, or somebody jump-starts with 24 V.
+        supply_max: MilliVolt = 16_800, 9_000..=36_000;
+        /// How long the supply has to be wrong: longer than the swing as a relay switches, and at full speed less than 2 degrees.
+        supply_time: Millisecond = 10, 1..=1_000;
+        /// A sample that has been the same to the last bit for this long when travel is missing is called frozen: eight throws of noise.
+        frozen_time: Millisecond = 8, 2..=1_000;
+        /// A sensor that shows noise at rest is frozen once it is still for this long: a healthy one is by chance once in a million years.
+        still_time: Millisecond = 20, 5..=1_000;
+        /// Mean second difference from which a sensor is too noisy: six times that of a healthy one, whose sigma of 0.05 degree gives 0.1 degree.
+        noise_limit: MilliDegree = 600, 50..=20_000;
+        /// Current above the threshold that may do nothing in a hitch that starts: 0.1 A that a threshold is off, and half of 0.2 A of hysteresis. Half of it in one that moves.
+        following_margin: MilliAmp = 200, 0..=1_000;
+        /// Each of the two lags behind which a hitch in motion follows a rising current: together a slow spool.
+        following_lag: Millisecond = 20, 1..=500;
+        /// Each of the two lags behind which a hitch follows its current that has just started: the first motion is seen before a slow spool is open.
+        started_lag: Millisecond = 40, 1..=500;
+        /// Lift speed by the valve curve that the current is limited to when the onset budget is spent: a hitch on the ground still starts with it.
+        lift_onset_speed: MicrometrePerSecond = 20_000, 1_000..=1_000_000;
+        /// The same of lowering.
+        lower_onset_speed: MicrometrePerSecond = 15_000, 1_000..=1_000_000;
+        /// Travel that a hitch is given by the valve curve before motion has been seen and its current is limited. A healthy one is given about 3 degrees by the controller's ramp, one that is heavy, late and off by 0.1 A more than 5: less than 8 makes such moves overshoot.
+        onset_budget: MilliDegree = 8_000, 0..=100_000;
+        /// Time constant with which the rest of the budget may be given, so that the current falls back smoothly.
+        onset_time: Millisecond = 25, 1..=1_000;
+        /// Travel along the coil's way that is motion, on top of the sensor's mean second difference: five sigmas of averaged noise of 0.05 degree.
+        onset_travel: MilliDegree = 100, 0..=20_000;
+        /// Travel given by currents above threshold and margin after which a hitch that shows no motion is a fault: what the budget and 0.2 s of the onset speed give.
+        onset_debt: MilliDegree = 10_000, 10..=100_000;
+        /// As much again for a hitch that is lifted off its lower end stop, which carried its load: the oil is compressed from no pressure at all, for up to 0.15 s longer.
+        stop_debt: MilliDegree = 1_500, 0..=100_000;
+        /// Share of the calibration's speed that a hitch in motion owes: healthy ones that swing, or take up a load from the ground, stand while they are given 12 mm of piston travel.
+        following_share: PerMille = 80, 10..=1_000;
+        /// Speed that a hitch in motion owes if the calibration gives twice as much or more: a standstill of 125 ms is then a fault, of healthy ones that swing the longest took 98 ms.
+        following_speed: MicrometrePerSecond = 8_000, 0..=1_000_000;
+        /// Travel that is owed when a standstill is a fault, 0.5 degree; a quarter of it, five sigmas of averaged noise of 0.1 degree, is motion.
+        following_allowance: Micrometre = 1_000, 50..=20_000;
+        /// Within this of the ends no travel towards them is owed: the end stop itself, of a sensor that is turned by as much as teaching accepts.
+        end_zone: MilliDegree = 4_000, 0..=20_000;
+        /// Movement against the energised coil that trips: above noise and the swing at a start.
+        contradiction: MilliDegree = 4_000, 500..=45_000;
+        /// Current from which a broken wire can be told.
+        testable_current: MilliAmp = 500, 50..=5_000;
+        /// How long less than half of it has to flow: four time constants of a coil.
+        open_time: Millisecond = 40, 2..=1_000;
+        /// Current beyond what was asked for that means a short: twice what a controller overshoots.
+        excess_current: MilliAmp = 500, 50..=5_000;
+        /// How long: longer than a supply step takes to be regulated away, shorter than the spool needs to follow.
+        short_time: Millisecond = 8, 1..=1_000;
+        /// Current that may be left in a coil that is off.
+        leftover_current: MilliAmp = 200, 20..=1_000;
+        /// How long a coil may take to lose its current before that counts: six time constants with a freewheeling diode.
+        decay_time: Millisecond = 30, 2..=1_000;
+        /// Largest error of the converters' reference by the band gap. A healthy one shows up to 4.5 %: 2.5 % of the band gap and 2 % of a regulator. Currents and voltages are corrected for it, so their own error stays at the 2.5 %.
+        reference_error: PerMille = 60, 10..=200;
+        /// How long the reference has to be off: its readings are corrected at once, so there is no hurry; one conversion that is disturbed by an edge of a pulse is no fault.
+        reference_time: Millisecond = 20, 1..=1_000;
+        /// Lowest supply of the sensors: 5 % below 5 V, the limit of the sensors' own data.
+        sensor_supply_min: MilliVolt = 4_750, 1_000..=30_000;
+        /// Highest supply of the sensors: 5 % above 5 V.
+        sensor_supply_max: MilliVolt = 5_250, 1_000..=30_000;
+        /// How long the supply of the sensors has to be wrong: shorter than `sensor_time`, since every sensor's signal goes with it and it is the cause to report.
+        sensor_supply_time: Millisecond = 4, 1..=100;
+        /// Largest difference between the tracks of the angle sensor: 1.4 degrees of tolerance, 1 % of the supply over 80 % for 110 degrees, and six sigma of the difference's noise, 0.07 degree.
+        track_difference: MilliDegree = 2_000, 200..=20_000;
+        /// How long the tracks have to disagree: as long as a sample may be missing.
+        track_time: Millisecond = 5, 1..=20;
+        /// Largest change of the main clock by the independent oscillator since the start: that oscillator goes from 29.5 to 34 kHz over temperature and supply, 15 %; a clock that fails is off by half or more.
+        clock_error: PerMille = 200, 20..=500;
+        /// How long the clock has to be off: the step's own clock sees a wrong pace sooner, and this one finds both wrong together.
+        clock_time: Millisecond = 20, 1..=10_000;
+    }
+}

@@ -1,0 +1,453 @@
+//! The calibration block: what a machine has been taught, as the ECU stores it.
+//!
+//! [`Calibration`] is raw: anything may stand in it. [`ValidCalibration`] is one whose checksum, version,
+//! ranges and curves have been checked; the controller takes no other.
+
+pub mod calibration_words;
+pub mod design_parameters;
+pub mod linkage;
+pub mod nominal;
+pub mod parameter;
+pub mod valve_table;
+
+use super::crc32::Crc32;
+use super::units::{MicroLitrePerSecond, MilliAmp};
+use calibration_words::CALIBRATION_WORDS;
+use design_parameters::{
+    BusParameters, CurrentParameters, HoldParameters, HydraulicParameters, LockParameters,
+    MotionParameters, OperatorParameters, PositionParameters, RateParameters, SafetyParameters,
+    SaturationParameters, SensorParameters, TeachParameters,
+};
+use linkage::{LINKAGE_POINTS, LinkageTable};
+use parameter::{OutOfRange, ParameterGroup};
+use valve_table::{VALVE_POINTS, ValveTable};
+
+/// Layout of the block that this firmware reads.
+pub const CALIBRATION_VERSION: u32 = 4;
+
+/// Largest flow in a table: ten times the pump's, and far from where products saturate.
+const FLOW_LIMIT: MicroLitrePerSecond = MicroLitrePerSecond(10_000_000);
+const CURRENT_LIMIT: MilliAmp = MilliAmp(5_000);
+
+/// The raw block. All of it is 32-bit words, so its memory image has no padding.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Calibration {
+    /// Layout; see [`CALIBRATION_VERSION`].
+    pub version: u32,
+    /// Lift valve at the compensated drop.
+    pub lift: ValveTable,
+    /// Lowering valve at [`HydraulicParameters::reference_drop`].
+    pub lower: ValveTable,
+    /// Rocker angle to piston travel.
+    pub linkage: LinkageTable,
+    /// Hydraulic circuit.
+    pub hydraulics: HydraulicParameters,
+    /// Plausibility of sensors.
+    pub sensors: SensorParameters,
+    /// Start-up lock.
+    pub lock: LockParameters,
+    /// What the operator sets besides the lever.
+    pub operator: OperatorParameters,
+    /// Motion estimator.
+    pub motion: MotionParameters,
+    /// Position control.
+    pub position: PositionParameters,
+    /// Rate control.
+    pub rate: RateParameters,
+    /// Check-valve logic.
+    pub hold: HoldParameters,
+    /// Compensator logic.
+    pub saturation: SaturationParameters,
+    /// Teaching.
+    pub teach: TeachParameters,
+    /// Regulation of the coils' currents.
+    pub current: CurrentParameters,
+    /// What is sent on the bus.
+    pub bus: BusParameters,
+    /// Safety envelope.
+    pub safety: SafetyParameters,
+    /// CRC-32 (ISO-HDLC) over everything before it, words in little-endian order.
+    pub checksum: u32,
+}
+
+/// Size of the block in bytes.
+pub const CALIBRATION_BYTES: usize = size_of::<Calibration>();
+
+/// Why a calibration is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CalibrationError {
+    /// The block has another layout.
+    Version {
+        /// Version found.
+        found: u32,
+    },
+    /// The checksum doesn't fit: the block is damaged or was never written.
+    Checksum {
+        /// Checksum stored.
+        stored: u32,
+        /// Checksum of what is there.
+        computed: u32,
+    },
+    /// A scalar is outside its range.
+    Parameter {
+        /// The group it belongs to.
+        group: &'static str,
+        /// The scalar and what was found.
+        what: OutOfRange,
+    },
+    /// A valve table has fewer than two or more than [`VALVE_POINTS`] points.
+    ValveSize {
+        /// `lift` or `lower`.
+        valve: &'static str,
+    },
+    /// A valve table doesn't start at zero flow, doesn't rise strictly in flow and current, or leaves the range of
+    /// either.
+    ValvePoint {
+        /// `lift` or `lower`.
+        valve: &'static str,
+        /// The offending point.
+        index: usize,
+    },
+    /// A point of a valve table is closer to the one before it than [`ValveTable::least_gap`] in flow.
+    ValveGap {
+        /// `lift` or `lower`.
+        valve: &'static str,
+        /// The offending point.
+        index: usize,
+    },
+    /// The linkage table's step isn't positive, or its travel doesn't rise strictly.
+    Linkage {
+        /// The offending point.
+        index: usize,
+    },
+    /// Two limits are crossed.
+    Crossed {
+        /// The group they belong to.
+        group: &'static str,
+        /// The limit that should be lower.
+        low: &'static str,
+        /// The limit that should be higher.
+        high: &'static str,
+    },
+}
+
+/// A calibration that has been checked.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ValidCalibration(Calibration);
+
+impl core::ops::Deref for ValidCalibration {
+    type Target = Calibration;
+    fn deref(&self) -> &Calibration {
+        &self.0
+    }
+}
+
+#[cfg(any(test, feature = "damage"))]
+impl ValidCalibration {
+    /// Flips a bit, as failing memory does.
+    pub fn flip(&mut self, word: usize, bit: u32) {
+        let mut index = 0;
+        self.0.for_each_word(&mut |value| {
+            *value ^= if index == word { 1 << bit } else { 0 };
+            index += 1;
+        });
+    }
+}
+
+impl ValidCalibration {
+    /// The calibration of an untaught machine.
+    #[must_use]
+    pub fn nominal() -> Self {
+        // It passes validation, as a test says; there is nothing better to fall back to.
+        Self(Calibration::nominal())
+    }
+}
+
+impl Calibration {
+    /// The calibration of an untaught machine, sealed.
+    #[must_use]
+    pub fn nominal() -> Self {
+        Self::unsealed_nominal().sealed()
+    }
+
+    /// The same without a checksum, to be filled with something else. Not inlined: the block would take its place on the
+    /// stack of every caller.
+    #[inline(never)]
+    pub(super) fn unsealed_nominal() -> Self {
+        Self {
+            version: CALIBRATION_VERSION,
+            lift: nominal::LIFT,
+            lower: nominal::LOWER,
+            linkage: nominal::LINKAGE,
+            hydraulics: HydraulicParameters::NOMINAL,
+            sensors: SensorParameters::NOMINAL,
+            lock: LockParameters::NOMINAL,
+            operator: OperatorParameters::NOMINAL,
+            motion: MotionParameters::NOMINAL,
+            position: PositionParameters::NOMINAL,
+            rate: RateParameters::NOMINAL,
+            hold: HoldParameters::NOMINAL,
+            saturation: SaturationParameters::NOMINAL,
+            teach: TeachParameters::NOMINAL,
+            current: CurrentParameters::NOMINAL,
+            bus: BusParameters::NOMINAL,
+            safety: SafetyParameters::NOMINAL,
+            checksum: 0,
+        }
+    }
+
+    /// The same block with the checksum that belongs to it.
+    #[must_use]
+    pub fn sealed(mut self) -> Self {
+        self.checksum = self.computed_checksum();
+        self
+    }
+
+    /// Checks everything.
+    ///
+    /// # Errors
+    /// The first thing that is wrong.
+    pub fn validate(self) -> Result<ValidCalibration, CalibrationError> {
+        if self.version != CALIBRATION_VERSION {
+            return Err(CalibrationError::Version {
+                found: self.version,
+            });
+        }
+        let computed = self.computed_checksum();
+        if self.checksum != computed {
+            return Err(CalibrationError::Checksum {
+                stored: self.checksum,
+                computed,
+            });
+        }
+        self.checked()
+    }
+
+    /// Seals the block, if everything but the seal is right: the checksum is reckoned only once.
+    ///
+    /// # Errors
+    /// The first thing that is wrong.
+    pub fn seal(mut self) -> Result<ValidCalibration, CalibrationError> {
+        self.version = CALIBRATION_VERSION;
+        self.sealed().checked()
+    }
+
+    /// Checks what is in a block that is sealed.
+    fn checked(self) -> Result<ValidCalibration, CalibrationError> {
+        self.check_parameters()?;
+        check_valve("lift", &self.lift)?;
+        check_valve("lower", &self.lower)?;
+        check_linkage(&self.linkage)?;
+        self.check_order()?;
+        Ok(ValidCalibration(self))
+    }
+
+    /// By the ranges that tools are held to as well.
+    fn check_parameters(&self) -> Result<(), CalibrationError> {
+        match calibration_words::scalar_out_of_range(self) {
+            Some((group, what)) => Err(CalibrationError::Parameter { group, what }),
+            None => Ok(()),
+        }
+    }
+
+    /// Limits that only make sense in one order.
+    fn check_order(&self) -> Result<(), CalibrationError> {
+        let (position, sensors, hydraulics) = (&self.position, &self.sensors, &self.hydraulics);
+        let operator = &self.operator;
+        let pairs = [
+            (
+                "position",
+                "lower_limit",
+                position.lower_limit.0,
+                "upper_limit",
+                position.upper_limit.0,
+            ),
+            (
+                "position",
+                "stop_band",
+                position.stop_band.0,
+                "restart_band",
+                position.restart_band.0,
+            ),
+            (
+                "sensors",
+                "angle_min",
+                sensors.angle_min.0,
+                "angle_max",
+                sensors.angle_max.0,
+            ),
+            (
+                "sensors",
+                "lever_min",
+                sensors.lever_min.0,
+                "lever_max",
+                sensors.lever_max.0,
+            ),
+            (
+                "operator",
+                "float_lever",
+                operator.float_lever.0,
+                "float_exit",
+                operator.float_exit.0,
+            ),
+            (
+                "current",
+                "lowest_resistance",
+                self.current.lowest_resistance.0,
+                "highest_resistance",
+                self.current.highest_resistance.0,
+            ),
+            (
+                "safety",
+                "supply_min",
+                self.safety.supply_min.0,
+                "supply_max",
+                self.safety.supply_max.0,
+            ),
+            (
+                "safety",
+                "sensor_supply_min",
+                self.safety.sensor_supply_min.0,
+                "sensor_supply_max",
+                self.safety.sensor_supply_max.0,
+            ),
+            (
+                "hydraulics",
+                "smallest_drop",
+                hydraulics.smallest_drop.0,
+                "largest_drop",
+                hydraulics.largest_drop.0,
+            ),
+        ];
+        for (group, low, low_value, high, high_value) in pairs {
+            if low_value >= high_value {
+                return Err(CalibrationError::Crossed { group, low, high });
+            }
+        }
+        Ok(())
+    }
+
+    /// The memory image, words in little-endian order.
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; CALIBRATION_BYTES] {
+        let mut bytes = [0; CALIBRATION_BYTES];
+        let targets = bytes.chunks_exact_mut(4);
+        for (target, word) in targets.zip(self.to_words()) {
+            target.copy_from_slice(&word.to_le_bytes());
+        }
+        bytes
+    }
+
+    /// The block of a memory image; nothing of it is checked.
+    #[must_use]
+    pub fn from_bytes(bytes: &[u8; CALIBRATION_BYTES]) -> Self {
+        let mut words = [0; CALIBRATION_WORDS];
+        for (word, source) in words.iter_mut().zip(bytes.as_chunks::<4>().0) {
+            *word = i32::from_le_bytes(*source);
+        }
+        Self::from_words(&words)
+    }
+
+    fn computed_checksum(&self) -> u32 {
+        let mut digest = Crc32::default();
+        let mut words_left = CALIBRATION_BYTES / 4 - 1;
+        self.clone().for_each_word(&mut |word| {
+            if words_left > 0 {
+                words_left -= 1;
+                digest.update(&word.to_le_bytes());
+            }
+        });
+        digest.value()
+    }
+
+    /// Visits every word in the order of the memory image. Not inlined: it is long and
+    /// has many callers.
+    #[inline(never)]
+    pub(super) fn for_each_word(&mut self, visit: &mut dyn FnMut(&mut i32)) {
+        visit_unsigned(&mut self.version, visit);
+        visit_valve(&mut self.lift, visit);
+        visit_valve(&mut self.lower, visit);
+        visit(&mut self.linkage.first_angle.0);
+        visit(&mut self.linkage.angle_step.0);
+        self.linkage
+            .travel
+            .iter_mut()
+            .for_each(|point| visit(&mut point.0));
+        self.hydraulics.visit(visit);
+        self.sensors.visit(visit);
+        self.lock.visit(visit);
+        self.operator.visit(visit);
+        self.motion.visit(visit);
+        self.position.visit(visit);
+        self.rate.visit(visit);
+        self.hold.visit(visit);
+        self.saturation.visit(visit);
+        self.teach.visit(visit);
+        self.current.visit(visit);
+        self.bus.visit(visit);
+        self.safety.visit(visit);
+        visit_unsigned(&mut self.checksum, visit);
+    }
+}
+
+fn visit_unsigned(word: &mut u32, visit: &mut dyn FnMut(&mut i32)) {
+    let mut signed = word.cast_signed();
+    visit(&mut signed);
+    *word = signed.cast_unsigned();
+}
+
+fn visit_valve(table: &mut ValveTable, visit: &mut dyn FnMut(&mut i32)) {
+    visit_unsigned(&mut table.count, visit);
+    for point in &mut table.points {
+        visit(&mut point.flow.0);
+        visit(&mut point.current.0);
+    }
+}
+
+fn check_valve(valve: &'static str, table: &ValveTable) -> Result<(), CalibrationError> {
+    let points = table.used();
+    if points.len() < 2 || usize::try_from(table.count) != Ok(points.len()) {
+        return Err(CalibrationError::ValveSize { valve });
+    }
+    let gap = table.least_gap();
+    let mut last = None;
+    for (index, &point) in points.iter().enumerate() {
+        let rises = last.is_none_or(|last: valve_table::ValvePoint| {
+            point.flow > last.flow && point.current > last.current
+        });
+        let starts = index > 0 || point.flow == MicroLitrePerSecond::ZERO;
+        let in_range = point.flow <= FLOW_LIMIT
+            && point.current >= MilliAmp::ZERO
+            && point.current <= CURRENT_LIMIT;
+        if !(rises && starts && in_range) {
+            return Err(CalibrationError::ValvePoint { valve, index });
+        }
+        if last.is_some_and(|last| point.flow - last.flow < gap) {
+            return Err(CalibrationError::ValveGap { valve, index });
+        }
+        last = Some(point);
+    }
+    Ok(())
+}
+
+fn check_linkage(linkage: &LinkageTable) -> Result<(), CalibrationError> {
+    const FULL_TURN: i32 = 360_000;
+    let step = linkage.angle_step.0;
+    if !(1..=FULL_TURN).contains(&step) || linkage.first_angle.magnitude().0 > FULL_TURN {
+        return Err(CalibrationError::Linkage { index: 0 });
+    }
+    let pairs = linkage.travel.iter().zip(linkage.travel.iter().skip(1));
+    match pairs
+        .into_iter()
+        .position(|(lower, higher)| higher <= lower)
+    {
+        Some(index) => Err(CalibrationError::Linkage {
+            index: index.saturating_add(1),
+        }),
+        None => Ok(()),
+    }
+}
+
+const _: () = assert!(LINKAGE_POINTS >= 2 && VALVE_POINTS >= 2);
+const _: () = assert!(CALIBRATION_BYTES.is_multiple_of(4));

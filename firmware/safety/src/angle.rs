@@ -1,0 +1,249 @@
+//! Watches the angle: one sensor, and what it must do while a coil moves the hitch.
+
+use hitch_quantities::calibration::design_parameters::{SafetyParameters, SensorParameters};
+use hitch_quantities::fixed::Divisor;
+use hitch_quantities::units::{MilliAmp, MilliDegree, Millisecond};
+use hitch_quantities::{CoilCurrents, Inputs};
+
+use super::following::{Following, Shown, Standstill};
+use super::tremble::Tremble;
+use crate::Limits;
+
+/// Samples whose mean is compared with the owed travel: noise of 0.1 degree is then 0.025 degree.
+const SPAN: usize = 16;
+/// The noise measure averages over this many samples: noise of +-0.8 degree is found in 18 ms, and that of a sensor with
+/// 0.1 degree, one sigma, is seven of its own sigmas below the limit.
+const NOISE_SAMPLES: i32 = 16;
+
+/// What is wrong with the angle in this step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AngleFaults {
+    /// Missing or out of range.
+    pub missing: bool,
+    /// Further from the last good sample than the hitch can move.
+    pub jumps: bool,
+    /// The same to the last bit although the hitch owes travel.
+    pub frozen: bool,
+    /// Noisier than the sensor.
+    pub noisy: bool,
+    /// Shows less travel than the hitch owes.
+    pub not_following: bool,
+    /// Moves against the energised coil.
+    pub against: bool,
+}
+
+/// The watch.
+#[derive(Clone, Copy, Debug)]
+pub struct AngleWatch {
+    /// The last good samples, the newest at `newest`.
+    samples: [MilliDegree; SPAN],
+    newest: usize,
+    /// Any of them.
+    filled: bool,
+    bad_for: Millisecond,
+    /// The last sample in range, and the step to it.
+    last: MilliDegree,
+    step: MilliDegree,
+    /// Whether the sensor shows noise at rest, and how long its sample has been the same.
+    tremble: Tremble,
+    /// Mean magnitude of the second difference, times [`NOISE_SAMPLES`].
+    noise_sum: i32,
+    /// Since the coil was switched on.
+    stroke: Option<Stroke>,
+    /// A hitch that was lowered stands still, and the command has not been off since.
+    landed: bool,
+}
+
+/// Motion since a coil was switched on.
+#[derive(Clone, Copy, Debug)]
+struct Stroke {
+    /// Angle along the coil's way where it was switched on.
+    first: MilliDegree,
+    /// Furthest such angle.
+    furthest: MilliDegree,
+    /// Travel owed and seen.
+    following: Following,
+}
+
+impl Default for AngleWatch {
+    fn default() -> Self {
+        Self {
+            samples: [MilliDegree::ZERO; SPAN],
+            newest: 0,
+            filled: false,
+            bad_for: Millisecond::ZERO,
+            last: MilliDegree::ZERO,
+            step: MilliDegree::ZERO,
+            tremble: Tremble::default(),
+            noise_sum: 0,
+            stroke: None,
+            landed: false,
+        }
+    }
+}
+
+impl AngleWatch {
+    /// One step with the inputs and the currents that were passed in the last one.
+    pub fn judge(
+        &mut self,
+        inputs: &Inputs,
+        passed: CoilCurrents,
+        limits: Limits<'_>,
+    ) -> AngleFaults {
+        let sensors = limits.sensors;
+        let in_range = inputs
+            .rocker_angle
+            .filter(|angle| sensors.angle_min <= *angle && *angle <= sensors.angle_max);
+        let believed = in_range.filter(|&angle| !self.jumps_to(angle, sensors));
+        let mut faults = AngleFaults {
+            missing: in_range.is_none(),
+            jumps: in_range.is_some() && believed.is_none(),
+            ..AngleFaults::default()
+        };
+        if let Some(angle) = in_range {
+            let at_rest = passed == CoilCurrents::OFF;
+            faults.noisy = self.judge_noise(angle, at_rest, limits.safety);
+        }
+        // Noise of a bad signal isn't the sensor's.
+        if faults != AngleFaults::default() {
+            self.tremble.forget();
+        }
+        faults.frozen =
+            self.tremble.is_noisy() && self.tremble.same_for() >= limits.safety.still_time;
+        match believed {
+            Some(angle) => {
+                self.bad_for = Millisecond::ZERO;
+                self.take(angle);
+            }
+            None => self.bad_for = self.bad_for.next(),
+        }
+        self.judge_motion(believed, inputs, passed, limits, &mut faults);
+        faults
+    }
+
+    /// True while the lowering coil is cut, since the hitch may have landed.
+    pub const fn has_landed(&self) -> bool {
+        self.landed
+    }
+
+    /// Most that the coils get in a stroke that has yet to show motion.
+    pub fn gentle(&self, limits: Limits<'_>) -> Option<CoilCurrents> {
+        self.stroke
+            .map_or(Following::default(), |stroke| stroke.following)
+            .gentle(limits)
+    }
+
+    /// The command without a lowering current if the hitch may have landed; a command without one ends that.
+    pub fn withhold(&mut self, command: CoilCurrents) -> CoilCurrents {
+        self.landed &= command.lower > MilliAmp::ZERO;
+        match self.landed {
+            true => CoilCurrents::OFF,
+            false => command,
+        }
+    }
+
+    /// After a gap that has been a fault, any angle will do.
+    fn jumps_to(&self, angle: MilliDegree, sensors: &SensorParameters) -> bool {
+        self.bad_for <= sensors.bridged
+            && self.filled
+            && (angle - self.newest_sample()).magnitude() > sensors.angle_jump
+    }
+
+    fn newest_sample(&self) -> MilliDegree {
+        let at = self.newest % SPAN;
+        self.samples.get(at).copied().unwrap_or_default()
+    }
+
+    /// Mean of the latest good samples.
+    fn mean(&self, samples: usize) -> MilliDegree {
+        let sum = (0..samples).fold(0_i32, |sum, steps| {
+            let at = self.newest.wrapping_sub(steps) % SPAN;
+            sum.saturating_add(self.samples.get(at).map_or(0, |sample| sample.0))
+        });
+        MilliDegree(Divisor::at_least_one(samples as i32).divide(sum))
+    }
+
+    /// What the sensor shows.
+    fn shown(&self) -> Shown {
+        Shown {
+            mean: self.mean(SPAN),
+            latest: self.mean(SPAN / 2),
+            noise: MilliDegree(self.noise_sum / NOISE_SAMPLES),
+        }
+    }
+
+    /// What a sample in range says by its last bits, whether it is believed or not; true if it is too noisy.
+    fn judge_noise(
+        &mut self,
+        angle: MilliDegree,
+        at_rest: bool,
+        safety: &SafetyParameters,
+    ) -> bool {
+        if !self.filled {
+            self.last = angle;
+        }
+        let step = angle - self.last;
+        self.last = angle;
+        self.tremble.update(step, at_rest);
+        // A single jump is no noise: it counts for no more than twice the limit.
+        let most = safety.noise_limit + safety.noise_limit;
+        let bend = (step - self.step).magnitude().min(most).0;
+        self.step = step;
+        let mean = self.noise_sum / NOISE_SAMPLES;
+        self.noise_sum = self.noise_sum.saturating_add(bend).saturating_sub(mean);
+        mean > safety.noise_limit.0
+    }
+
+    /// Takes in a good sample.
+    fn take(&mut self, angle: MilliDegree) {
+        if !self.filled {
+            self.samples = [angle; SPAN];
+        }
+        self.newest = self.newest.wrapping_add(1) % SPAN;
+        self.samples[self.newest] = angle;
+        self.filled = true;
+    }
+
+    /// What an energised coil has to do with the angle. While no sample is believed the hitch owes what it owes.
+    fn judge_motion(
+        &mut self,
+        believed: Option<MilliDegree>,
+        inputs: &Inputs,
+        passed: CoilCurrents,
+        limits: Limits<'_>,
+        faults: &mut AngleFaults,
+    ) {
+        let lifting = passed.lift > MilliAmp::ZERO;
+        if !lifting && passed.lower <= MilliAmp::ZERO || !self.filled {
+            self.stroke = None;
+            return;
+        }
+        let shown = self.shown();
+        let along = |angle: MilliDegree| match lifting {
+            true => angle,
+            false => -angle,
+        };
+        let newest = along(self.newest_sample());
+        let stroke = self.stroke.get_or_insert(Stroke {
+            first: newest,
+            furthest: newest,
+            following: Following::default(),
+        });
+        if believed.is_some() {
+            stroke.furthest = stroke.furthest.max(newest);
+            let most = limits.safety.contradiction;
+            let back = stroke.furthest - newest > most;
+            // A hitch that was lowered far and comes up again has bounced off the ground: nothing is swapped.
+            let bounced = back && !lifting && stroke.furthest - stroke.first > most;
+            self.landed |= bounced;
+            faults.against = back && !bounced;
+        }
+        let safety = limits.safety;
+        let stands = stroke.following.judge(shown, passed, inputs, limits);
+        let fault = stands == Some(Standstill::Fault);
+        let same = self.tremble.same_for() >= safety.frozen_time;
+        faults.frozen |= fault && same;
+        faults.not_following = fault && !same;
+        self.landed |= stands == Some(Standstill::Landed);
+    }
+}

@@ -1,0 +1,272 @@
+//! The safety envelope: first and last act of a step on the way to the coils. It knows nothing of the controller.
+//!
+//! It may depend on `hitch-quantities` alone. Nothing of control is in its reach, nor is it in the reach of control:
+//! `hitch-controller` hands the one's command to the other.
+//!
+//! It gets requested currents and the raw inputs, and limits the currents that are regulated ([`Envelope::pass`]): inside
+//! the coils' limits, rising no faster than their slope, never both coils, only on a command of this step, only after the
+//! operator has touched lever or button, and only while no row of its table ([`rows`]) holds. Otherwise both coils are
+//! off. The regulation then makes pulse widths of these currents. They pass through the envelope as well
+//! ([`Envelope::release`]), which sets those of a coil without a current to zero. Nothing comes between that and the
+//! drivers.
+//!
+//! ```text
+//!  power-up   +----------+  lever moved, or button seen released and pressed   +-------+
+//! ----------> | Disarmed | --------------------------------------------------> | Armed |
+//!             +----------+                                                     +-------+
+//!                  ^                                                               | a row holds for its time
+//!                  |  reset, once the row no longer holds                          v
+//!                  +---------------------------------------------------------- +---------+
+//!                                         (never, for a final row)        | Tripped |
+//!                                                                              +---------+
+//! ```
+//!
+//! Its parts are watches, each for some rows of the table: `angle` (with `following` and `tremble`), `coils`, `supply`,
+//! `measuring`; `arming` for the operator's touch; and [`rows`], which counts how long each row has been holding.
+//!
+//! ```
+//! use hitch_quantities::{CoilCurrents, Inputs, ValidCalibration};
+//! use hitch_safety::{Command, Envelope, Limits, Machine};
+//!
+//! let calibration = ValidCalibration::nominal();
+//! let limits = Limits {
+//!     safety: &calibration.safety,
+//!     sensors: &calibration.sensors,
+//!     damaged: false,
+//!     machine: Machine::of(&calibration),
+//!     slow_start: false,
+//! };
+//! let mut envelope = Envelope::default();
+//! let mut currents = CoilCurrents::OFF;
+//! currents.lift.0 = 2_000;
+//! // The operator has touched nothing yet, and no sensor says anything.
+//! let command = Command { currents, step: envelope.step() };
+//! assert_eq!(envelope.pass(command, &Inputs::default(), limits), CoilCurrents::OFF);
+//! ```
+#![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+mod angle;
+mod arming;
+mod coils;
+mod command;
+mod following;
+mod measuring;
+pub mod rows;
+mod supply;
+mod tremble;
+
+use hitch_quantities::calibration::design_parameters::{SafetyParameters, SensorParameters};
+use hitch_quantities::units::{Duty, MilliAmp, Millisecond};
+use hitch_quantities::{CoilCurrents, Duties, Inputs, Trip};
+
+use angle::AngleWatch;
+use arming::Arming;
+use coils::CoilWatch;
+pub use command::{Command, Step};
+pub use following::Machine;
+use measuring::MeasuringFaults;
+use rows::{Debounce, Rows};
+use supply::SupplyWatch;
+
+/// Rows that hold while the controller bridges a sample of a sensor that it needs.
+const BRIDGED: [Trip; 3] = [Trip::Lever, Trip::AngleMissing, Trip::AngleJumps];
+
+/// What the envelope goes by.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits<'a> {
+    /// Its own limits.
+    pub safety: &'a SafetyParameters,
+    /// What sensors can plausibly say.
+    pub sensors: &'a SensorParameters,
+    /// They, or others of their calibration, have changed in memory.
+    pub damaged: bool,
+    /// What currents do to the hitch.
+    pub machine: Machine<'a>,
+    /// The command's currents rise slowly from below any threshold, as in teaching. Then the thresholds needn't be those
+    /// of the calibration: nothing is owed, and nothing is held back, before motion is seen.
+    pub slow_start: bool,
+}
+
+/// The envelope.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Envelope {
+    arming: Arming,
+    angle: AngleWatch,
+    coils: CoilWatch,
+    supply: SupplyWatch,
+    debounce: Debounce,
+    /// Number of the last step.
+    step: Step,
+    passed: CoilCurrents,
+    /// Currents whose pulse widths may be released in this step.
+    released: CoilCurrents,
+    tripped: Option<Trip>,
+    /// The command was more than a hitch gets that has yet to start.
+    holds_back: bool,
+}
+
+impl Envelope {
+    /// The step that the next [`Self::pass`] is: its command has to carry this.
+    #[must_use]
+    pub const fn step(&self) -> Step {
+        self.step.next()
+    }
+
+    /// One step, whether or not there is a command of it. `inputs`: what the sensors say, unjudged. The currents that
+    /// may be regulated.
+    pub fn pass(&mut self, command: Command, inputs: &Inputs, limits: Limits<'_>) -> CoilCurrents {
+        self.step = self.step.next();
+        let fresh = command.step == self.step;
+        let command = Some(command.currents).filter(|_| fresh);
+        let measuring = measuring::judge(inputs, limits.sensors, limits.safety);
+        let holds = self.rows_that_hold(command, inputs, measuring, limits);
+        let found = self.debounce.judge(holds, measuring.lost, limits.safety);
+        // The first trip is the one to report, unless a worse one comes.
+        if self.tripped.is_none_or(|trip| !trip.is_final()) {
+            self.tripped = found
+                .filter(|trip| trip.is_final())
+                .or(self.tripped)
+                .or(found);
+        }
+        let armed = self
+            .arming
+            .update(inputs, self.tripped.is_some(), limits.safety);
+        // While a sample is bridged a coil that is on stays on, but none is switched on.
+        let bridged = holds.has_any(&BRIDGED) && self.passed == CoilCurrents::OFF;
+        self.holds_back = false;
+        self.passed = match command {
+            Some(command) if armed && self.tripped.is_none() && !bridged => {
+                let command = self.angle.withhold(command);
+                self.bounded(command, limits)
+            }
+            _ => CoilCurrents::OFF,
+        };
+        self.released = self.passed;
+        self.passed
+    }
+
+    /// The last act of a step: the pulse widths that the drivers may get. Zero for a coil that [`Self::pass`] has let no
+    /// current pass to in this step; zero for both if it wasn't called since the last release.
+    #[must_use]
+    pub fn release(&mut self, duties: Duties) -> Duties {
+        let released = core::mem::take(&mut self.released);
+        let width = |current: MilliAmp, duty: Duty| match current > MilliAmp::ZERO {
+            true => duty.limited(Duty::ZERO, Duty::WHOLE),
+            false => Duty::ZERO,
+        };
+        Duties {
+            lift: width(released.lift, duties.lift),
+            lower: width(released.lower, duties.lower),
+        }
+    }
+
+    /// What has tripped and still keeps it from being reset.
+    #[must_use]
+    pub fn objection(&self) -> Option<Trip> {
+        self.tripped
+            .filter(|trip| trip.is_final() || !self.debounce.is_calm())
+    }
+
+    /// What has tripped.
+    #[must_use]
+    pub const fn tripped(&self) -> Option<Trip> {
+        self.tripped
+    }
+
+    /// True while the lowering coil is cut, since the hitch stands still and may lie on the ground.
+    #[must_use]
+    pub const fn has_landed(&self) -> bool {
+        self.angle.has_landed()
+    }
+
+    /// True if the command was more than a hitch gets that has yet to start: its ramp has to wait.
+    #[must_use]
+    pub const fn holds_back(&self) -> bool {
+        self.holds_back
+    }
+
+    /// Clears a trip, if it may be cleared; lever or button have to be touched anew. The watches go on.
+    pub fn reset(&mut self) {
+        if self.objection().is_none() {
+            self.tripped = None;
+            self.arming = Arming::default();
+        }
+    }
+
+    /// Whether each row of the table holds in this step, in its order.
+    fn rows_that_hold(
+        &mut self,
+        command: Option<CoilCurrents>,
+        inputs: &Inputs,
+        measuring: MeasuringFaults,
+        limits: Limits<'_>,
+    ) -> Rows {
+        let (safety, sensors) = (limits.safety, limits.sensors);
+        let angle = self.angle.judge(inputs, self.passed, limits);
+        let coils = self.coils.judge(self.passed, inputs, safety);
+        let outside = |value: i32, low: i32, high: i32| value < low || value > high;
+        let lever_bad = inputs
+            .lever
+            .is_none_or(|lever| outside(lever.0, sensors.lever_min.0, sensors.lever_max.0));
+        let supply_bad = self.supply.judge(inputs, safety);
+        let both =
+            command.is_some_and(|both| both.lift > MilliAmp::ZERO && both.lower > MilliAmp::ZERO);
+        Rows::of([
+            command.is_none(),
+            both,
+            measuring.lost != Millisecond::ZERO,
+            supply_bad,
+            lever_bad,
+            angle.missing,
+            angle.jumps,
+            angle.frozen,
+            angle.noisy,
+            angle.not_following,
+            angle.against,
+            coils.open,
+            coils.short,
+            coils.stuck,
+            measuring.reference,
+            measuring.sensor_supply,
+            measuring.tracks,
+            measuring.clock,
+            inputs.enable_line_fault,
+            limits.damaged,
+        ])
+    }
+
+    fn bounded(&mut self, command: CoilCurrents, limits: Limits<'_>) -> CoilCurrents {
+        let parameters = limits.safety;
+        let changes_over = (self.passed.lift > MilliAmp::ZERO && command.lower > MilliAmp::ZERO)
+            || (self.passed.lower > MilliAmp::ZERO && command.lift > MilliAmp::ZERO);
+        if changes_over {
+            // A step with both coils off, so that the angle watch starts anew.
+            return CoilCurrents::OFF;
+        }
+        let gentle = self.angle.gentle(limits).unwrap_or(CoilCurrents {
+            lift: parameters.lift_current_limit,
+            lower: parameters.lower_current_limit,
+        });
+        self.holds_back = command.lift > gentle.lift || command.lower > gentle.lower;
+        let bound = |command: MilliAmp, passed: MilliAmp, limit: MilliAmp| {
+            let rising = passed.max(parameters.free_current) + MilliAmp(parameters.current_slope.0);
+            command.max(MilliAmp::ZERO).min(limit).min(rising)
+        };
+        CoilCurrents {
+            lift: bound(
+                command.lift,
+                self.passed.lift,
+                parameters.lift_current_limit.min(gentle.lift),
+            ),
+            lower: bound(
+                command.lower,
+                self.passed.lower,
+                parameters.lower_current_limit.min(gentle.lower),
+            ),
+        }
+    }
+}

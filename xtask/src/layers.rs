@@ -1,0 +1,307 @@
+//! Folders of a crate are its layers: none may use what lies above it.
+//!
+//! Cargo keeps crates from using each other in a circle; between the folders of a crate nothing does. So the sources are
+//! read for the paths of their `use` lines, and for those that begin with `crate::` anywhere, and each has to lead to the
+//! same folder or to one further down. Only tests may look upwards.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, ensure};
+
+use crate::workspace;
+
+/// The folders of a crate in their order.
+struct Layers {
+    /// Where the crate's sources are, from the workspace's root.
+    sources: &'static str,
+    /// Its top modules, the lowest first; those of one entry may use each other.
+    order: &'static [&'static [&'static str]],
+}
+
+/// What is held to an order; another crate takes an entry here.
+const CRATES: [Layers; 3] = [
+    Layers {
+        sources: "firmware/quantities/src",
+        order: &[
+            &["crc32", "fixed", "fnv", "units"],
+            &["piston"],
+            &["calibration"],
+            &["signals"],
+        ],
+    },
+    Layers {
+        sources: "firmware/control/src",
+        order: &[
+            &["valve"],
+            &["sensing"],
+            &["operator"],
+            &["estimation"],
+            &["adaptation"],
+            &["motion"],
+            &["sequencing"],
+            &["current"],
+            &["commissioning"],
+            &["controller"],
+        ],
+    },
+    Layers {
+        sources: "firmware/protocols/src",
+        order: &[&["can"], &["j1939"], &["storage"], &["xcp"]],
+    },
+];
+
+/// Refuses imports that lead upwards, and modules that have no place in the order.
+pub fn check() -> Result<()> {
+    let mut wrong = Vec::new();
+    for layers in &CRATES {
+        let root = workspace::root().join(layers.sources);
+        for file in sources(&root)? {
+            let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
+            let place = file.strip_prefix(&root)?;
+            wrong.extend(
+                layers
+                    .judge(place, &text)
+                    .into_iter()
+                    .map(|what| format!("{}/{}: {what}", layers.sources, place.display())),
+            );
+        }
+    }
+    ensure!(
+        wrong.is_empty(),
+        "folders of a crate use those above them:\n{}",
+        wrong.join("\n")
+    );
+    println!("no folder of a crate uses one above it");
+    Ok(())
+}
+
+impl Layers {
+    /// How high a module is.
+    fn height(&self, module: &str) -> Option<usize> {
+        self.order.iter().position(|layer| layer.contains(&module))
+    }
+
+    /// What is wrong with a file at this place below the sources.
+    fn judge(&self, place: &Path, text: &str) -> Vec<String> {
+        let module = module_of(place);
+        // The crate's front page names all of them.
+        let Some(own) = module.first() else {
+            return Vec::new();
+        };
+        let Some(height) = self.height(own) else {
+            return vec![format!(
+                "`{own}` has no place in the order of xtask/src/layers.rs"
+            )];
+        };
+        paths(text)
+            .iter()
+            .filter_map(|path| {
+                let used = absolute(&module, path)?;
+                let above = self.height(&used).is_some_and(|other| other > height);
+                above.then(|| format!("`{own}` uses `{used}`, which is above it: {path}"))
+            })
+            .collect()
+    }
+}
+
+/// All sources below a folder.
+fn sources(folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
+        let path = entry?.path();
+        if path.is_dir() {
+            files.extend(sources(&path)?);
+        } else if path.extension().is_some_and(|name| name == "rs") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// The module that a file is; the crate's root is none.
+fn module_of(place: &Path) -> Vec<String> {
+    let mut module: Vec<String> = place
+        .with_extension("")
+        .iter()
+        .map(|part| part.to_string_lossy().into_owned())
+        .collect();
+    if module
+        .last()
+        .is_some_and(|last| ["lib", "main", "mod"].contains(&last.as_str()))
+    {
+        module.pop();
+    }
+    module
+}
+
+/// The top module that a path leads to, as seen from a module; `None` if it leads out of the crate, or to its root.
+fn absolute(module: &[String], path: &str) -> Option<String> {
+    let mut parts = path.split("::").peekable();
+    if parts.next_if_eq(&"crate").is_some() {
+        return parts.next().map(str::to_owned);
+    }
+    let mut base = module.to_vec();
+    let mut upwards = false;
+    while parts.next_if_eq(&"super").is_some() {
+        upwards = true;
+        base.pop();
+    }
+    match base.into_iter().next() {
+        Some(top) => upwards.then_some(top),
+        None => parts.next().map(str::to_owned),
+    }
+}
+
+/// The paths of a source that may lead to other modules of its crate: those that begin with `crate` or `super`, with
+/// what is in braces taken apart. Neither comments nor tests are looked at.
+fn paths(text: &str) -> Vec<String> {
+    let code: String = without_tests(text)
+        .lines()
+        .map(|line| line.split_once("//").map_or(line, |(code, _)| code))
+        .flat_map(|line| [line, "\n"])
+        .collect();
+    let mut found = Vec::new();
+    for root in ["crate::", "super::"] {
+        for (at, _) in code.match_indices(root) {
+            let before = code[..at].chars().next_back();
+            // In the middle of a path, or a macro's `$crate`.
+            if before.is_some_and(|sign| sign.is_alphanumeric() || "_:$".contains(sign)) {
+                continue;
+            }
+            found.extend(apart(&code[at..]));
+        }
+    }
+    found
+}
+
+/// The paths that a text begins with: `a::{b, c::d}` is `a::b` and `a::c::d`.
+fn apart(text: &str) -> Vec<String> {
+    let end = text
+        .find(|sign: char| !(sign.is_alphanumeric() || "_:".contains(sign)))
+        .unwrap_or(text.len());
+    let (path, rest) = text.split_at(end);
+    let Some(inner) = rest.strip_prefix('{').filter(|_| path.ends_with("::")) else {
+        return vec![path.trim_end_matches(':').to_owned()];
+    };
+    let mut depth = 0_usize;
+    let mut paths = Vec::new();
+    let mut start = 0;
+    for (at, sign) in inner.char_indices() {
+        match sign {
+            '{' => depth += 1,
+            '}' if depth > 0 => depth -= 1,
+            ',' | '}' if depth == 0 => {
+                let item = inner[start..at].trim();
+                if !item.is_empty() {
+                    paths.extend(apart(item).into_iter().map(|rest| format!("{path}{rest}")));
+                }
+                start = at + 1;
+                if sign == '}' {
+                    break;
+                }
+            }
+            _ => {}
+        }
+    }
+    paths
+}
+
+/// A source up to its tests, which are a module at its end.
+fn without_tests(text: &str) -> &str {
+    let tests = text
+        .match_indices("#[cfg(test)]\nmod ")
+        .find(|(at, start)| {
+            let rest = &text[at + start.len()..];
+            rest.lines().next().is_some_and(|line| line.ends_with('{'))
+        });
+    tests.map_or(text, |(at, _)| &text[..at])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAYERS: Layers = Layers {
+        sources: "",
+        order: &[&["low", "beside"], &["middle"], &["high"]],
+    };
+
+    fn wrong(place: &str, text: &str) -> usize {
+        LAYERS.judge(Path::new(place), text).len()
+    }
+
+    #[test]
+    fn a_folder_may_use_itself_what_is_beside_it_and_what_is_below_it() {
+        assert_eq!(
+            wrong("middle/a.rs", "use super::b::B;\nuse crate::low::C;"),
+            0
+        );
+        assert_eq!(
+            wrong("low.rs", "use crate::beside::B;\nuse super::beside::C;"),
+            0
+        );
+        assert_eq!(wrong("middle/mod.rs", "use crate::{low::A, middle::b};"), 0);
+        assert_eq!(
+            wrong("middle/a.rs", "use core::high::X;\nuse other::high::Y;"),
+            0
+        );
+    }
+
+    #[test]
+    fn what_is_above_it_is_refused_however_it_is_written() {
+        for text in [
+            "use crate::high::X;",
+            "use crate::{low::A, high::{B, C}};",
+            "use super::super::high::X;",
+            "pub(crate) use crate::{\n    low,\n    high,\n};",
+            "fn f() -> crate::high::X { todo!() }",
+        ] {
+            assert_ne!(wrong("middle/a.rs", text), 0, "{text}");
+        }
+        assert_eq!(wrong("middle/mod.rs", "use super::high::X;"), 1);
+        assert_eq!(wrong("middle.rs", "use super::high::X;"), 1);
+    }
+
+    #[test]
+    fn comments_tests_and_the_front_page_may_name_everything() {
+        assert_eq!(
+            wrong(
+                "middle/a.rs",
+                "//! See [`crate::high`].\n/// [`super::super::high`]"
+            ),
+            0
+        );
+        let tests = "use crate::low::A;\n#[cfg(test)]\nmod tests {\n    use crate::high::X;\n}\n";
+        assert_eq!(wrong("middle/a.rs", tests), 0);
+        assert_eq!(wrong("lib.rs", "pub use crate::high::X;"), 0);
+    }
+
+    #[test]
+    fn a_module_without_a_place_is_refused() {
+        assert_eq!(wrong("new/a.rs", ""), 1);
+    }
+
+    #[test]
+    fn the_crates_keep_their_order() {
+        check().unwrap();
+    }
+
+    #[test]
+    fn arithmetic_that_overflows_is_caught_in_every_crate_of_the_firmware() {
+        let firmware = workspace::root().join("firmware");
+        let manifest = fs::read_to_string(workspace::root().join("Cargo.toml")).unwrap();
+        let mut crates = 0;
+        for entry in fs::read_dir(firmware).unwrap() {
+            let Ok(text) = fs::read_to_string(entry.unwrap().path().join("Cargo.toml")) else {
+                continue;
+            };
+            let name = text.split('"').nth(1).unwrap();
+            let checked = format!("[profile.firmware.package.{name}]\noverflow-checks = true\n");
+            assert!(manifest.contains(&checked), "{name}");
+            crates += 1;
+        }
+        assert_eq!(crates, 6);
+    }
+}
