@@ -47,7 +47,8 @@ impl Compared {
     }
 
     fn drafted(&self) -> Experiment {
-        self.experiment.drafted(&self.model, &self.estimate)
+        let fitted = self.estimate.applied_to(&self.model);
+        self.experiment.drafted(&fitted, &self.estimate.nuisances)
     }
 
     /// Residuals with and without an effect.
@@ -111,7 +112,7 @@ fn shown(
 fn a_condensed_experiment_shows_what_an_effect_changes() {
     let (experiment, model) = ready("clean-steady", hitch_model_file::nominal());
     let estimate = Estimate::new(&experiment, Vec::new());
-    let condensed = experiment.condensed(&model, &estimate);
+    let condensed = experiment.condensed(&model, &estimate.nuisances);
     assert!(2 * condensed.samples() < experiment.samples());
     let visible = NO_SIGNATURE * NO_SIGNATURE * experiment.samples() as f64;
     let mut otherwise = Vec::new();
@@ -129,7 +130,7 @@ fn a_condensed_experiment_shows_what_an_effect_changes() {
 fn a_condensed_experiment_leaves_what_noise_leaves() {
     let (experiment, model) = ready("clean-steady", hitch_model_file::nominal());
     let base = fit_base(&experiment, &model);
-    let condensed = experiment.condensed(&model, &base.estimate);
+    let condensed = experiment.condensed(&model, &base.estimate.nuisances);
     let seen = evaluate(&condensed, &model, base.estimate);
     let variance = square_sum(&seen.residuals) / seen.weights.count() as f64;
     assert!((0.85..1.15).contains(&variance), "{variance}");

@@ -20,7 +20,7 @@ struct Layers {
 }
 
 /// What is held to an order; another crate takes an entry here.
-const CRATES: [Layers; 3] = [
+const CRATES: [Layers; 6] = [
     Layers {
         sources: "firmware/quantities/src",
         order: &[
@@ -48,6 +48,44 @@ const CRATES: [Layers; 3] = [
     Layers {
         sources: "firmware/protocols/src",
         order: &[&["can"], &["j1939"], &["storage"], &["xcp"]],
+    },
+    Layers {
+        sources: "model/plant/src",
+        order: &[
+            &["channel", "units"],
+            &["components"],
+            &["constants"],
+            &["state"],
+            &["hooks"],
+            &["model"],
+            &["solver"],
+            &["plant"],
+            &["simulation"],
+        ],
+    },
+    Layers {
+        sources: "model/effects/src",
+        order: &[
+            &["expression"],
+            &["described", "catalogue"],
+            &["term_effect"],
+        ],
+    },
+    Layers {
+        sources: "model/identification/src",
+        order: &[
+            &["data"],
+            &["estimate"],
+            &["residuals"],
+            &["estimation"],
+            &["adequacy"],
+            &["selection"],
+            &["search"],
+            &["design"],
+            &["explanation"],
+            &["suggestion"],
+            &["base"],
+        ],
     },
 ];
 
@@ -98,8 +136,11 @@ impl Layers {
             .iter()
             .filter_map(|path| {
                 let used = absolute(&module, path)?;
-                let above = self.height(&used).is_some_and(|other| other > height);
-                above.then(|| format!("`{own}` uses `{used}`, which is above it: {path}"))
+                match self.height(&used) {
+                    Some(other) if other <= height => None,
+                    Some(_) => Some(format!("`{own}` uses `{used}`, which is above it: {path}")),
+                    None => Some(format!("{path}: name the module of `{used}`")),
+                }
             })
             .collect()
     }

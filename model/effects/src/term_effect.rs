@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use hitch_plant::hooks::sites::{RunConditions, Sites, TermFunction};
 use hitch_plant::{Channel, Effect, Parameter};
 
-use crate::CATALOGUE;
+use crate::catalogue::CATALOGUE;
 use crate::expression::{ParameterDefinition, Part, Term, TermDefinition, TermError};
 
 /// Every term that was defined since the program started, by its definition as text.

@@ -1,11 +1,19 @@
 //! What a fit may change, and its scaling.
 
-use hitch_plant::{AddedEffect, Parameter, Search};
+use hitch_plant::{AddedEffect, Model, Parameter, Search};
 use nalgebra::DVector;
 
 use crate::data::clocks::{Clocks, OFFSET_PRIOR_S};
 use crate::data::experiment::{Experiment, LOAD_PRIOR, Nuisance};
-use crate::estimation::jacobian::Step;
+
+/// A Gauss-Newton step with Levenberg-Marquardt damping.
+#[derive(Debug, Clone)]
+pub struct Step {
+    /// Steps of the shared parameters, in their scales.
+    pub shared: DVector<f64>,
+    /// Steps of each run's load error, in prior sigmas.
+    pub loads: Vec<f64>,
+}
 
 /// Values of everything that is free: the effects' parameters, and the nuisances with a prior.
 #[derive(Debug, Clone)]
@@ -74,6 +82,12 @@ impl Shared {
 }
 
 impl Estimate {
+    /// A model with these effects.
+    #[must_use]
+    pub fn applied_to(&self, model: &Model) -> Model {
+        model.with_effects(self.effects.clone())
+    }
+
     /// The effects as they are, nothing off.
     #[must_use]
     pub fn new(experiment: &Experiment, effects: Vec<AddedEffect>) -> Self {

@@ -1,9 +1,14 @@
 //! Every constant of the plant.
 
-use crate::{
-    CheckValve, Compensator, Cylinder, LinkageDimensions, Masses, Oil, OrificeValve, Pump,
-    ReliefValve,
-};
+use crate::components::check_valve::CheckValve;
+use crate::components::compensator::Compensator;
+use crate::components::cylinder::Cylinder;
+use crate::components::linkage::LinkageDimensions;
+use crate::components::load::Masses;
+use crate::components::oil::Oil;
+use crate::components::orifice_valve::OrificeValve;
+use crate::components::pump::Pump;
+use crate::components::relief_valve::ReliefValve;
 
 /// Which of the two starting points a model is (RIG.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use crate::components::linkage::Linkage;
+use crate::components::linkage_error::LinkageError;
 use crate::constants::{Constants, Dynamics};
 use crate::hooks::effect::{AddedEffect, Effect};
-use crate::{Linkage, LinkageError};
 
 /// A model of the hitch: constants, the linkage solved from them, and the added effects.
 #[derive(Debug, Clone)]

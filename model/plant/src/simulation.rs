@@ -1,9 +1,12 @@
 //! A whole run at once: the plant driven by logged currents.
 
 use crate::channel::Channel;
+use crate::hooks::sites::Currents;
+use crate::model::Model;
+use crate::plant::Plant;
 use crate::solver::dynamic::Steps;
+use crate::state::Rig;
 use crate::units::bar_from_pa;
-use crate::{Currents, Model, Plant, Rig};
 
 /// What the instruments would have shown over a run, by [`Channel::index`], in the channels' units.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -149,7 +149,7 @@ impl Problem<'_> {
         let run = &self.experiment.runs[index];
         let estimate = &point.estimate;
         let residual = |model: &Model, nuisance: Nuisance| {
-            let model = model.with_effects(estimate.effects.clone());
+            let model = estimate.applied_to(model);
             let trace = run.simulate(&model, nuisance, &estimate.clocks);
             huber(vec![weights.runs[index].whiten(run, &trace)]).swap_remove(0)
         };

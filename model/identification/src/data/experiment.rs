@@ -18,7 +18,6 @@ use crate::data::noise::{
 use crate::data::regime::{Regime, regimes};
 use crate::data::start_angle::{likely_deg, measured_deg};
 use crate::data::trace_cache::{CurrentShift, Traces};
-use crate::estimate::Estimate;
 
 /// How far, relative to the declared port pressure, a flow bench may be off and still count as set up.
 const PORT_TOLERANCE: f64 = 0.05;
@@ -111,30 +110,29 @@ impl Experiment {
         }
     }
 
-    /// The experiment with its runs drafted around an estimate: as good there, and for the search near it.
+    /// The experiment with its runs drafted around a fitted model with its nuisances, one a run: as good there, and for
+    /// the search near it.
     #[must_use]
-    pub fn drafted(&self, model: &Model, estimate: &Estimate) -> Self {
-        let model = model.with_effects(estimate.effects.clone());
-        let runs = self.runs.par_iter().zip(&estimate.nuisances);
+    pub fn drafted(&self, model: &Model, nuisances: &[Nuisance]) -> Self {
+        let runs = self.runs.par_iter().zip(nuisances);
         Self {
             runs: runs
-                .map(|(run, &nuisance)| run.drafted(&model, nuisance))
+                .map(|(run, &nuisance)| run.drafted(model, nuisance))
                 .collect(),
             ..self.without_runs()
         }
     }
 
-    /// The experiment with its runs condensed around an estimate, where that takes away most of the samples and nothing
-    /// rings between those that are left; the same experiment where not.
+    /// The experiment with its runs condensed around a fitted model with its nuisances, one a run, where that takes away
+    /// most of the samples and nothing rings between those that are left; the same experiment where not.
     #[must_use]
-    pub fn condensed(&self, model: &Model, estimate: &Estimate) -> Self {
+    pub fn condensed(&self, model: &Model, nuisances: &[Nuisance]) -> Self {
         if self.ringing {
             return self.clone();
         }
-        let model = model.with_effects(estimate.effects.clone());
-        let runs = self.runs.par_iter().zip(&estimate.nuisances);
+        let runs = self.runs.par_iter().zip(nuisances);
         let runs: Vec<ReadyRun> = runs
-            .map(|(run, &nuisance)| run.condensed(&model, nuisance, self.current_noise))
+            .map(|(run, &nuisance)| run.condensed(model, nuisance, self.current_noise))
             .collect();
         let condensed = Self {
             runs,

@@ -114,7 +114,7 @@ impl<'a> Bench<'a> {
     /// The model with a rival's effects.
     #[must_use]
     pub fn with(&self, rival: Rival) -> Model {
-        self.model.with_effects(rival.fit.estimate.effects.clone())
+        rival.fit.estimate.applied_to(self.model)
     }
 
     /// The sample rate, Hz.

@@ -56,7 +56,7 @@ fn costs(
     estimate: &Estimate,
     tried: &[Clocks],
 ) -> Vec<[f64; 4]> {
-    let model = model.with_effects(estimate.effects.clone());
+    let model = estimate.applied_to(model);
     let of_runs: Vec<Vec<[f64; 4]>> = experiment
         .runs
         .par_iter()

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use crate::data::clocks::OFFSET_PRIOR_S;
 use crate::data::experiment::Experiment;
 use crate::data::trace_cache::CurrentShift;
-use crate::estimate::{Estimate, Shared};
+use crate::estimate::{Estimate, Shared, Step};
 use crate::residuals::whitening::Weights;
 
 /// Step of a difference quotient, as a share of the parameter, or of its scale if that is more.
@@ -49,15 +49,6 @@ pub struct Jacobian {
     pub shared: Vec<Shared>,
 }
 
-/// A Gauss-Newton step with Levenberg-Marquardt damping.
-#[derive(Debug, Clone)]
-pub struct Step {
-    /// Steps of the shared parameters, in their scales.
-    pub shared: DVector<f64>,
-    /// Steps of each run's load error, in prior sigmas.
-    pub loads: Vec<f64>,
-}
-
 /// Size from which a whitened residual counts no longer by its square but by its distance.
 const OUTLYING: f64 = 10.0;
 
@@ -69,7 +60,7 @@ pub fn residuals(
     weights: &Weights,
     estimate: &Estimate,
 ) -> Vec<Vec<f64>> {
-    let model = model.with_effects(estimate.effects.clone());
+    let model = estimate.applied_to(model);
     (0..experiment.runs.len())
         .into_par_iter()
         .map(|index| {
@@ -223,7 +214,7 @@ fn offset_columns(
     weights: &Weights,
     estimate: &Estimate,
 ) -> [Vec<Vec<f64>>; 4] {
-    let model = model.with_effects(estimate.effects.clone());
+    let model = estimate.applied_to(model);
     let columns: Vec<[Vec<f64>; 4]> = (0..experiment.runs.len())
         .into_par_iter()
         .map(|index| {

@@ -9,8 +9,9 @@
 use hitch_plant::{Model, Search};
 
 use crate::data::experiment::Experiment;
+use crate::estimate::Step;
 use crate::estimate::{Estimate, Shared};
-use crate::estimation::jacobian::{Jacobian, SlowColumns, Step, huber_residuals, square_sum};
+use crate::estimation::jacobian::{Jacobian, SlowColumns, huber_residuals, square_sum};
 use crate::residuals::whitening::Weights;
 
 /// Jacobians after which the columns of clocks and loads, which hardly change, are computed anew.

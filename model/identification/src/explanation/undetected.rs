@@ -27,7 +27,7 @@ pub struct Unseen {
 /// Effects, at their typical size, that a campaign would not show beside what a fit has; the faintest first.
 #[must_use]
 pub fn unseen(experiment: &Experiment, model: &Model, fit: &Fit) -> Vec<Unseen> {
-    let experiment = &experiment.drafted(model, &fit.estimate);
+    let experiment = &experiment.drafted(&fit.estimate.applied_to(model), &fit.estimate.nuisances);
     let base = huber(fit.residuals.clone());
     let (weights, estimate) = (&fit.weights, &fit.estimate);
     let jacobian = Jacobian::new(experiment, model, weights, estimate);

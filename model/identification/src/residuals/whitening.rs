@@ -62,7 +62,7 @@ impl Weights {
     /// Weights as they are under `estimate`.
     #[must_use]
     pub fn new(experiment: &Experiment, model: &Model, estimate: &Estimate) -> Self {
-        let model = model.with_effects(estimate.effects.clone());
+        let model = estimate.applied_to(model);
         let runs: Vec<RunWeights> = (0..experiment.runs.len())
             .into_par_iter()
             .map(|index| RunWeights::new(experiment, index, &model, estimate))

@@ -24,12 +24,14 @@ pub(crate) struct Coarse<'a> {
 impl<'a> Coarse<'a> {
     /// A fit seen coarsely.
     pub fn new(experiment: &'a Experiment, model: &'a Model, present: &'a Fit) -> Self {
-        let few = experiment.condensed(model, &present.estimate);
+        let fitted = present.estimate.applied_to(model);
+        let nuisances = &present.estimate.nuisances;
+        let few = experiment.condensed(&fitted, nuisances);
         let seen = match few.samples() < experiment.samples() {
             true => evaluate(&few, model, present.estimate.clone()),
             false => present.clone(),
         };
-        let drafted = few.drafted(model, &present.estimate);
+        let drafted = few.drafted(&fitted, nuisances);
         Self {
             experiment,
             model,

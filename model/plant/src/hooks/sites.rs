@@ -5,9 +5,12 @@
 
 use std::sync::Arc;
 
+use crate::components::linkage::Linkage;
+use crate::constants::Constants;
 use crate::hooks::place::Place;
+use crate::hooks::reading::Reading;
 use crate::hooks::signals::Signals;
-use crate::{Constants, Linkage, MechanicalState, Reading};
+use crate::state::MechanicalState;
 
 /// Which of the two solenoid valves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,17 +4,19 @@ mod instruments;
 mod rest;
 
 use crate::components::lag::Lag;
+use crate::constants::Dynamics;
 use crate::hooks::effect::AddedEffect;
 use crate::hooks::place::Place;
 use crate::hooks::reading::Reading;
 use crate::hooks::signals::Signals;
 use crate::hooks::sites::{Currents, RunConditions, Sites};
+use crate::model::Model;
 use crate::solver::circuit::{Circuit, Flows, Openings};
 use crate::solver::dynamic::Steps;
 use crate::solver::forces::Forces;
 use crate::solver::moment::Moment;
 use crate::solver::{dynamic, steady};
-use crate::{Dynamics, HitchRig, MechanicalState, Model, Rig};
+use crate::state::{HitchRig, MechanicalState, Rig};
 
 /// Steps of the spools within one of the quasi-static piston, at most, while a current runs.
 const SPOOL_STEPS: f64 = 2.0;

@@ -1,10 +1,12 @@
 //! The plant at rest, as a run begins.
 
 use crate::components::oil;
+use crate::constants::Dynamics;
 use crate::hooks::place::Place;
 use crate::hooks::signals::Signals;
+use crate::plant::Plant;
 use crate::solver::root;
-use crate::{Dynamics, HitchRig, MechanicalState, Plant, Rig};
+use crate::state::{HitchRig, MechanicalState, Rig};
 
 /// A hitch that is seen to stand no further from where the ground bears it lies there, m of travel: 0.15 degree. Its
 /// sensor is no better, and a hard floor turns that into the pressure of the whole weight.

@@ -1,9 +1,12 @@
 //! The hydraulic circuit at one instant: which flows and which pump pressure go with a cylinder pressure.
 
+use crate::components::orifice_valve::OrificeValve;
+use crate::components::valve_curve::ValveCurve;
+use crate::constants::Constants;
 use crate::hooks::place::Place;
 use crate::hooks::sites::{FlowFactor, Sites};
 use crate::solver::moment::Moment;
-use crate::{Constants, MechanicalState, OrificeValve, ValveCurve};
+use crate::state::MechanicalState;
 
 /// Within how much of its pressure a lagging compensator, and a hose's creeping wall, is at rest, Pa.
 pub const AT_REST_PA: f64 = 10.0;

@@ -12,9 +12,11 @@
 //! The end stops are stiff: they take the piston's speed, and what pushes it on. Neither gives way under the 70 kN of a
 //! dead-headed pump by as much as the oil does, so a spring would say nothing but how to step it.
 
+use crate::constants::Constants;
+use crate::model::Model;
 use crate::solver::circuit::{AT_REST_PA, Circuit, Openings};
 use crate::solver::forces::Forces;
-use crate::{Constants, MechanicalState, Model};
+use crate::state::MechanicalState;
 
 /// How long the integrator's steps may be.
 #[derive(Debug, Clone, Copy, PartialEq)]

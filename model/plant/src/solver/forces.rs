@@ -2,8 +2,9 @@
 
 use crate::hooks::place::Place;
 use crate::hooks::sites::Sites;
+use crate::model::Model;
 use crate::solver::moment::Moment;
-use crate::{HitchRig, MechanicalState, Model};
+use crate::state::{HitchRig, MechanicalState};
 
 /// Forces on the piston of one hitch.
 #[derive(Clone, Copy)]

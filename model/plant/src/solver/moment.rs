@@ -25,7 +25,8 @@
 use crate::hooks::place::Place;
 use crate::hooks::signals::Signals;
 use crate::hooks::sites::Sites;
-use crate::{MechanicalState, Model};
+use crate::model::Model;
+use crate::state::MechanicalState;
 
 /// What is known of the plant at the present instant.
 #[derive(Clone, Copy)]

@@ -6,12 +6,12 @@
 //! The balance knows no contact force, so at a stop the piston stands while pressure and flow stay what they were
 //! (RIG.md defines it so); dead-heading the pump over the relief valve is the dynamic plant's business.
 
-use crate::MechanicalState;
 use crate::hooks::place::Place;
 use crate::hooks::sites::Sites;
 use crate::solver::circuit::{Circuit, Flows, Openings};
 use crate::solver::dynamic::Steps;
 use crate::solver::forces::Forces;
+use crate::state::MechanicalState;
 
 /// Currents that change faster than this jump, A/s.
 pub(crate) const JUMP_A_S: f64 = 2.5;
