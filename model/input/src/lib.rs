@@ -4,7 +4,7 @@
 //! * [`input_error`]: what is wrong, where, and how to mend it;
 //! * [`toml_reader`]: checked access to TOML;
 //! * [`naming`]: what is said of a name that is not known;
-//! * [`unit`] and [`dimension`]: units of measurement as they are written.
+//! * [`mod@unit`] and [`dimension`]: units of measurement as they are written.
 //!
 //! Depends on no other crate of the project.
 #![forbid(unsafe_code)]

@@ -1,11 +1,11 @@
 //! What a campaign gives: prepared runs, cleaned currents, noise, regimes, clocks.
 
 pub mod clocks;
-pub mod condense;
+pub(crate) mod condense;
 pub mod conditioning;
-pub mod defect_correction;
+pub(crate) mod defect_correction;
 pub mod experiment;
 pub mod noise;
 pub mod regime;
-pub mod start_angle;
+pub(crate) mod start_angle;
 pub mod trace_cache;

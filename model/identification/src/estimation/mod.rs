@@ -1,7 +1,7 @@
 //! Least squares: sensitivities, nuisances projected out, fits, intervals.
 
-pub mod central_differences;
-pub mod clock_synchronisation;
+pub(crate) mod central_differences;
+pub(crate) mod clock_synchronisation;
 pub mod fit;
 pub mod jacobian;
 pub mod least_squares;

@@ -4,5 +4,5 @@ pub mod candidate;
 pub mod evidence;
 pub mod hold_out;
 pub mod leave_one_out;
-pub mod penalty;
-pub mod posterior;
+pub(crate) mod penalty;
+pub(crate) mod posterior;

@@ -1,6 +1,6 @@
 //! The places in the plant where a physical effect can act.
 //!
-//! An effect (see [`hitch_effects`]) attaches closures or small stateful parts here; the plant calls them where the
+//! An effect (see [`Effect`](crate::hooks::effect::Effect)) attaches closures or small stateful parts here; the plant calls them where the
 //! physics has them. With nothing attached every sum is empty and the plant is the paper's.
 
 use std::sync::Arc;
