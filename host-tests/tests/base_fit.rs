@@ -1,7 +1,7 @@
 //! Base models that are off, fitted to campaigns of the second rig whose constants are known.
 
 use hitch_identification::adequacy::lack_of_fit::cells;
-use hitch_identification::adequacy::unsuitable_base::{is_hopeless, wrong_share};
+use hitch_identification::adequacy::unsuitable_base::{is_unsuitable, wrong_share};
 use hitch_identification::base::{BaseFit, fit_base_model};
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::explanation::explain::fit_base;
@@ -232,7 +232,7 @@ fn only_another_machine_is_a_hopeless_base() {
                 base.error(),
                 wrong_share(&cells(&experiment, &base))
             );
-            is_hopeless(&experiment, &base, &base)
+            is_unsuitable(&experiment, &base, &base)
         };
         assert!(!hopeless(&hitch_model_file::nominal()), "{name}");
         let other = hopeless(&another_machine());

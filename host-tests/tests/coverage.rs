@@ -7,7 +7,7 @@
 use hitch_effects::CATALOGUE;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::explanation::explain::fit_base;
-use hitch_identification::search::single::try_effects;
+use hitch_identification::search::single_effects::try_effects;
 use hitch_plant::{AddedEffect, Dynamics, Effect, Model};
 use host_tests::simulated_lab::campaign;
 use rand::SeedableRng;

@@ -1,7 +1,7 @@
 //! An effect as data: its texts, its parameters, and a function that puts it into a plant.
 
-use hitch_plant::hooks::sites::{RunConditions, Sites};
-use hitch_plant::{Channel, Dynamics, Effect, Parameter, Search};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
+use hitch_plant::{Channel, Dynamics, Effect, Parameter, SizeResponse};
 
 /// An effect of the catalogue; every field is what the method of [`Effect`] of that name gives.
 pub struct Described {
@@ -14,9 +14,9 @@ pub struct Described {
     pub(crate) parameters: &'static [Parameter],
     pub(crate) channels: &'static [Channel],
     pub(crate) needs: Option<Dynamics>,
-    pub(crate) search: Search,
+    pub(crate) size_response: SizeResponse,
     pub(crate) refines: bool,
-    pub(crate) attach: fn(&[f64], RunConditions<'_>, &mut Sites),
+    pub(crate) attach: fn(&[f64], RunConditions<'_>, &mut EffectHooks),
 }
 
 impl Effect for Described {
@@ -60,15 +60,15 @@ impl Effect for Described {
         self.needs
     }
 
-    fn search(&self) -> Search {
-        self.search
+    fn size_response(&self) -> SizeResponse {
+        self.size_response
     }
 
     fn refines(&self) -> bool {
         self.refines
     }
 
-    fn attach(&self, values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
-        (self.attach)(values, conditions, sites);
+    fn attach(&self, values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
+        (self.attach)(values, conditions, hooks);
     }
 }

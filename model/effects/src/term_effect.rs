@@ -4,8 +4,9 @@ use std::any::Any;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use hitch_plant::hooks::sites::{RunConditions, Sites, TermFunction};
-use hitch_plant::{Channel, Effect, Parameter};
+use hitch_input::Unit;
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions, TermFunction};
+use hitch_plant::{Channel, Effect, Parameter, ParameterKind};
 
 use crate::catalogue::CATALOGUE;
 use crate::expression::{ParameterDefinition, Part, Term, TermDefinition, TermError};
@@ -93,12 +94,23 @@ fn parameter(definition: &ParameterDefinition) -> Parameter {
     Parameter {
         name: leaked(&definition.name),
         unit: leaked(&definition.unit),
+        kind: kind(&definition.unit),
         key: leaked(&definition.key()),
         meaning: leaked(&definition.meaning),
         null: definition.null,
         typical: definition.start,
         low: definition.low,
         high: definition.high,
+    }
+}
+
+/// Kind of a quantity by its unit, which the term has checked.
+fn kind(unit: &str) -> ParameterKind {
+    let of = |unit: &str| Unit::parse(unit).ok().map(|unit| unit.dimension);
+    match of(unit) {
+        dimension if dimension == of("A") => ParameterKind::Current,
+        dimension if dimension == of("s") => ParameterKind::Time,
+        _ => ParameterKind::Other,
     }
 }
 
@@ -135,8 +147,8 @@ impl Effect for TermEffect {
         self.term.definition().place.channels()
     }
 
-    fn attach(&self, values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+    fn attach(&self, values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {
         let place = self.term.definition().place;
-        sites.terms.push((place, self.function(values)));
+        hooks.terms.push((place, self.function(values)));
     }
 }

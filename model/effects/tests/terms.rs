@@ -248,10 +248,10 @@ impl Effect for Lawless {
     fn attach(
         &self,
         _: &[f64],
-        _: hitch_plant::hooks::sites::RunConditions<'_>,
-        sites: &mut hitch_plant::hooks::sites::Sites,
+        _: hitch_plant::hooks::effect_hooks::RunConditions<'_>,
+        hooks: &mut hitch_plant::hooks::effect_hooks::EffectHooks,
     ) {
         let value = self.value;
-        sites.terms.push((self.place, Box::new(move |_| value)));
+        hooks.terms.push((self.place, Box::new(move |_| value)));
     }
 }

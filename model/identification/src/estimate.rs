@@ -1,6 +1,6 @@
 //! What a fit may change, and its scaling.
 
-use hitch_plant::{AddedEffect, Model, Parameter, Search};
+use hitch_plant::{AddedEffect, Model, Parameter, SizeResponse};
 use nalgebra::DVector;
 
 use crate::data::clocks::{Clocks, OFFSET_PRIOR_S};
@@ -168,15 +168,17 @@ impl Estimate {
         &self.effects[effect].effect.parameters()[parameter]
     }
 
-    /// How a shared parameter is looked for: of an effect that is met at a place, only the size is one.
+    /// How what the instruments show depends on a shared parameter: of an effect at a place, only the size is located.
     #[must_use]
-    pub fn search(&self, shared: Shared) -> Search {
+    pub fn size_response(&self, shared: Shared) -> SizeResponse {
         match shared {
-            Shared::Effect(effect, parameter) => match self.effects[effect].effect.search() {
-                Search::Places if parameter > 0 => Search::Secants,
-                search => search,
-            },
-            Shared::Offset(_) => Search::Secants,
+            Shared::Effect(effect, parameter) => {
+                match self.effects[effect].effect.size_response() {
+                    SizeResponse::Located if parameter > 0 => SizeResponse::Smooth,
+                    response => response,
+                }
+            }
+            Shared::Offset(_) => SizeResponse::Smooth,
         }
     }
 

@@ -7,7 +7,7 @@
 //! * [`residuals`]: measured less simulated, whitened;
 //! * [`estimation`]: sensitivities, least squares, nuisances projected out: a [`Fit`];
 //! * [`adequacy`]: what a fit leaves, where, and what it depends on;
-//! * [`selection`]: evidence, hold-out, price and probability of sets of effects;
+//! * [`selection`]: evidence, hold-out, penalty and probability of sets of effects;
 //! * [`search`]: the dictionary and the best subsets of it;
 //! * [`design`]: the experiment that tells two effects apart;
 //! * [`explanation`]: the set that was found, as steps from the model to it;

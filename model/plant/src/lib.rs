@@ -41,10 +41,12 @@ pub use components::pump::Pump;
 pub use components::relief_valve::ReliefValve;
 pub use components::valve_curve::{ValveCurve, ValveCurveError};
 pub use constants::{Constants, Dynamics};
-pub use hooks::effect::{AddedEffect, Effect, Parameter, Search, full_name, is_same};
+pub use hooks::effect::{
+    AddedEffect, Effect, Parameter, ParameterKind, SizeResponse, full_name, is_same,
+};
+pub use hooks::effect_hooks::{Currents, Valve};
 pub use hooks::place::Place;
 pub use hooks::reading::Reading;
-pub use hooks::sites::{Currents, Valve};
 pub use model::Model;
 pub use plant::Plant;
 pub use state::{HitchRig, MechanicalState, Rig};

@@ -1,7 +1,7 @@
 //! A whole run at once: the plant driven by logged currents.
 
 use crate::channel::Channel;
-use crate::hooks::sites::Currents;
+use crate::hooks::effect_hooks::Currents;
 use crate::model::Model;
 use crate::plant::Plant;
 use crate::solver::dynamic::Steps;

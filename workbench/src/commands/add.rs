@@ -4,13 +4,13 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use hitch_campaign::Campaign;
-use hitch_identification::adequacy::unsuitable_base::is_hopeless;
+use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::estimation::fit::{Fit, refine};
 use hitch_identification::explanation::explain::fit_freely;
-use hitch_identification::search::single::try_effects;
+use hitch_identification::search::single_effects::try_effects;
 use hitch_identification::selection::evidence::BELIEVED;
-use hitch_identification::selection::leave_one_out::{Beside, beside};
+use hitch_identification::selection::leave_one_out::{LeaveOneOut, beside};
 use hitch_plant::{Effect, Model, full_name};
 
 use super::effects::find;
@@ -60,7 +60,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     drop(progress);
     let rebuilt = rebuilt(&model, &fit.estimate.effects, output::stem(&args.out));
     output::write_file(&args.out, hitch_model_file::to_toml(&rebuilt).as_bytes())?;
-    let mut text = match is_hopeless(&experiment, &base, &fit) {
+    let mut text = match is_unsuitable(&experiment, &base, &fit) {
         true => format!("{HOPELESS_BASE}\n\n"),
         false => String::new(),
     };
@@ -122,7 +122,7 @@ fn effects(ids: &[String], model: &Model) -> Result<Vec<&'static dyn Effect>, Er
     Ok(effects)
 }
 
-fn shown(effect: &Beside) -> String {
+fn shown(effect: &LeaveOneOut) -> String {
     let candidate = &effect.candidate;
     let parameters = parameters(candidate.effect, candidate.values(), &candidate.intervals);
     let parameters: Vec<String> = parameters.iter().map(ToString::to_string).collect();

@@ -46,7 +46,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
 /// # Errors
 /// If there is none; the nearest name is offered.
 pub fn find(model: &Model, id: &str) -> Result<&'static dyn Effect, Error> {
-    let catalogue = hitch_effects::available(&model);
+    let catalogue = hitch_effects::available(model);
     let found = catalogue
         .iter()
         .copied()
@@ -63,7 +63,7 @@ pub fn find(model: &Model, id: &str) -> Result<&'static dyn Effect, Error> {
 
 fn list(model: &Model) -> String {
     let mut text = String::new();
-    for effect in hitch_effects::available(&model) {
+    for effect in hitch_effects::available(model) {
         let _ = writeln!(
             text,
             "{:<26} {}\n{:26} {}",

@@ -1,7 +1,7 @@
 //! An explanation together with what it was found from.
 
 use hitch_campaign::Campaign;
-use hitch_identification::adequacy::localization::Profile;
+use hitch_identification::adequacy::localization::ErrorProfile;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain;
@@ -23,7 +23,7 @@ pub struct Found {
     /// The explanation as the identification gives it.
     pub explanation: explain::Explanation,
     /// Where what stays unexplained is largest, along the first signal that it goes with.
-    pub rest: Option<Profile>,
+    pub rest: Option<ErrorProfile>,
     /// A term for it.
     pub suggestion: Option<Suggestion>,
     /// The explanation as it is shown.
@@ -60,7 +60,7 @@ impl Found {
             .rest
             .depends_on
             .first()
-            .and_then(|signal| Profile::new(&experiment, &explanation.after, signal));
+            .and_then(|signal| ErrorProfile::new(&experiment, &explanation.after, signal));
         shown.unexplained.whereabouts = rest.as_ref().map(ToString::to_string);
         Self {
             rest,

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use hitch_identification::adequacy::lack_of_fit::{adequate, cells};
-use hitch_identification::adequacy::unsuitable_base::is_hopeless;
+use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::design::{NextExperiment, Pair, Rival, next_experiment};
 use hitch_identification::estimation::fit::Fit;
@@ -40,7 +40,7 @@ impl Diagnosis {
                 noise_floor: 1.0,
                 channels: channels(experiment, model, &found.base, after),
                 verdict: verdict(experiment, found, believed).name(),
-                hopeless_base: is_hopeless(experiment, &found.base, after),
+                hopeless_base: is_unsuitable(experiment, &found.base, after),
             },
             candidates,
             next: next(experiment, model, found, believed).into(),

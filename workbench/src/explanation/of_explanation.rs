@@ -1,11 +1,11 @@
 //! From the identification's explanation to what is shown of it.
 
-use hitch_identification::adequacy::unsuitable_base::is_hopeless;
+use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::design;
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain;
-use hitch_identification::explanation::undetected::Unseen;
+use hitch_identification::explanation::undetected::Undetected;
 use hitch_plant::{Channel, Effect, Model};
 use serde_json::{Map, Value, json};
 
@@ -23,7 +23,7 @@ impl Explanation {
                 noise_floor: 1.0,
                 channels: channels(experiment, model, &found.before, &found.after),
                 verdict: found.verdict.name(),
-                hopeless_base: is_hopeless(experiment, &found.before, &found.after),
+                hopeless_base: is_unsuitable(experiment, &found.before, &found.after),
             },
             error_refitted: found.refitted.as_ref().map(Fit::error),
             steps: found.steps.iter().map(step).collect(),
@@ -34,7 +34,7 @@ impl Explanation {
                 suggested_term: None,
                 suggested: None,
             },
-            not_visible: found.unseen.iter().map(not_visible).collect(),
+            not_visible: found.undetected.iter().map(not_visible).collect(),
             unfinished: found.unfinished,
             next: found.next_experiment.clone().into(),
         }
@@ -67,7 +67,7 @@ fn step(step: &explain::Step) -> Step {
     }
 }
 
-fn not_visible(unseen: &Unseen) -> NotVisible {
+fn not_visible(unseen: &Undetected) -> NotVisible {
     NotVisible {
         effect: unseen.effect.id(),
         detectability: unseen.detectability,
@@ -109,7 +109,7 @@ pub fn parameters(effect: &dyn Effect, values: &[f64], intervals: &[(f64, f64)])
 /// Errors by channel before and after, in the channel's unit, beside the instrument's noise, and how late its clock is
 /// against that of the currents, s.
 ///
-/// Beside that stand the parts of the channel's whole delay behind the currents, s.
+/// LeaveOneOut that stand the parts of the channel's whole delay behind the currents, s.
 ///
 /// They are the errors in sigma times sigma, so that they add up to the error of the whole; what the noise of the
 /// logged currents does to the simulation is no error of the model and not in them.

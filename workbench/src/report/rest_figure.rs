@@ -1,6 +1,6 @@
 //! What the catalogue leaves unexplained: residuals along the signal that they go with, and a term that would help.
 
-use hitch_identification::adequacy::localization::{Bin, Profile};
+use hitch_identification::adequacy::localization::{Bin, ErrorProfile};
 use maud::{Markup, html};
 
 use super::chart::{Chart, Line, Stroke};
@@ -8,7 +8,7 @@ use crate::explanation::Suggested;
 use crate::text::known;
 
 /// Residuals of the worst channel along a signal: mean and scatter of every bin.
-pub fn picture(profile: &Profile) -> Markup {
+pub fn picture(profile: &ErrorProfile) -> Markup {
     let column = |value: fn(&Bin) -> f64| profile.bins.iter().map(value).collect::<Vec<f64>>();
     let x = column(|bin| bin.centre);
     let (mean, above, below) = (
@@ -73,7 +73,7 @@ mod tests {
             mean: -2.0,
             deviation: 1.0,
         };
-        let profile = Profile {
+        let profile = ErrorProfile {
             signal: "rocker_angle_deg".to_owned(),
             channel: Channel::Flow,
             bins: vec![bin(50.0), bin(60.0)],

@@ -8,7 +8,7 @@ use hitch_identification::estimate::Estimate;
 use hitch_identification::estimation::fit::{Fit, evaluate, fit_loads, refine, sketch};
 use hitch_identification::explanation::explain::diagnose_each;
 use hitch_identification::residuals::whitening::Weights;
-use hitch_identification::search::single::try_effects;
+use hitch_identification::search::single_effects::try_effects;
 use hitch_identification::search::subset::Options;
 use hitch_identification::selection::hold_out::held_out;
 use hitch_identification::suggestion::Suggestion;

@@ -2,8 +2,8 @@
 //!
 //! `y = (1 + g) angle`; 0.5 to 1 % of full scale is usual for a hall sensor, more for a worn lever or a wrong supply.
 
-use hitch_plant::hooks::sites::{RunConditions, SensorStage, Sites};
-use hitch_plant::{Channel, Parameter, Reading, Search};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions, SensorStage};
+use hitch_plant::{Channel, Parameter, ParameterKind, Reading, SizeResponse};
 
 use crate::described::Described;
 
@@ -20,6 +20,7 @@ pub static ANGLE_SENSOR_GAIN: Described = Described {
     parameters: &[Parameter {
         name: "gain",
         unit: "",
+        kind: ParameterKind::Other,
         key: "gain",
         meaning: "relative error of the angle",
         null: 0.0,
@@ -29,13 +30,13 @@ pub static ANGLE_SENSOR_GAIN: Described = Described {
     }],
     channels: &[Channel::RockerAngle],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
     attach,
 };
 
-fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
-    sites.sensors.push(Box::new(Gain { gain: values[0] }));
+fn attach(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {
+    hooks.sensors.push(Box::new(Gain { gain: values[0] }));
 }
 
 #[derive(Debug)]

@@ -7,8 +7,8 @@
 use std::collections::VecDeque;
 
 use hitch_plant::components::lag::Lag;
-use hitch_plant::hooks::sites::{SensorStage, Sites};
-use hitch_plant::{Channel, Parameter, Reading, Search};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, SensorStage};
+use hitch_plant::{Channel, Parameter, ParameterKind, Reading, SizeResponse};
 
 use crate::described::Described;
 
@@ -31,6 +31,7 @@ pub static FILTERING: Described = Described {
     parameters: &[Parameter {
         name: "time_constant",
         unit: "s",
+        kind: ParameterKind::Time,
         key: "time_constant_s",
         meaning: "time constant of the sensor",
         null: 0.0,
@@ -40,9 +41,9 @@ pub static FILTERING: Described = Described {
     }],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| attach(values[0], 0.0, sites),
+    attach: |values, _, hooks| attach(values[0], 0.0, hooks),
 };
 
 /// A sensor that sends late what it filters.
@@ -58,6 +59,7 @@ pub static DELAYED: Described = Described {
         Parameter {
             name: "lag",
             unit: "s",
+            kind: ParameterKind::Time,
             key: "lag_s",
             meaning: "how late it follows an even motion",
             null: 0.0,
@@ -68,6 +70,7 @@ pub static DELAYED: Described = Described {
         Parameter {
             name: "dead",
             unit: "",
+            kind: ParameterKind::Other,
             key: "dead",
             meaning: "share of it that is dead time",
             null: 0.0,
@@ -78,19 +81,19 @@ pub static DELAYED: Described = Described {
     ],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| {
+    attach: |values, _, hooks| {
         let dead_s = values[0] * values[1];
-        attach(values[0] - dead_s, dead_s, sites);
+        attach(values[0] - dead_s, dead_s, hooks);
     },
 };
 
-fn attach(time_constant_s: f64, dead_s: f64, sites: &mut Sites) {
+fn attach(time_constant_s: f64, dead_s: f64, hooks: &mut EffectHooks) {
     if time_constant_s + dead_s > 0.0 {
-        sites.limit_step(STEP_S);
+        hooks.limit_step(STEP_S);
     }
-    sites.sensors.push(Box::new(LateAngle {
+    hooks.sensors.push(Box::new(LateAngle {
         time_constant_s,
         dead_s,
         filter: Lag::at_rest(time_constant_s, 0.0),
@@ -153,7 +156,7 @@ mod tests {
     use super::LateAngle;
     use hitch_plant::Reading;
     use hitch_plant::components::lag::Lag;
-    use hitch_plant::hooks::sites::SensorStage;
+    use hitch_plant::hooks::effect_hooks::SensorStage;
 
     /// Steady motion at 10 degree a second is followed as late as filter and dead time together; the start shows after
     /// the dead time, sooner by no more than the step in which it lies.

@@ -4,7 +4,7 @@
 //! together is 0.7 to 1.4e9 Pa (Jelali & Kroll 3.2). A declared value is often off by a third. Unlike a hose, which takes
 //! up the same volume wherever the piston is, it acts on the whole volume of oil, and alike at all pressures.
 
-use hitch_plant::{Channel, Dynamics, Parameter, Search};
+use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -20,6 +20,7 @@ pub static BULK_MODULUS: Described = Described {
     parameters: &[Parameter {
         name: "change",
         unit: "",
+        kind: ParameterKind::Other,
         key: "change",
         meaning: "change of the modulus as a share of the declared one",
         null: 0.0,
@@ -29,10 +30,10 @@ pub static BULK_MODULUS: Described = Described {
     }],
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| {
+    attach: |values, _, hooks| {
         let factor = 1.0 + values[0];
-        sites.stiffness_factor.push(Box::new(move |_| factor));
+        hooks.stiffness_factor.push(Box::new(move |_| factor));
     },
 };

@@ -6,9 +6,9 @@
 //! more in proportion instead, `Q / 40 l/min`. Throttling makes large flows fall short the more; the
 //! spring alone takes the same share of every flow and is `lift-flow-scale` by another name.
 
-use hitch_plant::hooks::sites::Sites;
+use hitch_plant::hooks::effect_hooks::EffectHooks;
 use hitch_plant::units::{m3_s_from_lpm, pa_from_bar};
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -18,6 +18,7 @@ const RATED_LPM: f64 = 40.0;
 const LOSS: Parameter = Parameter {
     name: "loss",
     unit: "bar",
+    kind: ParameterKind::Other,
     key: "loss_bar",
     meaning: "pressure that it takes at 40 l/min beyond 2.5 bar",
     null: 0.0,
@@ -29,6 +30,7 @@ const LOSS: Parameter = Parameter {
 const STEADY: Parameter = Parameter {
     name: "steady",
     unit: "",
+    kind: ParameterKind::Other,
     key: "steady",
     meaning: "share of it that does not change with the flow",
     null: 0.5,
@@ -51,12 +53,12 @@ pub static THROTTLING: Described = Described {
     parameters: &[LOSS, STEADY],
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| {
-        let varying_pa = stiffened(values, sites);
+    attach: |values, _, hooks| {
+        let varying_pa = stiffened(values, hooks);
         let rated_m3_s = m3_s_from_lpm(RATED_LPM);
-        sites.check_valve.turbulent_pa_s2_m6 += varying_pa / (rated_m3_s * rated_m3_s);
+        hooks.check_valve.turbulent_pa_s2_m6 += varying_pa / (rated_m3_s * rated_m3_s);
     },
 };
 
@@ -69,16 +71,16 @@ pub static LIFTING: Described = Described {
     source: "force balance of a poppet on its spring; 0.3 to 1 bar at rated flow in data sheets of \
          cartridge check valves",
     refines: true,
-    attach: |values, _, sites| {
-        let varying_pa = stiffened(values, sites);
-        sites.check_valve.laminar_pa_s_m3 += varying_pa / m3_s_from_lpm(RATED_LPM);
+    attach: |values, _, hooks| {
+        let varying_pa = stiffened(values, hooks);
+        hooks.check_valve.laminar_pa_s_m3 += varying_pa / m3_s_from_lpm(RATED_LPM);
     },
     ..THROTTLING
 };
 
 /// Stiffens the spring by the steady share of a loss; returns the rest of it at the rated flow, Pa.
-fn stiffened(values: &[f64], sites: &mut Sites) -> f64 {
+fn stiffened(values: &[f64], hooks: &mut EffectHooks) -> f64 {
     let (loss_pa, steady) = (pa_from_bar(values[0]), values[1]);
-    sites.cracking_extra_pa += steady * loss_pa;
+    hooks.cracking_extra_pa += steady * loss_pa;
     (1.0 - steady) * loss_pa
 }

@@ -7,8 +7,8 @@
 //! A restrictor in the line that tells it the load, or its own mass, makes it late: 5 to 20 ms. Meanwhile the lift orifice
 //! feels what the cylinder pressure does, and takes from its ringing.
 
-use hitch_plant::hooks::sites::{RunConditions, Sites};
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -23,6 +23,7 @@ const CHANNELS: &[Channel] = &[Channel::PumpPressure, Channel::Flow, Channel::Ro
 const SLOPE: Parameter = Parameter {
     name: "slope",
     unit: "bar/bar",
+    kind: ParameterKind::Other,
     key: "slope",
     meaning: "margin lost for each bar of cylinder pressure",
     null: 0.0,
@@ -34,6 +35,7 @@ const SLOPE: Parameter = Parameter {
 const FLOW: Parameter = Parameter {
     name: "flow",
     unit: "",
+    kind: ParameterKind::Other,
     key: "flow",
     meaning: "share of the margin lost from no lift flow to the pump's whole",
     null: 0.0,
@@ -54,9 +56,9 @@ pub static WITH_LOAD: Described = Described {
     parameters: &[SLOPE],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| fall_with_load(values[0], sites),
+    attach: |values, _, hooks| fall_with_load(values[0], hooks),
 };
 
 /// Droop with the flow, and with the load.
@@ -78,11 +80,11 @@ pub static WITH_FLOW: Described = Described {
     ],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, conditions, sites| {
-        fall_with_flow(values[0], conditions, sites);
-        fall_with_load(values[1], sites);
+    attach: |values, conditions, hooks| {
+        fall_with_flow(values[0], conditions, hooks);
+        fall_with_load(values[1], hooks);
     },
 };
 
@@ -99,6 +101,7 @@ pub static LAGGING: Described = Described {
         Parameter {
             name: "lag",
             unit: "s",
+            kind: ParameterKind::Time,
             key: "lag_s",
             meaning: "time constant of the pump pressure",
             null: 0.0,
@@ -117,25 +120,29 @@ pub static LAGGING: Described = Described {
     ],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: true,
-    attach: |values, conditions, sites| {
+    attach: |values, conditions, hooks| {
         if values[0] >= SHORTEST_LAG_S {
-            sites.compensator_lag_s = values[0];
-            sites.limit_step(STEP_S);
+            hooks.compensator_lag_s = values[0];
+            hooks.limit_step(STEP_S);
         }
-        fall_with_load(values[1], sites);
-        fall_with_flow(values[2], conditions, sites);
+        fall_with_load(values[1], hooks);
+        fall_with_flow(values[2], conditions, hooks);
     },
 };
 
-fn fall_with_flow(share: f64, RunConditions { constants, .. }: RunConditions, sites: &mut Sites) {
+fn fall_with_flow(
+    share: f64,
+    RunConditions { constants, .. }: RunConditions,
+    hooks: &mut EffectHooks,
+) {
     let lost_pa = share * constants.compensator.margin_pa;
-    sites.margin_lost_to_flow_pa_s_m3 += lost_pa / constants.pump.flow_m3_s();
+    hooks.margin_lost_to_flow_pa_s_m3 += lost_pa / constants.pump.flow_m3_s();
 }
 
-fn fall_with_load(slope: f64, sites: &mut Sites) {
-    sites.margin.push(Box::new(move |cylinder_pressure_pa| {
+fn fall_with_load(slope: f64, hooks: &mut EffectHooks) {
+    hooks.margin.push(Box::new(move |cylinder_pressure_pa| {
         -slope * cylinder_pressure_pa
     }));
 }

@@ -5,9 +5,9 @@
 //! 29 % more lift flow. The same spring sets the idle pressure. In blocks where a bypass orifice sets that, its drop at the
 //! pump's flow is another number: the form `bypass` has both.
 
-use hitch_plant::hooks::sites::Sites;
+use hitch_plant::hooks::effect_hooks::EffectHooks;
 use hitch_plant::units::pa_from_bar;
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -17,6 +17,7 @@ const CHANNELS: &[Channel] = &[Channel::PumpPressure];
 const EXCESS: Parameter = Parameter {
     name: "excess",
     unit: "bar",
+    kind: ParameterKind::Other,
     key: "excess_bar",
     meaning: "margin on top of the declared one",
     null: 0.0,
@@ -37,9 +38,9 @@ pub static PRELOAD: Described = Described {
     parameters: &[EXCESS],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| exceed(values[0], values[0], sites),
+    attach: |values, _, hooks| exceed(values[0], values[0], hooks),
 };
 
 /// Margin and idle pressure each off by its own amount.
@@ -63,13 +64,13 @@ pub static BYPASS: Described = Described {
     ],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| exceed(values[0], values[1], sites),
+    attach: |values, _, hooks| exceed(values[0], values[1], hooks),
 };
 
-fn exceed(margin_bar: f64, idle_bar: f64, sites: &mut Sites) {
+fn exceed(margin_bar: f64, idle_bar: f64, hooks: &mut EffectHooks) {
     let margin_pa = pa_from_bar(margin_bar);
-    sites.margin.push(Box::new(move |_| margin_pa));
-    sites.idle_extra_pa += pa_from_bar(idle_bar);
+    hooks.margin.push(Box::new(move |_| margin_pa));
+    hooks.idle_extra_pa += pa_from_bar(idle_bar);
 }

@@ -6,8 +6,8 @@
 //! Wit 1995), until the trembling of a running machine has let them straighten. 100 to 300 N and 1 to 4 % of the
 //! pressure force are usual for a 76 mm cylinder, and some tenths of a millimetre of bending.
 
-use hitch_plant::hooks::sites::Bristles;
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::hooks::effect_hooks::Bristles;
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -17,6 +17,7 @@ pub(crate) const TRANSITION_SPEED_M_S: f64 = 0.003;
 const FORCE: Parameter = Parameter {
     name: "force",
     unit: "N",
+    kind: ParameterKind::Other,
     key: "force_n",
     meaning: "friction force at the piston",
     null: 0.0,
@@ -44,11 +45,11 @@ pub static SMOOTH: Described = Described {
     parameters: &[FORCE],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| {
+    attach: |values, _, hooks| {
         let force_n = values[0];
-        sites.friction.push(Box::new(move |state, _| {
+        hooks.friction.push(Box::new(move |state, _| {
             force_n * (state.speed_m_s / TRANSITION_SPEED_M_S).tanh()
         }));
     },
@@ -71,6 +72,7 @@ pub static BRISTLES: Described = Described {
         Parameter {
             name: "bending",
             unit: "mm",
+            kind: ParameterKind::Other,
             key: "bending_mm",
             meaning: "how far the piston moves before the seal slips",
             null: 0.0,
@@ -81,6 +83,7 @@ pub static BRISTLES: Described = Described {
         Parameter {
             name: "creep",
             unit: "mm/s",
+            kind: ParameterKind::Other,
             key: "creep_mm_per_s",
             meaning: "speed that trembling gives the seal under the full force; none: it holds for ever",
             null: 0.0,
@@ -91,14 +94,14 @@ pub static BRISTLES: Described = Described {
     ],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| {
-        sites.bristles = Some(Bristles {
+    attach: |values, _, hooks| {
+        hooks.bristles = Some(Bristles {
             force_n: values[0],
             reach_m: 1e-3 * values[1],
             creep_m_s: 1e-3 * values[2],
         });
-        sites.limit_step(STEP_S);
+        hooks.limit_step(STEP_S);
     },
 };

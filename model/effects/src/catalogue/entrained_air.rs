@@ -4,8 +4,8 @@
 //! of air at atmospheric pressure over that of the oil: c / (1 - c) for a share c of the whole. The change of state
 //! lies between isothermal, n = 1, and adiabatic, n = 1.4.
 
-use hitch_plant::hooks::sites::{RunConditions, Sites};
-use hitch_plant::{Channel, Dynamics, Parameter, Search};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
+use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -29,6 +29,7 @@ pub static ENTRAINED_AIR: Described = Described {
         Parameter {
             name: "share",
             unit: "",
+            kind: ParameterKind::Other,
             key: "share",
             meaning: "volume of air at atmospheric pressure over the whole volume",
             null: 0.0,
@@ -39,6 +40,7 @@ pub static ENTRAINED_AIR: Described = Described {
         Parameter {
             name: "polytropic",
             unit: "",
+            kind: ParameterKind::Other,
             key: "polytropic",
             meaning: "polytropic exponent n of the air",
             null: 1.0,
@@ -49,15 +51,15 @@ pub static ENTRAINED_AIR: Described = Described {
     ],
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
     attach,
 };
 
-fn attach(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
+fn attach(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
     let (ratio, polytropic) = (values[0] / (1.0 - values[0]), values[1]);
     let liquid_pa = conditions.constants.oil.bulk_modulus_pa;
-    sites.stiffness_factor.push(Box::new(move |pressure_pa| {
+    hooks.stiffness_factor.push(Box::new(move |pressure_pa| {
         let absolute_pa = (ATMOSPHERE_PA + pressure_pa).max(LOWEST_PA);
         let squeezed = ratio * (ATMOSPHERE_PA / absolute_pa).powf(1.0 / polytropic);
         (1.0 + squeezed) / (1.0 + squeezed * liquid_pa / (polytropic * absolute_pa))

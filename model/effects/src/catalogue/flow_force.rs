@@ -7,8 +7,8 @@
 //! there: where the table is flat the force then shows in nothing. The lift valve's drop is held by the compensator:
 //! nothing to see.
 
-use hitch_plant::hooks::sites::{Law, RunConditions, Sites};
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, Law, RunConditions};
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -25,6 +25,7 @@ pub static ON_FLOW: Described = Described {
     parameters: &[Parameter {
         name: "ratio",
         unit: "",
+        kind: ParameterKind::Other,
         key: "ratio",
         meaning: "flow force over spring force at the reference drop",
         null: 0.0,
@@ -34,7 +35,7 @@ pub static ON_FLOW: Described = Described {
     }],
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
     attach: attach_to_flow,
 };
@@ -48,12 +49,12 @@ pub static ON_TRAVEL: Described = Described {
     ..ON_FLOW
 };
 
-fn attach_to_flow(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
-    sites.lower_drop_factor.push(opening(values, conditions));
+fn attach_to_flow(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
+    hooks.lower_drop_factor.push(opening(values, conditions));
 }
 
-fn attach_to_travel(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
-    sites.lower_travel_factor.push(opening(values, conditions));
+fn attach_to_travel(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
+    hooks.lower_travel_factor.push(opening(values, conditions));
 }
 
 /// What the force leaves of the opening, from the drop, Pa.

@@ -4,14 +4,15 @@
 //! valves saturate 6.7 % (lift) and 3.4 % (lowering) under the manufacturer's values. A metering edge that is cut
 //! otherwise passes another share when it is wide open: the scale grows with the opening.
 
-use hitch_plant::hooks::sites::FlowFactor;
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::hooks::effect_hooks::FlowFactor;
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
 const SCALE: Parameter = Parameter {
     name: "scale",
     unit: "",
+    kind: ParameterKind::Other,
     key: "scale",
     meaning: "relative change of the flow, at half the largest",
     null: 0.0,
@@ -23,6 +24,7 @@ const SCALE: Parameter = Parameter {
 const GROWTH: Parameter = Parameter {
     name: "growth",
     unit: "",
+    kind: ParameterKind::Other,
     key: "growth",
     meaning: "relative growth of the scale from half to the largest flow",
     null: 0.0,
@@ -48,9 +50,9 @@ pub static LIFT: Described = Described {
     parameters: &[SCALE],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| scale(&mut sites.lift_flow_factor, values[0], 0.0),
+    attach: |values, _, hooks| scale(&mut hooks.lift_flow_factor, values[0], 0.0),
 };
 
 /// Flow scale of the lift valve that grows with its opening.
@@ -61,7 +63,7 @@ pub static LIFT_UNEVEN: Described = Described {
     shows: "lifting at every current, fast otherwise in proportion than slowly: flow and speed",
     parameters: &[SCALE, GROWTH],
     refines: true,
-    attach: |values, _, sites| scale(&mut sites.lift_flow_factor, values[0], values[1]),
+    attach: |values, _, hooks| scale(&mut hooks.lift_flow_factor, values[0], values[1]),
     ..LIFT
 };
 
@@ -76,9 +78,9 @@ pub static LOWERING: Described = Described {
     parameters: &[SCALE],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| scale(&mut sites.lower_flow_factor, values[0], 0.0),
+    attach: |values, _, hooks| scale(&mut hooks.lower_flow_factor, values[0], 0.0),
 };
 
 /// Flow scale of the lowering valve that grows with its opening.
@@ -89,7 +91,7 @@ pub static LOWERING_UNEVEN: Described = Described {
     shows: "lowering at every current and load, fast otherwise in proportion than slowly: flow and speed",
     parameters: &[SCALE, GROWTH],
     refines: true,
-    attach: |values, _, sites| scale(&mut sites.lower_flow_factor, values[0], values[1]),
+    attach: |values, _, hooks| scale(&mut hooks.lower_flow_factor, values[0], values[1]),
     ..LOWERING
 };
 

@@ -4,8 +4,8 @@
 //! which the implement touches (Bekker with n = 1, damped as by Hunt & Crossley). Floors have 1e6 to 1e7 N/m, soil 5e4
 //! to 5e5 N/m. Where the ground itself damps, `F = k z + d z'` with 1e3 to 1e4 N s/m.
 
-use hitch_plant::hooks::sites::{Ground, RunConditions};
-use hitch_plant::{Channel, Dynamics, Parameter, Search};
+use hitch_plant::hooks::effect_hooks::{Ground, RunConditions};
+use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -15,6 +15,7 @@ const DAMPING_S_M: f64 = 1.5;
 const HEIGHT: Parameter = Parameter {
     name: "height",
     unit: "m",
+    kind: ParameterKind::Other,
     key: "height_m",
     meaning: "height of the ground over the lowest point of the stroke",
     null: 0.0,
@@ -26,6 +27,7 @@ const HEIGHT: Parameter = Parameter {
 const STIFFNESS: Parameter = Parameter {
     name: "stiffness",
     unit: "kN/m",
+    kind: ParameterKind::Other,
     key: "stiffness_kn_m",
     meaning: "stiffness of the ground",
     null: 0.0,
@@ -51,10 +53,10 @@ pub static SPRINGY: Described = Described {
     parameters: &[HEIGHT, STIFFNESS],
     channels: CHANNELS,
     needs: None,
-    search: Search::Places,
+    size_response: SizeResponse::Located,
     refines: false,
-    attach: |values, conditions, sites| {
-        sites.ground = Some(Ground {
+    attach: |values, conditions, hooks| {
+        hooks.ground = Some(Ground {
             damping_s_m: DAMPING_S_M,
             ..ground(values, conditions)
         });
@@ -76,6 +78,7 @@ pub static DAMPED: Described = Described {
         Parameter {
             name: "damping",
             unit: "kN s/m",
+            kind: ParameterKind::Other,
             key: "damping_kn_s_m",
             meaning: "force over the speed of sinking in",
             null: 0.0,
@@ -86,10 +89,10 @@ pub static DAMPED: Described = Described {
     ],
     channels: CHANNELS,
     needs: Some(Dynamics::Dynamic),
-    search: Search::Places,
+    size_response: SizeResponse::Located,
     refines: true,
-    attach: |values, conditions, sites| {
-        sites.ground = Some(Ground {
+    attach: |values, conditions, hooks| {
+        hooks.ground = Some(Ground {
             damping_n_s_m: values[2] * 1e3,
             ..ground(values, conditions)
         });

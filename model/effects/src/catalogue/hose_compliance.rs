@@ -4,15 +4,16 @@
 //! of oil; written in cm3/bar, 0.03 to 0.06. Rubber does not swell at once: a share of it creeps after the pressure
 //! (Kelvin-Voigt), which slows a fast ringing less than a slow one and damps both.
 
-use hitch_plant::hooks::sites::Hose;
+use hitch_plant::hooks::effect_hooks::Hose;
 use hitch_plant::units::pa_from_bar;
-use hitch_plant::{Channel, Dynamics, Parameter, Search};
+use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
 const COMPLIANCE: Parameter = Parameter {
     name: "compliance",
     unit: "cm3/bar",
+    kind: ParameterKind::Other,
     key: "compliance_cm3_bar",
     meaning: "volume that the hoses take up",
     null: 0.0,
@@ -37,10 +38,10 @@ pub static ELASTIC: Described = Described {
     parameters: &[COMPLIANCE],
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| {
-        sites.hose = Hose {
+    attach: |values, _, hooks| {
+        hooks.hose = Hose {
             at_once_m3_pa: m3_pa(values[0]),
             ..Hose::default()
         };
@@ -62,6 +63,7 @@ pub static CREEPING: Described = Described {
         Parameter {
             name: "share",
             unit: "",
+            kind: ParameterKind::Other,
             key: "share",
             meaning: "share of it that creeps",
             null: 0.0,
@@ -72,6 +74,7 @@ pub static CREEPING: Described = Described {
         Parameter {
             name: "creep",
             unit: "s",
+            kind: ParameterKind::Time,
             key: "creep_s",
             meaning: "retardation time of the wall",
             null: 0.0,
@@ -82,11 +85,11 @@ pub static CREEPING: Described = Described {
     ],
     channels: &[Channel::CylinderPressure],
     needs: Some(Dynamics::Dynamic),
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| {
+    attach: |values, _, hooks| {
         let whole_m3_pa = m3_pa(values[0]);
-        sites.hose = Hose {
+        hooks.hose = Hose {
             at_once_m3_pa: (1.0 - values[1]) * whole_m3_pa,
             creeping_m3_pa: values[1] * whole_m3_pa,
             catching_up_1_s: 1.0 / values[2],

@@ -10,8 +10,8 @@
 //! it fastest at both ends of the stroke: a bow of a quarter of the share, with a slope that goes with where the load
 //! is level.
 
-use hitch_plant::hooks::sites::{RunConditions, Sites};
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::catalogue::over_the_stroke;
 use crate::described::Described;
@@ -30,6 +30,7 @@ pub static WITH_WEIGHT: Described = Described {
         Parameter {
             name: "share",
             unit: "",
+            kind: ParameterKind::Other,
             key: "share",
             meaning: "change of the weight's force at the end of the stroke",
             null: 0.0,
@@ -40,6 +41,7 @@ pub static WITH_WEIGHT: Described = Described {
         Parameter {
             name: "even",
             unit: "",
+            kind: ParameterKind::Other,
             key: "even",
             meaning: "part of it that is there all over the stroke; negative: more at the low end",
             null: 0.5,
@@ -55,7 +57,7 @@ pub static WITH_WEIGHT: Described = Described {
         Channel::RockerAngle,
     ],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
     attach: with_weight,
 };
@@ -70,6 +72,7 @@ pub static WITH_LOAD: Described = Described {
         Parameter {
             name: "share",
             unit: "",
+            kind: ParameterKind::Other,
             key: "share",
             meaning: "change of the load's force, mean over the stroke",
             null: 0.0,
@@ -93,20 +96,20 @@ pub static WITH_LOAD: Described = Described {
     ..WITH_WEIGHT
 };
 
-fn with_load(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
+fn with_load(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
     let (share, shape) = (values[0], [values[1], values[2]]);
     let stroke_m = conditions.constants.cylinder.stroke_m;
-    sites
+    hooks
         .weight_factor
         .push(Box::new(move |piston_m, load_share| {
             1.0 + share * over_the_stroke::over_mean(shape, piston_m, stroke_m) * load_share
         }));
 }
 
-fn with_weight(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
+fn with_weight(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
     let (share, even) = (values[0], values[1]);
     let stroke_m = conditions.constants.cylinder.stroke_m;
-    sites.weight_factor.push(Box::new(move |piston_m, _| {
+    hooks.weight_factor.push(Box::new(move |piston_m, _| {
         let tilted = 2.0 * piston_m / stroke_m - 1.0;
         1.0 + share * (even + (1.0 - even.abs()) * tilted)
     }));

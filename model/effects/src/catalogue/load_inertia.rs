@@ -5,8 +5,8 @@
 //! turns with the shaft, `J (dphi/dx)^2` at the piston, no load makes heavier: a part of the share at 150 kg and mid stroke,
 //! it is a larger one at lighter loads.
 
-use hitch_plant::hooks::sites::{RunConditions, Sites};
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -19,6 +19,7 @@ const USUAL_LOAD_KG: f64 = 150.0;
 const SHARE: Parameter = Parameter {
     name: "share",
     unit: "",
+    kind: ParameterKind::Other,
     key: "share",
     meaning: "share of the inertia of load and dead weight",
     null: 0.0,
@@ -40,9 +41,9 @@ pub static OF_LOAD: Described = Described {
     parameters: &[SHARE],
     channels: &[Channel::CylinderPressure],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| resist(values[0], 0.0, sites),
+    attach: |values, _, hooks| resist(values[0], 0.0, hooks),
 };
 
 /// Inertia part of which is on the rocker shaft.
@@ -56,6 +57,7 @@ pub static AND_SHAFT: Described = Described {
         Parameter {
             name: "shaft",
             unit: "",
+            kind: ParameterKind::Other,
             key: "shaft",
             meaning: "part of it that turns with the rocker shaft, at 150 kg and mid stroke",
             null: 0.0,
@@ -65,7 +67,7 @@ pub static AND_SHAFT: Described = Described {
         },
     ],
     refines: true,
-    attach: |values, conditions, sites| {
+    attach: |values, conditions, hooks| {
         let RunConditions {
             constants, linkage, ..
         } = conditions;
@@ -78,14 +80,14 @@ pub static AND_SHAFT: Described = Described {
         resist(
             values[0] - on_shaft,
             on_shaft * of_load_kg / (turn_rad_m * turn_rad_m),
-            sites,
+            hooks,
         );
     },
     ..OF_LOAD
 };
 
-fn resist(share: f64, shaft_kg_m2: f64, sites: &mut Sites) {
-    sites.inertia_share += share;
-    sites.shaft_inertia_kg_m2 += shaft_kg_m2;
-    sites.limit_step(STEP_S);
+fn resist(share: f64, shaft_kg_m2: f64, hooks: &mut EffectHooks) {
+    hooks.inertia_share += share;
+    hooks.shaft_inertia_kg_m2 += shaft_kg_m2;
+    hooks.limit_step(STEP_S);
 }

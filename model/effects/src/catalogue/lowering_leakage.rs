@@ -6,8 +6,8 @@
 //! oil's fluidity.
 
 use hitch_plant::components::oil::viscosity_m2_s;
-use hitch_plant::hooks::sites::Sites;
-use hitch_plant::{Channel, Parameter, Search, units};
+use hitch_plant::hooks::effect_hooks::EffectHooks;
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse, units};
 
 use crate::described::Described;
 
@@ -17,6 +17,7 @@ const TOLD_AT_C: f64 = 40.0;
 const PARAMETERS: &[Parameter] = &[Parameter {
     name: "conductance",
     unit: "l/min/bar",
+    kind: ParameterKind::Other,
     key: "conductance_lpm_per_bar",
     meaning: "leakage flow over cylinder pressure, with oil of 40 degC",
     null: 0.0,
@@ -38,9 +39,9 @@ pub static EVEN: Described = Described {
     parameters: PARAMETERS,
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| leak(values[0], sites),
+    attach: |values, _, hooks| leak(values[0], hooks),
 };
 
 /// Leakage of hot, thin oil.
@@ -54,17 +55,17 @@ pub static THINNING: Described = Described {
     parameters: PARAMETERS,
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, conditions, sites| {
+    attach: |values, conditions, hooks| {
         let fluidity = viscosity_m2_s(TOLD_AT_C) / viscosity_m2_s(conditions.oil_temperature_c);
-        leak(values[0] * fluidity, sites);
+        leak(values[0] * fluidity, hooks);
     },
 };
 
-fn leak(conductance_lpm_bar: f64, sites: &mut Sites) {
+fn leak(conductance_lpm_bar: f64, hooks: &mut EffectHooks) {
     let conductance = units::m3_s_from_lpm(conductance_lpm_bar) / units::PA_PER_BAR;
-    sites.leakage.push(Box::new(move |pressure_pa| {
+    hooks.leakage.push(Box::new(move |pressure_pa| {
         conductance * pressure_pa.max(0.0)
     }));
 }

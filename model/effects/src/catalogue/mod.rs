@@ -7,9 +7,9 @@
 //!    size, the channels in which it shows on a lab campaign, the starting point that it needs if not every one can show
 //!    it, how its size is looked for, and `attach`. The first parameter is the size: at its null value the effect is not
 //!    there, whatever the others are. `flow_force.rs` is a short example, `pin_backlash.rs` one that remembers.
-//! 3. `attach` gets a value for each parameter, in its unit, and what is known of the run ([`RunConditions`](hitch_plant::hooks::sites::RunConditions)), and puts
-//!    numbers, closures or small stateful parts at the [`Sites`](hitch_plant::hooks::sites::Sites) where the physics acts; SI inside. If no site is where
-//!    it acts, add one to `Sites` and call it from the component concerned.
+//! 3. `attach` gets a value for each parameter, in its unit, and what is known of the run ([`RunConditions`](hitch_plant::hooks::effect_hooks::RunConditions)), and puts
+//!    numbers, closures or small stateful parts at the [`EffectHooks`](hitch_plant::hooks::effect_hooks::EffectHooks) where the physics acts; SI inside. If no site is where
+//!    it acts, add one to `EffectHooks` and call it from the component concerned.
 //! 4. One `mod` and one line in [`CATALOGUE`].
 //!
 //! Where the literature has two equations for one effect, each is an effect of its own with the same id and a `form`;

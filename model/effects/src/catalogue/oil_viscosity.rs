@@ -10,8 +10,8 @@
 //! this one shows at the lowest currents.
 
 use hitch_plant::components::oil::viscosity_m2_s;
-use hitch_plant::hooks::sites::{RunConditions, Sites};
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -35,6 +35,7 @@ pub static SERIES: Described = Described {
         Parameter {
             name: "share",
             unit: "",
+            kind: ParameterKind::Other,
             key: "share",
             meaning: "laminar share of the flow at 15 bar and 40 C",
             null: 0.0,
@@ -45,6 +46,7 @@ pub static SERIES: Described = Described {
         Parameter {
             name: "fall",
             unit: "1/K",
+            kind: ParameterKind::Other,
             key: "fall_1_k",
             meaning: "fall of the viscosity with temperature",
             null: 0.0,
@@ -55,16 +57,16 @@ pub static SERIES: Described = Described {
     ],
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
     attach: attach_series,
 };
 
-fn attach_series(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
+fn attach_series(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
     let share = values[0];
     let thinner = (values[1] * (conditions.oil_temperature_c - REFERENCE_C)).exp();
     let reference_pa = conditions.constants.lower_valve.reference_drop_pa;
-    sites.lower_drop_factor.push(Box::new(move |drop_pa| {
+    hooks.lower_drop_factor.push(Box::new(move |drop_pa| {
         1.0 - share + share * thinner * (drop_pa.max(0.0) / reference_pa).sqrt()
     }));
 }
@@ -82,6 +84,7 @@ pub static FLOW_NUMBER: Described = Described {
     parameters: &[Parameter {
         name: "critical",
         unit: "",
+        kind: ParameterKind::Other,
         key: "critical_flow_number",
         meaning: "flow number at which the flow turns turbulent",
         null: 0.0,
@@ -91,14 +94,14 @@ pub static FLOW_NUMBER: Described = Described {
     }],
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
     attach: attach_flow_number,
 };
 
-fn attach_flow_number(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
+fn attach_flow_number(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
     let per_root_pa = (2.0 / conditions.constants.oil.density_kg_m3).sqrt();
     let viscosity = viscosity_m2_s(conditions.oil_temperature_c);
-    sites.flow_number_1_a_sqrt_pa =
+    hooks.flow_number_1_a_sqrt_pa =
         Some(2.0 * DIAMETER_M_A * per_root_pa / (viscosity * values[0]));
 }

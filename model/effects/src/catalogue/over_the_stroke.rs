@@ -1,12 +1,13 @@
 //! What is not the same all over the stroke, as a slope and a bow.
 
-use hitch_plant::Parameter;
+use hitch_plant::{Parameter, ParameterKind};
 
 /// A parameter that tells how a relative quantity differs over the stroke.
 pub(crate) const fn shape(name: &'static str, meaning: &'static str, widest: f64) -> Parameter {
     Parameter {
         name,
         unit: "",
+        kind: ParameterKind::Other,
         key: name,
         meaning,
         null: 0.0,

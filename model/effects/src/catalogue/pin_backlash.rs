@@ -6,8 +6,8 @@
 
 use std::sync::Arc;
 
-use hitch_plant::hooks::sites::{RunConditions, SensorStage, Sites};
-use hitch_plant::{Channel, Linkage, Parameter, Reading, Search};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions, SensorStage};
+use hitch_plant::{Channel, Linkage, Parameter, ParameterKind, Reading, SizeResponse};
 
 use crate::described::Described;
 
@@ -23,6 +23,7 @@ pub static PIN_BACKLASH: Described = Described {
     parameters: &[Parameter {
         name: "width",
         unit: "mm",
+        kind: ParameterKind::Other,
         key: "width_mm",
         meaning: "full width of the play at the piston",
         null: 0.0,
@@ -32,13 +33,13 @@ pub static PIN_BACKLASH: Described = Described {
     }],
     channels: &[Channel::RockerAngle],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
     attach,
 };
 
-fn attach(values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites) {
-    sites.sensors.push(Box::new(Backlash {
+fn attach(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
+    hooks.sensors.push(Box::new(Backlash {
         half_width_m: 0.5e-3 * values[0],
         follower_m: 0.0,
         linkage: Arc::clone(conditions.linkage),

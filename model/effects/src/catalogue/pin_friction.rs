@@ -4,8 +4,8 @@
 //! mu 0.10 to 0.20 and radii of 10 to 30 mm, e is 0.03 to 0.08. What a pin adds to e goes with how much it turns for the
 //! piston's way, `e = sum mu r |F_pin| |dphi/dx| / F_weight`, and so with the stroke: a slope and a bow over it say how.
 
-use hitch_plant::hooks::sites::{RunConditions, Sites};
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::catalogue::coulomb_friction::TRANSITION_SPEED_M_S;
 use crate::catalogue::over_the_stroke;
@@ -14,6 +14,7 @@ use crate::described::Described;
 const SHARE: Parameter = Parameter {
     name: "share",
     unit: "",
+    kind: ParameterKind::Other,
     key: "share",
     meaning: "friction over the weight's force",
     null: 0.0,
@@ -39,9 +40,9 @@ pub static EVEN: Described = Described {
         Channel::RockerAngle,
     ],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, conditions, sites| rub(values[0], [0.0; 2], conditions, sites),
+    attach: |values, conditions, hooks| rub(values[0], [0.0; 2], conditions, hooks),
 };
 
 /// Friction in pins that turn more in one part of the stroke than in another.
@@ -65,13 +66,13 @@ pub static UNEVEN: Described = Described {
         ),
     ],
     refines: true,
-    attach: |values, conditions, sites| rub(values[0], [values[1], values[2]], conditions, sites),
+    attach: |values, conditions, hooks| rub(values[0], [values[1], values[2]], conditions, hooks),
     ..EVEN
 };
 
-fn rub(share: f64, shape: [f64; 2], conditions: RunConditions<'_>, sites: &mut Sites) {
+fn rub(share: f64, shape: [f64; 2], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
     let stroke_m = conditions.constants.cylinder.stroke_m;
-    sites.friction.push(Box::new(move |state, weight_n| {
+    hooks.friction.push(Box::new(move |state, weight_n| {
         // Friction never drives.
         let there = over_the_stroke::over_mean(shape, state.piston_m, stroke_m).max(0.0);
         share * there * weight_n * (state.speed_m_s / TRANSITION_SPEED_M_S).tanh()

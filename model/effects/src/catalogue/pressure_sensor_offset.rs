@@ -2,8 +2,8 @@
 //!
 //! `y = p + o`; 0.25 to 1 % of a full scale of 250 or 350 bar is 0.6 to 3.5 bar, more with temperature.
 
-use hitch_plant::hooks::sites::{RunConditions, SensorStage, Sites};
-use hitch_plant::{Channel, Parameter, Reading, Search};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions, SensorStage};
+use hitch_plant::{Channel, Parameter, ParameterKind, Reading, SizeResponse};
 
 use crate::described::Described;
 
@@ -19,6 +19,7 @@ pub static PRESSURE_SENSOR_OFFSET: Described = Described {
     parameters: &[Parameter {
         name: "offset",
         unit: "bar",
+        kind: ParameterKind::Other,
         key: "offset_bar",
         meaning: "what the sensor shows too much",
         null: 0.0,
@@ -28,13 +29,13 @@ pub static PRESSURE_SENSOR_OFFSET: Described = Described {
     }],
     channels: &[Channel::CylinderPressure],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
     attach,
 };
 
-fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
-    sites.sensors.push(Box::new(Offset {
+fn attach(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {
+    hooks.sensors.push(Box::new(Offset {
         offset_bar: values[0],
     }));
 }

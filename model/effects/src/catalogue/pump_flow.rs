@@ -3,7 +3,7 @@
 //! `Q_pump = (1 + change) Q_declared`: another speed of the engine, or another displacement; a worn pump slips with the
 //! pressure instead (`pump-leakage`). It shows only where the lift valve asks for more than there is.
 
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -18,6 +18,7 @@ pub static PUMP_FLOW: Described = Described {
     parameters: &[Parameter {
         name: "change",
         unit: "",
+        kind: ParameterKind::Other,
         key: "change",
         meaning: "change of the flow as a share of the declared one",
         null: 0.0,
@@ -27,10 +28,10 @@ pub static PUMP_FLOW: Described = Described {
     }],
     channels: &[Channel::PumpPressure, Channel::Flow],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, conditions, sites| {
+    attach: |values, conditions, hooks| {
         let lost_m3_s = -values[0] * conditions.constants.pump.flow_m3_s();
-        sites.pump_slip.push(Box::new(move |_| lost_m3_s));
+        hooks.pump_slip.push(Box::new(move |_| lost_m3_s));
     },
 };

@@ -3,9 +3,9 @@
 //! Wilson's laminar slip, `Q = Q_0 - k p` (Merritt 4.2). The compensator sends what nobody needs to tank, so a smaller
 //! delivery shows only where the lift valve asks for more than is left.
 
-use hitch_plant::hooks::sites::{RunConditions, Sites};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::units::{m3_s_from_lpm, pa_from_bar};
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -21,6 +21,7 @@ pub static PUMP_LEAKAGE: Described = Described {
     parameters: &[Parameter {
         name: "slip",
         unit: "l/min/bar",
+        kind: ParameterKind::Other,
         key: "slip_lpm_bar",
         meaning: "flow lost for each bar of pump pressure",
         null: 0.0,
@@ -30,14 +31,14 @@ pub static PUMP_LEAKAGE: Described = Described {
     }],
     channels: &[Channel::PumpPressure, Channel::Flow],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
     attach,
 };
 
-fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+fn attach(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {
     let slip_m3_s_pa = m3_s_from_lpm(values[0]) / pa_from_bar(1.0);
-    sites.pump_slip.push(Box::new(move |pump_pressure_pa| {
+    hooks.pump_slip.push(Box::new(move |pump_pressure_pa| {
         slip_m3_s_pa * pump_pressure_pa
     }));
 }

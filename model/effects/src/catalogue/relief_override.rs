@@ -4,9 +4,9 @@
 //! some flow: `above` is the part of the override that lies above the 154 bar, none if they hold at the pump's whole
 //! flow. 10 to 25 bar at 48 l/min; valves crack at 0.85 to 0.93 of their setting.
 
-use hitch_plant::hooks::sites::{ReliefOverride, RunConditions, Sites};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, ReliefOverride, RunConditions};
 use hitch_plant::units::pa_from_bar;
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -24,6 +24,7 @@ pub static RELIEF_OVERRIDE: Described = Described {
         Parameter {
             name: "override",
             unit: "bar",
+            kind: ParameterKind::Other,
             key: "override_bar",
             meaning: "rise of the pump pressure from cracking to the pump's whole flow",
             null: 0.0,
@@ -34,6 +35,7 @@ pub static RELIEF_OVERRIDE: Described = Described {
         Parameter {
             name: "above",
             unit: "",
+            kind: ParameterKind::Other,
             key: "above",
             meaning: "share of it above the setting",
             null: 0.2,
@@ -44,14 +46,14 @@ pub static RELIEF_OVERRIDE: Described = Described {
     ],
     channels: &[Channel::PumpPressure, Channel::Flow],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
     attach,
 };
 
-fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+fn attach(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {
     let override_pa = pa_from_bar(values[0]);
-    sites.relief = Some(ReliefOverride {
+    hooks.relief = Some(ReliefOverride {
         override_pa,
         below_setting_pa: override_pa * (1.0 - values[1]),
     });

@@ -5,8 +5,8 @@
 //! it may be laminar: `K mu Q` with `K = 128 L / (pi d^4)` (Hagen & Poiseuille), more when cold.
 
 use hitch_plant::components::oil::viscosity_m2_s;
-use hitch_plant::hooks::sites::Sites;
-use hitch_plant::{Channel, Parameter, Search, units};
+use hitch_plant::hooks::effect_hooks::EffectHooks;
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse, units};
 
 use crate::described::Described;
 
@@ -19,6 +19,7 @@ const REFERENCE_C: f64 = 40.0;
 const LOSS: Parameter = Parameter {
     name: "loss",
     unit: "bar",
+    kind: ParameterKind::Other,
     key: "loss_bar",
     meaning: "back pressure at 40 l/min and 40 degC",
     null: 0.0,
@@ -38,9 +39,9 @@ pub static TURBULENT: Described = Described {
     parameters: &[LOSS],
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, _, sites| hold_back(values[0], 0.0, sites),
+    attach: |values, _, hooks| hold_back(values[0], 0.0, hooks),
 };
 
 /// Back pressure of a return line through which part of the flow is laminar.
@@ -55,6 +56,7 @@ pub static LAMINAR: Described = Described {
         Parameter {
             name: "share",
             unit: "",
+            kind: ParameterKind::Other,
             key: "share",
             meaning: "share of it that is laminar, at 40 l/min and 40 degC",
             null: 0.0,
@@ -64,18 +66,18 @@ pub static LAMINAR: Described = Described {
         },
     ],
     refines: true,
-    attach: |values, conditions, sites| {
+    attach: |values, conditions, hooks| {
         let thickness = viscosity_m2_s(conditions.oil_temperature_c) / viscosity_m2_s(REFERENCE_C);
         let laminar_bar = values[0] * values[1];
-        hold_back(values[0] - laminar_bar, laminar_bar * thickness, sites);
+        hold_back(values[0] - laminar_bar, laminar_bar * thickness, hooks);
     },
     ..TURBULENT
 };
 
 /// Holds the flow back by a turbulent and a laminar loss at the reference flow, bar.
-fn hold_back(turbulent_bar: f64, laminar_bar: f64, sites: &mut Sites) {
+fn hold_back(turbulent_bar: f64, laminar_bar: f64, hooks: &mut EffectHooks) {
     let reference_m3_s = units::m3_s_from_lpm(REFERENCE_FLOW_LPM);
     let turbulent_pa = units::pa_from_bar(turbulent_bar);
-    sites.return_line.turbulent_pa_s2_m6 += turbulent_pa / (reference_m3_s * reference_m3_s);
-    sites.return_line.laminar_pa_s_m3 += units::pa_from_bar(laminar_bar) / reference_m3_s;
+    hooks.return_line.turbulent_pa_s2_m6 += turbulent_pa / (reference_m3_s * reference_m3_s);
+    hooks.return_line.laminar_pa_s_m3 += units::pa_from_bar(laminar_bar) / reference_m3_s;
 }

@@ -4,8 +4,8 @@
 //! triangular current runs on two branches H apart, the data sheet's curve between them (Visintin; Jelali & Kroll,
 //! ch. 4). H is 3 to 6 % of 3.3 A with dither, 8 to 12 % on plain direct current.
 
-use hitch_plant::hooks::sites::{CurrentStage, RunConditions, Sites};
-use hitch_plant::{Channel, Currents, Effect, Parameter, Valve};
+use hitch_plant::hooks::effect_hooks::{CurrentStage, EffectHooks, RunConditions};
+use hitch_plant::{Channel, Currents, Effect, Parameter, ParameterKind, Valve};
 
 /// Hysteresis of both solenoids.
 #[derive(Debug)]
@@ -14,6 +14,7 @@ pub struct SolenoidHysteresis;
 static PARAMETERS: [Parameter; 1] = [Parameter {
     name: "width",
     unit: "A",
+    kind: ParameterKind::Current,
     key: "width_a",
     meaning: "distance of the rising from the falling branch",
     null: 0.0,
@@ -56,8 +57,8 @@ impl Effect for SolenoidHysteresis {
         &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle]
     }
 
-    fn attach(&self, values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
-        sites.currents.push(Box::new(Play {
+    fn attach(&self, values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {
+        hooks.currents.push(Box::new(Play {
             half_width_a: 0.5 * values[0],
             spool: Currents::default(),
         }));

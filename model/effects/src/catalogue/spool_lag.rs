@@ -8,8 +8,8 @@
 //! lag takes from those, down to none.
 
 use hitch_plant::components::lag::Lag;
-use hitch_plant::hooks::sites::{CurrentStage, RunConditions, Sites};
-use hitch_plant::{Channel, Currents, Parameter, Search};
+use hitch_plant::hooks::effect_hooks::{CurrentStage, EffectHooks, RunConditions};
+use hitch_plant::{Channel, Currents, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -29,6 +29,7 @@ pub static CREEPING: Described = Described {
         Parameter {
             name: "lag",
             unit: "s",
+            kind: ParameterKind::Time,
             key: "lag_s",
             meaning: "sum of the two time constants",
             null: 0.0,
@@ -39,6 +40,7 @@ pub static CREEPING: Described = Described {
         Parameter {
             name: "share",
             unit: "",
+            kind: ParameterKind::Other,
             key: "share",
             meaning: "share of the lag in the second stage",
             null: 0.0,
@@ -49,7 +51,7 @@ pub static CREEPING: Described = Described {
     ],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
     attach: attach_creeping,
 };
@@ -68,6 +70,7 @@ pub static SWINGING: Described = Described {
         Parameter {
             name: "lag",
             unit: "s",
+            kind: ParameterKind::Time,
             key: "lag_s",
             meaning: "how late it follows a ramp of the current",
             null: 0.0,
@@ -78,6 +81,7 @@ pub static SWINGING: Described = Described {
         Parameter {
             name: "damping",
             unit: "",
+            kind: ParameterKind::Other,
             key: "damping",
             meaning: "damping ratio of the spool",
             null: 1.0,
@@ -88,14 +92,14 @@ pub static SWINGING: Described = Described {
     ],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
     attach: attach_swinging,
 };
 
-fn attach_swinging(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+fn attach_swinging(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {
     let (lag_s, damping) = (values[0], values[1]);
-    sites.currents.push(Box::new(SwingingSpools {
+    hooks.currents.push(Box::new(SwingingSpools {
         frequency_rad_s: 2.0 * damping / lag_s,
         damping,
         free: Free::default(),
@@ -103,14 +107,14 @@ fn attach_swinging(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
     }));
 }
 
-fn attach_creeping(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+fn attach_creeping(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {
     if values[0] < 0.0 {
-        sites.spool_lag_extra_s += values[0];
+        hooks.spool_lag_extra_s += values[0];
         return;
     }
     let second_s = values[0] * values[1];
     for time_constant_s in [values[0] - second_s, second_s] {
-        sites.currents.push(Box::new(SpoolLag {
+        hooks.currents.push(Box::new(SpoolLag {
             time_constant_s,
             spools: [Lag::at_rest(time_constant_s, 0.0); 2],
         }));

@@ -6,8 +6,8 @@
 //! follows the current, half of what the jump left of the band behind, until that turns or stands still (Choudhury,
 //! Thornhill and Shah 2005).
 
-use hitch_plant::hooks::sites::{CurrentStage, Sites};
-use hitch_plant::{Channel, Currents, Parameter, Search, Valve};
+use hitch_plant::hooks::effect_hooks::{CurrentStage, EffectHooks};
+use hitch_plant::{Channel, Currents, Parameter, ParameterKind, SizeResponse, Valve};
 
 use crate::described::Described;
 
@@ -22,6 +22,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "band",
         unit: "A",
+        kind: ParameterKind::Current,
         key: "band_a",
         meaning: "change of current that a resting spool does not follow",
         null: 0.0,
@@ -32,6 +33,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "jump",
         unit: "",
+        kind: ParameterKind::Other,
         key: "jump",
         meaning: "share of the band that it makes good in one jump",
         null: 0.5,
@@ -55,9 +57,9 @@ pub static STICKING: Described = Described {
     parameters: PARAMETERS,
     channels: CHANNELS,
     needs: None,
-    search: Search::Jumps,
+    size_response: SizeResponse::Switching,
     refines: false,
-    attach: |values, _, sites| attach(values, sites, Jumping::default()),
+    attach: |values, _, hooks| attach(values, hooks, Jumping::default()),
 };
 
 /// Spools that follow the current once they are loose.
@@ -73,16 +75,16 @@ pub static FOLLOWING: Described = Described {
     parameters: PARAMETERS,
     channels: CHANNELS,
     needs: None,
-    search: Search::Ledges,
+    size_response: SizeResponse::Stepped,
     refines: false,
-    attach: |values, _, sites| attach(values, sites, Following::default()),
+    attach: |values, _, hooks| attach(values, hooks, Following::default()),
 };
 
 /// Attaches spools of a kind to both valves.
-fn attach<S: Spool + 'static>(values: &[f64], sites: &mut Sites, spool: S) {
-    sites.limit_change(CHANGE_A);
+fn attach<S: Spool + 'static>(values: &[f64], hooks: &mut EffectHooks, spool: S) {
+    hooks.limit_change(CHANGE_A);
     let band_a = values[0];
-    sites.currents.push(Box::new(Sticking {
+    hooks.currents.push(Box::new(Sticking {
         friction: Friction {
             band_a,
             jump_a: band_a * values[1],

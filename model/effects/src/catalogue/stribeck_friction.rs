@@ -4,8 +4,8 @@
 //! which is reached within a few millimetres a second (Simscape's cylinder friction; Jelali & Kroll 4.3). k is 1.2 to
 //! 1.6, v_s 5 to 20 mm/s.
 
-use hitch_plant::hooks::sites::{RunConditions, Sites};
-use hitch_plant::{Channel, Parameter, Search};
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
+use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::catalogue::coulomb_friction::TRANSITION_SPEED_M_S;
 use crate::described::Described;
@@ -23,6 +23,7 @@ pub static STRIBECK_FRICTION: Described = Described {
         Parameter {
             name: "force",
             unit: "N",
+            kind: ParameterKind::Other,
             key: "force_n",
             meaning: "friction while sliding",
             null: 0.0,
@@ -33,6 +34,7 @@ pub static STRIBECK_FRICTION: Described = Described {
         Parameter {
             name: "breakaway",
             unit: "",
+            kind: ParameterKind::Other,
             key: "breakaway",
             meaning: "friction at the point of breaking loose over that",
             null: 1.0,
@@ -43,6 +45,7 @@ pub static STRIBECK_FRICTION: Described = Described {
         Parameter {
             name: "speed",
             unit: "mm/s",
+            kind: ParameterKind::Other,
             key: "speed_mm_s",
             meaning: "speed over which it falls to that",
             null: 0.0,
@@ -53,14 +56,14 @@ pub static STRIBECK_FRICTION: Described = Described {
     ],
     channels: &[Channel::CylinderPressure, Channel::RockerAngle],
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
     attach,
 };
 
-fn attach(values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
+fn attach(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {
     let (force_n, breakaway, speed_m_s) = (values[0], values[1], values[2] * 1e-3);
-    sites.friction.push(Box::new(move |state, _| {
+    hooks.friction.push(Box::new(move |state, _| {
         let v_m_s = state.speed_m_s;
         let factor = 1.0 + (breakaway - 1.0) * (-v_m_s.abs() / speed_m_s).exp();
         force_n * factor * (v_m_s / TRANSITION_SPEED_M_S).tanh()

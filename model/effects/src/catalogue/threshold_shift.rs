@@ -4,8 +4,8 @@
 //! 0.10 A from one to the next, and more after wear or a changed spring; the paper's lowering valve opens at 1.25 A
 //! instead of the data sheet's 0.999 A.
 
-use hitch_plant::hooks::sites::{CurrentStage, RunConditions, Sites};
-use hitch_plant::{Channel, Currents, Effect, Parameter, Valve};
+use hitch_plant::hooks::effect_hooks::{CurrentStage, EffectHooks, RunConditions};
+use hitch_plant::{Channel, Currents, Effect, Parameter, ParameterKind, Valve};
 
 /// Threshold shift of one valve.
 #[derive(Debug)]
@@ -39,6 +39,7 @@ pub static LOWERING: ThresholdShift = ThresholdShift {
 static PARAMETERS: [Parameter; 1] = [Parameter {
     name: "shift",
     unit: "A",
+    kind: ParameterKind::Current,
     key: "shift_a",
     meaning: "current by which the whole characteristic moves up",
     null: 0.0,
@@ -76,8 +77,8 @@ impl Effect for ThresholdShift {
         self.channels
     }
 
-    fn attach(&self, values: &[f64], _: RunConditions<'_>, sites: &mut Sites) {
-        sites.currents.push(Box::new(Shift {
+    fn attach(&self, values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {
+        hooks.currents.push(Box::new(Shift {
             valve: self.valve,
             shift_a: values[0],
         }));

@@ -6,8 +6,8 @@
 //! are never less than none.
 
 use hitch_plant::components::oil::viscosity_m2_s;
-use hitch_plant::hooks::sites::Sites;
-use hitch_plant::{Channel, Dynamics, Parameter, Search};
+use hitch_plant::hooks::effect_hooks::EffectHooks;
+use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
@@ -17,6 +17,7 @@ const TOLD_AT_C: f64 = 40.0;
 const COEFFICIENT: Parameter = Parameter {
     name: "coefficient",
     unit: "N s/m",
+    kind: ParameterKind::Other,
     key: "coefficient_n_s_m",
     meaning: "force over speed, with oil of 40 degC",
     null: 0.0,
@@ -47,14 +48,14 @@ pub static EVEN: Described = Described {
     }],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, conditions, sites| {
+    attach: |values, conditions, hooks| {
         let declared_n_s_m = match conditions.constants.dynamics {
             Dynamics::Steady => 0.0,
             Dynamics::Dynamic => conditions.constants.cylinder.viscous_friction_n_s_m,
         };
-        oppose(values[0].max(-declared_n_s_m), sites);
+        oppose(values[0].max(-declared_n_s_m), hooks);
     },
 };
 
@@ -72,6 +73,7 @@ pub static THICKENING: Described = Described {
         Parameter {
             name: "exponent",
             unit: "",
+            kind: ParameterKind::Other,
             key: "exponent",
             meaning: "power of the viscosity that it goes with",
             null: 0.0,
@@ -82,16 +84,16 @@ pub static THICKENING: Described = Described {
     ],
     channels: CHANNELS,
     needs: None,
-    search: Search::Secants,
+    size_response: SizeResponse::Smooth,
     refines: false,
-    attach: |values, conditions, sites| {
+    attach: |values, conditions, hooks| {
         let thickness = viscosity_m2_s(conditions.oil_temperature_c) / viscosity_m2_s(TOLD_AT_C);
-        oppose(values[0] * thickness.powf(values[1]), sites);
+        oppose(values[0] * thickness.powf(values[1]), hooks);
     },
 };
 
-fn oppose(coefficient_n_s_m: f64, sites: &mut Sites) {
-    sites.friction.push(Box::new(move |state, _| {
+fn oppose(coefficient_n_s_m: f64, hooks: &mut EffectHooks) {
+    hooks.friction.push(Box::new(move |state, _| {
         coefficient_n_s_m * state.speed_m_s
     }));
 }

@@ -39,7 +39,7 @@ pub struct Bin {
 
 /// Residuals of the worst channel along a signal.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Profile {
+pub struct ErrorProfile {
     /// Name of the signal, with its unit.
     pub signal: String,
     /// The channel.
@@ -54,7 +54,7 @@ pub struct Profile {
     pub end: Option<&'static str>,
 }
 
-impl Profile {
+impl ErrorProfile {
     /// Profile along a signal, by the attribution's name; `None` if the campaign does not show it.
     #[must_use]
     pub fn new(experiment: &Experiment, fit: &Fit, signal: &str) -> Option<Self> {
@@ -87,7 +87,7 @@ impl Profile {
     }
 }
 
-impl std::fmt::Display for Profile {
+impl std::fmt::Display for ErrorProfile {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (low, high) = self.stretch;
         let digits = usize::from(high - low < 10.0);

@@ -19,7 +19,7 @@ const STILL_MOST: f64 = 0.5;
 /// Whether the error of `before` is large in every measured channel and in nearly every cell, and the effects of `after`
 /// leave most cells wrong.
 #[must_use]
-pub fn is_hopeless(experiment: &Experiment, before: &Fit, after: &Fit) -> bool {
+pub fn is_unsuitable(experiment: &Experiment, before: &Fit, after: &Fit) -> bool {
     let mut measured = (0..4).filter(|&channel| before.weights.counts[channel] > 0);
     let is_far = before.error() > FAR
         && measured.all(|channel| before.channel_error(channel) > FAR_IN_A_CHANNEL);

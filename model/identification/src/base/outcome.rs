@@ -118,7 +118,7 @@ pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&s
     let model = problem.model(&point.theta);
     let model = model.unwrap_or_else(|| declared.clone());
     let after = refine(experiment, &model, point.estimate.clone());
-    let told = Told {
+    let told = Report {
         declared,
         model: &model,
         parameters: &parameters,
@@ -214,7 +214,7 @@ fn sigma_of(information: DMatrix<f64>, unknown: usize, largest: f64) -> f64 {
 }
 
 /// What is told of a fit.
-struct Told<'a> {
+struct Report<'a> {
     declared: &'a Model,
     model: &'a Model,
     parameters: &'a [Parameter],
@@ -224,7 +224,7 @@ struct Told<'a> {
     prior: &'a Prior,
 }
 
-impl Told<'_> {
+impl Report<'_> {
     fn constants(&self) -> Vec<FittedConstant> {
         let all = self.parameters.iter().enumerate();
         all.filter_map(|(k, parameter)| self.constant(k, parameter))

@@ -5,13 +5,15 @@ use std::sync::Arc;
 use hitch_campaign::{Bench, Campaign, Run};
 use hitch_plant::simulation::{Trace, simulate_in};
 use hitch_plant::solver::dynamic::Steps;
-use hitch_plant::{AddedEffect, Channel, Currents, Dynamics, HitchRig, Model, Rig, Search, units};
+use hitch_plant::{
+    AddedEffect, Channel, Currents, Dynamics, HitchRig, Model, Rig, SizeResponse, units,
+};
 use rayon::prelude::*;
 
 use crate::data::clocks::{Clocks, FARTHEST_S};
 use crate::data::condense::Stretches;
 use crate::data::conditioning::{Drive, jumps_within_s};
-use crate::data::defect_correction::Shortfall;
+use crate::data::defect_correction::DefectCorrection;
 use crate::data::noise::{
     channel_noise, current_noise, current_persistence, median, persistence_block,
 };
@@ -55,7 +57,7 @@ pub struct ReadyRun {
     pub settling_samples: usize,
     traces: Traces,
     /// What drafts of the run are short of; `None` where it is simulated finely.
-    shortfall: Option<Arc<Shortfall>>,
+    defect_correction: Option<Arc<DefectCorrection>>,
 }
 
 /// A campaign, ready.
@@ -110,14 +112,14 @@ impl Experiment {
         }
     }
 
-    /// The experiment with its runs drafted around a fitted model with its nuisances, one a run: as good there, and for
+    /// The experiment with its runs coarse_in_time around a fitted model with its nuisances, one a run: as good there, and for
     /// the search near it.
     #[must_use]
-    pub fn drafted(&self, model: &Model, nuisances: &[Nuisance]) -> Self {
+    pub fn coarse_in_time(&self, model: &Model, nuisances: &[Nuisance]) -> Self {
         let runs = self.runs.par_iter().zip(nuisances);
         Self {
             runs: runs
-                .map(|(run, &nuisance)| run.drafted(model, nuisance))
+                .map(|(run, &nuisance)| run.coarse_in_time(model, nuisance))
                 .collect(),
             ..self.without_runs()
         }
@@ -197,7 +199,7 @@ impl ReadyRun {
             settling_samples,
             averaged: vec![1.0; samples],
             traces: Traces::new(samples),
-            shortfall: None,
+            defect_correction: None,
         }
     }
 
@@ -220,8 +222,8 @@ impl ReadyRun {
         }
     }
 
-    /// The run drafted around a model and a nuisance; as it is if there are no drafts of it.
-    fn drafted(&self, model: &Model, nuisance: Nuisance) -> Self {
+    /// The run coarse_in_time around a model and a nuisance; as it is if there are no drafts of it.
+    fn coarse_in_time(&self, model: &Model, nuisance: Nuisance) -> Self {
         // A model without inertia takes long steps already.
         let rings = model.constants().dynamics == Dynamics::Dynamic;
         if !self.on_hitch() || !rings || bounces(model) {
@@ -229,10 +231,10 @@ impl ReadyRun {
         }
         let in_step = CurrentShift::default();
         let fine = self.trace(model, nuisance, in_step);
-        let drafted = self.driven(Steps::DRAFT, model, nuisance, in_step);
+        let coarse_in_time = self.driven(Steps::DRAFT, model, nuisance, in_step);
         Self {
             traces: Traces::new(self.len()),
-            shortfall: Some(Arc::new(Shortfall::new(&fine, &drafted))),
+            defect_correction: Some(Arc::new(DefectCorrection::new(&fine, &coarse_in_time))),
             ..self.clone()
         }
     }
@@ -251,13 +253,13 @@ impl ReadyRun {
                 .collect(),
             averaged: stretches.sizes(),
             traces: Traces::new(stretches.len()),
-            shortfall: None,
+            defect_correction: None,
             ..*self
         };
         let in_step = CurrentShift::default();
         let all = stretches.mean_trace(&self.trace(model, nuisance, in_step));
         let few = condensed.driven(Steps::DRAFT, model, nuisance, in_step);
-        condensed.shortfall = Some(Arc::new(Shortfall::new(&all, &few)));
+        condensed.defect_correction = Some(Arc::new(DefectCorrection::new(&all, &few)));
         condensed
     }
 
@@ -316,9 +318,9 @@ impl ReadyRun {
     /// [`ReadyRun::trace`] made anew, even if it is kept.
     #[must_use]
     pub fn simulated(&self, model: &Model, nuisance: Nuisance, shift: CurrentShift) -> Trace {
-        match &self.shortfall {
-            Some(shortfall) if !bounces(model) => {
-                shortfall.added_to(self.driven(Steps::DRAFT, model, nuisance, shift))
+        match &self.defect_correction {
+            Some(defect_correction) if !bounces(model) => {
+                defect_correction.added_to(self.driven(Steps::DRAFT, model, nuisance, shift))
             }
             _ => self.driven(Steps::FINE, model, nuisance, shift),
         }
@@ -365,7 +367,9 @@ impl ReadyRun {
 
 /// Whether a hitch bounces on stiff ground: steps that are twice as long follow the ringing of load on oil, not that.
 fn bounces(model: &Model) -> bool {
-    let lands = |added: &AddedEffect| added.effect.search() == Search::Places && !added.is_null();
+    let lands = |added: &AddedEffect| {
+        added.effect.size_response() == SizeResponse::Located && !added.is_null()
+    };
     model.constants().dynamics == Dynamics::Dynamic && model.effects.iter().any(lands)
 }
 

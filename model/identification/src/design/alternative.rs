@@ -6,7 +6,7 @@ use crate::data::experiment::Experiment;
 use crate::estimate::Shared;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{Jacobian, difference, dot, residuals};
-use crate::estimation::nuisance_projection::Frame;
+use crate::estimation::nuisance_projection::NuisanceProjection;
 
 /// An effect that would explain the campaign as well in place of another.
 #[derive(Debug, Clone)]
@@ -67,7 +67,7 @@ pub struct Place<'a> {
     whole: &'a Fit,
     last: usize,
     /// All that is free besides the last effect.
-    frame: Frame<Jacobian>,
+    projection: NuisanceProjection<Jacobian>,
     /// Residuals with nothing in the place.
     empty: Vec<Vec<f64>>,
     /// What the last effect does that nothing else can imitate.
@@ -86,7 +86,7 @@ impl<'a> Place<'a> {
             model,
             whole,
             last,
-            frame: Frame::new(jacobian, &whole.estimate, 0..0),
+            projection: NuisanceProjection::new(jacobian, &whole.estimate, 0..0),
             empty: Vec::new(),
             own: Vec::new(),
         };
@@ -122,7 +122,7 @@ impl<'a> Place<'a> {
 
     /// What is done to the campaign by what leaves some residuals, less what all that is free besides can imitate.
     fn signature(&self, present: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        self.frame.project(difference(&self.empty, present))
+        self.projection.project(difference(&self.empty, present))
     }
 
     fn residuals(&self, effect: AddedEffect) -> Vec<Vec<f64>> {

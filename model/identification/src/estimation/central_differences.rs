@@ -6,7 +6,7 @@
 //! column imitates it: it counts as information that is not there, and the interval comes out too narrow. Both ways
 //! the curvature drops out (Nocedal & Wright 2006, ch. 8.1), so the way may be longer and no single sample decides.
 
-use hitch_plant::{Model, Search};
+use hitch_plant::{Model, SizeResponse};
 use rayon::prelude::*;
 
 use crate::data::experiment::Experiment;
@@ -30,8 +30,8 @@ pub(crate) fn both_ways(
     let smooth = |shared: Shared| {
         matches!(shared, Shared::Effect(effect, _) if effect == last)
             && matches!(
-                fit.estimate.search(shared),
-                Search::Secants | Search::Ledges
+                fit.estimate.size_response(shared),
+                SizeResponse::Smooth | SizeResponse::Stepped
             )
     };
     let columns: Vec<(usize, Vec<Vec<f64>>)> = jacobian

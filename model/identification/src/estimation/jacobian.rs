@@ -5,7 +5,7 @@
 //! as the number of shared parameters, and columns from which a nuisance can no longer take anything: the projected
 //! signatures.
 
-use hitch_plant::{Channel, Model, Search};
+use hitch_plant::{Channel, Model, SizeResponse};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -159,10 +159,12 @@ fn shared_column(
     parameter: Shared,
 ) -> Vec<Vec<f64>> {
     let (value, scale) = (estimate.get(parameter), estimate.scale(parameter));
-    let step = match estimate.search(parameter) {
-        Search::Places => FINE_STEP * scale,
-        Search::Secants if experiment.ringing => FINE_STEP * value.abs().max(scale),
-        Search::Secants | Search::Jumps | Search::Ledges => STEP * value.abs().max(scale),
+    let step = match estimate.size_response(parameter) {
+        SizeResponse::Located => FINE_STEP * scale,
+        SizeResponse::Smooth if experiment.ringing => FINE_STEP * value.abs().max(scale),
+        SizeResponse::Smooth | SizeResponse::Switching | SizeResponse::Stepped => {
+            STEP * value.abs().max(scale)
+        }
     };
     let mut moved = estimate.clone();
     moved.set(parameter, value + step);

@@ -6,7 +6,7 @@
 //! A Jacobian takes a simulation a parameter, a step takes one. So while steps bring what a Jacobian promised it is kept
 //! and corrected by what they showed (Broyden 1965); a descent ends only where one made anew promises nothing more.
 
-use hitch_plant::{Model, Search};
+use hitch_plant::{Model, SizeResponse};
 
 use crate::data::experiment::Experiment;
 use crate::estimate::Step;
@@ -161,7 +161,7 @@ impl Slopes<'_> {
     /// The first step, by rising damping, that lowers the cost.
     fn step(&self, jacobian: &Jacobian, point: &Point, damping: f64) -> Option<Taken> {
         // The slope of what jumps says little of where a step of it leads, and spoils that of all the others.
-        let jumps = |shared| point.estimate.search(shared) == Search::Jumps;
+        let jumps = |shared| point.estimate.size_response(shared) == SizeResponse::Switching;
         let jumping = jacobian.shared.iter().any(|&shared| jumps(shared));
         let better = |held: &dyn Fn(Shared) -> bool, damping: f64| {
             let step = jacobian.step(&point.estimate, damping, held)?;

@@ -9,7 +9,7 @@ use crate::estimate::Estimate;
 use crate::estimation::jacobian::{Jacobian, RunJacobian, dot, square_sum, subtract};
 
 /// Columns of a Jacobian that are free, ready to be projected out, with every run's load.
-pub struct Frame<J> {
+pub struct NuisanceProjection<J> {
     jacobian: J,
     kept: Vec<usize>,
     /// Normal matrix of the kept columns, the loads eliminated, and its root.
@@ -21,13 +21,13 @@ pub struct Frame<J> {
     loads: Vec<Option<Load>>,
     /// Pull of the priors of the shared parameters.
     priors: DVector<f64>,
-    /// Products of the frame's own residuals.
+    /// Products of the projection's own residuals.
     own: Products,
-    /// [`Frame::cost_after`] of the frame's own residuals.
+    /// [`NuisanceProjection::cost_after`] of the projection's own residuals.
     here: f64,
 }
 
-/// A run's load in a frame.
+/// A run's load in a projection.
 struct Load {
     /// Squared length of its column, with the unit prior.
     square: f64,
@@ -37,7 +37,7 @@ struct Load {
     coupling: DVector<f64>,
 }
 
-/// Products of residuals with the columns of a frame: all of theirs that is linear in them.
+/// Products of residuals with the columns of a projection: all of theirs that is linear in them.
 #[derive(Clone)]
 struct Products {
     /// With each run's load.
@@ -57,7 +57,7 @@ impl Products {
     }
 }
 
-impl<J: Borrow<Jacobian>> Frame<J> {
+impl<J: Borrow<Jacobian>> NuisanceProjection<J> {
     /// All shared parameters of the Jacobian but the columns `left_out`, and but those that stand at an end of their
     /// range: a clock that cannot move on absorbs nothing.
     #[must_use]
@@ -94,7 +94,7 @@ impl<J: Borrow<Jacobian>> Frame<J> {
             loads: Vec::new(),
             columns: DVector::zeros(kept.len()),
         };
-        let mut frame = Self {
+        let mut projection = Self {
             jacobian: owner,
             normal: matrix.clone().cholesky(),
             matrix,
@@ -105,30 +105,30 @@ impl<J: Borrow<Jacobian>> Frame<J> {
             here: 0.0,
             kept,
         };
-        let runs = &frame.jacobian().runs;
+        let runs = &projection.jacobian().runs;
         let own: Vec<&[f64]> = runs.iter().map(|run| run.residual.as_slice()).collect();
         let square = own.iter().map(|run| dot(run, run)).sum();
-        let products = frame.products(own);
-        frame.priors = right.select_rows(&frame.kept) - frame.pull(&products);
-        frame.here = frame.cost(square, &products);
-        frame.own = products;
-        frame
+        let products = projection.products(own);
+        projection.priors = right.select_rows(&projection.kept) - projection.pull(&products);
+        projection.here = projection.cost(square, &products);
+        projection.own = products;
+        projection
     }
 
     /// Removes from a signature what the free parameters and the loads can imitate.
     #[must_use]
     pub fn project(&self, signature: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-        self.project_at_a_price(signature).0
+        self.project_with_penalty(signature).0
     }
 
-    /// [`Frame::project`], and what the imitation costs in priors: a load far from what was weighed speaks against it.
+    /// [`NuisanceProjection::project`], and what the imitation costs in priors: a load far from what was weighed speaks against it.
     #[must_use]
-    pub fn project_at_a_price(&self, signature: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, f64) {
+    pub fn project_with_penalty(&self, signature: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, f64) {
         let shares = self.shares(&self.coupling(&signature));
         self.without(signature, &shares)
     }
 
-    /// [`Frame::project_at_a_price`] of what is there as it stands, not of a direction: no parameter imitates it
+    /// [`NuisanceProjection::project_with_penalty`] of what is there as it stands, not of a direction: no parameter imitates it
     /// beyond the end of its range.
     #[must_use]
     pub fn project_within_range(&self, signature: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, f64) {
@@ -173,11 +173,11 @@ impl<J: Borrow<Jacobian>> Frame<J> {
         Some(matrix.cholesky()?.solve(&right))
     }
 
-    /// A signature less shares of the free columns and what the loads can imitate of the rest, and the price of both.
+    /// A signature less shares of the free columns and what the loads can imitate of the rest, and the penalty of both.
     fn without(&self, mut signature: Vec<Vec<f64>>, shares: &DVector<f64>) -> (Vec<Vec<f64>>, f64) {
         let with_prior = |&(&kept, _): &(&usize, &f64)| self.jacobian().shared[kept].has_prior();
         let clocks = self.kept.iter().zip(shares.iter()).filter(with_prior);
-        let mut price: f64 = clocks.map(|(_, share)| share * share).sum();
+        let mut penalty: f64 = clocks.map(|(_, share)| share * share).sum();
         let runs = self.jacobian().runs.iter().zip(&self.loads);
         for ((run, load), left) in runs.zip(&mut signature) {
             for (&kept, &share) in self.kept.iter().zip(shares.iter()) {
@@ -186,14 +186,14 @@ impl<J: Borrow<Jacobian>> Frame<J> {
             if let (Some(column), Some(load)) = (&run.load, load) {
                 let share = dot(column, left) / load.square;
                 subtract(left, share, column);
-                price += share * share;
+                penalty += share * share;
             }
         }
-        (signature, price)
+        (signature, penalty)
     }
 
     /// Cost that would be left if the free parameters took from `residuals` what they can, to first order; `residuals`
-    /// belong to the frame's estimate with something else changed.
+    /// belong to the projection's estimate with something else changed.
     #[must_use]
     pub fn cost_after(&self, residuals: &[Vec<f64>]) -> f64 {
         self.cost(square_sum(residuals), &self.products(residuals))
@@ -215,13 +215,13 @@ impl<J: Borrow<Jacobian>> Frame<J> {
         synchronised
     }
 
-    /// [`Frame::cost_after`] of the frame's own residuals: what there is without anything changed.
+    /// [`NuisanceProjection::cost_after`] of the projection's own residuals: what there is without anything changed.
     #[must_use]
     pub fn here(&self) -> f64 {
         self.here
     }
 
-    /// How far to go from the frame's own residuals to `residuals` for the least [`Frame::cost_after`], within `low` to
+    /// How far to go from the projection's own residuals to `residuals` for the least [`NuisanceProjection::cost_after`], within `low` to
     /// `high` times the way, and that cost: a parabola through both ends and the same way backwards.
     #[must_use]
     pub fn along(&self, residuals: &[Vec<f64>], low: f64, high: f64) -> (f64, f64) {
@@ -243,7 +243,7 @@ impl<J: Borrow<Jacobian>> Frame<J> {
         (share, here + share * (slope + share * bend))
     }
 
-    /// [`Frame::cost_after`] of residuals with this sum of squares and these products.
+    /// [`NuisanceProjection::cost_after`] of residuals with this sum of squares and these products.
     fn cost(&self, square: f64, products: &Products) -> f64 {
         let runs = self.jacobian().runs.iter();
         let mut cost = square + runs.map(|run| run.load_value.powi(2)).sum::<f64>();

@@ -12,7 +12,7 @@ use crate::data::experiment::Experiment;
 use crate::estimate::Shared;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{Jacobian, huber_residuals};
-use crate::estimation::nuisance_projection::Frame;
+use crate::estimation::nuisance_projection::NuisanceProjection;
 
 /// A rise of the cost that is less than this share of the promised one breaks the promise.
 const KEPT: f64 = 0.5;
@@ -39,7 +39,7 @@ pub struct Profile<'a> {
     /// Which parameter.
     pub shared: Shared,
     /// All that is free besides it, at the fit.
-    pub frame: &'a Frame<&'a Jacobian>,
+    pub projection: &'a NuisanceProjection<&'a Jacobian>,
 }
 
 impl Profile<'_> {
@@ -79,6 +79,6 @@ impl Profile<'_> {
         }
         moved.set(self.shared, value);
         let residuals = huber_residuals(self.experiment, self.model, &self.fit.weights, &moved);
-        self.frame.cost_after(&residuals) - self.frame.here()
+        self.projection.cost_after(&residuals) - self.projection.here()
     }
 }

@@ -13,9 +13,9 @@ use crate::data::regime::Regime;
 use crate::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
 use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, evaluate, fit, refine, with_last};
-use crate::explanation::undetected::{Unseen, unseen};
+use crate::explanation::undetected::{Undetected, undetected};
 use crate::search::candidates::{Progress, showing};
-use crate::search::single::{confidences, try_each};
+use crate::search::single_effects::{confidences, try_each};
 use crate::search::subset::{Found, Options, search};
 use crate::selection::candidate::{Candidate, weigh};
 use crate::selection::evidence::TOLD_APART;
@@ -108,7 +108,7 @@ pub struct Explanation {
     /// What to measure next if the campaign cannot decide, or not between two effects.
     pub next_experiment: Option<NextExperiment>,
     /// Effects that the campaign would not show; empty if what it does show is not explained.
-    pub unseen: Vec<Unseen>,
+    pub undetected: Vec<Undetected>,
     /// Whether the time was up before the search had ended.
     pub unfinished: bool,
 }
@@ -353,9 +353,9 @@ fn concluded(
         Verdict::NotEnoughData => missing.map(NextExperiment::missing),
         _ => None,
     };
-    let unseen = match verdict {
+    let undetected = match verdict {
         Verdict::Unexplained => Vec::new(),
-        _ => unseen(experiment, model, &after),
+        _ => undetected(experiment, model, &after),
     };
     Explanation {
         before,
@@ -366,7 +366,7 @@ fn concluded(
         cells,
         rest,
         next_experiment,
-        unseen,
+        undetected,
         unfinished: found.unfinished,
     }
 }

@@ -3,19 +3,17 @@
 //! Its flow ends there within a few milliseconds, and a sample that was taken just before or just after is off by the
 //! whole flow: a tenth of a degree decides on which side it lies.
 
+use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::simulation::Trace;
 use hitch_plant::solver::root;
-use hitch_plant::{Dynamics, Model};
+use hitch_plant::{AddedEffect, Dynamics, Model, SizeResponse};
 
 use crate::data::experiment::ReadyRun;
 
-/// The id of the effect that brings the ground.
-const GROUND: &str = "ground-contact";
-
 /// Samples next to a landing or a lift-off in either of two traces of a run. A ringing hitch bounces instead, which lasts.
-pub(crate) fn landings(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
+pub(crate) fn contact_mask(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
     let mut near = vec![false; run.len()];
-    let (true, Some(ground_deg)) = (run.on_hitch(), ground_deg(model)) else {
+    let (true, Some(ground_deg)) = (run.on_hitch(), ground_deg(run, model)) else {
         return near;
     };
     for trace in traces {
@@ -35,15 +33,28 @@ pub(crate) fn landings(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Ve
 }
 
 /// Rocker angle at which the hitch touches the ground, degree, in a quasi-static model that has ground.
-fn ground_deg(model: &Model) -> Option<f64> {
-    let mut effects = model.effects.iter();
-    let ground = effects.find(|added| added.effect.id() == GROUND && !added.is_null())?;
+fn ground_deg(run: &ReadyRun, model: &Model) -> Option<f64> {
     if model.constants().dynamics == Dynamics::Dynamic {
         return None;
     }
     let linkage = model.linkage();
-    let height_m = linkage.at(0.0).height_m + ground.values[0];
+    let height_m = ground_m(run, model)?;
     let above_m = |piston_m: f64| linkage.at(piston_m).height_m - height_m;
     let piston_m = root::rising(above_m, 0.0, model.constants().cylinder.stroke_m, 1e-6);
     Some(linkage.at(piston_m).rocker_angle_rad.to_degrees())
+}
+
+/// Height of the ground over the rocker shaft, m, that the effects of a model bring.
+fn ground_m(run: &ReadyRun, model: &Model) -> Option<f64> {
+    let located = |added: &&AddedEffect| added.effect.size_response() == SizeResponse::Located;
+    let mut hooks = EffectHooks::default();
+    let conditions = RunConditions {
+        oil_temperature_c: run.oil_temperature_c,
+        constants: model.constants(),
+        linkage: model.linkage(),
+    };
+    for added in model.effects.iter().filter(located) {
+        added.attach(conditions, &mut hooks);
+    }
+    hooks.ground.map(|ground| ground.height_m)
 }

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use crate::data::experiment::{Experiment, ReadyRun};
 use crate::data::trace_cache::CurrentShift;
 use crate::estimate::Estimate;
-use crate::residuals::contact_mask::landings;
+use crate::residuals::contact_mask::contact_mask;
 
 /// A sample whose yardstick grows beyond this many times the instrument's noise is left out.
 const UNKNOWABLE: f64 = 8.0;
@@ -129,8 +129,8 @@ impl RunWeights {
         };
         let at_an_edge = |sample: usize| edges.as_ref().is_some_and(|edges| edges[sample]);
         let stops = at_a_stop(run, model, [&below, &above]);
-        let landings = landings(run, model, [&below, &above]);
-        let hangs_on_a_hair = |sample: usize| stops[sample] || landings[sample];
+        let contact_mask = contact_mask(run, model, [&below, &above]);
+        let hangs_on_a_hair = |sample: usize| stops[sample] || contact_mask[sample];
         let ringing = experiment.ringing;
         for channel in [
             Channel::PumpPressure,

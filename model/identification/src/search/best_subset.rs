@@ -7,8 +7,8 @@ use std::collections::HashSet;
 
 use rayon::prelude::*;
 
-use crate::search::entry::Entry;
-use crate::search::gram::Gram;
+use crate::search::dictionary_entry::Entry;
+use crate::search::gram_matrix::Gram;
 
 /// Size up to which every subset is looked at.
 const EXACT: usize = 2;

@@ -5,7 +5,7 @@ use hitch_plant::{Effect, Model};
 use crate::data::experiment::Experiment;
 use crate::estimate::Estimate;
 
-/// Told of what is being done, for progress displays.
+/// Report of what is being done, for progress displays.
 pub type Progress<'a> = &'a (dyn Fn(&str) + Sync);
 
 /// Effects that the plant can have and the estimate has not.

@@ -4,7 +4,7 @@
 //! dead time, how much a second stage) tells them apart, but between two samples a moved clock rounds the corners as a
 //! second stage does: there are valleys with clocks that are off, and no slope leads from one to the next.
 
-use hitch_plant::{Effect, Model};
+use hitch_plant::{Effect, Model, ParameterKind};
 
 use crate::data::clocks::{Clocks, OFFSET_PRIOR_S};
 use crate::data::experiment::Experiment;
@@ -25,7 +25,7 @@ pub(crate) fn on_time(experiment: &Experiment, model: &Model, fit: Fit) -> Fit {
 
 /// Whether an effect delays what a channel shows: its size is a time.
 pub(crate) fn is_delay(effect: &dyn Effect) -> bool {
-    effect.parameters()[0].unit == "s"
+    effect.parameters()[0].kind == ParameterKind::Time
 }
 
 /// An estimate whose lag has what the clocks of its channels took; `None` without a lag or where the clocks are in step.

@@ -1,19 +1,19 @@
 //! The dictionary: every way in which a model may be wrong, simulated around a fit.
 
-use hitch_plant::{AddedEffect, Effect, Search};
+use hitch_plant::{AddedEffect, Effect, SizeResponse};
 use rayon::prelude::*;
 
 use crate::data::experiment::Experiment;
 use crate::estimate::{Estimate, Shared};
 use crate::estimation::jacobian::{Jacobian, difference, huber, subtract};
-use crate::estimation::nuisance_projection::Frame;
+use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::search::best_subset::Subset;
 use crate::search::candidates::possible;
-use crate::search::coarse::Coarse;
-use crate::search::entry::{Entry, Kind};
-use crate::search::gram::Gram;
+use crate::search::coarse_view::Coarse;
+use crate::search::dictionary_entry::{Entry, Kind};
+use crate::search::gram_matrix::Gram;
 use crate::search::scan_cache::Scans;
-use crate::search::screen::Screen;
+use crate::search::screening::Screen;
 use crate::search::secant_ends::FARTHEST;
 use crate::search::shape_starts::scaled;
 use crate::selection::candidate::{jacobian_by, slow_columns};
@@ -65,8 +65,8 @@ impl Dictionary {
     /// search has found it.
     pub fn is_start(&self, column: usize) -> bool {
         let entry = &self.entries[column];
-        let search = entry.added.effect.search();
-        let is_sought = matches!(search, Search::Jumps | Search::Places);
+        let search = entry.added.effect.size_response();
+        let is_sought = matches!(search, SizeResponse::Switching | SizeResponse::Located);
         self.is_thorough || entry.kind != Kind::New || !is_sought
     }
 
@@ -78,7 +78,7 @@ impl Dictionary {
                 subtract(left, share, change);
             }
         }
-        Frame::new(&self.jacobian, &self.estimate, 0..0).project(left)
+        NuisanceProjection::new(&self.jacobian, &self.estimate, 0..0).project(left)
     }
 }
 
@@ -109,7 +109,7 @@ impl Around<'_> {
         for entry in &own {
             add(&mut without, &entry.change);
         }
-        let rough = self.screen(&self.coarse.drafted, &jacobian, &here);
+        let rough = self.screen(&self.coarse.coarse_in_time, &jacobian, &here);
         let new = rough.columns(self.effects.clone());
         let forms = self.other_forms(&fine, &own);
         let changed = match self.changes {
@@ -132,7 +132,7 @@ impl Around<'_> {
         } = dictionary;
         let here = huber(seen.residuals.clone());
         let entries = self
-            .screen(&self.coarse.drafted, &jacobian, &here)
+            .screen(&self.coarse.coarse_in_time, &jacobian, &here)
             .fine_columns(entries);
         Dictionary {
             is_thorough: true,
@@ -152,7 +152,7 @@ impl Around<'_> {
             scans: self.scans,
             worthwhile: self.worthwhile,
             here,
-            frame: Frame::new(jacobian, &self.coarse.seen.estimate, 0..0),
+            projection: NuisanceProjection::new(jacobian, &self.coarse.seen.estimate, 0..0),
         }
     }
 

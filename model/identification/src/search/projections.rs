@@ -6,19 +6,19 @@ use hitch_plant::is_same;
 
 use crate::estimate::{Estimate, Shared};
 use crate::estimation::jacobian::Jacobian;
-use crate::estimation::nuisance_projection::Frame;
+use crate::estimation::nuisance_projection::NuisanceProjection;
 
-/// The frames of sets that have some of the effects of the present fit.
-pub(crate) struct Frames<'a> {
+/// The projections of sets that have some of the effects of the present fit.
+pub(crate) struct Projections<'a> {
     jacobian: &'a Jacobian,
     present: &'a Estimate,
     /// One a subset of the effects that are free at the present fit, by the bits of its number.
-    frames: Vec<OnceLock<Frame<&'a Jacobian>>>,
+    projections: Vec<OnceLock<NuisanceProjection<&'a Jacobian>>>,
     /// The effects that are free at the present fit, by their indices.
     free: Vec<usize>,
 }
 
-impl<'a> Frames<'a> {
+impl<'a> Projections<'a> {
     /// Of the sensitivities at the present fit.
     pub fn new(jacobian: &'a Jacobian, present: &'a Estimate) -> Self {
         let effects = 0..present.effects.len();
@@ -26,15 +26,15 @@ impl<'a> Frames<'a> {
             .filter(|&index| !present.is_unchanged(index))
             .collect();
         Self {
-            frames: (0..1usize << free.len()).map(|_| OnceLock::new()).collect(),
+            projections: (0..1usize << free.len()).map(|_| OnceLock::new()).collect(),
             jacobian,
             present,
             free,
         }
     }
 
-    /// The frame for residuals of an estimate. An effect of the present fit that it is without adapts to nothing.
-    pub fn of(&self, estimate: &Estimate) -> &Frame<&'a Jacobian> {
+    /// The projection for residuals of an estimate. An effect of the present fit that it is without adapts to nothing.
+    pub fn of(&self, estimate: &Estimate) -> &NuisanceProjection<&'a Jacobian> {
         let has = |&index: &usize| {
             let own = self.present.effects[index].effect;
             (0..estimate.effects.len()).any(|other| {
@@ -45,12 +45,12 @@ impl<'a> Frames<'a> {
         let subset = bits
             .map(|(bit, index)| usize::from(has(index)) << bit)
             .sum::<usize>();
-        self.frames[subset].get_or_init(|| {
+        self.projections[subset].get_or_init(|| {
             let keeps = |column: usize| match self.jacobian.shared[column] {
                 Shared::Effect(index, _) => has(&index),
                 Shared::Offset(_) => true,
             };
-            Frame::keeping(self.jacobian, self.present, keeps)
+            NuisanceProjection::keeping(self.jacobian, self.present, keeps)
         })
     }
 }

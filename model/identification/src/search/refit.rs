@@ -1,6 +1,6 @@
 //! Promising sets of effects fitted with the full model.
 
-use hitch_plant::Search;
+use hitch_plant::SizeResponse;
 use rayon::prelude::*;
 
 use crate::data::clocks::Clocks;
@@ -9,13 +9,13 @@ use crate::estimation::fit::{Fit, evaluate_weighted, refine, sketch, with_last};
 use crate::estimation::jacobian::{Jacobian, huber_residuals, square_sum};
 use crate::estimation::least_squares::Descent;
 use crate::search::candidates::Progress;
-use crate::search::coarse::Coarse;
+use crate::search::coarse_view::Coarse;
 use crate::search::delays::on_time;
-use crate::search::line_search::threaded;
-use crate::search::projections::Frames;
-use crate::search::promise::{CLOSE, NEAR, VALLEYS};
+use crate::search::line_search::line_searched;
+use crate::search::projections::Projections;
+use crate::search::promising_subsets::{CLOSE, NEAR, VALLEYS};
 use crate::search::subset::Options;
-use crate::selection::penalty::Price;
+use crate::selection::complexity_penalty::Penalty;
 use crate::selection::posterior::{Refitted, key, key_of};
 
 /// Most starts that are sketched, and sketches that are refined.
@@ -31,9 +31,9 @@ const MISSED: f64 = 2.0;
 /// What sets are fitted around.
 pub(crate) struct Refits<'a> {
     pub coarse: &'a Coarse<'a>,
-    /// The cost of the best fit so far with its price, seen as coarsely.
+    /// The cost of the best fit so far with its penalty, seen as coarsely.
     pub best: f64,
-    pub price: Price,
+    pub penalty: Penalty,
     pub options: Options<'a>,
 }
 
@@ -53,23 +53,24 @@ impl Refits<'_> {
             experiment,
             model,
             seen: present,
-            drafted,
+            coarse_in_time,
             ..
         } = self.coarse;
-        let frames = Frames::new(jacobian, &present.estimate);
-        let residuals =
-            |estimate: &Estimate| huber_residuals(drafted, model, &present.weights, estimate);
+        let projections = Projections::new(jacobian, &present.estimate);
+        let residuals = |estimate: &Estimate| {
+            huber_residuals(coarse_in_time, model, &present.weights, estimate)
+        };
         // The clocks have stood in for what is missing: where a start gives them back, slopes lead nowhere.
         let cost = |estimate: &Estimate| {
-            let frame = frames.of(estimate);
+            let projection = projections.of(estimate);
             let left = residuals(estimate);
-            let promised = frame.cost_after(&left);
-            let synchronised = frame.synchronised(estimate, &left);
+            let promised = projection.cost_after(&left);
+            let synchronised = projection.synchronised(estimate, &left);
             let kept = square_sum(&residuals(&synchronised)) + synchronised.prior_cost();
-            let price = self.price.of_all(estimate);
+            let penalty = self.penalty.of_all(estimate);
             match kept < promised {
-                true => (kept + price, synchronised),
-                false => (promised + price, estimate.clone()),
+                true => (kept + penalty, synchronised),
+                false => (promised + penalty, estimate.clone()),
             }
         };
         let starts = starts.into_par_iter();
@@ -79,7 +80,7 @@ impl Refits<'_> {
         let sketch = |start: Estimate| {
             let found = self.sketched(start);
             (
-                found.cost + self.price.of_all(&found.estimate),
+                found.cost + self.penalty.of_all(&found.estimate),
                 found.estimate,
             )
         };
@@ -89,31 +90,32 @@ impl Refits<'_> {
         let nearest = self.nearest(sketches, REFINED).into_par_iter();
         let approached: Vec<(f64, Fit)> = nearest
             .map(|start| {
-                let fit = on_time(drafted, model, refine(drafted, model, start));
+                let fit = on_time(coarse_in_time, model, refine(coarse_in_time, model, start));
                 let (estimate, weights) = (fit.estimate.clone(), present.weights.clone());
-                let under_present = evaluate_weighted(drafted, model, estimate, weights).cost;
-                let cost = fit.cost.min(under_present) + self.price.of_all(&fit.estimate);
+                let under_present =
+                    evaluate_weighted(coarse_in_time, model, estimate, weights).cost;
+                let cost = fit.cost.min(under_present) + self.penalty.of_all(&fit.estimate);
                 (cost, fit)
             })
             .collect();
         let likely = self.likely(approached).into_par_iter();
         let refined = likely.map(|estimate| {
             let fit = on_time(experiment, model, refine(experiment, model, estimate));
-            let fit = self.threaded(fit);
+            let fit = self.line_searched(fit);
             progress(&key(&fit).name());
             fit
         });
         refined.collect()
     }
 
-    /// Those of some coarse fits that may be the best to all samples: whose cost with its price is near the least one.
+    /// Those of some coarse fits that may be the best to all samples: whose cost with its penalty is near the least one.
     /// Sizes of effects that jump are less exact on fewer samples.
     fn likely(&self, approached: Vec<(f64, Fit)>) -> Vec<Estimate> {
         let Some((least, best)) = approached.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else {
             return Vec::new();
         };
         let least = least.min(self.best);
-        let near = least + CLOSE * Price::beside(&self.coarse.drafted, best).unit;
+        let near = least + CLOSE * Penalty::beside(&self.coarse.coarse_in_time, best).unit;
         let near_for_jumps = MISSED * least;
         let is_near = |(cost, fit): &(f64, Fit)| {
             *cost <= near || (is_rough(&fit.estimate) && *cost <= near_for_jumps)
@@ -122,16 +124,16 @@ impl Refits<'_> {
         near.map(|(_, fit)| fit.estimate.clone()).collect()
     }
 
-    /// At most so many estimates whose cost with its price is near the least one.
-    fn nearest(&self, mut priced: Vec<(f64, Estimate)>, most: usize) -> Vec<Estimate> {
-        priced.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let least = priced
+    /// At most so many estimates whose cost with its penalty is near the least one.
+    fn nearest(&self, mut penalized: Vec<(f64, Estimate)>, most: usize) -> Vec<Estimate> {
+        penalized.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let least = penalized
             .first()
             .map_or(self.best, |(cost, _)| cost.min(self.best));
         let present = &self.coarse.seen;
-        let here = present.cost + self.price.of_all(&present.estimate);
-        let near = least + (NEAR * (here - least)).max(CLOSE * self.price.unit);
-        let near = priced.into_iter().filter(|(cost, _)| *cost <= near);
+        let here = present.cost + self.penalty.of_all(&present.estimate);
+        let near = least + (NEAR * (here - least)).max(CLOSE * self.penalty.unit);
+        let near = penalized.into_iter().filter(|(cost, _)| *cost <= near);
         near.take(most).map(|(_, estimate)| estimate).collect()
     }
 
@@ -144,7 +146,7 @@ impl Refits<'_> {
         let from = |start: Estimate| {
             let found = self.sketched(start);
             let fit = refine(experiment, model, found.estimate);
-            self.threaded(on_time(experiment, model, fit))
+            self.line_searched(on_time(experiment, model, fit))
         };
         let in_step = start.clocks.are_off().then(|| {
             let clocks = Clocks::default();
@@ -165,11 +167,11 @@ impl Refits<'_> {
         let Coarse {
             model,
             seen,
-            drafted,
+            coarse_in_time,
             ..
         } = self.coarse;
         let weights = &seen.weights;
-        let from = |far: bool| sketch(drafted, model, weights, start.clone(), far);
+        let from = |far: bool| sketch(coarse_in_time, model, weights, start.clone(), far);
         let near = from(false);
         let samples = weights.count() as f64;
         if (near.cost / samples).sqrt() <= ASTRAY {
@@ -180,11 +182,12 @@ impl Refits<'_> {
     }
 
     /// A fit with the size of what jumps looked for finely.
-    fn threaded(&self, fit: Fit) -> Fit {
+    fn line_searched(&self, fit: Fit) -> Fit {
         let estimate = &fit.estimate;
         let jumps = (0..estimate.effects.len()).find(|&index| {
-            let search = estimate.effects[index].effect.search();
-            matches!(search, Search::Jumps | Search::Ledges) && !estimate.is_unchanged(index)
+            let search = estimate.effects[index].effect.size_response();
+            matches!(search, SizeResponse::Switching | SizeResponse::Stepped)
+                && !estimate.is_unchanged(index)
         });
         match jumps {
             Some(index) => {
@@ -192,14 +195,14 @@ impl Refits<'_> {
                     experiment, model, ..
                 } = self.coarse;
                 let last = with_last(experiment, model, &fit, index);
-                threaded(experiment, model, last)
+                line_searched(experiment, model, last)
             }
             None => fit,
         }
     }
 }
 
-/// An estimate without those members that do not explain as much as they have to, and its cost with their price; `cost`
+/// An estimate without those members that do not explain as much as they have to, and its cost with their penalty; `cost`
 /// gives that and the estimate adapted.
 fn lightened(start: Estimate, cost: impl Fn(&Estimate) -> (f64, Estimate)) -> (f64, Estimate) {
     let (mut least, mut estimate) = cost(&start);
@@ -223,14 +226,14 @@ fn lightened(start: Estimate, cost: impl Fn(&Estimate) -> (f64, Estimate)) -> (f
 /// Whether the cost does not fall smoothly along the size of some effect.
 fn is_rough(estimate: &Estimate) -> bool {
     let mut effects = estimate.effects.iter();
-    effects.any(|added| added.effect.search().is_rough())
+    effects.any(|added| added.effect.size_response().is_rough())
 }
 
 /// Of each set the estimate with the least cost, or the best few where there are many valleys.
-fn distinct(mut priced: Vec<(f64, Estimate)>) -> Vec<(f64, Estimate)> {
-    priced.sort_by(|a, b| a.0.total_cmp(&b.0));
+fn distinct(mut penalized: Vec<(f64, Estimate)>) -> Vec<(f64, Estimate)> {
+    penalized.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut distinct: Vec<(f64, Estimate)> = Vec::new();
-    for (cost, estimate) in priced {
+    for (cost, estimate) in penalized {
         let key = key_of(&estimate);
         let known = distinct
             .iter()

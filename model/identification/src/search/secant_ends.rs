@@ -1,9 +1,9 @@
 //! One form of an effect simulated at several sizes: the ends of its secants.
 
-use hitch_plant::{AddedEffect, Search};
+use hitch_plant::{AddedEffect, SizeResponse};
 
 use crate::estimation::jacobian::difference;
-use crate::search::entry::{Entry, Kind};
+use crate::search::dictionary_entry::{Entry, Kind};
 
 /// Ends of secants that are kept of each form besides the first ones: those that promise most.
 const KEPT: usize = 2;
@@ -84,17 +84,17 @@ pub(crate) fn columns(ends: Vec<End>, here: &[Vec<f64>]) -> Vec<Entry> {
 /// Whether two sizes of an effect are next to each other.
 fn is_same(one: &AddedEffect, other: &AddedEffect) -> bool {
     let (a, b) = (one.values[0], other.values[0]);
-    let same = match one.effect.search() {
-        Search::Secants => SAME,
-        Search::Jumps | Search::Ledges | Search::Places => SAME_ROUGH,
+    let same = match one.effect.size_response() {
+        SizeResponse::Smooth => SAME,
+        SizeResponse::Switching | SizeResponse::Stepped | SizeResponse::Located => SAME_ROUGH,
     };
     one.values[1..] == other.values[1..] && (a - b).abs() <= same * a.abs().max(b.abs())
 }
 
 fn column(end: End, trusted: (f64, f64), here: &[Vec<f64>]) -> Entry {
-    let share = match end.added.effect.search() {
-        Search::Jumps | Search::Places => JUMPING,
-        Search::Secants | Search::Ledges => trusted,
+    let share = match end.added.effect.size_response() {
+        SizeResponse::Switching | SizeResponse::Located => JUMPING,
+        SizeResponse::Smooth | SizeResponse::Stepped => trusted,
     };
     Entry {
         kind: Kind::New,

@@ -1,6 +1,6 @@
 //! Sizes and shapes at which an effect is simulated to see what it may explain.
 
-use hitch_plant::{AddedEffect, Channel, Effect, Parameter, Search};
+use hitch_plant::{AddedEffect, Channel, Effect, Parameter, SizeResponse};
 
 use crate::data::experiment::Experiment;
 use crate::search::size_scan::{Grid, JUMPS, PLACES, PLACES_AT_REST, RINGING};
@@ -17,12 +17,12 @@ pub(crate) fn scaled(added: &AddedEffect, share: f64) -> AddedEffect {
 /// jumps or bounces.
 pub(crate) fn valleys(experiment: &Experiment, effect: &dyn Effect) -> Option<&'static Grid> {
     let pressure_alone = effect.channels() == [Channel::CylinderPressure];
-    match effect.search() {
-        Search::Jumps => Some(&JUMPS),
-        Search::Places if experiment.ringing => Some(&PLACES),
-        Search::Places => Some(&PLACES_AT_REST),
-        Search::Secants if experiment.ringing && pressure_alone => Some(&RINGING),
-        Search::Secants | Search::Ledges => None,
+    match effect.size_response() {
+        SizeResponse::Switching => Some(&JUMPS),
+        SizeResponse::Located if experiment.ringing => Some(&PLACES),
+        SizeResponse::Located => Some(&PLACES_AT_REST),
+        SizeResponse::Smooth if experiment.ringing && pressure_alone => Some(&RINGING),
+        SizeResponse::Smooth | SizeResponse::Stepped => None,
     }
 }
 

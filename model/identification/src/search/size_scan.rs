@@ -22,8 +22,8 @@ pub(crate) struct Grid {
     step: Step,
     /// Which runs are looked at.
     telling: Telling,
-    /// What makes needles.
-    needles: Option<Needles>,
+    /// What makes narrow_valleys.
+    narrow_valleys: Option<NarrowValleys>,
     /// How far to either side of what the telling runs found all runs are looked at, as a share of the size.
     all_runs: f64,
     /// Values of the first shape from one end of its range to the other, by its magnitude if that is what counts; a fit
@@ -47,7 +47,7 @@ pub(crate) struct Grid {
 /// Sizes with the shape at its upper end: a spool that sticks on a ramp and jumps by the whole band comes to the same
 /// places again and again, so that the smaller a band is, the closer it has to be met.
 #[derive(Clone, Copy)]
-struct Needles {
+struct NarrowValleys {
     /// Smallest and largest size, in typical sizes.
     sizes: [f64; 2],
     /// Share by which a size is larger than the one before, for each typical size, and at most.
@@ -78,7 +78,7 @@ pub(crate) static JUMPS: Grid = Grid {
     sizes: [0.12, 4.0],
     step: Step::Share(0.008),
     telling: Telling::Changed,
-    needles: Some(Needles {
+    narrow_valleys: Some(NarrowValleys {
         sizes: [0.25, 3.0],
         finer: 0.003,
         coarsest: 0.004,
@@ -98,7 +98,7 @@ pub(crate) static RINGING: Grid = Grid {
     sizes: [0.1, 8.0],
     step: Step::Share(0.06),
     telling: Telling::Changed,
-    needles: None,
+    narrow_valleys: None,
     all_runs: 0.0,
     shapes: 5,
     apart: 0.1,
@@ -115,7 +115,7 @@ pub(crate) static PLACES: Grid = Grid {
     sizes: [0.1, 6.5],
     step: Step::Even(0.06),
     telling: Telling::Failed,
-    needles: None,
+    narrow_valleys: None,
     all_runs: 0.0,
     shapes: 5,
     apart: 0.05,
@@ -208,7 +208,7 @@ struct Scan<'a> {
 }
 
 impl Scan<'_> {
-    /// The same seen without the ringing of the pressure: what that leaves all but hides a needle, but not from the
+    /// The same seen without the ringing of the pressure: what that leaves all but hides a narrow_valleys, but not from the
     /// better ones.
     fn still(&self) -> Self {
         Self {
@@ -386,7 +386,7 @@ fn enough(experiment: &Experiment, told: &[f64], enough: usize) -> Vec<usize> {
     runs.into_iter().take_while(few).collect()
 }
 
-/// Every size with every shape, and what makes needles.
+/// Every size with every shape, and what makes narrow_valleys.
 fn coarse(hint: &AddedEffect, grid: &Grid) -> Vec<AddedEffect> {
     let share = |k: usize| k as f64 / (grid.shapes - 1) as f64;
     let next = |size: f64| match grid.step {
@@ -400,14 +400,19 @@ fn coarse(hint: &AddedEffect, grid: &Grid) -> Vec<AddedEffect> {
             .collect(),
         other => vec![hint.values[other]],
     });
-    let needles = grid.needles.as_ref().map_or_else(Vec::new, |needles| {
-        let next = |size: f64| size * (1.0 + (needles.finer * size).min(needles.coarsest));
-        combinations(hint, |index, range| match index {
-            0 => sizes(range, needles.sizes, next),
-            _ => vec![range.high],
-        })
-    });
-    [even, needles].concat()
+    let narrow_valleys = grid
+        .narrow_valleys
+        .as_ref()
+        .map_or_else(Vec::new, |narrow_valleys| {
+            let next = |size: f64| {
+                size * (1.0 + (narrow_valleys.finer * size).min(narrow_valleys.coarsest))
+            };
+            combinations(hint, |index, range| match index {
+                0 => sizes(range, narrow_valleys.sizes, next),
+                _ => vec![range.high],
+            })
+        });
+    [even, narrow_valleys].concat()
 }
 
 /// Sizes from the smallest to the largest, in typical ones, each with the next larger one.

@@ -3,7 +3,7 @@
 //! 1. Dictionary: every way in which the model may be wrong is simulated at a few sizes around the present fit.
 //! 2. Best subset: in the linear space of those columns, nuisances projected out, the best subsets of each size are
 //!    found without a simulation.
-//! 3. Refit: the most promising ones are fitted with the full model and judged by what they leave and by the price of
+//! 3. Refit: the most promising ones are fitted with the full model and judged by what they leave and by the penalty of
 //!    what they say. Around the best of them a new dictionary is made, until the set stays.
 //! 4. Posterior: the weights of all sets that were refitted give the probability of each effect.
 //!
@@ -18,16 +18,16 @@ use crate::data::clocks::Clocks;
 use crate::data::experiment::Experiment;
 use crate::estimation::fit::{Fit, evaluate, evaluate_weighted};
 use crate::search::candidates::{Progress, showing};
-use crate::search::coarse::Coarse;
+use crate::search::coarse_view::Coarse;
+use crate::search::confounded::confounded;
 use crate::search::dictionary::{Around, Dictionary};
-use crate::search::promise::starts;
+use crate::search::promising_subsets::starts;
 use crate::search::refit::Refits;
-use crate::search::rivals::rivals;
 use crate::search::scan_cache::Scans;
-use crate::search::screen::EXPLAINED;
-use crate::search::{delays, limits};
+use crate::search::screening::EXPLAINED;
+use crate::search::{delays, resolution};
+use crate::selection::complexity_penalty::Penalty;
 use crate::selection::hold_out::{HeldOut, held_out};
-use crate::selection::penalty::Price;
 use crate::selection::posterior::{Refitted, key};
 
 /// Most dictionaries that are made.
@@ -175,10 +175,10 @@ impl Search<'_> {
         let effects = 0..present.estimate.effects.len();
         let own = effects.filter(|&index| !present.estimate.is_unchanged(index));
         self.rivals = own
-            .map(|index| (index, rivals(&dictionary, index)))
+            .map(|index| (index, confounded(&dictionary, index)))
             .collect();
         self.order = in_order(&dictionary);
-        // Beside an effect that was found already, a plain dictionary goes on as long as it leads anywhere.
+        // LeaveOneOut an effect that was found already, a plain dictionary goes on as long as it leads anywhere.
         if key(&present).len() > 0 && self.goes_on() {
             return true;
         }
@@ -242,7 +242,7 @@ impl Search<'_> {
             effects,
             changes: self.options.changes,
             scans: &self.scans,
-            worthwhile: 0.5 * Price::beside(experiment, coarse.present).of_nothing(),
+            worthwhile: 0.5 * Penalty::beside(experiment, coarse.present).of_nothing(),
         }
     }
 
@@ -263,12 +263,12 @@ impl Search<'_> {
         let starts = starts(coarse, dictionary, known, more);
         let refits = Refits {
             coarse,
-            best: coarse.cost(&self.present) + starts.price.of_all(&self.present.estimate),
-            price: starts.price,
+            best: coarse.cost(&self.present) + starts.penalty.of_all(&self.present.estimate),
+            penalty: starts.penalty,
             options: self.options,
         };
         for fit in refits.of(starts.estimates, &dictionary.jacobian, known, self.progress) {
-            if limits::is_told(self.experiment, &fit.estimate) {
+            if resolution::is_resolved(self.experiment, &fit.estimate) {
                 self.refitted.insert(fit);
             }
         }
@@ -323,7 +323,7 @@ fn synchronous(experiment: &Experiment, model: &Model, fit: &Fit) -> Option<Fit>
 /// The effects that are there, those first that explain most beside the ones before.
 fn in_order(dictionary: &Dictionary) -> Vec<usize> {
     use crate::search::best_subset::fitted;
-    use crate::search::entry::Kind;
+    use crate::search::dictionary_entry::Kind;
     let (gram, entries) = (&dictionary.gram, dictionary.entries.as_slice());
     let mut rest: Vec<(usize, usize)> = (0..entries.len())
         .filter_map(|column| match entries[column].kind {

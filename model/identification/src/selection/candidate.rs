@@ -11,7 +11,7 @@ use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{
     Jacobian, RunJacobian, SlowColumns, difference, huber, huber_residuals, square_sum,
 };
-use crate::estimation::nuisance_projection::Frame;
+use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::estimation::profile_likelihood::Profile;
 use crate::selection::evidence::{detectability, log_odds, variance_inflation};
 
@@ -189,7 +189,7 @@ fn weigh_with(
                 model,
                 fit: &fit,
                 shared: signature.shared,
-                frame: &signature.frame,
+                projection: &signature.projection,
             };
             let rise = 1.96f64.powi(2) * variance * signature.inflation;
             let [down, up] = [-promised, promised].map(|half| profile.end(half, rise));
@@ -235,7 +235,7 @@ struct Signature<'a> {
     parameter: usize,
     shared: Shared,
     /// All that is free besides it.
-    frame: Frame<&'a Jacobian>,
+    projection: NuisanceProjection<&'a Jacobian>,
     /// Squared length of what is left, and what imitating the rest costs in priors.
     square: f64,
     inflation: f64,
@@ -252,18 +252,18 @@ impl<'a> Signature<'a> {
         let shared = Shared::Effect(effect, parameter);
         let column = jacobian.shared.iter().position(|&s| s == shared);
         let own = column.map_or(0..0, |column| column..column + 1);
-        let frame = Frame::new(jacobian, &fit.estimate, own);
+        let projection = NuisanceProjection::new(jacobian, &fit.estimate, own);
         let of_run = |run: &RunJacobian| match column {
             Some(column) => run.shared[column].clone(),
             None => vec![0.0; run.residual.len()],
         };
         let signature = jacobian.runs.iter().map(of_run).collect();
-        let (projected, price) = frame.project_at_a_price(signature);
+        let (projected, penalty) = projection.project_with_penalty(signature);
         Self {
             parameter,
             shared,
-            frame,
-            square: (square_sum(&projected) + price).max(1e-12),
+            projection,
+            square: (square_sum(&projected) + penalty).max(1e-12),
             inflation: variance_inflation(experiment, &fit.residuals, &projected),
         }
     }
@@ -291,10 +291,10 @@ impl Seen {
         let columns = &jacobian.shared;
         let first = columns.iter().position(own).unwrap_or(0);
         let count = columns.iter().filter(|shared| own(shared)).count();
-        let frame = Frame::new(jacobian, &fit.estimate, first..first + count);
-        let (left, price) = frame.project_within_range(change);
+        let projection = NuisanceProjection::new(jacobian, &fit.estimate, first..first + count);
+        let (left, penalty) = projection.project_within_range(change);
         Self {
-            detectability: detectability(&left, price, fit.weights.count()),
+            detectability: detectability(&left, penalty, fit.weights.count()),
             inflation: variance_inflation(experiment, &fit.residuals, &left),
             explained_share: explained_share(&left, &huber(fit.residuals.clone())),
         }

@@ -141,14 +141,14 @@ pub fn expected_inflation(
     }
 }
 
-/// Root mean square of a signature over the compared samples, in sigmas; `price` is what imitating it costs in priors.
+/// Root mean square of a signature over the compared samples, in sigmas; `penalty` is what imitating it costs in priors.
 #[must_use]
-pub fn detectability(signature: &[Vec<f64>], price: f64, compared: usize) -> f64 {
-    ((square_sum(signature) + price) / compared as f64).sqrt()
+pub fn detectability(signature: &[Vec<f64>], penalty: f64, compared: usize) -> f64 {
+    ((square_sum(signature) + penalty) / compared as f64).sqrt()
 }
 
 /// Logarithm of the odds that an effect with one more parameter is there: the fall of the cost, in effective units,
-/// less Schwarz's price of a parameter.
+/// less Schwarz's penalty of a parameter.
 #[must_use]
 pub fn log_odds(likelihood_ratio: f64, parameters: usize, effective_samples: f64) -> f64 {
     0.5 * likelihood_ratio - 0.5 * parameters as f64 * effective_samples.max(2.0).ln()

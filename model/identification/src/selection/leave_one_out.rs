@@ -11,7 +11,7 @@ use crate::selection::candidate::{Candidate, weigh};
 
 /// An effect beside all others.
 #[derive(Debug, Clone)]
-pub struct Beside {
+pub struct LeaveOneOut {
     /// The effect, weighed against the model that has all others.
     pub candidate: Candidate,
     /// That model, fitted.
@@ -20,7 +20,7 @@ pub struct Beside {
 
 /// Weighs each effect of a fitted model from the `first` one on beside all others.
 #[must_use]
-pub fn beside(experiment: &Experiment, model: &Model, fit: &Fit, first: usize) -> Vec<Beside> {
+pub fn beside(experiment: &Experiment, model: &Model, fit: &Fit, first: usize) -> Vec<LeaveOneOut> {
     let effects = first..fit.estimate.effects.len();
     effects
         .map(|index| beside_others(experiment, model, fit, index))
@@ -33,11 +33,11 @@ pub(crate) fn beside_others(
     model: &Model,
     fit: &Fit,
     index: usize,
-) -> Beside {
+) -> LeaveOneOut {
     let without = refine(experiment, model, fit.estimate.without(index));
     let whole = with_last(experiment, model, fit, index);
     let effect = fit.estimate.effects[index].effect;
-    Beside {
+    LeaveOneOut {
         candidate: weigh(experiment, model, &without, effect, whole),
         without,
     }

@@ -1,8 +1,8 @@
-//! What speaks for a set of effects: evidence, hold-out, price, probability.
+//! What speaks for a set of effects: evidence, hold-out, penalty, probability.
 
 pub mod candidate;
+pub(crate) mod complexity_penalty;
 pub mod evidence;
 pub mod hold_out;
 pub mod leave_one_out;
-pub(crate) mod penalty;
 pub(crate) mod posterior;

@@ -7,10 +7,10 @@ use hitch_plant::Model;
 use crate::data::experiment::Experiment;
 use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, evaluate_weighted};
+use crate::selection::complexity_penalty::Penalty;
 use crate::selection::evidence::shares;
-use crate::selection::penalty::Price;
 
-/// Least fall of the cost with its price by which a set is better than another: numbers that differ by less are equal.
+/// Least fall of the cost with its penalty by which a set is better than another: numbers that differ by less are equal.
 const BETTER: f64 = 1.0;
 
 /// A set of effects: the names of its members and their forms, sorted.
@@ -119,38 +119,38 @@ impl Refitted {
 
     /// Sets that are better than the present one, the best first.
     pub fn better(&self, experiment: &Experiment, model: &Model, present: &Fit) -> Vec<&Fit> {
-        let price = self.price(experiment);
-        let here = priced(experiment, model, present, present, price);
+        let penalty = self.penalty(experiment);
+        let here = penalized(experiment, model, present, present, penalty);
         let own = key(present);
         let others = self.fits.iter().filter(|(key, _)| **key != own);
         let mut better: Vec<(f64, &Fit)> = others
-            .map(|(_, fit)| (priced(experiment, model, fit, present, price), fit))
+            .map(|(_, fit)| (penalized(experiment, model, fit, present, penalty), fit))
             .filter(|(cost, _)| *cost < here - BETTER)
             .collect();
         better.sort_by(|a, b| a.0.total_cmp(&b.0));
         better.into_iter().map(|(_, fit)| fit).collect()
     }
 
-    /// The price of effects beside what the best fit leaves.
-    fn price(&self, experiment: &Experiment) -> Price {
+    /// The penalty of effects beside what the best fit leaves.
+    fn penalty(&self, experiment: &Experiment) -> Penalty {
         let fits = self.fits.values();
         let least = fits.min_by(|a, b| a.cost.total_cmp(&b.cost));
-        Price::beside(experiment, least.expect("the model alone is there"))
+        Penalty::beside(experiment, least.expect("the model alone is there"))
     }
 
-    /// The probability of each set beside the best one, and by how much its likelihood ratio with its price is less.
+    /// The probability of each set beside the best one, and by how much its likelihood ratio with its penalty is less.
     pub fn weighed(&self, experiment: &Experiment, model: &Model, best: &Fit) -> Vec<Weighed<'_>> {
-        let price = Price::beside(experiment, best);
-        let here = priced(experiment, model, best, best, price);
+        let penalty = Penalty::beside(experiment, best);
+        let here = penalized(experiment, model, best, best, penalty);
         let mut weighed: Vec<Weighed> = self
             .fits
             .iter()
             .map(|(key, fit)| {
-                let cost = priced(experiment, model, fit, best, price);
+                let cost = penalized(experiment, model, fit, best, penalty);
                 Weighed {
                     key,
                     fit,
-                    likelier: (here - cost) / price.unit,
+                    likelier: (here - cost) / penalty.unit,
                     probability: 0.0,
                 }
             })
@@ -174,10 +174,16 @@ pub(crate) struct Weighed<'a> {
     pub probability: f64,
 }
 
-/// The cost of a fit with the price of what it says, under the yardsticks of another or its own, whichever is less: a
+/// The cost of a fit with the penalty of what it says, under the yardsticks of another or its own, whichever is less: a
 /// spool that sticks does not follow the noise of the currents, and under its own yardsticks what it leaves weighs more.
-fn priced(experiment: &Experiment, model: &Model, fit: &Fit, beside: &Fit, price: Price) -> f64 {
+fn penalized(
+    experiment: &Experiment,
+    model: &Model,
+    fit: &Fit,
+    beside: &Fit,
+    penalty: Penalty,
+) -> f64 {
     let (estimate, weights) = (fit.estimate.clone(), beside.weights.clone());
     let under_its = evaluate_weighted(experiment, model, estimate, weights).cost;
-    under_its.min(fit.cost) + price.of_all(&fit.estimate)
+    under_its.min(fit.cost) + penalty.of_all(&fit.estimate)
 }

@@ -21,7 +21,7 @@ use crate::data::experiment::Experiment;
 use crate::estimation::fit::{Fit, evaluate, refine};
 use crate::explanation::explain::{Explanation, Verdict};
 use crate::search::candidates::Progress;
-use crate::search::single::try_effects;
+use crate::search::single_effects::try_effects;
 use crate::selection::candidate::{Candidate, weigh};
 use crate::selection::evidence::BELIEVED;
 use crate::selection::hold_out::{HeldOut, held_out};

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::data::experiment::Experiment;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{Jacobian, dot, huber_residuals};
-use crate::estimation::nuisance_projection::Frame;
+use crate::estimation::nuisance_projection::NuisanceProjection;
 
 /// Size of the secant, in usual sizes: large enough for what sets in late, small enough to scale.
 const SIZE: f64 = 0.5;
@@ -23,15 +23,18 @@ pub fn best(
     count: usize,
 ) -> Vec<&'static TermEffect> {
     let jacobian = Jacobian::new(experiment, model, &fit.weights, &fit.estimate);
-    let frame = Frame::new(&jacobian, &fit.estimate, 0..0);
+    let projection = NuisanceProjection::new(&jacobian, &fit.estimate, 0..0);
     let base: Vec<Vec<f64>> = jacobian.runs.iter().map(|r| r.residual.clone()).collect();
-    let left = frame.project(base.clone());
+    let left = projection.project(base.clone());
     let mut ranked: Vec<(f64, &'static TermEffect)> = definitions
         .into_par_iter()
         .filter_map(|definition| TermEffect::define(definition).ok())
         .map(|term| {
             let (size, moved) = secant(experiment, model, fit, &base, term);
-            (explained(term, size, &left, &frame.project(moved)), term)
+            (
+                explained(term, size, &left, &projection.project(moved)),
+                term,
+            )
         })
         .collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.id().cmp(b.1.id())));

@@ -4,10 +4,21 @@ use std::any::Any;
 
 use crate::channel::Channel;
 use crate::constants::Dynamics;
-use crate::hooks::sites::{RunConditions, Sites};
+use crate::hooks::effect_hooks::{EffectHooks, RunConditions};
 
 /// Share of the end of a parameter's range, or of its typical value, within which a value counts as at that end.
 const AT_A_LIMIT: f64 = 1e-3;
+
+/// What a parameter is to a logger: it samples currents with noise and stamps them with a clock.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ParameterKind {
+    /// A coil current.
+    Current,
+    /// A time.
+    Time,
+    /// Any other quantity.
+    Other,
+}
 
 /// One parameter of an effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,6 +27,8 @@ pub struct Parameter {
     pub name: &'static str,
     /// Unit as it is written in reports; empty for a pure number.
     pub unit: &'static str,
+    /// Which kind of quantity it is.
+    pub kind: ParameterKind,
     /// Key in a model file: the name with the unit in it.
     pub key: &'static str,
     /// What it is, in a few words.
@@ -40,27 +53,26 @@ impl Parameter {
     }
 }
 
-/// How the size of an effect is looked for before it is fitted.
+/// How what the instruments show depends on the size of an effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Search {
-    /// Along a few secants: from most sizes a fit leads to the best one.
-    Secants,
-    /// In fine steps: a size that is a few percent off can be worse than none, for what jumps or bounces does so at
-    /// another time then.
-    Jumps,
-    /// Along secants as well, but the cost comes down to the best size over ledges: whether a spool moves on a step of
-    /// the current is the same for all bands that are less, and slopes over small steps are those of the noise. The
-    /// first shape is a share of the size, and it is the rest of the size that shows.
-    Ledges,
-    /// Place by place: the size is where something is met, and nothing tells of it before.
-    Places,
+pub enum SizeResponse {
+    /// Smoothly: from most sizes a least-squares fit leads to the best one.
+    Smooth,
+    /// The size decides when something switches: a size that is a few percent off switches at another time, and can
+    /// explain less than none.
+    Switching,
+    /// In steps: whether a spool moves on a step of the current is the same for a range of sizes. The first shape is a
+    /// share of the size, and the rest of the size is what shows.
+    Stepped,
+    /// The size is a place in the stroke, and nothing shows before the hitch gets there.
+    Located,
 }
 
-impl Search {
-    /// Whether the cost has many valleys along the size.
+impl SizeResponse {
+    /// Whether the cost has many local minima along the size.
     #[must_use]
     pub fn is_rough(self) -> bool {
-        self != Self::Secants
+        self != Self::Smooth
     }
 }
 
@@ -121,9 +133,9 @@ pub trait Effect: Any + Sync {
     fn needs(&self) -> Option<Dynamics> {
         None
     }
-    /// How its size is looked for before it is fitted.
-    fn search(&self) -> Search {
-        Search::Secants
+    /// How what the instruments show depends on its size.
+    fn size_response(&self) -> SizeResponse {
+        SizeResponse::Smooth
     }
     /// Whether it only says more of what its effect's usual form says: it is looked for from what that one finds.
     fn refines(&self) -> bool {
@@ -134,7 +146,7 @@ pub trait Effect: Any + Sync {
         usize::MAX
     }
     /// Puts it into a plant, with a value for each parameter.
-    fn attach(&self, values: &[f64], conditions: RunConditions<'_>, sites: &mut Sites);
+    fn attach(&self, values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks);
 }
 
 impl std::fmt::Debug for dyn Effect {
@@ -204,9 +216,9 @@ impl AddedEffect {
     }
 
     /// Puts it into a plant; an effect at its null value is not there at all.
-    pub fn attach(&self, conditions: RunConditions<'_>, sites: &mut Sites) {
+    pub fn attach(&self, conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
         if !self.is_null() {
-            self.effect.attach(&self.values, conditions, sites);
+            self.effect.attach(&self.values, conditions, hooks);
         }
     }
 }

@@ -18,8 +18,8 @@ impl Plant<'_> {
 
     /// A reading with what terms of a user's own add to it.
     pub(crate) fn with_sensor_terms(&self, mut reading: Reading) -> Reading {
-        let term = |place| self.sites.term(place, &self.signals);
-        if !self.sites.terms.is_empty() {
+        let term = |place| self.hooks.term(place, &self.signals);
+        if !self.hooks.terms.is_empty() {
             reading.pump_pressure_bar += units::bar_from_pa(term(Place::PumpPressureSensor));
             reading.cylinder_pressure_bar +=
                 units::bar_from_pa(term(Place::CylinderPressureSensor));

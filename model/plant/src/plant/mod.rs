@@ -6,10 +6,10 @@ mod rest;
 use crate::components::lag::Lag;
 use crate::constants::Dynamics;
 use crate::hooks::effect::AddedEffect;
+use crate::hooks::effect_hooks::{Currents, EffectHooks, RunConditions};
 use crate::hooks::place::Place;
 use crate::hooks::reading::Reading;
 use crate::hooks::signals::Signals;
-use crate::hooks::sites::{Currents, RunConditions, Sites};
 use crate::model::Model;
 use crate::solver::circuit::{Circuit, Flows, Openings};
 use crate::solver::dynamic::Steps;
@@ -26,7 +26,7 @@ pub struct Plant<'m> {
     model: &'m Model,
     rig: Rig,
     steps: Steps,
-    sites: Sites,
+    hooks: EffectHooks,
     spools: [Lag; 2],
     spool_currents: Currents,
     /// How fast the spools' currents changed over the last step, A/s.
@@ -47,27 +47,27 @@ impl<'m> Plant<'m> {
     /// A plant at rest under the currents `at_rest`, with the model's effects attached.
     #[must_use]
     pub fn new(model: &'m Model, rig: Rig, oil_temperature_c: f64, at_rest: Currents) -> Self {
-        let mut sites = Sites::default();
+        let mut hooks = EffectHooks::default();
         for effect in in_the_order_of_the_machine(&model.effects) {
             let conditions = RunConditions {
                 oil_temperature_c,
                 constants: model.constants(),
                 linkage: model.linkage(),
             };
-            effect.attach(conditions, &mut sites);
+            effect.attach(conditions, &mut hooks);
         }
-        let effective = sites
+        let effective = hooks
             .currents
             .iter_mut()
             .fold(at_rest, |currents, stage| stage.rest(currents));
         let spools = [effective.lift_a, effective.lower_a];
-        let lag_s = (model.spool_lag_s() + sites.spool_lag_extra_s).max(0.0);
+        let lag_s = (model.spool_lag_s() + hooks.spool_lag_extra_s).max(0.0);
         let spools = spools.map(|a| Lag::at_rest(lag_s, a));
         let mut plant = Self {
             model,
             rig,
             steps: Steps::FINE,
-            sites,
+            hooks,
             spools,
             spool_currents: effective,
             turning_a_s: 0.0,
@@ -90,7 +90,7 @@ impl<'m> Plant<'m> {
         plant.refresh();
         plant.remember();
         let mut reading = plant.truth();
-        for sensor in &mut plant.sites.sensors {
+        for sensor in &mut plant.hooks.sensors {
             sensor.rest(&mut reading);
         }
         plant.reading = plant.with_sensor_terms(reading);
@@ -112,7 +112,7 @@ impl<'m> Plant<'m> {
         for piece in 1..=pieces {
             let share = piece as f64 / pieces as f64;
             self.integrate(from.towards(currents, share), dt_s / pieces as f64);
-            if piece == pieces || !self.sites.sensors.is_empty() {
+            if piece == pieces || !self.hooks.sensors.is_empty() {
                 self.read(dt_s / pieces as f64);
             }
         }
@@ -129,15 +129,15 @@ impl<'m> Plant<'m> {
             }
             (Rig::Hitch(rig), Dynamics::Steady) => {
                 let lands = steady::lands(&self.forces(&rig), self.state.piston_m);
-                let own_s = steady::longest_step_s(self.steps, &self.sites, turning_a_s, lands);
+                let own_s = steady::longest_step_s(self.steps, &self.hooks, turning_a_s, lands);
                 // A spool that is driven fast does not stick.
                 match driven_a_s <= steady::JUMP_A_S {
-                    true => own_s.min(SPOOL_STEPS * self.sites.largest_change_a / driven_a_s),
+                    true => own_s.min(SPOOL_STEPS * self.hooks.largest_change_a / driven_a_s),
                     false => own_s,
                 }
             }
             (Rig::Flow { .. }, _) => {
-                steady::longest_step_s(self.steps, &self.sites, turning_a_s, false)
+                steady::longest_step_s(self.steps, &self.hooks, turning_a_s, false)
             }
         }
     }
@@ -146,7 +146,7 @@ impl<'m> Plant<'m> {
     fn read(&mut self, dt_s: f64) {
         self.refresh_unless_balanced();
         let mut reading = self.truth();
-        for sensor in &mut self.sites.sensors {
+        for sensor in &mut self.hooks.sensors {
             sensor.advance(&mut reading, dt_s);
         }
         self.reading = self.with_sensor_terms(reading);
@@ -193,7 +193,7 @@ impl<'m> Plant<'m> {
     fn circuit(&self) -> Circuit<'_> {
         Circuit {
             constants: self.model.constants(),
-            sites: &self.sites,
+            hooks: &self.hooks,
             moment: self.moment(),
         }
     }
@@ -201,7 +201,7 @@ impl<'m> Plant<'m> {
     fn forces<'a>(&'a self, rig: &'a HitchRig) -> Forces<'a> {
         Forces {
             model: self.model,
-            sites: &self.sites,
+            hooks: &self.hooks,
             rig,
             moment: self.moment(),
         }
@@ -210,7 +210,7 @@ impl<'m> Plant<'m> {
     fn moment(&self) -> Moment<'_> {
         Moment {
             model: self.model,
-            sites: &self.sites,
+            hooks: &self.hooks,
             before: &self.signals,
         }
     }
@@ -224,7 +224,7 @@ impl<'m> Plant<'m> {
 
     /// Ends it.
     fn settle(&mut self, end: Openings) {
-        if self.sites.compensator_lag_s > 0.0 {
+        if self.hooks.compensator_lag_s > 0.0 {
             self.state.compensator_pa = self.circuit().compensator_pa(end.lift, &self.state);
         }
         self.state.catching_up = 0.0;
@@ -245,7 +245,7 @@ impl<'m> Plant<'m> {
                 let start = self.openings;
                 let end = self.open(from, currents, dt_s);
                 let idles = self.circuit().idles(&self.state);
-                if self.stands && self.sites.holds_still() && start.shut() && end.shut() && idles {
+                if self.stands && self.hooks.holds_still() && start.shut() && end.shut() && idles {
                     return;
                 }
                 self.catch_up(start, dt_s);
@@ -257,7 +257,7 @@ impl<'m> Plant<'m> {
                 let piston_m =
                     steady::step(&forces, &circuit, self.state, end, self.lowest_m, dt_s);
                 let moved_m = piston_m - self.state.piston_m;
-                self.state.bristles_m = self.sites.bent_m(self.state.bristles_m, moved_m, dt_s);
+                self.state.bristles_m = self.hooks.bent_m(self.state.bristles_m, moved_m, dt_s);
                 self.state.piston_m = piston_m;
                 self.balance(&rig, Some(before));
                 self.settle(end);
@@ -276,7 +276,7 @@ impl<'m> Plant<'m> {
                 self.state = dynamic::step(&forces, &circuit, &self.state, &openings, dt_s);
             }
         }
-        if !self.sites.terms.is_empty() {
+        if !self.hooks.terms.is_empty() {
             self.refresh_unless_balanced();
             self.remember();
         }
@@ -288,7 +288,7 @@ impl<'m> Plant<'m> {
     /// within a step of its own, but whether it happened.
     #[inline(always)]
     fn open(&mut self, from: Currents, to: Currents, dt_s: f64) -> Openings {
-        let changes = to.furthest_from_a(from) / self.sites.largest_change_a;
+        let changes = to.furthest_from_a(from) / self.hooks.largest_change_a;
         if changes > 1.0 {
             let pieces = changes.ceil();
             let piece_s = dt_s / pieces;
@@ -307,7 +307,7 @@ impl<'m> Plant<'m> {
     #[inline(always)]
     fn take_spools(&mut self, currents: Currents, dt_s: f64) {
         let effective = self
-            .sites
+            .hooks
             .currents
             .iter_mut()
             .fold(currents, |currents, stage| stage.advance(currents, dt_s));
@@ -321,11 +321,11 @@ impl<'m> Plant<'m> {
     #[inline(always)]
     fn shift(&mut self, lift_a: f64, lower_a: f64) -> Openings {
         let (mut lift_a, mut lower_a) = (lift_a, lower_a);
-        if !self.sites.terms.is_empty() {
+        if !self.hooks.terms.is_empty() {
             self.signals.lift_current_a = lift_a;
             self.signals.lower_current_a = lower_a;
-            lift_a += self.sites.term(Place::LiftCurrent, &self.signals);
-            lower_a += self.sites.term(Place::LowerCurrent, &self.signals);
+            lift_a += self.hooks.term(Place::LiftCurrent, &self.signals);
+            lower_a += self.hooks.term(Place::LowerCurrent, &self.signals);
             self.signals.lift_current_a = lift_a;
             self.signals.lower_current_a = lower_a;
         }
@@ -336,7 +336,7 @@ impl<'m> Plant<'m> {
 
     /// Notes the signals of the present for the terms of the next step.
     fn remember(&mut self) {
-        if self.sites.terms.is_empty() {
+        if self.hooks.terms.is_empty() {
             return;
         }
         let now = self.moment().signals(&self.state);

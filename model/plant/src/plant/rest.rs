@@ -32,7 +32,7 @@ impl Plant<'_> {
     pub(crate) fn stand_on_the_ground(&mut self, rig: &HitchRig) {
         let dynamic = self.model.constants().dynamics == Dynamics::Dynamic;
         let off_m = self.state.piston_m - self.lowest_m;
-        if self.sites.ground.is_some() && dynamic && off_m < HAIR_M {
+        if self.hooks.ground.is_some() && dynamic && off_m < HAIR_M {
             self.state = self.held_at(rig, self.lowest_m);
         }
         self.lowest_m = self.lowest_m.min(self.state.piston_m);
@@ -63,16 +63,16 @@ impl Plant<'_> {
         let linkage = self.model.linkage();
         let shown_deg = rig.start_angle_rad.to_degrees();
         let angle_behind_rad = |shown_deg: f64| {
-            let stages = self.sites.sensors.iter().rev();
+            let stages = self.hooks.sensors.iter().rev();
             let angle_deg = stages.fold(shown_deg, |deg, stage| stage.angle_behind_deg(deg));
             angle_deg.to_radians()
         };
-        if !self.sites.has_term(Place::AngleSensor) {
+        if !self.hooks.has_term(Place::AngleSensor) {
             return linkage.piston_m(angle_behind_rad(shown_deg));
         }
         let excess_rad = |piston_m: f64| {
             let signals = self.moment().signals(&self.held_at(rig, piston_m));
-            let term_deg = self.sites.term(Place::AngleSensor, &signals).to_degrees();
+            let term_deg = self.hooks.term(Place::AngleSensor, &signals).to_degrees();
             signals.rocker_angle_rad - angle_behind_rad(shown_deg - term_deg)
         };
         let stroke_m = self.model.constants().cylinder.stroke_m;

@@ -3,8 +3,8 @@
 use crate::components::orifice_valve::OrificeValve;
 use crate::components::valve_curve::ValveCurve;
 use crate::constants::Constants;
+use crate::hooks::effect_hooks::{EffectHooks, FlowFactor};
 use crate::hooks::place::Place;
-use crate::hooks::sites::{FlowFactor, Sites};
 use crate::solver::moment::Moment;
 use crate::state::MechanicalState;
 
@@ -110,7 +110,7 @@ pub struct Circuit<'a> {
     /// The components.
     pub constants: &'a Constants,
     /// What the effects attach to them.
-    pub sites: &'a Sites,
+    pub hooks: &'a EffectHooks,
     /// What terms may depend on.
     pub moment: Moment<'a>,
 }
@@ -140,23 +140,23 @@ impl Circuit<'_> {
             ..
         } = self.constants;
         Openings {
-            lift: opening(lift_valve, lift_a, self.sites.lift_flow_factor),
-            lower: opening(lower_valve, lower_a, self.sites.lower_flow_factor),
+            lift: opening(lift_valve, lift_a, self.hooks.lift_flow_factor),
+            lower: opening(lower_valve, lower_a, self.hooks.lower_flow_factor),
         }
     }
 
     fn depends_on_travel(&self) -> bool {
-        self.sites.flow_number_1_a_sqrt_pa.is_some() || !self.sites.lower_travel_factor.is_empty()
+        self.hooks.flow_number_1_a_sqrt_pa.is_some() || !self.hooks.lower_travel_factor.is_empty()
     }
 
     /// The lowering valve's opening with its spool as far as the oil lets it go over a drop, Pa.
     fn travelled(&self, opening: Opening, drop_pa: f64) -> Opening {
-        if self.sites.lower_travel_factor.is_empty() {
+        if self.hooks.lower_travel_factor.is_empty() {
             return opening;
         }
         let curve = &self.constants.lower_valve.curve;
         let flow_m3_s = |beyond_a: f64| curve.flow_m3_s(curve.threshold_a() + beyond_a);
-        let beyond_a = opening.beyond_threshold_a * self.sites.lower_travel_factor(drop_pa);
+        let beyond_a = opening.beyond_threshold_a * self.hooks.lower_travel_factor(drop_pa);
         let free_m3_s = flow_m3_s(opening.beyond_threshold_a);
         if free_m3_s <= 0.0 {
             return opening;
@@ -169,7 +169,7 @@ impl Circuit<'_> {
 
     /// Discharge of a valve's gap over that of a wide one: `tanh` of its flow number (McCloy & Martin).
     fn discharge(&self, opening: Opening, drop_pa: f64) -> f64 {
-        let Some(flow_number) = self.sites.flow_number_1_a_sqrt_pa else {
+        let Some(flow_number) = self.hooks.flow_number_1_a_sqrt_pa else {
             return 1.0;
         };
         (flow_number * opening.beyond_threshold_a * drop_pa.max(0.0).sqrt()).tanh()
@@ -180,7 +180,7 @@ impl Circuit<'_> {
     #[must_use]
     pub fn solve(&self, openings: Openings, state: &MechanicalState) -> Flows {
         let (lift_m3_s, pump_pressure_pa) = self.lift(openings.lift, state);
-        let leakage_m3_s = self.sites.leakage_m3_s(state.pressure_pa);
+        let leakage_m3_s = self.hooks.leakage_m3_s(state.pressure_pa);
         Flows {
             lift_m3_s,
             lower_m3_s: self.lower_m3_s(openings.lower, state),
@@ -194,13 +194,13 @@ impl Circuit<'_> {
     pub fn lifting_pressure_pa(&self, state: &MechanicalState) -> f64 {
         let compensator = &self.constants.compensator;
         compensator.lifting_pressure_pa(state.pressure_pa)
-            + self.sites.margin_pa(state.pressure_pa)
+            + self.hooks.margin_pa(state.pressure_pa)
             + self.moment.term(Place::CompensatorMargin, state, |_| ())
     }
 
     /// What terms of a user's own leave of the lift valve's opening.
     fn lift_opening(&self, opening: Opening, state: &MechanicalState) -> Opening {
-        if self.sites.terms.is_empty() {
+        if self.hooks.terms.is_empty() {
             return opening;
         }
         let term = self.moment.term(Place::LiftFlowFactor, state, |signals| {
@@ -211,7 +211,7 @@ impl Circuit<'_> {
 
     /// What terms of a user's own leave of the lowering valve's opening.
     fn lower_opening(&self, opening: Opening, state: &MechanicalState) -> Opening {
-        if self.sites.terms.is_empty() {
+        if self.hooks.terms.is_empty() {
             return opening;
         }
         let term = self.moment.term(Place::LowerFlowFactor, state, |signals| {
@@ -225,14 +225,14 @@ impl Circuit<'_> {
         let term = self.moment.term(Place::ReturnPressure, state, |signals| {
             signals.lower_flow_m3_s = flow_m3_s;
         });
-        self.sites.return_pressure_pa(flow_m3_s) + term
+        self.hooks.return_pressure_pa(flow_m3_s) + term
     }
 
     /// What the lift orifice keeps of the drop from pump to cylinder, Pa.
     #[must_use]
     pub fn lift_drop_pa(&self, pump_pressure_pa: f64, cylinder_pressure_pa: f64) -> f64 {
         let check_valve = &self.constants.check_valve;
-        let load_pa = cylinder_pressure_pa + self.sites.cracking_extra_pa;
+        let load_pa = cylinder_pressure_pa + self.hooks.cracking_extra_pa;
         check_valve.remaining_drop_pa(pump_pressure_pa, load_pa)
     }
 
@@ -241,7 +241,7 @@ impl Circuit<'_> {
         let lift_valve = &self.constants.lift_valve;
         let flow_m3_s =
             lift_valve.flow_m3_s(opening.flow_m3_s, drop_pa) * self.discharge(opening, drop_pa);
-        let check_valve = &self.sites.check_valve;
+        let check_valve = &self.hooks.check_valve;
         if check_valve.is_free() || flow_m3_s == 0.0 {
             return flow_m3_s;
         }
@@ -257,7 +257,7 @@ impl Circuit<'_> {
         }
         let flow_at = self.lift_flow_at(opening, state);
         let pumped_m3_s = |pump_pressure_pa: f64| {
-            constants.pump.flow_m3_s() - self.sites.pump_slip_m3_s(pump_pressure_pa)
+            constants.pump.flow_m3_s() - self.hooks.pump_slip_m3_s(pump_pressure_pa)
         };
         let flow_m3_s = flow_at(wanted_pa);
         if flow_m3_s <= pumped_m3_s(wanted_pa) {
@@ -265,8 +265,8 @@ impl Circuit<'_> {
         }
         // The compensator is shut and still short of its margin: the pump's whole flow sets the drop (equation 5).
         let drop_pa = self.lift_drop_pa(wanted_pa, state.pressure_pa);
-        let turbulent = self.sites.flow_number_1_a_sqrt_pa.is_none();
-        let short_pa = if self.sites.pump_slip.is_empty() && turbulent {
+        let turbulent = self.hooks.flow_number_1_a_sqrt_pa.is_none();
+        let short_pa = if self.hooks.pump_slip.is_empty() && turbulent {
             let ratio = pumped_m3_s(wanted_pa) / flow_m3_s;
             drop_pa * (1.0 - ratio * ratio)
         } else {
@@ -306,13 +306,13 @@ impl Circuit<'_> {
     /// Pump pressure with the lift valve shut, Pa.
     #[must_use]
     pub fn idle_pressure_pa(&self) -> f64 {
-        self.constants.compensator.idle_pressure_pa() + self.sites.idle_extra_pa
+        self.constants.compensator.idle_pressure_pa() + self.hooks.idle_extra_pa
     }
 
     /// How fast a lagging compensator gets to the pump pressure that it seeks, Pa/s; nothing without a lag.
     #[must_use]
     pub fn compensator_pa_s(&self, openings: Openings, state: &MechanicalState) -> f64 {
-        let lag_s = self.sites.compensator_lag_s;
+        let lag_s = self.hooks.compensator_lag_s;
         match lag_s > 0.0 {
             true => (self.sought_pa(openings.lift, state) - state.compensator_pa) / lag_s,
             false => 0.0,
@@ -329,7 +329,7 @@ impl Circuit<'_> {
         state: &MechanicalState,
         dt_s: f64,
     ) -> (f64, f64) {
-        let lag_s = self.sites.compensator_lag_s;
+        let lag_s = self.hooks.compensator_lag_s;
         if lag_s == 0.0 {
             return (state.compensator_pa, 0.0);
         }
@@ -343,7 +343,7 @@ impl Circuit<'_> {
     /// Pump pressure that the compensator has got to with the lift valve so far open, Pa.
     #[must_use]
     pub fn compensator_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
-        if self.sites.compensator_lag_s == 0.0 {
+        if self.hooks.compensator_lag_s == 0.0 {
             return self.sought_pa(opening, state);
         }
         if state.catching_up == 0.0 {
@@ -356,7 +356,7 @@ impl Circuit<'_> {
     /// The pump pressure, Pa, that the compensator sets over the lift flow `flow_at` it, where it would set `wanted_pa`
     /// without any.
     fn drooped_pa(&self, wanted_pa: f64, flow_at: &impl Fn(f64) -> f64) -> f64 {
-        let lost_pa_s_m3 = self.sites.margin_lost_to_flow_pa_s_m3;
+        let lost_pa_s_m3 = self.hooks.margin_lost_to_flow_pa_s_m3;
         if lost_pa_s_m3 == 0.0 {
             return wanted_pa;
         }
@@ -368,7 +368,7 @@ impl Circuit<'_> {
     /// The pump pressure, Pa, that the relief valve leaves of what the compensator wants; `flow_at` is the lift flow
     /// over it.
     fn relieved_pa(&self, wanted_pa: f64, flow_at: &impl Fn(f64) -> f64) -> f64 {
-        let Some(relief) = &self.sites.relief else {
+        let Some(relief) = &self.hooks.relief else {
             return self.constants.relief_valve.limit_pa(wanted_pa);
         };
         let crack_pa = self.constants.relief_valve.set_pressure_pa - relief.below_setting_pa;
@@ -390,7 +390,7 @@ impl Circuit<'_> {
         let lower_valve = &self.constants.lower_valve;
         let opening = self.travelled(opening, drop_pa);
         let flow_m3_s = lower_valve.flow_m3_s(opening.flow_m3_s, drop_pa);
-        flow_m3_s * self.sites.lower_drop_factor(drop_pa) * self.discharge(opening, drop_pa)
+        flow_m3_s * self.hooks.lower_drop_factor(drop_pa) * self.discharge(opening, drop_pa)
     }
 
     /// Lowering flow, m3/s: the valve's drop is what the return line leaves.
@@ -400,15 +400,15 @@ impl Circuit<'_> {
         }
         let opening = self.lower_opening(opening, state);
         let free_m3_s = self.lower_valve_m3_s(opening, state.pressure_pa);
-        let terms = self.sites.has_term(Place::ReturnPressure);
-        let line = &self.sites.return_line;
+        let terms = self.hooks.has_term(Place::ReturnPressure);
+        let line = &self.hooks.return_line;
         if (line.is_free() && !terms) || free_m3_s == 0.0 {
             return free_m3_s;
         }
         let square_root_law = self.constants.lower_valve.transition_drop_pa == 0.0
-            && self.sites.lower_drop_factor.is_empty()
-            && self.sites.lower_travel_factor.is_empty()
-            && self.sites.flow_number_1_a_sqrt_pa.is_none();
+            && self.hooks.lower_drop_factor.is_empty()
+            && self.hooks.lower_travel_factor.is_empty()
+            && self.hooks.flow_number_1_a_sqrt_pa.is_none();
         if square_root_law && !terms {
             return line.behind_orifice_m3_s(free_m3_s, state.pressure_pa);
         }

@@ -94,12 +94,12 @@ fn derivative(
         pressure_pa,
         ..*state
     };
-    let hose = &circuit.sites.hose;
+    let hose = &circuit.hooks.hose;
     let flows = circuit.solve(*openings, &state);
     let (dh_dx, d2h_dx2_1_m) = model.linkage().transmission(state.piston_m);
     let masses = &circuit.constants.masses;
     let load_kg = forces.rig.load_kg;
-    let heavier = 1.0 + circuit.sites.inertia_share;
+    let heavier = 1.0 + circuit.hooks.inertia_share;
     let (shaft_kg, shaft_kg_m) = forces.shaft_inertia_kg(state.piston_m);
     let inertia_kg = masses.inertia_kg(load_kg, dh_dx) * heavier + shaft_kg;
     let slope = masses.half_inertia_slope_kg_m(load_kg, dh_dx, d2h_dx2_1_m) * heavier + shaft_kg_m;
@@ -131,9 +131,9 @@ fn derivative(
 /// How much the pressure rises for a volume of oil, Pa/m3: one over `V/E(p) + C`, oil and hoses.
 fn stiffness_pa_m3(circuit: &Circuit, piston_m: f64, pressure_pa: f64) -> f64 {
     let constants = circuit.constants;
-    let modulus_pa = constants.oil.bulk_modulus_pa * circuit.sites.stiffness_factor(pressure_pa);
+    let modulus_pa = constants.oil.bulk_modulus_pa * circuit.hooks.stiffness_factor(pressure_pa);
     let volume_m3 = constants.cylinder.volume_m3(piston_m.max(0.0));
-    modulus_pa / (volume_m3 + circuit.sites.hose.at_once_m3_pa * modulus_pa)
+    modulus_pa / (volume_m3 + circuit.hooks.hose.at_once_m3_pa * modulus_pa)
 }
 
 /// The oil's own stiffness, without air and hoses, Pa/m3: what a void counts by while the oil column is torn.
@@ -221,9 +221,9 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState,
     );
     // A working compensator keeps the lift valve's drop whatever the cylinder pressure is, up to the relief valve's,
     // unless it lags.
-    let drooped_pa = circuit.sites.margin_lost_to_flow_pa_s_m3 * flows.lift_m3_s;
+    let drooped_pa = circuit.hooks.margin_lost_to_flow_pa_s_m3 * flows.lift_m3_s;
     let wanted_pa = circuit.lifting_pressure_pa(state);
-    let lagging = circuit.sites.compensator_lag_s > 0.0;
+    let lagging = circuit.hooks.compensator_lag_s > 0.0;
     let keeps = flows.pump_pressure_pa + drooped_pa >= wanted_pa - TOLERANCE_PA;
     let compensated = keeps && !lagging;
     let room_pa = match compensated {
@@ -249,7 +249,7 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState,
 
 /// How fast a hose's wall settles the pressure and itself, 1/s.
 fn creeping_rate(circuit: &Circuit, state: &MechanicalState) -> f64 {
-    let hose = &circuit.sites.hose;
+    let hose = &circuit.hooks.hose;
     if hose.creeping_m3_pa == 0.0 {
         return 0.0;
     }
@@ -259,7 +259,7 @@ fn creeping_rate(circuit: &Circuit, state: &MechanicalState) -> f64 {
 
 /// How fast a lagging compensator settles, 1/s.
 fn lagging_rate(circuit: &Circuit) -> f64 {
-    match circuit.sites.compensator_lag_s {
+    match circuit.hooks.compensator_lag_s {
         0.0 => 0.0,
         lag_s => 1.0 / lag_s,
     }
@@ -289,7 +289,7 @@ pub fn rests(
     state: &MechanicalState,
     openings: &[Openings; 3],
 ) -> bool {
-    circuit.sites.holds_still()
+    circuit.hooks.holds_still()
         && openings.iter().all(Openings::shut)
         && state.void_m3 == 0.0
         && state.speed_m_s.abs() < AT_REST_M_S
@@ -352,7 +352,7 @@ fn runge_kutta(
     let moved = |state: &MechanicalState, rate, dt_s| {
         let mut moved = moved(state, rate, dt_s);
         let travel_m = moved.piston_m - state.piston_m;
-        moved.bristles_m = circuit.sites.bent_m(state.bristles_m, travel_m, dt_s);
+        moved.bristles_m = circuit.hooks.bent_m(state.bristles_m, travel_m, dt_s);
         moved
     };
     let start = stretched(forces.model, state);

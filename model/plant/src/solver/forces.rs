@@ -1,7 +1,7 @@
 //! The forces on the piston besides the oil's pressure, with what the effects add to them.
 
+use crate::hooks::effect_hooks::EffectHooks;
 use crate::hooks::place::Place;
-use crate::hooks::sites::Sites;
 use crate::model::Model;
 use crate::solver::moment::Moment;
 use crate::state::{HitchRig, MechanicalState};
@@ -12,7 +12,7 @@ pub struct Forces<'a> {
     /// The model.
     pub model: &'a Model,
     /// What the effects attach.
-    pub sites: &'a Sites,
+    pub hooks: &'a EffectHooks,
     /// The load.
     pub rig: &'a HitchRig,
     /// What terms may depend on.
@@ -32,7 +32,7 @@ impl Forces<'_> {
     pub fn weight_at_n(&self, dh_dx: f64, state: &MechanicalState) -> f64 {
         let masses = &self.model.constants().masses;
         let load_share = masses.load_share(self.rig.load_kg);
-        let factor = self.sites.weight_factor(state.piston_m, load_share);
+        let factor = self.hooks.weight_factor(state.piston_m, load_share);
         masses.weight_force_n(self.rig.load_kg, dh_dx) * factor
             + self.moment.term(Place::Weight, state, |_| ())
     }
@@ -41,7 +41,7 @@ impl Forces<'_> {
     /// over piston travel, kg/m: `J (dphi/dx)^2`.
     #[must_use]
     pub fn shaft_inertia_kg(&self, piston_m: f64) -> (f64, f64) {
-        let inertia_kg_m2 = self.sites.shaft_inertia_kg_m2;
+        let inertia_kg_m2 = self.hooks.shaft_inertia_kg_m2;
         if inertia_kg_m2 == 0.0 {
             return (0.0, 0.0);
         }
@@ -66,7 +66,7 @@ impl Forces<'_> {
     /// Force of the ground under the hitch, N, upwards, at a piston travel, m, and speed, m/s.
     #[must_use]
     pub fn ground_n(&self, piston_m: f64, speed_m_s: f64) -> f64 {
-        let Some(ground) = &self.sites.ground else {
+        let Some(ground) = &self.hooks.ground else {
             return 0.0;
         };
         let posture = self.model.linkage().at(piston_m);
@@ -76,15 +76,15 @@ impl Forces<'_> {
     /// Friction against the motion, N, in a state under a weight's force, N.
     #[must_use]
     pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {
-        self.sites.friction_n(state, weight_n)
-            + self.sites.bristles_n(state.bristles_m)
+        self.hooks.friction_n(state, weight_n)
+            + self.hooks.bristles_n(state.bristles_m)
             + self.moment.term(Place::Friction, state, |_| ())
     }
 
     /// Lowest travel that the piston can sink to, m: the end of the stroke, or where the ground bears the weight.
     #[must_use]
     pub fn lowest_m(&self) -> f64 {
-        if self.sites.ground.is_none() {
+        if self.hooks.ground.is_none() {
             return 0.0;
         }
         let stroke_m = self.model.constants().cylinder.stroke_m;

@@ -22,9 +22,9 @@
 //! term that depends on one of them, which therefore is absent. For the same reason a term is absent wherever its value
 //! is not finite: a fit then sees a model without it and turns elsewhere.
 
+use crate::hooks::effect_hooks::EffectHooks;
 use crate::hooks::place::Place;
 use crate::hooks::signals::Signals;
-use crate::hooks::sites::Sites;
 use crate::model::Model;
 use crate::state::MechanicalState;
 
@@ -34,7 +34,7 @@ pub struct Moment<'a> {
     /// The model.
     pub model: &'a Model,
     /// What the effects attach.
-    pub sites: &'a Sites,
+    pub hooks: &'a EffectHooks,
     /// The signals at the end of the step before, with the currents of this one.
     pub before: &'a Signals,
 }
@@ -51,7 +51,7 @@ impl Moment<'_> {
         refine: impl FnOnce(&mut Signals),
     ) -> f64 {
         // Nearly every plant is without terms, and this is in its innermost loop.
-        if self.sites.terms.is_empty() {
+        if self.hooks.terms.is_empty() {
             return 0.0;
         }
         self.present_term(place, state, refine)
@@ -65,12 +65,12 @@ impl Moment<'_> {
         state: &MechanicalState,
         refine: impl FnOnce(&mut Signals),
     ) -> f64 {
-        if !self.sites.has_term(place) {
+        if !self.hooks.has_term(place) {
             return 0.0;
         }
         let mut signals = self.signals(state);
         refine(&mut signals);
-        self.sites.term(place, &signals)
+        self.hooks.term(place, &signals)
     }
 
     /// The signals with the piston and its oil in a state.
@@ -88,7 +88,7 @@ impl Moment<'_> {
             signals.rocker_angle_rad = posture.rocker_angle_rad;
             let load_share = masses.load_share(signals.load_kg);
             signals.weight_n = masses.weight_force_n(signals.load_kg, posture.dh_dx)
-                * self.sites.weight_factor(state.piston_m, load_share);
+                * self.hooks.weight_factor(state.piston_m, load_share);
         }
         signals
     }

@@ -6,8 +6,8 @@
 //! The balance knows no contact force, so at a stop the piston stands while pressure and flow stay what they were
 //! (RIG.md defines it so); dead-heading the pump over the relief valve is the dynamic plant's business.
 
+use crate::hooks::effect_hooks::EffectHooks;
 use crate::hooks::place::Place;
-use crate::hooks::sites::Sites;
 use crate::solver::circuit::{Circuit, Flows, Openings};
 use crate::solver::dynamic::Steps;
 use crate::solver::forces::Forces;
@@ -25,18 +25,18 @@ const FASTEST_M_S: f64 = 0.5;
 /// Whether the hitch stands on the ground or may come down on it within a step.
 #[must_use]
 pub fn lands(forces: &Forces, piston_m: f64) -> bool {
-    forces.sites.ground.is_some() && forces.ground_n(piston_m - STEP_M, 0.0) > 0.0
+    forces.hooks.ground.is_some() && forces.ground_n(piston_m - STEP_M, 0.0) > 0.0
 }
 
 /// Longest step, s, with what the effects attach, while the spools' currents change by so much, A/s, or the hitch lands.
 #[must_use]
-pub fn longest_step_s(steps: Steps, sites: &Sites, turning_a_s: f64, lands: bool) -> f64 {
+pub fn longest_step_s(steps: Steps, hooks: &EffectHooks, turning_a_s: f64, lands: bool) -> f64 {
     let own_s = if turning_a_s > JUMP_A_S || lands {
         steps.jump_s
     } else {
         steps.quasi_static_s
     };
-    own_s.min(steps.longer * sites.longest_step_s)
+    own_s.min(steps.longer * hooks.longest_step_s)
 }
 
 /// What the balances give at one instant.
@@ -100,13 +100,13 @@ pub fn balance(
         let state = MechanicalState { speed_m_s, ..last };
         forces.friction_n(&state, weight_n)
     };
-    let terms = circuit.sites.has_term(Place::Friction);
+    let terms = circuit.hooks.has_term(Place::Friction);
     // Bent bristles press on a piston at rest, too, and so may a term: a spring does.
     let free = at_force(0.0, held_n + friction_n(0.0));
     let free_m_s = free.flows.net_m3_s() / area_m2;
     let inertia_kg = inertia_kg(forces, piston_m);
     let before = before.filter(|_| inertia_kg > 0.0);
-    if before.is_none() && ((circuit.sites.friction.is_empty() && !terms) || free_m_s == 0.0) {
+    if before.is_none() && ((circuit.hooks.friction.is_empty() && !terms) || free_m_s == 0.0) {
         return Balance {
             speed_m_s: free_m_s,
             ..free
@@ -133,7 +133,7 @@ pub fn balance(
 /// Inertia at the piston that the effects give the quasi-static plant, kg.
 fn inertia_kg(forces: &Forces, piston_m: f64) -> f64 {
     let (share, (shaft_kg, _)) = (
-        forces.sites.inertia_share,
+        forces.hooks.inertia_share,
         forces.shaft_inertia_kg(piston_m),
     );
     if share == 0.0 {
@@ -166,7 +166,7 @@ pub fn step(
     let guess = MechanicalState {
         piston_m: guess_m,
         bristles_m: circuit
-            .sites
+            .hooks
             .bent_m(state.bristles_m, guess_m - state.piston_m, dt_s),
         ..state
     };

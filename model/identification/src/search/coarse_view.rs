@@ -17,8 +17,8 @@ pub(crate) struct Coarse<'a> {
     pub few: Experiment,
     /// What the same estimate leaves there.
     pub seen: Fit,
-    /// The same runs drafted around it.
-    pub drafted: Experiment,
+    /// The same runs coarse_in_time around it.
+    pub coarse_in_time: Experiment,
 }
 
 impl<'a> Coarse<'a> {
@@ -31,14 +31,14 @@ impl<'a> Coarse<'a> {
             true => evaluate(&few, model, present.estimate.clone()),
             false => present.clone(),
         };
-        let drafted = few.drafted(&fitted, nuisances);
+        let coarse_in_time = few.coarse_in_time(&fitted, nuisances);
         Self {
             experiment,
             model,
             present,
             few,
             seen,
-            drafted,
+            coarse_in_time,
         }
     }
 

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::estimate::Estimate;
 use crate::estimation::jacobian::{Jacobian, RunJacobian, dot};
-use crate::search::entry::Entry;
+use crate::search::dictionary_entry::Entry;
 
 /// The quadratic cost `square - 2 pull x + x matrix x` of shares `x`.
 #[derive(Debug, Clone)]

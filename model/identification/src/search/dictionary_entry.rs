@@ -49,7 +49,7 @@ impl Entry {
     /// The share of the secant from which a fit starts where a subset takes such a share: what jumps does so at the size
     /// that was simulated, and not beside it.
     pub fn start(&self, share: f64) -> f64 {
-        let jumps = self.kind == Kind::New && self.added.effect.search().is_rough();
+        let jumps = self.kind == Kind::New && self.added.effect.size_response().is_rough();
         if jumps && (share - 1.0).abs() < AS_SIMULATED {
             1.0
         } else {

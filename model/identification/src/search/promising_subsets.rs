@@ -5,10 +5,10 @@ use hitch_plant::Model;
 use crate::estimate::Estimate;
 use crate::estimation::fit::Fit;
 use crate::search::best_subset::{MOST, Subset, best_subsets, fitted};
-use crate::search::coarse::Coarse;
+use crate::search::coarse_view::Coarse;
 use crate::search::dictionary::Dictionary;
-use crate::search::entry::{Entry, Kind, with_entries};
-use crate::selection::penalty::Price;
+use crate::search::dictionary_entry::{Entry, Kind, with_entries};
+use crate::selection::complexity_penalty::Penalty;
 use crate::selection::posterior::{Key, Refitted, key};
 
 /// Subsets of each size that are looked at, and how many of all are fitted.
@@ -27,10 +27,10 @@ const INEXACT: f64 = 0.04;
 pub(crate) const NEAR: f64 = 0.15;
 pub(crate) const CLOSE: f64 = 60.0;
 
-/// Where fits start, and the price of effects beside what the dictionary promises to leave.
+/// Where fits start, and the penalty of effects beside what the dictionary promises to leave.
 pub(crate) struct Starts {
     pub estimates: Vec<Estimate>,
-    pub price: Price,
+    pub penalty: Penalty,
 }
 
 /// Starts of the subsets that promise as much as the best one, or nearly, were not fitted yet, and have at most so many
@@ -56,7 +56,7 @@ pub(crate) fn starts(
     let lowest = lowest.expect("the empty subset is there");
     let left = dictionary.left(lowest);
     let variance = lowest.cost / seen.weights.count() as f64;
-    let price = Price::new(few, present.weights.count(), variance, &left);
+    let penalty = Penalty::new(few, present.weights.count(), variance, &left);
     let whole = with_all_present(dictionary);
     let promise = |subset: &Subset| {
         let explained = (seen.cost - lowest.cost).max(apart(dictionary, subset, &whole));
@@ -66,7 +66,7 @@ pub(crate) fn starts(
             .iter()
             .map(|&column| &dictionary.entries[column]);
         let prices = members.map(|entry| {
-            let own = price.of(&entry.added, entry.parameters());
+            let own = penalty.of(&entry.added, entry.parameters());
             match entry.kind {
                 Kind::Present(_) => own,
                 Kind::New | Kind::Change(_) => own.max(inexact),
@@ -81,15 +81,20 @@ pub(crate) fn starts(
         looked_at.map(|subset| (promise(subset), subset)).collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (best, leader) = ranked[0];
-    let close = CLOSE * price.unit;
+    let close = CLOSE * penalty.unit;
     let mut taken: Vec<Key> = vec![own];
     let mut estimates = Vec::new();
     for (promise, subset) in ranked {
         let near = best + (NEAR * apart(dictionary, subset, leader)).max(close);
         let key = key_of(dictionary, subset);
         let known = taken.iter().filter(|taken| **taken == key).count();
-        let is_rough =
-            |&column: &usize| dictionary.entries[column].added.effect.search().is_rough();
+        let is_rough = |&column: &usize| {
+            dictionary.entries[column]
+                .added
+                .effect
+                .size_response()
+                .is_rough()
+        };
         let most = if subset.columns.iter().any(is_rough) {
             VALLEYS
         } else {
@@ -107,7 +112,7 @@ pub(crate) fn starts(
             break;
         }
     }
-    Starts { estimates, price }
+    Starts { estimates, penalty }
 }
 
 /// The subset of all effects that are there.

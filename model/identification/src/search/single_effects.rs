@@ -8,20 +8,20 @@ use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, evaluate_weighted};
 use crate::search::best_subset::fitted;
 use crate::search::candidates::Progress;
-use crate::search::coarse::Coarse;
+use crate::search::coarse_view::Coarse;
 use crate::search::dictionary::Around;
-use crate::search::entry::Kind;
+use crate::search::dictionary_entry::Kind;
 use crate::search::refit::Refits;
 use crate::search::scan_cache::Scans;
 use crate::search::subset::Options;
 use crate::selection::candidate::{Candidate, slow_columns, weigh, weigh_by};
+use crate::selection::complexity_penalty::Penalty;
 use crate::selection::evidence::shares;
-use crate::selection::penalty::Price;
 
 /// Forms that are fitted in full, the most promising ones; of the others the start of a fit is weighed.
 const FITTED: usize = 8;
 
-/// Told of a form of an effect that was weighed.
+/// Report of a form of an effect that was weighed.
 pub type Weighed<'a> = &'a (dyn Fn(&Candidate) + Sync);
 
 /// Each effect in its best form beside a fit, weighed; the likeliest first.
@@ -47,14 +47,14 @@ pub fn try_each(
     weighed: Weighed,
 ) -> Vec<Candidate> {
     let scans = Scans::default();
-    let price = Price::beside(experiment, base);
+    let penalty = Penalty::beside(experiment, base);
     let coarse = Coarse::new(experiment, model, base);
     let around = Around {
         coarse: &coarse,
         effects: effects.to_vec(),
         changes: false,
         scans: &scans,
-        worthwhile: 0.5 * price.of_nothing(),
+        worthwhile: 0.5 * penalty.of_nothing(),
     };
     let dictionary = around.thorough(around.dictionary());
     let (gram, entries) = (&dictionary.gram, dictionary.entries.as_slice());
@@ -82,7 +82,7 @@ pub fn try_each(
     let refits = Refits {
         coarse: &coarse,
         best: coarse.seen.cost,
-        price,
+        penalty,
         options: Options::default(),
     };
     let slow = slow_columns(experiment, model, base);

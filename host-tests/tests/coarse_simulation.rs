@@ -46,9 +46,10 @@ impl Compared {
         }
     }
 
-    fn drafted(&self) -> Experiment {
+    fn coarse_in_time(&self) -> Experiment {
         let fitted = self.estimate.applied_to(&self.model);
-        self.experiment.drafted(&fitted, &self.estimate.nuisances)
+        self.experiment
+            .coarse_in_time(&fitted, &self.estimate.nuisances)
     }
 
     /// Residuals with and without an effect.
@@ -69,14 +70,14 @@ impl Compared {
 fn a_draft_is_a_fine_simulation_where_the_search_starts() {
     let compared = Compared::new();
     let [fine, draft] =
-        [&compared.experiment, &compared.drafted()].map(|runs| compared.left(runs, None));
+        [&compared.experiment, &compared.coarse_in_time()].map(|runs| compared.left(runs, None));
     assert!(square_sum(&difference(&fine, &draft)) < 1e-12);
 }
 
 #[test]
 fn a_draft_shows_what_an_effect_changes() {
     let compared = Compared::new();
-    let drafted = compared.drafted();
+    let drafted = compared.coarse_in_time();
     let samples = compared.weights.count() as f64;
     let mut otherwise = Vec::new();
     for effect in hitch_effects::available(&compared.model) {

@@ -1,15 +1,15 @@
-//! What may explain as much as an effect that was found.
+//! Confounded alternatives: what may explain as much as an effect that was found.
 
 use crate::search::best_subset::fitted;
 use crate::search::dictionary::Dictionary;
-use crate::search::entry::Kind;
+use crate::search::dictionary_entry::Kind;
 
 /// Share of what an effect explains that another has to promise beside the same others. A secant promises at the size
 /// that was simulated; what explains as much at its best size promises most of it.
 const AS_MUCH: f64 = 0.5;
 
 /// The ids of the effects that promise as much as one of the fit that a dictionary was made around, by its index there.
-pub(crate) fn rivals(dictionary: &Dictionary, effect: usize) -> Vec<&'static str> {
+pub(crate) fn confounded(dictionary: &Dictionary, effect: usize) -> Vec<&'static str> {
     let (gram, entries) = (&dictionary.gram, dictionary.entries.as_slice());
     let columns = |keeps: &dyn Fn(Kind) -> bool| -> Vec<usize> {
         let kept = (0..entries.len()).filter(|&column| keeps(entries[column].kind));

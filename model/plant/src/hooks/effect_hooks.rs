@@ -233,7 +233,7 @@ impl Hose {
 pub type TermFunction = Box<dyn Fn(&Signals) -> f64 + Send + Sync>;
 
 /// What the active effects have attached to one plant.
-pub struct Sites {
+pub struct EffectHooks {
     /// Between coil current and effective spool current, in order.
     pub currents: Vec<Box<dyn CurrentStage>>,
     /// Factor on the lift valve's flow.
@@ -296,7 +296,7 @@ pub struct Sites {
     pub terms: Vec<(Place, TermFunction)>,
 }
 
-impl Default for Sites {
+impl Default for EffectHooks {
     fn default() -> Self {
         Self {
             currents: Vec::new(),
@@ -340,7 +340,7 @@ fn product(laws: &[Law], of: f64) -> f64 {
     laws.iter().map(|law| law(of)).product()
 }
 
-impl Sites {
+impl EffectHooks {
     /// Whether a term of a user's own acts at a place.
     #[inline(always)]
     #[must_use]

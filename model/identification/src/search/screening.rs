@@ -4,15 +4,15 @@
 //! sizes, and those that promise most also where their secants lead, at the ends of their shapes, and where a fine
 //! search finds a valley if one is asked for.
 
-use hitch_plant::{AddedEffect, Effect, Search, is_same};
+use hitch_plant::{AddedEffect, Effect, SizeResponse, is_same};
 use rayon::prelude::*;
 
 use crate::data::experiment::Experiment;
 use crate::estimate::Estimate;
 use crate::estimation::jacobian::{Jacobian, difference, huber_residuals};
-use crate::estimation::nuisance_projection::Frame;
-use crate::search::coarse::Coarse;
-use crate::search::entry::{Entry, Kind};
+use crate::estimation::nuisance_projection::NuisanceProjection;
+use crate::search::coarse_view::Coarse;
+use crate::search::dictionary_entry::{Entry, Kind};
 use crate::search::scan_cache::Scans;
 use crate::search::secant_ends::{End, best, columns, trusted};
 use crate::search::shape_starts::{scaled, valleys, with_extreme_shapes, with_opposite_shapes};
@@ -53,7 +53,7 @@ pub(crate) struct Screen<'a> {
     /// The present residuals as a fit sees them.
     pub here: &'a [Vec<f64>],
     /// What is free at the present fit, and adapts to an effect.
-    pub frame: Frame<&'a Jacobian>,
+    pub projection: NuisanceProjection<&'a Jacobian>,
 }
 
 impl Screen<'_> {
@@ -105,7 +105,7 @@ impl Screen<'_> {
     fn end_of(&self, entry: &Entry) -> End {
         let residuals = difference(self.here, &entry.change);
         End {
-            cost: self.frame.cost_after(&residuals),
+            cost: self.projection.cost_after(&residuals),
             added: entry.added.clone(),
             residuals,
             first: true,
@@ -114,14 +114,14 @@ impl Screen<'_> {
 
     /// The cost without any effect, once what is free has adapted.
     fn cost(&self) -> f64 {
-        self.coarse.seen.cost.min(self.frame.here())
+        self.coarse.seen.cost.min(self.projection.here())
     }
 
     /// The least cost that the secants of a form promise.
     fn promised(&self, ends: &[End]) -> f64 {
         let of_end = |index: usize| {
             let (low, high) = trusted(ends, index);
-            let along = self.frame.along(&ends[index].residuals, low, high);
+            let along = self.projection.along(&ends[index].residuals, low, high);
             along.1.min(ends[index].cost)
         };
         (0..ends.len()).map(of_end).fold(f64::INFINITY, f64::min)
@@ -131,9 +131,9 @@ impl Screen<'_> {
     fn roughly(&self, effect: &'static dyn Effect) -> Vec<End> {
         let range = &effect.parameters()[0];
         let typical = AddedEffect::typical(effect);
-        let sizes = match effect.search() {
-            Search::Secants => SMOOTH,
-            Search::Jumps | Search::Ledges | Search::Places => ROUGH,
+        let sizes = match effect.size_response() {
+            SizeResponse::Smooth => SMOOTH,
+            SizeResponse::Switching | SizeResponse::Stepped | SizeResponse::Located => ROUGH,
         };
         let at = |sizes: &[f64]| {
             let sizes = sizes.iter().map(|&share| scaled(&typical, share));
@@ -224,7 +224,7 @@ impl Screen<'_> {
             let promises = (0..ends.len()).filter_map(|index| {
                 let (low, high) = trusted(ends, index);
                 let end = &ends[index];
-                let (share, cost) = self.frame.along(&end.residuals, low, high);
+                let (share, cost) = self.projection.along(&end.residuals, low, high);
                 let moved = (share - 1.0).abs() > MOVED && share != 0.0;
                 moved.then(|| (cost, scaled(&end.added, share)))
             });
@@ -248,7 +248,7 @@ impl Screen<'_> {
         estimate.effects.push(added.clone());
         let residuals = self.residuals(&estimate);
         End {
-            cost: self.frame.cost_after(&residuals),
+            cost: self.projection.cost_after(&residuals),
             added,
             residuals,
             first,

@@ -22,13 +22,13 @@ const NOISE: f64 = 1.0;
 /// refutes a faint signature there.
 const VISIBLE_UNREFUTED: f64 = 0.3;
 
-/// The price of effects beside a fit, in units of its cost.
+/// The penalty of effects beside a fit, in units of its cost.
 ///
 /// Each parameter costs what Schwarz's criterion asks for at the effective number of samples, each effect the logarithm
 /// of the number of effects tried, and what the smallest detectability that is believed would explain. All grow with
 /// what the fit leaves: beside two sigmas that nothing explains, a tenth of a sigma says nothing.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Price {
+pub(crate) struct Penalty {
     samples: f64,
     variance: f64,
     /// Smallest detectability that is believed, sigmas.
@@ -37,8 +37,8 @@ pub(crate) struct Price {
     pub unit: f64,
 }
 
-impl Price {
-    /// The price beside residuals whose mean square is `variance`.
+impl Penalty {
+    /// The penalty beside residuals whose mean square is `variance`.
     pub fn new(
         experiment: &Experiment,
         samples: usize,
@@ -58,7 +58,7 @@ impl Price {
         }
     }
 
-    /// The price beside a fit.
+    /// The penalty beside a fit.
     pub fn beside(experiment: &Experiment, fit: &Fit) -> Self {
         let samples = fit.weights.count();
         let variance = square_sum(&fit.residuals) / samples as f64;
