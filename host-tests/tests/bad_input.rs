@@ -49,6 +49,7 @@ fn every_reader_of_campaigns_refuses_a_bad_log_of_a_bus() {
     }
 }
 
+// REQ-INPUT-01
 #[test]
 fn bad_logs_are_refused_by_line_and_column() {
     let log = log();
@@ -109,6 +110,7 @@ fn currents_only() -> String {
         .collect()
 }
 
+// REQ-INPUT-01
 #[test]
 fn bad_manifests_are_refused_by_line_and_column() {
     let cases = [
@@ -175,6 +177,7 @@ fn missing_campaigns_are_refused() {
     );
 }
 
+// REQ-INPUT-01
 #[test]
 fn bad_models_are_refused_by_line_and_column() {
     let base = "format = 1\nbase = \"nominal\"\n";
@@ -250,6 +253,7 @@ fn bad_models_are_refused_by_line_and_column() {
     );
 }
 
+// REQ-INPUT-01
 #[test]
 fn bad_calibrations_are_refused_by_line_and_column() {
     let cases = [
@@ -299,6 +303,7 @@ fn bad_calibrations_are_refused_by_line_and_column() {
     );
 }
 
+// REQ-INPUT-01
 #[test]
 fn bad_command_lines_are_refused() {
     let dir = folder();

@@ -3,6 +3,7 @@ use std::fs;
 
 use host_tests::refusal::{folder, log, refused, write};
 
+// REQ-INPUT-02
 #[test]
 fn outputs_that_would_destroy_something_are_refused() {
     let dir = folder();

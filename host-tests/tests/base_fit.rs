@@ -149,6 +149,7 @@ fn coverage(family: Family, plan: Plan, off: Off) -> f64 {
     share
 }
 
+// REQ-DIAG-09
 #[test]
 fn a_declared_model_that_is_off_comes_back_to_the_truth() {
     assert!(coverage(Family::Steady, Plan::Lab, TYPICAL) >= 0.9);
@@ -168,6 +169,7 @@ fn motion_determines_the_curves_without_a_flow_bench() {
     assert!(coverage(Family::Steady, Plan::Field, TYPICAL) >= 0.9);
 }
 
+// REQ-DIAG-09
 #[test]
 fn nothing_off_leaves_every_constant_within_its_interval() {
     assert!(coverage(Family::Steady, Plan::Lab, NOTHING) >= 0.9);
@@ -211,6 +213,7 @@ fn another_machine() -> Model {
     Model::new("another", constants).expect("a linkage")
 }
 
+// REQ-DIAG-08
 #[test]
 fn only_another_machine_is_a_hopeless_base() {
     let folder = |name: &str| format!("{}/campaigns/{name}", env!("CARGO_MANIFEST_DIR"));
@@ -240,6 +243,7 @@ fn only_another_machine_is_a_hopeless_base() {
     }
 }
 
+// REQ-DIAG-08
 #[test]
 fn diagnose_says_first_that_the_base_is_hopeless() {
     let folder = tempfile::tempdir().expect("a folder");

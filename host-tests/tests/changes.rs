@@ -40,6 +40,7 @@ fn from_adopted(friction_n: f64, changes: bool) -> Explanation {
     )
 }
 
+// REQ-DIAG-07
 #[test]
 fn a_change_of_an_adopted_effect_is_a_step() {
     let found = from_adopted(300.0, true);
@@ -59,6 +60,7 @@ fn a_change_of_an_adopted_effect_is_a_step() {
     assert!(found.before.error() > 2.0 && refitted.error() < 1.1);
 }
 
+// REQ-DIAG-07
 #[test]
 fn what_is_as_it_was_adopted_has_not_changed() {
     let found = from_adopted(HIDDEN_N, true);

@@ -47,6 +47,7 @@ fn assert_good(run: &LoopRun) {
     }
 }
 
+// REQ-MOTION-02
 #[test]
 fn nominal_valves_with_the_nominal_calibration_meet_every_bar() {
     let run = driven(&hitch_model_file::dynamic(), &nominal(), Scenario::Moves);
@@ -105,6 +106,7 @@ fn a_lift_that_the_relief_valve_forbids_has_no_shortest_time() {
     );
 }
 
+// REQ-MOTION-02
 #[test]
 fn near_the_ends_of_travel_it_is_no_worse() {
     assert_good(&driven(
@@ -132,6 +134,7 @@ fn the_calibration_of_the_nominal_model_is_the_nominal_one() {
     }
 }
 
+// REQ-MOTION-06
 #[test]
 fn a_shifted_threshold_makes_the_nominal_calibration_worse_and_calibrating_brings_it_back() {
     let shifted = with_effect("lower-threshold-shift", &[0.2]);
@@ -159,6 +162,7 @@ fn a_shifted_threshold_makes_the_nominal_calibration_worse_and_calibrating_bring
     assert_good(&driven(&shifted, &calibrated(&shifted), Scenario::Moves));
 }
 
+// REQ-MODE-08
 #[test]
 fn a_leaking_lowering_valve_is_corrected_and_then_reported() {
     // 0.002 l/min/bar, a worn valve: sinks by a restart band in about 5 s at 150 kg.

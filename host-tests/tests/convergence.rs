@@ -98,6 +98,7 @@ fn bar(effect: &dyn Effect) -> f64 {
     }
 }
 
+// REQ-DIAG-12
 #[test]
 fn the_steps_of_a_log_are_fine_enough() {
     let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/known-threshold");

@@ -23,6 +23,7 @@ const WIDTH: f64 = 1.96;
 /// One campaign's estimates of an effect's parameters, as distances from the truth in standard deviations.
 type Distances = Vec<f64>;
 
+// REQ-DIAG-05
 #[test]
 fn intervals_hold_the_truth() {
     let seeds = std::env::var("HITCH_COVERAGE_SEEDS")

@@ -89,6 +89,7 @@ fn benches() -> impl Iterator<Item = Bench> {
     })
 }
 
+// REQ-MOTION-04
 #[test]
 fn a_current_of_the_map_is_there_within_one_percent_in_thirty_milliseconds() {
     let (mut cases, mut beyond, mut worst) = (0, 0, (0.0, String::new()));

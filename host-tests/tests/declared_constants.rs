@@ -33,6 +33,7 @@ fn assert_named(found: &Explanation, effect: &str, size: f64, within: f64) {
     assert!(adequate.contains(&found.verdict), "{:?}", found.verdict);
 }
 
+// REQ-DIAG-06
 #[test]
 fn oil_softer_than_declared() {
     let found = explained(|constants| {
@@ -41,6 +42,7 @@ fn oil_softer_than_declared() {
     assert_named(&found, "bulk-modulus", -0.3, 0.05);
 }
 
+// REQ-DIAG-06
 #[test]
 fn oil_stiffer_than_declared() {
     let found = explained(|constants| {
@@ -57,6 +59,7 @@ fn less_viscous_friction_than_declared() {
     assert_named(&found, "viscous-friction", -6000.0, 0.1);
 }
 
+// REQ-DIAG-06
 #[test]
 fn margin_of_the_compensator_smaller_than_declared() {
     let found = explained(|constants| {
@@ -73,6 +76,7 @@ fn margin_of_the_compensator_larger_than_declared() {
     assert_named(&found, "compensator-margin", 0.4, 0.05);
 }
 
+// REQ-DIAG-06
 #[test]
 fn spools_quicker_than_declared() {
     let found = explained(|constants| {

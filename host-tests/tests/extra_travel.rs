@@ -283,6 +283,7 @@ fn no_fault_takes_the_hitch_further_than_it_may() {
     assert!(too_far.is_empty(), "{too_far:?}");
 }
 
+// REQ-SAFE-06
 /// A driver that switches itself on under a resting hitch.
 #[test]
 fn a_stuck_driver_moves_a_resting_hitch_by_little() {

@@ -81,6 +81,7 @@ fn work(mut bus: impl FnMut(u32) -> Vec<Frame>) -> (Vec<Reply>, usize) {
     (replies, most_said)
 }
 
+// REQ-SAFE-08
 #[test]
 fn a_flood_of_nonsense_changes_nothing_at_the_coils() {
     let (quiet, _) = work(|_| Vec::new());

@@ -42,6 +42,7 @@ fn lowering(run: &LoopRun) -> (f64, f64) {
     (ratio / count, tracking_deg / count)
 }
 
+// REQ-MOTION-06
 #[test]
 fn several_deviations_of_the_valves_are_found_and_the_motion_is_better_by_them() {
     let nominal_model = hitch_model_file::nominal();

@@ -25,6 +25,7 @@ const LANDING: [u64; 1] = [4_001_629];
 /// A machine that bounces off soft ground at full speed.
 const BOUNCING: [u64; 1] = [1_000_441];
 
+// REQ-SAFE-04
 #[test]
 fn a_frozen_angle_costs_a_bounded_travel() {
     let calibration = Calibration::nominal().validate().unwrap();
@@ -52,12 +53,14 @@ fn false_trips(seeds: impl IntoParallelIterator<Item = u64>) -> Vec<FalseTrip> {
         .collect()
 }
 
+// REQ-SAFE-10
 #[test]
 fn a_healthy_angle_trips_nothing() {
     let faults = false_trips(HEALTHY);
     assert!(faults.is_empty(), "seeds {HEALTHY:?}: {faults:?}");
 }
 
+// REQ-SAFE-10
 #[test]
 fn a_healthy_hitch_may_stand_while_it_swings_is_taken_up_or_lands() {
     let faults = false_trips(

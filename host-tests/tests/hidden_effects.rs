@@ -50,6 +50,7 @@ fn ask(family: Family, plan: Plan, questions: &[Question]) -> Vec<Graded> {
         .collect()
 }
 
+// REQ-DIAG-01
 #[test]
 fn effects_of_a_steady_rig_are_named_in_the_lab() {
     let graded = ask(
@@ -66,6 +67,7 @@ fn effects_of_a_steady_rig_are_named_in_the_lab() {
     assert!(!graded.iter().any(Graded::wrong));
 }
 
+// REQ-DIAG-02
 #[test]
 fn nothing_is_named_where_nothing_is_hidden() {
     let graded = ask(
@@ -82,6 +84,7 @@ fn nothing_is_named_where_nothing_is_hidden() {
     assert!(rough[0].answer.named.is_empty());
 }
 
+// REQ-DIAG-03
 #[test]
 fn what_is_outside_the_catalogue_is_owned_up_to() {
     let graded = ask(
@@ -92,6 +95,7 @@ fn what_is_outside_the_catalogue_is_owned_up_to() {
     assert!(graded[0].answer.unknown);
 }
 
+// REQ-DIAG-01
 #[test]
 fn an_effect_is_named_in_the_field() {
     let graded = ask(
@@ -114,6 +118,7 @@ fn short_moves(question: Question) -> (Case, Campaign) {
     (case, measured)
 }
 
+// REQ-DIAG-01
 #[test]
 fn an_effect_is_named_where_pressures_ring() {
     let question = (11, "entrained-air", Fidelity::Faithful, false);
@@ -292,6 +297,7 @@ fn ids(names: impl IntoIterator<Item = impl Into<String>>) -> Vec<String> {
     ids
 }
 
+// REQ-DIAG-04
 /// As long as the second is missing, the first of two effects may run a held-out run into a stop that its hitch never
 /// reached: that a threshold is off shows in all the others. An arm that is there all over the stroke looks like a load
 /// that was weighed wrongly in each run.

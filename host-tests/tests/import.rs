@@ -110,6 +110,7 @@ fn assert_same(case: &str, runs: &[Run], expected: &[Run]) {
     }
 }
 
+// REQ-INPUT-03
 #[test]
 fn logs_of_any_dialect_read_to_the_same_runs() {
     let dir = TempDir::new().unwrap();
@@ -151,6 +152,7 @@ fn candump() -> String {
     samples().into_iter().map(frame).collect()
 }
 
+// REQ-INPUT-03
 #[test]
 fn signals_of_a_bus_are_told_by_names_comments_and_units() {
     let dbc = "VERSION \"\"\nBU_: Rig\n\
@@ -230,6 +232,7 @@ fn travel_of_the_cylinder_is_an_angle_by_the_linkage_of_the_model() {
     assert!((own_deg - other_deg).abs() > 0.1, "{own_deg} {other_deg}");
 }
 
+// REQ-INPUT-03
 #[test]
 fn mdf_of_another_program_reads_to_the_same_runs() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));

@@ -83,11 +83,13 @@ fn a_shifted_threshold_is_named() {
     is_named("known-threshold");
 }
 
+// REQ-DIAG-01
 #[test]
 fn friction_is_named() {
     is_named("known-friction");
 }
 
+// REQ-DIAG-01
 #[test]
 fn hysteresis_is_named() {
     is_named("known-hysteresis");
@@ -98,6 +100,7 @@ fn back_pressure_is_named() {
     is_named("known-return-line");
 }
 
+// REQ-DIAG-04
 #[test]
 fn a_leak_and_a_sensor_lag_are_both_named() {
     is_named("known-leak-and-lag");
@@ -119,12 +122,14 @@ fn air_in_the_oil_is_named_where_pressures_ring() {
     is_named_on("known-air", &hitch_model_file::dynamic());
 }
 
+// REQ-DIAG-02
 #[test]
 fn nothing_is_named_where_nothing_is_hidden() {
     nothing_is_named("clean-steady", &hitch_model_file::nominal());
     nothing_is_named("clean-rough", &hitch_model_file::nominal());
 }
 
+// REQ-DIAG-02
 #[test]
 fn nothing_is_named_where_nothing_is_hidden_and_pressures_ring() {
     nothing_is_named("clean-dynamic", &hitch_model_file::dynamic());
@@ -137,6 +142,7 @@ fn the_wrong_starting_point_is_not_called_adequate() {
     assert_eq!(explanation.verdict, Verdict::Unexplained);
 }
 
+// REQ-DIAG-03
 /// An end cushion is not in the catalogue: what is left has to be owned up to, and to point at the angle.
 #[test]
 fn what_is_not_in_the_catalogue_is_unexplained() {

@@ -26,6 +26,7 @@ fn print_worst(results: &[MoveResult], what: &str, of: impl Fn(&MoveResult) -> f
     }
 }
 
+// REQ-MOTION-01
 #[test]
 fn motion_is_close_to_what_the_plant_allows() {
     let mut all = Vec::new();

@@ -184,6 +184,7 @@ impl Twins {
     }
 }
 
+// REQ-DIAG-10
 /// The twins that the catalogue warns of are close on plain steps, and far apart with what is proposed.
 #[test]
 fn twins_come_apart() {
@@ -252,6 +253,7 @@ fn a_sensor_is_asked_for_where_no_manoeuvre_helps() {
     );
 }
 
+// REQ-DIAG-10
 /// What is promised is what a measurement then gives.
 #[test]
 fn the_expected_likelihood_ratio_is_met() {

@@ -28,6 +28,7 @@ fn number(value: &Value) -> f64 {
         .unwrap_or_else(|| panic!("{value} is a number"))
 }
 
+// REQ-DIAG-11
 #[test]
 fn table_2_comes_out_of_the_flow_bench() {
     for table in nominal()["table_2"].as_array().unwrap() {
@@ -35,6 +36,7 @@ fn table_2_comes_out_of_the_flow_bench() {
     }
 }
 
+// REQ-DIAG-11
 #[test]
 fn the_largest_orifice_area_is_the_paper_s() {
     let area = &nominal()["orifice_area"];
@@ -95,6 +97,7 @@ fn the_check_valve_cracks_at_2_5_bar() {
     }
 }
 
+// REQ-DIAG-11
 #[test]
 fn figure_12_is_what_the_paper_says_of_it() {
     for (model, paper) in [("nominal", nominal()), ("dynamic", &paper("dynamic"))] {

@@ -45,6 +45,7 @@ fn assert_nothing_moves(bench: &mut Bench<'_>, flash: &CutFlash, milliseconds: u
     );
 }
 
+// REQ-SAFE-09
 #[test]
 fn a_power_cut_at_any_word_of_storing_leaves_the_old_calibration_or_the_new() {
     let model = hitch_model_file::named("nominal").unwrap();
@@ -95,6 +96,7 @@ fn a_power_cut_at_any_word_of_storing_leaves_the_old_calibration_or_the_new() {
     assert!(cuts > 300, "only {cuts} words were written");
 }
 
+// REQ-SAFE-09
 #[test]
 fn a_power_cut_at_any_instant_of_a_move_moves_nothing_afterwards() {
     let model = hitch_model_file::named("dynamic").unwrap();

@@ -96,6 +96,7 @@ fn beyond_bar(plants: &[(String, Model, ValidCalibration)], loads_kg: &[f64]) ->
     beyond
 }
 
+// REQ-MODE-03
 #[test]
 fn the_button_has_its_speed_whatever_the_load() {
     let plants = SHIFTS_A.map(|(lift_a, lower_a)| {

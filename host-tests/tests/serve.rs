@@ -11,6 +11,7 @@ fn status(server: &PageServer, path: &str, headers: &[(&str, &str)]) -> u16 {
     server.request(&format!("GET {path}"), headers, "").status
 }
 
+// REQ-INPUT-04
 #[test]
 fn only_the_page_itself_is_let_in() {
     let dir = TempDir::new().unwrap();
@@ -46,6 +47,7 @@ fn only_the_page_itself_is_let_in() {
     );
 }
 
+// REQ-INPUT-04
 #[test]
 fn requests_that_make_no_sense_are_refused() {
     let dir = TempDir::new().unwrap();

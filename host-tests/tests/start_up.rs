@@ -43,6 +43,7 @@ impl<'m> Machine<'m> {
     }
 }
 
+// REQ-MODE-01
 #[test]
 fn nothing_but_the_lever_raises_the_enable_line() {
     let model = hitch_model_file::named("nominal").unwrap();
@@ -72,6 +73,7 @@ fn nothing_but_the_lever_raises_the_enable_line() {
     }
 }
 
+// REQ-MODE-01
 #[test]
 fn a_button_that_was_held_from_the_start_on_raises_nothing() {
     let model = hitch_model_file::named("nominal").unwrap();

@@ -34,6 +34,7 @@ fn assert_as_good(run: &LoopRun, right: &LoopRun) {
     );
 }
 
+// REQ-MOTION-05
 #[test]
 fn thresholds_that_are_off_by_a_quarter_ampere_are_found() {
     println!("shifts, A       load   found, A         ends, deg        moves afterwards");
@@ -75,6 +76,7 @@ fn thresholds_that_are_off_by_a_quarter_ampere_are_found() {
     }
 }
 
+// REQ-MOTION-05
 /// A step of current tells how slow a spool is, with a load on aerated oil that swings behind it and a noisy sensor.
 #[test]
 fn the_lags_of_the_spools_are_found() {

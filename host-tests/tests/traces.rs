@@ -106,6 +106,7 @@ fn a_damaged_trace_is_refused() {
     assert!(trace::unpack(b"not a trace").is_err());
 }
 
+// REQ-MOTION-07
 #[test]
 fn a_single_wrong_bit_is_found() {
     let inputs = trace::random(3, 1_000);

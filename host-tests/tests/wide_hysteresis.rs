@@ -36,6 +36,7 @@ fn taught_machines() -> Vec<(Drawn, ValidCalibration)> {
     taught.collect()
 }
 
+// REQ-MOTION-05
 #[test]
 fn the_hysteresis_of_the_valves_is_found() {
     let mut off = Vec::new();

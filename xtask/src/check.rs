@@ -3,7 +3,7 @@
 use anyhow::Result;
 
 use crate::toolchain::Way;
-use crate::{image, layers, process, setup, workspace};
+use crate::{documents, image, layers, process, setup, workspace};
 
 /// Runs all checks; the first that fails ends it.
 pub fn run(way: Option<Way>) -> Result<()> {
@@ -11,6 +11,7 @@ pub fn run(way: Option<Way>) -> Result<()> {
         |arguments: &[&str]| process::run(&mut process::command(workspace::cargo(), arguments));
     cargo(&["fmt", "--all", "--check"])?;
     layers::check()?;
+    documents::check()?;
     cargo(&[
         "clippy",
         "--locked",

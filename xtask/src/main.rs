@@ -4,6 +4,7 @@ mod a2l;
 mod budget;
 mod check;
 mod coverage;
+mod documents;
 mod image;
 mod layers;
 mod mutants;

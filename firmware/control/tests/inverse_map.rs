@@ -71,6 +71,7 @@ fn map(curves: &ValveCurves, drop: MilliBar) -> ValveMap<'_> {
     curves.at(curves.scale(drop))
 }
 
+// REQ-MOTION-03
 #[test]
 fn lift_current_is_right_at_every_flow() {
     let curves = curves();
@@ -98,6 +99,7 @@ fn lift_current_is_right_at_every_flow() {
     assert!(worst_ma <= ALLOWED_MA, "{worst_ma} mA");
 }
 
+// REQ-MOTION-03
 #[test]
 fn lowering_current_is_right_at_every_flow_and_drop() {
     let curves = curves();
@@ -177,6 +179,7 @@ fn axis_ends_are_held() {
     );
 }
 
+// REQ-MOTION-03
 #[test]
 fn the_map_and_its_inverse_meet() {
     let calibration = Calibration::nominal();

@@ -79,6 +79,7 @@ fn off(outputs: &Outputs) -> bool {
     outputs.lift_current == MilliAmp(0) && outputs.lower_current == MilliAmp(0)
 }
 
+// REQ-MODE-02
 #[test]
 fn the_hitch_follows_the_lever_and_then_rests_with_both_coils_off() {
     let mut hitch = Hitch::picked_up();
@@ -95,6 +96,7 @@ fn the_hitch_follows_the_lever_and_then_rests_with_both_coils_off() {
     }
 }
 
+// REQ-MODE-02
 /// A converter's last digit and a shaking cab: 0.1 degree, one sigma.
 #[test]
 fn a_lever_that_trembles_moves_nothing() {
@@ -115,6 +117,7 @@ fn a_lever_that_trembles_moves_nothing() {
     assert!((hitch.angle_deg() - 104.0).abs() < 0.5);
 }
 
+// REQ-MODE-04
 #[test]
 fn set_points_beyond_the_limits_are_held_inside() {
     let mut hitch = Hitch::picked_up();
@@ -124,6 +127,7 @@ fn set_points_beyond_the_limits_are_held_inside() {
     assert!(hitch.angle_deg() < 135.9);
 }
 
+// REQ-MODE-07
 #[test]
 fn a_reversed_lever_passes_through_rest() {
     let mut hitch = Hitch::picked_up();
@@ -168,6 +172,7 @@ fn a_missing_angle_cuts_the_coils_and_locks() {
     );
 }
 
+// REQ-MODE-03
 #[test]
 fn a_button_moves_the_hitch_at_its_rate_and_leaves_the_lever_locked() {
     let mut hitch = Hitch::locked();
@@ -203,6 +208,7 @@ fn a_button_moves_the_hitch_at_its_rate_and_leaves_the_lever_locked() {
     assert_eq!(outputs.state, State::Locked);
 }
 
+// REQ-MODE-08
 #[test]
 fn a_leaking_hitch_is_brought_back_a_few_times_and_then_reported() {
     let mut hitch = Hitch::picked_up();
@@ -231,6 +237,7 @@ fn a_moved_lever_is_no_leak() {
     }
 }
 
+// REQ-MODE-09
 /// The angle of a hitch that is stuck while it is lifted looks like that of a frozen sensor.
 #[test]
 fn a_hitch_that_is_stuck_when_it_should_rise_is_reported_and_not_tried_again() {
@@ -245,6 +252,7 @@ fn a_hitch_that_is_stuck_when_it_should_rise_is_reported_and_not_tried_again() {
     assert!((0..5_000).all(|_| off(&hitch.run(1))));
 }
 
+// REQ-MODE-09
 #[test]
 fn a_load_that_the_pump_cannot_lift_is_tried_a_few_times_and_then_reported() {
     let mut hitch = Hitch::picked_up();
@@ -290,6 +298,7 @@ fn a_hitch_that_comes_down_to_the_ground_stays_there_and_one_that_hangs_is_repor
     }
 }
 
+// REQ-MODE-09
 #[test]
 fn the_relief_valve_is_noticed_by_the_pump_pressure() {
     let mut hitch = Hitch::picked_up();
@@ -319,6 +328,7 @@ fn an_end_stop_inside_the_limits_counts_as_arrival() {
     );
 }
 
+// REQ-SAFE-05
 #[test]
 fn swapped_coils_trip_the_envelope() {
     let mut hitch = Hitch::picked_up();

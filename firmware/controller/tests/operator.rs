@@ -66,6 +66,7 @@ impl Hitch {
     }
 }
 
+// REQ-MODE-05
 #[test]
 fn transport_lock_stops_at_once_and_has_to_be_picked_up_again() {
     let mut hitch = Hitch::picked_up(90_000);
@@ -85,6 +86,7 @@ fn transport_lock_stops_at_once_and_has_to_be_picked_up_again() {
     assert!(hitch.is_at(80_000));
 }
 
+// REQ-MODE-05
 #[test]
 fn hold_keeps_the_hitch_whatever_the_lever_does() {
     let mut hitch = Hitch::picked_up(90_000);
@@ -102,6 +104,7 @@ fn hold_keeps_the_hitch_whatever_the_lever_does() {
     assert!(hitch.is_at(60_000), "picked up by passing the hitch");
 }
 
+// REQ-MODE-04
 #[test]
 fn the_upper_limit_caps_lever_and_button() {
     let mut hitch = Hitch::picked_up(90_000);
@@ -119,6 +122,7 @@ fn the_upper_limit_caps_lever_and_button() {
     }
 }
 
+// REQ-MODE-04
 #[test]
 fn a_shut_dial_lowers_nothing_and_still_lifts() {
     let mut hitch = Hitch::picked_up(90_000);
@@ -132,6 +136,7 @@ fn a_shut_dial_lowers_nothing_and_still_lifts() {
     assert!(hitch.is_still(1_000), "the button lowers");
 }
 
+// REQ-MODE-10
 #[test]
 fn quick_lift_raises_and_returns_to_the_lever() {
     let mut hitch = Hitch::picked_up(90_000);
@@ -157,6 +162,7 @@ fn quick_lift_raises_and_returns_to_the_lever() {
     assert!(hitch.is_at(124_900));
 }
 
+// REQ-MODE-10
 #[test]
 fn a_floating_hitch_may_settle_and_is_nobodys_fault() {
     let mut hitch = Hitch::picked_up(60_000);
@@ -174,6 +180,7 @@ fn a_floating_hitch_may_settle_and_is_nobodys_fault() {
     assert!(hitch.is_at(50_000), "{}", hitch.angle_micro);
 }
 
+// REQ-MODE-06
 #[test]
 fn a_stalled_engine_locks_the_hitch() {
     let mut hitch = Hitch::picked_up(90_000);
@@ -187,6 +194,7 @@ fn a_stalled_engine_locks_the_hitch() {
     assert!(hitch.is_at(70_000));
 }
 
+// REQ-MODE-01
 #[test]
 fn a_button_pressed_at_power_up_or_through_a_fault_moves_nothing() {
     let mut hitch = Hitch::locked(90_000);

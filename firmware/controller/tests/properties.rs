@@ -80,6 +80,7 @@ fn check(outputs: &Outputs) -> Result<(), TestCaseError> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
+    // REQ-SAFE-01
     #[test]
     fn never_both_coils_and_never_a_current_out_of_state(segments in prop::collection::vec(segment(), 1..12)) {
         let mut controller = controller();
@@ -112,6 +113,7 @@ proptest! {
         }
     }
 
+    // REQ-MODE-01
     #[test]
     fn locked_means_still(lever in 40_000i32..140_000, angle in 45_000i32..135_000, steps in 1usize..3_000) {
         let mut controller = controller();
@@ -123,6 +125,7 @@ proptest! {
         }
     }
 
+    // REQ-SAFE-12
     #[test]
     fn any_image_is_survived(images in prop::collection::vec(any::<[u8; INPUT_BYTES]>(), 1..200)) {
         let mut controller = controller();
@@ -131,6 +134,7 @@ proptest! {
         }
     }
 
+    // REQ-MOTION-07
     #[test]
     fn the_same_inputs_give_the_same_outputs(segments in prop::collection::vec(segment(), 1..6)) {
         let (mut one, mut other) = (controller(), controller());

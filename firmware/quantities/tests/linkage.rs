@@ -63,6 +63,7 @@ fn rates_become_piston_speeds() {
     }
 }
 
+// REQ-SAFE-12
 #[test]
 fn no_angle_or_travel_makes_it_panic() {
     let linkage = Calibration::nominal().linkage;

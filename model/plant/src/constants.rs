@@ -10,7 +10,7 @@ use crate::components::orifice_valve::OrificeValve;
 use crate::components::pump::Pump;
 use crate::components::relief_valve::ReliefValve;
 
-/// Which of the two starting points a model is (RIG.md).
+/// Which of the two starting points a model is (docs/plant.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dynamics {
     /// Quasi-static: no inertia, stiff oil, spools without lag.

@@ -33,7 +33,7 @@ fn manoeuvre(lift_a: f64, lower_a: f64) -> impl Iterator<Item = Currents> {
     })
 }
 
-/// RIG.md: piston travel mm, rocker angle deg, height m, dh/dx, d2h/dx2 1/m.
+/// docs/plant.md: piston travel mm, rocker angle deg, height m, dh/dx, d2h/dx2 1/m.
 const KINEMATICS: [[f64; 5]; 5] = [
     [0.0, 44.10, -0.8556, 4.592, -29.1],
     [39.5, 69.31, -0.6844, 4.235, -0.70],
@@ -140,7 +140,7 @@ fn what_stopped_the_masses_does_not_stay_in_the_cylinder() {
 
 #[test]
 fn the_cylinder_holds_what_hangs_on_the_hitch() {
-    // RIG.md: with 30 kg dead weight about 7.4 bar at 50 kg and 26 bar at 250 kg.
+    // docs/plant.md: with 30 kg dead weight about 7.4 bar at 50 kg and 26 bar at 250 kg.
     let model = hitch_model_file::nominal();
     for (load_kg, bar) in [(50.0, 7.4), (250.0, 26.0)] {
         let plant = Plant::new(&model, hitch(load_kg, 90.0), 40.0, Currents::default());

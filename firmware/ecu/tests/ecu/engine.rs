@@ -64,6 +64,7 @@ fn the_hitch_is_locked_until_the_engine_has_run_for_half_a_second() {
     assert_eq!(bench.state(), State::Lifting);
 }
 
+// REQ-MODE-06
 #[test]
 fn an_engine_that_stops_under_a_moving_hitch_stops_it_at_once() {
     let mut bench = Bench::start(Flash::blank());
@@ -84,6 +85,7 @@ fn an_engine_that_stops_under_a_moving_hitch_stops_it_at_once() {
     assert!(!lever_moves(&mut bench, 800));
 }
 
+// REQ-MODE-06
 #[test]
 fn an_engine_that_falls_silent_or_says_that_it_does_not_know_counts_as_stopped() {
     for ending in [

@@ -49,6 +49,7 @@ fn frame() -> impl Strategy<Value = Frame> {
 proptest! {
     #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(1), ..ProptestConfig::with_cases(200) })]
 
+    // REQ-SAFE-08
     #[test]
     fn whatever_is_on_the_bus_the_node_goes_on(frames in prop::collection::vec(frame(), 400)) {
         let mut bus = Bus::claimed(Variant::J1939);

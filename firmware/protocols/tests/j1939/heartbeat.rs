@@ -84,6 +84,7 @@ fn who_takes_the_hitch_is_asked_for_one_and_may_have_none() {
     assert_eq!(asked[0].data(), [0xE4, 0xF0, 0, 100, 0, 0xFF, 0xFF, 0xFF]);
 }
 
+// REQ-MODE-11
 #[test]
 fn a_heartbeat_that_goes_wrong_ends_remote_control_until_eight_are_good() {
     // The same again, too far on, backwards, the sender's own "broken", and a reserved value.

@@ -112,6 +112,7 @@ fn remote_control_starts_from_the_reported_position_only() {
     );
 }
 
+// REQ-MODE-11
 #[test]
 fn without_the_operators_consent_nothing_starts_and_taking_it_away_ends_it() {
     let mut bus = Bus::claimed(Variant::Iso11783);
@@ -143,6 +144,7 @@ fn a_hitch_whose_position_isnt_known_cant_be_commanded() {
     }
 }
 
+// REQ-MODE-11
 #[test]
 fn silence_ends_it_after_300_ms_with_its_reason() {
     let mut bus = remote_bus();

@@ -11,6 +11,7 @@ use crate::client::{
     word_address,
 };
 
+// REQ-SAFE-11
 #[test]
 fn every_parameter_takes_what_is_in_its_range_and_nothing_else() {
     let mut desk = Desk::connected();
@@ -32,6 +33,7 @@ fn every_parameter_takes_what_is_in_its_range_and_nothing_else() {
     }
 }
 
+// REQ-SAFE-11
 #[test]
 fn while_the_hitch_moves_only_what_is_harmless_can_be_changed() {
     let mut desk = Desk::connected();
@@ -60,6 +62,7 @@ fn while_the_hitch_moves_only_what_is_harmless_can_be_changed() {
     );
 }
 
+// REQ-SAFE-11
 #[test]
 fn without_tuning_enabled_nothing_is_written() {
     let mut desk = Desk::connected();

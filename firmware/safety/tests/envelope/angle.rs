@@ -2,6 +2,7 @@
 
 use super::*;
 
+// REQ-SAFE-05
 #[test]
 fn row_9_a_noisy_angle() {
     let noisy_after = |noise: i32| {
@@ -36,6 +37,7 @@ fn noise_at_its_limit_is_borne() {
     }
 }
 
+// REQ-SAFE-05
 #[test]
 fn row_11_movement_against_the_coil() {
     for (order, way) in [(LIFT, -1), (LOWER, 1)] {

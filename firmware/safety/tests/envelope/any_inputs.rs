@@ -76,6 +76,7 @@ impl Random {
     }
 }
 
+// REQ-SAFE-01
 #[test]
 fn whatever_happens_no_current_passes_that_must_not() {
     const SEQUENCES: u64 = 4_000;

@@ -69,6 +69,7 @@ fn every_trip_is_reported_as_a_fault_of_its_kind() {
     );
 }
 
+// REQ-MODE-01
 #[test]
 fn nothing_passes_until_lever_or_button_is_touched() {
     let mut rig = Rig::new();
@@ -93,6 +94,7 @@ fn nothing_passes_until_lever_or_button_is_touched() {
     assert_ne!(rig.step_with(LIFT, pressed), CoilCurrents::OFF);
 }
 
+// REQ-SAFE-01
 #[test]
 fn currents_rise_along_the_slope_and_fall_at_once() {
     for (full, way) in [(Order::Lift(3_500), 1), (Order::Lower(3_500), -1)] {
@@ -106,6 +108,7 @@ fn currents_rise_along_the_slope_and_fall_at_once() {
     }
 }
 
+// REQ-SAFE-01
 #[test]
 fn limits_bound_each_coil_by_its_own() {
     let safety = SafetyParameters {
@@ -130,6 +133,7 @@ fn limits_bound_each_coil_by_its_own() {
     }
 }
 
+// REQ-MODE-07
 #[test]
 fn a_change_of_coil_takes_a_step_with_both_off() {
     for (one, other) in [(LIFT, LOWER), (LOWER, LIFT)] {

@@ -2,6 +2,7 @@
 
 use super::*;
 
+// REQ-SAFE-06
 #[test]
 fn row_12_an_open_coil() {
     let half_less = |current: Option<MilliAmp>, by| current.map(|asked| MilliAmp(asked.0 / 2 - by));
@@ -26,6 +27,7 @@ fn row_12_an_open_coil() {
     }
 }
 
+// REQ-SAFE-06
 #[test]
 fn row_13_a_shorted_coil() {
     let more = |current: Option<MilliAmp>, by| {
@@ -47,6 +49,7 @@ fn row_13_a_shorted_coil() {
     });
 }
 
+// REQ-SAFE-06
 #[test]
 fn row_14_a_stuck_driver() {
     for order in [LIFT, LOWER] {

@@ -4,6 +4,7 @@ use hitch_quantities::units::{Count, PerMille};
 
 use super::*;
 
+// REQ-SAFE-07
 #[test]
 fn row_15_the_converters_reference() {
     for reference in [939, 1_061, 0, i32::MIN, i32::MAX] {
@@ -19,6 +20,7 @@ fn row_15_the_converters_reference() {
     assert_bears(19, |inputs| inputs.reference = Some(PerMille(0)));
 }
 
+// REQ-SAFE-07
 #[test]
 fn row_16_the_supply_of_the_sensors() {
     for millivolts in [4_749, 5_251, 0, i32::MIN, i32::MAX] {
@@ -71,6 +73,7 @@ fn tracks(second: impl Fn(i32) -> Option<i32>) -> (Option<i32>, Option<Trip>) {
     (cut, rig.envelope.tripped())
 }
 
+// REQ-SAFE-04
 #[test]
 fn row_17_tracks_of_the_angle_that_disagree() {
     let tripped = (Some(5), Some(Trip::AngleTracks));
@@ -84,6 +87,7 @@ fn row_17_tracks_of_the_angle_that_disagree() {
     assert_bears(500, |inputs| inputs.second_angle = Some(MilliDegree(0)));
 }
 
+// REQ-SAFE-04
 #[test]
 fn row_17_a_track_that_sticks_in_motion() {
     let stuck = std::cell::Cell::new(None);
@@ -97,6 +101,7 @@ fn row_17_a_track_that_sticks_in_motion() {
     assert!(cut.is_some_and(|ms| (38..=41).contains(&ms)), "{cut:?}");
 }
 
+// REQ-SAFE-07
 #[test]
 fn row_18_a_main_clock_that_changes() {
     for ratio in [799, 1_201, 0, i32::MIN, i32::MAX] {
@@ -109,6 +114,7 @@ fn row_18_a_main_clock_that_changes() {
     }
 }
 
+// REQ-SAFE-07
 #[test]
 fn row_19_the_enable_line() {
     assert_row(Trip::EnableLine, 1, |inputs, _| {
@@ -116,6 +122,7 @@ fn row_19_the_enable_line() {
     });
 }
 
+// REQ-SAFE-07
 #[test]
 fn row_20_a_calibration_that_has_changed_in_memory() {
     for order in [LIFT, LOWER] {

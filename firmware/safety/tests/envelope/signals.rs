@@ -2,6 +2,7 @@
 
 use super::*;
 
+// REQ-SAFE-02
 #[test]
 fn row_1_a_stale_command() {
     let mut rig = Rig::moving(LIFT);
@@ -22,6 +23,7 @@ fn row_1_a_stale_command() {
     assert_eq!(rig.run(LIFT, 5), CoilCurrents::OFF);
 }
 
+// REQ-SAFE-02
 #[test]
 fn row_2_both_coils() {
     for (lift, lower, trips) in [
@@ -47,6 +49,7 @@ fn row_2_both_coils() {
     }
 }
 
+// REQ-SAFE-02
 #[test]
 fn row_3_overrun() {
     assert_row(Trip::Overrun, 2, |inputs, _| {
@@ -77,6 +80,7 @@ fn row_3_counts_the_time_that_a_late_step_has_lost() {
     assert_row(Trip::Overrun, 2, |inputs, _| late(inputs));
 }
 
+// REQ-SAFE-03
 #[test]
 fn row_4_supply() {
     for volt in [7_999, 16_801, i32::MIN, i32::MAX] {
@@ -109,6 +113,7 @@ fn row_4_supply() {
     assert_bears(500, |inputs| inputs.supply = None);
 }
 
+// REQ-SAFE-03
 #[test]
 fn row_5_lever() {
     for lever in [
@@ -128,6 +133,7 @@ fn row_5_lever() {
     assert_bears(4, |inputs| inputs.lever = None);
 }
 
+// REQ-SAFE-03
 #[test]
 fn row_6_angle_missing_or_out_of_range() {
     for angle in [
@@ -159,6 +165,7 @@ fn the_range_of_the_angle_includes_its_ends() {
     }
 }
 
+// REQ-SAFE-03
 #[test]
 fn row_7_angle_jumps() {
     for jump in [5_000, -5_000, 30_000, -30_000, 1_500, -1_500] {

@@ -29,6 +29,7 @@ fn still(
     (rig.envelope.tripped(), off == Some(true))
 }
 
+// REQ-SAFE-04
 #[test]
 fn row_8_a_sensor_that_holds_its_last_sample_in_motion() {
     for order in [LIFT, LOWER] {
@@ -47,6 +48,7 @@ fn row_8_a_sensor_that_holds_its_last_sample_in_motion() {
     }
 }
 
+// REQ-SAFE-04
 #[test]
 fn row_10_a_sensor_that_sticks_in_motion_and_keeps_its_noise() {
     for order in [LIFT, LOWER] {

@@ -3,7 +3,7 @@
 use hitch_plant::Channel;
 use hitch_plant::simulation::Trace;
 
-/// Prior sigma of an offset, s: a channel may be a sample of 20 ms out of step (DATA.md).
+/// Prior sigma of an offset, s: a channel may be a sample of 20 ms out of step (docs/campaigns.md).
 pub const OFFSET_PRIOR_S: f64 = 0.008;
 
 /// Farthest offset, s: a little more than the sample that a channel may be out of step. What is later lags for another

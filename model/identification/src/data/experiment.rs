@@ -31,7 +31,7 @@ pub struct Nuisance {
     pub load: f64,
 }
 
-/// Prior sigma of [`Nuisance::load`]: a load is weighed to about half a percent (DATA.md).
+/// Prior sigma of [`Nuisance::load`]: a load is weighed to about half a percent (docs/campaigns.md).
 pub const LOAD_PRIOR: f64 = 0.005;
 
 /// One run, ready.

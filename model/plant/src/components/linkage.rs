@@ -1,6 +1,6 @@
 //! The three-point linkage: piston travel -> rocker angle -> height of the hitch point.
 //!
-//! Planar, origin in the rocker shaft C, x to the rear, y up (RIG.md; dimensions of the paper's Table 1).
+//! Planar, origin in the rocker shaft C, x to the rear, y up (docs/plant.md; dimensions of the paper's Table 1).
 //! The rocker arm CB and the lift arm CD turn together; the lift rod DE carries the lower link FG at E.
 
 use nalgebra::{Point2, Vector2};

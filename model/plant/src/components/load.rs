@@ -2,7 +2,7 @@
 
 use crate::units::GRAVITY_M_S2;
 
-/// The moving masses (RIG.md: 30 kg of links and frame at the hitch point, 20 kg at the piston).
+/// The moving masses (docs/plant.md: 30 kg of links and frame at the hitch point, 20 kg at the piston).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Masses {
     /// Dead weight of links and frame, reduced to the hitch point, kg.

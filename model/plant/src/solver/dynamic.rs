@@ -1,7 +1,7 @@
 //! The dynamic plant: oil compressibility, inertia, viscous friction, end stops.
 //!
 //! `p' = (Q_lift - Q_lower - Q_leak - Q_hose - A v) / (V(x)/E + C)`,
-//! `M(x) v' = p A - F_weight(x) - M'(x) v^2 / 2 - b v - F_friction(v)`, `x' = v` (RIG.md). Classical
+//! `M(x) v' = p A - F_weight(x) - M'(x) v^2 / 2 - b v - F_friction(v)`, `x' = v` (docs/plant.md). Classical
 //! Runge-Kutta of order four: the ringing at 10 to 40 Hz wants a high order, the noisy measured current makes step
 //! control pointless, and a fixed rhythm keeps the result smooth in the parameters. Where a nearly drained orifice makes
 //! the pressure stiff, the step is cut to stay stable.

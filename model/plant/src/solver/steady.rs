@@ -4,7 +4,7 @@
 //! cylinder pressure from the static balance `p A = F_weight(x) + F_friction(v)`.
 //!
 //! The balance knows no contact force, so at a stop the piston stands while pressure and flow stay what they were
-//! (RIG.md defines it so); dead-heading the pump over the relief valve is the dynamic plant's business.
+//! (docs/plant.md defines it so); dead-heading the pump over the relief valve is the dynamic plant's business.
 
 use crate::hooks::effect_hooks::EffectHooks;
 use crate::hooks::place::Place;
