@@ -1,5 +1,5 @@
 //! A few cases of the second rig, always the same: the hidden effect is named, nothing is named where nothing is
-//! hidden, and what is in no catalogue is owned up to. `cargo bench --bench hidden_effects` asks many more.
+//! hidden, and what is in no catalogue is owned up to. `cargo bench -p host-tests --bench hidden_effects` asks many more.
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;

@@ -20,7 +20,7 @@ struct Layers {
 }
 
 /// What is held to an order; another crate takes an entry here.
-const CRATES: [Layers; 6] = [
+const CRATES: [Layers; 7] = [
     Layers {
         sources: "firmware/quantities/src",
         order: &[
@@ -85,6 +85,43 @@ const CRATES: [Layers; 6] = [
             &["explanation"],
             &["suggestion"],
             &["base"],
+        ],
+    },
+    Layers {
+        sources: "workbench/src",
+        order: &[
+            &["error", "progress", "text"],
+            &["output"],
+            &["outputs"],
+            &[
+                "model_arg",
+                "effect_arg",
+                "search_args",
+                "input_stream",
+                "heat_table",
+            ],
+            &[
+                "demonstration",
+                "valve_survey",
+                "calibration_file",
+                "base_fit",
+                "teaching",
+            ],
+            &[
+                "calibrate",
+                "closed_loop",
+                "comparison",
+                "explanation",
+                "import",
+                "can_door",
+                "xcp_tool",
+            ],
+            &["ecu", "paper", "rebuild", "tuning"],
+            &["status_line", "report"],
+            &["serve"],
+            &["commands"],
+            &["cli"],
+            &["main"],
         ],
     },
 ];

@@ -8,6 +8,7 @@ mod loop_;
 mod metrics;
 mod moves;
 mod scenario;
+pub mod show;
 
 pub use coil::Coil;
 pub use driven_plant::DrivenPlant;

@@ -13,7 +13,7 @@ use hitch_identification::selection::evidence::BELIEVED;
 use hitch_identification::selection::leave_one_out::{LeaveOneOut, beside};
 use hitch_plant::{Effect, Model, full_name};
 
-use super::effects::find;
+use crate::effect_arg::find;
 use crate::error::Error;
 use crate::explanation::{HOPELESS_BASE, parameters, rebuilt};
 use crate::model_arg::ModelArg;

@@ -3,9 +3,9 @@ mod formulas;
 
 use std::fmt::Write as _;
 
-use hitch_input::naming::offer_names;
 use hitch_plant::{Effect, Model, full_name};
 
+use crate::effect_arg::find;
 use crate::error::Error;
 use crate::model_arg::ModelArg;
 use crate::output;
@@ -39,26 +39,6 @@ pub fn run(args: &Args) -> Result<(), Error> {
         None => output::print(&list(&model)),
         Some(id) => output::print(&card(find(&model, id)?)),
     }
-}
-
-/// Looks up an effect that a user named: of the catalogue, or a term of the model's file.
-///
-/// # Errors
-/// If there is none; the nearest name is offered.
-pub fn find(model: &Model, id: &str) -> Result<&'static dyn Effect, Error> {
-    let catalogue = hitch_effects::available(model);
-    let found = catalogue
-        .iter()
-        .copied()
-        .find(|effect| full_name(*effect) == id);
-    found.ok_or_else(|| {
-        let names: Vec<String> = catalogue.iter().map(|effect| full_name(*effect)).collect();
-        let known: Vec<&str> = names.iter().map(String::as_str).collect();
-        Error::Usage(format!(
-            "effect {id:?} is not known; {}",
-            offer_names(id, &known)
-        ))
-    })
 }
 
 fn list(model: &Model) -> String {

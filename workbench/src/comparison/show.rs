@@ -5,7 +5,7 @@ use std::fmt;
 use hitch_plant::Channel;
 
 use super::{Cell, Comparison, Grouping};
-use crate::report::heat_table::{HeatTable, Shade};
+use crate::heat_table::{HeatTable, Shade};
 use crate::text::Table;
 
 /// So many of the worst cells are named.

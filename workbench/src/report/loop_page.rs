@@ -7,8 +7,8 @@ use hitch_plant::Model;
 use maud::{Markup, html};
 
 use super::page;
+use crate::closed_loop::show::{HEADER, row, summed_up};
 use crate::closed_loop::{LoopRun, MoveResult};
-use crate::commands::loop_::{HEADER, row, summed_up};
 
 /// A run with what it was driven with.
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,6 @@
 pub mod chart;
 pub mod comparison_page;
 pub mod explanation_page;
-pub mod heat_table;
 pub mod loop_page;
 pub mod main_page;
 pub mod page;

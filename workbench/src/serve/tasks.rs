@@ -21,8 +21,8 @@ use super::routes::Refusal;
 use super::session::{Explained, Ranking, Session, Step};
 use super::source::Subject;
 use super::views;
-use crate::commands::effects::find;
 use crate::comparison::Evaluated;
+use crate::effect_arg::find;
 use crate::explanation;
 
 /// Most rounds of a fit before its last one, and the relative fall of the cost that is worth another.

@@ -122,3 +122,83 @@ pub(crate) fn fitted(gram: &Gram, entries: &[Entry], columns: Vec<usize>) -> Sub
         cost,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::dictionary_entry::Kind;
+    use hitch_plant::AddedEffect;
+    use nalgebra::{DMatrix, DVector};
+
+    /// Columns of a small problem, one for each effect of the catalogue's first different ones.
+    fn problem() -> (Gram, Vec<Entry>, DMatrix<f64>, DVector<f64>) {
+        let columns = DMatrix::from_fn(8, 5, |row, column| {
+            ((row * 7 + column * 13 + row * column * 3) % 11) as f64 - 5.0
+        });
+        let right = DVector::from_fn(8, |row, _| ((row * 5) % 7) as f64 - 3.0);
+        let gram = Gram {
+            matrix: columns.transpose() * &columns,
+            pull: columns.transpose() * &right,
+            square: right.dot(&right),
+        };
+        let mut entries: Vec<Entry> = Vec::new();
+        for &effect in hitch_effects::CATALOGUE {
+            let known = entries.iter().any(|entry| entry.id() == effect.id());
+            if entries.len() < columns.ncols() && !known {
+                entries.push(Entry {
+                    kind: Kind::New,
+                    added: AddedEffect::typical(effect),
+                    off: 0.0,
+                    change: Vec::new(),
+                    share: (f64::NEG_INFINITY, f64::INFINITY),
+                });
+            }
+        }
+        (gram, entries, columns, right)
+    }
+
+    /// What least squares leaves with some of the columns.
+    fn left(columns: &DMatrix<f64>, right: &DVector<f64>, chosen: &[usize]) -> f64 {
+        let chosen = columns.select_columns(chosen);
+        let normal = chosen.transpose() * &chosen;
+        let shares = normal.cholesky().expect("independent columns");
+        let shares = shares.solve(&(chosen.transpose() * right));
+        (right - chosen * shares).norm_squared()
+    }
+
+    #[test]
+    fn the_best_subset_of_each_size_is_that_of_an_exhaustive_search() {
+        let (gram, entries, columns, right) = problem();
+        let best = best_subsets(&gram, &entries, 3);
+        for (size, subsets) in best.iter().enumerate().skip(1) {
+            let all = (0..1usize << entries.len()).filter(|bits| bits.count_ones() == size as u32);
+            let costs = all.map(|bits| {
+                let chosen: Vec<usize> =
+                    (0..entries.len()).filter(|k| bits >> k & 1 == 1).collect();
+                left(&columns, &right, &chosen)
+            });
+            let least = costs.fold(f64::INFINITY, f64::min);
+            let found = subsets[0].cost;
+            assert!(
+                (found - least).abs() < 1e-3 * gram.square,
+                "{size}: {found}, {least}"
+            );
+        }
+    }
+
+    #[test]
+    fn shares_stay_within_their_ranges() {
+        let (gram, mut entries, ..) = problem();
+        for entry in &mut entries {
+            entry.share = (0.0, 0.1);
+        }
+        for subset in best_subsets(&gram, &entries, 2).iter().flatten() {
+            assert!(
+                subset
+                    .shares
+                    .iter()
+                    .all(|share| (0.0..=0.1).contains(share))
+            );
+        }
+    }
+}

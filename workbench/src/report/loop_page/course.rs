@@ -1,8 +1,8 @@
 //! Angle, currents and pressures of moves over time: of all if they are few, else of the worst.
 use maud::{Markup, html};
 
+use crate::closed_loop::show::name;
 use crate::closed_loop::{LoopRun, MoveResult, MoveTrace, Sample};
-use crate::commands::loop_::name;
 use crate::report::chart::{Chart, Line, Stroke, legend};
 use crate::text::known;
 

@@ -3,7 +3,7 @@ use maud::{Markup, html};
 
 use super::occurring;
 use crate::closed_loop::MoveResult;
-use crate::report::heat_table::{HeatTable, Shade};
+use crate::heat_table::{HeatTable, Shade};
 
 /// A figure of a move and how it is coloured.
 struct Figure {

@@ -2,8 +2,8 @@
 //! today.
 //!
 //! ```text
-//! cargo bench --bench hidden_effects -- --count 40 --family steady --plan lab
-//! cargo bench --bench hidden_effects -- --count 40 --family steady --plan lab --foreign
+//! cargo bench -p host-tests --bench hidden_effects -- --count 40 --family steady --plan lab
+//! cargo bench -p host-tests --bench hidden_effects -- --count 40 --family steady --plan lab --foreign
 //! ```
 //!
 //! Prints a Markdown table a family and plan, and every miss of the project's own method with the command that repeats
@@ -453,7 +453,7 @@ fn show_misses(arguments: &Arguments, answers: &[Graded], family: Family, plan: 
             },
         );
         println!(
-            "  `cargo bench --bench hidden_effects -- --seed {} --count 1 --family {} --plan {}{}`",
+            "  `cargo bench -p host-tests --bench hidden_effects -- --seed {} --count 1 --family {} --plan {}{}`",
             case.seed,
             name(format!("{family:?}")),
             name(format!("{plan:?}")),

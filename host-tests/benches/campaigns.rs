@@ -25,7 +25,7 @@ fn measured() -> Campaign {
 
 /// A lab campaign of the host tests.
 fn lab(name: &str) -> Campaign {
-    let campaigns = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-tests/campaigns");
+    let campaigns = Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns");
     Campaign::load(&campaigns.join(name)).expect("a shipped campaign")
 }
 

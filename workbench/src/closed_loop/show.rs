@@ -1,0 +1,80 @@
+//! Moves as tables and text, for terminal and report.
+
+use super::metrics::{MoveResult, Summary};
+use crate::text::{Table, known};
+
+/// Header of the table of moves, for terminal and report.
+pub const HEADER: [&str; 9] = [
+    "move, deg",
+    "load, kg",
+    "time, s",
+    "shortest, s",
+    "ratio",
+    "overshoot, deg",
+    "final error, deg",
+    "active after, s",
+    "pressure swing",
+];
+
+/// What a move is called.
+#[must_use]
+pub fn name(result: &MoveResult) -> String {
+    format!("{:.1} to {:.1}", result.from_deg, result.to_deg)
+}
+
+/// A move's row under [`HEADER`].
+#[must_use]
+pub fn row(result: &MoveResult) -> [String; 9] {
+    [
+        name(result),
+        format!("{:.0}", result.load_kg),
+        if result.arrived {
+            known(result.time_s, 3)
+        } else {
+            "never arrives".to_owned()
+        },
+        if result.shortest_s.is_finite() {
+            known(result.shortest_s, 3)
+        } else {
+            "impossible".to_owned()
+        },
+        known(result.ratio, 2),
+        format!("{:.2}", result.overshoot_deg),
+        format!("{:.2}", result.final_error_deg),
+        format!("{:.3}", result.active_after_s),
+        known(result.pressure_swing_ratio, 2),
+    ]
+}
+
+/// The figures as a table for a terminal.
+#[must_use]
+pub fn text(moves: &[MoveResult], summary: &Summary) -> String {
+    let mut table = Table::new(HEADER);
+    for result in moves {
+        table.row(row(result));
+    }
+    format!("{table}\n{}", summed_up(summary))
+}
+
+/// The summary in two lines, and one more if not every move arrived.
+#[must_use]
+pub fn summed_up(summary: &Summary) -> String {
+    let arrived = match summary.moves - summary.arrived {
+        0 => String::new(),
+        never => format!(
+            "{never} of {} moves never arrived; times are those of the others.\n",
+            summary.moves
+        ),
+    };
+    format!(
+        "{arrived}Time over shortest: median {}, 95 % below {}; overshoot at most {:.2} deg, \
+         final error at most {:.2} deg.\n\
+         Coils switched on in the minute after arrival: {}; the approach's last {:.3} s at most are in it.\n",
+        known(summary.ratio_median, 2),
+        known(summary.ratio_p95, 2),
+        summary.overshoot_max_deg,
+        summary.final_error_max_deg,
+        summary.switched_on_after,
+        summary.active_after_max_s,
+    )
+}

@@ -1,0 +1,26 @@
+//! An effect as a user names it.
+
+use hitch_input::naming::offer_names;
+use hitch_plant::{Effect, Model, full_name};
+
+use crate::error::Error;
+
+/// Looks up an effect that a user named: of the catalogue, or a term of the model's file.
+///
+/// # Errors
+/// If there is none; the nearest name is offered.
+pub fn find(model: &Model, id: &str) -> Result<&'static dyn Effect, Error> {
+    let catalogue = hitch_effects::available(model);
+    let found = catalogue
+        .iter()
+        .copied()
+        .find(|effect| full_name(*effect) == id);
+    found.ok_or_else(|| {
+        let names: Vec<String> = catalogue.iter().map(|effect| full_name(*effect)).collect();
+        let known: Vec<&str> = names.iter().map(String::as_str).collect();
+        Error::Usage(format!(
+            "effect {id:?} is not known; {}",
+            offer_names(id, &known)
+        ))
+    })
+}
