@@ -1,4 +1,4 @@
-//! The manoeuvre that tells most, a minute of rig time, of what a campaign leaves alike.
+//! Selection of the manoeuvre with the largest expected likelihood ratio per minute of rig time.
 
 use std::fmt;
 
@@ -12,23 +12,23 @@ use crate::design::sensor::telling_instrument;
 use crate::design::separation::{Bench, Known, Pair};
 use crate::selection::evidence::TOLD_APART;
 
-/// Expected likelihood ratio that decides for sure: a measured one scatters by twice its root, and this one stays above
-/// [`TOLD_APART`] in 19 of 20 measurements.
+/// Expected likelihood ratio that is decisive: a measured one has a standard deviation of twice its square root, and
+/// with this expectation exceeds [`DISTINGUISHABLE`] in 19 of 20 measurements.
 const DECISIVE: f64 = 26.0;
 
-/// What to measure next.
+/// The next experiment.
 #[derive(Debug, Clone)]
 pub struct NextExperiment {
-    /// What to do, a sentence without its full stop.
+    /// The instruction, a sentence without its full stop.
     pub manoeuvre: String,
-    /// What it is good for, a sentence without its full stop; empty if the first says it all.
+    /// The reason, a sentence without its full stop; empty if the instruction is sufficient.
     pub why: String,
-    /// The effects that it would tell from each other.
+    /// The pairs of effects that it would distinguish.
     pub separates: Vec<(&'static dyn Effect, &'static dyn Effect)>,
-    /// Smallest likelihood ratio to expect for these, by whose root times two a measured one scatters; of all listed
-    /// manoeuvres the largest if none separates anything, not a number if nothing was simulated.
+    /// Smallest expected likelihood ratio of these pairs; a measured one has a standard deviation of twice its square
+    /// root. If no manoeuvre separates any pair, the largest one of all manoeuvres; NaN if nothing was simulated.
     pub expected_likelihood_ratio: f64,
-    /// Rig time, minutes, with setting up; not a number if no manoeuvre is proposed.
+    /// Rig time, minutes, with set-up; NaN if no manoeuvre is proposed.
     pub minutes: f64,
 }
 
@@ -43,7 +43,7 @@ impl fmt::Display for NextExperiment {
 }
 
 impl NextExperiment {
-    /// What a campaign lacks altogether, without which nothing can be simulated.
+    /// A manoeuvre that the campaign lacks, without which nothing can be simulated.
     #[must_use]
     pub fn missing(what: &str) -> Self {
         Self {
@@ -110,7 +110,7 @@ impl NextExperiment {
     }
 }
 
-/// A manoeuvre's expected likelihood ratios, a pair each.
+/// The expected likelihood ratios of a manoeuvre, one per pair.
 struct Judged {
     likelihood_ratios: Vec<f64>,
 }
@@ -121,7 +121,7 @@ impl Judged {
         ratios.filter(move |ratio| *ratio >= bar)
     }
 
-    /// Smallest ratio of the pairs that are told apart.
+    /// Smallest ratio of the pairs that are distinguished.
     fn smallest(&self, bar: f64) -> f64 {
         self.told(bar).fold(f64::INFINITY, f64::min)
     }
@@ -131,8 +131,9 @@ impl Judged {
     }
 }
 
-/// The listed manoeuvre that separates the most pairs, and of these the one whose smallest likelihood ratio a minute is
-/// largest; or, if none separates any, what else to measure. `None` without pairs.
+/// The manoeuvre that distinguishes the most pairs, and of these the one with the largest value of smallest likelihood
+/// ratio per minute. If none distinguishes any pair, the result names an additional sensor instead. `None` without
+/// pairs.
 #[must_use]
 pub fn next_experiment(
     experiment: &Experiment,
@@ -176,7 +177,7 @@ pub fn next_experiment(
         .map(|(manoeuvre, judged)| NextExperiment::of(manoeuvre, judged, pairs, bar, instrument))
 }
 
-/// Texts without repetitions: two forms of an effect have one name.
+/// Texts without duplicates: two forms of an effect have the same name.
 fn distinct(texts: impl Iterator<Item = String>) -> Vec<String> {
     let mut distinct: Vec<String> = Vec::new();
     for text in texts {
@@ -195,7 +196,7 @@ fn either(a: &dyn Effect, b: &dyn Effect) -> String {
     format!("{} or {}", a.id(), b.id())
 }
 
-/// A number as precise as an expectation is: two digits.
+/// A number rounded to two digits, the precision of an expectation.
 fn rounded(value: f64) -> String {
     if value < 10.0 {
         return format!("{value:.1}");

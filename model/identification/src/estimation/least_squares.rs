@@ -1,10 +1,11 @@
-//! Bounded Levenberg-Marquardt over effects, clocks and each run's nuisances.
+//! Bounded Levenberg-Marquardt over effects, clocks and each run's load error.
 //!
-//! The general crates have no bounds and know nothing of the arrow shape of the normal equations (see
-//! [`crate::estimation::jacobian`]), which makes a fit of 45 parameters cost as much as one of five.
+//! General crates have no bounds and do not exploit the arrow structure of the normal equations (see
+//! [`crate::estimation::jacobian`]), with which a fit of 45 parameters costs as much as one of five.
 //!
-//! A Jacobian takes a simulation a parameter, a step takes one. So while steps bring what a Jacobian promised it is kept
-//! and corrected by what they showed (Broyden 1965); a descent ends only where one made anew promises nothing more.
+//! A Jacobian takes one simulation per parameter, a step takes one. While steps achieve the predicted reduction, the
+//! Jacobian is kept and updated by Broyden's method (Broyden 1965). A descent ends only if a fresh Jacobian predicts no
+//! further reduction.
 
 use hitch_plant::{Model, SizeResponse};
 
@@ -14,44 +15,45 @@ use crate::estimate::{Estimate, Shared};
 use crate::estimation::jacobian::{Jacobian, SlowColumns, huber_residuals, square_sum};
 use crate::residuals::whitening::Weights;
 
-/// Jacobians after which the columns of clocks and loads, which hardly change, are computed anew.
+/// Number of Jacobians after which the columns of clocks and loads, which hardly change, are recomputed.
 const SLOW_EVERY: usize = 4;
 
-/// Dampings tried for one step, the first of a descent, and how much larger each is than the one before.
+/// Number of damping values tried for one step, the first of a descent, and the factor from one to the next.
 const TRIES: usize = 4;
 const FIRST_DAMPING: f64 = 1e-3;
 const DAMPED_MORE: f64 = 30.0;
 
-/// Relative fall of the cost that is still worth a step.
+/// Smallest relative reduction of the cost that justifies another step.
 const WORTHWHILE: f64 = 1e-5;
 
-/// Share of the promised fall of the cost that a step has to bring for its Jacobian to be kept, how often one is, and
-/// fewest parameters of effects with which that saves more than the steps that it spoils.
+/// Share of the predicted reduction of the cost that a step has to achieve for its Jacobian to be kept, how many times
+/// a Jacobian is kept in succession, and fewest effect parameters with which keeping it saves more than it costs in
+/// poorer steps.
 const KEPT: f64 = 0.5;
 const MOST_KEPT: usize = 3;
 const WORTH_KEEPING: usize = 4;
 
-/// Where a descent came to.
+/// Result of a descent.
 #[derive(Debug, Clone)]
 pub struct Descent {
-    /// The values found.
+    /// The estimate at its end.
     pub estimate: Estimate,
-    /// Sum of Huber's losses plus the cost of the priors.
+    /// Sum of the Huber losses plus the cost of the priors.
     pub cost: f64,
-    /// What the cost fell by in the last iteration.
+    /// Reduction of the cost in the last iteration.
     pub falling: f64,
 }
 
-/// What a descent moves.
+/// Which parameters a descent moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Moves {
-    /// All that is free.
+    /// All free parameters.
     All,
-    /// All but sizes of what jumps.
+    /// All but the sizes of switching effects.
     AllButJumps,
 }
 
-/// Descends from `start` under given weights with at most so many Jacobians.
+/// Descends from `start` under given weights with at most `jacobians` Jacobians.
 pub(crate) fn descend(
     experiment: &Experiment,
     model: &Model,
@@ -111,7 +113,7 @@ pub(crate) fn descend(
     }
 }
 
-/// What is descended on.
+/// The least-squares problem of a descent.
 struct Slopes<'a> {
     experiment: &'a Experiment,
     model: &'a Model,
@@ -119,14 +121,14 @@ struct Slopes<'a> {
     moves: Moves,
 }
 
-/// A step that was taken.
+/// An accepted step.
 struct Taken {
     step: Step,
     to: Point,
     damping: f64,
-    /// Fall of the cost that the Jacobian promised.
+    /// Reduction of the cost that the Jacobian predicted.
     promised: f64,
-    /// Whether a parameter that jumps is free.
+    /// Whether the size of a switching effect is free.
     jumping: bool,
 }
 
@@ -158,9 +160,10 @@ impl Slopes<'_> {
         Jacobian::with_slow_columns(experiment, model, weights, estimate, residuals, slow)
     }
 
-    /// The first step, by rising damping, that lowers the cost.
+    /// The first step, by increasing damping, that reduces the cost.
     fn step(&self, jacobian: &Jacobian, point: &Point, damping: f64) -> Option<Taken> {
-        // The slope of what jumps says little of where a step of it leads, and spoils that of all the others.
+        // The slope of a switching effect says little about the result of a finite step, and spoils the steps of all
+        // others.
         let jumps = |shared| point.estimate.size_response(shared) == SizeResponse::Switching;
         let jumping = jacobian.shared.iter().any(|&shared| jumps(shared));
         let better = |held: &dyn Fn(Shared) -> bool, damping: f64| {
@@ -187,12 +190,12 @@ impl Slopes<'_> {
     }
 }
 
-/// Dampings to try one after the other.
+/// The damping values to try, in order.
 fn dampings(first: f64) -> impl Iterator<Item = f64> {
     std::iter::successors(Some(first), |&damping| Some(DAMPED_MORE * damping)).take(TRIES)
 }
 
-/// An estimate with what it leaves.
+/// An estimate with its residuals and cost.
 struct Point {
     estimate: Estimate,
     residuals: Vec<Vec<f64>>,

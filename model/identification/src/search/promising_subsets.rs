@@ -1,4 +1,4 @@
-//! Which subsets of a dictionary are worth a fit with the full model.
+//! Selection of the subsets that are fitted with the full model.
 
 use hitch_plant::Model;
 
@@ -11,30 +11,30 @@ use crate::search::dictionary_entry::{Entry, Kind, with_entries};
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::posterior::{Key, Refitted, key};
 
-/// Subsets of each size that are looked at, and how many of all are fitted.
+/// Subsets of each size that are ranked, and subsets in total that are fitted.
 const LOOKED_AT: usize = 40;
 const FITTED: usize = 12;
 
-/// Starts of one set of effects where the cost of one of them has many valleys.
+/// Starts of one set of effects whose cost has many local minima.
 pub(crate) const VALLEYS: usize = 2;
 
-/// Share of the fall of the cost, or of what an effect explains that is replaced, that a secant's promise may be off by:
-/// a further effect that promises less is left to the next dictionary.
+/// Relative error of a secant's prediction, as a share of the predicted cost reduction or of that of a replaced effect.
+/// A further effect that predicts less is left to the next dictionary.
 const INEXACT: f64 = 0.04;
 
-/// A subset is fitted if it leaves at most this share of what it has not in common with the most promising one
-/// unexplained, or costs that differ by no more likelihood ratios than this.
+/// A subset is fitted if its cost exceeds the best one by at most this share of what the two do not have in common, or
+/// by at most this likelihood ratio.
 pub(crate) const NEAR: f64 = 0.15;
 pub(crate) const CLOSE: f64 = 60.0;
 
-/// Where fits start, and the penalty of effects beside what the dictionary promises to leave.
+/// Starts of fits, and the penalty of effects given the residuals that the dictionary predicts.
 pub(crate) struct Starts {
     pub estimates: Vec<Estimate>,
     pub penalty: Penalty,
 }
 
-/// Starts of the subsets that promise as much as the best one, or nearly, were not fitted yet, and have at most so many
-/// effects more than the present ones.
+/// Starts of the subsets whose predicted cost is least or close to it, that were not fitted yet, and that have at most
+/// `more` effects more than the present ones.
 pub(crate) fn starts(
     coarse: &Coarse,
     dictionary: &Dictionary,
@@ -115,7 +115,7 @@ pub(crate) fn starts(
     Starts { estimates, penalty }
 }
 
-/// The subset of all effects that are there.
+/// The subset of all present effects.
 fn with_all_present(dictionary: &Dictionary) -> Subset {
     let columns = dictionary.entries.iter().enumerate();
     let present = columns.filter(|(_, entry)| matches!(entry.kind, Kind::Present(_)));
@@ -123,7 +123,7 @@ fn with_all_present(dictionary: &Dictionary) -> Subset {
     fitted(&dictionary.gram, &dictionary.entries, present)
 }
 
-/// What the leading subset explains beyond what another has in common with it.
+/// Cost reduction of the leading subset beyond that of its intersection with another.
 fn apart(dictionary: &Dictionary, subset: &Subset, leader: &Subset) -> f64 {
     let common = subset.columns.iter().copied();
     let common = common
@@ -132,7 +132,7 @@ fn apart(dictionary: &Dictionary, subset: &Subset, leader: &Subset) -> f64 {
     fitted(&dictionary.gram, &dictionary.entries, common).cost - leader.cost
 }
 
-/// Whether a subset has all of another, and more.
+/// Whether a subset is a proper superset of another.
 fn is_more(subset: &Subset, other: &Subset) -> bool {
     let has = |column: &usize| subset.columns.contains(column);
     subset.columns.len() > other.columns.len() && other.columns.iter().all(has)

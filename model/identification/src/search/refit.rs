@@ -1,4 +1,4 @@
-//! Promising sets of effects fitted with the full model.
+//! Fits of promising sets of effects with the full model.
 
 use hitch_plant::SizeResponse;
 use rayon::prelude::*;
@@ -18,30 +18,33 @@ use crate::search::subset::Options;
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::posterior::{Refitted, key, key_of};
 
-/// Most starts that are sketched, and sketches that are refined.
+/// Most starts that get a short fit, and short fits that are refined.
 const SKETCHED: usize = 5;
 const REFINED: usize = 3;
 
-/// Error from which a sketch may be in a valley of its own, so that it starts coarse as well.
+/// Root mean square error, in sigma, above which a short fit may be in a local minimum, so that it is repeated with the
+/// coarse weights first.
 const ASTRAY: f64 = 2.0;
 
-/// How many times the least cost what jumps may leave on fewer samples and still be the best on all.
+/// Factor over the least cost up to which a set with rough effects stays a candidate: their sizes are less exact on
+/// fewer samples.
 const MISSED: f64 = 2.0;
 
-/// What sets are fitted around.
+/// The context of the fits.
 pub(crate) struct Refits<'a> {
     pub coarse: &'a Coarse<'a>,
-    /// The cost of the best fit so far with its penalty, seen as coarsely.
+    /// Penalised cost of the best fit so far, on the condensed experiment.
     pub best: f64,
     pub penalty: Penalty,
     pub options: Options<'a>,
 }
 
 impl Refits<'_> {
-    /// Fits of some starts: each is simulated once and rid of members that do not keep their promise, the best ones are
-    /// sketched under the present yardsticks, the best of those fitted coarsely, and the likely ones to all samples.
+    /// Fits from some starts. Each start is simulated once and pruned of members whose cost reduction is below their
+    /// penalty. The best starts get a short fit under the present weights, the best of those a fit on coarse time
+    /// steps, and those close to the best a fit to all samples.
     ///
-    /// `jacobian` has the sensitivities at the coarse fit.
+    /// `jacobian` holds the sensitivities at the coarse fit.
     pub fn of(
         &self,
         starts: Vec<Estimate>,
@@ -60,7 +63,8 @@ impl Refits<'_> {
         let residuals = |estimate: &Estimate| {
             huber_residuals(coarse_in_time, model, &present.weights, estimate)
         };
-        // The clocks have stood in for what is missing: where a start gives them back, slopes lead nowhere.
+        // Clock offsets have compensated for what is missing. Where a start makes them unnecessary, no descent path
+        // leads back.
         let cost = |estimate: &Estimate| {
             let projection = projections.of(estimate);
             let left = residuals(estimate);
@@ -108,8 +112,8 @@ impl Refits<'_> {
         refined.collect()
     }
 
-    /// Those of some coarse fits that may be the best to all samples: whose cost with its penalty is near the least one.
-    /// Sizes of effects that jump are less exact on fewer samples.
+    /// The coarse fits that may be the best on all samples: their penalised cost is close to the least one. The
+    /// tolerance is larger for rough effects, whose sizes are less exact on fewer samples.
     fn likely(&self, approached: Vec<(f64, Fit)>) -> Vec<Estimate> {
         let Some((least, best)) = approached.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else {
             return Vec::new();
@@ -124,7 +128,7 @@ impl Refits<'_> {
         near.map(|(_, fit)| fit.estimate.clone()).collect()
     }
 
-    /// At most so many estimates whose cost with its penalty is near the least one.
+    /// At most `most` estimates whose penalised cost is close to the least one.
     fn nearest(&self, mut penalized: Vec<(f64, Estimate)>, most: usize) -> Vec<Estimate> {
         penalized.sort_by(|a, b| a.0.total_cmp(&b.0));
         let least = penalized
@@ -137,8 +141,8 @@ impl Refits<'_> {
         near.take(most).map(|(_, estimate)| estimate).collect()
     }
 
-    /// The fit from one start. Where the clocks are off, one with all in step is tried as well: what is late may be the
-    /// effect, and between two valleys no slope leads.
+    /// The fit from one start. If clocks are off, a start with all clocks in step is tried as well: the delay may
+    /// belong to the effect, and there is no descent path between the two minima.
     pub fn one(&self, start: Estimate) -> Fit {
         let Coarse {
             experiment, model, ..
@@ -162,7 +166,7 @@ impl Refits<'_> {
         }
     }
 
-    /// Where a start leads under the present yardsticks; far from the data also by way of a coarse fit.
+    /// A short fit under the present weights; far from the data also by way of the coarse weights.
     fn sketched(&self, start: Estimate) -> Descent {
         let Coarse {
             model,
@@ -181,7 +185,7 @@ impl Refits<'_> {
         if far.cost < near.cost { far } else { near }
     }
 
-    /// A fit with the size of what jumps looked for finely.
+    /// A fit after the line search for the size of a switching or stepped effect.
     fn line_searched(&self, fit: Fit) -> Fit {
         let estimate = &fit.estimate;
         let jumps = (0..estimate.effects.len()).find(|&index| {
@@ -202,8 +206,8 @@ impl Refits<'_> {
     }
 }
 
-/// An estimate without those members that do not explain as much as they have to, and its cost with their penalty; `cost`
-/// gives that and the estimate adapted.
+/// An estimate without the members whose cost reduction is below their penalty, and its penalised cost. `cost` returns
+/// the penalised cost and the adapted estimate.
 fn lightened(start: Estimate, cost: impl Fn(&Estimate) -> (f64, Estimate)) -> (f64, Estimate) {
     let (mut least, mut estimate) = cost(&start);
     let mut index = 0;
@@ -223,13 +227,13 @@ fn lightened(start: Estimate, cost: impl Fn(&Estimate) -> (f64, Estimate)) -> (f
     (least, estimate)
 }
 
-/// Whether the cost does not fall smoothly along the size of some effect.
+/// Whether the cost is not smooth along the size of some effect.
 fn is_rough(estimate: &Estimate) -> bool {
     let mut effects = estimate.effects.iter();
     effects.any(|added| added.effect.size_response().is_rough())
 }
 
-/// Of each set the estimate with the least cost, or the best few where there are many valleys.
+/// The best estimate of each set, or the best [`VALLEYS`] if its cost has many local minima.
 fn distinct(mut penalized: Vec<(f64, Estimate)>) -> Vec<(f64, Estimate)> {
     penalized.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut distinct: Vec<(f64, Estimate)> = Vec::new();

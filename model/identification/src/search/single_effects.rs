@@ -18,13 +18,13 @@ use crate::selection::candidate::{Candidate, slow_columns, weigh, weigh_by};
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::evidence::shares;
 
-/// Forms that are fitted in full, the most promising ones; of the others the start of a fit is weighed.
+/// Number of the most promising forms that are fitted in full; the others are weighed at the start of their fit.
 const FITTED: usize = 8;
 
-/// Report of a form of an effect that was weighed.
+/// Callback with each form of an effect once it is weighed.
 pub type Weighed<'a> = &'a (dyn Fn(&Candidate) + Sync);
 
-/// Each effect in its best form beside a fit, weighed; the likeliest first.
+/// Each effect in its best form added to a fit and weighed, by decreasing probability.
 #[must_use]
 pub fn try_effects(
     experiment: &Experiment,
@@ -36,7 +36,7 @@ pub fn try_effects(
     try_each(experiment, model, base, effects, progress, &|_| {})
 }
 
-/// [`try_effects`] that tells of each form as soon as it is weighed, in any order.
+/// [`try_effects`] with a callback for each form once it is weighed, in any order.
 #[must_use]
 pub fn try_each(
     experiment: &Experiment,
@@ -110,7 +110,8 @@ pub fn try_each(
     likeliest_forms(tried.collect())
 }
 
-/// Probability of each candidate among all and none, all other differences aside, that it is what it is called.
+/// Probability of each candidate among all candidates and none, times the probability that it is the named effect
+/// rather than an unknown one.
 #[must_use]
 pub fn confidences(candidates: &[Candidate]) -> Vec<f64> {
     let none = 0.0;
@@ -124,7 +125,7 @@ pub fn confidences(candidates: &[Candidate]) -> Vec<f64> {
     confidences
 }
 
-/// Of each effect the likeliest form, the likeliest effect first.
+/// The most probable form of each effect, by decreasing probability.
 fn likeliest_forms(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
     candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
     let mut forms: Vec<Candidate> = Vec::new();
