@@ -31,7 +31,7 @@ pub struct Estimate {
 }
 
 /// Bound on a load error, in prior sigmas.
-const FARTHEST: f64 = 5.0;
+const LOAD_BOUND: f64 = 5.0;
 
 /// Rounding error of a load error converted to prior sigmas and back.
 const ROUNDING: f64 = 1e-9;
@@ -275,30 +275,30 @@ impl Estimate {
     #[must_use]
     pub fn load_would_leave(&self, run: usize, pull: f64) -> bool {
         let load = self.load(run);
-        load.abs() >= FARTHEST - ROUNDING && (pull - load) * load > 0.0
+        load.abs() >= LOAD_BOUND - ROUNDING && (pull - load) * load > 0.0
     }
 
     /// Sets the load error of a run, in prior sigmas.
     pub fn set_load(&mut self, run: usize, sigmas: f64) {
-        self.nuisances[run].load = sigmas.clamp(-FARTHEST, FARTHEST) * LOAD_PRIOR;
+        self.nuisances[run].load = sigmas.clamp(-LOAD_BOUND, LOAD_BOUND) * LOAD_PRIOR;
     }
 
     /// The estimate without one of the effects, by its index. An adopted effect returns to its adopted size instead.
     #[must_use]
     pub fn without(&self, effect: usize) -> Self {
-        let mut lighter = self.clone();
+        let mut reduced = self.clone();
         let id = self.effects[effect].effect.id();
-        let mut adopted = lighter.adopted.iter_mut();
+        let mut adopted = reduced.adopted.iter_mut();
         match adopted.find(|adopted| adopted.id == id) {
             Some(adopted) => {
                 adopted.held = Held::All;
-                lighter.effects[effect].values[0] = adopted.size;
+                reduced.effects[effect].values[0] = adopted.size;
             }
             None => {
-                lighter.effects.remove(effect);
+                reduced.effects.remove(effect);
             }
         }
-        lighter
+        reduced
     }
 
     /// Cost of the priors: squared distance in prior sigmas.

@@ -310,7 +310,7 @@ impl Ready {
             let descent = sketch(experiment, model, &fit.weights, fit.estimate, false);
             fit = evaluate(experiment, model, descent.estimate);
             told(round, &format!("fitting, round {round}"), &fit);
-            if descent.falling <= WORTHWHILE * descent.cost {
+            if descent.last_reduction <= WORTHWHILE * descent.cost {
                 break;
             }
         }

@@ -8,7 +8,7 @@ use crate::residuals::whitening::Weights;
 /// Number of damping values tried for one step, the first of a descent, and the factor from one to the next.
 const TRIES: usize = 5;
 const FIRST_DAMPING: f64 = 1e-3;
-const DAMPED_MORE: f64 = 20.0;
+const DAMPING_FACTOR: f64 = 20.0;
 
 /// Smallest relative reduction of the cost that justifies another step.
 const WORTHWHILE: f64 = 1e-6;
@@ -23,7 +23,7 @@ pub fn descend(problem: &Problem<'_>, weights: &Weights, start: &Point, jacobian
         };
         let normal = Normal::of(&columns);
         let before = point.cost;
-        let tries = std::iter::successors(Some(damping), |d| Some(DAMPED_MORE * d)).take(TRIES);
+        let tries = std::iter::successors(Some(damping), |d| Some(DAMPING_FACTOR * d)).take(TRIES);
         for tried in tries {
             let Some(moved) = step(problem, weights, &normal, &point, tried) else {
                 continue;

@@ -119,7 +119,7 @@ pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&s
     let model = problem.model(&point.theta);
     let model = model.unwrap_or_else(|| declared.clone());
     let after = refine(experiment, &model, point.estimate.clone());
-    let told = Report {
+    let report = Report {
         declared,
         model: &model,
         parameters: &parameters,
@@ -129,8 +129,8 @@ pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&s
         prior: &prior,
     };
     BaseFit {
-        constants: told.constants(),
-        curves: told.curves(),
+        constants: report.constants(),
+        curves: report.curves(),
         model,
         before,
         after,

@@ -17,7 +17,7 @@ const REACH: f64 = 0.3;
 const SINGLE: f64 = 0.02;
 
 /// Bound on an unknown, in sigmas.
-const FARTHEST: f64 = 4.0;
+const BOUND: f64 = 4.0;
 
 /// Gaussian prior about the declared values.
 #[derive(Debug, Clone)]
@@ -57,14 +57,14 @@ impl Prior {
     /// The nearest values within the bounds.
     pub fn bounded(&self, theta: &DVector<f64>) -> DVector<f64> {
         DVector::from_fn(theta.len(), |k, _| {
-            let farthest = FARTHEST * self.sigma[k];
+            let farthest = BOUND * self.sigma[k];
             theta[k].clamp(-farthest, farthest)
         })
     }
 
     /// Whether an unknown is at its bound.
     pub fn is_at_an_end(&self, theta: &DVector<f64>, unknown: usize) -> bool {
-        theta[unknown].abs() >= 0.999 * FARTHEST * self.sigma[unknown]
+        theta[unknown].abs() >= 0.999 * BOUND * self.sigma[unknown]
     }
 }
 

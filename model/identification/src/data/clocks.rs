@@ -7,7 +7,7 @@ use hitch_plant::simulation::Trace;
 pub const OFFSET_PRIOR_S: f64 = 0.008;
 
 /// Largest clock offset, s: slightly more than one sample. Larger delays have another cause.
-pub const FARTHEST_S: f64 = 0.024;
+pub const LARGEST_OFFSET_S: f64 = 0.024;
 
 /// Clock offsets of a campaign.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

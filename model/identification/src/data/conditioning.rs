@@ -63,8 +63,8 @@ impl Drive {
         sigma: Currents,
         slow_share: f64,
     ) -> Self {
-        let lift = Cleaned::new(lift_a, sigma.lift_a, slow_share);
-        let lower = Cleaned::new(lower_a, sigma.lower_a, slow_share);
+        let lift = ConditionedCurrent::new(lift_a, sigma.lift_a, slow_share);
+        let lower = ConditionedCurrent::new(lower_a, sigma.lower_a, slow_share);
         let join = |lift: &[f64], lower: &[f64]| -> Vec<Currents> {
             let both = lift.iter().zip(lower);
             both.map(|(&lift_a, &lower_a)| Currents { lift_a, lower_a })
@@ -206,7 +206,7 @@ impl Course {
         time_s: &[f64],
         currents: &[Currents],
         spread: &[Currents],
-        cleaned: [&Cleaned; 2],
+        conditioned: [&ConditionedCurrent; 2],
     ) -> Self {
         let mut course = Self::with_capacity(time_s.len());
         for sample in 0..time_s.len() {
@@ -216,7 +216,7 @@ impl Course {
                 break;
             }
             let step_s = time_s[sample + 1] - time_s[sample];
-            let [lift, lower] = cleaned.map(|valve| valve.corner_after(sample));
+            let [lift, lower] = conditioned.map(|valve| valve.corner_after(sample));
             // At most one current has a corner within a step in any realistic log.
             let Some((share, corner_a)) = lift.or(lower) else {
                 continue;
@@ -254,7 +254,7 @@ fn jump_before(current_a: impl Fn(usize) -> f64, samples: usize, sample: usize) 
 }
 
 /// One conditioned current.
-struct Cleaned {
+struct ConditionedCurrent {
     /// Current, A.
     current_a: Vec<f64>,
     /// One sigma of it, A.
@@ -265,7 +265,7 @@ struct Cleaned {
     slope_spread_a: Vec<f64>,
 }
 
-impl Cleaned {
+impl ConditionedCurrent {
     fn new(logged_a: &[f64], sigma_a: f64, slow_share: f64) -> Self {
         let samples = logged_a.len();
         let mut lines = Lines {

@@ -13,27 +13,30 @@ pub(crate) struct DefectCorrection(Trace);
 
 impl DefectCorrection {
     /// The difference of a fine and a coarse simulation of the same model.
-    pub fn new(fine: &Trace, draft: &Trace) -> Self {
-        let short = |(fine, draft): (&Vec<f64>, &Vec<f64>)| {
-            let samples = fine.iter().zip(draft);
-            samples.map(|(fine, draft)| fine - draft).collect()
+    pub fn new(fine: &Trace, coarse: &Trace) -> Self {
+        let difference = |(fine, coarse): (&Vec<f64>, &Vec<f64>)| {
+            let samples = fine.iter().zip(coarse);
+            samples.map(|(fine, coarse)| fine - coarse).collect()
         };
         Self(Trace {
-            channels: std::array::from_fn(|c| short((&fine.channels[c], &draft.channels[c]))),
-            true_angle_deg: short((&fine.true_angle_deg, &draft.true_angle_deg)),
+            channels: std::array::from_fn(|c| difference((&fine.channels[c], &coarse.channels[c]))),
+            true_angle_deg: difference((&fine.true_angle_deg, &coarse.true_angle_deg)),
             idle_pressure_bar: 0.0,
         })
     }
 
     /// A coarse simulation with the correction added.
-    pub fn added_to(&self, mut draft: Trace) -> Trace {
-        let short = self.0.channels.iter().chain([&self.0.true_angle_deg]);
-        let coarse_in_time = draft.channels.iter_mut().chain([&mut draft.true_angle_deg]);
-        for (values, short) in coarse_in_time.zip(short) {
-            for (value, short) in values.iter_mut().zip(short) {
-                *value += short;
+    pub fn added_to(&self, mut coarse: Trace) -> Trace {
+        let difference = self.0.channels.iter().chain([&self.0.true_angle_deg]);
+        let channels = coarse
+            .channels
+            .iter_mut()
+            .chain([&mut coarse.true_angle_deg]);
+        for (values, difference) in channels.zip(difference) {
+            for (value, difference) in values.iter_mut().zip(difference) {
+                *value += difference;
             }
         }
-        draft
+        coarse
     }
 }

@@ -10,7 +10,7 @@ use hitch_plant::{
 };
 use rayon::prelude::*;
 
-use crate::data::clocks::{Clocks, FARTHEST_S};
+use crate::data::clocks::{Clocks, LARGEST_OFFSET_S};
 use crate::data::condense::Stretches;
 use crate::data::conditioning::{Drive, jumps_within_s};
 use crate::data::defect_correction::DefectCorrection;
@@ -106,7 +106,7 @@ impl Experiment {
             current_persistence: persistence,
             clocks_within_s: match campaign.synchronous {
                 true => 0.0,
-                false => FARTHEST_S,
+                false => LARGEST_OFFSET_S,
             },
             ringing: model.constants().dynamics == Dynamics::Dynamic,
         }
@@ -232,7 +232,7 @@ impl ReadyRun {
         }
         let in_step = CurrentShift::default();
         let fine = self.trace(model, nuisance, in_step);
-        let coarse_in_time = self.driven(Steps::DRAFT, model, nuisance, in_step);
+        let coarse_in_time = self.driven(Steps::COARSE, model, nuisance, in_step);
         Self {
             traces: Traces::new(self.len()),
             defect_correction: Some(Arc::new(DefectCorrection::new(&fine, &coarse_in_time))),
@@ -259,7 +259,7 @@ impl ReadyRun {
         };
         let in_step = CurrentShift::default();
         let all = stretches.mean_trace(&self.trace(model, nuisance, in_step));
-        let few = condensed.driven(Steps::DRAFT, model, nuisance, in_step);
+        let few = condensed.driven(Steps::COARSE, model, nuisance, in_step);
         condensed.defect_correction = Some(Arc::new(DefectCorrection::new(&all, &few)));
         condensed
     }
@@ -321,7 +321,7 @@ impl ReadyRun {
     pub fn simulated(&self, model: &Model, nuisance: Nuisance, shift: CurrentShift) -> Trace {
         match &self.defect_correction {
             Some(defect_correction) if !bounces(model) => {
-                defect_correction.added_to(self.driven(Steps::DRAFT, model, nuisance, shift))
+                defect_correction.added_to(self.driven(Steps::COARSE, model, nuisance, shift))
             }
             _ => self.driven(Steps::FINE, model, nuisance, shift),
         }

@@ -19,7 +19,7 @@ pub struct Alternative {
     /// Fitted values of its parameters, in their units.
     pub values: Vec<f64>,
     /// Penalised likelihood ratio relative to the named effect; negative if less probable.
-    pub likelier: f64,
+    pub relative_likelihood_ratio: f64,
     /// Error of the model with it in place of the named effect.
     pub error_after: f64,
     /// The model with it in place of the named effect, fitted; it is the last effect.
@@ -33,14 +33,14 @@ impl Alternative {
         experiment: &Experiment,
         model: &Model,
         whole: &Fit,
-        (fit, likelier): (Fit, f64),
+        (fit, relative_likelihood_ratio): (Fit, f64),
     ) -> Option<Self> {
         let added = fit.estimate.effects.last()?.clone();
         Some(Self {
             effect: added.effect,
             angle_deg: angle_deg(experiment, model, whole, &added)?,
             values: added.values,
-            likelier,
+            relative_likelihood_ratio,
             error_after: fit.error(),
             fit,
         })
@@ -56,11 +56,11 @@ pub fn angle_deg(
     whole: &Fit,
     other: &AddedEffect,
 ) -> Option<f64> {
-    Some(Place::new(experiment, model, whole)?.angle_deg(other))
+    Some(Replacement::new(experiment, model, whole)?.angle_deg(other))
 }
 
 /// The last effect of a fit, for comparison with other effects in its place.
-pub struct Place<'a> {
+pub struct Replacement<'a> {
     experiment: &'a Experiment,
     model: &'a Model,
     whole: &'a Fit,
@@ -73,14 +73,14 @@ pub struct Place<'a> {
     own: Vec<Vec<f64>>,
 }
 
-impl<'a> Place<'a> {
+impl<'a> Replacement<'a> {
     /// Compares to the last effect of a fit; `None` if there is none.
     #[must_use]
     pub fn new(experiment: &'a Experiment, model: &'a Model, whole: &'a Fit) -> Option<Self> {
         let last = whole.estimate.effects.len().checked_sub(1)?;
         let jacobian = Jacobian::new(experiment, model, &whole.weights, &whole.estimate);
         let jacobian = without(jacobian, last);
-        let mut place = Self {
+        let mut replacement = Self {
             experiment,
             model,
             whole,
@@ -89,9 +89,10 @@ impl<'a> Place<'a> {
             empty: Vec::new(),
             own: Vec::new(),
         };
-        place.empty = place.residuals(AddedEffect::null(whole.estimate.effects[last].effect));
-        place.own = place.signature(&whole.residuals);
-        Some(place)
+        replacement.empty =
+            replacement.residuals(AddedEffect::null(whole.estimate.effects[last].effect));
+        replacement.own = replacement.signature(&whole.residuals);
+        Some(replacement)
     }
 
     /// Angle between the projected signatures of the last effect and of `other` in its place, degree.

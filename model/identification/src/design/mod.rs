@@ -13,6 +13,6 @@ pub mod plan;
 pub mod sensor;
 pub mod separation;
 
-pub use alternative::{Alternative, Place};
+pub use alternative::{Alternative, Replacement};
 pub use next::{NextExperiment, next_experiment};
 pub use separation::{Pair, Rival};

@@ -8,9 +8,9 @@ use rayon::prelude::*;
 use crate::data::experiment::Experiment;
 use crate::design::manoeuvre::MANOEUVRES;
 use crate::design::plan::Manoeuvre;
-use crate::design::sensor::telling_instrument;
-use crate::design::separation::{Bench, Known, Pair};
-use crate::selection::evidence::TOLD_APART;
+use crate::design::sensor::additional_instrument;
+use crate::design::separation::{Pair, PairPrior, TestBench};
+use crate::selection::evidence::DISTINGUISHABLE;
 
 /// Expected likelihood ratio that is decisive: a measured one has a standard deviation of twice its square root, and
 /// with this expectation exceeds [`DISTINGUISHABLE`] in 19 of 20 measurements.
@@ -62,16 +62,16 @@ impl NextExperiment {
         bar: f64,
         instrument: Option<&str>,
     ) -> Self {
-        let told = |above: bool| {
+        let distinguished = |above: bool| {
             let ratios = pairs.iter().zip(&judged.likelihood_ratios);
             let chosen = ratios.filter(move |(_, ratio)| (**ratio >= bar) == above);
             chosen.map(|(pair, _)| (pair.named.effect, pair.other.effect))
         };
         let (ratio, minutes) = (judged.smallest(bar), manoeuvre.minutes());
-        let left = distinct(told(false).map(|(a, b)| either(a, b)));
+        let left = distinct(distinguished(false).map(|(a, b)| either(a, b)));
         let mut why = format!(
             "it would tell {} apart (expected likelihood ratio {}, about {} minutes)",
-            distinct(told(true).map(|(a, b)| both(a, b))).join(", and "),
+            distinct(distinguished(true).map(|(a, b)| both(a, b))).join(", and "),
             rounded(ratio),
             rounded(minutes),
         );
@@ -84,7 +84,7 @@ impl NextExperiment {
         Self {
             manoeuvre: manoeuvre.instruction.to_owned(),
             why,
-            separates: told(true).collect(),
+            separates: distinguished(true).collect(),
             expected_likelihood_ratio: ratio,
             minutes,
         }
@@ -116,18 +116,18 @@ struct Judged {
 }
 
 impl Judged {
-    fn told(&self, bar: f64) -> impl Iterator<Item = f64> {
+    fn distinguished(&self, bar: f64) -> impl Iterator<Item = f64> {
         let ratios = self.likelihood_ratios.iter().copied();
         ratios.filter(move |ratio| *ratio >= bar)
     }
 
     /// Smallest ratio of the pairs that are distinguished.
     fn smallest(&self, bar: f64) -> f64 {
-        self.told(bar).fold(f64::INFINITY, f64::min)
+        self.distinguished(bar).fold(f64::INFINITY, f64::min)
     }
 
     fn largest(&self) -> f64 {
-        self.told(0.0).fold(0.0, f64::max)
+        self.distinguished(0.0).fold(0.0, f64::max)
     }
 }
 
@@ -140,8 +140,8 @@ pub fn next_experiment(
     model: &Model,
     pairs: &[Pair],
 ) -> Option<NextExperiment> {
-    let bench = Bench::new(experiment, model, pairs.first()?.named.fit);
-    let known: Vec<Known> = pairs.iter().map(|pair| bench.known(*pair)).collect();
+    let bench = TestBench::new(experiment, model, pairs.first()?.named.fit);
+    let known: Vec<PairPrior> = pairs.iter().map(|pair| bench.known(*pair)).collect();
     let judged: Vec<Judged> = MANOEUVRES
         .par_iter()
         .map(|manoeuvre| Judged {
@@ -150,26 +150,26 @@ pub fn next_experiment(
         .collect();
     let best = judged.iter().map(Judged::largest).fold(0.0, f64::max);
     let instrument = (best < DECISIVE)
-        .then(|| telling_instrument(&bench, MANOEUVRES, pairs[0]))
+        .then(|| additional_instrument(&bench, MANOEUVRES, pairs[0]))
         .flatten();
-    if best < TOLD_APART {
+    if best < DISTINGUISHABLE {
         return Some(NextExperiment::none(best, pairs, instrument));
     }
     let bar = if best >= DECISIVE {
         DECISIVE
     } else {
-        TOLD_APART
+        DISTINGUISHABLE
     };
     let merit = |(manoeuvre, judged): &(&Manoeuvre, &Judged)| {
         (
-            judged.told(bar).count(),
+            judged.distinguished(bar).count(),
             judged.smallest(bar) / manoeuvre.minutes(),
         )
     };
     MANOEUVRES
         .iter()
         .zip(&judged)
-        .filter(|(_, judged)| judged.told(bar).count() > 0)
+        .filter(|(_, judged)| judged.distinguished(bar).count() > 0)
         .max_by(|a, b| {
             let ((a_count, a_rate), (b_count, b_rate)) = (merit(a), merit(b));
             a_count.cmp(&b_count).then(a_rate.total_cmp(&b_rate))

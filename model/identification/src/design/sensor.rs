@@ -4,7 +4,7 @@ use hitch_plant::{Channel, Model, Plant, units};
 use rayon::prelude::*;
 
 use crate::design::plan::{Manoeuvre, RunPlan};
-use crate::design::separation::{Bench, Pair};
+use crate::design::separation::{Pair, TestBench};
 
 /// An instrument for a rig, with its usual noise, one sigma, in its unit.
 struct Instrument {
@@ -57,8 +57,8 @@ static INSTRUMENTS: [Instrument; 6] = [
 /// The instrument with the largest difference between the effects of a pair that the campaign lacks; `None` if no
 /// difference exceeds the instrument's noise.
 #[must_use]
-pub fn telling_instrument(
-    bench: &Bench,
+pub fn additional_instrument(
+    bench: &TestBench,
     manoeuvres: &[Manoeuvre],
     pair: Pair,
 ) -> Option<&'static str> {

@@ -46,7 +46,7 @@ impl<'a> Pair<'a> {
 }
 
 /// The campaign's instruments and noise, for the evaluation of manoeuvres.
-pub struct Bench<'a> {
+pub struct TestBench<'a> {
     model: &'a Model,
     experiment: &'a Experiment,
     rate_hz: f64,
@@ -57,7 +57,7 @@ pub struct Bench<'a> {
 }
 
 /// A pair with the campaign's information on the parameters of both.
-pub struct Known<'a> {
+pub struct PairPrior<'a> {
     pair: Pair<'a>,
     normals: [Normal; 2],
 }
@@ -68,7 +68,7 @@ struct Normal {
     matrix: DMatrix<f64>,
 }
 
-impl<'a> Bench<'a> {
+impl<'a> TestBench<'a> {
     /// The test bench of a campaign whose best fit is `fit`.
     #[must_use]
     pub fn new(experiment: &'a Experiment, model: &'a Model, fit: &Fit) -> Self {
@@ -84,7 +84,7 @@ impl<'a> Bench<'a> {
 
     /// A pair with the campaign's information on the parameters of both.
     #[must_use]
-    pub fn known(&self, pair: Pair<'a>) -> Known<'a> {
+    pub fn known(&self, pair: Pair<'a>) -> PairPrior<'a> {
         let normals = pair.rivals().map(|rival| {
             let (experiment, fit) = (self.experiment, rival.fit);
             let jacobian = Jacobian::new(experiment, self.model, &fit.weights, &fit.estimate);
@@ -93,12 +93,12 @@ impl<'a> Bench<'a> {
                 shared: jacobian.shared,
             }
         });
-        Known { pair, normals }
+        PairPrior { pair, normals }
     }
 
     /// Expected likelihood ratio of a manoeuvre for each pair: the smaller one of either rival being true.
     #[must_use]
-    pub fn likelihood_ratios(&self, manoeuvre: &Manoeuvre, pairs: &[Known]) -> Vec<f64> {
+    pub fn likelihood_ratios(&self, manoeuvre: &Manoeuvre, pairs: &[PairPrior]) -> Vec<f64> {
         pairs
             .iter()
             .map(|known| {
@@ -172,7 +172,7 @@ impl<'a> Bench<'a> {
         };
         let truth = self.with(truth);
         for run in &mut logged.runs {
-            as_cleaned(run, &truth);
+            with_conditioned_currents(run, &truth);
         }
         logged
     }
@@ -180,7 +180,7 @@ impl<'a> Bench<'a> {
 
 /// Replaces the measured channels of a run by a simulation of `truth` under the conditioned currents: conditioning
 /// rounds corners by less than the noise of the currents, which must not count as a difference between rivals.
-fn as_cleaned(run: &mut ReadyRun, truth: &Model) {
+fn with_conditioned_currents(run: &mut ReadyRun, truth: &Model) {
     let (rig, drive) = (run.rig(Nuisance::default()), &run.drive);
     let trace = simulate(
         truth,

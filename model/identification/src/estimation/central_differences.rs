@@ -21,7 +21,7 @@ const STEP: f64 = 0.01;
 /// The Jacobian with the columns of the last effect's parameters replaced by central differences, within their ranges.
 ///
 /// Columns of switching and located sizes stay as they are: a longer step would cross other events.
-pub(crate) fn both_ways(
+pub(crate) fn with_central_differences(
     experiment: &Experiment,
     model: &Model,
     fit: &Fit,

@@ -7,7 +7,7 @@
 use hitch_plant::Model;
 use rayon::prelude::*;
 
-use crate::data::clocks::{Clocks, FARTHEST_S, OFFSET_PRIOR_S};
+use crate::data::clocks::{Clocks, LARGEST_OFFSET_S, OFFSET_PRIOR_S};
 use crate::data::experiment::Experiment;
 use crate::data::trace_cache::CurrentShift;
 use crate::estimate::Estimate;
@@ -28,7 +28,7 @@ pub(crate) fn synchronised(
     if !experiment.ringing || experiment.clocks_within_s == 0.0 {
         return estimate;
     }
-    let steps = (FARTHEST_S / STEP_S).round() as i32;
+    let steps = (LARGEST_OFFSET_S / STEP_S).round() as i32;
     let tried: Vec<Clocks> = (-steps..=steps)
         .map(|step| Clocks {
             offsets_s: [f64::from(step) * STEP_S; 4],

@@ -52,7 +52,7 @@ impl ErrorSums {
 
     /// Sums over all runs of a fit, with the residuals after Huber's loss.
     #[must_use]
-    pub fn seen(fit: &Fit) -> Self {
+    pub fn with_huber_loss(fit: &Fit) -> Self {
         Self::summed(&huber(fit.residuals.clone()), fit.weights.counts)
     }
 
@@ -106,7 +106,12 @@ impl Fit {
     /// spool does not follow the noise of the currents, so under its own weights the same residuals weigh four times as
     /// much. A wrong threshold makes a simulated hitch miss a stop, where the other fit's weights exclude all samples.
     #[must_use]
-    pub fn cost_beside(&self, experiment: &Experiment, model: &Model, other: &Self) -> f64 {
+    pub fn cost_under_weights_of(
+        &self,
+        experiment: &Experiment,
+        model: &Model,
+        other: &Self,
+    ) -> f64 {
         let (estimate, weights) = (self.estimate.clone(), other.weights.clone());
         let beside = evaluate_weighted(experiment, model, estimate, weights).cost;
         beside.min(self.cost)
@@ -225,7 +230,7 @@ pub fn refine_once(
     weights: &Weights,
     start: Estimate,
 ) -> Estimate {
-    let moves = Moves::AllButJumps;
+    let moves = Moves::AllButSwitching;
     descend(experiment, model, weights, start, moves, LAST_ITERATIONS).estimate
 }
 

@@ -49,7 +49,7 @@ pub struct Jacobian {
 }
 
 /// Threshold of Huber's loss, in sigmas: beyond it the loss grows linearly instead of quadratically.
-const OUTLYING: f64 = 10.0;
+const HUBER_THRESHOLD: f64 = 10.0;
 
 /// Whitened residuals of every run under an estimate.
 #[must_use]
@@ -73,13 +73,13 @@ pub fn residuals(
 /// Residuals transformed such that their squares are Huber losses.
 ///
 /// While an effect is missing, a simulation may run against a stop that the real hitch never reached. A thousand sigmas
-/// of dead-head pressure would then dominate the cost. Residuals below `OUTLYING` are unchanged.
+/// of dead-head pressure would then dominate the cost. Residuals below `HUBER_THRESHOLD` are unchanged.
 #[must_use]
 pub fn huber(mut residuals: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     for residual in residuals.iter_mut().flatten() {
         let size = residual.abs();
-        if size > OUTLYING {
-            *residual = (2.0 * OUTLYING * size - OUTLYING * OUTLYING)
+        if size > HUBER_THRESHOLD {
+            *residual = (2.0 * HUBER_THRESHOLD * size - HUBER_THRESHOLD * HUBER_THRESHOLD)
                 .sqrt()
                 .copysign(*residual);
         }
@@ -401,7 +401,7 @@ impl Jacobian {
 impl Jacobian {
     /// Sum of squared residuals predicted for a step, to first order.
     #[must_use]
-    pub fn promised(&self, step: &Step) -> f64 {
+    pub fn predicted_square_sum(&self, step: &Step) -> f64 {
         let runs = self.runs.iter().zip(&step.loads);
         runs.map(|(run, &load)| {
             let left = run.left(&step.shared, load);

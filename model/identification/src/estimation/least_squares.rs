@@ -21,7 +21,7 @@ const SLOW_EVERY: usize = 4;
 /// Number of damping values tried for one step, the first of a descent, and the factor from one to the next.
 const TRIES: usize = 4;
 const FIRST_DAMPING: f64 = 1e-3;
-const DAMPED_MORE: f64 = 30.0;
+const DAMPING_FACTOR: f64 = 30.0;
 
 /// Smallest relative reduction of the cost that justifies another step.
 const WORTHWHILE: f64 = 1e-5;
@@ -41,7 +41,7 @@ pub struct Descent {
     /// Sum of the Huber losses plus the cost of the priors.
     pub cost: f64,
     /// Reduction of the cost in the last iteration.
-    pub falling: f64,
+    pub last_reduction: f64,
 }
 
 /// Which parameters a descent moves.
@@ -50,7 +50,7 @@ pub(crate) enum Moves {
     /// All free parameters.
     All,
     /// All but the sizes of switching effects.
-    AllButJumps,
+    AllButSwitching,
 }
 
 /// Descends from `start` under given weights with at most `jacobians` Jacobians.
@@ -62,22 +62,22 @@ pub(crate) fn descend(
     moves: Moves,
     jacobians: usize,
 ) -> Descent {
-    let slopes = Slopes {
+    let problem = LeastSquares {
         experiment,
         model,
         weights,
         moves,
     };
-    let mut point = slopes.point(start);
+    let mut point = problem.point(start);
     let mut damping = FIRST_DAMPING;
     let mut slow = None;
-    let mut falling = 0.0;
+    let mut last_reduction = 0.0;
     for made in 0..jacobians {
         if made % SLOW_EVERY == 0 {
             slow = None;
         }
-        let columns = slow.take().unwrap_or_else(|| slopes.slow_columns(&point));
-        let mut jacobian = slopes.jacobian(&point, &columns);
+        let columns = slow.take().unwrap_or_else(|| problem.slow_columns(&point));
+        let mut jacobian = problem.jacobian(&point, &columns);
         slow = Some(columns);
         let before = point.cost;
         let simulated = jacobian.shared.iter().filter(|shared| !shared.has_prior());
@@ -86,13 +86,13 @@ pub(crate) fn descend(
             false => 0,
         };
         for kept in 0..=most_kept {
-            let Some(taken) = slopes.step(&jacobian, &point, damping) else {
+            let Some(taken) = problem.step(&jacobian, &point, damping) else {
                 break;
             };
             damping = (taken.damping * 0.1).max(1e-9);
-            let fall = point.cost - taken.to.cost;
-            let brings = fall >= KEPT * taken.promised && fall > WORTHWHILE * point.cost;
-            let goes_on = brings && kept < most_kept && !taken.jumping;
+            let reduction = point.cost - taken.to.cost;
+            let brings = reduction >= KEPT * taken.predicted && reduction > WORTHWHILE * point.cost;
+            let goes_on = brings && kept < most_kept && !taken.has_switching;
             if goes_on {
                 jacobian.correct(&taken.step, &taken.to.residuals, &taken.to.estimate);
             }
@@ -101,20 +101,20 @@ pub(crate) fn descend(
                 break;
             }
         }
-        falling = before - point.cost;
-        if falling <= WORTHWHILE * before {
+        last_reduction = before - point.cost;
+        if last_reduction <= WORTHWHILE * before {
             break;
         }
     }
     Descent {
         estimate: point.estimate,
         cost: point.cost,
-        falling,
+        last_reduction,
     }
 }
 
 /// The least-squares problem of a descent.
-struct Slopes<'a> {
+struct LeastSquares<'a> {
     experiment: &'a Experiment,
     model: &'a Model,
     weights: &'a Weights,
@@ -122,17 +122,17 @@ struct Slopes<'a> {
 }
 
 /// An accepted step.
-struct Taken {
+struct AcceptedStep {
     step: Step,
     to: Point,
     damping: f64,
     /// Reduction of the cost that the Jacobian predicted.
-    promised: f64,
+    predicted: f64,
     /// Whether the size of a switching effect is free.
-    jumping: bool,
+    has_switching: bool,
 }
 
-impl Slopes<'_> {
+impl LeastSquares<'_> {
     fn point(&self, estimate: Estimate) -> Point {
         let residuals = huber_residuals(self.experiment, self.model, self.weights, &estimate);
         let cost = square_sum(&residuals) + estimate.prior_cost();
@@ -161,38 +161,39 @@ impl Slopes<'_> {
     }
 
     /// The first step, by increasing damping, that reduces the cost.
-    fn step(&self, jacobian: &Jacobian, point: &Point, damping: f64) -> Option<Taken> {
+    fn step(&self, jacobian: &Jacobian, point: &Point, damping: f64) -> Option<AcceptedStep> {
         // The slope of a switching effect says little about the result of a finite step, and spoils the steps of all
         // others.
-        let jumps = |shared| point.estimate.size_response(shared) == SizeResponse::Switching;
-        let jumping = jacobian.shared.iter().any(|&shared| jumps(shared));
+        let is_switching = |shared| point.estimate.size_response(shared) == SizeResponse::Switching;
+        let has_switching = jacobian.shared.iter().any(|&shared| is_switching(shared));
         let better = |held: &dyn Fn(Shared) -> bool, damping: f64| {
             let step = jacobian.step(&point.estimate, damping, held)?;
             let moved = point.estimate.moved(&jacobian.shared, &step);
             let step = moved.step_from(&point.estimate, &jacobian.shared);
-            let promised = point.cost - jacobian.promised(&step) - moved.prior_cost();
+            let predicted = point.cost - jacobian.predicted_square_sum(&step) - moved.prior_cost();
             let to = self.point(moved);
-            (to.cost < point.cost).then_some(Taken {
+            (to.cost < point.cost).then_some(AcceptedStep {
                 step,
                 to,
                 damping,
-                promised,
-                jumping,
+                predicted,
+                has_switching,
             })
         };
         let all = || dampings(damping).find_map(|damping| better(&|_| false, damping));
-        let all_but_jumps = || dampings(FIRST_DAMPING).find_map(|damping| better(&jumps, damping));
+        let all_but_switching =
+            || dampings(FIRST_DAMPING).find_map(|damping| better(&is_switching, damping));
         match self.moves {
-            _ if !jumping => all(),
-            Moves::All => all().or_else(all_but_jumps),
-            Moves::AllButJumps => all_but_jumps(),
+            _ if !has_switching => all(),
+            Moves::All => all().or_else(all_but_switching),
+            Moves::AllButSwitching => all_but_switching(),
         }
     }
 }
 
 /// The damping values to try, in order.
 fn dampings(first: f64) -> impl Iterator<Item = f64> {
-    std::iter::successors(Some(first), |&damping| Some(DAMPED_MORE * damping)).take(TRIES)
+    std::iter::successors(Some(first), |&damping| Some(DAMPING_FACTOR * damping)).take(TRIES)
 }
 
 /// An estimate with its residuals and cost.

@@ -1,4 +1,4 @@
-//! Profile-likelihood bounds of a parameter.
+//! ProfileLikelihood-likelihood bounds of a parameter.
 //!
 //! The curvature of the cost at its minimum gives a confidence interval that holds where the plant is smooth. A spool
 //! that breaks loose, or a hitch that touches the ground, does so at a discrete sample: the cost is then piecewise
@@ -15,21 +15,21 @@ use crate::estimation::jacobian::{Jacobian, huber_residuals};
 use crate::estimation::nuisance_projection::NuisanceProjection;
 
 /// Share of the predicted rise of the cost below which the quadratic approximation is rejected.
-const KEPT: f64 = 0.5;
+const ACCEPTED_SHARE: f64 = 0.5;
 
 /// Factor on the required rise of the cost once the approximation is rejected: one step of the piecewise constant cost
 /// is a single sample, and the noise of the current decides on which side of it a spool breaks loose.
-const BROKEN: f64 = 8.0;
+const DISCRETE_RISE: f64 = 8.0;
 
 /// Factor from one trial distance to the next.
-const FARTHER: f64 = 1.5;
+const DISTANCE_FACTOR: f64 = 1.5;
 
 /// Largest number of trial distances, and number of bisections between the last two.
-const LOOKS: usize = 8;
-const HALVINGS: usize = 3;
+const TRIALS: usize = 8;
+const BISECTIONS: usize = 3;
 
 /// The cost along one parameter of a fit.
-pub struct Profile<'a> {
+pub struct ProfileLikelihood<'a> {
     /// The measured data.
     pub experiment: &'a Experiment,
     /// The model without effects.
@@ -42,25 +42,25 @@ pub struct Profile<'a> {
     pub projection: &'a NuisanceProjection<&'a Jacobian>,
 }
 
-impl Profile<'_> {
+impl ProfileLikelihood<'_> {
     /// End of the interval, relative to the fitted value, in the parameter's unit; `half` is the bound of the quadratic
     /// approximation, negative for the lower one, where it predicts a `rise` of the cost.
     #[must_use]
     pub fn end(&self, half: f64, rise: f64) -> f64 {
-        if self.rise(half) >= KEPT * rise {
+        if self.rise(half) >= ACCEPTED_SHARE * rise {
             return half;
         }
-        let told = |away: f64| self.rise(away) >= BROKEN * rise;
-        let (mut near, mut far) = (half, FARTHER * half);
-        for _ in 0..LOOKS {
-            if told(far) {
+        let exceeds = |away: f64| self.rise(away) >= DISCRETE_RISE * rise;
+        let (mut near, mut far) = (half, DISTANCE_FACTOR * half);
+        for _ in 0..TRIALS {
+            if exceeds(far) {
                 break;
             }
-            (near, far) = (far, FARTHER * far);
+            (near, far) = (far, DISTANCE_FACTOR * far);
         }
-        for _ in 0..HALVINGS {
+        for _ in 0..BISECTIONS {
             let middle = 0.5 * (near + far);
-            if told(middle) {
+            if exceeds(middle) {
                 far = middle;
             } else {
                 near = middle;

@@ -18,7 +18,7 @@ use crate::search::candidates::{Progress, showing};
 use crate::search::single_effects::{confidences, try_each};
 use crate::search::subset::{Found, Options, search};
 use crate::selection::candidate::{Candidate, weigh};
-use crate::selection::evidence::TOLD_APART;
+use crate::selection::evidence::DISTINGUISHABLE;
 use crate::selection::hold_out::{HeldOut, held_out};
 use crate::selection::posterior::{Weighed, key_of};
 
@@ -56,7 +56,7 @@ impl Verdict {
 
 /// An effect that was added or changed.
 #[derive(Debug, Clone)]
-pub struct Step {
+pub struct ExplanationStep {
     /// The effect.
     pub effect: &'static dyn Effect,
     /// Error of the model before the step.
@@ -98,7 +98,7 @@ pub struct Explanation {
     /// The model after the last step.
     pub after: Fit,
     /// The steps in order.
-    pub steps: Vec<Step>,
+    pub steps: Vec<ExplanationStep>,
     /// The conclusion.
     pub verdict: Verdict,
     /// Cells of the residuals after the last step, by decreasing excess.
@@ -159,8 +159,8 @@ pub fn diagnose_each(
     weighed: &(dyn Fn(&Candidate, usize) + Sync),
 ) -> Diagnosis {
     let absent = showing(experiment, model, &base.estimate);
-    let told = |candidate: &Candidate| weighed(candidate, absent.len());
-    let candidates = try_each(experiment, model, &base, &absent, progress, &told);
+    let report = |candidate: &Candidate| weighed(candidate, absent.len());
+    let candidates = try_each(experiment, model, &base, &absent, progress, &report);
     let confidences = confidences(&candidates);
     Diagnosis {
         base,
@@ -193,13 +193,13 @@ pub fn explain_with(
     };
     progress("how sure that is");
     let mut steps = steps(experiment, model, &before, &found);
-    while let Some(doubtful) = steps.iter().position(may_be_nothing) {
-        let effect = found.order[doubtful];
-        let lighter = found.fit.estimate.without(effect);
-        let removed = lighter.effects.len() < found.fit.estimate.effects.len();
-        found.fit = refine(experiment, model, lighter);
+    while let Some(insignificant) = steps.iter().position(may_be_absent) {
+        let effect = found.order[insignificant];
+        let reduced = found.fit.estimate.without(effect);
+        let removed = reduced.effects.len() < found.fit.estimate.effects.len();
+        found.fit = refine(experiment, model, reduced);
         found.held_out = held_out(experiment, model, &found.fit);
-        found.order.remove(doubtful);
+        found.order.remove(insignificant);
         for other in &mut found.order {
             *other -= usize::from(removed && *other > effect);
         }
@@ -211,7 +211,7 @@ pub fn explain_with(
 
 /// Whether the interval of a step's size contains its absent value. A single jump that the noise of a current decides
 /// can have any likelihood ratio, and is still no evidence.
-fn may_be_nothing(step: &Step) -> bool {
+fn may_be_absent(step: &ExplanationStep) -> bool {
     let null = step.effect.parameters()[0].null;
     let off = step.changed_from.unwrap_or(null);
     match step.intervals.as_slice() {
@@ -221,9 +221,14 @@ fn may_be_nothing(step: &Step) -> bool {
 }
 
 /// The members of the set as steps, in greedy order of the cost reduction that each adds.
-fn steps(experiment: &Experiment, model: &Model, before: &Fit, found: &Found) -> Vec<Step> {
+fn steps(
+    experiment: &Experiment,
+    model: &Model,
+    before: &Fit,
+    found: &Found,
+) -> Vec<ExplanationStep> {
     let weighed = found.refitted.weighed(experiment, model, &found.fit);
-    let mut steps: Vec<Step> = Vec::new();
+    let mut steps: Vec<ExplanationStep> = Vec::new();
     for (count, &effect) in found.order.iter().enumerate() {
         let last = count + 1 == found.order.len();
         let fit = match last {
@@ -239,19 +244,19 @@ fn steps(experiment: &Experiment, model: &Model, before: &Fit, found: &Found) ->
             false => held_out(experiment, model, &fit),
         };
         let whole = with_last(experiment, model, &found.fit, effect);
-        let candidate = beside_others(experiment, model, whole.clone());
+        let candidate = weighed_last(experiment, model, whole.clone());
         let estimate = &found.fit.estimate;
         let id = estimate.effects[effect].effect.id();
         let with_it = weighed
             .iter()
             .filter(|set| set.key.ids().any(|own| own == id));
-        steps.push(Step {
+        steps.push(ExplanationStep {
             effect: candidate.effect,
             error_before,
             error_after: fit.error(),
             held_out_before,
             held_out_after,
-            confidence: with_it.map(|set| set.probability).sum::<f64>() * candidate.genuine(),
+            confidence: with_it.map(|set| set.probability).sum::<f64>() * candidate.plausibility(),
             detectability: candidate.detectability,
             explained_share: candidate.explained_share,
             other_forms: other_forms(&found.fit, id, &weighed),
@@ -280,7 +285,7 @@ fn with_some(experiment: &Experiment, model: &Model, found: &Found, effects: &[u
 }
 
 /// The last effect of a fit weighed against the model with all others.
-fn beside_others(experiment: &Experiment, model: &Model, whole: Fit) -> Candidate {
+fn weighed_last(experiment: &Experiment, model: &Model, whole: Fit) -> Candidate {
     let last = whole.estimate.effects.len() - 1;
     let named = whole.estimate.effects[last].effect;
     let without = whole.estimate.without(last);
@@ -291,7 +296,9 @@ fn beside_others(experiment: &Experiment, model: &Model, whole: Fit) -> Candidat
 /// Forms of an effect that explain the campaign as well as its own.
 fn other_forms(fit: &Fit, id: &str, weighed: &[Weighed]) -> Vec<Option<&'static str>> {
     let own = key_of(&fit.estimate);
-    let near = weighed.iter().filter(|set| set.likelier > -TOLD_APART);
+    let near = weighed
+        .iter()
+        .filter(|set| set.relative_likelihood_ratio > -DISTINGUISHABLE);
     near.filter_map(|set| own.form_in_place(set.key, id))
         .collect()
 }
@@ -316,7 +323,7 @@ fn alternatives(
             && kept
                 .into_iter()
                 .all(|&id| set.key.ids().any(|its| its == id));
-        (same && set.likelier > -TOLD_APART).then_some(other)
+        (same && set.relative_likelihood_ratio > -DISTINGUISHABLE).then_some(other)
     };
     let mut alternatives: Vec<Alternative> = weighed
         .iter()
@@ -325,10 +332,18 @@ fn alternatives(
             let effects = &set.fit.estimate.effects;
             let index = effects.iter().position(|added| added.effect.id() == id)?;
             let its = with_last(experiment, model, set.fit, index);
-            Alternative::new(experiment, model, whole, (its, set.likelier))
+            Alternative::new(
+                experiment,
+                model,
+                whole,
+                (its, set.relative_likelihood_ratio),
+            )
         })
         .collect();
-    alternatives.sort_by(|a, b| b.likelier.total_cmp(&a.likelier));
+    alternatives.sort_by(|a, b| {
+        b.relative_likelihood_ratio
+            .total_cmp(&a.relative_likelihood_ratio)
+    });
     alternatives
 }
 
@@ -337,7 +352,7 @@ fn concluded(
     model: &Model,
     (before, refitted): (Fit, Option<Fit>),
     found: Found,
-    steps: Vec<Step>,
+    steps: Vec<ExplanationStep>,
 ) -> Explanation {
     let after = found.fit;
     let cells = cells_since(&cells(experiment, &before), experiment, &after);
@@ -372,8 +387,8 @@ fn concluded(
 }
 
 /// Every named effect with each of its confounded alternatives.
-fn pairs<'a>(after: &'a Fit, steps: &'a [Step]) -> Vec<Pair<'a>> {
-    let of_step = |step: &'a Step| {
+fn pairs<'a>(after: &'a Fit, steps: &'a [ExplanationStep]) -> Vec<Pair<'a>> {
+    let of_step = |step: &'a ExplanationStep| {
         step.indistinguishable.iter().map(|alternative| Pair {
             named: Rival {
                 effect: step.effect,
@@ -391,7 +406,7 @@ fn pairs<'a>(after: &'a Fit, steps: &'a [Step]) -> Vec<Pair<'a>> {
 fn verdict(
     experiment: &Experiment,
     cells: &[Cell],
-    steps: &[Step],
+    steps: &[ExplanationStep],
     after: &Fit,
     missing: Option<&str>,
 ) -> Verdict {

@@ -22,7 +22,7 @@ use crate::estimate::Estimate;
 use crate::residuals::contact_mask::contact_mask;
 
 /// Samples whose standard deviation exceeds this multiple of the instrument's noise are left out.
-const UNKNOWABLE: f64 = 8.0;
+const LARGEST_DEVIATION: f64 = 8.0;
 
 /// Distance from an end of the swing, degree, within which the hitch rests against the stop. The angle's random walk is
 /// reset there: the hitch arrives slightly earlier or later than simulated, and then stands at the stop.
@@ -130,7 +130,7 @@ impl RunWeights {
         let at_an_edge = |sample: usize| edges.as_ref().is_some_and(|edges| edges[sample]);
         let stops = at_a_stop(run, model, [&below, &above]);
         let contact_mask = contact_mask(run, model, [&below, &above]);
-        let hangs_on_a_hair = |sample: usize| stops[sample] || contact_mask[sample];
+        let is_discontinuous = |sample: usize| stops[sample] || contact_mask[sample];
         let ringing = experiment.ringing;
         for channel in [
             Channel::PumpPressure,
@@ -152,12 +152,12 @@ impl RunWeights {
                     0.5 * (above.channel(channel)[sample] - below.channel(channel)[sample]);
                 let shift = 0.5 * (late.channel(channel)[sample] - early.channel(channel)[sample]);
                 let noise = sigma / run.averaged[sample].sqrt();
-                let yardstick = noise.hypot(spread).hypot(shift).hypot(tolerance[sample]);
-                let known = yardstick <= UNKNOWABLE * sigma
-                    && !hangs_on_a_hair(sample)
+                let deviation = noise.hypot(spread).hypot(shift).hypot(tolerance[sample]);
+                let known = deviation <= LARGEST_DEVIATION * sigma
+                    && !is_discontinuous(sample)
                     && !(channel == Channel::PumpPressure && at_an_edge(sample));
                 if value.is_finite() && known {
-                    weights.scale[offset + sample] = 1.0 / yardstick;
+                    weights.scale[offset + sample] = 1.0 / deviation;
                 }
             }
         }
@@ -215,10 +215,10 @@ impl RunWeights {
             for sample in 0..run.len() {
                 let scale = self.scale[offset + sample];
                 if scale > 0.0 {
-                    let surprise = measured[sample] - simulated[sample] - walk;
-                    residual[offset + sample] = surprise * scale;
+                    let innovation = measured[sample] - simulated[sample] - walk;
+                    residual[offset + sample] = innovation * scale;
                     if channel == Channel::RockerAngle {
-                        walk += self.gain[sample] * surprise;
+                        walk += self.gain[sample] * innovation;
                     }
                 }
             }

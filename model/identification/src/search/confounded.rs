@@ -6,7 +6,7 @@ use crate::search::dictionary_entry::Kind;
 
 /// Share of the cost reduction of an effect that an alternative has to predict in its place. A secant predicts at the
 /// simulated size; an alternative that explains as much at its optimal size predicts most of it at that one.
-const AS_MUCH: f64 = 0.5;
+const CONFOUNDED_SHARE: f64 = 0.5;
 
 /// Ids of the effects that predict about the same cost reduction as one of the effects of the dictionary's fit, by its
 /// index.
@@ -28,7 +28,7 @@ pub(crate) fn confounded(dictionary: &Dictionary, effect: usize) -> Vec<&'static
     let explained = without - cost(Some(own));
     let mut ids: Vec<&'static str> = columns(&|kind| !matches!(kind, Kind::Present(_)))
         .into_iter()
-        .filter(|&column| without - cost(Some(column)) >= AS_MUCH * explained)
+        .filter(|&column| without - cost(Some(column)) >= CONFOUNDED_SHARE * explained)
         .map(|column| entries[column].id())
         .collect();
     ids.sort_unstable();

@@ -12,11 +12,11 @@ use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, refine};
 
 /// Clock offset of a fit, s, above which its lag may be in another local minimum.
-const ASTRAY_S: f64 = 0.5 * OFFSET_PRIOR_S;
+const AMBIGUOUS_OFFSET_S: f64 = 0.5 * OFFSET_PRIOR_S;
 
 /// The better of a fit and of the fit from a start with the same total delay, all of it assigned to the lag.
-pub(crate) fn on_time(experiment: &Experiment, model: &Model, fit: Fit) -> Fit {
-    let Some(start) = given_back(&fit.estimate) else {
+pub(crate) fn with_best_delay_split(experiment: &Experiment, model: &Model, fit: Fit) -> Fit {
+    let Some(start) = with_offsets_in_lag(&fit.estimate) else {
         return fit;
     };
     let other = refine(experiment, model, start);
@@ -30,7 +30,7 @@ pub(crate) fn is_delay(effect: &dyn Effect) -> bool {
 
 /// An estimate with the clock offsets of the lag's channels moved into the lag; `None` without a lag or with clocks
 /// that are in step.
-fn given_back(estimate: &Estimate) -> Option<Estimate> {
+fn with_offsets_in_lag(estimate: &Estimate) -> Option<Estimate> {
     let is_lag =
         |&index: &usize| is_delay(estimate.effects[index].effect) && !estimate.is_unchanged(index);
     let index = (0..estimate.effects.len()).find(is_lag)?;
@@ -41,7 +41,7 @@ fn given_back(estimate: &Estimate) -> Option<Estimate> {
         .collect();
     late_s.sort_by(f64::total_cmp);
     let late_s = late_s.get(late_s.len() / 2).copied()?;
-    (late_s.abs() > ASTRAY_S).then(|| {
+    (late_s.abs() > AMBIGUOUS_OFFSET_S).then(|| {
         let mut start = estimate.clone();
         let added = &mut start.effects[index];
         added.values[0] = (added.values[0] + late_s).max(effect.parameters()[0].low);

@@ -14,7 +14,7 @@ use crate::search::dictionary_entry::{Entry, Kind};
 use crate::search::gram_matrix::Gram;
 use crate::search::scan_cache::Scans;
 use crate::search::screening::Screen;
-use crate::search::secant_ends::FARTHEST;
+use crate::search::secant_ends::LARGEST_SHARE;
 use crate::search::shape_starts::scaled;
 use crate::selection::candidate::{jacobian_by, slow_columns};
 
@@ -22,10 +22,10 @@ use crate::selection::candidate::{jacobian_by, slow_columns};
 const CHANGES: [(f64, f64); 4] = [(-0.5, 0.0), (-1.0, 0.0), (0.5, 0.25), (1.5, 1.0)];
 
 /// Sizes of another form that acts in addition to the present one, in typical sizes.
-const BESIDE: [f64; 3] = [0.1, 0.3, 1.0];
+const SMALL_SIZES: [f64; 3] = [0.1, 0.3, 1.0];
 
 /// Largest share of the secant to a changed size.
-const CHANGED: f64 = 1.5;
+const LARGEST_CHANGE: f64 = 1.5;
 
 /// Columns of candidate effects and changes of a fitted model.
 pub(crate) struct Dictionary {
@@ -83,7 +83,7 @@ impl Dictionary {
 }
 
 /// The inputs of a dictionary.
-pub(crate) struct Around<'a> {
+pub(crate) struct DictionaryBuilder<'a> {
     pub coarse: &'a Coarse<'a>,
     /// Effects that are searched for.
     pub effects: Vec<&'static dyn Effect>,
@@ -94,7 +94,7 @@ pub(crate) struct Around<'a> {
     pub worthwhile: f64,
 }
 
-impl Around<'_> {
+impl DictionaryBuilder<'_> {
     /// The dictionary around a fit.
     pub fn dictionary(&self) -> Dictionary {
         let Coarse {
@@ -165,7 +165,7 @@ impl Around<'_> {
             kind: Kind::Present(index),
             off: estimate.off(index),
             change: difference(&screen.residuals(&estimate.without(index)), screen.here),
-            share: (0.0, FARTHEST),
+            share: (0.0, LARGEST_SHARE),
             added: estimate.effects[index].clone(),
         };
         let own = indices.into_par_iter();
@@ -201,7 +201,7 @@ impl Around<'_> {
                 kind: Kind::New,
                 off: form.parameters()[0].null,
                 change,
-                share: (0.0, FARTHEST),
+                share: (0.0, LARGEST_SHARE),
                 added,
             }
         };
@@ -225,7 +225,7 @@ impl Around<'_> {
                 kind: Kind::Change(index),
                 off,
                 change: difference(screen.here, &screen.residuals(&other)),
-                share: (0.0, CHANGED),
+                share: (0.0, LARGEST_CHANGE),
                 added: other.effects[index].clone(),
             }
         };
@@ -242,7 +242,7 @@ fn in_form(added: &AddedEffect, form: &'static dyn Effect) -> Vec<AddedEffect> {
     let mut own = added.effect.parameters().iter();
     match own.any(|parameter| parameter.name == size.name) {
         true => vec![other],
-        false => BESIDE.map(|share| scaled(&other, share)).to_vec(),
+        false => SMALL_SIZES.map(|share| scaled(&other, share)).to_vec(),
     }
 }
 

@@ -13,12 +13,12 @@ use crate::estimation::fit::{Fit, evaluate_weighted, refine};
 use crate::search::shape_starts::scaled;
 
 /// Distance of the trial sizes to either side, as powers of e, for switching and for stepped effects, and their number.
-const BESIDE_JUMPS: [f64; 2] = [0.005, 0.000_8];
-const BESIDE_LEDGES: [f64; 2] = [1.0, 0.1];
+const DISTANCES_SWITCHING: [f64; 2] = [0.005, 0.000_8];
+const DISTANCES_STEPPED: [f64; 2] = [1.0, 0.1];
 const TO_EITHER_SIDE: i32 = 10;
 
 /// Largest distance of a shape parameter from the upper end of its range, as a share, at which the end is tried too.
-const SHORT: f64 = 0.01;
+const NEARLY_WHOLE: f64 = 0.01;
 
 /// The better of a fit and of the fits from nearby sizes of its last effect, if that is switching or stepped.
 pub(crate) fn line_searched(experiment: &Experiment, model: &Model, fit: Fit) -> Fit {
@@ -62,8 +62,8 @@ fn better(one: Fit, other: Fit) -> Fit {
 /// finds the step that fits the noise best: intervals around it held the truth in 88 % of campaigns instead of 94 %.
 fn reaches(response: SizeResponse, ringing: bool) -> &'static [f64] {
     match response {
-        SizeResponse::Switching => &BESIDE_JUMPS,
-        SizeResponse::Stepped if ringing => &BESIDE_LEDGES,
+        SizeResponse::Switching => &DISTANCES_SWITCHING,
+        SizeResponse::Stepped if ringing => &DISTANCES_STEPPED,
         SizeResponse::Stepped | SizeResponse::Smooth | SizeResponse::Located => &[],
     }
 }
@@ -90,7 +90,7 @@ fn whole(added: &AddedEffect) -> Option<AddedEffect> {
     let shape = added.effect.parameters().get(1)?;
     let short = shape.high - added.values[1];
     let jumps = added.effect.size_response() == SizeResponse::Switching;
-    (jumps && short > 0.0 && short < SHORT).then(|| {
+    (jumps && short > 0.0 && short < NEARLY_WHOLE).then(|| {
         let mut whole = added.clone();
         whole.values[1] = shape.high;
         whole

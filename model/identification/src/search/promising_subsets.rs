@@ -12,11 +12,11 @@ use crate::selection::complexity_penalty::Penalty;
 use crate::selection::posterior::{Key, Refitted, key};
 
 /// Subsets of each size that are ranked, and subsets in total that are fitted.
-const LOOKED_AT: usize = 40;
+const RANKED: usize = 40;
 const FITTED: usize = 12;
 
 /// Starts of one set of effects whose cost has many local minima.
-pub(crate) const VALLEYS: usize = 2;
+pub(crate) const LOCAL_MINIMA: usize = 2;
 
 /// Relative error of a secant's prediction, as a share of the predicted cost reduction or of that of a replaced effect.
 /// A further effect that predicts less is left to the next dictionary.
@@ -58,7 +58,7 @@ pub(crate) fn starts(
     let variance = lowest.cost / seen.weights.count() as f64;
     let penalty = Penalty::new(few, present.weights.count(), variance, &left);
     let whole = with_all_present(dictionary);
-    let promise = |subset: &Subset| {
+    let predicted_cost = |subset: &Subset| {
         let explained = (seen.cost - lowest.cost).max(apart(dictionary, subset, &whole));
         let inexact = INEXACT * explained.max(0.0);
         let members = subset
@@ -74,17 +74,16 @@ pub(crate) fn starts(
         });
         subset.cost + prices.sum::<f64>()
     };
-    let looked_at = sizes
-        .iter()
-        .flat_map(|subsets| subsets.iter().take(LOOKED_AT));
-    let mut ranked: Vec<(f64, &Subset)> =
-        looked_at.map(|subset| (promise(subset), subset)).collect();
+    let candidates = sizes.iter().flat_map(|subsets| subsets.iter().take(RANKED));
+    let mut ranked: Vec<(f64, &Subset)> = candidates
+        .map(|subset| (predicted_cost(subset), subset))
+        .collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (best, leader) = ranked[0];
     let close = CLOSE * penalty.unit;
     let mut taken: Vec<Key> = vec![own];
     let mut estimates = Vec::new();
-    for (promise, subset) in ranked {
+    for (predicted_cost, subset) in ranked {
         let near = best + (NEAR * apart(dictionary, subset, leader)).max(close);
         let key = key_of(dictionary, subset);
         let known = taken.iter().filter(|taken| **taken == key).count();
@@ -96,11 +95,11 @@ pub(crate) fn starts(
                 .is_rough()
         };
         let most = if subset.columns.iter().any(is_rough) {
-            VALLEYS
+            LOCAL_MINIMA
         } else {
             1
         };
-        if promise > near || is_more(subset, leader) || known >= most {
+        if predicted_cost > near || is_more(subset, leader) || known >= most {
             continue;
         }
         let starts = |&column: &usize| dictionary.is_start(column);

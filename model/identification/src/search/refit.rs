@@ -10,10 +10,10 @@ use crate::estimation::jacobian::{Jacobian, huber_residuals, square_sum};
 use crate::estimation::least_squares::Descent;
 use crate::search::candidates::Progress;
 use crate::search::coarse_view::Coarse;
-use crate::search::delays::on_time;
+use crate::search::delays::with_best_delay_split;
 use crate::search::line_search::line_searched;
 use crate::search::projections::Projections;
-use crate::search::promising_subsets::{CLOSE, NEAR, VALLEYS};
+use crate::search::promising_subsets::{CLOSE, LOCAL_MINIMA, NEAR};
 use crate::search::subset::Options;
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::posterior::{Refitted, key, key_of};
@@ -24,11 +24,11 @@ const REFINED: usize = 3;
 
 /// Root mean square error, in sigma, above which a short fit may be in a local minimum, so that it is repeated with the
 /// coarse weights first.
-const ASTRAY: f64 = 2.0;
+const POOR_ERROR: f64 = 2.0;
 
 /// Factor over the least cost up to which a set with rough effects stays a candidate: their sizes are less exact on
 /// fewer samples.
-const MISSED: f64 = 2.0;
+const ROUGH_TOLERANCE: f64 = 2.0;
 
 /// The context of the fits.
 pub(crate) struct Refits<'a> {
@@ -68,17 +68,17 @@ impl Refits<'_> {
         let cost = |estimate: &Estimate| {
             let projection = projections.of(estimate);
             let left = residuals(estimate);
-            let promised = projection.cost_after(&left);
+            let predicted = projection.cost_after(&left);
             let synchronised = projection.synchronised(estimate, &left);
-            let kept = square_sum(&residuals(&synchronised)) + synchronised.prior_cost();
+            let resimulated = square_sum(&residuals(&synchronised)) + synchronised.prior_cost();
             let penalty = self.penalty.of_all(estimate);
-            match kept < promised {
-                true => (kept + penalty, synchronised),
-                false => (promised + penalty, estimate.clone()),
+            match resimulated < predicted {
+                true => (resimulated + penalty, synchronised),
+                false => (predicted + penalty, estimate.clone()),
             }
         };
         let starts = starts.into_par_iter();
-        let starts = starts.map(|start| lightened(start, cost)).collect();
+        let starts = starts.map(|start| pruned(start, cost)).collect();
         let mut starts = distinct(starts);
         starts.retain(|(_, start)| !known.contains(&key_of(start)));
         let sketch = |start: Estimate| {
@@ -88,13 +88,18 @@ impl Refits<'_> {
                 found.estimate,
             )
         };
-        let unless_over = |start: Estimate| (!self.options.is_over()).then(|| sketch(start));
+        let unless_past_deadline =
+            |start: Estimate| (!self.options.is_over()).then(|| sketch(start));
         let starts = self.nearest(starts, SKETCHED).into_par_iter();
-        let sketches: Vec<(f64, Estimate)> = starts.filter_map(unless_over).collect();
+        let sketches: Vec<(f64, Estimate)> = starts.filter_map(unless_past_deadline).collect();
         let nearest = self.nearest(sketches, REFINED).into_par_iter();
         let approached: Vec<(f64, Fit)> = nearest
             .map(|start| {
-                let fit = on_time(coarse_in_time, model, refine(coarse_in_time, model, start));
+                let fit = with_best_delay_split(
+                    coarse_in_time,
+                    model,
+                    refine(coarse_in_time, model, start),
+                );
                 let (estimate, weights) = (fit.estimate.clone(), present.weights.clone());
                 let under_present =
                     evaluate_weighted(coarse_in_time, model, estimate, weights).cost;
@@ -104,7 +109,7 @@ impl Refits<'_> {
             .collect();
         let likely = self.likely(approached).into_par_iter();
         let refined = likely.map(|estimate| {
-            let fit = on_time(experiment, model, refine(experiment, model, estimate));
+            let fit = with_best_delay_split(experiment, model, refine(experiment, model, estimate));
             let fit = self.line_searched(fit);
             progress(&key(&fit).name());
             fit
@@ -120,7 +125,7 @@ impl Refits<'_> {
         };
         let least = least.min(self.best);
         let near = least + CLOSE * Penalty::beside(&self.coarse.coarse_in_time, best).unit;
-        let near_for_jumps = MISSED * least;
+        let near_for_jumps = ROUGH_TOLERANCE * least;
         let is_near = |(cost, fit): &(f64, Fit)| {
             *cost <= near || (is_rough(&fit.estimate) && *cost <= near_for_jumps)
         };
@@ -150,7 +155,7 @@ impl Refits<'_> {
         let from = |start: Estimate| {
             let found = self.sketched(start);
             let fit = refine(experiment, model, found.estimate);
-            self.line_searched(on_time(experiment, model, fit))
+            self.line_searched(with_best_delay_split(experiment, model, fit))
         };
         let in_step = start.clocks.are_off().then(|| {
             let clocks = Clocks::default();
@@ -178,7 +183,7 @@ impl Refits<'_> {
         let from = |far: bool| sketch(coarse_in_time, model, weights, start.clone(), far);
         let near = from(false);
         let samples = weights.count() as f64;
-        if (near.cost / samples).sqrt() <= ASTRAY {
+        if (near.cost / samples).sqrt() <= POOR_ERROR {
             return near;
         }
         let far = from(true);
@@ -208,13 +213,13 @@ impl Refits<'_> {
 
 /// An estimate without the members whose cost reduction is below their penalty, and its penalised cost. `cost` returns
 /// the penalised cost and the adapted estimate.
-fn lightened(start: Estimate, cost: impl Fn(&Estimate) -> (f64, Estimate)) -> (f64, Estimate) {
+fn pruned(start: Estimate, cost: impl Fn(&Estimate) -> (f64, Estimate)) -> (f64, Estimate) {
     let (mut least, mut estimate) = cost(&start);
     let mut index = 0;
     while index < estimate.effects.len() {
         if !estimate.is_unchanged(index) {
-            let lighter = estimate.without(index);
-            let (without, adapted) = cost(&lighter);
+            let reduced = estimate.without(index);
+            let (without, adapted) = cost(&reduced);
             if without < least {
                 let removed = adapted.effects.len() < estimate.effects.len();
                 (estimate, least) = (adapted, without);
@@ -233,7 +238,7 @@ fn is_rough(estimate: &Estimate) -> bool {
     effects.any(|added| added.effect.size_response().is_rough())
 }
 
-/// The best estimate of each set, or the best [`VALLEYS`] if its cost has many local minima.
+/// The best estimate of each set, or the best [`LOCAL_MINIMA`] if its cost has many local minima.
 fn distinct(mut penalized: Vec<(f64, Estimate)>) -> Vec<(f64, Estimate)> {
     penalized.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut distinct: Vec<(f64, Estimate)> = Vec::new();
@@ -243,7 +248,7 @@ fn distinct(mut penalized: Vec<(f64, Estimate)>) -> Vec<(f64, Estimate)> {
             .iter()
             .filter(|(_, other)| key_of(other) == key)
             .count();
-        if known < if is_rough(&estimate) { VALLEYS } else { 1 } {
+        if known < if is_rough(&estimate) { LOCAL_MINIMA } else { 1 } {
             distinct.push((cost, estimate));
         }
     }

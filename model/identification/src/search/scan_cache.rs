@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use hitch_plant::{AddedEffect, Effect};
 
 /// Ratio of the cost to that of the cached scan below which a scan is repeated.
-const MUCH_LESS: f64 = 0.7;
+const RESCAN_RATIO: f64 = 0.7;
 
 /// An effect in one of its forms.
 type Name = (&'static str, Option<&'static str>);
@@ -17,12 +17,12 @@ type Name = (&'static str, Option<&'static str>);
 /// The latest scan for each effect.
 #[derive(Debug, Default)]
 pub struct Scans {
-    latest: Mutex<HashMap<Name, Scan>>,
+    latest: Mutex<HashMap<Name, CachedScan>>,
 }
 
 /// The result of a scan.
 #[derive(Debug, Clone)]
-struct Scan {
+struct CachedScan {
     /// Cost of the fit that was scanned around.
     cost: f64,
     found: Vec<AddedEffect>,
@@ -39,12 +39,12 @@ impl Scans {
     ) -> Vec<AddedEffect> {
         let name = (effect.id(), effect.form());
         if let Some(latest) = self.latest(name)
-            && cost > MUCH_LESS * latest.cost
+            && cost > RESCAN_RATIO * latest.cost
         {
             return latest.found;
         }
         let found = search();
-        let latest = Scan {
+        let latest = CachedScan {
             cost,
             found: found.clone(),
         };
@@ -52,11 +52,11 @@ impl Scans {
         found
     }
 
-    fn latest(&self, name: Name) -> Option<Scan> {
+    fn latest(&self, name: Name) -> Option<CachedScan> {
         self.lock().get(&name).cloned()
     }
 
-    fn lock(&self) -> std::sync::MutexGuard<'_, HashMap<Name, Scan>> {
+    fn lock(&self) -> std::sync::MutexGuard<'_, HashMap<Name, CachedScan>> {
         // Every insertion is atomic, so the map is valid even after a panic.
         self.latest.lock().unwrap_or_else(PoisonError::into_inner)
     }

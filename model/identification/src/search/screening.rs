@@ -15,7 +15,7 @@ use crate::search::coarse_view::Coarse;
 use crate::search::dictionary_entry::{Entry, Kind};
 use crate::search::scan_cache::Scans;
 use crate::search::secant_ends::{End, best, columns, trusted};
-use crate::search::shape_starts::{scaled, valleys, with_extreme_shapes, with_opposite_shapes};
+use crate::search::shape_starts::{scaled, scan_grid, with_extreme_shapes, with_opposite_shapes};
 use crate::search::size_scan::scan;
 
 /// Sizes of the first secants, in typical sizes: of smooth effects, and of all others.
@@ -31,7 +31,7 @@ const PROMISING: f64 = 0.2;
 
 /// Largest number of secant predictions that are simulated one after the other, smallest distance of one from a
 /// simulated end, as a share, and smallest predicted reduction, as a share of `worthwhile`.
-const PROMISES: usize = 4;
+const PREDICTIONS: usize = 4;
 const MOVED: f64 = 0.1;
 const GAIN: f64 = 0.2;
 
@@ -61,12 +61,12 @@ impl Screen<'_> {
         let forms = effects.into_par_iter();
         let mut forms: Vec<Vec<End>> = forms.map(|effect| self.roughly(effect)).collect();
         let here = self.cost();
-        let promised: Vec<f64> = forms.par_iter().map(|ends| self.promised(ends)).collect();
-        let least = promised.iter().copied().fold(here, f64::min);
+        let predicted: Vec<f64> = forms.par_iter().map(|ends| self.predicted(ends)).collect();
+        let least = predicted.iter().copied().fold(here, f64::min);
         let worthwhile = (PROMISING * (here - least)).max(self.worthwhile);
-        let looked_at = forms.par_iter_mut().zip(&promised);
-        looked_at.for_each(|(ends, promised)| {
-            if here - promised > worthwhile {
+        let examined = forms.par_iter_mut().zip(&predicted);
+        examined.for_each(|(ends, predicted)| {
+            if here - predicted > worthwhile {
                 self.closely(ends);
             }
         });
@@ -76,12 +76,12 @@ impl Screen<'_> {
 
     /// The columns, with the results of fine scans for effects whose cost has many local minima.
     pub fn fine_columns(&self, entries: Vec<Entry>) -> Vec<Entry> {
-        let has_valleys = |entry: &Entry| {
+        let has_local_minima = |entry: &Entry| {
             let effect = entry.added.effect;
-            entry.kind == Kind::New && valleys(self.coarse.experiment, effect).is_some()
+            entry.kind == Kind::New && scan_grid(self.coarse.experiment, effect).is_some()
         };
         let (searched, mut entries): (Vec<Entry>, Vec<Entry>) =
-            entries.into_iter().partition(has_valleys);
+            entries.into_iter().partition(has_local_minima);
         let mut forms: Vec<Vec<End>> = Vec::new();
         for entry in &searched {
             let end = self.end_of(entry);
@@ -92,7 +92,7 @@ impl Screen<'_> {
             }
         }
         let found = forms.into_par_iter().flat_map_iter(|mut ends| {
-            let promising = self.cost() - self.promised(&ends) > self.worthwhile;
+            let promising = self.cost() - self.predicted(&ends) > self.worthwhile;
             self.finely(&mut ends, promising);
             columns(ends, self.here)
         });
@@ -117,7 +117,7 @@ impl Screen<'_> {
     }
 
     /// The least cost that the secants of a form predict.
-    fn promised(&self, ends: &[End]) -> f64 {
+    fn predicted(&self, ends: &[End]) -> f64 {
         let of_end = |index: usize| {
             let (low, high) = trusted(ends, index);
             let along = self.projection.along(&ends[index].residuals, low, high);
@@ -140,7 +140,7 @@ impl Screen<'_> {
             self.ends(sizes.filter(within).collect(), true)
         };
         let mut ends = at(sizes);
-        self.begin(&mut ends);
+        self.find_threshold(&mut ends);
         ends.extend(at(OPPOSITE));
         ends.extend(self.ends(with_opposite_shapes(effect), false));
         ends
@@ -167,9 +167,9 @@ impl Screen<'_> {
             present,
             ..
         } = self.coarse;
-        let astray = present.error() > EXPLAINED;
-        if let Some(grid) = valleys(experiment, hint.effect)
-            && (promising || (astray && !grid.hinted))
+        let is_unexplained = present.error() > EXPLAINED;
+        if let Some(grid) = scan_grid(experiment, hint.effect)
+            && (promising || (is_unexplained && !grid.hinted))
         {
             // Condensed runs do not show when a spool jumps; runs with coarse time steps do show the ringing of a
             // pressure.
@@ -185,15 +185,22 @@ impl Screen<'_> {
 
     /// Golden section search between a size without any change and the next larger one, which overshoots: no secant
     /// predicts the best size of an effect with a threshold, like the slip of a pump with excess flow.
-    fn begin(&self, ends: &mut Vec<End>) {
+    fn find_threshold(&self, ends: &mut Vec<End>) {
         let does = |end: &End| (end.cost - self.coarse.seen.cost).abs() > self.worthwhile;
-        let Some(begun) = ends.iter().position(does).filter(|&begun| begun > 0) else {
+        let Some(first_change) = ends
+            .iter()
+            .position(does)
+            .filter(|&first_change| first_change > 0)
+        else {
             return;
         };
-        if self.cost() - ends[begun].cost > self.worthwhile {
+        if self.cost() - ends[first_change].cost > self.worthwhile {
             return;
         }
-        let (nothing, much) = (&ends[begun - 1].added, ends[begun].added.clone());
+        let (nothing, much) = (
+            &ends[first_change - 1].added,
+            ends[first_change].added.clone(),
+        );
         let null = much.effect.parameters()[0].null;
         let (mut low, mut high) = ((nothing.values[0] - null) / (much.values[0] - null), 1.0);
         let inner = 0.5 * (5f64.sqrt() - 1.0);
@@ -219,22 +226,22 @@ impl Screen<'_> {
     ///
     /// A secant is trusted up to the geometric mean of its end and the next simulated size.
     fn follow(&self, ends: &mut Vec<End>) {
-        for _ in 0..PROMISES {
+        for _ in 0..PREDICTIONS {
             let least = ends.iter().map(|end| end.cost).fold(self.cost(), f64::min);
-            let promises = (0..ends.len()).filter_map(|index| {
+            let predictions = (0..ends.len()).filter_map(|index| {
                 let (low, high) = trusted(ends, index);
                 let end = &ends[index];
                 let (share, cost) = self.projection.along(&end.residuals, low, high);
                 let moved = (share - 1.0).abs() > MOVED && share != 0.0;
                 moved.then(|| (cost, scaled(&end.added, share)))
             });
-            let Some((cost, promised)) = promises.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+            let Some((cost, predicted)) = predictions.min_by(|a, b| a.0.total_cmp(&b.0)) else {
                 return;
             };
-            if least - cost < GAIN * self.worthwhile || promised.is_null() {
+            if least - cost < GAIN * self.worthwhile || predicted.is_null() {
                 return;
             }
-            ends.push(self.end(promised, false));
+            ends.push(self.end(predicted, false));
         }
     }
 

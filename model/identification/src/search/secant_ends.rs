@@ -13,11 +13,11 @@ const SAME: f64 = 0.3;
 const SAME_ROUGH: f64 = 0.005;
 
 /// Bound on the share of a secant in a subset: extrapolation beyond it is unreliable.
-pub(crate) const FARTHEST: f64 = 3.0;
+pub(crate) const LARGEST_SHARE: f64 = 3.0;
 
 /// The same for switching and located effects, where every size is a separate column. The slack allows for other
 /// missing effects.
-const JUMPING: (f64, f64) = (0.95, 1.05);
+const ROUGH_SHARES: (f64, f64) = (0.95, 1.05);
 
 /// A simulated effect at one size.
 pub(crate) struct End {
@@ -37,8 +37,8 @@ pub(crate) fn trusted(ends: &[End], index: usize) -> (f64, f64) {
     let range = &own.effect.parameters()[0];
     let size = own.values[0] - range.null;
     let of_range = [range.low, range.high].map(|end| (end - range.null) / size);
-    let mut low = of_range[0].min(of_range[1]).max(-FARTHEST);
-    let mut high = of_range[0].max(of_range[1]).min(FARTHEST);
+    let mut low = of_range[0].min(of_range[1]).max(-LARGEST_SHARE);
+    let mut high = of_range[0].max(of_range[1]).min(LARGEST_SHARE);
     for other in ends {
         if other.added.values[1..] != own.values[1..] {
             continue;
@@ -92,7 +92,7 @@ fn is_same(one: &AddedEffect, other: &AddedEffect) -> bool {
 
 fn column(end: End, trusted: (f64, f64), here: &[Vec<f64>]) -> Entry {
     let share = match end.added.effect.size_response() {
-        SizeResponse::Switching | SizeResponse::Located => JUMPING,
+        SizeResponse::Switching | SizeResponse::Located => ROUGH_SHARES,
         SizeResponse::Smooth | SizeResponse::Stepped => trusted,
     };
     Entry {

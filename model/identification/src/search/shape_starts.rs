@@ -3,7 +3,7 @@
 use hitch_plant::{AddedEffect, Channel, Effect, Parameter, SizeResponse};
 
 use crate::data::experiment::Experiment;
-use crate::search::size_scan::{Grid, JUMPS, PLACES, PLACES_AT_REST, RINGING};
+use crate::search::size_scan::{Grid, LOCATED, LOCATED_WITHOUT_RINGING, RINGING, SWITCHING};
 
 /// An effect at a multiple of its size.
 pub(crate) fn scaled(added: &AddedEffect, share: f64) -> AddedEffect {
@@ -15,12 +15,12 @@ pub(crate) fn scaled(added: &AddedEffect, share: f64) -> AddedEffect {
 
 /// The scan grid of an effect whose cost has many local minima: due to the phase of a ringing pressure, or to switching
 /// or bouncing.
-pub(crate) fn valleys(experiment: &Experiment, effect: &dyn Effect) -> Option<&'static Grid> {
+pub(crate) fn scan_grid(experiment: &Experiment, effect: &dyn Effect) -> Option<&'static Grid> {
     let pressure_alone = effect.channels() == [Channel::CylinderPressure];
     match effect.size_response() {
-        SizeResponse::Switching => Some(&JUMPS),
-        SizeResponse::Located if experiment.ringing => Some(&PLACES),
-        SizeResponse::Located => Some(&PLACES_AT_REST),
+        SizeResponse::Switching => Some(&SWITCHING),
+        SizeResponse::Located if experiment.ringing => Some(&LOCATED),
+        SizeResponse::Located => Some(&LOCATED_WITHOUT_RINGING),
         SizeResponse::Smooth if experiment.ringing && pressure_alone => Some(&RINGING),
         SizeResponse::Smooth | SizeResponse::Stepped => None,
     }

@@ -9,7 +9,7 @@ use crate::estimation::fit::{Fit, evaluate_weighted};
 use crate::search::best_subset::fitted;
 use crate::search::candidates::Progress;
 use crate::search::coarse_view::Coarse;
-use crate::search::dictionary::Around;
+use crate::search::dictionary::DictionaryBuilder;
 use crate::search::dictionary_entry::Kind;
 use crate::search::refit::Refits;
 use crate::search::scan_cache::Scans;
@@ -49,14 +49,14 @@ pub fn try_each(
     let scans = Scans::default();
     let penalty = Penalty::beside(experiment, base);
     let coarse = Coarse::new(experiment, model, base);
-    let around = Around {
+    let builder = DictionaryBuilder {
         coarse: &coarse,
         effects: effects.to_vec(),
         changes: false,
         scans: &scans,
         worthwhile: 0.5 * penalty.of_nothing(),
     };
-    let dictionary = around.thorough(around.dictionary());
+    let dictionary = builder.thorough(builder.dictionary());
     let (gram, entries) = (&dictionary.gram, dictionary.entries.as_slice());
     let start = |effect: &'static dyn Effect| -> Option<(f64, Estimate)> {
         let own = |&column: &usize| {
@@ -86,7 +86,7 @@ pub fn try_each(
         options: Options::default(),
     };
     let slow = slow_columns(experiment, model, base);
-    let promising = |cost: f64| coarse.seen.cost - cost > around.worthwhile || effects.len() == 1;
+    let promising = |cost: f64| coarse.seen.cost - cost > builder.worthwhile || effects.len() == 1;
     let tried = starts.into_par_iter().enumerate();
     let tried = tried.map(|(rank, (cost, effect, estimate))| {
         progress(effect.id());
@@ -120,7 +120,7 @@ pub fn confidences(candidates: &[Candidate]) -> Vec<f64> {
     let mut confidences = shares(&odds);
     confidences.truncate(candidates.len());
     for (confidence, candidate) in confidences.iter_mut().zip(candidates) {
-        *confidence *= candidate.genuine();
+        *confidence *= candidate.plausibility();
     }
     confidences
 }

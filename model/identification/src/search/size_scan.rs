@@ -19,11 +19,11 @@ pub(crate) struct Grid {
     /// Smallest and largest size, in typical sizes.
     sizes: [f64; 2],
     /// Spacing of the sizes.
-    step: Step,
+    step: Spacing,
     /// Criterion for the runs that are scanned.
-    telling: Telling,
+    informative: Informative,
     /// Additional fine grid for narrow minima.
-    narrow_valleys: Option<NarrowValleys>,
+    narrow_minima: Option<NarrowMinima>,
     /// Half-width of the sizes evaluated on all runs around the results from the informative runs, as a share of the
     /// size.
     all_runs: f64,
@@ -48,7 +48,7 @@ pub(crate) struct Grid {
 /// Fine grid of sizes with the shape at its upper end. A spool that sticks on a ramp and jumps by the whole band
 /// returns to the same places, so the minimum is narrower for smaller bands.
 #[derive(Clone, Copy)]
-struct NarrowValleys {
+struct NarrowMinima {
     /// Smallest and largest size, in typical sizes.
     sizes: [f64; 2],
     /// Relative spacing of the sizes per typical size, and its largest value.
@@ -58,7 +58,7 @@ struct NarrowValleys {
 
 /// Spacing of the sizes.
 #[derive(Clone, Copy)]
-enum Step {
+enum Spacing {
     /// A share of the size.
     Share(f64),
     /// A constant, in typical sizes.
@@ -67,7 +67,7 @@ enum Step {
 
 /// Criterion for the informative runs.
 #[derive(Clone, Copy)]
-enum Telling {
+enum Informative {
     /// Runs that a small change of the size changes.
     Changed,
     /// Runs in which the model without the effect has large residuals.
@@ -75,11 +75,11 @@ enum Telling {
 }
 
 /// For switching effects.
-pub(crate) static JUMPS: Grid = Grid {
+pub(crate) static SWITCHING: Grid = Grid {
     sizes: [0.12, 4.0],
-    step: Step::Share(0.008),
-    telling: Telling::Changed,
-    narrow_valleys: Some(NarrowValleys {
+    step: Spacing::Share(0.008),
+    informative: Informative::Changed,
+    narrow_minima: Some(NarrowMinima {
         sizes: [0.25, 3.0],
         finer: 0.003,
         coarsest: 0.004,
@@ -98,9 +98,9 @@ pub(crate) static JUMPS: Grid = Grid {
 /// closer scan.
 pub(crate) static RINGING: Grid = Grid {
     sizes: [0.1, 8.0],
-    step: Step::Share(0.06),
-    telling: Telling::Changed,
-    narrow_valleys: None,
+    step: Spacing::Share(0.06),
+    informative: Informative::Changed,
+    narrow_minima: None,
     all_runs: 0.0,
     shapes: 5,
     apart: 0.1,
@@ -113,11 +113,11 @@ pub(crate) static RINGING: Grid = Grid {
 
 /// For located effects: the hitch resting on or reaching the place is reproduced within a few millimetres, and ringing
 /// there causes one local minimum per period.
-pub(crate) static PLACES: Grid = Grid {
+pub(crate) static LOCATED: Grid = Grid {
     sizes: [0.1, 6.5],
-    step: Step::Even(0.06),
-    telling: Telling::Failed,
-    narrow_valleys: None,
+    step: Spacing::Even(0.06),
+    informative: Informative::Failed,
+    narrow_minima: None,
     all_runs: 0.0,
     shapes: 5,
     apart: 0.05,
@@ -129,25 +129,25 @@ pub(crate) static PLACES: Grid = Grid {
 };
 
 /// The same without ringing: secants show that something is there, though not its stiffness.
-pub(crate) static PLACES_AT_REST: Grid = Grid {
+pub(crate) static LOCATED_WITHOUT_RINGING: Grid = Grid {
     hinted: true,
-    ..PLACES
+    ..LOCATED
 };
 
 /// Results per shape that are scanned more closely, and in total.
 const PER_SHAPE: usize = 2;
-const LOOKED_AT: usize = 6;
+const SCANNED_CLOSELY: usize = 6;
 
 /// Number of the best sizes on the informative runs that are evaluated on all runs, which may distinguish them better.
-const SEEN_BY_ALL: usize = 60;
+const EVALUATED_ON_ALL: usize = 60;
 
 /// Values of a closer scan to either side.
 const TO_EITHER_SIDE: i32 = 5;
 
 /// Share of the sizes, those that are best on the first few of the informative runs, that are evaluated on the others,
 /// and the number of these first runs.
-const WINNOWED: f64 = 0.25;
-const MOST_TELLING: usize = 2;
+const PRESELECTED: f64 = 0.25;
+const FIRST_INFORMATIVE: usize = 2;
 
 /// The sizes and shapes of an effect around those that fit the most informative runs best; `hint` is the effect at any
 /// size.
@@ -159,32 +159,32 @@ pub(crate) fn scan(
     grid: &Grid,
 ) -> Vec<AddedEffect> {
     let failed = failed(base);
-    let telling = match grid.telling {
-        Telling::Changed => {
+    let informative = match grid.informative {
+        Informative::Changed => {
             let changed = changed(experiment, model, base, hint);
-            of_each_valve(experiment, &both(&changed, &unexplained(base)))
+            of_each_valve(experiment, &geometric_mean(&changed, &unexplained(base)))
         }
-        Telling::Failed => enough(experiment, &failed, ENOUGH),
+        Informative::Failed => most_informative_runs(experiment, &failed, INFORMATIVE_SAMPLES),
     };
     let scan = Scan {
         experiment,
         model: model.clone(),
         base,
-        telling,
+        informative,
     };
     let all: Vec<usize> = (0..experiment.runs.len()).collect();
     let without = failed.iter().enumerate();
     let visible: f64 = without
-        .map(|(run, failed)| scan.unlikely(run, grid.leaves * failed))
+        .map(|(run, failed)| scan.negative_log_likelihood(run, grid.leaves * failed))
         .sum();
     let ringing = experiment.ringing;
-    let looked_at = if ringing { grid.best } else { LOOKED_AT };
+    let closer_count = if ringing { grid.best } else { SCANNED_CLOSELY };
     let mut best = scan.ranked(scan.better(coarse(hint, grid), grid, &all), &all);
-    best.truncate(looked_at);
+    best.truncate(closer_count);
     best.retain(|(left, _)| *left < visible);
     for &reach in grid.closer {
         let closer = best.into_iter().map(|(_, added)| {
-            let nearby = scan.ranked(around(&added, reach), &scan.telling);
+            let nearby = scan.ranked(around(&added, reach), &scan.informative);
             nearby
                 .into_iter()
                 .next()
@@ -206,13 +206,13 @@ struct Scan<'a> {
     model: Model,
     base: &'a Fit,
     /// The informative runs, the most informative first.
-    telling: Vec<usize>,
+    informative: Vec<usize>,
 }
 
 impl Scan<'_> {
     /// The same scan with a quasi-static model: its residuals mask narrow minima almost, but not those of the best
     /// sizes.
-    fn still(&self) -> Self {
+    fn as_quasi_static(&self) -> Self {
         Self {
             model: self.model.quasi_static(),
             ..self.clone()
@@ -223,16 +223,16 @@ impl Scan<'_> {
     fn better(&self, added: Vec<AddedEffect>, grid: &Grid, all: &[usize]) -> Vec<AddedEffect> {
         let rings = self.experiment.ringing;
         let seen = if grid.quasi_static {
-            self.still()
+            self.as_quasi_static()
         } else {
             self.clone()
         };
-        let mut ranked = seen.winnowed(added);
+        let mut ranked = seen.preselected(added);
         if grid.quasi_static {
-            ranked.truncate(SEEN_BY_ALL);
+            ranked.truncate(EVALUATED_ON_ALL);
             ranked = seen.ranked(without_losses(ranked), all);
             if rings {
-                ranked = self.ranked(without_losses(ranked), &self.telling);
+                ranked = self.ranked(without_losses(ranked), &self.informative);
             }
         }
         without_losses(apart(ranked, grid.apart))
@@ -248,14 +248,14 @@ impl Scan<'_> {
             let ready = &self.experiment.runs[run];
             let trace = ready.simulate(&model, estimate.nuisances[run], &estimate.clocks);
             let whitened = self.base.weights.runs[run].whiten(ready, &trace);
-            self.unlikely(run, whitened.into_iter().map(bounded_loss).sum())
+            self.negative_log_likelihood(run, whitened.into_iter().map(bounded_loss).sum())
         });
         left.sum()
     }
 
     /// Negative log-likelihood of a run's loss with unknown noise variance: a second missing effect that dominates some
     /// runs then does not affect the evaluation of the others.
-    fn unlikely(&self, run: usize, loss: f64) -> f64 {
+    fn negative_log_likelihood(&self, run: usize, loss: f64) -> f64 {
         let samples = self.experiment.runs[run].len() as f64;
         samples * (loss / samples).ln_1p()
     }
@@ -271,11 +271,11 @@ impl Scan<'_> {
     }
 
     /// The better part of added effects by their negative log-likelihood on all informative runs, ascending.
-    fn winnowed(&self, added: Vec<AddedEffect>) -> Vec<(f64, AddedEffect)> {
-        let most_telling = &self.telling[..self.telling.len().min(MOST_TELLING)];
-        let mut better = self.ranked(added, most_telling);
-        better.truncate((WINNOWED * better.len() as f64).ceil() as usize);
-        self.ranked(without_losses(better), &self.telling)
+    fn preselected(&self, added: Vec<AddedEffect>) -> Vec<(f64, AddedEffect)> {
+        let most_informative = &self.informative[..self.informative.len().min(FIRST_INFORMATIVE)];
+        let mut better = self.ranked(added, most_informative);
+        better.truncate((PRESELECTED * better.len() as f64).ceil() as usize);
+        self.ranked(without_losses(better), &self.informative)
     }
 }
 
@@ -303,10 +303,10 @@ fn apart(ranked: Vec<(f64, AddedEffect)>, share: f64) -> Vec<(f64, AddedEffect)>
 const BOUND: f64 = 3.0;
 
 /// Sizes on either side of the hint whose loss has to differ in an informative run, as shares of the hint's.
-const TOLD_APART: [f64; 2] = [0.9, 1.1];
+const HINT_VARIATIONS: [f64; 2] = [0.9, 1.1];
 
 /// Number of samples of the informative runs.
-const ENOUGH: usize = 1200;
+const INFORMATIVE_SAMPLES: usize = 1200;
 
 /// Loss of a residual, constant beyond [`BOUND`]: the noise of the current decides whether a spool jumps at some
 /// instants, and the samples after a missed jump must not dominate.
@@ -317,7 +317,7 @@ fn bounded_loss(residual: f64) -> f64 {
 /// Loss between two sizes of the effect in each run. A run that every size changes alike, like a plateau that is
 /// reached from below, does not determine the size.
 fn changed(experiment: &Experiment, model: &Model, base: &Fit, hint: &AddedEffect) -> Vec<f64> {
-    let [smaller, larger] = TOLD_APART.map(|share| {
+    let [smaller, larger] = HINT_VARIATIONS.map(|share| {
         let mut with = base.estimate.clone();
         with.effects.push(scaled(hint, share));
         residuals(experiment, model, &base.weights, &with)
@@ -346,26 +346,32 @@ fn unexplained(base: &Fit) -> Vec<f64> {
 
 /// The geometric mean of two losses in each run: a run that depends on the size is only informative if it has
 /// unexplained residuals.
-fn both(one: &[f64], other: &[f64]) -> Vec<f64> {
+fn geometric_mean(one: &[f64], other: &[f64]) -> Vec<f64> {
     let runs = one.iter().zip(other);
     runs.map(|(one, other)| (one * other).sqrt()).collect()
 }
 
 /// Informative runs, most informative first, alternating between lifting and lowering if both exist: another missing
 /// effect may spoil the runs of one valve.
-fn of_each_valve(experiment: &Experiment, told: &[f64]) -> Vec<usize> {
+fn of_each_valve(experiment: &Experiment, information: &[f64]) -> Vec<usize> {
     let [mut lifting, mut lowering] = [
         [Regime::Lifting, Regime::Lowering],
         [Regime::Lowering, Regime::Lifting],
     ]
     .map(|[wanted, other]| {
         let alone = |run: &ReadyRun| run.regimes.contains(&wanted) && !run.regimes.contains(&other);
-        let told = experiment.runs.iter().zip(told);
-        let told = told.map(|(run, &told)| if alone(run) { told } else { 0.0 });
-        enough(experiment, &told.collect::<Vec<_>>(), ENOUGH / 2).into_iter()
+        let information = experiment.runs.iter().zip(information);
+        let information =
+            information.map(|(run, &information)| if alone(run) { information } else { 0.0 });
+        most_informative_runs(
+            experiment,
+            &information.collect::<Vec<_>>(),
+            INFORMATIVE_SAMPLES / 2,
+        )
+        .into_iter()
     });
     if lifting.len().min(lowering.len()) == 0 {
-        return enough(experiment, told, ENOUGH);
+        return most_informative_runs(experiment, information, INFORMATIVE_SAMPLES);
     }
     let pairs = std::iter::from_fn(|| {
         let pair = [lowering.next(), lifting.next()];
@@ -375,9 +381,15 @@ fn of_each_valve(experiment: &Experiment, told: &[f64]) -> Vec<usize> {
 }
 
 /// The most informative runs per sample, until `enough` samples are reached; `information` is per run.
-fn enough(experiment: &Experiment, told: &[f64], enough: usize) -> Vec<usize> {
-    let density = |run: usize| told[run] / experiment.runs[run].regimes.len().max(1) as f64;
-    let mut runs: Vec<usize> = (0..told.len()).filter(|&run| told[run] > 0.0).collect();
+fn most_informative_runs(
+    experiment: &Experiment,
+    information: &[f64],
+    enough: usize,
+) -> Vec<usize> {
+    let density = |run: usize| information[run] / experiment.runs[run].regimes.len().max(1) as f64;
+    let mut runs: Vec<usize> = (0..information.len())
+        .filter(|&run| information[run] > 0.0)
+        .collect();
     runs.sort_by(|&a, &b| density(b).total_cmp(&density(a)));
     let mut samples = 0;
     let few = |&run: &usize| {
@@ -392,8 +404,8 @@ fn enough(experiment: &Experiment, told: &[f64], enough: usize) -> Vec<usize> {
 fn coarse(hint: &AddedEffect, grid: &Grid) -> Vec<AddedEffect> {
     let share = |k: usize| k as f64 / (grid.shapes - 1) as f64;
     let next = |size: f64| match grid.step {
-        Step::Share(share) => size * (1.0 + share),
-        Step::Even(step) => size + step,
+        Spacing::Share(share) => size * (1.0 + share),
+        Spacing::Even(step) => size + step,
     };
     let even = combinations(hint, |index, range| match index {
         0 => sizes(range, grid.sizes, next),
@@ -402,19 +414,18 @@ fn coarse(hint: &AddedEffect, grid: &Grid) -> Vec<AddedEffect> {
             .collect(),
         other => vec![hint.values[other]],
     });
-    let narrow_valleys = grid
-        .narrow_valleys
+    let narrow_minima = grid
+        .narrow_minima
         .as_ref()
-        .map_or_else(Vec::new, |narrow_valleys| {
-            let next = |size: f64| {
-                size * (1.0 + (narrow_valleys.finer * size).min(narrow_valleys.coarsest))
-            };
+        .map_or_else(Vec::new, |narrow_minima| {
+            let next =
+                |size: f64| size * (1.0 + (narrow_minima.finer * size).min(narrow_minima.coarsest));
             combinations(hint, |index, range| match index {
-                0 => sizes(range, narrow_valleys.sizes, next),
+                0 => sizes(range, narrow_minima.sizes, next),
                 _ => vec![range.high],
             })
         });
-    [even, narrow_valleys].concat()
+    [even, narrow_minima].concat()
 }
 
 /// Sizes from the smallest to the largest, in typical sizes, each followed by `next`.

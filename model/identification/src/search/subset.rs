@@ -20,7 +20,7 @@ use crate::estimation::fit::{Fit, evaluate, evaluate_weighted};
 use crate::search::candidates::{Progress, showing};
 use crate::search::coarse_view::Coarse;
 use crate::search::confounded::confounded;
-use crate::search::dictionary::{Around, Dictionary};
+use crate::search::dictionary::{Dictionary, DictionaryBuilder};
 use crate::search::promising_subsets::starts;
 use crate::search::refit::Refits;
 use crate::search::scan_cache::Scans;
@@ -38,7 +38,7 @@ const MORE: usize = 2;
 
 /// Largest error, in sigma, of the model without an effect at which a switching effect can be confounded with another
 /// one. Above it, the switching instants distinguish them.
-const FAINT: f64 = 1.5;
+const CONFOUNDABLE_ERROR: f64 = 1.5;
 
 /// Sets per round that are evaluated on held-out runs.
 const TRIED: usize = 3;
@@ -134,7 +134,7 @@ pub(crate) fn search(
         if options.is_over() {
             break;
         }
-        if search.looks_further() || search.looks_for_rivals() {
+        if search.extends() || search.tries_alternatives() {
             let added = base.estimate.effects.len()..search.present.estimate.effects.len();
             search.order = added.collect();
         } else {
@@ -165,14 +165,14 @@ struct Search<'a> {
 impl Search<'_> {
     /// Builds a dictionary around the present fit and moves to the best set that it leads to. Returns whether there is
     /// one.
-    fn looks_further(&mut self) -> bool {
+    fn extends(&mut self) -> bool {
         let name = key(&self.present).name();
         (self.progress)(&format!("what is missing beside {name}"));
         let present = self.present.clone();
         let coarse = Coarse::new(self.experiment, self.model, &present);
-        let around = self.around(&coarse, |_| true);
-        let dictionary = around.dictionary();
-        self.tries(&coarse, &dictionary, MORE);
+        let builder = self.builder(&coarse, |_| true);
+        let dictionary = builder.dictionary();
+        self.fits_subsets(&coarse, &dictionary, MORE);
         let effects = 0..present.estimate.effects.len();
         let own = effects.filter(|&index| !present.estimate.is_unchanged(index));
         self.rivals = own
@@ -180,34 +180,34 @@ impl Search<'_> {
             .collect();
         self.order = in_order(&dictionary);
         // Once an effect has been found, the plain dictionary is sufficient as long as it leads to improvements.
-        if key(&present).len() > 0 && self.goes_on() {
+        if key(&present).len() > 0 && self.moves_to_best() {
             return true;
         }
         if self.refitted.least_error() > EXPLAINED {
-            let dictionary = self.around(&coarse, |_| true).thorough(dictionary);
-            self.tries(&coarse, &dictionary, MORE);
-            self.looks_in_step(&present);
+            let dictionary = self.builder(&coarse, |_| true).thorough(dictionary);
+            self.fits_subsets(&coarse, &dictionary, MORE);
+            self.tries_synchronised(&present);
         }
-        self.goes_on()
+        self.moves_to_best()
     }
 
     /// Repeats the dictionary with all clocks in step, for delays that clock offsets compensate.
-    fn looks_in_step(&mut self, present: &Fit) {
+    fn tries_synchronised(&mut self, present: &Fit) {
         let in_step = synchronous(self.experiment, self.model, present);
         if let Some(in_step) = in_step
             && self.refitted.least_error() > EXPLAINED
         {
             let coarse = Coarse::new(self.experiment, self.model, &in_step);
-            let dictionary = self.around(&coarse, delays::is_delay).dictionary();
+            let dictionary = self.builder(&coarse, delays::is_delay).dictionary();
             // A set that was fitted with clock offsets may have another local minimum with all clocks in step.
             let known = Refitted::new(present);
-            self.tries_beside(&known, &coarse, &dictionary, MORE);
+            self.fits_subsets_except(&known, &coarse, &dictionary, MORE);
         }
     }
 
     /// Tries the confounded alternatives of each effect in its place, and moves to one if it is better. Returns whether
     /// there is one. Added beside the effect, an alternative would explain nothing.
-    fn looks_for_rivals(&mut self) -> bool {
+    fn tries_alternatives(&mut self) -> bool {
         let estimate = self.present.estimate.clone();
         for (index, rivals) in std::mem::take(&mut self.rivals) {
             if rivals.is_empty() || self.options.is_over() {
@@ -219,26 +219,26 @@ impl Search<'_> {
             let without = estimate.without(index);
             let center = evaluate_weighted(self.experiment, self.model, without, weights);
             let coarse = Coarse::new(self.experiment, self.model, &center);
-            let around = self.around(&coarse, |effect| rivals.contains(&effect.id()));
-            let dictionary = match center.error() < FAINT {
-                true => around.thorough(around.dictionary()),
-                false => around.dictionary(),
+            let builder = self.builder(&coarse, |effect| rivals.contains(&effect.id()));
+            let dictionary = match center.error() < CONFOUNDABLE_ERROR {
+                true => builder.thorough(builder.dictionary()),
+                false => builder.dictionary(),
             };
-            self.tries(&coarse, &dictionary, 1);
+            self.fits_subsets(&coarse, &dictionary, 1);
         }
-        self.goes_on()
+        self.moves_to_best()
     }
 
     /// The inputs of a dictionary around a fit, with the effects selected by `wanted`.
-    fn around<'a>(
+    fn builder<'a>(
         &'a self,
         coarse: &'a Coarse,
         wanted: impl Fn(&dyn Effect) -> bool,
-    ) -> Around<'a> {
+    ) -> DictionaryBuilder<'a> {
         let (experiment, model) = (self.experiment, self.model);
         let mut effects = showing(experiment, model, &coarse.present.estimate);
         effects.retain(|effect| wanted(*effect));
-        Around {
+        DictionaryBuilder {
             coarse,
             effects,
             changes: self.options.changes,
@@ -248,13 +248,13 @@ impl Search<'_> {
     }
 
     /// Fits the most promising sets of a dictionary, with at most `more` effects more than its fit.
-    fn tries(&mut self, coarse: &Coarse, dictionary: &Dictionary, more: usize) {
+    fn fits_subsets(&mut self, coarse: &Coarse, dictionary: &Dictionary, more: usize) {
         let known = self.refitted.clone();
-        self.tries_beside(&known, coarse, dictionary, more);
+        self.fits_subsets_except(&known, coarse, dictionary, more);
     }
 
     /// The same without the sets in `known`.
-    fn tries_beside(
+    fn fits_subsets_except(
         &mut self,
         known: &Refitted,
         coarse: &Coarse,
@@ -277,7 +277,7 @@ impl Search<'_> {
 
     /// Moves to the best set that is better than the present one and has less error in held-out runs. Returns whether
     /// there is one.
-    fn goes_on(&mut self) -> bool {
+    fn moves_to_best(&mut self) -> bool {
         let (experiment, model) = (self.experiment, self.model);
         let better = self.refitted.better(experiment, model, &self.present);
         let admitted = better.into_iter().take(TRIED).find_map(|fit| {

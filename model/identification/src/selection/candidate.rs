@@ -6,13 +6,13 @@ use rayon::prelude::*;
 use crate::adequacy::lack_of_fit::SLOW_NOISE;
 use crate::data::experiment::Experiment;
 use crate::estimate::Shared;
-use crate::estimation::central_differences::both_ways;
+use crate::estimation::central_differences::with_central_differences;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{
     Jacobian, RunJacobian, SlowColumns, difference, huber, huber_residuals, square_sum,
 };
 use crate::estimation::nuisance_projection::NuisanceProjection;
-use crate::estimation::profile_likelihood::Profile;
+use crate::estimation::profile_likelihood::ProfileLikelihood;
 use crate::selection::evidence::{detectability, log_odds, variance_inflation};
 
 /// Ratio of the mean square that an effect explains to the remaining one, weighted by its signature, at which it is
@@ -82,13 +82,13 @@ impl Candidate {
 
     /// Probability that it is the named effect and not an unknown one: see [`plausibility`].
     #[must_use]
-    pub fn genuine(&self) -> f64 {
-        genuine(self.explained_share)
+    pub fn plausibility(&self) -> f64 {
+        plausibility(self.explained_share)
     }
 
     /// Reduction of the cost, under the weights of the model without it.
     #[must_use]
-    pub fn fallen(&self) -> f64 {
+    pub fn cost_reduction(&self) -> f64 {
         self.likelihood_ratio * self.fit.variance() * self.inflation
     }
 
@@ -106,7 +106,7 @@ impl Candidate {
 /// A different mechanism never fits everywhere, and its residuals lie where the effect acts. The odds grow with the
 /// square of the ratio of explained to remaining mean square there; they are even at a ratio of 25.
 #[must_use]
-pub fn genuine(explained_share: f64) -> f64 {
+pub fn plausibility(explained_share: f64) -> f64 {
     let left = EVEN_RATIO * (1.0 - explained_share);
     explained_share.powi(2) / (explained_share.powi(2) + left.powi(2)).max(f64::MIN_POSITIVE)
 }
@@ -122,7 +122,7 @@ pub fn weigh(
 ) -> Candidate {
     let slow = slow_columns(experiment, model, &fit);
     let jacobian = jacobian_by(experiment, model, &fit, &slow);
-    let jacobian = both_ways(experiment, model, &fit, jacobian);
+    let jacobian = with_central_differences(experiment, model, &fit, jacobian);
     weigh_with(experiment, model, base, effect, fit, &jacobian)
 }
 
@@ -172,11 +172,11 @@ fn weigh_with(
     let signatures: Vec<Signature> = (0..effect.parameters().len().min(free))
         .map(|parameter| Signature::new(experiment, &fit, jacobian, index, parameter))
         .collect();
-    let Seen {
+    let Evidence {
         detectability,
         inflation,
         explained_share,
-    } = Seen::new(experiment, model, &fit, jacobian);
+    } = Evidence::new(experiment, model, &fit, jacobian);
     let intervals = signatures
         .par_iter()
         .map(|signature| {
@@ -184,8 +184,8 @@ fn weigh_with(
             let value = fit.estimate.get(signature.shared);
             let range = &effect.parameters()[signature.parameter];
             let systematic = 1.96 * systematic(&fit.estimate.effects[index], signature.parameter);
-            let promised = 1.96 * deviation * fit.estimate.scale(signature.shared);
-            let profile = Profile {
+            let predicted = 1.96 * deviation * fit.estimate.scale(signature.shared);
+            let profile = ProfileLikelihood {
                 experiment,
                 model,
                 fit: &fit,
@@ -193,17 +193,17 @@ fn weigh_with(
                 projection: &signature.projection,
             };
             let rise = 1.96f64.powi(2) * variance * signature.inflation;
-            let [down, up] = [-promised, promised].map(|half| profile.end(half, rise));
+            let [down, up] = [-predicted, predicted].map(|half| profile.end(half, rise));
             (
                 (value - down.hypot(systematic)).max(range.low),
                 (value + up.hypot(systematic)).min(range.high),
             )
         })
         .collect();
-    let fallen = base.cost - fit.cost_beside(experiment, model, base);
+    let cost_reduction = base.cost - fit.cost_under_weights_of(experiment, model, base);
     Candidate {
         effect,
-        likelihood_ratio: fallen / (variance * inflation),
+        likelihood_ratio: cost_reduction / (variance * inflation),
         inflation,
         detectability,
         explained_share,
@@ -271,7 +271,7 @@ impl<'a> Signature<'a> {
 }
 
 /// Evidence of the last effect of a fit.
-struct Seen {
+struct Evidence {
     /// Root mean square of its change of the residuals at the fitted size, in sigmas, with all other free parameters
     /// projected out.
     detectability: f64,
@@ -281,7 +281,7 @@ struct Seen {
     explained_share: f64,
 }
 
-impl Seen {
+impl Evidence {
     /// Uses the whole change instead of its derivative: the derivative of an effect with a threshold or a switching
     /// effect overestimates it.
     fn new(experiment: &Experiment, model: &Model, fit: &Fit, jacobian: &Jacobian) -> Self {

@@ -164,10 +164,10 @@ pub fn shares(log_odds: &[f64]) -> Vec<f64> {
 
 /// Smallest accepted likelihood ratio of an effect: chi-squared with one degree of freedom at 5 %, corrected for some
 /// fifty tests.
-pub const BELIEVED: f64 = 11.0;
+pub const SIGNIFICANT: f64 = 11.0;
 
 /// Likelihood ratio above which two alternatives are distinguishable.
-pub const TOLD_APART: f64 = 10.0;
+pub const DISTINGUISHABLE: f64 = 10.0;
 
 /// Smallest accepted detectability, in sigma. Clock offsets of a few milliseconds, a logger's rounding and the
 /// discretisation of the plant cause signatures of up to 0.05 on steady and 0.09 on ringing campaigns without hidden

@@ -13,7 +13,7 @@ const FOLDS: usize = 4;
 
 /// Ratio of the other fit's cost under the weights of this fit to that under its own, above which the two fits are
 /// compared under the same weights.
-const STRICTER: f64 = 1.5;
+const INCOMPARABLE: f64 = 1.5;
 
 /// Error of a model in held-out runs, in sigma.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,7 +66,7 @@ pub fn held_out(experiment: &Experiment, model: &Model, fit: &Fit) -> HeldOut {
             };
             let loaded = fit_loads(&test, model, &weights, start);
             let tested = evaluate_weighted(&test, model, loaded, weights);
-            (ErrorSums::of(&tested), ErrorSums::seen(&tested))
+            (ErrorSums::of(&tested), ErrorSums::with_huber_loss(&tested))
         })
         .collect();
     let (errors, losses): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
@@ -79,7 +79,7 @@ pub fn held_out(experiment: &Experiment, model: &Model, fit: &Fit) -> HeldOut {
 /// Held-out error of `fit` under the weights of `other`, if its own weights are so different that the two are not
 /// comparable: a sticking spool does not follow the noise of the currents.
 #[must_use]
-pub fn held_out_beside(
+pub fn held_out_under_weights_of(
     experiment: &Experiment,
     model: &Model,
     fit: &Fit,
@@ -87,8 +87,8 @@ pub fn held_out_beside(
 ) -> Option<HeldOut> {
     let (estimate, weights) = (other.estimate.clone(), fit.weights.clone());
     let under_its = evaluate_weighted(experiment, model, estimate, weights).cost;
-    let stricter = under_its > STRICTER * other.cost;
-    stricter.then(|| {
+    let incomparable = under_its > INCOMPARABLE * other.cost;
+    incomparable.then(|| {
         let weights = other.weights.clone();
         held_out(
             experiment,

@@ -20,15 +20,20 @@ pub struct LeaveOneOut {
 
 /// Weighs each effect of a fitted model, from the `first` one on, against the model with all others.
 #[must_use]
-pub fn beside(experiment: &Experiment, model: &Model, fit: &Fit, first: usize) -> Vec<LeaveOneOut> {
+pub fn leave_one_out(
+    experiment: &Experiment,
+    model: &Model,
+    fit: &Fit,
+    first: usize,
+) -> Vec<LeaveOneOut> {
     let effects = first..fit.estimate.effects.len();
     effects
-        .map(|index| beside_others(experiment, model, fit, index))
+        .map(|index| leave_one_out_of(experiment, model, fit, index))
         .collect()
 }
 
 /// Weighs one effect of a fitted model against the model with all others.
-pub(crate) fn beside_others(
+pub(crate) fn leave_one_out_of(
     experiment: &Experiment,
     model: &Model,
     fit: &Fit,

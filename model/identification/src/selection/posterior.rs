@@ -150,14 +150,17 @@ impl Refitted {
                 Weighed {
                     key,
                     fit,
-                    likelier: (here - cost) / penalty.unit,
+                    relative_likelihood_ratio: (here - cost) / penalty.unit,
                     probability: 0.0,
                 }
             })
             .collect();
         // The iteration order of a hash map is random.
         weighed.sort_by(|a, b| a.key.cmp(b.key));
-        let odds: Vec<f64> = weighed.iter().map(|set| 0.5 * set.likelier).collect();
+        let odds: Vec<f64> = weighed
+            .iter()
+            .map(|set| 0.5 * set.relative_likelihood_ratio)
+            .collect();
         for (set, share) in weighed.iter_mut().zip(shares(&odds)) {
             set.probability = share;
         }
@@ -170,7 +173,7 @@ pub(crate) struct Weighed<'a> {
     pub key: &'a Key,
     pub fit: &'a Fit,
     /// Penalised likelihood ratio relative to the best set; negative if worse.
-    pub likelier: f64,
+    pub relative_likelihood_ratio: f64,
     pub probability: f64,
 }
 

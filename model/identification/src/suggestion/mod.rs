@@ -23,7 +23,7 @@ use crate::explanation::explain::{Explanation, Verdict};
 use crate::search::candidates::Progress;
 use crate::search::single_effects::try_effects;
 use crate::selection::candidate::{Candidate, weigh};
-use crate::selection::evidence::BELIEVED;
+use crate::selection::evidence::SIGNIFICANT;
 use crate::selection::hold_out::{HeldOut, held_out};
 
 /// Screened terms that are fitted, per start.
@@ -63,7 +63,7 @@ pub struct Suggestion {
     /// The model with the term and with those steps of the explanation that are still needed.
     pub fit: Fit,
     /// Steps of the explanation that are not needed with the term.
-    pub needless: Vec<&'static dyn Effect>,
+    pub unneeded: Vec<&'static dyn Effect>,
 }
 
 /// Searches for a term if the verdict of an explanation is [`Verdict::Unexplained`].
@@ -134,14 +134,14 @@ impl Trial {
             effects.any(|added| added.effect.id() == effect.id())
         };
         let steps = found.steps.iter().map(|step| step.effect);
-        let needless = steps.filter(|effect| !kept(*effect)).collect();
+        let unneeded = steps.filter(|effect| !kept(*effect)).collect();
         Suggestion {
             term,
             values: candidate.values().to_vec(),
             intervals: candidate.intervals,
             held_out_before,
             held_out_after,
-            needless,
+            unneeded,
             fit,
         }
     }
@@ -166,7 +166,7 @@ fn trials(
     let tried = try_effects(experiment, model, start, &effects, progress);
     tried
         .iter()
-        .filter(|candidate| candidate.likelihood_ratio >= BELIEVED)
+        .filter(|candidate| candidate.likelihood_ratio >= SIGNIFICANT)
         .take(HELD_OUT)
         .filter_map(|candidate| {
             let id = candidate.effect.id();
@@ -191,19 +191,20 @@ fn without_needless(
     let mut dropped = false;
     let mut index = given;
     while index + 1 < candidate.fit.estimate.effects.len() {
-        let mut lighter = candidate.fit.estimate.clone();
-        let AddedEffect { effect, .. } = lighter.effects.remove(index);
-        let lighter = refine(experiment, model, lighter);
+        let mut reduced = candidate.fit.estimate.clone();
+        let AddedEffect { effect, .. } = reduced.effects.remove(index);
+        let reduced = refine(experiment, model, reduced);
         let mut whole = candidate.fit.estimate.clone();
         let moved = whole.effects.remove(index);
         whole.effects.push(moved);
         let whole = evaluate(experiment, model, whole);
-        let needed = weigh(experiment, model, &lighter, effect, whole).likelihood_ratio >= BELIEVED;
+        let needed =
+            weigh(experiment, model, &reduced, effect, whole).likelihood_ratio >= SIGNIFICANT;
         if needed {
             index += 1;
         } else {
             dropped = true;
-            candidate.fit = lighter;
+            candidate.fit = reduced;
         }
     }
     if dropped {

@@ -9,7 +9,7 @@ use crate::suggestion::spread;
 
 /// A place with the unit of sizes there, a typical and the largest size, and the physically plausible signals, the most
 /// usual first.
-struct Ground {
+struct PlaceGrammar {
     place: Place,
     unit: &'static str,
     usual: f64,
@@ -17,13 +17,13 @@ struct Ground {
     signals: &'static [&'static str],
 }
 
-const fn ground(
+const fn place_grammar(
     place: Place,
     unit: &'static str,
     [usual, largest]: [f64; 2],
     signals: &'static [&'static str],
-) -> Ground {
-    Ground {
+) -> PlaceGrammar {
+    PlaceGrammar {
         place,
         unit,
         usual,
@@ -32,69 +32,69 @@ const fn ground(
     }
 }
 
-static GROUNDS: [Ground; 12] = [
-    ground(
+static PLACES: [PlaceGrammar; 12] = [
+    place_grammar(
         Place::LowerFlowFactor,
         "",
         [0.2, 1.0],
         &["x", "q_lower", "p_cyl", "i_lower", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::LiftFlowFactor,
         "",
         [0.2, 1.0],
         &["x", "q_lift", "p_cyl", "i_lift", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::LowerCurrent,
         "A",
         [0.05, 0.6],
         &["i_lower", "x", "p_cyl", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::LiftCurrent,
         "A",
         [0.05, 0.6],
         &["i_lift", "x", "p_cyl", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::Leakage,
         "l/min",
         [0.2, 10.0],
         &["p_cyl", "x", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::Friction,
         "N",
         [400.0, 8000.0],
         &["x", "v", "p_cyl", "t_oil"],
     ),
-    ground(Place::Weight, "N", [400.0, 8000.0], &["x"]),
-    ground(
+    place_grammar(Place::Weight, "N", [400.0, 8000.0], &["x"]),
+    place_grammar(
         Place::CylinderPressureSensor,
         "bar",
         [0.5, 20.0],
         &["p_cyl", "x", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::AngleSensor,
         "deg",
         [1.0, 15.0],
         &["rocker_angle", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::FlowSensor,
         "l/min",
         [0.5, 10.0],
         &["q_lift", "q_lower"],
     ),
-    ground(
+    place_grammar(
         Place::ReturnPressure,
         "bar",
         [1.0, 30.0],
         &["q_lower", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::CompensatorMargin,
         "bar",
         [0.3, 4.0],
@@ -162,18 +162,21 @@ pub fn definitions(
         channels.any(|channel| fit.channel_error(channel.index()) > OFF)
     };
     let mut definitions = Vec::new();
-    for ground in GROUNDS.iter().filter(|ground| off(ground.place)) {
-        let signals = ground.signals.iter().enumerate();
+    for place_grammar in PLACES
+        .iter()
+        .filter(|place_grammar| off(place_grammar.place))
+    {
+        let signals = place_grammar.signals.iter().enumerate();
         for (_, signal) in signals.filter(|(rank, signal)| *rank == 0 || wanted.contains(signal)) {
             if let Some(scales) = spread::quantiles(experiment, model, signal) {
-                ground.push(signal, scales, &mut definitions);
+                place_grammar.push(signal, scales, &mut definitions);
             }
         }
     }
     definitions
 }
 
-impl Ground {
+impl PlaceGrammar {
     /// Adds the terms of a signal, with the scale of each shape starting at each of `scales`, SI.
     fn push(&self, signal: &str, scales: [f64; 3], definitions: &mut Vec<TermDefinition>) {
         for (shape, formula) in SHAPES {

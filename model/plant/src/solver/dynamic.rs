@@ -48,7 +48,7 @@ impl Steps {
 
     /// For differences between simulations in the same steps. The amplitude is off by 4e-2 a period and the phase by
     /// 5e-2 rad, most of which cancels there; three times as much, in steps a quarter longer, no longer does.
-    pub const DRAFT: Self = Self {
+    pub const COARSE: Self = Self {
         longest_rad: 1.0,
         longest_s: 0.008,
         quasi_static_s: 0.1,
