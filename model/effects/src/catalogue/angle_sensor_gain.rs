@@ -1,6 +1,7 @@
-//! `angle-sensor-gain`: the angle sensor shows too much or too little.
+//! `angle-sensor-gain`: gain error of the angle sensor.
 //!
-//! `y = (1 + g) angle`; 0.5 to 1 % of full scale is usual for a hall sensor, more for a worn lever or a wrong supply.
+//! `y = (1 + g) angle`; typical values are 0.5 to 1 % of full scale for a hall sensor, more for a worn lever or a wrong
+//! supply.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions, SensorStage};
 use hitch_plant::{Channel, Parameter, ParameterKind, Reading, SizeResponse};

@@ -1,8 +1,7 @@
-//! `angle-sensor-lag`: the angle sensor or its filter shows the angle late.
+//! `angle-sensor-lag`: lag of the angle sensor or its filter.
 //!
-//! `tau y' + y = angle`, first order. Hall sensors lag by 2 to 10 ms; filtering in the logger adds up to some 0.2 s. A
-//! sensor that averages over a window, or sends on a bus, has dead time as well: what it shows is some time old before
-//! any filter.
+//! `tau y' + y = angle`, first order. Hall sensors lag by 2 to 10 ms; filtering in the logger adds up to about 0.2 s. A
+//! sensor that averages over a window, or sends on a bus, also has a dead time before any filter.
 
 use std::collections::VecDeque;
 
@@ -14,11 +13,12 @@ use crate::described::Described;
 
 const CHANNELS: &[Channel] = &[Channel::RockerAngle];
 
-/// Longest step of a sensor, which takes the angle between two steps from a straight line, s. Where a motion starts or
-/// stops, lines of 20 ms are as far off as the sensor's own noise, and least for whole samples of dead time.
+/// Longest step of a sensor with lag, which interpolates the angle linearly between two steps, s. At the start and end
+/// of a motion, steps of 20 ms cause errors as large as the sensor's own noise; whole samples of dead time are affected
+/// least.
 const STEP_S: f64 = 0.005;
 
-/// A sensor that filters.
+/// A sensor with a filter.
 pub static FILTERING: Described = Described {
     id: "angle-sensor-lag",
     form: None,
@@ -46,7 +46,7 @@ pub static FILTERING: Described = Described {
     attach: |values, _, hooks| attach(values[0], 0.0, hooks),
 };
 
-/// A sensor that sends late what it filters.
+/// A sensor with a filter and a dead time.
 pub static DELAYED: Described = Described {
     id: "angle-sensor-lag",
     form: Some("delayed"),
@@ -107,12 +107,12 @@ struct LateAngle {
     time_constant_s: f64,
     dead_s: f64,
     filter: Lag,
-    /// How long ago, s, the angle was what, degree; the oldest first, the first of them old enough.
+    /// Buffer of past angles: age, s, and angle, degree; the oldest first, the first at least as old as the dead time.
     past: VecDeque<(f64, f64)>,
 }
 
 impl LateAngle {
-    /// The angle of `dead_s` ago, degree, when `dt_s` after the last one it is `now_deg`.
+    /// The angle of `dead_s` ago, degree; the present angle is `now_deg`, `dt_s` after the previous one.
     fn delayed_deg(&mut self, now_deg: f64, dt_s: f64) -> f64 {
         for (ago_s, _) in &mut self.past {
             *ago_s += dt_s;
@@ -158,8 +158,8 @@ mod tests {
     use hitch_plant::components::lag::Lag;
     use hitch_plant::hooks::effect_hooks::SensorStage;
 
-    /// Steady motion at 10 degree a second is followed as late as filter and dead time together; the start shows after
-    /// the dead time, sooner by no more than the step in which it lies.
+    /// A steady motion of 10 degree/s is delayed by the sum of filter lag and dead time; its start shows after the dead
+    /// time, at most one step early.
     #[test]
     fn a_ramp_is_followed_as_late_as_the_parameters_say() {
         for (time_constant_s, dead_s) in [(0.0, 0.05), (0.02, 0.03), (0.01, 0.004)] {

@@ -1,4 +1,4 @@
-//! The catalogue of physical effects: one file an effect, one line in [`CATALOGUE`] each.
+//! The catalogue of physical effects: one file per effect, one line in [`CATALOGUE`] each.
 //!
 //! # Adding an effect
 //! 1. A new file beside this one, named like the effect. Its doc comment states the equation, where it comes from and
@@ -109,19 +109,19 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &pressure_sensor_offset::PRESSURE_SENSOR_OFFSET,
 ];
 
-/// Looks an effect up by its id, in its usual form.
+/// The effect with this id, in its usual form.
 #[must_use]
 pub fn find(id: &str) -> Option<&'static dyn Effect> {
     CATALOGUE.iter().copied().find(|effect| effect.id() == id)
 }
 
-/// Place of an effect of the catalogue in its order.
+/// Index of an effect in the catalogue.
 pub(crate) fn rank(id: &str) -> usize {
     let found = CATALOGUE.iter().position(|effect| effect.id() == id);
     found.unwrap_or(CATALOGUE.len())
 }
 
-/// Every effect that can be added to a model: the catalogue and then its own terms.
+/// Every effect that can be added to a model: the catalogue, then the model's own terms.
 #[must_use]
 pub fn available(model: &Model) -> Vec<&'static dyn Effect> {
     let own = model.terms.iter().copied();

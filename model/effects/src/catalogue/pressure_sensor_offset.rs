@@ -1,4 +1,4 @@
-//! `pressure-sensor-offset`: the cylinder pressure sensor is off by a constant.
+//! `pressure-sensor-offset`: constant offset of the cylinder pressure sensor.
 //!
 //! `y = p + o`; 0.25 to 1 % of a full scale of 250 or 350 bar is 0.6 to 3.5 bar, more with temperature.
 

@@ -1,7 +1,7 @@
-//! Formulas compiled for evaluation: a list of steps that work on a small stack.
+//! Compiled formulas: a list of instructions for a small stack.
 //!
-//! The tree is written out from the leaves to the root, so evaluation is one pass over a list without a branch for the
-//! shape of the formula. What holds nothing but written numbers is worked out beforehand.
+//! The tree is flattened from the leaves to the root, so evaluation is one pass over a list. Constant subexpressions
+//! are evaluated at compile time.
 
 use hitch_plant::hooks::signals::{Signal, Signals};
 
@@ -9,16 +9,16 @@ use crate::expression::operation::{Binary, Unary};
 use crate::expression::parse::DEEPEST;
 use crate::expression::tree::{Kind, Node};
 
-/// Intermediate results that most formulas get by with; clearing more of them costs time.
+/// Stack size that is sufficient for most formulas; clearing a larger one costs time.
 const FEW: usize = 8;
-/// Intermediate results that the most deeply nested formula needs.
+/// Stack size for the most deeply nested formula.
 const MANY: usize = DEEPEST + 4;
 
 /// A formula ready to evaluate.
 #[derive(Debug)]
 pub struct Code {
     steps: Box<[Step]>,
-    /// Most intermediate results at a time.
+    /// Largest stack depth.
     depth: usize,
 }
 
@@ -29,7 +29,7 @@ enum Step {
     Parameter(usize),
     Unary(Unary),
     Binary(Binary),
-    /// An operation whose right side is a written number.
+    /// An operation whose right operand is a number literal.
     BinaryNumber(Binary, f64),
 }
 
@@ -45,7 +45,7 @@ impl Code {
         }
     }
 
-    /// The value, SI; not a number or infinite where the formula is. Parameters that are missing count as not a number.
+    /// The value, SI; NaN or infinite if the formula is. Missing parameters count as NaN.
     #[inline]
     #[must_use]
     pub fn evaluate(&self, parameters: &[f64], signals: &Signals) -> f64 {
@@ -58,7 +58,7 @@ impl Code {
 
     fn run<const SIZE: usize>(&self, parameters: &[f64], signals: &Signals) -> f64 {
         let mut stack = [0.0; SIZE];
-        // The topmost value is kept apart from the stack, so that a step on one value does not touch it.
+        // The top of the stack is kept in a variable, so that unary operations do not access the stack.
         let mut top = f64::NAN;
         let mut height = 0;
         for step in &self.steps {
