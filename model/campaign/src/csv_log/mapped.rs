@@ -1,4 +1,4 @@
-//! Anybody's table, by `[columns]`: its own names, units and times; what is not named is passed over.
+//! Reads any table, mapped by `[columns]`: its own names, units and times; other columns are ignored.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::csv_log::dialect::{Decimals, Header, rows};
 use crate::scale::{Scale, is_time};
 use crate::table::{Cells, Column, Samples, TIME, Table, cell_error};
 
-/// A column that is taken.
+/// A mapped column.
 struct Taken {
     column: &'static Column,
     /// Its name in the log.
@@ -23,10 +23,10 @@ struct Taken {
     scale: Scale,
 }
 
-/// Reads the table below `header`, of a hitch with this linkage.
+/// Reads the table below `header`, for a hitch with this linkage.
 ///
 /// # Errors
-/// Whatever is wrong first, by line and column.
+/// The first fault, with line and column.
 pub fn read(
     source: &Arc<SourceFile>,
     header: &Header,
@@ -64,7 +64,7 @@ pub fn read(
     }
 }
 
-/// The cell of the times with their scale, and the other columns.
+/// The time column with its scale, and the other columns.
 type Found = ((usize, Option<Scale>), Vec<Taken>);
 
 fn taken(
@@ -100,7 +100,7 @@ fn taken(
     Ok((time, taken))
 }
 
-/// Where a column stands; `None` if it is not there and need not be.
+/// Index of a column; `None` if it is missing and optional.
 fn cell_of(
     source: &SourceFile,
     header: &Header,
@@ -128,7 +128,7 @@ fn cell_of(
     }
 }
 
-/// The rows that have been read.
+/// The rows read so far.
 struct Reader<'a> {
     source: &'a Arc<SourceFile>,
     header: &'a Header,
@@ -139,12 +139,12 @@ struct Reader<'a> {
     linkage: &'a Linkage,
     times_s: Vec<f64>,
     values: Vec<Vec<f64>>,
-    /// First byte of each in the file.
+    /// Byte offset of each row in the file.
     bytes: Vec<usize>,
 }
 
 impl Reader<'_> {
-    /// Takes a row. A fault that it may have if it is the last one is returned as a value.
+    /// Adds a row. A fault that is tolerated in the last row is returned as a value.
     fn push(
         &mut self,
         byte: usize,
@@ -177,7 +177,7 @@ impl Reader<'_> {
         Ok(None)
     }
 
-    /// The value of a cell in the column's unit; a cell without a digit is a dropout, whatever it says.
+    /// The value of a cell in the column's unit; a cell without digits is a dropout.
     fn value(&self, taken: &Taken, cell: &str) -> Result<f64, (String, String)> {
         let Taken { column, name, .. } = taken;
         if !cell.bytes().any(|byte| byte.is_ascii_digit()) {
