@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use hitch_input::input_error::{InputError, Place};
+use hitch_input::input_error::{InputError, Position};
 use hitch_input::source_file::SourceFile;
 use hitch_plant::Channel;
 
@@ -259,12 +259,12 @@ pub fn cell_error(
     what: String,
     mend: impl Into<String>,
 ) -> InputError {
-    let Place { line, column } = source.place(row_byte);
+    let Position { line, column } = source.place(row_byte);
     let row = source.text.get(row_byte..).unwrap_or_default();
     let before = cells_before(row, index, mark);
     InputError::at(
         &source.path,
-        Place {
+        Position {
             line,
             column: column + before,
         },

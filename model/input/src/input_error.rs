@@ -11,7 +11,7 @@ pub struct InputError {
     /// The faulty file or folder.
     pub file: PathBuf,
     /// Line and column, both from 1; `None` for a fault of the whole file.
-    pub place: Option<Place>,
+    pub place: Option<Position>,
     /// Description.
     pub what: String,
     /// Suggested correction; empty if `what` implies it.
@@ -20,7 +20,7 @@ pub struct InputError {
 
 /// A position in a text file as in editors: from 1, columns in characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Place {
+pub struct Position {
     /// Line, from 1.
     pub line: usize,
     /// Character in the line, from 1.
@@ -39,7 +39,12 @@ impl InputError {
     }
 
     /// A fault at one position of the file.
-    pub fn at(file: &Path, place: Place, what: impl Into<String>, mend: impl Into<String>) -> Self {
+    pub fn at(
+        file: &Path,
+        place: Position,
+        what: impl Into<String>,
+        mend: impl Into<String>,
+    ) -> Self {
         Self {
             place: Some(place),
             ..Self::of_file(file, what, mend)
@@ -50,7 +55,7 @@ impl InputError {
 impl fmt::Display for InputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", one_line(&self.file.display().to_string()))?;
-        if let Some(Place { line, column }) = self.place {
+        if let Some(Position { line, column }) = self.place {
             write!(f, ":{line}:{column}")?;
         }
         write!(f, ": {}", one_line(&self.what))?;
@@ -92,7 +97,7 @@ mod tests {
 
     #[test]
     fn prints_one_line_whatever_it_holds() {
-        let place = Place { line: 3, column: 7 };
+        let place = Position { line: 3, column: 7 };
         let error = InputError::at(
             Path::new("a\nb.csv"),
             place,

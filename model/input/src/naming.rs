@@ -6,7 +6,7 @@
 use crate::input_error::quote;
 
 /// Smallest similarity (Jaro-Winkler, 0 to 1) of a known name to be suggested.
-const SIMILAR_ENOUGH: f64 = 0.84;
+const SMALLEST_SIMILARITY: f64 = 0.84;
 
 /// Fault of the name `given` of a `kind` ("column", "key", "effect") that is not in `known`.
 pub fn unknown_name(kind: &str, given: &str, known: &[&str]) -> String {
@@ -33,7 +33,7 @@ pub fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
     known
         .iter()
         .map(|name| (strsim::jaro_winkler(&given, &name.to_lowercase()), *name))
-        .filter(|(similarity, _)| *similarity >= SIMILAR_ENOUGH)
+        .filter(|(similarity, _)| *similarity >= SMALLEST_SIMILARITY)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, name)| name)
 }

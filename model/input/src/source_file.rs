@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::file_kind;
-use crate::input_error::{InputError, Place};
+use crate::input_error::{InputError, Position};
 
 /// Longest file, bytes: an hour at 1 kHz with eight columns is shorter.
 const LONGEST_FILE_BYTES: u64 = 512 * 1024 * 1024;
@@ -74,7 +74,7 @@ impl SourceFile {
     }
 
     /// Line and column of a byte of the text.
-    pub fn place(&self, byte: usize) -> Place {
+    pub fn place(&self, byte: usize) -> Position {
         place(&self.text, byte)
     }
 
@@ -130,7 +130,7 @@ fn is_binary(path: &Path, what: &str, mend: &str) -> InputError {
 }
 
 /// Counts lines at LF, CR LF and lone CR, like the CSV reader.
-fn place(text: &str, byte: usize) -> Place {
+fn place(text: &str, byte: usize) -> Position {
     let mut end = byte.min(text.len());
     while !text.is_char_boundary(end) {
         end -= 1;
@@ -142,7 +142,7 @@ fn place(text: &str, byte: usize) -> Place {
     let line_ends = (0..bytes.len()).filter(|&i| ends_line(i));
     let (count, last) = line_ends.fold((0, None), |(count, _), i| (count + 1, Some(i)));
     let start = last.map_or(0, |i| i + 1);
-    Place {
+    Position {
         line: count + 1,
         column: before[start..].chars().count() + 1,
     }
@@ -207,18 +207,18 @@ mod tests {
     #[test]
     fn counts_lines_however_they_end() {
         let text = "a\r\nbé\nc\rd";
-        assert_eq!(place(text, 0), Place { line: 1, column: 1 });
+        assert_eq!(place(text, 0), Position { line: 1, column: 1 });
         assert_eq!(
             place(text, text.find('é').unwrap() + 2),
-            Place { line: 2, column: 3 }
+            Position { line: 2, column: 3 }
         );
         assert_eq!(
             place(text, text.find('c').unwrap()),
-            Place { line: 3, column: 1 }
+            Position { line: 3, column: 1 }
         );
         assert_eq!(
             place(text, text.find('d').unwrap()),
-            Place { line: 4, column: 1 }
+            Position { line: 4, column: 1 }
         );
         assert_eq!(place(text, 1000).line, 4);
     }

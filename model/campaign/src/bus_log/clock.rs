@@ -4,7 +4,7 @@
 //! not, but it wraps around. The time stamps determine the number of wraps.
 
 /// Largest delay of a frame, and largest drift between the clocks over a log, s.
-const MOST_APART_S: f64 = 1.0;
+const LARGEST_DELAY_S: f64 = 1.0;
 
 /// A clock with its first value.
 #[derive(Debug, Clone, Default)]
@@ -26,7 +26,7 @@ impl Clock {
         let within_round_s = origin.logged_s + (shown_s - origin.shown_s);
         let rounds = ((logged_s - within_round_s) / period_s).round();
         let time_s = within_round_s + rounds * period_s;
-        ((time_s - logged_s).abs() <= MOST_APART_S).then_some(time_s)
+        ((time_s - logged_s).abs() <= LARGEST_DELAY_S).then_some(time_s)
     }
 }
 

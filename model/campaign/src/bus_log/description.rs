@@ -4,7 +4,7 @@ use can_dbc::{
     AttributeValue, ByteOrder, Dbc, DbcError, Message, MessageId, MultiplexIndicator, NumericValue,
     SignalExtendedValueType, ValueType,
 };
-use hitch_input::input_error::{InputError, Place, quote};
+use hitch_input::input_error::{InputError, Position, quote};
 use hitch_input::naming::offer_names;
 use hitch_input::source_file::SourceFile;
 
@@ -260,7 +260,7 @@ fn not_dbc(source: &SourceFile, error: &DbcError) -> InputError {
     // Position of the syntax error: `--> LINE:COLUMN`, and a last line with the expected tokens.
     let place = said.lines().find_map(|line| {
         let (line, column) = line.trim().strip_prefix("--> ")?.split_once(':')?;
-        Some(Place {
+        Some(Position {
             line: line.parse().ok()?,
             column: column.parse().ok()?,
         })

@@ -45,7 +45,7 @@ struct Sender {
 
 /// A message, its sender, and the received series.
 #[derive(Debug)]
-struct Heard<'s> {
+struct Received<'s> {
     message: &'s Message,
     sender: Option<Sender>,
     series: Vec<Series>,
@@ -57,7 +57,7 @@ pub struct Listener<'s> {
     source: &'s SourceFile,
     channel: Option<&'s str>,
     address: Option<u8>,
-    heard: Vec<Heard<'s>>,
+    heard: Vec<Received<'s>>,
     clocks: Vec<(&'s str, Clock)>,
     /// Time of the first wanted frame, s.
     first_s: Option<f64>,
@@ -71,7 +71,7 @@ impl<'s> Listener<'s> {
         channel: Option<&'s str>,
         address: Option<u8>,
     ) -> Self {
-        let heard = messages.iter().map(|message| Heard {
+        let heard = messages.iter().map(|message| Received {
             message,
             sender: None,
             series: vec![Series::default(); message.signals.len()],
@@ -179,7 +179,7 @@ fn value(signal: &Signal, frame: &Frame<'_>) -> Result<Option<f64>, (String, Str
     })
 }
 
-impl Heard<'_> {
+impl Received<'_> {
     /// The same message from two nodes means two machines.
     fn is_from(&mut self, sender: Sender) -> Result<(), (String, String)> {
         let known = self.sender.get_or_insert_with(|| sender.clone());

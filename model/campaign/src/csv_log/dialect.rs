@@ -10,7 +10,7 @@ pub const MARKS: [u8; 4] = [b'\t', b';', b'|', b','];
 /// Number of rows that are searched for a header.
 const HEADER_WITHIN: usize = 200;
 /// Number of rows that are examined for the decimal mark.
-const LOOKED_AT: usize = 1_000;
+const EXAMINED_ROWS: usize = 1_000;
 
 /// A cell of a header.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -219,7 +219,7 @@ impl Decimals {
     /// Determined from the first rows of some columns of a table.
     pub fn in_columns(text: &str, header: &Header, cells: &[usize]) -> Self {
         let rows: Vec<StringRecord> = rows(text, header.data_byte, header.mark)
-            .take(LOOKED_AT)
+            .take(EXAMINED_ROWS)
             .map(|(_, row)| row)
             .collect();
         Self::of(

@@ -15,7 +15,7 @@ use crate::scale::{Scale, is_time};
 use crate::table::{Cells, Column, Samples, TIME, Table, cell_error};
 
 /// A mapped column.
-struct Taken {
+struct MappedColumn {
     column: &'static Column,
     /// Its name in the log.
     name: String,
@@ -65,7 +65,7 @@ pub fn read(
 }
 
 /// The time column with its scale, and the other columns.
-type Found = ((usize, Option<Scale>), Vec<Taken>);
+type Found = ((usize, Option<Scale>), Vec<MappedColumn>);
 
 fn taken(
     source: &SourceFile,
@@ -85,7 +85,7 @@ fn taken(
         }
         let fault =
             |(what, mend)| cell_error(source, header.byte, (cell, header.mark.into()), what, mend);
-        taken.push(Taken {
+        taken.push(MappedColumn {
             column: wanted.column,
             name: wanted.name.clone(),
             cell,
@@ -135,7 +135,7 @@ struct Reader<'a> {
     decimals: Decimals,
     times: Times,
     time_cell: usize,
-    taken: &'a [Taken],
+    taken: &'a [MappedColumn],
     linkage: &'a Linkage,
     times_s: Vec<f64>,
     values: Vec<Vec<f64>>,
@@ -178,8 +178,8 @@ impl Reader<'_> {
     }
 
     /// The value of a cell in the column's unit; a cell without digits is a dropout.
-    fn value(&self, taken: &Taken, cell: &str) -> Result<f64, (String, String)> {
-        let Taken { column, name, .. } = taken;
+    fn value(&self, taken: &MappedColumn, cell: &str) -> Result<f64, (String, String)> {
+        let MappedColumn { column, name, .. } = taken;
         if !cell.bytes().any(|byte| byte.is_ascii_digit()) {
             return Ok(f64::NAN);
         }

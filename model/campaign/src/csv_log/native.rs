@@ -61,11 +61,11 @@ fn mark(source: &SourceFile) -> u8 {
 
 /// The decimal mark: never a comma if commas are separators.
 fn decimals(source: &SourceFile, mark: u8, width: usize) -> Option<Decimals> {
-    const LOOKED_AT: usize = 1_000;
+    const EXAMINED_ROWS: usize = 1_000;
     (mark != b',').then(|| {
         let first: Vec<StringRecord> = rows(&source.text, 0, mark)
             .skip(1)
-            .take(LOOKED_AT)
+            .take(EXAMINED_ROWS)
             .map(|(_, row)| row)
             .collect();
         Decimals::of(first.iter().flat_map(|row| row.iter().take(width)))

@@ -93,7 +93,7 @@ fn attach(time_constant_s: f64, dead_s: f64, hooks: &mut EffectHooks) {
     if time_constant_s + dead_s > 0.0 {
         hooks.limit_step(STEP_S);
     }
-    hooks.sensors.push(Box::new(LateAngle {
+    hooks.sensors.push(Box::new(DelayedAngle {
         time_constant_s,
         dead_s,
         filter: Lag::at_rest(time_constant_s, 0.0),
@@ -103,7 +103,7 @@ fn attach(time_constant_s: f64, dead_s: f64, hooks: &mut EffectHooks) {
 
 /// A sensor with dead time before its filter.
 #[derive(Debug)]
-struct LateAngle {
+struct DelayedAngle {
     time_constant_s: f64,
     dead_s: f64,
     filter: Lag,
@@ -111,7 +111,7 @@ struct LateAngle {
     past: VecDeque<(f64, f64)>,
 }
 
-impl LateAngle {
+impl DelayedAngle {
     /// The angle of `dead_s` ago, degree; the present angle is `now_deg`, `dt_s` after the previous one.
     fn delayed_deg(&mut self, now_deg: f64, dt_s: f64) -> f64 {
         for (ago_s, _) in &mut self.past {
@@ -131,7 +131,7 @@ impl LateAngle {
     }
 }
 
-impl SensorStage for LateAngle {
+impl SensorStage for DelayedAngle {
     fn rest(&mut self, reading: &mut Reading) {
         self.filter = Lag::at_rest(self.time_constant_s, reading.rocker_angle_deg);
         self.past = [self.dead_s, 0.0]
@@ -153,7 +153,7 @@ impl SensorStage for LateAngle {
 mod tests {
     use std::collections::VecDeque;
 
-    use super::LateAngle;
+    use super::DelayedAngle;
     use hitch_plant::Reading;
     use hitch_plant::components::lag::Lag;
     use hitch_plant::hooks::effect_hooks::SensorStage;
@@ -163,7 +163,7 @@ mod tests {
     #[test]
     fn a_ramp_is_followed_as_late_as_the_parameters_say() {
         for (time_constant_s, dead_s) in [(0.0, 0.05), (0.02, 0.03), (0.01, 0.004)] {
-            let mut sensor = LateAngle {
+            let mut sensor = DelayedAngle {
                 time_constant_s,
                 dead_s,
                 filter: Lag::at_rest(time_constant_s, 0.0),

@@ -12,7 +12,7 @@ use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse, units};
 use crate::described::Described;
 
 /// Temperature at which the conductance of a constant gap is specified, degree Celsius.
-const TOLD_AT_C: f64 = 40.0;
+const SPECIFIED_AT_C: f64 = 40.0;
 
 const PARAMETERS: &[Parameter] = &[Parameter {
     name: "conductance",
@@ -58,7 +58,8 @@ pub static THINNING: Described = Described {
     size_response: SizeResponse::Smooth,
     refines: false,
     attach: |values, conditions, hooks| {
-        let fluidity = viscosity_m2_s(TOLD_AT_C) / viscosity_m2_s(conditions.oil_temperature_c);
+        let fluidity =
+            viscosity_m2_s(SPECIFIED_AT_C) / viscosity_m2_s(conditions.oil_temperature_c);
         leak(values[0] * fluidity, hooks);
     },
 };

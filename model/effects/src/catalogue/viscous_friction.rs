@@ -12,7 +12,7 @@ use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
 use crate::described::Described;
 
 /// Temperature at which the coefficient is specified, degree Celsius.
-const TOLD_AT_C: f64 = 40.0;
+const SPECIFIED_AT_C: f64 = 40.0;
 
 const COEFFICIENT: Parameter = Parameter {
     name: "coefficient",
@@ -87,7 +87,8 @@ pub static THICKENING: Described = Described {
     size_response: SizeResponse::Smooth,
     refines: false,
     attach: |values, conditions, hooks| {
-        let thickness = viscosity_m2_s(conditions.oil_temperature_c) / viscosity_m2_s(TOLD_AT_C);
+        let thickness =
+            viscosity_m2_s(conditions.oil_temperature_c) / viscosity_m2_s(SPECIFIED_AT_C);
         oppose(values[0] * thickness.powf(values[1]), hooks);
     },
 };

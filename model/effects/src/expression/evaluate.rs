@@ -17,13 +17,13 @@ const MANY: usize = DEEPEST + 4;
 /// A formula ready to evaluate.
 #[derive(Debug)]
 pub struct Code {
-    steps: Box<[Step]>,
+    steps: Box<[Instruction]>,
     /// Largest stack depth.
     depth: usize,
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Step {
+enum Instruction {
     Number(f64),
     Signal(&'static Signal),
     Parameter(usize),
@@ -63,13 +63,13 @@ impl Code {
         let mut height = 0;
         for step in &self.steps {
             match *step {
-                Step::Unary(operation) => top = operation.of(top),
-                Step::BinaryNumber(operation, right) => top = operation.of(top, right),
-                Step::Binary(operation) => {
+                Instruction::Unary(operation) => top = operation.of(top),
+                Instruction::BinaryNumber(operation, right) => top = operation.of(top, right),
+                Instruction::Binary(operation) => {
                     height -= 1;
                     top = operation.of(stack[height], top);
                 }
-                Step::Number(_) | Step::Signal(_) | Step::Parameter(_) => {
+                Instruction::Number(_) | Instruction::Signal(_) | Instruction::Parameter(_) => {
                     stack[height] = top;
                     height += 1;
                     top = step.load(parameters, signals);
@@ -80,7 +80,7 @@ impl Code {
     }
 }
 
-impl Step {
+impl Instruction {
     #[inline]
     fn load(&self, parameters: &[f64], signals: &Signals) -> f64 {
         match *self {
@@ -94,7 +94,7 @@ impl Step {
 
 #[derive(Default)]
 struct Compiler {
-    steps: Vec<Step>,
+    steps: Vec<Instruction>,
     height: usize,
     most: usize,
 }
@@ -102,9 +102,9 @@ struct Compiler {
 impl Compiler {
     fn node(&mut self, node: &Node) {
         match &node.kind {
-            Kind::Number(value, _) => self.load(Step::Number(*value)),
-            Kind::Signal(signal) => self.load(Step::Signal(signal)),
-            Kind::Parameter(index) => self.load(Step::Parameter(*index)),
+            Kind::Number(value, _) => self.load(Instruction::Number(*value)),
+            Kind::Signal(signal) => self.load(Instruction::Signal(signal)),
+            Kind::Parameter(index) => self.load(Instruction::Parameter(*index)),
             Kind::Unary(operation, inner) => {
                 self.node(inner);
                 self.unary(*operation);
@@ -117,29 +117,29 @@ impl Compiler {
         }
     }
 
-    fn load(&mut self, step: Step) {
+    fn load(&mut self, step: Instruction) {
         self.steps.push(step);
         self.height += 1;
         self.most = self.most.max(self.height);
     }
 
     fn unary(&mut self, operation: Unary) {
-        if let Some(Step::Number(value)) = self.steps.last_mut() {
+        if let Some(Instruction::Number(value)) = self.steps.last_mut() {
             *value = operation.of(*value);
         } else {
-            self.steps.push(Step::Unary(operation));
+            self.steps.push(Instruction::Unary(operation));
         }
     }
 
     fn binary(&mut self, operation: Binary) {
-        let Some(&Step::Number(right)) = self.steps.last() else {
-            self.steps.push(Step::Binary(operation));
+        let Some(&Instruction::Number(right)) = self.steps.last() else {
+            self.steps.push(Instruction::Binary(operation));
             return;
         };
         self.steps.pop();
         match self.steps.last_mut() {
-            Some(Step::Number(left)) => *left = operation.of(*left, right),
-            _ => self.steps.push(Step::BinaryNumber(operation, right)),
+            Some(Instruction::Number(left)) => *left = operation.of(*left, right),
+            _ => self.steps.push(Instruction::BinaryNumber(operation, right)),
         }
     }
 }

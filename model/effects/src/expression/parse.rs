@@ -18,7 +18,7 @@ use crate::expression::tree::{Kind, Node};
 pub const DEEPEST: usize = 60;
 
 /// Precedence of unary minus.
-const MINUS_IN_FRONT: u8 = 5;
+const UNARY_MINUS: u8 = 5;
 
 /// Parses a formula whose parameters have these names.
 ///
@@ -118,7 +118,7 @@ impl<'t> Parser<'t> {
             TokenKind::Name if self.peek().kind == TokenKind::Sign('(') => self.call(&token.span),
             TokenKind::Name => self.name(token.span),
             TokenKind::Sign('-') => {
-                let inner = self.expression(MINUS_IN_FRONT)?;
+                let inner = self.expression(UNARY_MINUS)?;
                 let span = token.span.start..inner.outer.end;
                 Ok(Node::unary(span, Unary::Negative, inner))
             }

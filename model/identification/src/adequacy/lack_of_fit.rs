@@ -73,7 +73,7 @@ impl Cell {
 }
 
 /// Channel, regime, and kind and level of the bench.
-type Key = (usize, Regime, u8, i64);
+type CellKey = (usize, Regime, u8, i64);
 
 /// Bench, number of samples, and sums of the residuals, of their squares, and of the squared readings in units of the
 /// noise.
@@ -125,7 +125,7 @@ fn sort(cells: &mut [Cell]) {
 /// All cells of a fit that have enough samples, by decreasing excess.
 #[must_use]
 pub fn cells(experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
-    let mut sums: BTreeMap<Key, Sums> = BTreeMap::new();
+    let mut sums: BTreeMap<CellKey, Sums> = BTreeMap::new();
     let whitened = fit.residuals.iter().zip(&fit.weights.runs);
     for (run, (residual, weights)) in experiment.runs.iter().zip(whitened) {
         let (kind, level) = match run.bench {

@@ -115,7 +115,7 @@ mod tests {
 
     /// The fast path for equidistant logs agrees with the general one, also at the ends.
     #[test]
-    fn the_short_cut_of_even_logs_is_no_other_way() {
+    fn the_fast_path_equals_the_general_one() {
         let time_s: Vec<f64> = (0..40).map(|k| 3.0 + 0.02 * f64::from(k)).collect();
         let values: Vec<f64> = time_s.iter().map(|t| (9.0 * t).sin() + t * t).collect();
         for delay_s in [

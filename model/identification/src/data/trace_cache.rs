@@ -29,7 +29,7 @@ pub struct CurrentShift {
 
 /// Everything that the trace of a run depends on.
 #[derive(Debug, Clone)]
-struct Key {
+struct TraceKey {
     /// Keeps the constants alive, so that their address stays unique.
     constants: Arc<Constants>,
     /// Effects in order of action: id, address, bits of the values.
@@ -38,7 +38,7 @@ struct Key {
     numbers: [u64; 3],
 }
 
-impl Key {
+impl TraceKey {
     /// Positive and negative zero are the same key.
     fn new(model: &Model, nuisance: Nuisance, shift: CurrentShift) -> Self {
         let bits = |value: f64| (value + 0.0).to_bits();
@@ -61,7 +61,7 @@ impl Key {
     }
 }
 
-impl PartialEq for Key {
+impl PartialEq for TraceKey {
     fn eq(&self, other: &Self) -> bool {
         self.constants_address() == other.constants_address()
             && self.numbers == other.numbers
@@ -69,9 +69,9 @@ impl PartialEq for Key {
     }
 }
 
-impl Eq for Key {}
+impl Eq for TraceKey {}
 
-impl Hash for Key {
+impl Hash for TraceKey {
     fn hash<H: Hasher>(&self, state: &mut H) {
         self.constants_address().hash(state);
         self.numbers.hash(state);
@@ -82,7 +82,7 @@ impl Hash for Key {
 /// The latest traces of a run, shared by clones.
 #[derive(Debug, Clone)]
 pub(crate) struct Traces {
-    kept: Arc<Cache<Key, Arc<Trace>>>,
+    kept: Arc<Cache<TraceKey, Arc<Trace>>>,
 }
 
 impl Traces {
@@ -103,7 +103,7 @@ impl Traces {
         shift: CurrentShift,
         simulate: impl FnOnce() -> Trace,
     ) -> Arc<Trace> {
-        let key = Key::new(model, nuisance, shift);
+        let key = TraceKey::new(model, nuisance, shift);
         // A plain look-up: waiting for another thread that computes the same trace would cost more than computing it
         // twice.
         if let Some(trace) = self.kept.get(&key) {

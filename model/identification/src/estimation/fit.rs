@@ -165,12 +165,12 @@ pub fn evaluate_weighted(
 #[must_use]
 pub fn fit(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
     let weights = Weights::new(experiment, model, &start);
-    let start = coarsely(experiment, model, &weights, start);
+    let start = coarse_descent(experiment, model, &weights, start);
     refine(experiment, model, start)
 }
 
 /// Descends with the coarse weights, which emphasise flow and angle.
-fn coarsely(
+fn coarse_descent(
     experiment: &Experiment,
     model: &Model,
     weights: &Weights,
@@ -183,7 +183,7 @@ fn coarsely(
 /// A short fit under given weights that decides whether an effect deserves a full fit. If `far`, it starts with the
 /// coarse weights.
 #[must_use]
-pub fn sketch(
+pub fn short_fit(
     experiment: &Experiment,
     model: &Model,
     weights: &Weights,
@@ -191,7 +191,7 @@ pub fn sketch(
     far: bool,
 ) -> Descent {
     let start = if far {
-        coarsely(experiment, model, weights, start)
+        coarse_descent(experiment, model, weights, start)
     } else {
         start
     };

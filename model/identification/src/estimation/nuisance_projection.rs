@@ -48,7 +48,7 @@ struct Products {
 
 impl Products {
     /// Products of twice the residuals of these minus those of others.
-    fn twice_less(&self, less: &Self) -> Self {
+    fn mirrored(&self, less: &Self) -> Self {
         let loads = self.loads.iter().zip(&less.loads);
         Self {
             loads: loads.map(|(own, less)| 2.0 * own - less).collect(),
@@ -236,7 +236,7 @@ impl<J: Borrow<Jacobian>> NuisanceProjection<J> {
         }
         let products = self.products(residuals);
         let ahead = self.cost(moved, &products);
-        let behind = self.cost(4.0 * (own - mixed) + moved, &self.own.twice_less(&products));
+        let behind = self.cost(4.0 * (own - mixed) + moved, &self.own.mirrored(&products));
         let here = self.here;
         let (slope, bend) = (0.5 * (ahead - behind), 0.5 * (ahead + behind) - here);
         if bend <= 0.0 {

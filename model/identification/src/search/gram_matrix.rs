@@ -120,7 +120,7 @@ mod tests {
 
     /// Eliminating an unknown equals projecting its column out of the others.
     #[test]
-    fn an_eliminated_unknown_has_taken_what_it_can() {
+    fn eliminating_an_unknown_projects_its_column_out() {
         let columns = DMatrix::from_row_slice(
             4,
             3,

@@ -9,7 +9,7 @@ use crate::search::coarse_view::Coarse;
 use crate::search::dictionary::Dictionary;
 use crate::search::dictionary_entry::{Entry, Kind, with_entries};
 use crate::selection::complexity_penalty::Penalty;
-use crate::selection::posterior::{Key, Refitted, key};
+use crate::selection::posterior::{EffectSet, Refitted, key};
 
 /// Subsets of each size that are ranked, and subsets in total that are fitted.
 const RANKED: usize = 40;
@@ -81,7 +81,7 @@ pub(crate) fn starts(
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (best, leader) = ranked[0];
     let close = CLOSE * penalty.unit;
-    let mut taken: Vec<Key> = vec![own];
+    let mut taken: Vec<EffectSet> = vec![own];
     let mut estimates = Vec::new();
     for (predicted_cost, subset) in ranked {
         let near = best + (NEAR * apart(dictionary, subset, leader)).max(close);
@@ -148,10 +148,10 @@ fn start(dictionary: &Dictionary, present: &Fit, model: &Model, subset: &Subset)
     with_entries(&present.estimate, &model.effects, &members)
 }
 
-fn key_of(dictionary: &Dictionary, subset: &Subset) -> Key {
+fn key_of(dictionary: &Dictionary, subset: &Subset) -> EffectSet {
     let members = subset.columns.iter().map(|&column| {
         let effect = dictionary.entries[column].added.effect;
         (effect.id(), effect.form())
     });
-    Key::new(members.collect())
+    EffectSet::new(members.collect())
 }

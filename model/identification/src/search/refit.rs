@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::data::clocks::Clocks;
 use crate::estimate::Estimate;
-use crate::estimation::fit::{Fit, evaluate_weighted, refine, sketch, with_last};
+use crate::estimation::fit::{Fit, evaluate_weighted, refine, short_fit, with_last};
 use crate::estimation::jacobian::{Jacobian, huber_residuals, square_sum};
 use crate::estimation::least_squares::Descent;
 use crate::search::candidates::Progress;
@@ -19,7 +19,7 @@ use crate::selection::complexity_penalty::Penalty;
 use crate::selection::posterior::{Refitted, key, key_of};
 
 /// Most starts that get a short fit, and short fits that are refined.
-const SKETCHED: usize = 5;
+const SHORT_FITS: usize = 5;
 const REFINED: usize = 3;
 
 /// Root mean square error, in sigma, above which a short fit may be in a local minimum, so that it is repeated with the
@@ -81,18 +81,18 @@ impl Refits<'_> {
         let starts = starts.map(|start| pruned(start, cost)).collect();
         let mut starts = distinct(starts);
         starts.retain(|(_, start)| !known.contains(&key_of(start)));
-        let sketch = |start: Estimate| {
-            let found = self.sketched(start);
+        let short_fit = |start: Estimate| {
+            let found = self.short_fit_from(start);
             (
                 found.cost + self.penalty.of_all(&found.estimate),
                 found.estimate,
             )
         };
         let unless_past_deadline =
-            |start: Estimate| (!self.options.is_over()).then(|| sketch(start));
-        let starts = self.nearest(starts, SKETCHED).into_par_iter();
-        let sketches: Vec<(f64, Estimate)> = starts.filter_map(unless_past_deadline).collect();
-        let nearest = self.nearest(sketches, REFINED).into_par_iter();
+            |start: Estimate| (!self.options.is_over()).then(|| short_fit(start));
+        let starts = self.nearest(starts, SHORT_FITS).into_par_iter();
+        let short_fits: Vec<(f64, Estimate)> = starts.filter_map(unless_past_deadline).collect();
+        let nearest = self.nearest(short_fits, REFINED).into_par_iter();
         let approached: Vec<(f64, Fit)> = nearest
             .map(|start| {
                 let fit = with_best_delay_split(
@@ -124,7 +124,7 @@ impl Refits<'_> {
             return Vec::new();
         };
         let least = least.min(self.best);
-        let near = least + CLOSE * Penalty::beside(&self.coarse.coarse_in_time, best).unit;
+        let near = least + CLOSE * Penalty::given(&self.coarse.coarse_in_time, best).unit;
         let near_for_jumps = ROUGH_TOLERANCE * least;
         let is_near = |(cost, fit): &(f64, Fit)| {
             *cost <= near || (is_rough(&fit.estimate) && *cost <= near_for_jumps)
@@ -153,7 +153,7 @@ impl Refits<'_> {
             experiment, model, ..
         } = self.coarse;
         let from = |start: Estimate| {
-            let found = self.sketched(start);
+            let found = self.short_fit_from(start);
             let fit = refine(experiment, model, found.estimate);
             self.line_searched(with_best_delay_split(experiment, model, fit))
         };
@@ -172,7 +172,7 @@ impl Refits<'_> {
     }
 
     /// A short fit under the present weights; far from the data also by way of the coarse weights.
-    fn sketched(&self, start: Estimate) -> Descent {
+    fn short_fit_from(&self, start: Estimate) -> Descent {
         let Coarse {
             model,
             seen,
@@ -180,7 +180,7 @@ impl Refits<'_> {
             ..
         } = self.coarse;
         let weights = &seen.weights;
-        let from = |far: bool| sketch(coarse_in_time, model, weights, start.clone(), far);
+        let from = |far: bool| short_fit(coarse_in_time, model, weights, start.clone(), far);
         let near = from(false);
         let samples = weights.count() as f64;
         if (near.cost / samples).sqrt() <= POOR_ERROR {

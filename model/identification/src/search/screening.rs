@@ -59,7 +59,7 @@ impl Screen<'_> {
     /// The columns of effects that the model lacks.
     pub fn columns(&self, effects: Vec<&'static dyn Effect>) -> Vec<Entry> {
         let forms = effects.into_par_iter();
-        let mut forms: Vec<Vec<End>> = forms.map(|effect| self.roughly(effect)).collect();
+        let mut forms: Vec<Vec<End>> = forms.map(|effect| self.at_first_sizes(effect)).collect();
         let here = self.cost();
         let predicted: Vec<f64> = forms.par_iter().map(|ends| self.predicted(ends)).collect();
         let least = predicted.iter().copied().fold(here, f64::min);
@@ -67,7 +67,7 @@ impl Screen<'_> {
         let examined = forms.par_iter_mut().zip(&predicted);
         examined.for_each(|(ends, predicted)| {
             if here - predicted > worthwhile {
-                self.closely(ends);
+                self.examine(ends);
             }
         });
         let columns = |ends: Vec<End>| columns(ends, self.here);
@@ -93,7 +93,7 @@ impl Screen<'_> {
         }
         let found = forms.into_par_iter().flat_map_iter(|mut ends| {
             let promising = self.cost() - self.predicted(&ends) > self.worthwhile;
-            self.finely(&mut ends, promising);
+            self.fine_scan(&mut ends, promising);
             columns(ends, self.here)
         });
         entries.par_extend(found);
@@ -127,7 +127,7 @@ impl Screen<'_> {
     }
 
     /// A form at its first sizes.
-    fn roughly(&self, effect: &'static dyn Effect) -> Vec<End> {
+    fn at_first_sizes(&self, effect: &'static dyn Effect) -> Vec<End> {
         let range = &effect.parameters()[0];
         let typical = AddedEffect::typical(effect);
         let sizes = match effect.size_response() {
@@ -147,7 +147,7 @@ impl Screen<'_> {
     }
 
     /// Further ends of a form: where its secants lead, and the ends of its shape ranges.
-    fn closely(&self, ends: &mut Vec<End>) {
+    fn examine(&self, ends: &mut Vec<End>) {
         self.follow(ends);
         if let Some(best) = best(ends) {
             let shapes = with_extreme_shapes(&best.added);
@@ -157,7 +157,7 @@ impl Screen<'_> {
     }
 
     /// Further ends of a form from a fine scan, if its cost has many local minima.
-    fn finely(&self, ends: &mut Vec<End>, promising: bool) {
+    fn fine_scan(&self, ends: &mut Vec<End>, promising: bool) {
         let Some(hint) = best(ends).map(|best| best.added.clone()) else {
             return;
         };

@@ -22,7 +22,7 @@ use crate::selection::evidence::shares;
 const FITTED: usize = 8;
 
 /// Callback with each form of an effect once it is weighed.
-pub type Weighed<'a> = &'a (dyn Fn(&Candidate) + Sync);
+pub type OnWeighed<'a> = &'a (dyn Fn(&Candidate) + Sync);
 
 /// Each effect in its best form added to a fit and weighed, by decreasing probability.
 #[must_use]
@@ -44,17 +44,17 @@ pub fn try_each(
     base: &Fit,
     effects: &[&'static dyn Effect],
     progress: Progress,
-    weighed: Weighed,
+    weighed: OnWeighed,
 ) -> Vec<Candidate> {
     let scans = Scans::default();
-    let penalty = Penalty::beside(experiment, base);
+    let penalty = Penalty::given(experiment, base);
     let coarse = Coarse::new(experiment, model, base);
     let builder = DictionaryBuilder {
         coarse: &coarse,
         effects: effects.to_vec(),
         changes: false,
         scans: &scans,
-        worthwhile: 0.5 * penalty.of_nothing(),
+        worthwhile: 0.5 * penalty.minimum(),
     };
     let dictionary = builder.thorough(builder.dictionary());
     let (gram, entries) = (&dictionary.gram, dictionary.entries.as_slice());

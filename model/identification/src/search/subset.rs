@@ -134,7 +134,7 @@ pub(crate) fn search(
         if options.is_over() {
             break;
         }
-        if search.extends() || search.tries_alternatives() {
+        if search.extend() || search.tries_alternatives() {
             let added = base.estimate.effects.len()..search.present.estimate.effects.len();
             search.order = added.collect();
         } else {
@@ -165,7 +165,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// Builds a dictionary around the present fit and moves to the best set that it leads to. Returns whether there is
     /// one.
-    fn extends(&mut self) -> bool {
+    fn extend(&mut self) -> bool {
         let name = key(&self.present).name();
         (self.progress)(&format!("what is missing beside {name}"));
         let present = self.present.clone();
@@ -243,7 +243,7 @@ impl Search<'_> {
             effects,
             changes: self.options.changes,
             scans: &self.scans,
-            worthwhile: 0.5 * Penalty::beside(experiment, coarse.present).of_nothing(),
+            worthwhile: 0.5 * Penalty::given(experiment, coarse.present).minimum(),
         }
     }
 

@@ -59,7 +59,7 @@ impl Penalty {
     }
 
     /// The penalty given the residuals of a fit.
-    pub fn beside(experiment: &Experiment, fit: &Fit) -> Self {
+    pub fn given(experiment: &Experiment, fit: &Fit) -> Self {
         let samples = fit.weights.count();
         let variance = square_sum(&fit.residuals) / samples as f64;
         Self::new(experiment, samples, variance, &fit.residuals)
@@ -67,7 +67,7 @@ impl Penalty {
 
     /// Cost reduction that an effect with this many free parameters needs.
     pub fn of(&self, added: &AddedEffect, parameters: usize) -> f64 {
-        self.seen() + self.unit * self.log_odds(added, parameters)
+        self.visibility_cost() + self.unit * self.log_odds(added, parameters)
     }
 
     /// Cost reduction that all added or changed effects of an estimate need.
@@ -82,12 +82,12 @@ impl Penalty {
     }
 
     /// Cost reduction that any effect needs, regardless of its parameters.
-    pub fn of_nothing(&self) -> f64 {
-        self.seen()
+    pub fn minimum(&self) -> f64 {
+        self.visibility_cost()
     }
 
     /// Cost reduction at the smallest accepted detectability.
-    fn seen(&self) -> f64 {
+    fn visibility_cost(&self) -> f64 {
         self.visible * self.visible * self.samples * self.variance
     }
 

@@ -15,9 +15,9 @@ const BETTER: f64 = 1.0;
 
 /// A set of effects: the sorted ids and forms of its members.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct Key(Vec<(&'static str, Option<&'static str>)>);
+pub(crate) struct EffectSet(Vec<(&'static str, Option<&'static str>)>);
 
-impl Key {
+impl EffectSet {
     /// The key of some members.
     pub fn new(mut members: Vec<(&'static str, Option<&'static str>)>) -> Self {
         members.sort_unstable();
@@ -62,24 +62,24 @@ impl Key {
 }
 
 /// The changes of a fit relative to the model: added effects, and changed adopted ones.
-pub(crate) fn key(fit: &Fit) -> Key {
+pub(crate) fn key(fit: &Fit) -> EffectSet {
     key_of(&fit.estimate)
 }
 
 /// The changes of an estimate relative to the model.
-pub(crate) fn key_of(estimate: &Estimate) -> Key {
+pub(crate) fn key_of(estimate: &Estimate) -> EffectSet {
     let beyond = (0..estimate.effects.len()).filter(|&index| !estimate.is_unchanged(index));
     let members = beyond.map(|index| {
         let effect = estimate.effects[index].effect;
         (effect.id(), effect.form())
     });
-    Key::new(members.collect())
+    EffectSet::new(members.collect())
 }
 
 /// Sets that were fitted in full, the best fit of each.
 #[derive(Debug, Clone)]
 pub(crate) struct Refitted {
-    fits: HashMap<Key, Fit>,
+    fits: HashMap<EffectSet, Fit>,
 }
 
 impl Refitted {
@@ -90,12 +90,12 @@ impl Refitted {
     }
 
     /// Whether a set was fitted.
-    pub fn contains(&self, key: &Key) -> bool {
+    pub fn contains(&self, key: &EffectSet) -> bool {
         self.fits.contains_key(key)
     }
 
     /// The fit of a set, if it was fitted.
-    pub fn fit_of(&self, key: &Key) -> Option<&Fit> {
+    pub fn fit_of(&self, key: &EffectSet) -> Option<&Fit> {
         self.fits.get(key)
     }
 
@@ -135,12 +135,12 @@ impl Refitted {
     fn penalty(&self, experiment: &Experiment) -> Penalty {
         let fits = self.fits.values();
         let least = fits.min_by(|a, b| a.cost.total_cmp(&b.cost));
-        Penalty::beside(experiment, least.expect("the model alone is there"))
+        Penalty::given(experiment, least.expect("the model alone is there"))
     }
 
     /// Posterior probability of each set, and its penalised likelihood ratio relative to the best one.
     pub fn weighed(&self, experiment: &Experiment, model: &Model, best: &Fit) -> Vec<Weighed<'_>> {
-        let penalty = Penalty::beside(experiment, best);
+        let penalty = Penalty::given(experiment, best);
         let here = penalized(experiment, model, best, best, penalty);
         let mut weighed: Vec<Weighed> = self
             .fits
@@ -170,7 +170,7 @@ impl Refitted {
 
 /// A set with its posterior weight.
 pub(crate) struct Weighed<'a> {
-    pub key: &'a Key,
+    pub key: &'a EffectSet,
     pub fit: &'a Fit,
     /// Penalised likelihood ratio relative to the best set; negative if worse.
     pub relative_likelihood_ratio: f64,

@@ -52,7 +52,7 @@ impl Currents {
 
     /// Largest difference of a current, A.
     #[must_use]
-    pub fn furthest_from_a(self, other: Self) -> f64 {
+    pub fn largest_difference_a(self, other: Self) -> f64 {
         let lift_a = (self.lift_a - other.lift_a).abs();
         lift_a.max((self.lower_a - other.lower_a).abs())
     }
@@ -405,7 +405,7 @@ impl EffectHooks {
 
     /// Whether a hitch at rest with both valves closed stays at rest.
     #[must_use]
-    pub fn holds_still(&self) -> bool {
+    pub fn stays_at_rest(&self) -> bool {
         let straighten = |bristles: Bristles| bristles.creep_m_s > 0.0;
         self.leakage.is_empty() && self.terms.is_empty() && !self.bristles.is_some_and(straighten)
     }

@@ -48,7 +48,7 @@ impl<'m> Plant<'m> {
     #[must_use]
     pub fn new(model: &'m Model, rig: Rig, oil_temperature_c: f64, at_rest: Currents) -> Self {
         let mut hooks = EffectHooks::default();
-        for effect in in_the_order_of_the_machine(&model.effects) {
+        for effect in ordered_by_rank(&model.effects) {
             let conditions = RunConditions {
                 oil_temperature_c,
                 constants: model.constants(),
@@ -83,12 +83,12 @@ impl<'m> Plant<'m> {
         plant.state = plant.state_at_rest();
         if let Rig::Hitch(rig) = rig {
             plant.lowest_m = plant.forces(&rig).lowest_m();
-            plant.stand_on_the_ground(&rig);
+            plant.place_on_ground(&rig);
         }
-        plant.remember();
+        plant.store_signals();
         plant.shift(effective.lift_a, effective.lower_a);
         plant.refresh();
-        plant.remember();
+        plant.store_signals();
         let mut reading = plant.truth();
         for sensor in &mut plant.hooks.sensors {
             sensor.rest(&mut reading);
@@ -105,7 +105,7 @@ impl<'m> Plant<'m> {
 
     /// Advances by `dt_s` while the coil currents change linearly to `currents`.
     pub fn step(&mut self, currents: Currents, dt_s: f64) {
-        let longest_s = self.longest_step_s(currents.furthest_from_a(self.input) / dt_s);
+        let longest_s = self.longest_step_s(currents.largest_difference_a(self.input) / dt_s);
         // Slack for rounding: 0.02 s read from a log as a difference must not need another step.
         let pieces = (dt_s / longest_s - 1e-6).ceil().max(1.0) as usize;
         let (from, spools) = (self.input, self.spool_currents);
@@ -116,7 +116,7 @@ impl<'m> Plant<'m> {
                 self.read(dt_s / pieces as f64);
             }
         }
-        self.turning_a_s = self.spool_currents.furthest_from_a(spools) / dt_s;
+        self.turning_a_s = self.spool_currents.largest_difference_a(spools) / dt_s;
     }
 
     /// Longest step, s, at a rate of change of the coil currents, A/s.
@@ -245,7 +245,8 @@ impl<'m> Plant<'m> {
                 let start = self.openings;
                 let end = self.open(from, currents, dt_s);
                 let idles = self.circuit().idles(&self.state);
-                if self.stands && self.hooks.holds_still() && start.shut() && end.shut() && idles {
+                if self.stands && self.hooks.stays_at_rest() && start.shut() && end.shut() && idles
+                {
                     return;
                 }
                 self.catch_up(start, dt_s);
@@ -278,7 +279,7 @@ impl<'m> Plant<'m> {
         }
         if !self.hooks.terms.is_empty() {
             self.refresh_unless_balanced();
-            self.remember();
+            self.store_signals();
         }
     }
 
@@ -288,7 +289,7 @@ impl<'m> Plant<'m> {
     /// of the load does not matter, but whether a jump happened does.
     #[inline(always)]
     fn open(&mut self, from: Currents, to: Currents, dt_s: f64) -> Openings {
-        let changes = to.furthest_from_a(from) / self.hooks.largest_change_a;
+        let changes = to.largest_difference_a(from) / self.hooks.largest_change_a;
         if changes > 1.0 {
             let pieces = changes.ceil();
             let piece_s = dt_s / pieces;
@@ -335,7 +336,7 @@ impl<'m> Plant<'m> {
     }
 
     /// Stores the present signals for the terms of the next step.
-    fn remember(&mut self) {
+    fn store_signals(&mut self) {
         if self.hooks.terms.is_empty() {
             return;
         }
@@ -378,7 +379,7 @@ impl<'m> Plant<'m> {
 
 /// Effects in the order of the machine, from the coil to the instruments, then user-defined terms, regardless of the
 /// order in which they were added: the order of a solenoid's hysteresis and a spool's stiction matters.
-fn in_the_order_of_the_machine(effects: &[AddedEffect]) -> Vec<&AddedEffect> {
+fn ordered_by_rank(effects: &[AddedEffect]) -> Vec<&AddedEffect> {
     let mut ordered: Vec<&AddedEffect> = effects.iter().collect();
     ordered.sort_by_key(|added| added.effect.rank());
     ordered

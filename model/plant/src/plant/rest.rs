@@ -10,7 +10,7 @@ use crate::state::{HitchRig, MechanicalState, Rig};
 
 /// Distance from ground contact, m of travel, within which a hitch at rest counts as standing on the ground: 0.15
 /// degree, the accuracy of its sensor. On a stiff floor this distance makes the difference of the whole weight.
-const HAIR_M: f64 = 0.3e-3;
+const CONTACT_TOLERANCE_M: f64 = 0.3e-3;
 
 impl Plant<'_> {
     /// The plant at rest at the angle that its sensor shows.
@@ -30,10 +30,10 @@ impl Plant<'_> {
     /// Places a hitch at rest on the ground if its sensor shows it below or slightly above. In the quasi-static plant
     /// it stays at the shown position: below the ground it stands in a hollow, and slightly above the ground carries it
     /// as well.
-    pub(crate) fn stand_on_the_ground(&mut self, rig: &HitchRig) {
+    pub(crate) fn place_on_ground(&mut self, rig: &HitchRig) {
         let dynamic = self.model.constants().dynamics == Dynamics::Dynamic;
         let off_m = self.state.piston_m - self.lowest_m;
-        if self.hooks.ground.is_some() && dynamic && off_m < HAIR_M {
+        if self.hooks.ground.is_some() && dynamic && off_m < CONTACT_TOLERANCE_M {
             self.state = self.held_at(rig, self.lowest_m);
         }
         self.lowest_m = self.lowest_m.min(self.state.piston_m);

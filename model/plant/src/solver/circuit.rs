@@ -289,7 +289,7 @@ impl Circuit<'_> {
     }
 
     /// Steady pump pressure, Pa, of compensator and relief valve for an opening of the lift valve.
-    fn sought_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
+    fn steady_pressure_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
         if opening.shut() {
             return self.idle_pressure_pa();
         }
@@ -315,7 +315,7 @@ impl Circuit<'_> {
     pub fn compensator_pa_s(&self, openings: Openings, state: &MechanicalState) -> f64 {
         let lag_s = self.hooks.compensator_lag_s;
         match lag_s > 0.0 {
-            true => (self.sought_pa(openings.lift, state) - state.compensator_pa) / lag_s,
+            true => (self.steady_pressure_pa(openings.lift, state) - state.compensator_pa) / lag_s,
             false => 0.0,
         }
     }
@@ -337,7 +337,7 @@ impl Circuit<'_> {
         let left = (-dt_s / lag_s).exp();
         let before = (1.0 - left) * lag_s / dt_s - left;
         let reached_pa =
-            left * state.compensator_pa + before * self.sought_pa(openings.lift, state);
+            left * state.compensator_pa + before * self.steady_pressure_pa(openings.lift, state);
         (reached_pa / (left + before), 1.0 - left - before)
     }
 
@@ -345,12 +345,12 @@ impl Circuit<'_> {
     #[must_use]
     pub fn compensator_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
         if self.hooks.compensator_lag_s == 0.0 {
-            return self.sought_pa(opening, state);
+            return self.steady_pressure_pa(opening, state);
         }
         if state.catching_up == 0.0 {
             return state.compensator_pa;
         }
-        let lacking_pa = self.sought_pa(opening, state) - state.compensator_pa;
+        let lacking_pa = self.steady_pressure_pa(opening, state) - state.compensator_pa;
         state.compensator_pa + state.catching_up * lacking_pa
     }
 

@@ -31,7 +31,7 @@ pub struct Steps {
     /// linear in time.
     pub(crate) jump_s: f64,
     /// Factor on the longest step that effects ask for.
-    pub(crate) longer: f64,
+    pub(crate) effect_step_factor: f64,
 }
 
 impl Steps {
@@ -43,7 +43,7 @@ impl Steps {
         // A sample of a 50 Hz log.
         quasi_static_s: 0.02,
         jump_s: 0.005,
-        longer: 1.0,
+        effect_step_factor: 1.0,
     };
 
     /// For differences between simulations with the same steps. The amplitude error is 4e-2 and the phase error 5e-2
@@ -54,7 +54,7 @@ impl Steps {
         longest_s: 0.008,
         quasi_static_s: 0.1,
         jump_s: 0.02,
-        longer: 4.0,
+        effect_step_factor: 4.0,
     };
 }
 
@@ -290,7 +290,7 @@ pub fn rests(
     state: &MechanicalState,
     openings: &[Openings; 3],
 ) -> bool {
-    circuit.hooks.holds_still()
+    circuit.hooks.stays_at_rest()
         && openings.iter().all(Openings::shut)
         && state.void_m3 == 0.0
         && state.speed_m_s.abs() < AT_REST_M_S

@@ -37,7 +37,7 @@ pub fn longest_step_s(steps: Steps, hooks: &EffectHooks, turning_a_s: f64, lands
     } else {
         steps.quasi_static_s
     };
-    own_s.min(steps.longer * hooks.longest_step_s)
+    own_s.min(steps.effect_step_factor * hooks.longest_step_s)
 }
 
 /// Solution of the balances at one instant.
