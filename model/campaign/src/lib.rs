@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! campaign.toml        format, name, noise of the instruments, and a [[run]] block a log
-//! lift_1.5A_050kg.csv  time_s, lift_current_a, lower_current_a and what was measured; or
-//! monday.log, .asc      what candump or a tool of Vector's has heard on the ECU's bus; or
-//! bench.csv, .mf4       what anybody's logger wrote, by `[columns]`
+//! lift_1.5A_050kg.csv  time_s, lift_current_a, lower_current_a and the measured channels; or
+//! monday.log, .asc      log of the ECU's bus by candump or a tool of Vector's; or
+//! bench.csv, .mf4       log of any other logger, mapped by `[columns]`
 //! ```
 //!
 //! Reading validates everything that does not need a model, so that later code need not: every number is finite and

@@ -3,7 +3,7 @@
 //! ```toml
 //! format = 1
 //! name = "rebuilt"
-//! base = "nominal"            # optional: what is not written below is as in this one
+//! base = "nominal"            # optional: source of all constants not given below
 //! dynamics = "steady"         # or "dynamic"
 //!
 //! [relief_valve]

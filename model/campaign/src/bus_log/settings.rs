@@ -1,11 +1,11 @@
 //! `[can]` in `campaign.toml`: the signals that are taken from a bus.
 //!
 //! ```toml
-//! [can]                                     # all of it may be left out with logs of the project's own ECU
-//! dbc = "rig.dbc"                           # what is on the bus
-//! channel = "can0"                          # which one, if the log has several
-//! source = 128                              # whose messages, if several nodes send the same (J1939)
-//! clock = "SampleTime"                      # signal of a message that says when it was sampled, if it has one
+//! [can]                                     # optional for logs of the project's ECU
+//! dbc = "rig.dbc"                           # description of the bus
+//! channel = "can0"                          # bus, if the log has several
+//! source = 128                              # source address, if several nodes send the same message (J1939)
+//! clock = "SampleTime"                      # signal with a message's sampling time, if it has one
 //!
 //! [can.signals]
 //! lift_current_a = "HitchMotion.LiftCurrent"

@@ -21,7 +21,7 @@ pub(crate) enum Kind {
 /// A column of the dictionary: an effect at one size, simulated.
 #[derive(Debug, Clone)]
 pub(crate) struct Entry {
-    /// What it does.
+    /// Kind of the change.
     pub kind: Kind,
     /// The effect at the end of the secant.
     pub added: AddedEffect,

@@ -33,7 +33,7 @@ use crate::state::MechanicalState;
 pub struct Moment<'a> {
     /// The model.
     pub model: &'a Model,
-    /// What the effects attach.
+    /// The attached effects.
     pub hooks: &'a EffectHooks,
     /// The signals at the end of the previous step, with the currents of this one.
     pub before: &'a Signals,
