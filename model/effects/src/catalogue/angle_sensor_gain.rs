@@ -16,7 +16,7 @@ pub static ANGLE_SENSOR_GAIN: Described = Described {
     equation: "y = (1 + gain) angle",
     source: "hall angle sensors, +-0.5 to 1 % of full scale; a ratiometric sensor on a wrong supply \
          more",
-    shows: "the angle travels too far or too short for the oil that flowed, lifting and lowering \
+    shows: "the angle changes too much or too little for the oil that flowed, lifting and lowering \
          alike; easily taken for a wrong stroke",
     parameters: &[Parameter {
         name: "gain",

@@ -61,7 +61,7 @@ pub static DELAYED: Described = Described {
             unit: "s",
             kind: ParameterKind::Time,
             key: "lag_s",
-            meaning: "how late it follows an even motion",
+            meaning: "delay behind a steady motion",
             null: 0.0,
             typical: 0.06,
             low: 0.0,

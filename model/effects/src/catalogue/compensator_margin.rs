@@ -21,7 +21,7 @@ const EXCESS: Parameter = Parameter {
     unit: "bar",
     kind: ParameterKind::Other,
     key: "excess_bar",
-    meaning: "margin on top of the declared one",
+    meaning: "difference of the margin from the declared one",
     null: 0.0,
     typical: 0.5,
     low: -1.4,
@@ -58,7 +58,7 @@ pub static BYPASS: Described = Described {
         Parameter {
             name: "idle excess",
             key: "idle_excess_bar",
-            meaning: "idle pressure on top of the declared one",
+            meaning: "difference of the idle pressure from the declared one",
             low: -4.0,
             high: 30.0,
             ..EXCESS

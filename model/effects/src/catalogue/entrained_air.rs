@@ -31,7 +31,7 @@ pub static ENTRAINED_AIR: Described = Described {
             unit: "",
             kind: ParameterKind::Other,
             key: "share",
-            meaning: "volume of air at atmospheric pressure over the whole volume",
+            meaning: "volume of air at atmospheric pressure relative to the whole volume",
             null: 0.0,
             typical: 0.01,
             low: 0.0,

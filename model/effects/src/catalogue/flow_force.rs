@@ -20,8 +20,8 @@ pub static ON_FLOW: Described = Described {
     equation: "Q = Q_table(I) sqrt(dp/dp_ref) (1 + s) / (1 + s dp/dp_ref), dp_ref = 15 bar",
     source: "Merritt 5.2: F = 2 Cd Cv A dp cos 69 deg; springs of 8 to 20 N/mm give 0.12 to 0.30 at \
          15 bar",
-    shows: "lowering flow grows less than with the square root of the pressure: light loads sink \
-         faster and heavy ones slower than the table says",
+    shows: "lowering flow increases less than with the square root of the pressure: light loads sink \
+         faster and heavy ones slower than by the table",
     parameters: &[Parameter {
         name: "ratio",
         unit: "",

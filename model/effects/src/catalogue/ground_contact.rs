@@ -70,8 +70,8 @@ pub static DAMPED: Described = Described {
     title: "Contact with ground that damps",
     equation: "F = stiffness (h_ground - h) - damping h', upwards; h_ground = lowest point of the stroke + height",
     source: "Bekker with exponent one; soil 1e3 to 1e4 N s/m",
-    shows: "lowering ends early and the cylinder pressure falls to nothing while the angle stands; what rings on the \
-         ground dies away sooner",
+    shows: "lowering ends early and the cylinder pressure falls to nothing while the angle stands; oscillation on \
+         the ground decays faster",
     parameters: &[
         HEIGHT,
         STIFFNESS,
@@ -80,7 +80,7 @@ pub static DAMPED: Described = Described {
             unit: "kN s/m",
             kind: ParameterKind::Other,
             key: "damping_kn_s_m",
-            meaning: "force over the speed of sinking in",
+            meaning: "damping force per speed of penetration",
             null: 0.0,
             typical: 5.0,
             low: 0.0,

@@ -15,7 +15,7 @@ const COMPLIANCE: Parameter = Parameter {
     unit: "cm3/bar",
     kind: ParameterKind::Other,
     key: "compliance_cm3_bar",
-    meaning: "volume that the hoses take up",
+    meaning: "volume of the hoses' expansion per pressure",
     null: 0.0,
     typical: 0.04,
     low: 0.0,
@@ -56,8 +56,8 @@ pub static CREEPING: Described = Described {
     equation: "dp/dt = (sum Q - A v - W') / (V/E + (1 - share) C), W' = (share C p - W) / creep",
     source: "Kelvin-Voigt in series with a spring, the standard linear solid (Ferry 1980, ch. 1); size as of hoses that \
          swell at once",
-    shows: "slower ringing of the cylinder pressure that dies away sooner, most where it is about as fast as the wall \
-         creeps",
+    shows: "slower ringing of the cylinder pressure that decays faster, most if its period is close to the creep \
+         time of the wall",
     parameters: &[
         COMPLIANCE,
         Parameter {

@@ -43,7 +43,7 @@ pub static WITH_WEIGHT: Described = Described {
             unit: "",
             kind: ParameterKind::Other,
             key: "even",
-            meaning: "part of it that is there all over the stroke; negative: more at the low end",
+            meaning: "part of it that is constant over the stroke; negative: more at the low end",
             null: 0.5,
             typical: 0.0,
             low: -1.0,

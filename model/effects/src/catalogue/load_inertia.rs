@@ -59,7 +59,7 @@ pub static AND_SHAFT: Described = Described {
             unit: "",
             kind: ParameterKind::Other,
             key: "shaft",
-            meaning: "part of it that turns with the rocker shaft, at 150 kg and mid stroke",
+            meaning: "share of it on the rocker shaft, at 150 kg and mid-stroke",
             null: 0.0,
             typical: 0.2,
             low: 0.0,

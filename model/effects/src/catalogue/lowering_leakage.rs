@@ -19,7 +19,7 @@ const PARAMETERS: &[Parameter] = &[Parameter {
     unit: "l/min/bar",
     kind: ParameterKind::Other,
     key: "conductance_lpm_per_bar",
-    meaning: "leakage flow over cylinder pressure, with oil of 40 degC",
+    meaning: "leakage flow per cylinder pressure, with oil at 40 degC",
     null: 0.0,
     typical: 0.002,
     low: 0.0,

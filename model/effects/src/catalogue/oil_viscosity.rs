@@ -48,7 +48,7 @@ pub static SERIES: Described = Described {
             unit: "1/K",
             kind: ParameterKind::Other,
             key: "fall_1_k",
-            meaning: "fall of the viscosity with temperature",
+            meaning: "relative decrease of the viscosity with temperature",
             null: 0.0,
             typical: 0.042,
             low: 0.02,
@@ -79,8 +79,8 @@ pub static FLOW_NUMBER: Described = Described {
     equation: "Q = Q_table(I) tanh(2 lambda / critical), lambda = 2 (4 mm/A) (I - I_0) sqrt(2 dp / rho) / nu(T)",
     source: "McCloy & Martin, Control of Fluid Power, 2nd ed. 1980; critical flow number 100 to 250 for spools; \
          viscosity of SAE 30 by Walther's equation",
-    shows: "less flow at the lowest currents, by far more when cold; at one temperature a twin of a \
-         threshold",
+    shows: "less flow at the lowest currents, by far more when cold; at one temperature indistinguishable \
+         from a threshold shift",
     parameters: &[Parameter {
         name: "critical",
         unit: "",

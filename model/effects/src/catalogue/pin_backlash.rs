@@ -18,7 +18,7 @@ pub static PIN_BACKLASH: Described = Described {
     title: "Backlash between piston and angle sensor",
     equation: "w = clamp(w_before, x - width/2, x + width/2); angle = angle(w)",
     source: "worn pins and sensor lever, 0.5 to 2 mm at the piston",
-    shows: "the angle stands for the first millimetres after every reversal while oil flows; lifting \
+    shows: "the angle stays constant for the first millimetres after every reversal while oil flows; lifting \
          and lowering differ by a constant angle",
     parameters: &[Parameter {
         name: "width",

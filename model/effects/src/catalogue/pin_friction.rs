@@ -52,7 +52,7 @@ pub static UNEVEN: Described = Described {
     title: "Friction in the pins of the linkage, uneven over the stroke",
     equation: "F = share (1 + slope z + bow (3 z^2 - 1) / 2) F_weight tanh(v / 3 mm/s), z = 2 x / stroke - 1",
     shows: "cylinder pressure steps down from lifting to holding and again to lowering, in proportion to the load and \
-         elsewhere in the stroke by another share",
+         with a share that varies over the stroke",
     parameters: &[
         SHARE,
         over_the_stroke::shape(

@@ -23,7 +23,7 @@ pub static PUMP_LEAKAGE: Described = Described {
         unit: "l/min/bar",
         kind: ParameterKind::Other,
         key: "slip_lpm_bar",
-        meaning: "flow lost for each bar of pump pressure",
+        meaning: "flow lost per bar of pump pressure",
         null: 0.0,
         typical: 0.1,
         low: 0.0,

@@ -27,7 +27,7 @@ pub static RELIEF_OVERRIDE: Described = Described {
             unit: "bar",
             kind: ParameterKind::Other,
             key: "override_bar",
-            meaning: "rise of the pump pressure from cracking to the pump's whole flow",
+            meaning: "increase of the pump pressure from cracking to the pump's full flow",
             null: 0.0,
             typical: 15.0,
             low: 0.0,

@@ -35,7 +35,7 @@ pub static TURBULENT: Described = Described {
     title: "Back pressure of the return line",
     equation: "p_T = loss * (Q_lower / 40 l/min)^2",
     source: "turbulent pipe and filter loss; filter 0.3 to 1 bar and 2 m of hose 0.5 bar at 60 l/min",
-    shows: "lowering at high current and light load is slower; at low flow nothing",
+    shows: "lowering at high current and light load is slower; no change at low flow",
     parameters: &[LOSS],
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,

@@ -71,7 +71,7 @@ pub static SWINGING: Described = Described {
             unit: "s",
             kind: ParameterKind::Time,
             key: "lag_s",
-            meaning: "how late it follows a ramp of the current",
+            meaning: "delay behind a ramp of the current",
             null: 0.0,
             typical: 0.05,
             low: 0.0,

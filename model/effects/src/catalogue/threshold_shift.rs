@@ -41,7 +41,7 @@ static PARAMETERS: [Parameter; 1] = [Parameter {
     unit: "A",
     kind: ParameterKind::Current,
     key: "shift_a",
-    meaning: "current by which the whole characteristic moves up",
+    meaning: "shift of the whole characteristic to higher currents",
     null: 0.0,
     typical: 0.05,
     low: -0.6,
