@@ -1,10 +1,10 @@
 //! `load-arm`: the load's centre of gravity is behind the hitch point.
 //!
-//! A mast that pitches with the lift moves an overhanging load by more, or less, than the hitch point: `F_weight = m g
-//! (dh/dx + d cos(pitch) dpitch/dx)`. With a pitch rate that varies linearly over the stroke that is `F_weight (1 + s
-//! (m + (1 - |m|) (2 x / stroke - 1)))`: `s` is the relative change at the end of the stroke with the larger change,
-//! `m` the share of it that is constant over the stroke. An overhang of 0.3 to 0.6 m and 5 to 12 degrees of pitch give
-//! 5 to 15 %.
+//! A mast that pitches with the lift moves an overhanging load by more, or less, than the hitch point:
+//! `F_weight = m g (dh/dx + d cos(pitch) dpitch/dx)`. With a pitch rate that varies linearly over the stroke that is
+//! `F_weight (1 + s (m + (1 - |m|) (2 x / stroke - 1)))`: `s` is the relative change at the end of the stroke with the
+//! larger change, `m` the share of it that is constant over the stroke. An overhang of 0.3 to 0.6 m and 5 to 12 degrees
+//! of pitch give 5 to 15 %.
 //!
 //! In more detail, only the load pitches, not the links, and a top link that is shorter than the lower links turns it
 //! fastest at both ends of the stroke: a curvature of a quarter of the share, with a slope that depends on where the

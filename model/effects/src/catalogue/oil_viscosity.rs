@@ -2,12 +2,12 @@
 //!
 //! A series of the laminar-turbulent transition (McCloy & Martin) about the reference point of the lowering valve's
 //! table: `Q = Q_table(I) [(1 - s) sqrt(dp/dp_ref) + s (dp/dp_ref) nu(40 C)/nu(T)]`, where `s` is the laminar share of
-//! the flow at the reference drop and 40 degrees. The viscosity decreases by 4 to 6 % per kelvin: `nu = nu(40 C)
-//! exp(-fall (T - 40 C))`, a local form of Walther's equation.
+//! the flow at the reference drop and 40 degrees. The viscosity decreases by 4 to 6 % per kelvin:
+//! `nu = nu(40 C) exp(-fall (T - 40 C))`, a local form of Walther's equation.
 //!
-//! The transition itself, in both valves: `Q = Q_table(I) tanh(2 lambda / lambda_c)` with the flow number `lambda = D_h
-//! sqrt(2 dp / rho) / nu(T)`. The hydraulic diameter is twice the gap, which opens by 4 mm/A, so this form shows at the
-//! lowest currents.
+//! The transition itself, in both valves: `Q = Q_table(I) tanh(2 lambda / lambda_c)` with the flow number
+//! `lambda = D_h sqrt(2 dp / rho) / nu(T)`. The hydraulic diameter is twice the gap, which opens by 4 mm/A, so this
+//! form shows at the lowest currents.
 
 use hitch_plant::components::oil::viscosity_m2_s;
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};

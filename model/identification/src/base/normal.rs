@@ -1,4 +1,4 @@
-//! Residuals of a campaign under corrected constants, their sensitivities, and the normal equations with each run's load
+//! Residuals of a campaign with corrected constants, their sensitivities, and the normal equations with each run's load
 //! error eliminated.
 
 use hitch_plant::Model;

@@ -70,7 +70,7 @@ impl NextExperiment {
         let (ratio, minutes) = (judged.smallest(bar), manoeuvre.minutes());
         let left = distinct(distinguished(false).map(|(a, b)| either(a, b)));
         let mut why = format!(
-            "it would tell {} apart (expected likelihood ratio {}, about {} minutes)",
+            "it would distinguish {} (expected likelihood ratio {}, about {} minutes)",
             distinct(distinguished(true).map(|(a, b)| both(a, b))).join(", and "),
             rounded(ratio),
             rounded(minutes),
@@ -99,7 +99,7 @@ impl NextExperiment {
         );
         Self {
             manoeuvre: format!(
-                "none of the listed manoeuvres would tell {} apart",
+                "none of the listed manoeuvres would distinguish {}",
                 named.join(", or ")
             ),
             why: format!("they act alike on every channel that is measured; {instead}"),

@@ -93,7 +93,7 @@ impl Refits<'_> {
         let starts = self.nearest(starts, SHORT_FITS).into_par_iter();
         let short_fits: Vec<(f64, Estimate)> = starts.filter_map(unless_past_deadline).collect();
         let nearest = self.nearest(short_fits, REFINED).into_par_iter();
-        let approached: Vec<(f64, Fit)> = nearest
+        let coarse_fits: Vec<(f64, Fit)> = nearest
             .map(|start| {
                 let fit = with_best_delay_split(
                     coarse_in_time,
@@ -107,7 +107,7 @@ impl Refits<'_> {
                 (cost, fit)
             })
             .collect();
-        let likely = self.likely(approached).into_par_iter();
+        let likely = self.likely(coarse_fits).into_par_iter();
         let refined = likely.map(|estimate| {
             let fit = with_best_delay_split(experiment, model, refine(experiment, model, estimate));
             let fit = self.line_searched(fit);
@@ -119,17 +119,19 @@ impl Refits<'_> {
 
     /// The coarse fits that may be the best on all samples: their penalised cost is close to the least one. The
     /// tolerance is larger for rough effects, whose sizes are less exact on fewer samples.
-    fn likely(&self, approached: Vec<(f64, Fit)>) -> Vec<Estimate> {
-        let Some((least, best)) = approached.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else {
+    fn likely(&self, coarse_fits: Vec<(f64, Fit)>) -> Vec<Estimate> {
+        let Some((least, best)) = coarse_fits.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else {
             return Vec::new();
         };
         let least = least.min(self.best);
         let near = least + CLOSE * Penalty::given(&self.coarse.coarse_in_time, best).unit;
-        let near_for_jumps = ROUGH_TOLERANCE * least;
+        let near_if_rough = ROUGH_TOLERANCE * least;
         let is_near = |(cost, fit): &(f64, Fit)| {
-            *cost <= near || (is_rough(&fit.estimate) && *cost <= near_for_jumps)
+            *cost <= near || (is_rough(&fit.estimate) && *cost <= near_if_rough)
         };
-        let near = approached.iter().filter(|approached| is_near(approached));
+        let near = coarse_fits
+            .iter()
+            .filter(|coarse_fits| is_near(coarse_fits));
         near.map(|(_, fit)| fit.estimate.clone()).collect()
     }
 

@@ -19,7 +19,7 @@ pub(crate) struct Grid {
     /// Smallest and largest size, in typical sizes.
     sizes: [f64; 2],
     /// Spacing of the sizes.
-    step: Spacing,
+    spacing: Spacing,
     /// Criterion for the runs that are scanned.
     informative: Informative,
     /// Additional fine grid for narrow minima.
@@ -31,7 +31,7 @@ pub(crate) struct Grid {
     /// the other shape parameters from their values in the hint.
     shapes: usize,
     /// Smallest distance between two sizes of a shape, as a share of the size.
-    apart: f64,
+    distance: f64,
     /// Number of results of the closer scans.
     best: usize,
     /// Half-widths of the closer scans, as shares of the size and of the range of a shape parameter.
@@ -42,7 +42,7 @@ pub(crate) struct Grid {
     pub hinted: bool,
     /// Largest remaining share of the informative runs' loss for a closer scan. While loads and clocks compensate for
     /// what is missing, the bounded loss may stay almost as large at the right size.
-    leaves: f64,
+    remaining_loss: f64,
 }
 
 /// Fine grid of sizes with the shape at its upper end. A spool that sticks on a ramp and jumps by the whole band
@@ -77,7 +77,7 @@ enum Informative {
 /// For switching effects.
 pub(crate) static SWITCHING: Grid = Grid {
     sizes: [0.12, 4.0],
-    step: Spacing::Share(0.008),
+    spacing: Spacing::Share(0.008),
     informative: Informative::Changed,
     narrow_minima: Some(NarrowMinima {
         sizes: [0.25, 3.0],
@@ -86,46 +86,46 @@ pub(crate) static SWITCHING: Grid = Grid {
     }),
     all_runs: 0.005,
     shapes: 3,
-    apart: 0.03,
+    distance: 0.03,
     best: 2,
     closer: &[(0.01, 0.25), (0.002, 0.05), (0.000_4, 0.01)],
     quasi_static: true,
     hinted: true,
-    leaves: 0.92,
+    remaining_loss: 0.92,
 };
 
 /// For ringing: a minimum extends over a seventh of the size to either side, so that a descent from the grid needs no
 /// closer scan.
 pub(crate) static RINGING: Grid = Grid {
     sizes: [0.1, 8.0],
-    step: Spacing::Share(0.06),
+    spacing: Spacing::Share(0.06),
     informative: Informative::Changed,
     narrow_minima: None,
     all_runs: 0.0,
     shapes: 5,
-    apart: 0.1,
+    distance: 0.1,
     best: 4,
     closer: &[],
     quasi_static: false,
     hinted: false,
-    leaves: f64::INFINITY,
+    remaining_loss: f64::INFINITY,
 };
 
 /// For located effects: the hitch resting on or reaching the place is reproduced within a few millimetres, and ringing
 /// there causes one local minimum per period.
 pub(crate) static LOCATED: Grid = Grid {
     sizes: [0.1, 6.5],
-    step: Spacing::Even(0.06),
+    spacing: Spacing::Even(0.06),
     informative: Informative::Failed,
     narrow_minima: None,
     all_runs: 0.0,
     shapes: 5,
-    apart: 0.05,
+    distance: 0.05,
     best: 2,
     closer: &[(0.04, 0.125)],
     quasi_static: true,
     hinted: false,
-    leaves: f64::INFINITY,
+    remaining_loss: f64::INFINITY,
 };
 
 /// The same without ringing: secants show that something is there, though not its stiffness.
@@ -175,7 +175,7 @@ pub(crate) fn scan(
     let all: Vec<usize> = (0..experiment.runs.len()).collect();
     let without = failed.iter().enumerate();
     let visible: f64 = without
-        .map(|(run, failed)| scan.negative_log_likelihood(run, grid.leaves * failed))
+        .map(|(run, failed)| scan.negative_log_likelihood(run, grid.remaining_loss * failed))
         .sum();
     let ringing = experiment.ringing;
     let closer_count = if ringing { grid.best } else { SCANNED_CLOSELY };
@@ -235,7 +235,7 @@ impl Scan<'_> {
                 ranked = self.ranked(without_losses(ranked), &self.informative);
             }
         }
-        without_losses(apart(ranked, grid.apart))
+        without_losses(spaced(ranked, grid.distance))
     }
 
     /// Negative log-likelihood of the residuals of some runs with an added effect.
@@ -284,7 +284,7 @@ fn without_losses(ranked: Vec<(f64, AddedEffect)>) -> Vec<AddedEffect> {
 }
 
 /// The best few per shape whose sizes are this share apart.
-fn apart(ranked: Vec<(f64, AddedEffect)>, share: f64) -> Vec<(f64, AddedEffect)> {
+fn spaced(ranked: Vec<(f64, AddedEffect)>, share: f64) -> Vec<(f64, AddedEffect)> {
     let mut best: Vec<(f64, AddedEffect)> = Vec::new();
     for (loss, added) in ranked {
         let alike = |(_, other): &&(f64, AddedEffect)| added.values[1..] == other.values[1..];
@@ -403,7 +403,7 @@ fn most_informative_runs(
 /// The grid of all sizes and shapes, and the fine grid for narrow minima.
 fn coarse(hint: &AddedEffect, grid: &Grid) -> Vec<AddedEffect> {
     let share = |k: usize| k as f64 / (grid.shapes - 1) as f64;
-    let next = |size: f64| match grid.step {
+    let next = |size: f64| match grid.spacing {
         Spacing::Share(share) => size * (1.0 + share),
         Spacing::Even(step) => size + step,
     };

@@ -5,8 +5,8 @@ use crate::components::valve_curve::ValveCurve;
 /// Proportional valve: a flow characteristic at a reference drop, scaled by the square root of the drop.
 ///
 /// `Q = Q_ref(I) * sqrt(dp / dp_ref)`, which is equation 5 (lift) and 6 (lowering) of the paper with
-/// `Cd A(I) sqrt(2/rho) = Q_ref(I) / sqrt(dp_ref)`. Below the transition drop the flow becomes laminar, `Q ~ dp / (dp^2
-/// + dp_t^2)^(1/4)` (Simscape's orifice); a transition drop of zero gives the square root law.
+/// `Cd A(I) sqrt(2/rho) = Q_ref(I) / sqrt(dp_ref)`. Below the transition drop the flow becomes laminar,
+/// `Q ~ dp / (dp^2 + dp_t^2)^(1/4)` (Simscape's orifice); a transition drop of zero gives the square root law.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OrificeValve {
     /// Flow over current at the reference drop.

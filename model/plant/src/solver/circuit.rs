@@ -321,8 +321,8 @@ impl Circuit<'_> {
     }
 
     /// Start value of a lagging compensator for a step of the quasi-static plant, Pa, and the share of the deviation at
-    /// the step's end that it has made up by then: exact for a steady pressure that changes linearly, `p_1 = e p_0 + b
-    /// s_0 + (1 - e - b) s_1` with `e = exp(-dt / lag)` and `b = (1 - e) lag / dt - e`.
+    /// the step's end that it has made up by then: exact for a steady pressure that changes linearly,
+    /// `p_1 = e p_0 + b s_0 + (1 - e - b) s_1` with `e = exp(-dt / lag)` and `b = (1 - e) lag / dt - e`.
     #[must_use]
     pub fn catching_up(
         &self,

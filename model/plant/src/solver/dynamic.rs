@@ -35,8 +35,8 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// Classical Runge-Kutta with amplitude errors of the ringing of 2e-3 and phase errors of 5e-3 rad per period (`h^6
-    /// / 144` and `h^5 / 120` per step).
+    /// Classical Runge-Kutta with amplitude errors of the ringing of 2e-3 and phase errors of 5e-3 rad per period
+    /// (`h^6 / 144` and `h^5 / 120` per step).
     pub const FINE: Self = Self {
         longest_rad: 0.55,
         longest_s: 0.004,

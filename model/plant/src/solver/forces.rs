@@ -38,8 +38,8 @@ impl Forces<'_> {
             + self.moment.term(Place::Weight, state, |_| ())
     }
 
-    /// Additional inertia of the rocker shaft at the piston, kg, and half its derivative over piston travel, kg/m: `J
-    /// (dphi/dx)^2`.
+    /// Additional inertia of the rocker shaft at the piston, kg, and half its derivative over piston travel, kg/m:
+    /// `J (dphi/dx)^2`.
     #[must_use]
     pub fn shaft_inertia_kg(&self, piston_m: f64) -> (f64, f64) {
         let inertia_kg_m2 = self.hooks.shaft_inertia_kg_m2;
