@@ -6,8 +6,8 @@ use hitch_quantities::units::{MicrometrePerSecond, PerMille};
 use hitch_quantities::{Calibration, ValidCalibration};
 use hitch_workbench::calibrate::calibrate;
 use hitch_workbench::calibration_file::with_settings;
+use hitch_workbench::closed_loop::show::text;
 use hitch_workbench::closed_loop::{ClosedLoop, LoopRun, Scenario, run};
-use hitch_workbench::commands::loop_::text;
 
 fn nominal() -> ValidCalibration {
     Calibration::nominal().validate().unwrap()

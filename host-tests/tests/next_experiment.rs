@@ -5,13 +5,13 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::design::alternative::angle_deg;
 use hitch_identification::design::manoeuvre::MANOEUVRES;
 use hitch_identification::design::plan::{Manoeuvre, RunPlan, Segment, Stand};
-use hitch_identification::design::separation::Bench;
+use hitch_identification::design::separation::TestBench;
 use hitch_identification::design::{NextExperiment, Pair, Rival, next_experiment};
 use hitch_identification::estimate::Estimate;
 use hitch_identification::estimation::fit::{Fit, evaluate, refine};
-use hitch_identification::explanation::explain::{Explanation, Step, Verdict};
+use hitch_identification::explanation::explain::{Explanation, ExplanationStep, Verdict};
 use hitch_identification::selection::candidate::weigh;
-use hitch_identification::selection::evidence::TOLD_APART;
+use hitch_identification::selection::evidence::DISTINGUISHABLE;
 use hitch_plant::{AddedEffect, Currents};
 use host_tests::lab::Lab;
 use host_tests::second_rig::test_stand::{Family, SAMPLE_RATE_HZ};
@@ -82,7 +82,7 @@ fn proposed(next: &NextExperiment) -> &'static Manoeuvre {
 /// Ids of the effects that an explanation names, and whether it leaves any of them open.
 fn named(explanation: &Explanation) -> (Vec<&'static str>, bool) {
     let steps = explanation.steps.iter();
-    let open = |step: &Step| !step.indistinguishable.is_empty();
+    let open = |step: &ExplanationStep| !step.indistinguishable.is_empty();
     (
         steps.clone().map(|step| step.effect.id()).collect(),
         steps.clone().any(open),
@@ -228,7 +228,7 @@ fn a_ringing_plant_is_designed_for_as_well() {
         changes_pressure(manoeuvre) || manoeuvre.name.contains("steps"),
         "{next}"
     );
-    assert!(next.expected_likelihood_ratio >= TOLD_APART, "{next}");
+    assert!(next.expected_likelihood_ratio >= DISTINGUISHABLE, "{next}");
 }
 
 /// Without a pressure sensor a little friction in the pins is a little less flow, whatever is done.
@@ -241,7 +241,7 @@ fn a_sensor_is_asked_for_where_no_manoeuvre_helps() {
     let next = next_experiment(&twins.experiment, &lab.model, &[twins.pair()]);
     let next = next.expect("a pair");
     assert!(next.separates.is_empty() && next.minutes.is_nan());
-    assert!(next.expected_likelihood_ratio < TOLD_APART);
+    assert!(next.expected_likelihood_ratio < DISTINGUISHABLE);
     let sentence = next.to_string();
     assert!(
         sentence.starts_with("none of the listed manoeuvres"),
@@ -262,7 +262,7 @@ fn the_expected_likelihood_ratio_is_met() {
     let excess = |twins: &Twins| twins.fits[1].cost - twins.fits[0].cost;
     let first = lab();
     let twins = Twins::new(&first, ids);
-    let bench = Bench::new(&twins.experiment, &first.model, &twins.fits[0]);
+    let bench = TestBench::new(&twins.experiment, &first.model, &twins.fits[0]);
     let known = [bench.known(twins.pair())];
     for name in ["light-and-heavy-lift", "creep-and-stop", "full-opening"] {
         let manoeuvre = MANOEUVRES.iter().find(|manoeuvre| manoeuvre.name == name);

@@ -1,4 +1,4 @@
-//! `[columns]` in `campaign.toml`: which column of anybody's log is which of a run.
+//! `[columns]` in `campaign.toml`: mapping of the columns of any log to those of a run.
 //!
 //! ```toml
 //! [columns]
@@ -16,46 +16,45 @@ use crate::CampaignError;
 use crate::scale::{Scale, is_unit_of};
 use crate::table::{COLUMNS, Column, column};
 
-/// Values of an instrument.
+/// Range of raw values.
 const ANY: std::ops::RangeInclusive<f64> = -1e12..=1e12;
 
-/// Two values of an instrument, and what they are in the column's unit.
+/// Two raw values, and the corresponding values in the column's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TwoPoints {
-    /// The instrument's values.
+    /// Raw values.
     pub from: [f64; 2],
-    /// The column's.
+    /// Values of the column.
     pub to: [f64; 2],
 }
 
-/// Where a column of a run comes from.
+/// The source of a column of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source {
     /// The run's column.
     pub column: &'static Column,
     /// Its name in the log.
     pub name: String,
-    /// Its unit there; `None` if the log says it.
+    /// Its unit in the log; `None` if the log states it.
     pub unit: Option<String>,
-    /// What its values are, if not by the unit.
+    /// Two-point calibration, if any.
     pub points: Option<TwoPoints>,
-    /// Whether a log has to have it.
+    /// Whether it is required.
     pub is_required: bool,
 }
 
-/// Where each column of a run comes from.
+/// The source of each column of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ColumnSettings {
-    /// One for each column that is taken.
+    /// One per mapped column.
     pub sources: Vec<Source>,
 }
 
 impl Source {
-    /// Reads `NAME`, `NAME:UNIT`, or with two points of a sensor `NAME:UNIT 0.5=0 4.5=250`, for the column called
-    /// `key`.
+    /// Parses `NAME`, `NAME:UNIT`, or with a two-point calibration `NAME:UNIT 0.5=0 4.5=250`, for the column `key`.
     ///
     /// # Errors
-    /// What is wrong, and how to mend it.
+    /// The fault, and a suggested correction.
     pub fn parse(key: &str, text: &str) -> Result<Self, (String, String)> {
         let names: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
         let Some(column) = column(key) else {
@@ -101,10 +100,10 @@ impl Source {
         }
     }
 
-    /// How a value of the log becomes one of the run, if the log says that it is in `logged`.
+    /// Conversion from a value of the log to one of the run; `logged` is the unit that the log states.
     ///
     /// # Errors
-    /// What is wrong, and how to mend it.
+    /// The fault, and a suggested correction.
     pub fn scale(&self, logged: Option<&str>) -> Result<Scale, (String, String)> {
         if let Some(TwoPoints { from, to }) = self.points {
             return Ok(Scale::through(from, to).unwrap_or(Scale::ONE));
@@ -130,9 +129,9 @@ fn how_to_scale(column: &Column) -> String {
     )
 }
 
-/// Names those of a log's columns that somebody may have meant.
+/// Suggestions of column names of the log, for a message.
 pub fn offer_columns(given: &str, known: &[&str]) -> String {
-    /// Longer lists are of no help in a line.
+    /// Longer lists are not helpful in one line.
     const MOST: usize = 12;
     if let Some(name) = nearest(given, known) {
         return format!("did you mean {name}?");
@@ -142,7 +141,7 @@ pub fn offer_columns(given: &str, known: &[&str]) -> String {
     format!("it has {}{more}", named.join(", "))
 }
 
-/// Splits two points off the end of a text.
+/// Splits two calibration points off the end of a text.
 fn points(text: &str) -> (&str, Option<TwoPoints>) {
     let pair = |word: &str| {
         let (from, to) = word.split_once('=')?;
@@ -172,7 +171,7 @@ fn number(text: &str) -> Option<f64> {
 }
 
 impl ColumnSettings {
-    /// Every column by its own name; the log says the unit, and may lack what no run needs.
+    /// Every column by its own name; the log states the unit, and may lack optional columns.
     pub fn by_own_names() -> Self {
         let sources = COLUMNS.iter().map(|column| Source {
             column,
@@ -189,7 +188,7 @@ impl ColumnSettings {
     /// Reads the table `[columns]` of a campaign, or of one of its runs.
     ///
     /// # Errors
-    /// Whatever is wrong first, by file, line and column.
+    /// The first fault, with file, line and column.
     pub fn read(table: &TomlTable<'_>) -> Result<Option<Self>, CampaignError> {
         let Some(columns) = table.table("columns")? else {
             return Ok(None);

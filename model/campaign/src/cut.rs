@@ -1,4 +1,4 @@
-//! The part of a log that a run is: a long log holds several runs, and what is between them.
+//! The time span of a run within its log: a long log may contain several runs.
 
 use std::ops::RangeInclusive;
 
@@ -6,10 +6,10 @@ use hitch_input::toml_reader::TomlTable;
 
 use crate::CampaignError;
 
-/// Times after a log's first sample, s: four months.
+/// Largest time after a log's first sample, s: four months.
 const TIME_S: RangeInclusive<f64> = 0.0..=1e7;
 
-/// Times after the log's first sample between which a run lies, s.
+/// Start and end of a run after the log's first sample, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cut {
     from_s: f64,
@@ -17,19 +17,19 @@ pub struct Cut {
 }
 
 impl Cut {
-    /// The keys of a `[[run]]` block.
+    /// Its keys in a `[[run]]` block.
     pub const KEYS: [&'static str; 2] = ["from_s", "to_s"];
 
-    /// All of a log.
+    /// The whole log.
     pub const NONE: Self = Self {
         from_s: 0.0,
         to_s: f64::INFINITY,
     };
 
-    /// What a `[[run]]` block says; all of the log if it doesn't.
+    /// The time span in a `[[run]]` block; the whole log if there is none.
     ///
     /// # Errors
-    /// If there is nothing between the times.
+    /// The time span is empty.
     pub fn read(run: &TomlTable<'_>) -> Result<Self, CampaignError> {
         let [from, to] = Self::KEYS;
         let from_s = run.number(from, TIME_S)?.unwrap_or(Self::NONE.from_s);
@@ -47,12 +47,12 @@ impl Cut {
         (self.from_s..=self.to_s).contains(&time_s)
     }
 
-    /// Whether two runs of one log share samples.
+    /// Whether two runs of one log overlap.
     pub fn overlaps(self, other: Self) -> bool {
         self.from_s < other.to_s && other.from_s < self.to_s
     }
 
-    /// What a run of this part of `file` is called.
+    /// Display name of a run with this part of `file`.
     pub fn name(self, file: &str) -> String {
         let Self { from_s, to_s } = self;
         match (self == Self::NONE, to_s.is_finite()) {

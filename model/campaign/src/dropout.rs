@@ -1,25 +1,25 @@
 //! Dropouts in the currents.
 //!
-//! A current drives the model, so a gap in it has to be filled or the run refused. A gap is bridged by a straight line
-//! when that can hardly be wrong: it is short against the valve's own lag, or the current is the same on both sides.
+//! A current drives the model, so a gap in it has to be filled, or the run is rejected. A gap is interpolated linearly
+//! if the error is small: it is short compared to the valve's own lag, or the current is the same on both sides.
 
-/// Longest gap that is bridged whatever happens in it, s. A step hidden in it is misplaced by half of it at most.
+/// Longest gap that is always filled, s. A step within it is shifted by at most half of it.
 const SHORT_GAP_S: f64 = 0.2;
-/// Longest gap that is bridged where the current is the same on both sides, s.
+/// Longest gap that is filled if the current is the same on both sides, s.
 const STEADY_GAP_S: f64 = 2.0;
-/// Currents that differ by less are the same, A: ten times the noise of a logged current.
+/// Difference below which two currents are the same, A: ten times the noise of a logged current.
 const STEADY_WITHIN_A: f64 = 0.04;
 
-/// A gap that cannot be bridged.
+/// A gap that cannot be filled.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gap {
-    /// First sample that is missing.
+    /// Its first missing sample.
     pub sample: usize,
-    /// How long the current is unknown, s; infinite if there is none at all.
+    /// Duration of the gap, s; infinite if the current has no value at all.
     pub duration_s: f64,
 }
 
-/// Fills the gaps (NaN) of a current in place; at the ends of the run the nearest value is held.
+/// Fills the gaps (NaN) of a current in place; at the ends of the run the nearest value is used.
 ///
 /// # Errors
 /// The first gap that is too long to be filled.

@@ -1,4 +1,4 @@
-//! Which files a campaign's manifest names.
+//! The files that a campaign's manifest refers to.
 
 use std::path::{Path, PathBuf};
 
@@ -7,10 +7,10 @@ use hitch_input::toml_reader::TomlTable;
 
 use crate::CampaignError;
 
-/// The logs and the DBC that the manifest in a folder names, wherever they lie.
+/// The logs and the DBC that the manifest in a folder refers to, in any folder.
 ///
 /// # Errors
-/// If it can't be read so far.
+/// The manifest cannot be parsed.
 pub fn named(dir: &Path) -> Result<Vec<PathBuf>, CampaignError> {
     let source = SourceFile::read(&dir.join("campaign.toml"))?;
     let top = TomlTable::parse(&source)?;

@@ -1,14 +1,14 @@
-//! Measurements: a campaign is a folder with `campaign.toml` and one log a run.
+//! Measurement campaigns: a campaign is a folder with `campaign.toml` and one log per run.
 //!
 //! ```text
 //! campaign.toml        format, name, noise of the instruments, and a [[run]] block a log
-//! lift_1.5A_050kg.csv  time_s, lift_current_a, lower_current_a and what was measured; or
-//! monday.log, .asc      what candump or a tool of Vector's has heard on the ECU's bus; or
-//! bench.csv, .mf4       what anybody's logger wrote, by `[columns]`
+//! lift_1.5A_050kg.csv  time_s, lift_current_a, lower_current_a and the measured channels; or
+//! monday.log, .asc      log of the ECU's bus by candump or a tool of Vector's; or
+//! bench.csv, .mf4       log of any other logger, mapped by `[columns]`
 //! ```
 //!
-//! Reading checks everything that can be checked without a model, so that nothing behind it has to: every number is
-//! finite and plausible, time rises strictly, the currents have no gaps, and every run has something to compare with.
+//! Reading validates everything that does not need a model, so that later code need not: every number is finite and
+//! plausible, time increases strictly, the currents have no gaps, and every run has at least one measured channel.
 #![forbid(unsafe_code)]
 
 mod bus_log;
@@ -33,19 +33,19 @@ use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 use hitch_plant::{Channel, Linkage};
 
-/// What is wrong with a campaign, by file, line and column.
+/// A fault of a campaign, with file, line and column.
 pub type CampaignError = InputError;
 
 /// A set of runs measured on one rig.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Campaign {
-    /// Short name; the folder's name if the campaign does not say.
+    /// Short name; the folder's name by default.
     pub name: String,
-    /// One sentence; empty if the campaign does not say.
+    /// One sentence; empty by default.
     pub description: String,
-    /// Sample rate, Hz; taken from the first run's time column if the campaign does not say.
+    /// Sample rate, Hz; by default that of the first run's time column.
     pub sample_rate_hz: f64,
-    /// Whether one clock stamps the currents and all channels: no channel is late because of the logger.
+    /// Whether one clock stamps the currents and all channels, so that no channel has a clock offset.
     pub synchronous: bool,
     /// Noise of the instruments.
     pub noise: Noise,
@@ -53,8 +53,8 @@ pub struct Campaign {
     pub runs: Vec<Run>,
 }
 
-/// Noise of each instrument as its data sheet declares it: one sigma, in the instrument's unit; `None` where it is not
-/// declared and has to be estimated.
+/// Noise of each instrument from its data sheet: standard deviation, in the instrument's unit; `None` if it has to be
+/// estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Noise {
     /// Logged current of the lift solenoid, A.
@@ -67,48 +67,49 @@ pub struct Noise {
     pub oil_temperature_c: Option<f64>,
 }
 
-/// What the valve block was bolted to.
+/// Test stand of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bench {
     /// Cylinder, linkage and a load at the hitch.
     Hitch {
-        /// Load at the hitch as it was weighed, without the links' own weight, kg.
+        /// Load at the hitch as weighed, without the links' own weight, kg.
         load_kg: f64,
     },
-    /// No cylinder: the cylinder port is held at a pressure and the flow through it is measured.
+    /// No cylinder: the cylinder port is at a constant pressure, and the flow through it is measured.
     Flow {
         /// Pressure at the port, bar.
         port_pressure_bar: f64,
     },
 }
 
-/// One log: what drove the valves, and what was measured.
+/// One log: the valve currents and the measured channels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// File name within the campaign's folder, or of a log elsewhere, with its times if the run is a part of it.
+    /// File name relative to the campaign's folder, or of a log elsewhere, with the time span if the run is a part of
+    /// it.
     pub file: String,
-    /// What the valve block was bolted to.
+    /// Test stand of the run.
     pub bench: Bench,
-    /// Oil temperature of the run, degrees Celsius; 40 if the campaign does not say.
+    /// Oil temperature of the run, degrees Celsius; 40 by default.
     pub oil_temperature_c: f64,
-    /// Time stamps as logged, s; strictly rising, at least [`Run::FEWEST_SAMPLES`].
+    /// Time stamps as logged, s; strictly increasing, at least [`Run::FEWEST_SAMPLES`].
     pub time_s: Vec<f64>,
-    /// Current of the lift solenoid, A; short dropouts are bridged, so no value is missing.
+    /// Current of the lift solenoid, A; short dropouts are filled, so no value is missing.
     pub lift_current_a: Vec<f64>,
-    /// Current of the lowering solenoid, A; short dropouts are bridged, so no value is missing.
+    /// Current of the lowering solenoid, A; short dropouts are filled, so no value is missing.
     pub lower_current_a: Vec<f64>,
-    /// Measured channels by [`Channel::index`], in the channel's unit; `None` if the channel was not measured (or lost
-    /// throughout), NaN at a dropout. A flow bench has no rocker: its angle is always `None`.
+    /// Measured channels by [`Channel::index`], in the channel's unit; `None` if the channel was not measured or has no
+    /// values, NaN at a dropout. A flow bench has no rocker: its angle is always `None`.
     pub channels: [Option<Vec<f64>>; 4],
     /// Logged oil temperature, degrees Celsius; NaN at a dropout.
     pub oil_temperature_log_c: Option<Vec<f64>>,
 }
 
 impl Campaign {
-    /// Reads a campaign's folder. If an angle was logged as travel of the cylinder, the linkage is the nominal one.
+    /// Reads a campaign's folder. An angle logged as cylinder travel is converted with the nominal linkage.
     ///
     /// # Errors
-    /// Whatever is wrong first, by file, line and column: see the module's description.
+    /// The first fault, with file, line and column: see the module's description.
     pub fn load(dir: &Path) -> Result<Self, CampaignError> {
         manifest::load(dir, scale::nominal_linkage())
     }
@@ -121,15 +122,15 @@ impl Campaign {
         manifest::load(dir, linkage)
     }
 
-    /// The logs and the DBC that the manifest in a folder names, wherever they lie.
+    /// The logs and the DBC that the manifest in a folder refers to, in any folder.
     ///
     /// # Errors
-    /// If the manifest can't be read so far.
+    /// The manifest cannot be parsed.
     pub fn files(dir: &Path) -> Result<Vec<PathBuf>, CampaignError> {
         files::named(dir)
     }
 
-    /// Reads the campaign, with a hitch of this linkage, that a folder would be if this were its manifest.
+    /// Reads the campaign of a folder with this text as its manifest, for a hitch with this linkage.
     ///
     /// # Errors
     /// As [`Campaign::load`].
@@ -150,14 +151,13 @@ impl Noise {
 }
 
 impl Run {
-    /// Fewest samples that make a run.
+    /// Fewest samples of a run.
     pub const FEWEST_SAMPLES: usize = 10;
 
-    /// Reads a log by itself, without a campaign around it; it may hold currents only. If it is that of a bus, it has
-    /// to be the bus of the project's own ECU.
+    /// Reads a single log without a campaign; it may contain only currents. A bus log has to be from the project's ECU.
     ///
     /// # Errors
-    /// Whatever is wrong first, by file, line and column.
+    /// The first fault, with file, line and column.
     pub fn read(path: &Path, bench: Bench, oil_temperature_c: f64) -> Result<Self, CampaignError> {
         let file = path.file_name().unwrap_or_default().to_string_lossy();
         let table = run_log::table(path, run_log::Settings::default())?;

@@ -1,4 +1,4 @@
-//! `campaign.toml`: which runs there are, and what is known of them.
+//! `campaign.toml`: the runs and their metadata.
 
 use std::path::{Path, PathBuf};
 
@@ -14,19 +14,19 @@ use crate::run_log::Settings;
 use crate::table::Table;
 use crate::{Bench, Campaign, CampaignError, Noise, Run, run_log};
 
-/// The only format there is.
+/// The supported format version.
 const FORMAT: f64 = 1.0;
-/// Oil temperature of a run that does not say, degrees Celsius: where the valve's tables hold.
+/// Default oil temperature of a run, degrees Celsius: that of the valve tables.
 const DEFAULT_OIL_TEMPERATURE_C: f64 = 40.0;
-/// Loads that the cylinder can hold below the relief pressure, with a margin, kg.
+/// Range of loads that the cylinder can hold below the relief pressure, with a margin, kg.
 const LOAD_KG: std::ops::RangeInclusive<f64> = 0.0..=2000.0;
-/// Pressures of hydraulics of this class, bar.
+/// Range of pressures of hydraulics of this class, bar.
 const PORT_PRESSURE_BAR: std::ops::RangeInclusive<f64> = 0.0..=400.0;
-/// Temperatures at which the oil is a liquid and the seals live, degrees Celsius.
+/// Range of oil temperatures, degrees Celsius: limited by the oil's pour point and the seals.
 const OIL_TEMPERATURE_C: std::ops::RangeInclusive<f64> = -40.0..=150.0;
-/// Slower than the hitch moves, to faster than any logger of this class, Hz.
+/// Range of sample rates, Hz: from slower than the hitch moves to faster than any logger of this class.
 const SAMPLE_RATE_HZ: std::ops::RangeInclusive<f64> = 0.5..=100_000.0;
-/// One sigma, in any instrument's unit. Zero is not a noise: leave the key out to have it estimated.
+/// Range of a standard deviation, in any instrument's unit. Zero is not allowed: without the key it is estimated.
 const SIGMA: std::ops::RangeInclusive<f64> = 1e-6..=100.0;
 
 /// Reads the folder of a campaign with a hitch of this linkage.
@@ -34,7 +34,7 @@ pub fn load(dir: &Path, linkage: &Linkage) -> Result<Campaign, CampaignError> {
     read(dir, &SourceFile::read(&manifest_path(dir)?)?, linkage)
 }
 
-/// Reads the campaign of a manifest that is or will be in `dir`.
+/// Reads the campaign of a manifest located in `dir`.
 pub fn read(dir: &Path, source: &SourceFile, linkage: &Linkage) -> Result<Campaign, CampaignError> {
     let top = TomlTable::parse(source)?;
     check_format(&top)?;
@@ -75,7 +75,7 @@ pub fn read(dir: &Path, source: &SourceFile, linkage: &Linkage) -> Result<Campai
     })
 }
 
-/// Whether the campaign says that one clock stamps all channels.
+/// Whether the campaign declares that one clock stamps all channels.
 fn synchronous(top: &TomlTable) -> Result<bool, CampaignError> {
     match top.text("clocks")? {
         None | Some("independent") => Ok(false),
@@ -156,7 +156,7 @@ fn runs(
     let mut parts: Vec<(&str, Cut)> = Vec::with_capacity(tables.len());
     let files = tables.iter().map(|table| file_name(table, "file"));
     let files = files.collect::<Result<Vec<&str>, CampaignError>>()?;
-    // A log of several runs is read once if they stand one after the other.
+    // A log of several consecutive runs is read once.
     let mut last: Option<(PathBuf, Option<ColumnSettings>, Table)> = None;
     for (table, &file) in tables.iter().zip(&files) {
         let cut = Cut::read(table)?;
@@ -191,7 +191,7 @@ fn runs(
     Ok(runs)
 }
 
-/// What people call a log of these: the name of a file that lies elsewhere, unless another one has the same name.
+/// Display name of a log: the file name of a log elsewhere, unless another one has the same name.
 fn called<'f>(file: &'f str, files: &[&str]) -> &'f str {
     let name_of = |file: &'f str| Path::new(file).file_name()?.to_str();
     let name = name_of(file).filter(|_| Path::new(file).is_absolute());
@@ -205,7 +205,7 @@ fn called<'f>(file: &'f str, files: &[&str]) -> &'f str {
 /// The path of the file that `key` names.
 ///
 /// # Errors
-/// If there is no such file.
+/// The file does not exist.
 pub fn file_in(dir: &Path, table: &TomlTable<'_>, key: &str) -> Result<PathBuf, CampaignError> {
     let file = file_name(table, key)?;
     let path = dir.join(file);
@@ -223,7 +223,7 @@ pub fn file_in(dir: &Path, table: &TomlTable<'_>, key: &str) -> Result<PathBuf, 
     Err(table.error_at(key, what, mend))
 }
 
-/// A file's name: a path from the campaign's folder on, or from the root.
+/// A file's name: a path relative to the campaign's folder, or absolute.
 fn file_name<'t>(table: &'t TomlTable<'_>, key: &str) -> Result<&'t str, CampaignError> {
     let file = table.required_text(key)?;
     if !file.is_empty() && !file.chars().any(char::is_control) {

@@ -1,7 +1,6 @@
 //! Logs of measurement tools in MDF, versions 3 and 4 (ASAM): CANape, INCA, CANedge, asammdf and others.
 //!
-//! A row is a sample of the lift current, and what was sampled with another rate is brought to its times, as in logs of
-//! a bus.
+//! A row is a sample of the lift current; channels with another rate are interpolated to its times, as in bus logs.
 
 use std::fs::File;
 use std::io::Read as _;
@@ -21,10 +20,10 @@ use crate::scale::Scale;
 use crate::series::Series;
 use crate::table::{Cells, Column, LIFT, Samples, TIME, Table};
 
-/// Where the version stands in a file.
+/// Byte offset of the version in a file.
 const VERSION: std::ops::Range<usize> = 8..16;
 
-/// Whether a file is MDF: by its first bytes, or by its name.
+/// Whether a file is MDF, by its first bytes or its name.
 pub fn is_mdf(path: &Path) -> bool {
     let end = path.extension().and_then(|end| end.to_str());
     let is_named =
@@ -39,16 +38,16 @@ fn first_bytes(path: &Path) -> Option<[u8; 16]> {
     Some(bytes)
 }
 
-/// A channel, and where it is.
+/// A channel and its position.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MdfChannel {
     /// Its name.
     pub name: String,
-    /// Its unit; `None` if the file says none.
+    /// Its unit; `None` without one.
     pub unit: Option<String>,
-    /// How many samples it has.
+    /// Number of samples.
     pub samples: usize,
-    /// Data group, channel group and place in it.
+    /// Data group, channel group and index in it.
     place: [usize; 3],
 }
 
@@ -57,7 +56,7 @@ pub struct MdfChannel {
 pub struct MdfFile {
     source: SourceFile,
     reader: Reader,
-    /// Its channels that are no times.
+    /// Its channels other than times.
     pub channels: Vec<MdfChannel>,
 }
 
@@ -79,7 +78,7 @@ impl MdfFile {
     /// Opens a file.
     ///
     /// # Errors
-    /// If it can't be read.
+    /// The file cannot be read.
     pub fn open(path: &Path) -> Result<Self, CampaignError> {
         let source = SourceFile::named(path);
         let version = first_bytes(path).unwrap_or_default();
@@ -101,10 +100,10 @@ impl MdfFile {
         })
     }
 
-    /// The samples of a channel; NaN where the file says that they are invalid.
+    /// The samples of a channel; NaN where marked as invalid.
     ///
     /// # Errors
-    /// If they can't be read.
+    /// The samples cannot be read.
     pub fn series(&self, channel: &MdfChannel) -> Result<Series, CampaignError> {
         let fault = |error| unreadable(&self.source, &channel.name, &error);
         let [data_group, group, index] = channel.place;
@@ -150,13 +149,13 @@ impl MdfFile {
         })
     }
 
-    /// The channel that a column is taken from; `None` if it is not there and need not be.
+    /// The channel of a column; `None` if it is missing and optional.
     fn find(&self, wanted: &Source) -> Result<Option<&MdfChannel>, CampaignError> {
         let named = self
             .channels
             .iter()
             .filter(|channel| channel.name == wanted.name);
-        // Tools leave groups without samples of what was not sent.
+        // Tools create groups without samples for signals that were not sent.
         match named.max_by_key(|channel| channel.samples) {
             Some(channel) => Ok(Some(channel)),
             None if !wanted.is_required => Ok(None),
@@ -204,10 +203,10 @@ impl MdfFile {
     }
 }
 
-/// The value in the column's unit; NaN stays.
+/// The value in the column's unit; NaN is kept.
 ///
 /// # Errors
-/// If the column can't have it: the value.
+/// The value, if it is out of the column's range.
 fn scaled(scale: Scale, linkage: &Linkage, value: f64, column: &Column) -> Result<f64, f64> {
     if !value.is_finite() {
         return Ok(f64::NAN);
@@ -216,10 +215,10 @@ fn scaled(scale: Scale, linkage: &Linkage, value: f64, column: &Column) -> Resul
     column.range.contains(&value).then_some(value).ok_or(value)
 }
 
-/// Reads a log of a hitch with this linkage.
+/// Reads a log for a hitch with this linkage.
 ///
 /// # Errors
-/// Whatever is wrong first.
+/// The first fault.
 pub fn read(
     path: &Path,
     settings: Option<&ColumnSettings>,

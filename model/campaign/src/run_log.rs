@@ -1,4 +1,4 @@
-//! One run's log: of a test bench's logger, of a bus, or of a measurement tool.
+//! The log of a run: from a test bench's logger, a bus, or a measurement tool.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,14 +14,14 @@ use crate::scale::nominal_linkage;
 use crate::table::{LIFT, LOWER, OIL_TEMPERATURE, TIME, Table};
 use crate::{Bench, CampaignError, Run, bus_log, csv_log, mdf_log};
 
-/// How the logs of a campaign are meant.
+/// Interpretation of the logs of a campaign.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings<'s> {
-    /// What is taken of a bus; without it, what the project's own ECU sends.
+    /// Bus settings; by default those of the project's ECU.
     pub bus: Option<&'s BusSettings>,
-    /// Which column of a table or of MDF is which; without it, they have this project's names.
+    /// Mapping of the columns of a table or of MDF; by default the project's names.
     pub columns: Option<&'s ColumnSettings>,
-    /// By which travel of the cylinder is an angle.
+    /// The linkage, for the conversion of cylinder travel to rocker angle.
     pub linkage: &'s Linkage,
 }
 
@@ -35,10 +35,10 @@ impl Default for Settings<'_> {
     }
 }
 
-/// Reads all of a log.
+/// Reads a whole log.
 ///
 /// # Errors
-/// Whatever is wrong first, by file, line and column.
+/// The first fault, with file, line and column.
 pub fn table(path: &Path, settings: Settings<'_>) -> Result<Table, CampaignError> {
     if mdf_log::is_mdf(path) {
         return mdf_log::read(path, settings.columns, settings.linkage);
@@ -57,10 +57,10 @@ pub fn table(path: &Path, settings: Settings<'_>) -> Result<Table, CampaignError
     }
 }
 
-/// The run that a part of a log is; it may hold currents only.
+/// The run of a part of a log; it may contain only currents.
 ///
 /// # Errors
-/// Whatever is wrong first, by file, line and column.
+/// The first fault, with file, line and column.
 pub fn run(
     table: &Table,
     file: &str,
@@ -89,7 +89,7 @@ pub fn run(
     })
 }
 
-/// Refuses a run that has nothing to compare a model with.
+/// Rejects a run without any measured channel.
 pub fn check_usable(path: &Path, run: &Run) -> Result<(), CampaignError> {
     if run.channels.iter().any(Option::is_some) {
         return Ok(());

@@ -1,4 +1,4 @@
-//! What the values of an instrument's unit are in the unit of a column.
+//! Conversion from an instrument's unit to the unit of a column.
 
 use std::sync::LazyLock;
 
@@ -11,7 +11,7 @@ use crate::table::{Column, OIL_TEMPERATURE, TIME};
 /// Kelvin at 0 degrees Celsius.
 const ZERO_C_K: f64 = 273.15;
 
-/// Other ways to write a unit: as tools do, and in German.
+/// Alternative spellings of units: of tools, and in German.
 const SPELLINGS: [(&str, &str); 39] = [
     ("°", "deg"),
     ("deg", "deg"),
@@ -59,7 +59,7 @@ const MULTIPLES: [(&str, f64, &str); 10] = [
     ("psi", 6_894.757_293_168, "Pa"),
     ("hPa", 100.0, "Pa"),
     ("mbar", 1e-3, "bar"),
-    // The gallon of the United States.
+    // US gallon.
     ("gpm", 3.785_411_784, "l/min"),
     ("ml/min", 1e-3, "l/min"),
     ("uA", 1e-6, "A"),
@@ -69,25 +69,25 @@ const MULTIPLES: [(&str, f64, &str); 10] = [
     ("h", 3_600.0, "s"),
 ];
 
-/// How a value of an instrument becomes one of a column.
+/// Conversion of a raw value to a value of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Scale {
     /// `factor * value + offset`.
     Line {
-        /// What one of the instrument's unit is.
+        /// The factor.
         factor: f64,
-        /// What its zero is.
+        /// The offset.
         offset: f64,
     },
-    /// Travel of the cylinder out of its retracted end, here in metres by this factor, to the rocker's angle.
+    /// Travel of the cylinder from its retracted end, converted to the rocker angle.
     Travel {
-        /// Metres in one of the instrument's unit.
+        /// Metres per raw unit.
         metres: f64,
     },
 }
 
 impl Scale {
-    /// The values as they are.
+    /// The identity.
     pub const ONE: Self = Self::Line {
         factor: 1.0,
         offset: 0.0,
@@ -96,7 +96,7 @@ impl Scale {
     /// From `unit` to the unit of `column`.
     ///
     /// # Errors
-    /// If it is no unit of that quantity: what is wrong.
+    /// `unit` is not a unit of that quantity.
     pub fn of(unit: &str, column: &Column) -> Result<Self, String> {
         let unit = spelling(unit);
         if unit == column.unit {
@@ -126,7 +126,7 @@ impl Scale {
         }
     }
 
-    /// The line through two points of a sensor; `None` if they are one.
+    /// The line through two calibration points; `None` if they coincide.
     pub fn through(from: [f64; 2], to: [f64; 2]) -> Option<Self> {
         let factor = (to[1] - to[0]) / (from[1] - from[0]);
         let offset = to[0] - factor * from[0];
@@ -134,7 +134,7 @@ impl Scale {
         is_sound.then_some(Self::Line { factor, offset })
     }
 
-    /// The column's value, of a hitch with this linkage.
+    /// The column's value, for a hitch with this linkage.
     pub fn apply(self, value: f64, linkage: &Linkage) -> f64 {
         match self {
             Self::Line { factor, offset } => value * factor + offset,
@@ -147,12 +147,12 @@ impl Scale {
     }
 }
 
-/// Whether a text is a unit of a column's quantity; a voltage is one of any.
+/// Whether a text is a unit of a column's quantity; volts are accepted for all.
 pub fn is_unit_of(unit: &str, column: &Column) -> bool {
     spelling(unit) == "V" || Scale::of(unit, column).is_ok()
 }
 
-/// Whether a text is a unit that a log may have at all.
+/// Whether a text is any unit of a log.
 pub fn is_unit(text: &str) -> bool {
     let unit = spelling(text);
     let is_known = matches!(
@@ -166,7 +166,7 @@ pub fn is_unit(text: &str) -> bool {
 pub fn spelling(unit: &str) -> &str {
     let unit = unit.trim();
     let lower = unit.to_lowercase();
-    // Capitals tell milli from mega: what is known as it stands is left.
+    // Capital letters distinguish milli from mega: a known unit is not changed.
     if parsed(unit).is_some() {
         return unit;
     }
@@ -194,7 +194,7 @@ fn is_angle(column: &Column) -> bool {
     column.name == Channel::RockerAngle.key()
 }
 
-/// Whether a column holds times.
+/// Whether a column contains times.
 pub fn is_time(column: &Column) -> bool {
     column.name == TIME
 }

@@ -1,18 +1,18 @@
-//! What was heard of one signal.
+//! The received samples of one signal.
 
-/// Samples in the order in which they came.
+/// Samples in the order of reception.
 #[derive(Debug, Clone, Default)]
 pub struct Series {
-    /// When, s.
+    /// Times, s.
     pub times_s: Vec<f64>,
-    /// What; NaN where the sender said that it doesn't know.
+    /// Values; NaN where the sender has no valid one.
     pub values: Vec<f64>,
-    /// Where in the log.
+    /// Positions in the log.
     pub bytes: Vec<usize>,
 }
 
 impl Series {
-    /// Adds a sample; the same one heard twice is one.
+    /// Adds a sample; duplicates are merged.
     pub fn push(&mut self, time_s: f64, value: f64, byte: usize) {
         if self.times_s.last() == Some(&time_s) && self.values.last() == Some(&value) {
             return;
@@ -22,7 +22,7 @@ impl Series {
         self.bytes.push(byte);
     }
 
-    /// The usual time from sample to sample, s; infinite if there is one only.
+    /// The median time between samples, s; infinite for a single one.
     pub fn median_step_s(&self) -> f64 {
         let mut steps_s: Vec<f64> = self.times_s.windows(2).map(|two| two[1] - two[0]).collect();
         steps_s.sort_by(f64::total_cmp);
@@ -32,7 +32,7 @@ impl Series {
             .unwrap_or(f64::INFINITY)
     }
 
-    /// The value at each of `times_s`, by a straight line between the samples around it; NaN where none is within
+    /// The value at each of `times_s`, interpolated linearly between the neighbouring samples; NaN if none is within
     /// `within_s`.
     pub fn at(&self, times_s: &[f64], within_s: f64) -> Vec<f64> {
         times_s

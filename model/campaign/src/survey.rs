@@ -1,4 +1,4 @@
-//! What a log holds, before anybody has said which of its columns is which.
+//! The contents of a log, before its columns are mapped.
 
 use std::path::Path;
 
@@ -17,34 +17,34 @@ pub use crate::bus_log::Signals;
 pub struct LogColumn {
     /// Its name.
     pub name: String,
-    /// Its unit as formulas write it, if the log says one.
+    /// Its unit as formulas write it, if the log states one.
     pub unit: Option<String>,
-    /// What people say about it; empty if nothing.
+    /// Its comment; empty without one.
     pub comment: String,
-    /// Its numbers, as the log has them; NaN where there is none, and none at all if they weren't looked at.
+    /// Its numbers as logged; NaN for missing ones, empty if they were not read.
     pub values: Vec<f64>,
-    /// It holds dates or times of day.
+    /// Whether it contains dates or times of day.
     pub is_clock: bool,
 }
 
-/// What kind of log it is.
+/// Kind of a log.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Survey {
-    /// A table with these columns; it needs one of times.
+    /// A table with these columns; one has to contain times.
     Table(Vec<LogColumn>),
-    /// A table with this project's own names.
+    /// A table with the project's own names.
     Own,
-    /// Channels that know their times.
+    /// Channels with their own times.
     Channels(Vec<LogColumn>),
     /// Frames of a bus.
     Bus,
 }
 
 impl Survey {
-    /// Looks into a log.
+    /// Surveys a log.
     ///
     /// # Errors
-    /// If it can't be read at all.
+    /// The log cannot be read.
     pub fn of(path: &Path) -> Result<Self, CampaignError> {
         if mdf_log::is_mdf(path) {
             return channels(path);
@@ -58,16 +58,16 @@ impl Survey {
     }
 }
 
-/// Whether a file is a log of a bus, by its name.
+/// Whether a file is a bus log, by its name.
 #[must_use]
 pub fn is_bus(path: &Path) -> bool {
     Format::of(path).is_some()
 }
 
-/// Looks into a log of a bus with the description that a DBC gives.
+/// Surveys a bus log with the description of a DBC.
 ///
 /// # Errors
-/// If one of them can't be read, the log is not of a bus, or holds nothing of the description.
+/// One of them cannot be read, the log is not a bus log, or it contains no signal of the description.
 pub fn bus_signals(path: &Path, dbc: &Path) -> Result<Signals, CampaignError> {
     let source = SourceFile::read_any(path)?;
     let description = SourceFile::read_any(dbc)?;
@@ -81,7 +81,7 @@ fn channels(path: &Path) -> Result<Survey, CampaignError> {
     let file = MdfFile::open(path)?;
     let mut columns: Vec<LogColumn> = Vec::new();
     for channel in &file.channels {
-        // What can't be read is not offered; the reader says why if somebody names it.
+        // Unsupported signals are not offered; the reader reports the reason if one is named.
         let Ok(series) = file.series(channel) else {
             continue;
         };
@@ -102,26 +102,26 @@ fn channels(path: &Path) -> Result<Survey, CampaignError> {
     Ok(Survey::Channels(columns))
 }
 
-/// The columns that a run may have, each with its unit; the times first.
+/// The possible columns of a run, each with its unit; the times first.
 pub fn run_columns() -> impl Iterator<Item = (&'static str, &'static str)> {
     COLUMNS.iter().map(|column| (column.name, column.unit))
 }
 
-/// Whether values in `unit` can be those of a run's column.
+/// Whether `unit` is possible for a column of a run.
 #[must_use]
 pub fn fits(unit: &str, name: &str) -> bool {
     column(name).is_some_and(|column| is_unit_of(unit, column))
 }
 
-/// Checks what somebody wrote behind `name =` under `[columns]`: the name in the log, and the unit if it has one.
+/// Validates a value of `name =` under `[columns]`: the name in the log, with an optional unit.
 ///
 /// # Errors
-/// What is wrong, and how to mend it, in a line.
+/// The fault, and a suggested correction, in a line.
 pub fn check_source(name: &str, text: &str) -> Result<(String, Option<String>), String> {
     let source =
         columns::Source::parse(name, text).map_err(|(what, mend)| format!("{what}; {mend}"))?;
     Ok((source.name, source.unit))
 }
 
-/// Name of the column of times.
+/// Name of the time column.
 pub const TIMES: &str = TIME;

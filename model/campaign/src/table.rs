@@ -1,37 +1,37 @@
-//! The numbers of a log by column, wherever they came from.
+//! The numbers of a log by column, independent of the format.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use hitch_input::input_error::{InputError, Place};
+use hitch_input::input_error::{InputError, Position};
 use hitch_input::source_file::SourceFile;
 use hitch_plant::Channel;
 
 use crate::cut::Cut;
 use crate::{CampaignError, Run, dropout};
 
-/// Longest step between two samples, s: what the valves did in a longer one is not known.
+/// Longest step between two samples, s: the valve motion within a longer one is unknown.
 const LONGEST_STEP_S: f64 = 2.0;
-/// Time stamps, s: beyond, the step between two samples drowns in rounding.
+/// Range of time stamps, s: beyond it, rounding errors affect the step between samples.
 const TIME_S: RangeInclusive<f64> = -1e7..=1e10;
 
-/// Name of the column of times.
+/// Name of the time column.
 pub const TIME: &str = "time_s";
-/// Name of the lift solenoid's current.
+/// Name of the lift current's column.
 pub const LIFT: &str = "lift_current_a";
-/// Name of the lowering solenoid's current.
+/// Name of the lowering current's column.
 pub const LOWER: &str = "lower_current_a";
-/// Name of the oil temperature.
+/// Name of the oil temperature's column.
 pub const OIL_TEMPERATURE: &str = "oil_temperature_c";
 
-/// A column that a log may have.
+/// A possible column of a log.
 #[derive(Debug, PartialEq)]
 pub struct Column {
     /// Its name, which ends in its unit.
     pub name: &'static str,
-    /// That unit, as formulas write it.
+    /// Its unit, as formulas write it.
     pub unit: &'static str,
-    /// The values that its instrument can show.
+    /// Range of its values.
     pub range: RangeInclusive<f64>,
 }
 
@@ -39,10 +39,10 @@ const fn known(name: &'static str, unit: &'static str, range: RangeInclusive<f64
     Column { name, unit, range }
 }
 
-/// The column of times.
+/// The time column.
 pub static TIMES: Column = known(TIME, "s", TIME_S);
 
-/// Every column there is.
+/// All possible columns.
 pub static COLUMNS: [Column; 8] = [
     known(TIME, "s", TIME_S),
     known(LIFT, "A", -10.0..=10.0),
@@ -54,19 +54,19 @@ pub static COLUMNS: [Column; 8] = [
     known(OIL_TEMPERATURE, "degC", -60.0..=250.0),
 ];
 
-/// The column of that name.
+/// The column with this name.
 pub fn column(name: &str) -> Option<&'static Column> {
     COLUMNS.iter().find(|column| column.name == name)
 }
 
-/// How the samples of a row stand in its file.
+/// Layout of the samples of a row in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cells {
-    /// One after the other, with this character between them.
+    /// Consecutive, with this separator.
     Between(char),
-    /// Somewhere in the line.
+    /// At unspecified positions in the line.
     OneALine,
-    /// The file is no text.
+    /// In a binary file.
     Nowhere,
 }
 
@@ -75,27 +75,27 @@ pub enum Cells {
 pub struct Samples {
     /// The column's name.
     pub name: &'static str,
-    /// Its cell in a row, where rows have cells.
+    /// Its cell index, if rows have cells.
     pub cell: usize,
-    /// What was sampled; NaN where nothing was.
+    /// Its samples; NaN where missing.
     pub values: Vec<f64>,
 }
 
-/// The numbers of a log by column; NaN where a cell is empty.
+/// The numbers of a log by column; NaN for empty cells.
 #[derive(Debug, Clone)]
 pub struct Table {
     source: Arc<SourceFile>,
     columns: Vec<Samples>,
-    /// First byte of each row in the file.
+    /// Byte offset of each row in the file.
     rows: Vec<usize>,
     cells: Cells,
 }
 
 impl Table {
-    /// The table of these columns, which are as long as `rows`: the first byte of each row in the file.
+    /// The table of these columns, as long as `rows`, the byte offset of each row in the file.
     ///
     /// # Errors
-    /// If there are too few rows for a run.
+    /// There are too few rows for a run.
     pub fn new(
         source: Arc<SourceFile>,
         columns: Vec<Samples>,
@@ -118,10 +118,10 @@ impl Table {
         }
     }
 
-    /// The rows of a part.
+    /// The rows of a time span.
     ///
     /// # Errors
-    /// If there are too few for a run.
+    /// There are too few rows for a run.
     pub fn cut(&self, cut: Cut) -> Result<Self, CampaignError> {
         let times_s = self.column(TIME).unwrap_or_default();
         let first_s = times_s.first().copied().unwrap_or_default();
@@ -160,10 +160,10 @@ impl Table {
             .map(|samples| samples.values.as_slice())
     }
 
-    /// A column that every log has.
+    /// A required column.
     ///
     /// # Errors
-    /// If it is missing.
+    /// The column is missing.
     pub fn required(&self, name: &str) -> Result<&[f64], CampaignError> {
         self.column(name).ok_or_else(|| {
             let what = format!("column {name} is missing");
@@ -175,7 +175,7 @@ impl Table {
         })
     }
 
-    /// A measured column, if there is one and it holds anything.
+    /// A measured column, if it exists and has values.
     pub fn measured(&self, name: &str) -> Option<Vec<f64>> {
         let values = self.column(name)?;
         values
@@ -184,10 +184,10 @@ impl Table {
             .then(|| values.to_vec())
     }
 
-    /// A current, with its dropouts bridged.
+    /// A current, with its dropouts filled.
     ///
     /// # Errors
-    /// If one is too long for that.
+    /// A dropout is too long.
     pub fn current(&self, name: &str, time_s: &[f64]) -> Result<Vec<f64>, CampaignError> {
         let mut current_a = self.required(name)?.to_vec();
         match dropout::bridge(time_s, &mut current_a) {
@@ -205,10 +205,10 @@ impl Table {
         }
     }
 
-    /// Refuses times that don't rise from row to row.
+    /// Rejects times that do not increase from row to row.
     ///
     /// # Errors
-    /// At the first row that is not later than the last, or much later.
+    /// The first row that is not later than the previous one, or too much later.
     pub fn check_time(&self, time_s: &[f64]) -> Result<(), CampaignError> {
         for (sample, pair) in time_s.windows(2).enumerate() {
             let (before_s, now_s) = (pair[0], pair[1]);
@@ -251,7 +251,7 @@ fn kept_of<T: Copy>(values: &[T], stays: &[bool]) -> Vec<T> {
     kept.map(|(value, _)| *value).collect()
 }
 
-/// A fault of a cell of a row whose cells have a mark between them.
+/// A fault of a cell of a row with separators.
 pub fn cell_error(
     source: &SourceFile,
     row_byte: usize,
@@ -259,12 +259,12 @@ pub fn cell_error(
     what: String,
     mend: impl Into<String>,
 ) -> InputError {
-    let Place { line, column } = source.place(row_byte);
+    let Position { line, column } = source.place(row_byte);
     let row = source.text.get(row_byte..).unwrap_or_default();
     let before = cells_before(row, index, mark);
     InputError::at(
         &source.path,
-        Place {
+        Position {
             line,
             column: column + before,
         },
@@ -273,7 +273,7 @@ pub fn cell_error(
     )
 }
 
-/// Characters of a row in front of its cell `index`.
+/// Number of characters of a row before its cell `index`.
 fn cells_before(row: &str, index: usize, mark: char) -> usize {
     let (mut quoted, mut marks) = (false, 0);
     for (characters, c) in row.chars().enumerate() {

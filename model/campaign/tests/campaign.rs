@@ -1,4 +1,4 @@
-//! Reading campaigns: what a good one holds, what is said of bad ones, and that no input at all makes it panic.
+//! Tests of reading campaigns: the contents of valid ones, the messages for invalid ones, and no panic on any input.
 
 use std::fs;
 use std::path::Path;
@@ -42,7 +42,7 @@ fn folder(manifest: &[u8], lift: &[u8]) -> TempDir {
     dir
 }
 
-/// The fault of a campaign, with the folder's name cut off.
+/// The fault of a campaign, without the folder's name.
 fn fault(manifest: &str, lift: &str) -> String {
     fault_of(folder(manifest.as_bytes(), lift.as_bytes()).path())
 }
@@ -116,7 +116,7 @@ fn an_empty_cell_is_a_dropout() {
     );
 }
 
-/// Two runs of 0.38 s in one log, with a pause of 5 s between them; it begins at 100 s.
+/// Two runs of 0.38 s in one log, with a pause of 5 s between them; the log begins at 100 s.
 fn long_log() -> String {
     let row = |i: usize| {
         let pause_s = if i < 20 { 0.0 } else { 5.0 };
@@ -429,7 +429,7 @@ fn a_log_that_is_no_text_is_called_by_its_kind() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever happens to the bytes of a campaign, it is either read or refused in one line.
+    /// A campaign with arbitrary changes of its bytes is either read or rejected with a message of one line.
     #[test]
     fn mutations_never_panic(
         in_log in any::<bool>(),

@@ -1,4 +1,5 @@
-//! Anybody's logs, by `[columns]` in `campaign.toml`: each reads to the run that this project's own format gives.
+//! Tests of `[columns]` in `campaign.toml`: logs in foreign formats are read as the same run as in the project's own
+//! format.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +13,7 @@ use tempfile::TempDir;
 const HEAD: &str =
     "format = 1\nname = \"a\"\n[[run]]\nfile = \"FILE\"\nbench = \"hitch\"\nload_kg = 150\n";
 
-/// A sample: time, currents, pressure of the cylinder, angle.
+/// A sample: time, currents, cylinder pressure, angle.
 type Row = [f64; 5];
 
 fn samples() -> Vec<Row> {
@@ -94,7 +95,7 @@ fn assert_same(case: &str, run: &Run, rounding: f64) {
     }
 }
 
-/// A table with a time, the currents, the pressure and the angle as a logger writes them.
+/// A table with time, currents, pressure and angle as written by a logger.
 fn table(header: &str, mark: &str, cells: impl Fn(Row) -> [String; 5]) -> String {
     let rows = samples()
         .into_iter()
@@ -190,7 +191,7 @@ fn own_names_are_read_with_any_mark() {
     );
     let german = own.replace(',', ";").replace('.', ",");
     assert_same("comma", &loaded("own.csv", german.as_bytes(), ""), 0.0);
-    // A run that was added in this project's format is read beside others.
+    // A run in the project's format is read in the same campaign.
     assert_same("own", &loaded("own.csv", own.as_bytes(), ENGLISH), 0.0);
 }
 
@@ -220,7 +221,7 @@ fn flags_are_dropouts_and_a_row_that_was_cut_short_is_left_out() {
     );
 }
 
-/// Where the last comma of a row is that begins behind a line break.
+/// Position of the last comma of a row that begins after a line break.
 trait LastComma {
     fn rfind_from_end_of_row(&self) -> usize;
 }
@@ -339,7 +340,7 @@ fn mdf(codec: Option<WriteCodec>) -> Vec<u8> {
         .add_channel("I_lower", "mA", &thousand(column(2)))
         .unwrap();
     group.add_channel("p_cyl", "bar", &column(3)).unwrap();
-    // Twice as fast as the rest.
+    // Sampled twice as fast as the rest.
     let times: Vec<f64> = (0..400).map(|i| f64::from(i) * 0.005).collect();
     let angles: Vec<f64> = times
         .iter()
@@ -417,7 +418,7 @@ fn a_run_may_have_columns_of_its_own() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever happens to the bytes of a log, it is either read or refused in one line.
+    /// A log with arbitrary changes of its bytes is either read or rejected with a message of one line.
     #[test]
     fn mutations_never_panic(
         in_mdf in any::<bool>(),

@@ -1,9 +1,9 @@
-//! An effect as data: its texts, its parameters, and a function that puts it into a plant.
+//! An effect as data: its texts, its parameters, and a function that attaches it to a plant.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::{Channel, Dynamics, Effect, Parameter, SizeResponse};
 
-/// An effect of the catalogue; every field is what the method of [`Effect`] of that name gives.
+/// An effect of the catalogue; every field is the result of the method of [`Effect`] with the same name.
 pub struct Described {
     pub(crate) id: &'static str,
     pub(crate) form: Option<&'static str>,

@@ -1,10 +1,10 @@
-//! Physical effects beyond the paper's plant.
+//! Physical effects that extend the paper's plant.
 //!
-//! * [`catalogue`]: the effects that the project knows, one file each;
-//! * [`expression`]: formulas of a user's own, read, checked and evaluated;
-//! * [`TermEffect`]: such a formula as an effect, like one of the catalogue.
+//! * [`catalogue`]: the known effects, one per file;
+//! * [`expression`]: user-defined formulas: parsing, checking, evaluation;
+//! * [`TermEffect`]: a user-defined formula as an effect.
 //!
-//! Depends on the plant's hooks, which it fills, and on nothing that uses it.
+//! The crate depends on the hooks of the plant, to which it attaches effects.
 //!
 //! ```
 //! let friction = hitch_effects::find("coulomb-friction").expect("in the catalogue");

@@ -1,4 +1,4 @@
-//! A term of a user's own as an effect: plant, identification and reports take it like one of the catalogue.
+//! A user-defined term as an effect, for plant, identification and reports.
 
 use std::any::Any;
 use std::collections::HashMap;
@@ -11,13 +11,13 @@ use hitch_plant::{Channel, Effect, Parameter, ParameterKind};
 use crate::catalogue::CATALOGUE;
 use crate::expression::{ParameterDefinition, Part, Term, TermDefinition, TermError};
 
-/// Every term that was defined since the program started, by its definition as text.
+/// Every term defined since the program started, by its definition as text.
 static TERMS: Mutex<Option<HashMap<String, &'static TermEffect>>> = Mutex::new(None);
 
-/// A term of a user's own.
+/// A user-defined term as an effect.
 ///
-/// Effects live as long as the program, so a term does, too: the same definition gives the same one again, so a program
-/// that reads a model file over and over does not grow.
+/// Effects live as long as the program, and so do terms: equal definitions share one term, so that reading a model file
+/// repeatedly does not leak memory.
 #[derive(Debug)]
 pub struct TermEffect {
     term: Arc<Term>,
@@ -31,7 +31,7 @@ impl TermEffect {
     /// The effect of a definition.
     ///
     /// # Errors
-    /// What is wrong with the definition.
+    /// A fault of the definition.
     pub fn define(definition: TermDefinition) -> Result<&'static Self, TermError> {
         if CATALOGUE.iter().any(|effect| effect.id() == definition.id) {
             let what = format!("{} is an effect of the catalogue", definition.id);
@@ -48,7 +48,7 @@ impl TermEffect {
         Ok(term)
     }
 
-    /// The term that an effect is, if it is no effect of the catalogue.
+    /// The term of an effect; `None` for an effect of the catalogue.
     #[must_use]
     pub fn of(effect: &'static dyn Effect) -> Option<&'static Self> {
         (effect as &dyn Any).downcast_ref()
@@ -60,7 +60,7 @@ impl TermEffect {
         &self.term
     }
 
-    /// What the term gives, in the SI unit of its place, with a value for each parameter in the parameter's unit.
+    /// The value of the term, in the SI unit of its place, with a value per parameter in the parameter's unit.
     #[must_use]
     pub fn function(&self, values: &[f64]) -> TermFunction {
         let parameters_si = self.term.si(values);
@@ -104,7 +104,7 @@ fn parameter(definition: &ParameterDefinition) -> Parameter {
     }
 }
 
-/// Kind of a quantity by its unit, which the term has checked.
+/// Kind of a quantity by its unit, which is known to be valid.
 fn kind(unit: &str) -> ParameterKind {
     let of = |unit: &str| Unit::parse(unit).ok().map(|unit| unit.dimension);
     match of(unit) {

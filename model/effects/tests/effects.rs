@@ -1,18 +1,18 @@
-//! Every effect of the catalogue, by the same tests.
+//! Generic tests of every effect of the catalogue.
 
 use hitch_effects::CATALOGUE;
 use hitch_plant::simulation::{Trace, simulate};
 use hitch_plant::units::pa_from_bar;
 use hitch_plant::{AddedEffect, Channel, Currents, Effect, HitchRig, Model, Rig};
 
-/// A current that rises to `peak_a`, stays and falls, each ramp `ramp_s` long.
+/// A current that rises to `peak_a`, stays and falls, each with a ramp of `ramp_s`.
 fn trapezoid(time_s: f64, from_s: f64, to_s: f64, ramp_s: f64, peak_a: f64) -> f64 {
     let edge = ((time_s - from_s) / ramp_s).min((to_s - time_s) / ramp_s);
     peak_a * edge.clamp(0.0, 1.0)
 }
 
-/// What shows every effect: lifting and lowering in steps and slow ramps, down to the lowest point, on the hitch, and
-/// the same on the flow bench at the load's pressure and close to the relief valve's.
+/// Runs that show every effect: lifting and lowering in steps and slow ramps, down to the lowest point, on the hitch;
+/// and the same on the flow bench at the load's pressure and close to the relief pressure.
 fn runs(model: &Model) -> Vec<Trace> {
     let time_s: Vec<f64> = (0..1200).map(|k| f64::from(k) * 0.02).collect();
     let drive = |lift_a: f64, lower_a: f64| -> Vec<Currents> {
@@ -39,7 +39,7 @@ fn runs(model: &Model) -> Vec<Trace> {
     .collect()
 }
 
-/// The starting points that can show an effect.
+/// The models in which an effect can show.
 fn starting_points_for(effect: &dyn Effect) -> Vec<Model> {
     let needed = effect.needs();
     starting_points()
@@ -90,8 +90,9 @@ fn a_null_value_gives_the_model_without_the_effect_bit_for_bit() {
     }
 }
 
-/// The null value is a limit, not a switch: a millionth of a typical size changes next to nothing. The plant takes finer
-/// steps for what is sudden: what its ordinary steps leave, less than half an instrument's noise, is borne with.
+/// The null value is a limit, not a switch: a size of a millionth of the typical one changes almost nothing. Some
+/// effects make the plant take finer steps; the discretisation error of its ordinary steps, less than half an
+/// instrument's noise, is tolerated.
 #[test]
 fn next_to_its_null_value_an_effect_is_next_to_nothing() {
     const LEFT: [(Channel, f64); 3] = [
@@ -142,7 +143,7 @@ fn a_sensor_effect_changes_only_what_its_sensor_shows() {
         .iter()
         .find(|e| e.id() == "angle-sensor-lag")
         .expect("in the catalogue");
-    // With a lag at all the plant takes the steps that its sensor wants.
+    // With any lag the plant takes the steps that the sensor requires.
     let without = runs(&with(&model, *lag, 1e-9));
     let lagged = runs(&with(&model, *lag, 0.1));
     assert!(difference(&lagged, &without, Channel::RockerAngle) > 0.1);

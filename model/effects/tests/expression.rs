@@ -1,4 +1,5 @@
-//! Terms of a user's own: the formula language against closed form and an independent evaluation, and its messages.
+//! Tests of user-defined terms: the formula language against closed forms and an independent evaluation, and its
+//! messages.
 
 use std::fs;
 
@@ -7,7 +8,7 @@ use hitch_plant::hooks::signals::{SIGNALS, Signals};
 use hitch_plant::{Model, Place};
 use tempfile::TempDir;
 
-/// A parameter that lies between -10 and 10 of its unit.
+/// A parameter with a range of -10 to 10 in its unit.
 fn parameter(name: &str, unit: &str) -> ParameterDefinition {
     ParameterDefinition {
         name: name.to_owned(),
@@ -33,7 +34,7 @@ fn definition(place: Place, formula: &str, parameters: &[(&str, &str)]) -> TermD
     }
 }
 
-/// Value of a formula of pure numbers that does without parameters.
+/// Value of a formula of pure numbers without parameters.
 fn value(formula: &str) -> f64 {
     let formula = format!("k * ({formula})");
     let term = Term::new(definition(Place::LiftFlowFactor, &formula, &[("k", "")]));
@@ -149,7 +150,7 @@ fn everything_is_si_inside() {
     }
 }
 
-/// What a friction formula with a size k in N and a length d in mm is told.
+/// The message for a friction formula with a size k in N and a length d in mm.
 fn fault(formula: &str) -> String {
     let mut definition = definition(Place::Friction, formula, &[("k", "N"), ("d", "mm")]);
     definition.parameters[1].low = 0.5;
@@ -158,7 +159,7 @@ fn fault(formula: &str) -> String {
         .unwrap_or_else(|| "no fault".to_owned())
 }
 
-/// Reads a model file that holds terms. A formula starts in column 12.
+/// Reads a model file with terms. A formula starts in column 12.
 fn read_with(terms: &[TermDefinition]) -> Result<Model, String> {
     let mut text = "format = 1\nbase = \"nominal\"\n".to_owned();
     for term in terms {
@@ -321,7 +322,7 @@ fn assert_fault(formula: &str, expected: &str) {
     );
 }
 
-/// What the definition of a friction term is told after a change.
+/// The message for the definition of a friction term after a change.
 fn definition_fault(change: impl FnOnce(&mut TermDefinition)) -> String {
     let mut definition = definition(
         Place::Friction,

@@ -1,4 +1,4 @@
-//! Random formulas: the compiled form against an evaluation of its own, and texts that are no formulas.
+//! Random formulas: the compiled form against an independent evaluation; and texts that are not formulas.
 
 use hitch_effects::expression::check;
 use hitch_effects::expression::evaluate::Code;
@@ -10,7 +10,7 @@ use proptest::test_runner::RngSeed;
 
 const NAMES: [&str; 2] = ["a", "b"];
 
-/// A formula of pure numbers, as the test sees it.
+/// A formula of pure numbers in the representation of the test.
 #[derive(Debug, Clone)]
 enum Tree {
     Number(f64),
@@ -22,7 +22,7 @@ enum Tree {
 }
 
 impl Tree {
-    /// The value, straight from the definitions.
+    /// The value, directly from the definitions.
     fn value(&self, names: &[f64; 2], angle: f64) -> f64 {
         let of = |tree: &Tree| tree.value(names, angle);
         match self {
@@ -37,7 +37,7 @@ impl Tree {
         }
     }
 
-    /// The text with as few parentheses as there can be, and how tight it holds: 1 a sum to 5 an atom.
+    /// The text with the fewest parentheses, and its precedence: 1 for a sum to 5 for an atom.
     fn text(&self) -> (String, u8) {
         let within = |tree: &Tree, tightness: u8| match tree.text() {
             (text, own) if own >= tightness => text,
@@ -99,12 +99,12 @@ fn call(name: &str, of: &[f64]) -> f64 {
     }
 }
 
-/// The smaller one; the second of two zeros, of which `f64::min` gives either, and a division tells which.
+/// The smaller number; of two zeros the second one. `f64::min` may return either, and a division distinguishes them.
 fn less(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// The greater one, likewise.
+/// The larger number, likewise.
 fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
@@ -135,7 +135,7 @@ fn trees() -> impl Strategy<Value = Tree> {
     })
 }
 
-/// The whole way of a text: parse, check, compile, evaluate.
+/// All stages of a formula: parse, check, compile, evaluate.
 fn evaluate(text: &str, names: &[f64; 2], signals: &Signals) -> Result<f64, Fault> {
     let tree = parse(text, &NAMES)?;
     check::dimension(&tree, text, &[Dimension::NUMBER; 2])?;

@@ -1,4 +1,4 @@
-//! Effects that are known in more than one form, against closed forms on the flow bench.
+//! Effects with more than one form, against closed forms on the flow bench.
 
 use hitch_effects::CATALOGUE;
 use hitch_plant::simulation::simulate;
@@ -20,7 +20,7 @@ fn model(name: &str, values: &[f64]) -> Model {
     }])
 }
 
-/// Flow, l/min, that the bench's meter shows under a lift and a lowering current over time.
+/// Flow, l/min, of the flow meter on the bench with a lift and a lowering current over time.
 fn flow_lpm(
     model: &Model,
     port_bar: f64,
@@ -41,8 +41,8 @@ fn triangle_a(time_s: f64) -> f64 {
     1.5 + 0.05 * (10.0 - (time_s - 12.0).abs()).max(0.0)
 }
 
-/// Choudhury's spool on a triangle: it stays at 1.5 A until the current is a band away, follows it half of what the
-/// jump left behind, and does so again on the way down from the peak.
+/// Choudhury's spool with a triangular current: it stays at 1.5 A until the current has changed by a band, then follows
+/// with half of the remaining band as lag, and does the same on the way down from the peak.
 #[test]
 fn a_following_spool_sticks_where_the_current_stood_or_turned() {
     let (band_a, jump) = (0.08, 0.6);
@@ -51,7 +51,7 @@ fn a_following_spool_sticks_where_the_current_stood_or_turned() {
         let current_a = triangle_a(time_s);
         let (rises, peak_a) = (time_s < 12.0, 2.0);
         match (rises, current_a) {
-            // It came from nothing, and rests as far behind as it followed.
+            // It started from zero, and rests with the lag with which it followed.
             (true, a) if a - 1.5 <= band_a => 1.5 - behind_a,
             (true, a) => a - behind_a,
             (false, a) if peak_a - a <= band_a => peak_a - behind_a,
@@ -111,8 +111,8 @@ fn a_narrow_gap_passes_less_when_the_oil_is_cold() {
     }
 }
 
-/// The spool's balance by hand: with a force of 0.3 at 15 bar it travels 1.3 / (1 + 0.3 dp / 15 bar) of its way at
-/// another drop.
+/// Force balance of the spool by hand: with a force ratio of 0.3 at 15 bar its travel is multiplied by 1.3 / (1 + 0.3
+/// dp / 15 bar) at another drop.
 #[test]
 fn a_flow_force_on_the_travel_reads_the_table_at_another_current() {
     let time_s = [0.0, 0.02];
@@ -138,13 +138,14 @@ fn a_flow_force_on_the_travel_reads_the_table_at_another_current() {
     }
 }
 
-/// The spool's equation of motion in tiny steps: `w'' = omega^2 (I - w) - 2 damping omega w'`, omega from the lag.
+/// The spool's equation of motion, integrated in very small steps: `w'' = omega^2 (I - w) - 2 damping omega w'`, omega
+/// from the lag.
 #[test]
 fn a_swinging_spool_overshoots_as_its_equation_says() {
     let (lag_s, damping) = (0.06, 0.45);
     let omega_rad_s = 2.0 * damping / lag_s;
     let time_s: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.02).collect();
-    // Linear between the samples, as a log is.
+    // Linear between the samples, like a log.
     let edge_a = |time_s: f64| 1.5 + 25.0 * (time_s - 0.2).clamp(0.0, 0.02);
     let step_s = 1e-5;
     let (mut place_a, mut speed_a_s, mut fine_s) = (1.5, 0.0, 0.0);
@@ -177,8 +178,8 @@ fn a_swinging_spool_overshoots_as_its_equation_says() {
     }
 }
 
-/// Dahl's friction by hand: pressure at rest is the weight's and, after lifting, the whole friction more, after lowering
-/// the whole friction less; trembling takes its share of that away a second.
+/// Dahl's friction by hand: the pressure at rest is that of the weight, plus the full friction after lifting, minus the
+/// full friction after lowering; the vibration reduces the friction by a share per second.
 #[test]
 fn bristles_hold_at_rest_what_they_held_in_motion() {
     let (force_n, bending_mm, load_kg) = (450.0, 0.3, 150.0);
@@ -221,7 +222,7 @@ fn bristles_hold_at_rest_what_they_held_in_motion() {
             let pressure_pa = pa_from_bar(trace.channel(Channel::CylinderPressure)[sample]);
             pressure_pa * rough.constants().cylinder.area_m2() - weight_n
         };
-        // The valves are shut from 2 s and from 4.5 s on.
+        // The valves are closed from 2 s and from 4.5 s on.
         for (shut_s, later_s, sign) in [(2.02, 3.9, 1.0), (4.52, 6.9, -1.0)] {
             for at_s in [shut_s, later_s] {
                 let left = (-straightening_1_s * (at_s - shut_s)).exp();
@@ -236,7 +237,8 @@ fn bristles_hold_at_rest_what_they_held_in_motion() {
     }
 }
 
-/// In motion bristles are plain dry friction, on the dynamic plant as well: the pressure is the other form's.
+/// In motion the bristles act as plain dry friction, in the dynamic plant as well: the pressure equals that of the
+/// other form.
 #[test]
 fn bristles_in_motion_are_dry_friction() {
     let time_s: Vec<f64> = (0..150).map(|k| f64::from(k) * 0.02).collect();
@@ -263,7 +265,7 @@ fn bristles_in_motion_are_dry_friction() {
     }
 }
 
-/// A margin that falls with the flow: `Q^2 / Q_table^2 = (drop - k Q) / drop`, a quadratic in the flow.
+/// A margin that decreases with the flow: `Q^2 / Q_table^2 = (drop - k Q) / drop`, a quadratic equation in the flow.
 #[test]
 fn a_compensator_that_droops_with_the_flow_leaves_the_flow_of_a_quadratic() {
     let (flow_share, slope, port_bar) = (0.15, 0.004, 30.0);
@@ -291,8 +293,8 @@ fn a_compensator_that_droops_with_the_flow_leaves_the_flow_of_a_quadratic() {
     }
 }
 
-/// On its way to the margin over the port and back to idling the pump's pressure loses the same share of what it lacks
-/// in every sample: `exp(-dt / lag)`.
+/// The deviation of the pump pressure from the margin above the port, and from the idle pressure afterwards, decays by
+/// the same factor in every sample: `exp(-dt / lag)`.
 #[test]
 fn a_late_compensator_gets_to_its_pressure_as_its_equation_says() {
     const STEP_S: f64 = 0.01;
@@ -323,7 +325,7 @@ fn a_late_compensator_gets_to_its_pressure_as_its_equation_says() {
     }
 }
 
-/// Virtual work at rest: of what hangs on the hitch the load alone weighs more, and most at both ends.
+/// Virtual work at rest: only the load's part of the weight changes, and most at both ends.
 #[test]
 fn a_load_that_pitches_weighs_more_and_the_links_do_not() {
     let (share, slope, bow) = (0.1, 0.2, 0.5);
@@ -352,8 +354,8 @@ fn a_load_that_pitches_weighs_more_and_the_links_do_not() {
     }
 }
 
-/// What turns with the shaft is stated at 150 kg and mid stroke, where it is as good as inertia of the load; a lighter
-/// load rings the slower for it, as the root of the inertia.
+/// The shaft's inertia is specified at 150 kg and mid-stroke, where it is equivalent to inertia of the load. With a
+/// lighter load the oscillation is slower, by the square root of the inertia.
 #[test]
 fn inertia_on_the_shaft_is_the_same_whatever_the_load() {
     let period_s = |form: &str, shape: &[f64], load_kg: f64| {
@@ -391,13 +393,13 @@ fn inertia_on_the_shaft_is_the_same_whatever_the_load() {
     let plain = |load_kg| period_s("load-inertia", &[], load_kg);
     let on_shaft = |load_kg| period_s("load-inertia/shaft", &[1.0], load_kg);
     assert!((on_shaft(150.0) / plain(150.0) - 1.0).abs() < 2e-3);
-    // (80 + 0.5 * 180) / (1.5 * 80), less what the piston's own 20 kg make of it.
+    // (80 + 0.5 * 180) / (1.5 * 80), less the effect of the piston's own 20 kg.
     let expected = (170.0_f64 / 120.0).sqrt();
     assert!((on_shaft(50.0) / plain(50.0) / expected - 1.0).abs() < 5e-3);
 }
 
-/// Oil is kept: behind shut valves the piston moves by what the oil gives up and the hose takes, of which a share has
-/// followed the recorded pressure late (`W' = (share C p - W) / creep`).
+/// The oil volume behind closed valves is constant: the piston moves by the change of the oil's and the hose's volume,
+/// of which a share follows the recorded pressure with a lag (`W' = (share C p - W) / creep`).
 #[test]
 fn a_creeping_hose_takes_the_oil_that_the_piston_gives_up() {
     let (compliance_cm3_bar, share, creep_s) = (0.06, 0.6, 0.08);
@@ -417,7 +419,7 @@ fn a_creeping_hose_takes_the_oil_that_the_piston_gives_up() {
     let mut last = plant.state();
     let mut wall_pa = last.pressure_pa;
     let (mut kept_m3, mut swing_m, mut error_m): (f64, f64, f64) = (0.0, 0.0, 0.0);
-    // The spools have shut half a second after their current is gone.
+    // The spools have closed half a second after the current is off.
     let (off_s, shut_s) = (1.0, 1.5);
     for step in 1..5000 {
         let time_s = f64::from(step) * step_s;

@@ -1,4 +1,4 @@
-//! Terms of a user's own in the plant: at every place, on the hitch and on the flow bench, steady and dynamic.
+//! User-defined terms in the plant: at every place, on the hitch and on the flow bench, steady and dynamic.
 
 use hitch_effects::expression::{ParameterDefinition, TermDefinition};
 use hitch_effects::{TermEffect, find};
@@ -39,7 +39,7 @@ fn term(place: Place, formula: &str, unit: &str, value: f64) -> AddedEffect {
     AddedEffect::typical(TermEffect::define(definition).unwrap())
 }
 
-/// Lifts and lowers with pauses, and shows all instruments.
+/// Lifting and lowering with pauses; returns all instruments.
 fn run(model: &Model, rig: Rig) -> Trace {
     let trapezoid = |time_s: f64, start_s: f64| {
         let (rise, fall) = ((time_s - start_s) / 0.15, (start_s + 1.0 - time_s) / 0.15);
@@ -56,7 +56,7 @@ fn run(model: &Model, rig: Rig) -> Trace {
     simulate(model, rig, 40.0, &time_s, &currents)
 }
 
-/// Greatest difference of two traces, in the channels' units; values that are not numbers have to be so in both.
+/// Largest difference of two traces, in the channels' units; NaN has to occur in both.
 fn difference(a: &Trace, b: &Trace) -> f64 {
     let pairs = a.channels.iter().flatten().zip(b.channels.iter().flatten());
     pairs
@@ -86,7 +86,7 @@ type Twin = (
     &'static [f64],
 );
 
-/// A formula and the effect of the catalogue that it writes down, with its values.
+/// A formula and the equivalent effect of the catalogue, with its values.
 #[rustfmt::skip]
 const TWINS: [Twin; 9] = [
     (Place::LiftCurrent, "-c", "A", 0.05, "lift-threshold-shift", &[0.05]),
@@ -112,7 +112,7 @@ fn a_term_that_writes_down_an_effect_is_that_effect() {
                 };
                 let twin = run(&with(&model, effect), rig);
                 let away = difference(&own, &twin);
-                // The dynamic plant cuts the last of a ringing that nothing but an effect keeps up.
+                // The dynamic plant cuts the end of an oscillation unless an effect sustains it.
                 assert!(away < 1e-3, "{formula} is not {id}: {away}, {}", model.name);
             }
         }
@@ -200,7 +200,7 @@ fn what_is_not_finite_or_beyond_all_bounds_stops_nothing() {
                     );
                     let plain = run(&model, rig);
                     if !value.is_finite() {
-                        // The start angle is looked for with the sensor's term, to 0.1 um of travel.
+                        // The start angle is found iteratively with the sensor's term, to 0.1 um of travel.
                         assert!(difference(&trace, &plain) < 1e-6, "{}", place.id());
                     }
                 }
@@ -209,7 +209,7 @@ fn what_is_not_finite_or_beyond_all_bounds_stops_nothing() {
     }
 }
 
-/// An effect whose term has a value that no formula should have.
+/// An effect whose term has an invalid value.
 #[derive(Debug)]
 struct Lawless {
     place: Place,

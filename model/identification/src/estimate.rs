@@ -1,4 +1,4 @@
-//! What a fit may change, and its scaling.
+//! The free parameters of a fit, and their scaling.
 
 use hitch_plant::{AddedEffect, Model, Parameter, SizeResponse};
 use nalgebra::DVector;
@@ -9,31 +9,31 @@ use crate::data::experiment::{Experiment, LOAD_PRIOR, Nuisance};
 /// A Gauss-Newton step with Levenberg-Marquardt damping.
 #[derive(Debug, Clone)]
 pub struct Step {
-    /// Steps of the shared parameters, in their scales.
+    /// Steps of the shared parameters, in units of their scales.
     pub shared: DVector<f64>,
     /// Steps of each run's load error, in prior sigmas.
     pub loads: Vec<f64>,
 }
 
-/// Values of everything that is free: the effects' parameters, and the nuisances with a prior.
+/// Values of all free parameters: those of the effects, and the nuisance parameters, which have priors.
 #[derive(Debug, Clone)]
 pub struct Estimate {
     /// The model's effects with their present values.
     pub effects: Vec<AddedEffect>,
-    /// What the log's clocks are off by.
+    /// Offsets of the log's clocks.
     pub clocks: Clocks,
-    /// Effects that the model had before a search, as they were adopted.
+    /// Effects that the model had before the search, with the sizes they had then.
     pub adopted: Vec<Adopted>,
-    /// What each run may be off by.
+    /// Nuisance parameters of each run.
     pub nuisances: Vec<Nuisance>,
-    /// How far a channel may be stamped off the currents, s.
+    /// Largest clock offset between a channel and the currents, s.
     pub clocks_within_s: f64,
 }
 
-/// A nuisance is never believed to be further off than this many prior sigmas.
-const FARTHEST: f64 = 5.0;
+/// Bound on a load error, in prior sigmas.
+const LOAD_BOUND: f64 = 5.0;
 
-/// What a load error loses when it is told in sigmas.
+/// Rounding error of a load error converted to prior sigmas and back.
 const ROUNDING: f64 = 1e-9;
 
 /// An effect that a model had before a search.
@@ -41,9 +41,9 @@ const ROUNDING: f64 = 1e-9;
 pub struct Adopted {
     /// Its id.
     pub id: &'static str,
-    /// Its size then, in the unit of its parameter.
+    /// Its size before the search, in the unit of its parameter.
     pub size: f64,
-    /// What of it a fit leaves as it is.
+    /// Which of its parameters a fit holds fixed.
     pub held: Held,
 }
 
@@ -61,11 +61,11 @@ pub enum Held {
 pub enum Shared {
     /// Parameter of an effect, by the two indices.
     Effect(usize, usize),
-    /// How late a channel is stamped, by its index.
+    /// Clock offset of a channel, by its index, s; positive if stamped late.
     Offset(usize),
 }
 
-/// The shared nuisances, in the order of their columns.
+/// The shared nuisance parameters, in the order of their columns.
 pub const CLOCKS: [Shared; 4] = [
     Shared::Offset(0),
     Shared::Offset(1),
@@ -74,7 +74,7 @@ pub const CLOCKS: [Shared; 4] = [
 ];
 
 impl Shared {
-    /// Whether it is a nuisance with a prior of one scale about nothing.
+    /// Whether it is a nuisance parameter; its prior has mean zero and a standard deviation of one scale.
     #[must_use]
     pub fn has_prior(self) -> bool {
         !matches!(self, Self::Effect(..))
@@ -82,13 +82,13 @@ impl Shared {
 }
 
 impl Estimate {
-    /// A model with these effects.
+    /// The model with these effects.
     #[must_use]
     pub fn applied_to(&self, model: &Model) -> Model {
         model.with_effects(self.effects.clone())
     }
 
-    /// The effects as they are, nothing off.
+    /// The given effects, with zero clock offsets and load errors.
     #[must_use]
     pub fn new(experiment: &Experiment, effects: Vec<AddedEffect>) -> Self {
         Self {
@@ -100,7 +100,7 @@ impl Estimate {
         }
     }
 
-    /// Every shared parameter that is free, effects first, then [`CLOCKS`].
+    /// All free shared parameters: those of the effects, then [`CLOCKS`].
     #[must_use]
     pub fn shared(&self) -> Vec<Shared> {
         let effects = self.effects.iter().enumerate().flat_map(|(effect, added)| {
@@ -111,7 +111,7 @@ impl Estimate {
         effects.chain(CLOCKS).collect()
     }
 
-    /// How many parameters of an effect are free, counted from its size; more than it has if all are.
+    /// Number of free parameters of an effect, the size first; `usize::MAX` if all are free.
     #[must_use]
     pub fn free_parameters(&self, id: &str) -> usize {
         match self.adopted_as(id).map(|adopted| adopted.held) {
@@ -121,7 +121,7 @@ impl Estimate {
         }
     }
 
-    /// The same with its effects adopted: a fit leaves them as they are.
+    /// The same estimate with all its effects adopted: a fit holds them fixed.
     #[must_use]
     pub fn with_adopted(mut self) -> Self {
         let adopted = |added: &AddedEffect| Adopted {
@@ -141,20 +141,20 @@ impl Estimate {
         }
     }
 
-    /// How an effect was adopted; `None` if it was not.
+    /// The adopted state of an effect; `None` if it was not adopted.
     #[must_use]
     pub fn adopted_as(&self, id: &str) -> Option<&Adopted> {
         self.adopted.iter().find(|adopted| adopted.id == id)
     }
 
-    /// Whether an effect, by its index, is as it was adopted.
+    /// Whether an effect, by its index, is adopted and held fixed.
     #[must_use]
     pub fn is_unchanged(&self, effect: usize) -> bool {
         let adopted = self.adopted_as(self.effects[effect].effect.id());
         adopted.is_some_and(|adopted| adopted.held == Held::All)
     }
 
-    /// The size at which an effect, by its index, counts as absent: as it was adopted, or its null value.
+    /// Size at which an effect, by its index, counts as absent: its adopted size, or its null value.
     #[must_use]
     pub fn off(&self, effect: usize) -> f64 {
         let own = self.effects[effect].effect;
@@ -168,7 +168,8 @@ impl Estimate {
         &self.effects[effect].effect.parameters()[parameter]
     }
 
-    /// How what the instruments show depends on a shared parameter: of an effect at a place, only the size is located.
+    /// How the simulated channels respond to a shared parameter. Only the size of a located effect is located; its
+    /// other parameters respond smoothly.
     #[must_use]
     pub fn size_response(&self, shared: Shared) -> SizeResponse {
         match shared {
@@ -182,7 +183,7 @@ impl Estimate {
         }
     }
 
-    /// A natural size of a shared parameter, in its unit: its step in a fit is one of these.
+    /// Scale of a shared parameter, in its unit. Steps of a fit are given in scales.
     #[must_use]
     pub fn scale(&self, shared: Shared) -> f64 {
         match shared {
@@ -200,7 +201,7 @@ impl Estimate {
         }
     }
 
-    /// How far a shared parameter may go down and up from where it stands, in its scales.
+    /// Distances from the value of a shared parameter to the lower and upper end of its range, in scales.
     #[must_use]
     pub fn room(&self, shared: Shared) -> (f64, f64) {
         let (low, high) = self.range(shared);
@@ -220,14 +221,14 @@ impl Estimate {
         }
     }
 
-    /// Whether a shared parameter stands at an end of its range.
+    /// Whether a shared parameter is at an end of its range.
     #[must_use]
     pub fn is_at_an_end(&self, shared: Shared) -> bool {
         let (value, (low, high)) = (self.get(shared), self.range(shared));
         value <= low || value >= high
     }
 
-    /// Sets a shared parameter, within its range.
+    /// Sets a shared parameter, clamped to its range.
     pub fn set(&mut self, shared: Shared, value: f64) {
         let (low, high) = self.range(shared);
         let value = value.max(low).min(high);
@@ -237,7 +238,7 @@ impl Estimate {
         }
     }
 
-    /// The estimate after a step, within all ranges.
+    /// The estimate after a step, clamped to all ranges.
     #[must_use]
     pub fn moved(&self, parameters: &[Shared], step: &Step) -> Self {
         let mut moved = self.clone();
@@ -250,7 +251,7 @@ impl Estimate {
         moved
     }
 
-    /// The step that leads here from another estimate: less than was asked for where a range ends.
+    /// The step from another estimate to this one: shorter than the step asked for if a range clamped it.
     #[must_use]
     pub fn step_from(&self, from: &Self, parameters: &[Shared]) -> Step {
         let shared = parameters
@@ -269,35 +270,35 @@ impl Estimate {
         self.nuisances[run].load / LOAD_PRIOR
     }
 
-    /// Whether a run's load error stands at an end of its range and a `pull` of the residuals on it, in costs a sigma,
-    /// would move it out.
+    /// Whether a run's load error is at an end of its range and the gradient `pull` of the residuals, in cost per
+    /// sigma, points outwards.
     #[must_use]
     pub fn load_would_leave(&self, run: usize, pull: f64) -> bool {
         let load = self.load(run);
-        load.abs() >= FARTHEST - ROUNDING && (pull - load) * load > 0.0
+        load.abs() >= LOAD_BOUND - ROUNDING && (pull - load) * load > 0.0
     }
 
     /// Sets the load error of a run, in prior sigmas.
     pub fn set_load(&mut self, run: usize, sigmas: f64) {
-        self.nuisances[run].load = sigmas.clamp(-FARTHEST, FARTHEST) * LOAD_PRIOR;
+        self.nuisances[run].load = sigmas.clamp(-LOAD_BOUND, LOAD_BOUND) * LOAD_PRIOR;
     }
 
-    /// The same without one of the effects, by its index; one that was adopted is as it was then.
+    /// The estimate without one of the effects, by its index. An adopted effect returns to its adopted size instead.
     #[must_use]
     pub fn without(&self, effect: usize) -> Self {
-        let mut lighter = self.clone();
+        let mut reduced = self.clone();
         let id = self.effects[effect].effect.id();
-        let mut adopted = lighter.adopted.iter_mut();
+        let mut adopted = reduced.adopted.iter_mut();
         match adopted.find(|adopted| adopted.id == id) {
             Some(adopted) => {
                 adopted.held = Held::All;
-                lighter.effects[effect].values[0] = adopted.size;
+                reduced.effects[effect].values[0] = adopted.size;
             }
             None => {
-                lighter.effects.remove(effect);
+                reduced.effects.remove(effect);
             }
         }
-        lighter
+        reduced
     }
 
     /// Cost of the priors: squared distance in prior sigmas.

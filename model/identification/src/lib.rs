@@ -1,17 +1,17 @@
-//! From a campaign to the physical effects that a model lacks.
+//! Identification: finds the physical effects that a model lacks to explain a measured campaign.
 //!
-//! Folders, from below; none imports one above it:
+//! Modules from the bottom layer to the top; none imports one above it:
 //!
-//! * [`data`]: what a campaign gives, prepared: an [`Experiment`];
-//! * [`estimate`]: values of everything that is free;
-//! * [`residuals`]: measured less simulated, whitened;
-//! * [`estimation`]: sensitivities, least squares, nuisances projected out: a [`Fit`];
-//! * [`adequacy`]: what a fit leaves, where, and what it depends on;
-//! * [`selection`]: evidence, hold-out, penalty and probability of sets of effects;
-//! * [`search`]: the dictionary and the best subsets of it;
-//! * [`design`]: the experiment that tells two effects apart;
-//! * [`explanation`]: the set that was found, as steps from the model to it;
-//! * [`suggestion`]: a formula for what is left;
+//! * [`data`]: prepares the logs of a campaign: an [`Experiment`];
+//! * [`estimate`]: values of all free parameters;
+//! * [`residuals`]: measured minus simulated, whitened;
+//! * [`estimation`]: sensitivities, least squares, projection of nuisance parameters: a [`Fit`];
+//! * [`adequacy`]: lack of fit, its location, and the signals it depends on;
+//! * [`selection`]: evidence, hold-out, complexity penalty and posterior probability of sets of effects;
+//! * [`search`]: the dictionary and its best subsets;
+//! * [`design`]: the experiment that discriminates between two effects;
+//! * [`explanation`]: the selected set of effects, as steps from the model to it;
+//! * [`suggestion`]: a formula for the remaining residuals;
 //! * [`base`]: constants of the base model, estimated from a campaign.
 #![forbid(unsafe_code)]
 

@@ -1,13 +1,13 @@
 //! Physical dimensions: powers of metre, kilogram, second, ampere and kelvin.
 //!
-//! An angle is a pure number. Powers are rational, because flow goes with the square root of a pressure: they count in
-//! twelfths, so halves, thirds and quarters are exact.
+//! An angle is a pure number. Exponents are rational, as flow is proportional to the square root of pressure: they are
+//! stored in twelfths, so halves, thirds and quarters are exact.
 
 use std::fmt;
 
-/// Parts that a power is counted in.
+/// Denominator of the exponents.
 const PARTS: i16 = 12;
-/// Largest power, in parts. What goes beyond is no physical quantity.
+/// Largest exponent, in twelfths. No physical quantity exceeds it.
 const MOST: i16 = 60 * PARTS;
 /// Symbols of the base units.
 const SYMBOLS: [&str; 5] = ["kg", "m", "s", "A", "K"];
@@ -16,7 +16,7 @@ const SYMBOLS: [&str; 5] = ["kg", "m", "s", "A", "K"];
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Dimension([i16; 5]);
 
-/// Dimensions that have a name, and the unit that people know them by.
+/// Named dimensions, with their usual unit.
 const NAMED: [(Dimension, &str, &str); 20] = [
     (Dimension::whole([0, 1, 0, 0, 0]), "a length", "m"),
     (Dimension::whole([0, 2, 0, 0, 0]), "an area", "m2"),
@@ -62,7 +62,7 @@ impl Dimension {
     /// The dimension of a length.
     pub const LENGTH: Self = Self::whole([0, 1, 0, 0, 0]);
 
-    /// Whole powers of kilogram, metre, second, ampere and kelvin.
+    /// Integer exponents of kilogram, metre, second, ampere and kelvin.
     #[must_use]
     pub const fn whole(powers: [i8; 5]) -> Self {
         let mut parts = [0; 5];
@@ -74,32 +74,32 @@ impl Dimension {
         Self(parts)
     }
 
-    /// True for a pure number.
+    /// Whether it is a pure number.
     #[must_use]
     pub fn is_number(self) -> bool {
         self == Self::NUMBER
     }
 
-    /// Dimension of a product; `None` where a power gets out of hand.
+    /// Dimension of a product; `None` if an exponent is out of range.
     #[must_use]
     pub fn times(self, other: Self) -> Option<Self> {
         self.join(other, |a, b| a + b)
     }
 
-    /// Dimension of a quotient; `None` where a power gets out of hand.
+    /// Dimension of a quotient; `None` if an exponent is out of range.
     #[must_use]
     pub fn over(self, other: Self) -> Option<Self> {
         self.join(other, |a, b| a - b)
     }
 
-    /// Dimension of a power; `None` where a power gets out of hand or is no multiple of a twelfth.
+    /// Dimension of a power; `None` if an exponent is out of range or not a multiple of a twelfth.
     #[must_use]
     pub fn power(self, exponent: f64) -> Option<Self> {
         let mut result = Self::NUMBER;
         for (part, own) in result.0.iter_mut().zip(self.0) {
             let wanted = f64::from(own) * exponent;
             let nearest = wanted.round();
-            // A third as a floating-point number is off by its rounding only.
+            // A third as a floating-point number differs only by its rounding error.
             let fits = (wanted - nearest).abs() <= 1e-9 && nearest.abs() <= f64::from(MOST);
             if !fits {
                 return None;
@@ -121,7 +121,7 @@ impl Dimension {
             .then_some(result)
     }
 
-    /// The dimension in words: `a pressure (Pa)`, `a pure number`.
+    /// Description of the dimension: `a pressure (Pa)`, `a pure number`.
     #[must_use]
     pub fn in_words(self) -> String {
         if self.is_number() {
@@ -138,7 +138,7 @@ impl Dimension {
     }
 }
 
-/// Writes a unit of the dimension as [`crate::unit::Unit`] reads it: `Pa`, `kg/(m s3)`, `1`.
+/// Writes a unit of the dimension in the syntax of [`crate::unit::Unit`]: `Pa`, `kg/(m s3)`, `1`.
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some((_, _, unit)) = self.named() {

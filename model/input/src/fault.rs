@@ -1,17 +1,17 @@
-//! What is wrong with a formula or a unit, where, and how to mend it.
+//! A fault in a formula or a unit: where, what, and a suggested correction.
 
 use std::fmt;
 
-/// A fault of a text that somebody wrote.
+/// A fault in a text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
-    /// Byte of the text where it is.
+    /// Byte offset in the text.
     pub byte: usize,
-    /// Column of that byte, counted from 1 in characters.
+    /// Column of that byte, in characters from 1.
     pub column: usize,
-    /// What is wrong.
+    /// Description.
     pub what: String,
-    /// How to mend it.
+    /// Suggested correction.
     pub mend: String,
 }
 
@@ -27,7 +27,7 @@ impl Fault {
         }
     }
 
-    /// The same fault of a text that holds the other one from `byte` on.
+    /// The same fault in a text that contains this one from `byte` on.
     #[must_use]
     pub fn inside(self, text: &str, byte: usize) -> Self {
         Self::at(text, byte + self.byte, self.what, self.mend)
@@ -42,7 +42,7 @@ impl fmt::Display for Fault {
 
 impl std::error::Error for Fault {}
 
-/// A piece of a formula for a message: as it stands, between backquotes, cut where it gets long.
+/// A part of a formula for a message, in backquotes, truncated if long.
 #[must_use]
 pub fn shown(piece: &str) -> String {
     const LONGEST: usize = 48;

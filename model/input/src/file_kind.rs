@@ -1,9 +1,9 @@
-//! What a file is that is no text, by its first bytes.
+//! Identification of binary files by their first bytes.
 
-/// How many bytes tell.
+/// Number of bytes that are examined.
 const LOOKED_AT: usize = 4096;
 
-/// A kind of file that is told by its first bytes.
+/// A kind of file that is identified by its first bytes.
 struct Kind {
     magic: &'static [u8],
     name: &'static str,
@@ -45,7 +45,7 @@ static KINDS: [Kind; 14] = [
     kind(b"SQLite format 3", "a database of SQLite", AS_CSV),
 ];
 
-/// What a file is that begins with `bytes`, and how to make text of it; `None` if it may be text.
+/// The kind of a file that begins with `bytes`, and how to convert it to text; `None` if it may be text.
 pub fn of_binary(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     of_magic(bytes).or_else(|| {
         let begin = &bytes[..bytes.len().min(LOOKED_AT)];
@@ -53,7 +53,7 @@ pub fn of_binary(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     })
 }
 
-/// The same, if the first bytes name the format.
+/// The same for formats with a magic number.
 pub fn of_magic(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     let known = KINDS.iter().find(|kind| bytes.starts_with(kind.magic));
     known.map(|kind| (kind.name, kind.mend))

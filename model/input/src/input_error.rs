@@ -1,34 +1,34 @@
-//! What is wrong with an input file, and where.
+//! Faults of input files, with their positions.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// A fault in a file that somebody wrote: what it is, where it is and how to mend it.
+/// A fault in an input file: what, where, and a suggested correction.
 ///
-/// It prints as one line, `file:line:column: what; how to mend it`, whatever the file contains.
+/// It prints as one line, `file:line:column: what; how to mend it`, regardless of the file's contents.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InputError {
-    /// The file, or the folder, that is at fault.
+    /// The faulty file or folder.
     pub file: PathBuf,
-    /// Line and column, both counted from 1; `None` if the file as a whole is at fault.
-    pub place: Option<Place>,
-    /// What is wrong.
+    /// Line and column, both from 1; `None` for a fault of the whole file.
+    pub place: Option<Position>,
+    /// Description.
     pub what: String,
-    /// How to mend it; empty if `what` says so already.
+    /// Suggested correction; empty if `what` implies it.
     pub mend: String,
 }
 
-/// A place in a text file, as editors count it: from 1, columns in characters.
+/// A position in a text file as in editors: from 1, columns in characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Place {
-    /// Line, the first is 1.
+pub struct Position {
+    /// Line, from 1.
     pub line: usize,
-    /// Character in the line, the first is 1.
+    /// Character in the line, from 1.
     pub column: usize,
 }
 
 impl InputError {
-    /// A fault of the file as a whole.
+    /// A fault of the whole file.
     pub fn of_file(file: &Path, what: impl Into<String>, mend: impl Into<String>) -> Self {
         Self {
             file: file.to_path_buf(),
@@ -38,8 +38,13 @@ impl InputError {
         }
     }
 
-    /// A fault at one place of the file.
-    pub fn at(file: &Path, place: Place, what: impl Into<String>, mend: impl Into<String>) -> Self {
+    /// A fault at one position of the file.
+    pub fn at(
+        file: &Path,
+        place: Position,
+        what: impl Into<String>,
+        mend: impl Into<String>,
+    ) -> Self {
         Self {
             place: Some(place),
             ..Self::of_file(file, what, mend)
@@ -50,7 +55,7 @@ impl InputError {
 impl fmt::Display for InputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", one_line(&self.file.display().to_string()))?;
-        if let Some(Place { line, column }) = self.place {
+        if let Some(Position { line, column }) = self.place {
             write!(f, ":{line}:{column}")?;
         }
         write!(f, ": {}", one_line(&self.what))?;
@@ -63,7 +68,7 @@ impl fmt::Display for InputError {
 
 impl std::error::Error for InputError {}
 
-/// Quotes a piece of a file for an error message: escaped, and cut where it gets long.
+/// Quotes a part of a file for an error message: escaped, and truncated if long.
 pub fn quote(text: &str) -> String {
     const LONGEST: usize = 40;
     let mut shown: String = text.chars().take(LONGEST).collect();
@@ -73,7 +78,7 @@ pub fn quote(text: &str) -> String {
     format!("{shown:?}")
 }
 
-/// Escapes what would break a line or steer a terminal.
+/// Escapes line breaks and control characters of terminals.
 fn one_line(text: &str) -> String {
     let mut line = String::with_capacity(text.len());
     for c in text.chars() {
@@ -92,7 +97,7 @@ mod tests {
 
     #[test]
     fn prints_one_line_whatever_it_holds() {
-        let place = Place { line: 3, column: 7 };
+        let place = Position { line: 3, column: 7 };
         let error = InputError::at(
             Path::new("a\nb.csv"),
             place,

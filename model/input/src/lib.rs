@@ -1,10 +1,10 @@
 //! Text files as input.
 //!
-//! * [`source_file`]: the text of a file, and where in it something stands;
-//! * [`input_error`]: what is wrong, where, and how to mend it;
+//! * [`source_file`]: the text of a file, with positions in it;
+//! * [`input_error`]: faults: what, where, and a suggested correction;
 //! * [`toml_reader`]: checked access to TOML;
-//! * [`naming`]: what is said of a name that is not known;
-//! * [`mod@unit`] and [`dimension`]: units of measurement as they are written.
+//! * [`naming`]: messages about unknown names;
+//! * [`mod@unit`] and [`dimension`]: units of measurement and their syntax.
 //!
 //! Depends on no other crate of the project.
 #![forbid(unsafe_code)]

@@ -1,14 +1,14 @@
-//! Helps somebody who wrote a name that is not known.
+//! Messages about unknown names.
 //!
-//! Names of quantities end in their unit (`flow_lpm`), so a name that differs from a known one only behind the last
-//! underscore is that quantity in a unit that is not known.
+//! Names of quantities end in their unit (`flow_lpm`). A name that differs from a known one only after the last
+//! underscore is therefore that quantity in an unknown unit.
 
 use crate::input_error::quote;
 
-/// Spelling similarity (Jaro-Winkler, 0 to 1) from which on a known name is worth offering.
-const SIMILAR_ENOUGH: f64 = 0.84;
+/// Smallest similarity (Jaro-Winkler, 0 to 1) of a known name to be suggested.
+const SMALLEST_SIMILARITY: f64 = 0.84;
 
-/// Says what is wrong with `given`, a `kind` ("column", "key", "effect") that is none of `known`.
+/// Fault of the name `given` of a `kind` ("column", "key", "effect") that is not in `known`.
 pub fn unknown_name(kind: &str, given: &str, known: &[&str]) -> String {
     if let Some((unit, right)) = wrong_unit(given, known) {
         return format!("unit {} is not known, this {kind} is {right}", plain(unit));
@@ -16,7 +16,7 @@ pub fn unknown_name(kind: &str, given: &str, known: &[&str]) -> String {
     format!("{kind} {} is not known", quote(given))
 }
 
-/// Offers the nearest of the known names, or all of them if none is near.
+/// Suggests the most similar known name, or lists all if none is similar.
 pub fn offer_names(given: &str, known: &[&str]) -> String {
     if let Some((_, right)) = wrong_unit(given, known) {
         return format!("convert the values and name it {right}");
@@ -27,13 +27,13 @@ pub fn offer_names(given: &str, known: &[&str]) -> String {
     }
 }
 
-/// The known name that is spelt most like `given`, if any comes near.
+/// The known name that is most similar to `given`, if any is similar.
 pub fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
     let given = given.to_lowercase();
     known
         .iter()
         .map(|name| (strsim::jaro_winkler(&given, &name.to_lowercase()), *name))
-        .filter(|(similarity, _)| *similarity >= SIMILAR_ENOUGH)
+        .filter(|(similarity, _)| *similarity >= SMALLEST_SIMILARITY)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, name)| name)
 }
@@ -48,7 +48,7 @@ fn wrong_unit<'a, 'k>(given: &'a str, known: &[&'k str]) -> Option<(&'a str, &'k
     (*right != given && !unit.is_empty()).then_some((unit, *right))
 }
 
-/// A unit as it stands, or quoted if it is not a plain word.
+/// A unit, quoted unless it is a plain word.
 fn plain(unit: &str) -> String {
     let is_word = unit.len() <= 20 && unit.chars().all(char::is_alphanumeric);
     if is_word {

@@ -1,28 +1,28 @@
-//! A text file that is read whole, with its name kept for error messages.
+//! A text file, read completely, with its name for error messages.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::file_kind;
-use crate::input_error::{InputError, Place};
+use crate::input_error::{InputError, Position};
 
-/// Longest file that is read: an hour at 1 kHz with eight columns stays below it.
+/// Longest file, bytes: an hour at 1 kHz with eight columns is shorter.
 const LONGEST_FILE_BYTES: u64 = 512 * 1024 * 1024;
 
-/// The text of a file and where it came from.
+/// The text of a file and its path.
 #[derive(Debug, Clone)]
 pub struct SourceFile {
-    /// Path, as the user gave it.
+    /// Path, as given by the user.
     pub path: PathBuf,
     /// The text, without a byte order mark.
     pub text: String,
 }
 
 impl SourceFile {
-    /// Reads a UTF-8 text file; a byte order mark in front is dropped.
+    /// Reads a UTF-8 text file; a leading byte order mark is dropped.
     ///
     /// # Errors
-    /// If the file is missing, not a regular file, too long, not readable or not UTF-8.
+    /// The file is missing, not a regular file, too long, not readable or not UTF-8.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let bytes = bytes_of(path)?;
         if is_utf16(&bytes) {
@@ -45,11 +45,11 @@ impl SourceFile {
         }
     }
 
-    /// Reads a text file in whatever encoding loggers and tools write: UTF-8, UTF-16, or else Windows-1252, which any
-    /// bytes are. A byte order mark in front is dropped.
+    /// Reads a text file in any encoding of loggers and tools: UTF-8, UTF-16, or else Windows-1252, which accepts any
+    /// bytes. A leading byte order mark is dropped.
     ///
     /// # Errors
-    /// If the file is missing, not a regular file, too long, not readable or no text.
+    /// The file is missing, not a regular file, too long, not readable or not text.
     pub fn read_any(path: &Path) -> Result<Self, InputError> {
         let bytes = bytes_of(path)?;
         let binary = file_kind::of_magic(&bytes).or_else(|| {
@@ -65,7 +65,7 @@ impl SourceFile {
         }
     }
 
-    /// A file whose text is not looked at: its name alone.
+    /// A file without its text, only the name.
     pub fn named(path: &Path) -> Self {
         Self {
             path: path.to_path_buf(),
@@ -74,7 +74,7 @@ impl SourceFile {
     }
 
     /// Line and column of a byte of the text.
-    pub fn place(&self, byte: usize) -> Place {
+    pub fn place(&self, byte: usize) -> Position {
         place(&self.text, byte)
     }
 
@@ -88,13 +88,13 @@ impl SourceFile {
         InputError::at(&self.path, self.place(byte), what, mend)
     }
 
-    /// A fault of the file as a whole.
+    /// A fault of the whole file.
     pub fn error(&self, what: impl Into<String>, mend: impl Into<String>) -> InputError {
         InputError::of_file(&self.path, what, mend)
     }
 }
 
-/// The bytes of a regular file that is not too long.
+/// The bytes of a regular file within the length limit.
 fn bytes_of(path: &Path) -> Result<Vec<u8>, InputError> {
     let unreadable = |error: std::io::Error| unreadable(path, &error);
     let about = fs::metadata(path).map_err(unreadable)?;
@@ -109,10 +109,10 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, InputError> {
     fs::read(path).map_err(unreadable)
 }
 
-/// The text of some bytes, without a byte order mark.
+/// Decodes bytes, without a byte order mark.
 fn decoded(bytes: &[u8]) -> String {
     let encoding = if is_utf16(bytes) {
-        // Of what is mostly ASCII, the byte that is zero is the high one.
+        // In mostly ASCII text, the zero byte is the high one.
         match bytes.first() {
             Some(0 | 0xFE) => encoding_rs::UTF_16BE,
             _ => encoding_rs::UTF_16LE,
@@ -129,8 +129,8 @@ fn is_binary(path: &Path, what: &str, mend: &str) -> InputError {
     InputError::of_file(path, format!("is {what}, not text"), mend)
 }
 
-/// Counts lines at LF, CR LF and lone CR, as the CSV reader does.
-fn place(text: &str, byte: usize) -> Place {
+/// Counts lines at LF, CR LF and lone CR, like the CSV reader.
+fn place(text: &str, byte: usize) -> Position {
     let mut end = byte.min(text.len());
     while !text.is_char_boundary(end) {
         end -= 1;
@@ -142,7 +142,7 @@ fn place(text: &str, byte: usize) -> Place {
     let line_ends = (0..bytes.len()).filter(|&i| ends_line(i));
     let (count, last) = line_ends.fold((0, None), |(count, _), i| (count + 1, Some(i)));
     let start = last.map_or(0, |i| i + 1);
-    Place {
+    Position {
         line: count + 1,
         column: before[start..].chars().count() + 1,
     }
@@ -161,8 +161,8 @@ fn unreadable(path: &Path, error: &std::io::Error) -> InputError {
     }
 }
 
-/// Whether it is UTF-16, as editors and spreadsheets on Windows write it: by its mark, or since every other byte of
-/// what is hardly anything but ASCII is zero.
+/// Whether the bytes are UTF-16, as written by editors and spreadsheets on Windows: by the byte order mark, or by zeros
+/// in every other byte of mostly ASCII text.
 fn is_utf16(bytes: &[u8]) -> bool {
     const LOOKED_AT: usize = 4096;
     let begin = &bytes[..bytes.len().min(LOOKED_AT)];
@@ -207,18 +207,18 @@ mod tests {
     #[test]
     fn counts_lines_however_they_end() {
         let text = "a\r\nbé\nc\rd";
-        assert_eq!(place(text, 0), Place { line: 1, column: 1 });
+        assert_eq!(place(text, 0), Position { line: 1, column: 1 });
         assert_eq!(
             place(text, text.find('é').unwrap() + 2),
-            Place { line: 2, column: 3 }
+            Position { line: 2, column: 3 }
         );
         assert_eq!(
             place(text, text.find('c').unwrap()),
-            Place { line: 3, column: 1 }
+            Position { line: 3, column: 1 }
         );
         assert_eq!(
             place(text, text.find('d').unwrap()),
-            Place { line: 4, column: 1 }
+            Position { line: 4, column: 1 }
         );
         assert_eq!(place(text, 1000).line, 4);
     }

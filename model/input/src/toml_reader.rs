@@ -1,4 +1,4 @@
-//! Reads TOML tables key by key, so that every fault has a line and a column.
+//! Reads TOML tables key by key, with line and column for every fault.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -19,10 +19,10 @@ pub struct TomlTable<'a> {
 }
 
 impl<'a> TomlTable<'a> {
-    /// Parses a file; the table returned is its top level.
+    /// Parses a file; returns its top-level table.
     ///
     /// # Errors
-    /// If the text is not TOML.
+    /// The text is not TOML.
     pub fn parse(source: &'a SourceFile) -> Result<Self, InputError> {
         let entries = DeTable::parse(&source.text).map_err(|error| {
             let byte = error.span().map_or(0, |span| span.start);
@@ -43,7 +43,7 @@ impl<'a> TomlTable<'a> {
         self.source.error_at(self.span.start, what, mend)
     }
 
-    /// A fault of the value of `key`; of the table if there is no such key.
+    /// A fault of the value of `key`, or of the table without such a key.
     pub fn error_at(
         &self,
         key: &str,
@@ -57,7 +57,7 @@ impl<'a> TomlTable<'a> {
         self.source.error_at(byte, what, mend)
     }
 
-    /// A fault of the text of `key`, at a byte of the text; at its beginning if it is written with escapes.
+    /// A fault at a byte of the text of `key`; at its beginning if the text contains escapes.
     pub fn error_inside(
         &self,
         key: &str,
@@ -71,7 +71,7 @@ impl<'a> TomlTable<'a> {
                 return None;
             };
             let written = self.source.text.get(value.span())?;
-            // One quote or three; what stands between them is the text itself unless it is escaped.
+            // One quote or three; without escapes the text between them is literal.
             Some(value.span().start + written.find(text.as_ref())?.max(1) + byte)
         };
         match inside() {
@@ -80,17 +80,17 @@ impl<'a> TomlTable<'a> {
         }
     }
 
-    /// The file this table stands in.
+    /// The file of this table.
     pub fn source(&self) -> &'a SourceFile {
         self.source
     }
 
-    /// True if the table has this key.
+    /// Whether the table has this key.
     pub fn has(&self, key: &str) -> bool {
         self.entries.contains_key(key)
     }
 
-    /// True if the value of this key is a table.
+    /// Whether the value of this key is a table.
     pub fn is_table(&self, key: &str) -> bool {
         let value = self.entries.get(key).map(Spanned::get_ref);
         matches!(value, Some(DeValue::Table(_)))
@@ -101,10 +101,10 @@ impl<'a> TomlTable<'a> {
         self.entries.keys().map(|key| key.get_ref().as_ref())
     }
 
-    /// Refuses keys that are none of `known`.
+    /// Rejects keys that are not in `known`.
     ///
     /// # Errors
-    /// At the first such key of the file.
+    /// The first such key of the file.
     pub fn only(&self, known: &[&str]) -> Result<(), InputError> {
         let unknown = self
             .entries
@@ -128,7 +128,7 @@ impl<'a> TomlTable<'a> {
     /// A number within a range; `None` if the key is missing.
     ///
     /// # Errors
-    /// If the value is not a finite number of the range.
+    /// The value is not a finite number in the range.
     pub fn number(&self, key: &str, range: RangeInclusive<f64>) -> Result<Option<f64>, InputError> {
         let Some(value) = self.entries.get(key) else {
             return Ok(None);
@@ -149,10 +149,10 @@ impl<'a> TomlTable<'a> {
         Err(self.error_at(key, what, mend))
     }
 
-    /// A number that has to be there.
+    /// A required number.
     ///
     /// # Errors
-    /// If the key is missing, or its value is not a finite number of the range.
+    /// The key is missing, or its value is not a finite number in the range.
     pub fn required_number(
         &self,
         key: &str,
@@ -164,7 +164,7 @@ impl<'a> TomlTable<'a> {
     /// A list of numbers within a range; `None` if the key is missing.
     ///
     /// # Errors
-    /// If the value is not a list, or one of its values is not a finite number of the range.
+    /// The value is not a list, or one of its elements is not a finite number in the range.
     pub fn numbers(
         &self,
         key: &str,
@@ -199,7 +199,7 @@ impl<'a> TomlTable<'a> {
     /// A text; `None` if the key is missing.
     ///
     /// # Errors
-    /// If the value is not a text.
+    /// The value is not a text.
     pub fn text(&self, key: &str) -> Result<Option<&str>, InputError> {
         match self.entries.get(key).map(Spanned::get_ref) {
             None => Ok(None),
@@ -211,10 +211,10 @@ impl<'a> TomlTable<'a> {
         }
     }
 
-    /// A text that has to be there.
+    /// A required text.
     ///
     /// # Errors
-    /// If the key is missing or its value is not a text.
+    /// The key is missing or its value is not a text.
     pub fn required_text(&self, key: &str) -> Result<&str, InputError> {
         self.text(key)?.ok_or_else(|| self.missing(key))
     }
@@ -222,7 +222,7 @@ impl<'a> TomlTable<'a> {
     /// The table `[key]`; `None` if it is missing.
     ///
     /// # Errors
-    /// If the value is not a table.
+    /// The value is not a table.
     pub fn table(&self, key: &str) -> Result<Option<TomlTable<'a>>, InputError> {
         let Some(value) = self.entries.get(key) else {
             return Ok(None);
@@ -239,10 +239,10 @@ impl<'a> TomlTable<'a> {
         Ok(Some(self.inner(name, value.span(), entries)))
     }
 
-    /// The tables `[[key]]`, in the order of the file; none if there is none.
+    /// The tables `[[key]]`, in the order of the file; empty if there are none.
     ///
     /// # Errors
-    /// If the value is not a list of tables.
+    /// The value is not a list of tables.
     pub fn tables(&self, key: &str) -> Result<Vec<TomlTable<'a>>, InputError> {
         let Some(value) = self.entries.get(key) else {
             return Ok(Vec::new());
@@ -269,7 +269,7 @@ impl<'a> TomlTable<'a> {
         items.iter().map(table).collect()
     }
 
-    /// The fault that a key is missing.
+    /// The fault of a missing key.
     pub fn missing(&self, key: &str) -> InputError {
         self.error(
             format!("{} has no {key}", self.name),
@@ -277,7 +277,7 @@ impl<'a> TomlTable<'a> {
         )
     }
 
-    /// A key of this table as a heading names it.
+    /// The path of a key of this table, as in a heading.
     fn path(&self, key: &str) -> String {
         let own = self.name.trim_matches(['[', ']']);
         if own == self.name {
@@ -297,7 +297,7 @@ impl<'a> TomlTable<'a> {
     }
 }
 
-/// How to mend what the parser of TOML complains of.
+/// Suggested correction for an error of the TOML parser.
 fn mend_of(message: &str) -> &'static str {
     if message.contains("duplicate key") {
         "delete one of the two, or give it another name"
@@ -310,9 +310,9 @@ fn mend_of(message: &str) -> &'static str {
     }
 }
 
-/// A number of a range that somebody would write.
+/// An example number in a range.
 fn example(range: &RangeInclusive<f64>) -> f64 {
-    /// Beyond this an end is no choice of anybody.
+    /// Beyond this an end of the range is not a sensible example.
     const LARGE: f64 = 1e5;
     match *range.start() {
         start if start.abs() <= LARGE => start,

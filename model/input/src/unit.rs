@@ -1,7 +1,7 @@
-//! Units as people write them: `bar`, `l/min/bar`, `N*s/m`, `kg/(m s2)`, `m3/s/Pa^0.5`.
+//! Syntax of units: `bar`, `l/min/bar`, `N*s/m`, `kg/(m s2)`, `m3/s/Pa^0.5`.
 //!
-//! A unit is a product or quotient of named units; a slash divides by the one factor behind it, as in arithmetic.
-//! Whole powers stand behind the name (`m2`) or behind `^` (`m^-2`, `Pa^0.5`, `m^(1/3)`).
+//! A unit is a product or quotient of named units; a slash divides by the single factor after it, as in arithmetic.
+//! Integer exponents follow the name (`m2`) or `^` (`m^-2`, `Pa^0.5`, `m^(1/3)`).
 
 use std::f64::consts::PI;
 
@@ -9,13 +9,13 @@ use crate::dimension::Dimension;
 use crate::fault::{Fault, shown};
 use crate::naming::offer_names;
 
-/// Longest unit that is read, in bytes; it bounds the nesting, too.
+/// Longest unit, in bytes; it also bounds the nesting.
 const LONGEST: usize = 64;
 
-/// A unit: how large it is in SI, and of which dimension.
+/// A unit: its size in SI and its dimension.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
-    /// One of it in SI.
+    /// Its size in SI.
     pub si: f64,
     /// Its dimension.
     pub dimension: Dimension,
@@ -26,7 +26,7 @@ const fn named(name: &'static str, si: f64, powers: [i8; 5]) -> (&'static str, U
     (name, Unit { si, dimension })
 }
 
-/// Units that have a name, each with its size in SI and its powers of kg, m, s, A and K.
+/// Named units, each with its size in SI and its exponents of kg, m, s, A and K.
 #[rustfmt::skip]
 static NAMED: [(&str, Unit); 25] = [
     named("m", 1.0, [0, 1, 0, 0, 0]),
@@ -41,7 +41,7 @@ static NAMED: [(&str, Unit); 25] = [
     named("A", 1.0, [0, 0, 0, 1, 0]),
     named("mA", 1e-3, [0, 0, 0, 1, 0]),
     named("K", 1.0, [0, 0, 0, 0, 1]),
-    // A step of one degree; what is counted in it counts from 0 degree Celsius.
+    // A step of one degree; values are in degree Celsius.
     named("degC", 1.0, [0, 0, 0, 0, 1]),
     named("rad", 1.0, [0; 5]),
     named("deg", PI / 180.0, [0; 5]),
@@ -64,10 +64,10 @@ impl Unit {
         dimension: Dimension::NUMBER,
     };
 
-    /// Reads a unit; an empty text is that of a pure number.
+    /// Parses a unit; an empty text is a pure number.
     ///
     /// # Errors
-    /// What is wrong with it, and where.
+    /// A fault and its position.
     pub fn parse(text: &str) -> Result<Self, Fault> {
         if text.len() > LONGEST {
             let what = format!("the unit is longer than {LONGEST} characters");
@@ -94,7 +94,7 @@ impl Unit {
     }
 
     fn power(self, exponent: f64) -> Option<Self> {
-        // `powi`, where it will do, gives 1e-6 for mm2; `powf` need not.
+        // `powi` gives exactly 1e-6 for mm2; `powf` may not.
         let si = if exponent.fract() == 0.0 && exponent.abs() < 64.0 {
             self.si.powi(exponent as i32)
         } else {
@@ -109,14 +109,14 @@ impl Unit {
     }
 }
 
-/// Reads a unit from left to right.
+/// Parser of a unit, from left to right.
 struct Reader<'t> {
     text: &'t str,
     at: usize,
 }
 
 impl<'t> Reader<'t> {
-    /// The next character that is no blank, left in place.
+    /// The next non-blank character, without consuming it.
     fn next(&mut self) -> Option<char> {
         let rest = &self.text[self.at..];
         self.at += rest.len() - rest.trim_start().len();

@@ -12,34 +12,34 @@ const M3_PER_L: f64 = 1e-3;
 const S_PER_MS: f64 = 1e-3;
 const M_PER_MM: f64 = 1e-3;
 
-/// One number of a model file.
+/// A constant of a model file.
 pub struct Constant {
-    /// Table it stands in.
+    /// Its table.
     pub table: &'static str,
-    /// Key, with the unit in it.
+    /// Key, including the unit.
     pub key: &'static str,
-    /// One unit of the key in SI.
+    /// Size of the key's unit in SI.
     pub unit: f64,
-    /// Values that make sense, in the unit of the key.
+    /// Allowed range, in the unit of the key.
     pub range: RangeInclusive<f64>,
-    /// Where the model keeps it, in SI.
+    /// Accessor in the model, in SI.
     pub place: fn(&mut Constants) -> &mut f64,
 }
 
-/// A valve's characteristic, which is a table of numbers.
+/// A valve's flow curve.
 pub struct Curve {
-    /// Table it stands in.
+    /// Its table.
     pub table: &'static str,
-    /// Where the model keeps it.
+    /// Accessor in the model.
     pub place: fn(&mut Constants) -> &mut OrificeValve,
 }
 
-/// Key of the currents of a characteristic, A.
+/// Key of the currents of a flow curve, A.
 pub const CURRENT: &str = "current_a";
-/// Key of the flows of a characteristic, l/min.
+/// Key of the flows of a flow curve, l/min.
 pub const FLOW: &str = "flow_lpm";
 
-/// Characteristics.
+/// All flow curves.
 pub const CURVES: [Curve; 2] = [
     Curve {
         table: "lift_valve",
@@ -51,7 +51,7 @@ pub const CURVES: [Curve; 2] = [
     },
 ];
 
-/// Tables, in the order in which they are written.
+/// Tables, in the order of the file.
 pub const TABLES: [&str; 11] = [
     "pump",
     "relief_valve",
@@ -81,7 +81,7 @@ const fn constant(
     }
 }
 
-/// Every number but the characteristics.
+/// All constants except the flow curves.
 #[rustfmt::skip]
 pub static CONSTANTS: [Constant; 27] = [
     constant(("pump", "theoretical_flow_lpm"), M3_S_PER_LPM, 0.1..=1000.0, |c| &mut c.pump.theoretical_flow_m3_s),
@@ -125,7 +125,7 @@ pub fn keys(table: &str) -> Vec<&'static str> {
         .collect()
 }
 
-/// Constants that are all still to be read: not a number, so that one that is forgotten cannot go unnoticed.
+/// Constants before reading: all NaN, so that a forgotten one is detected.
 pub fn unset() -> Constants {
     const UNSET: f64 = f64::NAN;
     let valve = || OrificeValve {

@@ -3,7 +3,7 @@
 //! ```toml
 //! format = 1
 //! name = "rebuilt"
-//! base = "nominal"            # optional: what is not written below is as in this one
+//! base = "nominal"            # optional: source of all constants not given below
 //! dynamics = "steady"         # or "dynamic"
 //!
 //! [relief_valve]
@@ -14,8 +14,8 @@
 //! shift_a = 0.199
 //! ```
 //!
-//! A file can have terms of its own beside the effects of the catalogue: see [`hitch_effects::expression`]. `[[term]]` defines
-//! one; it acts once an `[[effect]]` adds it with a value for each parameter, and until then a fit may try it.
+//! A file can define its own terms in addition to the effects of the catalogue: see [`hitch_effects::expression`]. A
+//! `[[term]]` is active once an `[[effect]]` adds it with a value for each parameter; until then a fit may try it.
 //!
 //! ```toml
 //! [[term]]
@@ -43,9 +43,9 @@
 //! depth_mm = 22
 //! ```
 //!
-//! Depends on the plant and its effects.
+//! The crate depends on the plant and its effects.
 //!
-//! Keys end in their unit. Without `base`, every constant has to be there; a file that the program writes is complete.
+//! Keys end in their unit. Without `base`, all constants are required; files written by the program are complete.
 #![forbid(unsafe_code)]
 
 mod constants;
@@ -68,7 +68,7 @@ use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 use hitch_plant::Model;
 
-/// A term as it stands in a model file.
+/// A term as defined in a model file.
 #[must_use]
 pub fn term_text(term: &TermEffect) -> String {
     let mut text = String::new();
@@ -76,29 +76,29 @@ pub fn term_text(term: &TermEffect) -> String {
     text.trim_start().to_owned()
 }
 
-/// The only format there is.
+/// The supported format version.
 const FORMAT: f64 = 1.0;
 
 /// Reads a model file.
 ///
 /// # Errors
-/// What is wrong with it, by line and column.
+/// A fault, with line and column.
 pub fn read(path: &Path) -> Result<Model, InputError> {
     parse(&SourceFile::read(path)?)
 }
 
-/// Reads a model file whose text is at hand.
+/// Parses the text of a model file.
 ///
 /// # Errors
-/// What is wrong with it, by line and column.
+/// A fault, with line and column.
 pub fn parse(source: &SourceFile) -> Result<Model, InputError> {
     read::model(source)
 }
 
-/// A starting point by its name (`nominal`, `dynamic`), or else the model of the file of that name.
+/// A built-in model by its name (`nominal`, `dynamic`), or else the model in the file with that name.
 ///
 /// # Errors
-/// What is wrong with the file, by line and column.
+/// A fault in the file, with line and column.
 pub fn named(name: &str) -> Result<Model, InputError> {
     if let Some(model) = starting_point(name) {
         return Ok(model);
@@ -114,7 +114,7 @@ pub fn named(name: &str) -> Result<Model, InputError> {
     ))
 }
 
-/// The model as the text of a model file. To read it gives the same model, bit for bit.
+/// The text of a model file. Reading it returns the same model, bit for bit.
 #[must_use]
 pub fn to_toml(model: &Model) -> String {
     write::model(model)

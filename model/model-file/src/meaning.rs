@@ -1,14 +1,14 @@
-//! What each constant of a model file means, and where a data sheet states it.
+//! The meaning of each constant of a model file, and where data sheets state it.
 
-/// Meaning of a table or of a constant, for people who fill in a model file.
+/// Documentation of a table or a constant, for users who fill in a model file.
 pub struct Meaning {
     /// Table.
     pub table: &'static str,
     /// Key; empty for the table itself.
     pub key: &'static str,
-    /// What it is.
+    /// Description.
     pub what: &'static str,
-    /// Where it is found.
+    /// Source in data sheets.
     pub found: &'static str,
 }
 
@@ -72,7 +72,7 @@ static MEANINGS: [Meaning; 42] = [
     meaning(("masses", "piston_kg"), "Piston and rod, kg", "Cylinder data sheet"),
 ];
 
-/// The meaning of a constant, or of a table if the key is empty.
+/// The documentation of a constant, or of a table if the key is empty.
 pub fn meaning_of(table: &str, key: &str) -> Option<&'static Meaning> {
     let mut all = MEANINGS.iter();
     all.find(|meaning| meaning.table == table && meaning.key == key)

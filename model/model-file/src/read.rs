@@ -14,9 +14,9 @@ use hitch_plant::{
 use crate::constants::{CONSTANTS, CURRENT, CURVES, Constant, Curve, FLOW, TABLES, keys, unset};
 use crate::{FORMAT, starting_point, terms};
 
-/// Currents of a characteristic, A.
+/// Range of the currents of a flow curve, A.
 const CURRENT_A: std::ops::RangeInclusive<f64> = 0.0..=20.0;
-/// Flows of a characteristic, l/min.
+/// Range of the flows of a flow curve, l/min.
 const FLOW_LPM: std::ops::RangeInclusive<f64> = 0.0..=1000.0;
 
 /// The model of a file.
@@ -50,7 +50,7 @@ pub fn model(source: &SourceFile) -> Result<Model, InputError> {
     Ok(model.with_effects(effects))
 }
 
-/// The starting point that the file builds on.
+/// The base model of the file.
 fn base(top: &TomlTable<'_>) -> Result<Option<Model>, InputError> {
     let Some(name) = top.text("base")? else {
         return Ok(None);
@@ -78,7 +78,7 @@ fn dynamics(top: &TomlTable<'_>, inherited: Option<Dynamics>) -> Result<Dynamics
     }
 }
 
-/// Reads one table into the constants. What is missing keeps its value if `complete` without it, else it is a fault.
+/// Reads one table into the constants. If `complete`, missing keys keep their values, else they are faults.
 fn read_table(
     top: &TomlTable<'_>,
     name: &str,
@@ -208,7 +208,7 @@ fn effect_of(
     })
 }
 
-/// At the likeliest of the constants that it may be about of those that the file has.
+/// Position of the first key in the file among the constants that the error may be about.
 fn linkage_fault(top: &TomlTable<'_>, fault: &LinkageError) -> InputError {
     let (what, mend) = (fault.to_string(), fault.mend());
     for (table, key) in fault.keys() {

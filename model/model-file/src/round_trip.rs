@@ -1,9 +1,9 @@
-//! Decimal numbers that read back as the same SI value.
+//! Decimal numbers that convert back to the same SI value.
 
-/// Most significant digits that a number may need.
+/// Most significant digits of a number.
 const MOST_DIGITS: usize = 17;
 
-/// The shortest decimal number of `unit`s that is `si` again when it is read and multiplied by `unit`.
+/// The shortest decimal number that yields exactly `si` when multiplied by `unit`.
 pub fn decimal(si: f64, unit: f64) -> String {
     let value = si / unit;
     let near = [value, value.next_up(), value.next_down()];
@@ -18,7 +18,7 @@ pub fn decimal(si: f64, unit: f64) -> String {
     )
 }
 
-/// Writes a number as TOML does, without an exponent where it stays readable.
+/// Formats a number for TOML, without an exponent if it is readable that way.
 fn plain(value: f64) -> String {
     let readable = value == 0.0 || (1e-5..1e7).contains(&value.abs());
     if readable {

@@ -1,4 +1,4 @@
-//! The two starting points that come with the project: model files like any other, built in.
+//! The two built-in models, as model files.
 
 use hitch_input::source_file::SourceFile;
 use hitch_plant::Model;
@@ -12,7 +12,7 @@ pub fn nominal() -> Model {
     built_in("nominal.toml", NOMINAL)
 }
 
-/// The same with known dynamics.
+/// The same with dynamics.
 #[must_use]
 pub fn dynamic() -> Model {
     built_in("dynamic.toml", DYNAMIC)

@@ -25,7 +25,7 @@ pub struct Template {
     constants: Constants,
 }
 
-/// Which of the two valves.
+/// One of the two valves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Valve {
     /// The lift valve.
@@ -44,7 +44,7 @@ impl Valve {
         }
     }
 
-    /// The valve among a model's constants.
+    /// The valve in a model's constants.
     #[must_use]
     pub fn of(self, constants: &Constants) -> &OrificeValve {
         match self {
@@ -53,7 +53,7 @@ impl Valve {
         }
     }
 
-    /// The valve among a model's constants, to be changed.
+    /// The valve in a model's constants, mutable.
     pub fn of_mut(self, constants: &mut Constants) -> &mut OrificeValve {
         match self {
             Self::Lift => &mut constants.lift_valve,
@@ -72,10 +72,10 @@ impl Template {
         }
     }
 
-    /// Value of a constant in the unit of its key, as a model file writes it.
+    /// Value of a constant in the unit of its key, as written in a model file.
     ///
     /// # Errors
-    /// If there is no such constant: what is wrong and how to mend it.
+    /// There is no such constant: the fault and a suggested correction.
     pub fn get(&self, name: &str) -> Result<String, String> {
         let constant = find(name)?;
         let value = *(constant.place)(&mut self.constants.clone());
@@ -85,7 +85,7 @@ impl Template {
     /// Sets a constant, `table.key`, in the unit of its key.
     ///
     /// # Errors
-    /// If there is no such constant, or it may not have that value: what is wrong and how to mend it.
+    /// There is no such constant, or the value is out of range: the fault and a suggested correction.
     pub fn set(&mut self, name: &str, value: &str) -> Result<(), String> {
         let constant = find(name)?;
         let number = value.trim().replace(',', ".").parse::<f64>().ok();
@@ -117,7 +117,7 @@ impl Template {
     /// The text of the model file.
     ///
     /// # Errors
-    /// If the constants make no model, by line and column of the text.
+    /// The constants do not form a valid model, with line and column of the text.
     pub fn text(&self) -> Result<String, InputError> {
         let text = self.written();
         crate::parse(&SourceFile {
@@ -127,7 +127,7 @@ impl Template {
         Ok(text)
     }
 
-    /// The text. (Writing to a string cannot fail, so the results are dropped.)
+    /// The text. Writing to a string cannot fail, so the results are ignored.
     fn written(&self) -> String {
         let dynamics = match self.constants.dynamics {
             Dynamics::Steady => "steady",
@@ -165,7 +165,7 @@ fn comment(text: &mut String, table: &str, key: &str) {
     }
 }
 
-/// The constant of a name `table.key`.
+/// The constant with the name `table.key`.
 fn find(name: &str) -> Result<&'static Constant, String> {
     let named = |constant: &Constant| format!("{}.{}", constant.table, constant.key);
     let mut all = CONSTANTS.iter();

@@ -1,4 +1,4 @@
-//! Terms of a user's own in a model file: `[[term]]`, and a `[[term.parameter]]` for each parameter.
+//! User-defined terms in a model file: `[[term]]`, with a `[[term.parameter]]` for each parameter.
 
 use std::fmt::Write as _;
 
@@ -71,7 +71,7 @@ fn parameter(table: &TomlTable<'_>, size: bool) -> Result<ParameterDefinition, I
     })
 }
 
-/// The fault of a definition, where it stands in the file.
+/// A fault of a definition, with its position in the file.
 fn placed(table: &TomlTable<'_>, error: TermError) -> InputError {
     let TermError { part, what, mend } = error;
     match part {
@@ -87,7 +87,7 @@ fn placed(table: &TomlTable<'_>, error: TermError) -> InputError {
     }
 }
 
-/// Writes a term. (Writing to a string cannot fail, so the results are dropped.)
+/// Writes a term. Writing to a string cannot fail, so the results are ignored.
 pub fn write(text: &mut String, term: &TermEffect) {
     let TermDefinition {
         id,

@@ -10,7 +10,7 @@ use crate::constants::{CONSTANTS, CURRENT, CURVES, Curve, FLOW, TABLES};
 use crate::round_trip::decimal;
 use crate::terms;
 
-/// The text of a complete model file. (Writing to a string cannot fail, so the results are dropped.)
+/// The text of a complete model file. Writing to a string cannot fail, so the results are ignored.
 pub fn model(model: &Model) -> String {
     let mut constants = model.constants().clone();
     let dynamics = match constants.dynamics {

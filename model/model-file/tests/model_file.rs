@@ -1,4 +1,4 @@
-//! Model files: what is written reads back bit for bit, and what is wrong is told by line and column.
+//! Tests of model files: writing and reading is exact bit for bit, and faults are reported with line and column.
 
 use std::fs;
 
@@ -27,7 +27,7 @@ fn fault(text: &str) -> String {
         .unwrap_or_else(|| "no fault".to_owned())
 }
 
-/// A term of a user's own whose texts need quoting.
+/// A user-defined term whose texts need quoting.
 fn term() -> &'static TermEffect {
     let size = ParameterDefinition {
         name: "c".to_owned(),
@@ -206,7 +206,7 @@ fn faults_have_a_line_and_a_column() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever happens to the bytes of a model file, it is either read or refused in one line.
+    /// A model file with arbitrary changes of its bytes is either read or rejected with a message of one line.
     #[test]
     fn mutations_never_panic(edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..3_u8), 1..6)) {
         let effects = vec![AddedEffect::typical(CATALOGUE[0]), AddedEffect::typical(term())];
@@ -225,7 +225,7 @@ proptest! {
     }
 }
 
-/// A model file with terms of a user's own.
+/// A model file with user-defined terms.
 const TERMS: &str = r#"format = 1
 base = "dynamic"
 

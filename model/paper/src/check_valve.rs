@@ -1,7 +1,7 @@
 //! The check valve's cracking pressure, equation 7: `p = stiffness * compression / port area`.
 //!
-//! The paper measured stiffness and compression of the spring but prints neither, only the pressure that follows. So
-//! there is nothing to compute the pressure from; what can be said is which spring a port of a given size needs.
+//! The paper measured stiffness and compression of the spring, but only prints the resulting pressure. The pressure can
+//! therefore not be computed; this module computes which spring a port of a given size requires.
 
 use hitch_plant::units::{bar_from_pa, pa_from_bar};
 
@@ -19,7 +19,7 @@ pub struct Spring {
 }
 
 impl Spring {
-    /// The spring that cracks at the paper's pressure with this port and compression.
+    /// The spring that opens at the paper's pressure with this port and compression.
     pub fn for_port(port_diameter_m: f64, compression_m: f64) -> Self {
         let force_n = pa_from_bar(CRACKING_PRESSURE_BAR) * area_m2(port_diameter_m);
         Self {
@@ -29,7 +29,7 @@ impl Spring {
         }
     }
 
-    /// Equation 7, bar.
+    /// Cracking pressure by equation 7, bar.
     pub fn cracking_pressure_bar(&self) -> f64 {
         bar_from_pa(self.stiffness_n_m * self.compression_m / area_m2(self.port_diameter_m))
     }

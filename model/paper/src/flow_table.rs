@@ -1,16 +1,17 @@
-//! Table 2 from the model: the valve block on a flow bench, at every current of the table.
+//! Table 2 computed with the model: the valve block on a flow bench, at every current of the table.
 
 use hitch_plant::units::pa_from_bar;
 use hitch_plant::{Currents, Model, Plant, Rig, Valve};
 
 use crate::tables::{LOWER_DROP_BAR, TABLE_2A_LIFT, TABLE_2B_LOWER};
 
-/// Pressure at the port while lifting, bar. Any will do below the relief pressure: the lift valve is compensated.
+/// Pressure at the port while lifting, bar. Any value below the relief pressure is possible: the lift valve is
+/// pressure-compensated.
 const LIFT_PORT_BAR: f64 = 20.0;
 /// Oil temperature of the tables, degrees Celsius.
 const OIL_TEMPERATURE_C: f64 = 40.0;
 
-/// One row of Table 2, beside the model's flow.
+/// One row of Table 2 with the model's flow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
     /// Solenoid current, A.
@@ -49,7 +50,7 @@ pub fn flow_lpm(model: &Model, valve: Valve, current_a: f64) -> f64 {
         port_pressure_pa: pa_from_bar(port_bar),
     };
     let at_rest = Plant::new(model, rig, OIL_TEMPERATURE_C, Currents { lift_a, lower_a });
-    // Adding zero turns a negative zero into a positive one.
+    // Adding zero converts a negative zero into a positive one.
     sign * at_rest.reading().flow_lpm + 0.0
 }
 

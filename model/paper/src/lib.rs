@@ -1,4 +1,4 @@
-//! The paper's tables and figures, and the same from this model.
+//! The paper's tables and figures, and their reproduction with this model.
 //!
 //! Source: "Unified modelling and simulation of electro-hydraulic proportional control valve using parameter
 //! estimation technique" (Control Engineering Practice, manuscript D-20-00850).

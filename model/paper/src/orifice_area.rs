@@ -1,24 +1,24 @@
 //! Orifice areas from Table 2, as the paper estimates them.
 //!
-//! Equations 5 and 6: `Q = Cd A sqrt(2 dp / rho)`. The paper varies one area a table point (16 for the lift valve, 21
-//! for the lowering valve) until the sum of squared flow errors is least. The flow is linear in the area and every
-//! point has its own, so the least squares solution is exact: its residual is zero.
+//! Equations 5 and 6: `Q = Cd A sqrt(2 dp / rho)`. The paper varies one area per table point (16 for the lift valve, 21
+//! for the lowering valve) to minimise the sum of squared flow errors. The flow is linear in the area and every point
+//! has its own, so the least-squares solution is exact: its residual is zero.
 
 use hitch_plant::units::{m3_s_from_lpm, pa_from_bar};
 
 use crate::tables::{DISCHARGE_COEFFICIENT, OIL_DENSITY_KG_M3};
 
-/// Square millimetres in a square metre.
+/// Square millimetres per square metre.
 const MM2_PER_M2: f64 = 1e6;
 
-/// Flow through an area of one square metre (the velocity, m/s) at a pressure drop in bar.
+/// Flow per area (the velocity, m/s) at a pressure drop in bar.
 pub fn flow_per_area_m_s(drop_bar: f64) -> f64 {
     DISCHARGE_COEFFICIENT * (2.0 * pa_from_bar(drop_bar) / OIL_DENSITY_KG_M3).sqrt()
 }
 
-/// Areas (mm2) that give the flows of a table (l/min by current) at a pressure drop in bar, by least squares.
+/// Least-squares areas (mm2) for the flows of a table (l/min by current) at a pressure drop in bar.
 ///
-/// A current that the table lists more than once has one area, the one that fits all its flows best.
+/// A current that occurs several times in the table has one area, fitted to all its flows.
 pub fn estimate_mm2(table: &[(f64, f64)], drop_bar: f64) -> Vec<f64> {
     let gain_m_s = flow_per_area_m_s(drop_bar);
     let area_mm2 = |current_a: f64| {

@@ -1,7 +1,7 @@
 //! The paper's numbers, as printed.
 //!
-//! Table 2 is a digitised plot of the manufacturer's: its flows are whole multiples of 0.0713 and 0.1070 l/min, and its
-//! "spool displacement" is 4 mm/A times (current - threshold), not a measurement. The displacement is left out here.
+//! Table 2 is a digitised plot of the manufacturer's: its flows are integer multiples of 0.0713 and 0.1070 l/min, and
+//! its "spool displacement" is 4 mm/A times (current - threshold), not a measurement. The displacement is omitted here.
 
 /// Current (A) and flow (l/min) of the lift valve at the compensated pressure drop; Table 2A.
 pub const TABLE_2A_LIFT: [(f64, f64); 16] = [
@@ -48,14 +48,14 @@ pub const TABLE_2B_LOWER: [(f64, f64); 21] = [
     (3.500, 58.717),
 ];
 
-/// What the paper measured of one valve; a column of Table 5.
+/// Measured values of one valve; a column of Table 5.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured {
-    /// Current at which flow begins, A; found by steps of 0.1 A.
+    /// Current at which flow begins, A; determined in steps of 0.1 A.
     pub threshold_a: f64,
-    /// Current from which the flow does not rise, A.
+    /// Current of saturation, A.
     pub saturation_a: f64,
-    /// Flow from there on, l/min.
+    /// Flow at saturation, l/min.
     pub saturation_lpm: f64,
 }
 
@@ -76,11 +76,11 @@ pub const TABLE_5_LOWER: Measured = Measured {
 pub const DISCHARGE_COEFFICIENT: f64 = 0.7;
 /// Density of the oil (SAE 30), kg/m3.
 pub const OIL_DENSITY_KG_M3: f64 = 877.3;
-/// Pressure drop of the lift orifice: the compensator's 4 bar less the check valve's 2.5 bar, bar.
+/// Pressure drop of the lift orifice, bar: the compensator's 4 bar less the check valve's 2.5 bar.
 pub const LIFT_DROP_BAR: f64 = 1.5;
 /// Pressure drop of Table 2B, bar.
 pub const LOWER_DROP_BAR: f64 = 15.0;
-/// Greatest estimated orifice area (section 4.1), mm2.
+/// Largest estimated orifice area (section 4.1), mm2.
 pub const LARGEST_AREA_MM2: f64 = 51.411;
 /// Cracking pressure of the check valve (Table 4), bar.
 pub const CRACKING_PRESSURE_BAR: f64 = 2.5;
@@ -96,7 +96,7 @@ pub const FIGURE_12_LOWER_A: [f64; 5] = [1.5, 2.0, 2.5, 3.0, 3.3];
 mod tests {
     use super::*;
 
-    /// The table as the paper's authors left it: beside the program, for whoever wants to check the copy.
+    /// The table as left by the paper's authors, next to the program, to check the copy.
     fn from_csv(text: &str) -> Vec<(f64, f64)> {
         let rows = text
             .lines()

@@ -1,9 +1,9 @@
-//! The paper's flow test as a campaign: what its test bench would have logged.
+//! The paper's flow test as a campaign: a simulated log of its test bench.
 //!
-//! Table 5 is all that the paper prints of its measurement: where the flow begins and where it ends. The valve between
-//! is taken to be Table 2's, with its threshold shifted and its flow scaled to Table 5. The lift threshold stays where
-//! Table 2 has it: the currents were raised by 0.1 A, so "1.1 A" does not contradict the table's 1.126 A, while the
-//! lowering valve's "1.25 A" does contradict its 0.999 A.
+//! Table 5 contains all printed results of the measurement: the begin and the end of the flow. The valve in between is
+//! assumed to be that of Table 2, with its threshold shifted and its flow scaled to Table 5. The lift threshold is that
+//! of Table 2: the currents were raised in steps of 0.1 A, so "1.1 A" does not contradict the table's 1.126 A, while
+//! the lowering valve's "1.25 A" does contradict its 0.999 A.
 
 use hitch_campaign::{Bench, Campaign, Noise, Run};
 use hitch_plant::{Channel, Valve};
@@ -15,20 +15,20 @@ use crate::tables::{LOWER_DROP_BAR, Measured, TABLE_5_LIFT, TABLE_5_LOWER};
 const STEP_A: f64 = 0.1;
 /// Highest current, A (section 3.4).
 const HIGHEST_A: f64 = 3.5;
-/// How long each current is held, s; chosen.
+/// Duration of each current, s; chosen.
 const HOLD_S: f64 = 1.0;
-/// Time from one current to the next, s; chosen: a knob, not a relay.
+/// Time from one current to the next, s; chosen: adjusted by a knob, not by a relay.
 const RAMP_S: f64 = 0.2;
 /// Sample rate, Hz; chosen.
 const SAMPLE_RATE_HZ: f64 = 50.0;
-/// One sigma of the flow meter, l/min; chosen, a gear meter of this size.
+/// Noise of the flow meter, one sigma, l/min; chosen: a gear meter of this size.
 const FLOW_SIGMA_LPM: f64 = 0.15;
-/// Port pressures of the lift runs, bar; chosen. Two, so that a compensator that gives way would show.
+/// Port pressures of the lift runs, bar; chosen. Two, so that a droop of the compensator would show.
 const LIFT_PORTS_BAR: [f64; 2] = [20.0, 70.0];
-/// Port pressures of the lowering runs, bar: the one of Table 2B and, chosen, one above it.
+/// Port pressures of the lowering runs, bar: that of Table 2B and, chosen, a higher one.
 const LOWER_PORTS_BAR: [f64; 2] = [LOWER_DROP_BAR, 40.0];
 
-/// How the measured valve differs from Table 2.
+/// Deviation of the measured valve from Table 2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deviation {
     /// Shift of the threshold, A.
@@ -37,7 +37,7 @@ pub struct Deviation {
     pub flow_scale: f64,
 }
 
-/// What Table 5 says of a valve against Table 2.
+/// Deviation of a valve in Table 5 from Table 2.
 pub fn deviation(valve: Valve) -> Deviation {
     let table = table_2(valve);
     let saturation_lpm = table
@@ -139,7 +139,7 @@ fn run(valve: Valve, port_pressure_bar: f64, gauss: &mut Gauss) -> Run {
     }
 }
 
-/// Current of the test at a time: held, then raised by a step, A.
+/// Current of the test at a time, A: constant, then raised by a step.
 fn staircase_a(time_s: f64) -> f64 {
     let step = (time_s / HOLD_S).floor();
     let ramp = ((time_s - step * HOLD_S) / RAMP_S).min(1.0);
@@ -157,7 +157,7 @@ fn measured_lpm(valve: Valve, current_a: f64, port_pressure_bar: f64) -> f64 {
     }
 }
 
-/// Linear between the points of a table, level beyond.
+/// Linear interpolation in a table, constant beyond its ends.
 fn interpolate(table: &[(f64, f64)], at: f64) -> f64 {
     let segment = table.windows(2).find(|pair| at < pair[1].0);
     match segment {

@@ -1,19 +1,19 @@
-//! Figure 12 from the model: how long the hitch takes over its whole travel.
+//! Figure 12 computed with the model: travel time of the hitch over its full travel.
 //!
-//! The paper gives the figure as a plot without numbers; what it says in words is that the lifting time does not depend
-//! on the load, and that the lowering time falls with load and with current (section 4.3).
+//! The paper shows the figure as a plot without numbers. Its text says that the lifting time does not depend on the
+//! load, and that the lowering time decreases with load and with current (section 4.3).
 
 use hitch_plant::{Currents, HitchRig, Model, Plant, Rig, Valve};
 
 use crate::tables::{FIGURE_12_LIFT_A, FIGURE_12_LOADS_KG, FIGURE_12_LOWER_A};
 
-/// Oil temperature of the tests, degrees Celsius; the paper does not say.
+/// Oil temperature of the tests, degrees Celsius; not stated in the paper.
 const OIL_TEMPERATURE_C: f64 = 40.0;
-/// Rhythm at which the travel is watched, s.
+/// Time step of the evaluation, s.
 const STEP_S: f64 = 0.01;
-/// The travel is over this far from its end, m: a sensor would not see the rest.
+/// Distance from the end, m, at which the travel counts as complete: a sensor would not resolve the rest.
 const END_WITHIN_M: f64 = 1e-4;
-/// A hitch that has not arrived by then never will, s.
+/// Time after which a hitch that has not arrived is given up, s.
 const LONGEST_S: f64 = 300.0;
 
 /// One panel of Figure 12.
@@ -23,12 +23,12 @@ pub struct Panel {
     pub currents_a: [f64; 5],
     /// Loads, kg.
     pub loads_kg: [f64; 5],
-    /// Time of travel by current, then by load, s; `None` if the end is not reached.
+    /// Travel time by current, then by load, s; `None` if the end is not reached.
     pub times_s: [[Option<f64>; 5]; 5],
 }
 
 impl Panel {
-    /// Greatest difference between loads at one current, as a share of their mean; `None` if some travel never ends.
+    /// Largest difference between loads at one current, relative to their mean; `None` if an end is not reached.
     pub fn spread_over_load(&self) -> Option<f64> {
         let spread = |row: &[Option<f64>; 5]| {
             let times: Option<Vec<f64>> = row.iter().copied().collect();
@@ -44,18 +44,18 @@ impl Panel {
             .try_fold(0.0, |worst: f64, spread| Some(worst.max(spread?)))
     }
 
-    /// True if at every current a heavier load takes less time.
+    /// Whether a heavier load takes less time at every current.
     pub fn falls_with_load(&self) -> bool {
         self.times_s.iter().all(|row| falls(row.iter().copied()))
     }
 
-    /// True if at every load a higher current takes less time.
+    /// Whether a higher current takes less time at every load.
     pub fn falls_with_current(&self) -> bool {
         (0..self.loads_kg.len()).all(|load| falls(self.times_s.iter().map(|row| row[load])))
     }
 }
 
-/// Figure 12A (lifting) or 12B (lowering) of a model.
+/// Figure 12A (lifting) or 12B (lowering) for a model.
 pub fn panel(model: &Model, valve: Valve) -> Panel {
     let currents_a = match valve {
         Valve::Lift => FIGURE_12_LIFT_A,
@@ -71,7 +71,7 @@ pub fn panel(model: &Model, valve: Valve) -> Panel {
     }
 }
 
-/// Time over the whole travel from the moment a current is switched on, s; `None` if the end is not reached.
+/// Travel time after switching a current on, s; `None` if the end is not reached.
 pub fn travel_s(model: &Model, valve: Valve, current_a: f64, load_kg: f64) -> Option<f64> {
     let stroke_m = model.constants().cylinder.stroke_m;
     let (start_m, currents) = match valve {
@@ -103,7 +103,7 @@ pub fn travel_s(model: &Model, valve: Valve, current_a: f64, load_kg: f64) -> Op
     let to_go_m =
         |plant: &Plant<'_>| stroke_m - END_WITHIN_M - (plant.state().piston_m - start_m).abs();
     let mut before_m = to_go_m(&plant);
-    // The current is switched on within a hundredth of the rhythm: the plant takes currents as ramps.
+    // The current is switched on within a hundredth of the time step: the plant interprets currents as ramps.
     plant.step(currents, 0.01 * STEP_S);
     for step in 0..(LONGEST_S / STEP_S) as usize {
         let now_m = to_go_m(&plant);

@@ -1,4 +1,4 @@
-//! What the paper says of lifting and lowering times (section 4.3, Figure 12), of both starting points.
+//! The paper's statements on lifting and lowering times (section 4.3, Figure 12), for both models.
 
 use hitch_paper::travel_time::panel;
 use hitch_plant::Valve;

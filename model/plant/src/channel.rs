@@ -32,7 +32,7 @@ impl Channel {
         }
     }
 
-    /// Name for people.
+    /// Display name.
     pub const fn title(self) -> &'static str {
         match self {
             Self::PumpPressure => "pump pressure",
@@ -51,7 +51,7 @@ impl Channel {
         }
     }
 
-    /// Place in arrays over all channels.
+    /// Index in arrays over all channels.
     pub const fn index(self) -> usize {
         self as usize
     }

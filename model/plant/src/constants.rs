@@ -10,7 +10,7 @@ use crate::components::orifice_valve::OrificeValve;
 use crate::components::pump::Pump;
 use crate::components::relief_valve::ReliefValve;
 
-/// Which of the two starting points a model is (docs/plant.md).
+/// The two kinds of models (docs/plant.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dynamics {
     /// Quasi-static: no inertia, stiff oil, spools without lag.
@@ -36,7 +36,7 @@ pub struct Constants {
     pub lift_valve: OrificeValve,
     /// The lowering valve.
     pub lower_valve: OrificeValve,
-    /// First-order lag of either spool behind its current, s; used by the dynamic plant.
+    /// First-order lag of either spool, s; used by the dynamic plant.
     pub spool_time_constant_s: f64,
     /// The cylinder.
     pub cylinder: Cylinder,

@@ -10,9 +10,9 @@
 //!                                  lowering valve -> return line -> tank
 //! ```
 //!
-//! From below: [`units`] and [`Channel`]; [`components`], one file each; their [`Constants`] and what a run has as
-//! [state](MechanicalState); [`hooks`], the places where physical effects act; [`Model`]; the [`solver`], which balances
-//! the hydraulics at one instant and moves the piston; [`Plant`]; and the [`simulation`] of whole runs.
+//! From the bottom layer to the top: [`units`] and [`Channel`]; [`components`], one per file; their [`Constants`] and
+//! the [state](MechanicalState) of a run; [`hooks`], at which physical effects act; [`Model`]; the [`solver`] for the
+//! hydraulics at one instant and the motion of the piston; [`Plant`]; and the [`simulation`] of whole runs.
 //!
 //! Depends on no other crate of the project.
 #![forbid(unsafe_code)]

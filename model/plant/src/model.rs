@@ -1,4 +1,4 @@
-//! A model is data: the constants of every component and the list of added effects.
+//! A model: the constants of every component and the list of added effects.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ pub struct Model {
     pub name: String,
     /// Effects added to the paper's plant, in the order in which they were added.
     pub effects: Vec<AddedEffect>,
-    /// Effects of its own that its file adds to the catalogue, whether they are among its effects or not.
+    /// User-defined effects from its file, whether they are active or not.
     pub terms: Vec<&'static dyn Effect>,
     constants: Arc<Constants>,
     linkage: Arc<Linkage>,
@@ -66,13 +66,13 @@ impl Model {
         &self.constants
     }
 
-    /// The constants, to be held on to.
+    /// Shared ownership of the constants.
     #[must_use]
     pub fn shared_constants(&self) -> &Arc<Constants> {
         &self.constants
     }
 
-    /// First-order lag of either spool behind its current, s.
+    /// First-order lag of either spool, s.
     #[must_use]
     pub fn spool_lag_s(&self) -> f64 {
         self.spool_lag_s
@@ -93,7 +93,7 @@ impl Model {
         }
     }
 
-    /// The same model with stiff oil and no inertia; its spools lag as they did.
+    /// The same model with stiff oil and no inertia; the lag of its spools is unchanged.
     #[must_use]
     pub fn quasi_static(&self) -> Self {
         let constants = Constants {
@@ -106,7 +106,7 @@ impl Model {
         }
     }
 
-    /// The same model with other terms of a user's own.
+    /// The same model with other user-defined terms.
     #[must_use]
     pub fn with_terms(&self, terms: Vec<&'static dyn Effect>) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! A whole run at once: the plant driven by logged currents.
+//! Simulation of a whole run: the plant driven by logged currents.
 
 use crate::channel::Channel;
 use crate::hooks::effect_hooks::Currents;
@@ -8,14 +8,14 @@ use crate::solver::dynamic::Steps;
 use crate::state::Rig;
 use crate::units::bar_from_pa;
 
-/// What the instruments would have shown over a run, by [`Channel::index`], in the channels' units.
+/// Readings of the instruments over a run, by [`Channel::index`], in the channels' units.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trace {
-    /// One value a sample for each channel.
+    /// One value per sample for each channel.
     pub channels: [Vec<f64>; 4],
-    /// The rocker angle itself, degree, whatever its sensor shows; not a number on a flow bench.
+    /// True rocker angle, degree, without sensor errors; NaN on a flow bench.
     pub true_angle_deg: Vec<f64>,
-    /// Pump pressure with the lift valve shut, bar.
+    /// Pump pressure with the lift valve closed, bar.
     pub idle_pressure_bar: f64,
 }
 
@@ -26,7 +26,7 @@ impl Trace {
         &self.channels[channel.index()]
     }
 
-    /// Keeps some of the samples, given in rising order.
+    /// Keeps some of the samples, given in ascending order.
     pub fn keep(&mut self, samples: &[usize]) {
         for channel in self.channels.iter_mut().chain([&mut self.true_angle_deg]) {
             for (to, &from) in samples.iter().enumerate() {
@@ -37,9 +37,9 @@ impl Trace {
     }
 }
 
-/// Simulates a run that starts at rest under its first currents.
+/// Simulates a run that starts at rest with its first currents.
 ///
-/// `time_s` must rise; the currents run linearly from one sample to the next.
+/// `time_s` must increase; the currents are linear between samples.
 #[must_use]
 pub fn simulate(
     model: &Model,
@@ -51,7 +51,7 @@ pub fn simulate(
     simulate_in(Steps::FINE, model, rig, oil_temperature_c, time_s, currents)
 }
 
-/// [`simulate`] in other steps of the dynamic plant.
+/// [`simulate`] with other time steps.
 #[must_use]
 pub fn simulate_in(
     steps: Steps,

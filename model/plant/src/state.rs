@@ -1,20 +1,20 @@
-//! What a run has: what the valve block is connected to, and the state of piston and oil.
+//! The rig of a run, and the state of piston and oil.
 
-/// A hitch with a load on it.
+/// A hitch with a load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HitchRig {
     /// Load at the hitch point, kg, without the dead weight of the links.
     pub load_kg: f64,
-    /// Rocker angle at the start as its sensor shows it, rad.
+    /// Rocker angle at the start as shown by its sensor, rad.
     pub start_angle_rad: f64,
 }
 
-/// What the valve block is connected to.
+/// The equipment that the valve block is connected to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rig {
     /// Cylinder, linkage and load.
     Hitch(HitchRig),
-    /// A flow bench: no cylinder, the port held at a pressure, Pa.
+    /// A flow bench: no cylinder, the port at a constant pressure, Pa.
     Flow {
         /// Port pressure, Pa.
         port_pressure_pa: f64,
@@ -30,15 +30,15 @@ pub struct MechanicalState {
     pub speed_m_s: f64,
     /// Cylinder pressure, Pa.
     pub pressure_pa: f64,
-    /// Void under the piston where the oil column has torn, m3; the dynamic plant only.
+    /// Void under the piston after the oil column has torn, m3; dynamic plant only.
     pub void_m3: f64,
-    /// How far the bristles of friction that remembers are bent, m; nothing without any.
+    /// Deflection of the bristles of friction with state, m; zero without any.
     pub bristles_m: f64,
-    /// How far a hose's creeping wall is behind the pressure, Pa; the dynamic plant only, nothing without any.
+    /// Lag of a hose's creeping wall behind the pressure, Pa; dynamic plant only, zero without any.
     pub wall_behind_pa: f64,
-    /// Pump pressure that a lagging compensator has got to, Pa; the idle one without a lag.
+    /// Present pump pressure of a lagging compensator, Pa; the idle one without a lag.
     pub compensator_pa: f64,
-    /// Share of what it lacks that it catches up within a step of the quasi-static plant; nothing between steps.
+    /// Share of its remaining deviation that it makes up within a step of the quasi-static plant; zero between steps.
     pub catching_up: f64,
 }
 

@@ -1,12 +1,12 @@
-//! Conversions between the units of instruments and data sheets and SI.
+//! Conversions between SI and the units of instruments and data sheets.
 //!
-//! The plant computes in SI throughout; logs, model files and reports speak bar, l/min and degree.
+//! The plant computes in SI; logs, model files and reports use bar, l/min and degree.
 
 /// One bar in pascal.
 pub const PA_PER_BAR: f64 = 1e5;
 /// One litre a minute in cubic metres a second.
 pub const M3_S_PER_LPM: f64 = 1e-3 / 60.0;
-/// Standard gravity, m/s2, rounded as the paper's statics use it.
+/// Standard gravity, m/s2, rounded as in the paper's statics.
 pub const GRAVITY_M_S2: f64 = 9.81;
 
 /// Pascal from bar.

@@ -1,4 +1,4 @@
-//! The plant against physics: kinematics, balances, limits.
+//! Tests of the plant against physics: kinematics, balances, limits.
 
 use hitch_effects::find;
 use hitch_plant::units::{bar_from_pa, lpm_from_m3_s, pa_from_bar};
@@ -69,9 +69,9 @@ fn the_transmission_is_the_slope_of_the_height() {
     }
 }
 
-/// A hitch that is seen at rest below the ground's height stands without pressure, and the pump lifts it off against
-/// nothing, until the ground no longer carries it: the quasi-static plant where it is seen, in a hollow, the dynamic
-/// plant on the ground.
+/// A hitch at rest that its sensor shows below the ground stands without pressure, and the pump lifts it without load
+/// until the ground no longer carries it: the quasi-static plant from the shown position, in a hollow, the dynamic
+/// plant from the ground.
 #[test]
 fn a_hitch_that_is_seen_below_the_ground_is_not_thrown_out() {
     for (model, on_it) in [
@@ -88,7 +88,7 @@ fn a_hitch_that_is_seen_below_the_ground_is_not_thrown_out() {
         for _ in 0..500 {
             plant.step(Currents::default(), STEP_S);
         }
-        // The ground, which bears 250 kg and 30 kg of links, yields by 280 kg * 9.81 m/s2 / 1 MN/m.
+        // The ground, which carries 250 kg and 30 kg of links, deflects by 280 kg * 9.81 m/s2 / 1 MN/m.
         let height_m = |piston_m| model.linkage().at(piston_m).height_m;
         let over_the_lowest_m = height_m(plant.state().piston_m) - height_m(0.0);
         if on_it {
@@ -111,7 +111,7 @@ fn a_hitch_that_is_seen_below_the_ground_is_not_thrown_out() {
     }
 }
 
-/// A stop wants a force as long as it lasts; what is held afterwards is the weight alone, in steps of any length.
+/// A stop exerts a force only during the contact; afterwards only the weight is held, with steps of any length.
 #[test]
 fn what_stopped_the_masses_does_not_stay_in_the_cylinder() {
     let inertia = AddedEffect::typical(find("load-inertia").unwrap());
@@ -209,15 +209,15 @@ fn at_the_upper_stop_the_pump_dead_heads_at_relief_and_no_further() {
     }
     let reading = plant.reading();
     assert!((reading.pump_pressure_bar - 154.0).abs() < 0.1);
-    // No lift flow is left where only the check valve's cracking pressure is: 154 - 2.5 bar.
+    // There is no lift flow if the port pressure is the relief pressure less the cracking pressure, 154 - 2.5 bar.
     assert!((reading.cylinder_pressure_bar - 151.5).abs() < 0.05);
     assert!(reading.flow_lpm.abs() < 0.05);
     let stroke_m = model.constants().cylinder.stroke_m;
     assert!((plant.state().piston_m - stroke_m).abs() < 1e-9);
 }
 
-/// Energy that the oil brings in against what load, friction and motion take: `int p Q dt = dE_pot + dE_kin + dE_oil +
-/// int b v2 dt`, with the oil's share `p2 V / 2E` kept.
+/// Balance of the energy supplied by the oil and that of load, friction and motion: `int p Q dt = dE_pot + dE_kin +
+/// dE_oil + int b v2 dt`, including the oil's share `p2 V / 2E`.
 #[test]
 fn the_oils_work_is_found_again_in_the_hitch() {
     let model = hitch_model_file::dynamic();
@@ -250,7 +250,7 @@ fn the_oils_work_is_found_again_in_the_hitch() {
     let gained_j = stored(&plant) - start_j;
     let turnover_j = lost_j + 500.0;
     let missing_j = brought_j - lost_j - gained_j;
-    // Of the order of p/E, which the constant bulk modulus neglects, and of the trapezoidal rule.
+    // Of the order of p/E, which the constant bulk modulus neglects, and of the error of the trapezoidal rule.
     assert!(
         missing_j.abs() < 0.01 * turnover_j,
         "{missing_j} J of {turnover_j} J are missing"
@@ -260,7 +260,7 @@ fn the_oils_work_is_found_again_in_the_hitch() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 48, rng_seed: proptest::test_runner::RngSeed::Fixed(2026), ..Default::default() })]
 
-    /// What has gone through the valves and not leaked is under the piston, for every load, current and effect size.
+    /// The net volume through the valves, less leakage, is under the piston, for every load, current and effect size.
     #[test]
     fn volume_is_kept(
         load_kg in 0.0..300.0_f64,
@@ -303,7 +303,7 @@ proptest! {
             "{} cm3 gained, {} cm3 through the valves", gained_m3 * 1e6, through_m3 * 1e6);
     }
 
-    /// No flow back through the check valve, pump pressure between idle and relief, whatever the coils do.
+    /// No reverse flow through the check valve, and a pump pressure between idle and relief, with any currents.
     #[test]
     fn valves_and_pressures_stay_within_their_limits(
         load_kg in 0.0..300.0_f64,
@@ -331,7 +331,7 @@ proptest! {
         }
     }
 
-    /// A held hitch stands: both coils off, no leakage, no motion and no flow.
+    /// A held hitch is at rest: both coils off, no leakage, no motion and no flow.
     #[test]
     fn a_held_hitch_stands(load_kg in 0.0..300.0_f64, angle_deg in 46.0..134.0_f64) {
         for model in [hitch_model_file::nominal(), hitch_model_file::dynamic()] {

@@ -9,8 +9,8 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::estimation::fit::{Fit, refine};
 use hitch_identification::explanation::explain::fit_freely;
 use hitch_identification::search::single_effects::try_effects;
-use hitch_identification::selection::evidence::BELIEVED;
-use hitch_identification::selection::leave_one_out::{LeaveOneOut, beside};
+use hitch_identification::selection::evidence::SIGNIFICANT;
+use hitch_identification::selection::leave_one_out::{LeaveOneOut, leave_one_out};
 use hitch_plant::{Effect, Model, full_name};
 
 use crate::effect_arg::find;
@@ -56,7 +56,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let base = fit_freely(&experiment, &model);
     let fit = fit_with(&experiment, &model, base.clone(), &effects, &progress);
     progress.say("weighing each beside the others");
-    let weighed = beside(&experiment, &model, &fit, model.effects.len());
+    let weighed = leave_one_out(&experiment, &model, &fit, model.effects.len());
     drop(progress);
     let rebuilt = rebuilt(&model, &fit.estimate.effects, output::stem(&args.out));
     output::write_file(&args.out, hitch_model_file::to_toml(&rebuilt).as_bytes())?;
@@ -132,7 +132,7 @@ fn shown(effect: &LeaveOneOut) -> String {
         parameters.join(", "),
         effect.without.error()
     );
-    if candidate.likelihood_ratio < BELIEVED {
+    if candidate.likelihood_ratio < SIGNIFICANT {
         return line + " (the campaign does not ask for it)";
     }
     line

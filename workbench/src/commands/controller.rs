@@ -5,7 +5,7 @@ use std::io::{BufRead, Write};
 use std::path::{Path, PathBuf};
 
 use hitch_controller::Controller;
-use hitch_input::input_error::{InputError, Place};
+use hitch_input::input_error::{InputError, Position};
 use hitch_quantities::{Outputs, State};
 
 use super::loop_::calibration;
@@ -149,7 +149,7 @@ fn next_line(input: &mut impl BufRead, line: &mut String, number: usize) -> Resu
 }
 
 fn fault(line: usize, error: LineError) -> Error {
-    let place = Place {
+    let place = Position {
         line,
         column: error.column,
     };

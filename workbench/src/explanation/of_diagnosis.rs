@@ -10,7 +10,7 @@ use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain;
 use hitch_identification::explanation::explain::Verdict;
 use hitch_identification::selection::candidate;
-use hitch_identification::selection::evidence::{BELIEVED, TOLD_APART};
+use hitch_identification::selection::evidence::{DISTINGUISHABLE, SIGNIFICANT};
 use hitch_plant::Model;
 
 use super::of_explanation::{channels, parameters};
@@ -22,7 +22,7 @@ impl Diagnosis {
         let believed = found
             .candidates
             .first()
-            .filter(|best| best.likelihood_ratio >= BELIEVED);
+            .filter(|best| best.likelihood_ratio >= SIGNIFICANT);
         let after = believed.map_or(&found.base, |best| &best.fit);
         let candidates = found.candidates.iter().zip(&found.confidences);
         let mut candidates: Vec<Candidate> = candidates
@@ -131,14 +131,14 @@ fn twins<'a>(
     found: &'a explain::Diagnosis,
     candidate: &candidate::Candidate,
 ) -> Vec<&'a candidate::Candidate> {
-    if candidate.likelihood_ratio < BELIEVED {
+    if candidate.likelihood_ratio < SIGNIFICANT {
         return Vec::new();
     }
     let unit = (found.base.cost - candidate.fit.cost) / candidate.likelihood_ratio;
     let as_good = |other: &&candidate::Candidate| {
         other.effect.id() != candidate.effect.id()
-            && other.likelihood_ratio >= BELIEVED
-            && (other.fit.cost - candidate.fit.cost).abs() < TOLD_APART * unit
+            && other.likelihood_ratio >= SIGNIFICANT
+            && (other.fit.cost - candidate.fit.cost).abs() < DISTINGUISHABLE * unit
     };
     found.candidates.iter().filter(as_good).collect()
 }

@@ -41,7 +41,7 @@ impl Explanation {
     }
 }
 
-fn step(step: &explain::Step) -> Step {
+fn step(step: &explain::ExplanationStep) -> Step {
     Step {
         effect: step.effect.id(),
         form: step.effect.form(),

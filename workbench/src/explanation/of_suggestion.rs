@@ -15,7 +15,7 @@ impl Suggested {
             held_out_before: found.held_out_before.error,
             held_out_after: found.held_out_after.error,
             error_after: found.fit.error(),
-            replaces: found.needless.iter().map(|effect| effect.id()).collect(),
+            replaces: found.unneeded.iter().map(|effect| effect.id()).collect(),
             model_file: term_text(found.term),
         }
     }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use hitch_identification::explanation::explain::Verdict;
-use hitch_identification::selection::candidate::genuine;
+use hitch_identification::selection::candidate::plausibility;
 
 use super::{
     Alternative, Diagnosis, Explanation, HOPELESS_BASE, Head, Next, NotVisible, Parameter, Step,
@@ -280,7 +280,7 @@ impl fmt::Display for Step {
             self.confidence,
             self.detectability
         )?;
-        if genuine(self.explained_share) < 0.5 {
+        if plausibility(self.explained_share) < 0.5 {
             let share = 100.0 * self.explained_share;
             writeln!(
                 f,

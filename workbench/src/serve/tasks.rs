@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::estimate::Estimate;
-use hitch_identification::estimation::fit::{Fit, evaluate, fit_loads, refine, sketch};
+use hitch_identification::estimation::fit::{Fit, evaluate, fit_loads, refine, short_fit};
 use hitch_identification::explanation::explain::diagnose_each;
 use hitch_identification::residuals::whitening::Weights;
 use hitch_identification::search::single_effects::try_effects;
@@ -307,10 +307,10 @@ impl Ready {
         let mut fit = evaluate(experiment, model, estimate);
         told(0, "start", &fit);
         for round in 1..=ROUNDS {
-            let descent = sketch(experiment, model, &fit.weights, fit.estimate, false);
+            let descent = short_fit(experiment, model, &fit.weights, fit.estimate, false);
             fit = evaluate(experiment, model, descent.estimate);
             told(round, &format!("fitting, round {round}"), &fit);
-            if descent.falling <= WORTHWHILE * descent.cost {
+            if descent.last_reduction <= WORTHWHILE * descent.cost {
                 break;
             }
         }

@@ -11,8 +11,8 @@
 //! End TriggerBlock
 //! ```
 //!
-//! Frames that are wanted are read to the last digit, others up to the identifier; other events of the bus, and
-//! events of other buses, are passed over.
+//! Frames that are needed are parsed completely, others up to the identifier; other events of the bus, and events of
+//! other buses, are skipped.
 
 use hitch_input::source_file::SourceFile;
 
@@ -21,20 +21,20 @@ use crate::bus_log::frame::{Frame, Id, MOST_BYTES};
 use crate::bus_log::frame_sink::FrameSink;
 use crate::bus_log::line::{Line, Word, lines};
 
-/// First words of lines that hold no event.
+/// First words of lines that contain no event.
 const HEADINGS: [&str; 7] = ["date", "base", "internal", "no", "Begin", "End", "previous"];
-/// What a channel of CAN reports besides frames.
+/// Events of a CAN channel other than frames.
 const OTHER_EVENTS: [&str; 4] = ["ErrorFrame", "OverloadFrame", "Statistic:", "J1939TP"];
-/// Bytes of a classical frame.
+/// Data bytes of a classical frame.
 const MOST_CLASSICAL: usize = 8;
-/// The largest code of a length.
+/// Largest data length code.
 const MOST_CODE: usize = 15;
 
-/// How numbers are written.
+/// Number base and time mode of the log.
 #[derive(Debug, Clone, Copy)]
 struct Notation {
     radix: u32,
-    /// Times count from the last event instead of from the beginning.
+    /// Time stamps are relative to the previous event instead of the start.
     relative: bool,
 }
 
@@ -129,7 +129,7 @@ fn classical<'a>(
     }
     let count = line.word(5, "length")?;
     let length = number(line, count, radix, MOST_BYTES as u32)? as usize;
-    // Up to 15 it is the code of a classical frame; some tools write CAN FD so as well.
+    // Up to 15 it is a data length code as in classical frames; some tools write it for CAN FD as well.
     let is_flexible = length > MOST_CODE;
     let length = if is_flexible {
         length
@@ -164,7 +164,7 @@ fn flexible<'a>(
     Ok(Some((channel.text, id, length)))
 }
 
-/// True if the frame was on the bus; false if somebody asked for it to be sent.
+/// Whether the frame was on the bus; false for a transmit request.
 fn direction(line: &Line<'_>, word: Word<'_>) -> Result<bool, CampaignError> {
     match word.text {
         "Rx" | "Tx" => Ok(true),
@@ -192,13 +192,13 @@ fn number(line: &Line<'_>, word: Word<'_>, radix: u32, largest: u32) -> Result<u
 fn data(line: &Line<'_>, first: usize, radix: u32, bytes: &mut [u8]) -> Result<(), CampaignError> {
     for (index, byte) in bytes.iter_mut().enumerate() {
         let word = line.word(first + index, "last byte")?;
-        // It is no more than 255.
+        // It is at most 255.
         *byte = number(line, word, radix, 255)? as u8;
     }
     Ok(())
 }
 
-/// A number of digits alone: no sign.
+/// A number that consists of digits only, without a sign.
 fn digits_of(text: &str, radix: u32) -> Option<u32> {
     let all = text.chars().all(|digit| digit.is_digit(radix));
     u32::from_str_radix(text, radix).ok().filter(|_| all)

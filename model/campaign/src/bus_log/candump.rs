@@ -1,4 +1,4 @@
-//! candump's log (`candump -l`, can-utils), which python-can and SavvyCAN write as well.
+//! The log format of candump (`candump -l`, can-utils), also written by python-can and SavvyCAN.
 //!
 //! ```text
 //! (1436509052.249713) can0 18FF4580#0011223344556677     a frame of 29 bits; three digits are one of 11 bits
@@ -7,7 +7,8 @@
 //! (1436509052.252713) can0 20000004#0000000000000000     an error frame: more than 29 bits
 //! ```
 //!
-//! A word behind that says which way the frame went (`R`, `T`). Of frames that are not wanted only the identifier is read.
+//! An optional last word gives the direction of the frame (`R`, `T`). Of frames that are not needed only the identifier
+//! is parsed.
 
 use hitch_input::source_file::SourceFile;
 
@@ -33,7 +34,7 @@ pub fn read(source: &SourceFile, sink: &mut dyn FrameSink) -> Result<(), Campaig
     Ok(())
 }
 
-/// The frame of a line; `None` if it holds no data, or is not wanted.
+/// The frame of a line; `None` if it contains no data or is not wanted.
 fn frame<'f>(
     line: &Line<'f>,
     sink: &mut dyn FrameSink,
@@ -84,7 +85,7 @@ fn frame<'f>(
     }))
 }
 
-/// The identifier; `None` if the line reports an error of the bus.
+/// The identifier; `None` for an error frame.
 fn identifier(line: &Line<'_>, word: Word<'_>, text: &str) -> Result<Option<Id>, CampaignError> {
     let mend = "an identifier has three hexadecimal digits or eight";
     let is_hex = text.bytes().all(|byte| byte.is_ascii_hexdigit());
@@ -99,7 +100,7 @@ fn identifier(line: &Line<'_>, word: Word<'_>, text: &str) -> Result<Option<Id>,
     }
 }
 
-/// Two digits a byte, from byte `begins` of the word on; how many there are.
+/// Parses two hexadecimal digits per byte, from byte `begins` of the word on; returns the number of bytes.
 fn decoded(
     line: &Line<'_>,
     word: Word<'_>,

@@ -1,10 +1,10 @@
-//! What is on a bus, as a DBC describes it.
+//! The signals of a bus, as described by a DBC.
 
 use can_dbc::{
     AttributeValue, ByteOrder, Dbc, DbcError, Message, MessageId, MultiplexIndicator, NumericValue,
     SignalExtendedValueType, ValueType,
 };
-use hitch_input::input_error::{InputError, Place, quote};
+use hitch_input::input_error::{InputError, Position, quote};
 use hitch_input::naming::offer_names;
 use hitch_input::source_file::SourceFile;
 
@@ -14,21 +14,21 @@ use crate::bus_log::signal::{Bits, Kind, Signal};
 use crate::scale::Scale;
 use crate::table::{Column, TIMES};
 
-/// The description of the project's own ECU.
+/// The description of the project's ECU.
 const OF_ECU: &str = include_str!("../../../../firmware/hitch.dbc");
 
-/// A clock that goes round faster can't be told from the delays of a logger, s.
+/// Shortest period of a clock that can be distinguished from the delays of a logger, s.
 const SHORTEST_ROUND_S: f64 = 2.0;
 
-/// What is wrong, and how to mend it.
+/// Fault description and suggested correction.
 pub type Fault = (String, String);
 
-/// Which frames are a message.
+/// Selection of the frames of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Match {
-    /// Those with this identifier.
+    /// Frames with this identifier.
     Identifier(Id),
-    /// Those of this parameter group, whoever sends them (J1939).
+    /// Frames of this parameter group from any sender (J1939).
     Group(u32),
 }
 
@@ -42,19 +42,19 @@ impl Description {
     /// Reads a DBC.
     ///
     /// # Errors
-    /// If it is none, where.
+    /// The text is not a DBC, with the position.
     pub fn read(source: &SourceFile) -> Result<Self, CampaignError> {
         let dbc = Dbc::try_from(source.text.as_str()).map_err(|error| not_dbc(source, &error))?;
         Ok(Self { dbc })
     }
 
-    /// The one of the project's own ECU.
+    /// The description of the project's ECU.
     pub fn of_ecu() -> Self {
         let dbc = Dbc::try_from(OF_ECU).expect("a test reads the project's own description");
         Self { dbc }
     }
 
-    /// The message of that name.
+    /// The message with this name.
     pub fn message(&self, name: &str) -> Result<&Message, Fault> {
         let found = self
             .dbc
@@ -75,18 +75,18 @@ impl Description {
         messages.map(|message| message.name.as_str()).collect()
     }
 
-    /// Every message.
+    /// All messages.
     pub fn messages(&self) -> &[Message] {
         &self.dbc.messages
     }
 
-    /// What people say about a signal; empty if nothing.
+    /// The comment of a signal; empty without one.
     pub fn comment(&self, message: &Message, signal: &str) -> &str {
         let comment = self.dbc.signal_comment(message.id, signal);
         comment.unwrap_or_default()
     }
 
-    /// Which frames are that message.
+    /// The selection of the frames of a message.
     pub fn matching(&self, message: &Message) -> Match {
         match message.id {
             MessageId::Standard(raw) => Match::Identifier(Id::Standard(raw.into())),
@@ -95,7 +95,7 @@ impl Description {
         }
     }
 
-    /// The attribute that Vector's tools give to messages of J1939.
+    /// The attribute by which Vector's tools mark messages of J1939.
     fn is_j1939(&self, message: &Message) -> bool {
         const NUMBER: u64 = 3;
         match self
@@ -144,14 +144,14 @@ impl Description {
         })
     }
 
-    /// The signal of a message that says when it was sampled, s, and after how many seconds that goes round, if it has
-    /// one: one step behind the largest value that the description gives it.
+    /// The signal of a message with its sampling time, s, if it has one, and the period of its wrap-around: one step
+    /// more than its largest value in the description.
     pub fn clock(&self, message: &Message, name: &str) -> Result<Option<(Signal, f64)>, Fault> {
         let Some(found) = message.signals.iter().find(|signal| signal.name == name) else {
             return Ok(None);
         };
         let mut signal = self.signal(message, name, &TIMES)?;
-        // It has its whole range.
+        // The signal uses its full range.
         signal.has_reserved_values = false;
         let range = number(found.max) - number(found.min);
         let period_s = (range + found.factor) * (signal.factor / found.factor);
@@ -180,7 +180,7 @@ impl Description {
         }
     }
 
-    /// The bits that say whether a multiplexed signal is there.
+    /// The bits of the multiplexer that select a signal.
     fn selector(
         &self,
         message: &Message,
@@ -202,7 +202,8 @@ impl Description {
     }
 }
 
-/// The parameter group of an identifier of J1939: without the destination that the lower half of groups has.
+/// The parameter group number of a J1939 identifier: without the destination address, which groups in the lower half
+/// have.
 pub fn group(id: u32) -> u32 {
     const FIRST_BROADCAST: u32 = 240;
     let group = id >> 8 & 0x3_FFFF;
@@ -232,7 +233,7 @@ fn bits(name: &str, signal: &can_dbc::Signal) -> Result<Bits, Fault> {
     })
 }
 
-/// What a value in the signal's unit is in the column's: factor and offset.
+/// Factor and offset from the signal's unit to the column's.
 fn conversion(name: &str, unit: &str, column: &Column) -> Result<(f64, f64), Fault> {
     let what = match Scale::of(unit, column) {
         Ok(Scale::Line { factor, offset }) => return Ok((factor, offset)),
@@ -256,10 +257,10 @@ fn wrong(name: &str, what: &str) -> Fault {
 fn not_dbc(source: &SourceFile, error: &DbcError) -> InputError {
     let said = error.to_string();
     let mend = "export it as a DBC from the tool that it comes from";
-    // Where the grammar broke: `--> LINE:COLUMN`, and a last line that says what it would have taken.
+    // Position of the syntax error: `--> LINE:COLUMN`, and a last line with the expected tokens.
     let place = said.lines().find_map(|line| {
         let (line, column) = line.trim().strip_prefix("--> ")?.split_once(':')?;
-        Some(Place {
+        Some(Position {
             line: line.parse().ok()?,
             column: column.parse().ok()?,
         })

@@ -1,14 +1,14 @@
-//! A frame as a logger heard it.
+//! A logged frame.
 
-/// Bytes of the longest frame, which CAN FD has.
+/// Data bytes of the longest frame, of CAN FD.
 pub const MOST_BYTES: usize = 64;
 
-/// Largest identifier of 11 bits.
+/// Largest identifier with 11 bits.
 const LARGEST_STANDARD: u32 = 0x7FF;
-/// Largest identifier of 29 bits.
+/// Largest identifier with 29 bits.
 const LARGEST_EXTENDED: u32 = 0x1FFF_FFFF;
 
-/// An identifier.
+/// A frame identifier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Id {
     /// 11 bits.
@@ -18,7 +18,7 @@ pub enum Id {
 }
 
 impl Id {
-    /// An identifier of the given kind, if it fits.
+    /// An identifier of the given kind, if it is in range.
     pub fn new(raw: u32, is_extended: bool) -> Option<Self> {
         match is_extended {
             true => (raw <= LARGEST_EXTENDED).then_some(Self::Extended(raw)),
@@ -30,14 +30,14 @@ impl Id {
 /// A frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame<'a> {
-    /// When it was heard, s, since whatever the log counts from.
+    /// Time stamp, s, from the log's origin.
     pub time_s: f64,
-    /// Which bus it was heard on, as the log names it.
+    /// The bus, as named in the log.
     pub channel: &'a str,
     /// Its identifier.
     pub id: Id,
     /// Its data.
     pub data: &'a [u8],
-    /// Where it stands in the log.
+    /// Its position in the log.
     pub byte: usize,
 }

@@ -5,12 +5,12 @@ use crate::bus_log::frame::{Frame, Id};
 
 /// A receiver of frames.
 pub trait FrameSink {
-    /// Whether data frames with this identifier on this channel are wanted; others need not be readable.
+    /// Whether data frames with this identifier on this channel are wanted; others are not parsed.
     fn wants(&mut self, channel: &str, id: Id) -> bool;
 
-    /// Takes a frame that is wanted.
+    /// Receives a wanted frame.
     ///
     /// # Errors
-    /// If it can't be what it should be.
+    /// The frame is not valid.
     fn take(&mut self, frame: &Frame<'_>) -> Result<(), CampaignError>;
 }

@@ -1,19 +1,19 @@
-//! A line of a log, in words that know where they stand.
+//! A line of a log, split into words with their positions.
 
 use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
 
 use crate::CampaignError;
 
-/// Latest time stamp, s: that of any date, and still exact to a microsecond.
+/// Largest time stamp, s: covers any date, and is still exact to a microsecond.
 const LATEST_S: f64 = 1e10;
 
-/// A word and its place in the file.
+/// A word and its position in the file.
 #[derive(Debug, Clone, Copy)]
 pub struct Word<'a> {
     /// The word.
     pub text: &'a str,
-    /// Its first byte in the file.
+    /// Its byte offset in the file.
     pub byte: usize,
 }
 
@@ -22,11 +22,11 @@ pub struct Word<'a> {
 pub struct Line<'a> {
     source: &'a SourceFile,
     words: Vec<Word<'a>>,
-    /// Behind the last word.
+    /// Byte offset after the last word.
     end: usize,
 }
 
-/// The lines of a file that aren't empty.
+/// The non-empty lines of a file.
 pub fn lines(source: &SourceFile) -> impl Iterator<Item = Line<'_>> {
     let mut byte = 0;
     source.text.split_inclusive('\n').filter_map(move |text| {
@@ -46,27 +46,27 @@ pub fn lines(source: &SourceFile) -> impl Iterator<Item = Line<'_>> {
 }
 
 impl<'a> Line<'a> {
-    /// Word `index`, if there are so many.
+    /// Word `index`, if it exists.
     pub fn get(&self, index: usize) -> Option<Word<'a>> {
         self.words.get(index).copied()
     }
 
-    /// The text of word `index`; empty if there aren't so many.
+    /// The text of word `index`; empty if it does not exist.
     pub fn text(&self, index: usize) -> &'a str {
         self.get(index).map_or("", |word| word.text)
     }
 
-    /// How many words there are.
+    /// Number of words.
     pub fn len(&self) -> usize {
         self.words.len()
     }
 
-    /// Where the line begins.
+    /// Byte offset of the line.
     pub fn byte(&self) -> usize {
         self.words.first().map_or(self.end, |word| word.byte)
     }
 
-    /// Word `index`, which has to be there.
+    /// Word `index`, which is required.
     pub fn word(&self, index: usize, what: &str) -> Result<Word<'a>, CampaignError> {
         self.get(index).ok_or_else(|| {
             let what = format!("the line ends before its {what}");
@@ -75,7 +75,7 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// A fault of a word, from byte `inside` of it on.
+    /// A fault of a word, at byte `inside` of it.
     pub fn fault(&self, word: Word<'_>, inside: usize, what: &str, mend: &str) -> CampaignError {
         let what = format!("{} {what}", quote(word.text));
         self.source.error_at(word.byte + inside, what, mend)

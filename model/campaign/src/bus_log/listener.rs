@@ -1,4 +1,4 @@
-//! Takes the signals that are wanted out of the frames of a log.
+//! Extracts the wanted signals from the frames of a log.
 
 use hitch_input::input_error::quote;
 use hitch_input::source_file::SourceFile;
@@ -12,7 +12,7 @@ use crate::bus_log::signal::Signal;
 use crate::series::Series;
 use crate::table::Column;
 
-/// A column and the signal that it is taken from.
+/// A column and its signal.
 #[derive(Debug, Clone)]
 pub struct Sampled {
     /// The column.
@@ -21,31 +21,31 @@ pub struct Sampled {
     pub signal: Signal,
 }
 
-/// A message that is listened to.
+/// A message that is received.
 #[derive(Debug, Clone)]
 pub struct Message {
     /// Its name in the description.
     pub name: String,
-    /// Which frames it is.
+    /// The selection of its frames.
     pub matching: Match,
-    /// What is taken of it; at least one.
+    /// The columns taken from it; at least one.
     pub signals: Vec<Sampled>,
-    /// When it was sampled, s, and after how many seconds that goes round.
+    /// Its sampling time, s, and the period of its wrap-around.
     pub clock: Option<(Signal, f64)>,
-    /// The node whose clock that is.
+    /// The node of that clock.
     pub node: String,
 }
 
-/// Who has sent a message.
+/// The sender of a message.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Sender {
     channel: String,
     address: Option<u8>,
 }
 
-/// A message, who sends it, and what was heard of it.
+/// A message, its sender, and the received series.
 #[derive(Debug)]
-struct Heard<'s> {
+struct Received<'s> {
     message: &'s Message,
     sender: Option<Sender>,
     series: Vec<Series>,
@@ -57,21 +57,21 @@ pub struct Listener<'s> {
     source: &'s SourceFile,
     channel: Option<&'s str>,
     address: Option<u8>,
-    heard: Vec<Heard<'s>>,
+    heard: Vec<Received<'s>>,
     clocks: Vec<(&'s str, Clock)>,
-    /// Time of the first frame that was wanted, s.
+    /// Time of the first wanted frame, s.
     first_s: Option<f64>,
 }
 
 impl<'s> Listener<'s> {
-    /// A listener for some messages of a log. A channel or a source address, if given, limits what it takes.
+    /// A listener for some messages of a log; a channel or a source address restricts it.
     pub fn new(
         source: &'s SourceFile,
         messages: &'s [Message],
         channel: Option<&'s str>,
         address: Option<u8>,
     ) -> Self {
-        let heard = messages.iter().map(|message| Heard {
+        let heard = messages.iter().map(|message| Received {
             message,
             sender: None,
             series: vec![Series::default(); message.signals.len()],
@@ -86,7 +86,7 @@ impl<'s> Listener<'s> {
         }
     }
 
-    /// What was heard for each column.
+    /// The received series of each column.
     pub fn series(&self) -> impl Iterator<Item = (&'static Column, &Series)> {
         self.heard.iter().flat_map(|heard| {
             let columns = heard.message.signals.iter().map(|sampled| sampled.column);
@@ -102,7 +102,7 @@ impl FrameSink for Listener<'_> {
         is_there && messages.any(|matching| is_from(matching.sender(id), self.address))
     }
 
-    /// Times count from the first frame that is wanted. Two nodes that send the same message are refused.
+    /// Times start at the first wanted frame. The same message from two nodes is an error.
     fn take(&mut self, frame: &Frame<'_>) -> Result<(), CampaignError> {
         let source = self.source;
         let logged_s = frame.time_s - *self.first_s.get_or_insert(frame.time_s);
@@ -130,12 +130,12 @@ impl FrameSink for Listener<'_> {
     }
 }
 
-/// Whether a frame that is of a message, or not, comes from the address that is wanted, if one is.
+/// Whether a frame comes from the wanted source address, if one is given.
 fn is_from(found: Option<Option<u8>>, wanted: Option<u8>) -> bool {
     found.is_some_and(|address| address.is_none() || wanted.is_none() || address == wanted)
 }
 
-/// When a frame was sampled, by the clock of its sender if it tells, else when it was logged.
+/// Sampling time of a frame by its sender's clock, if it has one, else its time stamp.
 fn sampled_s<'s>(
     clocks: &mut Vec<(&'s str, Clock)>,
     message: &'s Message,
@@ -179,8 +179,8 @@ fn value(signal: &Signal, frame: &Frame<'_>) -> Result<Option<f64>, (String, Str
     })
 }
 
-impl Heard<'_> {
-    /// Two nodes that send one message are two machines.
+impl Received<'_> {
+    /// The same message from two nodes means two machines.
     fn is_from(&mut self, sender: Sender) -> Result<(), (String, String)> {
         let known = self.sender.get_or_insert_with(|| sender.clone());
         if *known == sender {
@@ -230,7 +230,7 @@ impl Heard<'_> {
 }
 
 impl Match {
-    /// The address of the sender if the identifier is that of the message; J1939 alone has addresses.
+    /// The source address, if the identifier is that of the message; only J1939 has addresses.
     pub fn sender(self, id: Id) -> Option<Option<u8>> {
         match (self, id) {
             (Self::Identifier(known), id) => (known == id).then_some(None),

@@ -1,12 +1,11 @@
-//! Runs that a logger took from a CAN bus: candump's `.log` and Vector's `.asc`, read by a description of the bus
-//! (DBC).
+//! Runs from logs of a CAN bus: candump's `.log` and Vector's `.asc`, decoded by a description of the bus (DBC).
 //!
 //! ```text
 //! log --(candump, asc)--> frames --(listener: signals of the DBC)--> series of each column --> rows of a run
 //! ```
 //!
-//! A row is a sample of the lift current. What comes in another message is brought to its time by a straight line, if
-//! it was sampled no further away than half a row.
+//! A row is a sample of the lift current. Signals of other messages are interpolated linearly to its time, if a sample
+//! is within half a row.
 mod asc;
 mod candump;
 mod clock;
@@ -33,17 +32,17 @@ use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 use listener::Listener;
 
-/// A kind of log.
+/// A log format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// candump's.
+    /// candump.
     Candump,
-    /// Vector's.
+    /// Vector ASCII.
     Asc,
 }
 
 impl Format {
-    /// By the end of the file's name; `None` if that is no log of a bus.
+    /// The format by the extension of the file name; `None` for other files.
     pub fn of(path: &Path) -> Option<Self> {
         let end = path.extension()?.to_str()?.to_ascii_lowercase();
         match end.as_str() {
@@ -54,10 +53,10 @@ impl Format {
     }
 }
 
-/// Refuses a log of a bus in a format that isn't read.
+/// Rejects a bus log in an unsupported format.
 ///
 /// # Errors
-/// By which program it becomes one that is.
+/// The program that converts it to a supported one.
 pub fn check_known(path: &Path) -> Result<(), CampaignError> {
     let end = path.extension().and_then(|end| end.to_str());
     if !end.is_some_and(|end| end.eq_ignore_ascii_case("trc")) {
@@ -71,10 +70,10 @@ pub fn check_known(path: &Path) -> Result<(), CampaignError> {
     ))
 }
 
-/// Reads a log of a bus.
+/// Reads a bus log.
 ///
 /// # Errors
-/// Whatever is wrong first, by file, line and column.
+/// The first fault, with file, line and column.
 pub fn read(
     source: &Arc<SourceFile>,
     format: Format,
@@ -110,7 +109,7 @@ fn read_frames(
     }
 }
 
-/// A current: without it there is no run.
+/// A current, which every run requires.
 fn required<'l>(
     source: &SourceFile,
     listener: &'l Listener<'_>,

@@ -1,11 +1,11 @@
-//! `[can]` in `campaign.toml`: what is taken from a bus.
+//! `[can]` in `campaign.toml`: the signals that are taken from a bus.
 //!
 //! ```toml
-//! [can]                                     # all of it may be left out with logs of the project's own ECU
-//! dbc = "rig.dbc"                           # what is on the bus
-//! channel = "can0"                          # which one, if the log has several
-//! source = 128                              # whose messages, if several nodes send the same (J1939)
-//! clock = "SampleTime"                      # signal of a message that says when it was sampled, if it has one
+//! [can]                                     # optional for logs of the project's ECU
+//! dbc = "rig.dbc"                           # description of the bus
+//! channel = "can0"                          # bus, if the log has several
+//! source = 128                              # source address, if several nodes send the same message (J1939)
+//! clock = "SampleTime"                      # signal with a message's sampling time, if it has one
 //!
 //! [can.signals]
 //! lift_current_a = "HitchMotion.LiftCurrent"
@@ -24,7 +24,7 @@ use crate::bus_log::listener::{Listener, Message, Sampled};
 use crate::manifest::file_in;
 use crate::table::{COLUMNS, Column, LIFT, LOWER, TIME, column};
 
-/// The signals of the project's own ECU.
+/// The signals of the project's ECU.
 const OF_ECU: [(&str, &str); 5] = [
     (LIFT, "HitchMotion.LiftCurrent"),
     (LOWER, "HitchMotion.LowerCurrent"),
@@ -35,23 +35,23 @@ const OF_ECU: [(&str, &str); 5] = [
     ),
     (Channel::PumpPressure.key(), "HitchPressures.PumpPressure"),
 ];
-/// The signal that is a clock, unless another is named.
+/// Default name of the clock signal.
 const CLOCK: &str = "SampleTime";
 
-/// What is taken from a bus, and from whom.
+/// The signals that are taken from a bus, and their senders.
 #[derive(Debug, Clone)]
 pub struct BusSettings {
-    /// The bus, as the log names it; `None` takes any.
+    /// The bus, as named in the log; `None` for any.
     channel: Option<String>,
-    /// The sender's address; `None` takes any.
+    /// The source address; `None` for any.
     address: Option<u8>,
-    /// The messages, with the signals of each.
+    /// The messages with their signals.
     messages: Vec<Message>,
     is_of_ecu: bool,
 }
 
 impl Default for BusSettings {
-    /// The project's own ECU.
+    /// The settings for the project's ECU.
     fn default() -> Self {
         Self::of_ecu(CLOCK)
     }
@@ -74,10 +74,10 @@ impl BusSettings {
         settings
     }
 
-    /// Reads `[can]` of a campaign in `dir`.
+    /// Reads `[can]` of a campaign in the folder `dir`.
     ///
     /// # Errors
-    /// Whatever is wrong first, by file, line and column.
+    /// The first fault, with file, line and column.
     pub fn read(dir: &Path, top: &TomlTable<'_>) -> Result<Self, CampaignError> {
         let Some(table) = top.table("can")? else {
             return Ok(Self::default());
@@ -146,7 +146,7 @@ impl BusSettings {
         self.messages.retain(|message| !message.signals.is_empty());
     }
 
-    /// Takes a column from the signal at `path`.
+    /// Takes a column from the signal `path`.
     fn take(
         &mut self,
         description: &Description,
@@ -193,14 +193,14 @@ impl BusSettings {
         )
     }
 
-    /// The signal that a column is taken from, for people.
+    /// Display name of the signal of a column.
     pub fn signal(&self, column: &str) -> Option<&str> {
         let signals = self.messages.iter().flat_map(|message| &message.signals);
         let mut of_column = signals.filter(|sampled| sampled.column.name == column);
         of_column.next().map(|sampled| sampled.signal.name.as_str())
     }
 
-    /// How a column that is missing is had.
+    /// Suggested correction for a missing column.
     pub fn how_to_get(&self, column: &str) -> String {
         match (self.is_of_ecu, self.signal(column)) {
             (true, Some(_)) => {

@@ -1,9 +1,9 @@
 //! A signal in the data of a frame.
 
-/// How the bits of a signal are meant.
+/// Number format of a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A natural number.
+    /// Unsigned integer.
     Unsigned,
     /// Two's complement.
     Signed,
@@ -13,19 +13,19 @@ pub enum Kind {
     Double,
 }
 
-/// Which bits of the data a signal has.
+/// Position of a signal in the data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bits {
-    /// As in a DBC: the lowest bit, or of a signal with the highest byte first, the highest one.
+    /// Start bit as in a DBC: the lowest bit, or for big-endian signals the highest one.
     pub start: usize,
-    /// How many: 1 to 64.
+    /// Number of bits: 1 to 64.
     pub size: usize,
-    /// The highest byte comes first (Motorola).
+    /// Big-endian (Motorola).
     pub is_big_endian: bool,
 }
 
 impl Bits {
-    /// The bits as a number; `None` if the data end before.
+    /// The raw value; `None` if the data are too short.
     fn of(self, data: &[u8]) -> Option<u64> {
         let mut value = 0;
         let mut place = self.start;
@@ -33,7 +33,7 @@ impl Bits {
             let bit = u64::from(*data.get(place / 8)? >> (place % 8) & 1);
             if self.is_big_endian {
                 value = value << 1 | bit;
-                // Bits of a byte are counted from its lowest: the next lower one of the next byte is its highest.
+                // Bits of a byte are counted from its lowest: bit 0 is followed by bit 7 of the next byte.
                 place = if place.is_multiple_of(8) {
                     place + 15
                 } else {
@@ -51,28 +51,28 @@ impl Bits {
 /// A signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Signal {
-    /// Message and signal, for people.
+    /// Display name: message and signal.
     pub name: String,
-    /// Where.
+    /// Position.
     pub bits: Bits,
-    /// What.
+    /// Number format.
     pub kind: Kind,
-    /// What a count is worth, in the unit that is wanted.
+    /// Factor, in the wanted unit per count.
     pub factor: f64,
-    /// What 0 counts are, in the unit that is wanted.
+    /// Offset, in the wanted unit.
     pub offset: f64,
-    /// Counts from `0xFB` in the highest byte on are no data (J1939-71).
+    /// Values from `0xFB` in the highest byte on mean that no data are available (J1939-71).
     pub has_reserved_values: bool,
-    /// It is there only while the bits of a selector have this value.
+    /// Multiplexing: it is present only if the selector has this value.
     pub selected_by: Option<(Bits, u64)>,
 }
 
-/// The data end before the signal does.
+/// The data are shorter than the signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TooShort;
 
 impl Signal {
-    /// Its value in the data of a frame; `None` if it isn't there, NaN if the sender says that it doesn't know.
+    /// Its value in the data of a frame; `None` if it is not present, NaN if the sender has no valid value.
     pub fn value(&self, data: &[u8]) -> Result<Option<f64>, TooShort> {
         if let Some((selector, selected)) = self.selected_by
             && selector.of(data).ok_or(TooShort)? != selected

@@ -1,4 +1,4 @@
-//! Which signals of a description logs of a bus hold.
+//! Lists the signals of a description that a bus log contains.
 
 use std::collections::HashMap;
 
@@ -13,7 +13,7 @@ use crate::scale::spelling;
 use crate::survey::LogColumn;
 use crate::table::COLUMNS;
 
-/// The identifiers of a log, and how many frames each has.
+/// The identifiers of a log, with the number of frames of each.
 #[derive(Debug, Default)]
 struct IdentifierCounts {
     frames: HashMap<Id, usize>,
@@ -30,19 +30,19 @@ impl FrameSink for IdentifierCounts {
     }
 }
 
-/// What a log holds of a description.
+/// Signals of a description in a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Signals {
-    /// Signals of messages that it holds, in a unit that a run's column may have, as `Message.Signal`; without values.
+    /// Signals of received messages in a unit that a column of a run may have, as `Message.Signal`; without values.
     pub columns: Vec<LogColumn>,
-    /// Frames of messages that the description doesn't have.
+    /// Frames of messages that the description lacks.
     pub unknown_frames: usize,
 }
 
-/// Looks for the signals of a description in a log.
+/// Searches a log for the signals of a description.
 ///
 /// # Errors
-/// If the log can't be read, or holds no such signal.
+/// The log cannot be read, or contains no such signal.
 pub fn signals(
     source: &SourceFile,
     format: Format,

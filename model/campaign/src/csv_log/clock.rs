@@ -1,37 +1,37 @@
-//! Times of a log: seconds and their multiples, seconds since an epoch, dates and times of day.
+//! Times of a log: seconds and their multiples, epoch times, dates and times of day.
 
 use std::ops::RangeInclusive;
 
 use crate::scale::Scale;
 
-/// Seconds of a day.
+/// Seconds per day.
 const DAY_S: f64 = 86_400.0;
-/// Times that count from an epoch are later than this after it, s: three years. A log alone does not last so long.
+/// Smallest epoch time, s: three years. No log lasts that long.
 const EPOCH_FROM_S: f64 = 1e8;
 /// The magnitude of an epoch time without a unit selects its unit: limit, and unit above it in s (ns, us, ms).
 const EPOCH_UNITS: [(f64, f64); 3] = [(1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3)];
 
-/// Reads the times of a log, one after the other.
+/// Reads the times of a log in order.
 #[derive(Debug)]
 pub struct Times {
-    /// What one of the log's unit is, s; `None` if nothing says so.
+    /// Size of the log's time unit, s; `None` if unknown.
     unit_s: Option<f64>,
     begin: Option<Begin>,
-    /// The last time of day, s, and how many days went by before it.
+    /// The last time of day, s, and the number of days before it.
     last: (f64, f64),
 }
 
 /// The first time of a log.
 #[derive(Debug, Clone, Copy)]
 enum Begin {
-    /// A number, and what one is, s.
+    /// A number, and the size of its unit, s.
     Number { first: f64, unit_s: f64 },
-    /// A time of day, or of a date, s.
+    /// A time of day, or date and time, s.
     Clock { first_s: f64 },
 }
 
 impl Times {
-    /// Of a log whose numbers are scaled so, if something says how.
+    /// For a log with this time unit, if known.
     pub fn new(scale: Option<Scale>) -> Self {
         let unit_s = match scale {
             Some(Scale::Line { factor, .. }) => Some(factor),
@@ -44,8 +44,7 @@ impl Times {
         }
     }
 
-    /// The time in a cell, s; times of an epoch and of a clock count from the first one. `None` if there is no time in
-    /// it.
+    /// The time in a cell, s; epoch and clock times are relative to the first one. `None` if the cell contains no time.
     pub fn read(&mut self, cell: &str) -> Option<f64> {
         match number(cell) {
             Some(number) => self.of_number(number),
@@ -81,7 +80,7 @@ impl Times {
         }
     }
 
-    /// A clock without a date goes back at midnight by nearly a day.
+    /// A time of day without a date decreases by nearly a day at midnight.
     fn since_first_midnight_s(&mut self, of_day_s: f64) -> f64 {
         let (last_s, mut days) = self.last;
         if of_day_s < last_s - DAY_S / 2.0 {
@@ -106,15 +105,15 @@ fn number(cell: &str) -> Option<f64> {
     is_number(cell).or_else(|| is_number(&cell.replacen(',', ".", 1)))
 }
 
-/// Whether a cell holds a date or a time of day.
+/// Whether a cell contains a date or a time of day.
 pub fn is_clock(cell: &str) -> bool {
     number(cell).is_none() && parse(cell).is_some()
 }
 
-/// A time of a date, or of no known date.
+/// A date and time, or a time of day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Instant {
-    /// Days since 1970-01-01, if a date is given.
+    /// Days since 1970-01-01, if there is a date.
     day: Option<f64>,
     /// Seconds since midnight.
     of_day_s: f64,
@@ -137,7 +136,7 @@ fn parse(cell: &str) -> Option<Instant> {
     })
 }
 
-/// `10:00:00.123`, with `AM` or `PM`, `Z` or an offset behind it.
+/// Parses `10:00:00.123`, followed by `AM` or `PM`, `Z` or an offset.
 fn of_day_s(text: &str) -> Option<f64> {
     let upper = text.trim().to_ascii_uppercase();
     let (text, afternoon) = match (upper.strip_suffix("AM"), upper.strip_suffix("PM")) {
@@ -167,7 +166,7 @@ fn of_day_s(text: &str) -> Option<f64> {
     Some(f64::from(hour * 60 + minute) * 60.0 + second - offset_s)
 }
 
-/// `+01:00`, `-0530`, `+01`.
+/// Parses an offset: `+01:00`, `-0530`, `+01`.
 fn offset_s(text: &str) -> Option<f64> {
     let sign = if text.starts_with('-') { -1.0 } else { 1.0 };
     let digits = text[1..].replace(':', "");
@@ -185,7 +184,7 @@ fn seconds(text: &str) -> Option<f64> {
         .bytes()
         .all(|b| b.is_ascii_digit() || matches!(b, b'.' | b','));
     let value = number(text).filter(|_| is_plain)?;
-    // A second more is a leap second.
+    // Second 60 is a leap second.
     (0.0..61.0).contains(&value).then_some(value)
 }
 
@@ -213,7 +212,7 @@ fn day_of(text: &str) -> Option<f64> {
     is_date.then(|| days_since_1970(year, month, day))
 }
 
-/// Days of the Gregorian calendar, in years that begin in March.
+/// Days in the Gregorian calendar, with years that begin in March.
 fn days_since_1970(year: u32, month: u32, day: u32) -> f64 {
     let year = i64::from(year) - i64::from(month <= 2);
     let month = i64::from((month + 9) % 12);

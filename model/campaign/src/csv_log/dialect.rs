@@ -1,43 +1,42 @@
-//! How a table of numbers is written as text: which mark stands between cells, where the header is, which mark is that
-//! of decimals.
+//! The dialect of a text table: separator, position of the header, decimal mark.
 
 use csv::StringRecord;
 
 use crate::csv_log::clock::is_clock;
 use crate::scale::is_unit;
 
-/// What may stand between cells; the first wins where several would do, so the comma, which may be decimal, is last.
+/// Possible separators, by priority: the comma, which may be a decimal mark, is last.
 pub const MARKS: [u8; 4] = [b'\t', b';', b'|', b','];
-/// A header stands among so many rows.
+/// Number of rows that are searched for a header.
 const HEADER_WITHIN: usize = 200;
-/// So many rows show how decimals are written.
-const LOOKED_AT: usize = 1_000;
+/// Number of rows that are examined for the decimal mark.
+const EXAMINED_ROWS: usize = 1_000;
 
-/// The cell of a header.
+/// A cell of a header.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct HeaderCell {
-    /// All of it.
+    /// Its full text.
     pub text: String,
-    /// Without a unit in brackets.
+    /// Its text without a unit in brackets.
     pub name: String,
-    /// The unit, from brackets or from a row of units below.
+    /// Its unit, from brackets or from a row of units below.
     pub unit: Option<String>,
 }
 
 /// The header of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Header {
-    /// What stands between cells.
+    /// Separator.
     pub mark: u8,
-    /// Its first byte in the text.
+    /// Its byte offset in the text.
     pub byte: usize,
     /// Its cells.
     pub cells: Vec<HeaderCell>,
-    /// The first byte of the samples.
+    /// Byte offset of the first sample.
     pub data_byte: usize,
 }
 
-/// The rows of a text from `byte` on, each with its first byte in the text.
+/// The rows of a text from `byte` on, each with its byte offset in the text.
 pub fn rows(text: &str, byte: usize, mark: u8) -> impl Iterator<Item = (usize, StringRecord)> {
     let rest = text.get(byte..).unwrap_or_default();
     let reader = csv::ReaderBuilder::new()
@@ -46,7 +45,7 @@ pub fn rows(text: &str, byte: usize, mark: u8) -> impl Iterator<Item = (usize, S
         .delimiter(mark)
         .trim(csv::Trim::All)
         .from_reader(rest.as_bytes());
-    // The text is UTF-8 and lies in memory: nothing can fail.
+    // The text is valid UTF-8 in memory: reading cannot fail.
     reader.into_records().map_while(Result::ok).map(move |row| {
         let start = row
             .position()
@@ -76,7 +75,7 @@ impl HeaderCell {
         }
     }
 
-    /// Whether it is the column of that name.
+    /// Whether it is the column with this name.
     pub fn is(&self, name: &str) -> bool {
         self.text == name || self.name == name
     }
@@ -89,7 +88,7 @@ fn in_brackets(text: &str) -> Option<(&str, &str)> {
             .strip_suffix(close)
             .and_then(|text| text.rsplit_once(open))
         {
-            // The name of a quantity may end in brackets that hold no unit.
+            // A name may end in brackets without a unit.
             let is_bracket = open == '[' || is_unit(unit);
             return is_bracket.then(|| (name.trim_end(), unit.trim()));
         }
@@ -99,7 +98,7 @@ fn in_brackets(text: &str) -> Option<(&str, &str)> {
 }
 
 impl Header {
-    /// The row that holds most of `names`; `None` if none holds any.
+    /// The row with the most of `names`; `None` if there is none.
     pub fn with_names(text: &str, names: &[&str]) -> Option<Self> {
         let found = |row: &StringRecord| {
             let cells: Vec<HeaderCell> = row.iter().map(HeaderCell::new).collect();
@@ -118,7 +117,7 @@ impl Header {
         best.map(|(_, mark, byte, row)| Self::at(text, mark, byte, &row))
     }
 
-    /// The row in front of the first samples, of a table whose names are not known; `None` if this is no table.
+    /// The row before the first samples, for a table with unknown names; `None` if the text is not a table.
     pub fn guessed(text: &str) -> Option<Self> {
         MARKS.into_iter().find_map(|mark| {
             let rows: Vec<(usize, StringRecord)> =
@@ -130,7 +129,7 @@ impl Header {
                 row.len() >= width && filled.len() > 1 && 2 * values > filled.len()
             };
             let first = rows.iter().position(|(_, row)| is_sample(row))?;
-            // A row of units or of other remarks may stand between.
+            // A row of units or comments may be between them.
             let is_header =
                 |row: &StringRecord| row.len() >= 2 && !is_units(row) && row.len() + 1 >= width;
             let (byte, header) = rows[..first].iter().rev().find(|(_, row)| is_header(row))?;
@@ -165,7 +164,7 @@ impl Header {
     }
 }
 
-/// Whether a row below a header holds samples: a number or a time somewhere in it.
+/// Whether a row below a header contains samples: any number or time.
 fn holds_samples(row: &StringRecord) -> bool {
     row.iter().any(is_value)
 }
@@ -174,14 +173,14 @@ fn is_value(cell: &str) -> bool {
     Decimals::ANY.number(cell).is_some() || is_clock(cell)
 }
 
-/// Whether a row holds units alone.
+/// Whether a row contains only units.
 fn is_units(row: &StringRecord) -> bool {
     let mut filled = row.iter().filter(|cell| !cell.is_empty()).peekable();
     let bare = |cell: &str| is_unit(cell.trim_matches(['[', ']', '(', ')', '{', '}']));
     filled.peek().is_some() && filled.all(bare)
 }
 
-/// How many cells most rows have, if that is two or more and most rows agree.
+/// The number of cells of most rows, if it is at least two and most rows agree.
 fn usual_width(rows: &[(usize, StringRecord)]) -> Option<usize> {
     let count = |width: usize| rows.iter().filter(|(_, row)| row.len() == width).count();
     let widths = rows.iter().map(|(_, row)| row.len());
@@ -189,7 +188,7 @@ fn usual_width(rows: &[(usize, StringRecord)]) -> Option<usize> {
     (usual >= 2 && 2 * count(usual) > rows.len()).then_some(usual)
 }
 
-/// Which mark stands in front of decimals.
+/// The decimal mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Decimals {
     point: bool,
@@ -203,24 +202,24 @@ impl Decimals {
         comma: true,
     };
 
-    /// As the cells of the first rows show it.
+    /// Determined from the cells of the first rows.
     pub fn of<'r>(cells: impl Iterator<Item = &'r str>) -> Self {
         let (mut points, mut commas) = (0, 0);
         for cell in cells.filter(|cell| Self::ANY.number(cell).is_some()) {
             points += usize::from(cell.contains('.'));
             commas += usize::from(cell.contains(','));
         }
-        // A few cells with the other mark are faults, which are better shown than read.
+        // A few cells with the other mark are faults, which have to be reported.
         Self {
             point: points >= commas,
             comma: commas > points || points == 0,
         }
     }
 
-    /// As the first rows of a table show it in some of its columns.
+    /// Determined from the first rows of some columns of a table.
     pub fn in_columns(text: &str, header: &Header, cells: &[usize]) -> Self {
         let rows: Vec<StringRecord> = rows(text, header.data_byte, header.mark)
-            .take(LOOKED_AT)
+            .take(EXAMINED_ROWS)
             .map(|(_, row)| row)
             .collect();
         Self::of(
@@ -229,7 +228,7 @@ impl Decimals {
         )
     }
 
-    /// The number in a cell; it may be infinite, but holds a digit. `None` if there is none.
+    /// The number in a cell, possibly infinite; `None` without digits.
     pub fn number(self, cell: &str) -> Option<f64> {
         if !cell.bytes().any(|byte| byte.is_ascii_digit()) {
             return None;

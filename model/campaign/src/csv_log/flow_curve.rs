@@ -1,4 +1,4 @@
-//! Flow of a valve over current from a table of text, as a data sheet or a flow bench gives it.
+//! Flow curve of a valve from a text table, as given by a data sheet or a flow bench.
 
 use std::path::Path;
 
@@ -10,10 +10,10 @@ use hitch_plant::{ValveCurve, ValveCurveError};
 
 use crate::csv_log::dialect::{Decimals, Header, HeaderCell, rows};
 
-/// Units of a current and what they are in A.
+/// Units of current, in A.
 const CURRENT: [(&str, f64); 2] = [("a", 1.0), ("ma", 1e-3)];
 
-/// Units of a flow and what they are in m3/s.
+/// Units of flow, in m3/s.
 const FLOW: [(&str, f64); 5] = [
     ("lpm", M3_S_PER_LPM),
     ("l/min", M3_S_PER_LPM),
@@ -22,10 +22,10 @@ const FLOW: [(&str, f64); 5] = [
     ("m3_s", 1.0),
 ];
 
-/// Reads a flow curve: a header with a current in A or mA and a flow in l/min or m3/s, and a row a point.
+/// Reads a flow curve: a header with a current in A or mA and a flow in l/min or m3/s, and one row per point.
 ///
 /// # Errors
-/// What is wrong with the table, by line and column.
+/// A fault in the table, by line and column.
 pub fn read(path: &Path) -> Result<ValveCurve, InputError> {
     let source = SourceFile::read_any(path)?;
     let header = Header::guessed(&source.text).ok_or_else(|| {
@@ -84,7 +84,7 @@ fn column(
     })
 }
 
-/// What one of a column's units is in SI; `None` if it has none of these.
+/// Size of a column's unit in SI; `None` for unknown units.
 fn unit(cell: &HeaderCell, units: &[(&str, f64)]) -> Option<f64> {
     let written = cell.unit.as_ref().map(|unit| unit.to_lowercase());
     let name = cell.name.to_lowercase();
@@ -131,7 +131,7 @@ mod tests {
         assert_eq!(english, german);
         let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/table2a_lift_valve.csv");
         let shipped = read(&table).expect("a curve");
-        // The model leaves out points on the straight end.
+        // The model omits collinear points at the end.
         let nominal = hitch_model_file::nominal();
         let curve = &nominal.constants().lift_valve.curve;
         for (&current_a, &flow_m3_s) in curve.currents_a().iter().zip(curve.flows_m3_s()) {

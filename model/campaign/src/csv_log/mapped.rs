@@ -1,4 +1,4 @@
-//! Anybody's table, by `[columns]`: its own names, units and times; what is not named is passed over.
+//! Reads any table, mapped by `[columns]`: its own names, units and times; other columns are ignored.
 
 use std::sync::Arc;
 
@@ -14,8 +14,8 @@ use crate::csv_log::dialect::{Decimals, Header, rows};
 use crate::scale::{Scale, is_time};
 use crate::table::{Cells, Column, Samples, TIME, Table, cell_error};
 
-/// A column that is taken.
-struct Taken {
+/// A mapped column.
+struct MappedColumn {
     column: &'static Column,
     /// Its name in the log.
     name: String,
@@ -23,10 +23,10 @@ struct Taken {
     scale: Scale,
 }
 
-/// Reads the table below `header`, of a hitch with this linkage.
+/// Reads the table below `header`, for a hitch with this linkage.
 ///
 /// # Errors
-/// Whatever is wrong first, by line and column.
+/// The first fault, with line and column.
 pub fn read(
     source: &Arc<SourceFile>,
     header: &Header,
@@ -64,8 +64,8 @@ pub fn read(
     }
 }
 
-/// The cell of the times with their scale, and the other columns.
-type Found = ((usize, Option<Scale>), Vec<Taken>);
+/// The time column with its scale, and the other columns.
+type Found = ((usize, Option<Scale>), Vec<MappedColumn>);
 
 fn taken(
     source: &SourceFile,
@@ -85,7 +85,7 @@ fn taken(
         }
         let fault =
             |(what, mend)| cell_error(source, header.byte, (cell, header.mark.into()), what, mend);
-        taken.push(Taken {
+        taken.push(MappedColumn {
             column: wanted.column,
             name: wanted.name.clone(),
             cell,
@@ -100,7 +100,7 @@ fn taken(
     Ok((time, taken))
 }
 
-/// Where a column stands; `None` if it is not there and need not be.
+/// Index of a column; `None` if it is missing and optional.
 fn cell_of(
     source: &SourceFile,
     header: &Header,
@@ -128,23 +128,23 @@ fn cell_of(
     }
 }
 
-/// The rows that have been read.
+/// The rows read so far.
 struct Reader<'a> {
     source: &'a Arc<SourceFile>,
     header: &'a Header,
     decimals: Decimals,
     times: Times,
     time_cell: usize,
-    taken: &'a [Taken],
+    taken: &'a [MappedColumn],
     linkage: &'a Linkage,
     times_s: Vec<f64>,
     values: Vec<Vec<f64>>,
-    /// First byte of each in the file.
+    /// Byte offset of each row in the file.
     bytes: Vec<usize>,
 }
 
 impl Reader<'_> {
-    /// Takes a row. A fault that it may have if it is the last one is returned as a value.
+    /// Adds a row. A fault that is tolerated in the last row is returned as a value.
     fn push(
         &mut self,
         byte: usize,
@@ -177,9 +177,9 @@ impl Reader<'_> {
         Ok(None)
     }
 
-    /// The value of a cell in the column's unit; a cell without a digit is a dropout, whatever it says.
-    fn value(&self, taken: &Taken, cell: &str) -> Result<f64, (String, String)> {
-        let Taken { column, name, .. } = taken;
+    /// The value of a cell in the column's unit; a cell without digits is a dropout.
+    fn value(&self, taken: &MappedColumn, cell: &str) -> Result<f64, (String, String)> {
+        let MappedColumn { column, name, .. } = taken;
         if !cell.bytes().any(|byte| byte.is_ascii_digit()) {
             return Ok(f64::NAN);
         }

@@ -1,4 +1,4 @@
-//! Logs that are tables of text: this project's own, whose header carries its columns' names, and by `[columns]` anybody's.
+//! Text tables: the project's own format, whose header has the columns' names, and any other by `[columns]`.
 mod clock;
 mod dialect;
 pub mod flow_curve;
@@ -17,10 +17,10 @@ use crate::scale::spelling;
 use crate::survey::{LogColumn, Survey};
 use crate::table::Table;
 
-/// Reads a table of a hitch with this linkage; `settings` name its columns unless it has this project's own header.
+/// Reads a table for a hitch with this linkage; `settings` map its columns unless it has the project's own header.
 ///
 /// # Errors
-/// Whatever is wrong first, by line and column.
+/// The first fault, with line and column.
 pub fn read(
     source: &Arc<SourceFile>,
     settings: Option<&ColumnSettings>,
@@ -52,10 +52,10 @@ fn no_header(source: &SourceFile, wanted: &[&str]) -> CampaignError {
     }
 }
 
-/// What a table holds; the numbers of so many rows at most show it.
+/// The columns of a table, with the numbers of at most this many rows.
 ///
 /// # Errors
-/// If it is no table.
+/// The text is not a table.
 pub fn survey(source: &SourceFile) -> Result<Survey, CampaignError> {
     const MOST_ROWS: usize = 200_000;
     if native::has_own_header(source) {

@@ -1,4 +1,4 @@
-//! A log as a table of numbers: a header whose names carry their unit, then a row a sample.
+//! The project's log format: a header whose names include their unit, then one row per sample.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::table::{COLUMNS, Cells, Samples, TIME, Table, cell_error, column};
 /// Reads the table.
 ///
 /// # Errors
-/// Whatever is wrong first, by line and column.
+/// The first fault, with line and column.
 pub fn read(source: &Arc<SourceFile>) -> Result<Table, CampaignError> {
     let mark = mark(source);
     let mut records = rows(&source.text, 0, mark);
@@ -41,13 +41,13 @@ pub fn read(source: &Arc<SourceFile>) -> Result<Table, CampaignError> {
     Table::new(Arc::clone(source), columns.collect(), rows.bytes, cells)
 }
 
-/// Whether all columns have names of this project.
+/// Whether all columns have the project's names.
 pub fn has_own_header(source: &SourceFile) -> bool {
     let header = rows(&source.text, 0, mark(source)).next();
     header.is_some_and(|(_, header)| header.iter().all(|name| column(name).is_some()))
 }
 
-/// What stands between the cells: what makes most known names of the header; a comma if nothing does.
+/// The separator that yields the most known names in the header; a comma if none does.
 fn mark(source: &SourceFile) -> u8 {
     let known = |mark: &u8| {
         let header = rows(&source.text, 0, *mark).next();
@@ -55,30 +55,30 @@ fn mark(source: &SourceFile) -> u8 {
             header.iter().filter(|name| column(name).is_some()).count()
         })
     };
-    // Of several that do as well it is the last.
+    // Of several equal ones the last is chosen.
     MARKS.into_iter().max_by_key(known).unwrap_or(b',')
 }
 
-/// How decimals are written: where commas stand between cells, never with one.
+/// The decimal mark: never a comma if commas are separators.
 fn decimals(source: &SourceFile, mark: u8, width: usize) -> Option<Decimals> {
-    const LOOKED_AT: usize = 1_000;
+    const EXAMINED_ROWS: usize = 1_000;
     (mark != b',').then(|| {
         let first: Vec<StringRecord> = rows(&source.text, 0, mark)
             .skip(1)
-            .take(LOOKED_AT)
+            .take(EXAMINED_ROWS)
             .map(|(_, row)| row)
             .collect();
         Decimals::of(first.iter().flat_map(|row| row.iter().take(width)))
     })
 }
 
-/// The rows that have been read.
+/// The rows read so far.
 struct Rows<'a> {
     source: &'a SourceFile,
     mark: u8,
     decimals: Option<Decimals>,
     columns: Vec<(&'static str, Vec<f64>)>,
-    /// First byte of each in the file.
+    /// Byte offset of each row in the file.
     bytes: Vec<usize>,
 }
 
@@ -108,7 +108,7 @@ impl Rows<'_> {
     }
 }
 
-/// Checks the header and gives each column its name.
+/// Checks the header and returns the column names.
 fn column_names(
     source: &SourceFile,
     header: &StringRecord,
@@ -159,7 +159,7 @@ fn unknown_column(given: &str, index: usize, known: &[&str]) -> (String, String)
     )
 }
 
-/// The number in a cell; NaN if the cell is empty, which only time may not be.
+/// The number in a cell; NaN for an empty cell, which is an error for time.
 fn number(
     name: &'static str,
     cell: &str,

@@ -1,4 +1,4 @@
-//! What is wrong with a log or its settings is said with its place.
+//! Faults of a log or its settings are reported with their position.
 
 use super::logs::*;
 

@@ -1,4 +1,4 @@
-//! Logs of a CAN bus made for the tests, and what is read from them.
+//! Synthetic logs of a CAN bus, and the runs read from them.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -6,7 +6,7 @@ use std::fs;
 use hitch_campaign::{Campaign, Run};
 use tempfile::TempDir;
 
-/// Identifiers of the ECU's messages at address 128, and of the same from 129.
+/// Identifiers of the ECU's messages from address 128, and from 129.
 pub const MOTION: &str = "18FF4580";
 pub const PRESSURES: &str = "18FF4680";
 pub const MOTION_OF_ANOTHER: &str = "18FF4581";
@@ -14,8 +14,8 @@ pub const MOTION_OF_ANOTHER: &str = "18FF4581";
 pub const MANIFEST: &str =
     "format = 1\n[[run]]\nfile = \"a.log\"\nbench = \"hitch\"\nload_kg = 150\n";
 
-/// Sample `index` of a log at 50 Hz: data of both messages. Lift 1.5 A, lowering 0 A, 90 degrees and 0.01 a sample
-/// more; 20 bar and 35 bar.
+/// Sample `index` of a log at 50 Hz: data of both messages. Lift 1.5 A, lowering 0 A, 90 degrees plus 0.01 per sample;
+/// 20 bar and 35 bar.
 pub fn sample(index: u16) -> [String; 2] {
     let time_ms = (63_900 + 20 * u32::from(index)) % 64_000;
     let hex = |words: [u16; 4]| {
@@ -35,7 +35,7 @@ pub fn sample(index: u16) -> [String; 2] {
     ]
 }
 
-/// A log of candump's, whose stamps tremble by 8 ms.
+/// A candump log with a jitter of its time stamps of 8 ms.
 pub fn candump(samples: u16) -> String {
     let mut text = String::new();
     for index in 0..samples {
@@ -65,7 +65,7 @@ pub fn loaded(manifest: &str, log: &str) -> Run {
         .remove(0)
 }
 
-/// What is said of a campaign, from the file's name on.
+/// The message for a campaign, from the file's name on.
 pub fn fault(files: &[(&str, &str)]) -> String {
     let folder = folder(files);
     let error = Campaign::load(folder.path())
@@ -79,7 +79,7 @@ pub fn fault_of_log(log: &str) -> String {
     fault(&[("campaign.toml", MANIFEST), ("a.log", log)])
 }
 
-/// The same samples as [`candump`] gives, as Vector's tools write them.
+/// The same samples as [`candump`], in the format of Vector's tools.
 pub fn asc(samples: u16, notation: &str) -> String {
     let mut text = format!(
         "date Sat Nov 21 10:00:00.000 am 2026\nbase hex  timestamps {notation}\n// version 9.0.0\n\

@@ -1,4 +1,4 @@
-//! Runs from logs of a CAN bus: formats, descriptions, and what is wrong with them.
+//! Tests of runs from logs of a CAN bus: formats, descriptions, and faults.
 
 mod faults;
 mod logs;
@@ -75,7 +75,7 @@ fn frames_of_other_messages_need_not_be_readable() {
     );
 }
 
-/// Both were written by python-can 4.6.1 from the bus of the ECU, while it lowered the hitch.
+/// Both were written by python-can 4.6.1 from the bus of the ECU while it lowered the hitch.
 #[test]
 fn logs_of_another_program_are_read() {
     let [log, asc] = [
@@ -118,7 +118,7 @@ fn another_bus_is_read_by_its_own_description() {
             .to_le_bytes()
             .map(|byte| format!("{byte:02X}"))
             .concat();
-        // 1.5 A with the highest byte first, -0.5 A with the lowest; angle and flow by turns, halfway between currents.
+        // 1.5 A in big-endian, -0.5 A in little-endian order; angle and flow alternate, midway between currents.
         let _ = writeln!(
             log,
             "({time_s:.6}) can1 100#0BB818FC\n({time_s:.6}) can0 100#0000"
@@ -150,7 +150,7 @@ fn another_bus_is_read_by_its_own_description() {
             .collect::<Vec<f64>>()
     };
     let (angles_deg, flows_lpm) = (values(Channel::RockerAngle), values(Channel::Flow));
-    // Each is sampled once in two rows, and is no more often than that in the run.
+    // Each is sampled once per two rows, and has no more values than that in the run.
     assert!(
         (19..=21).contains(&angles_deg.len()),
         "{}",
@@ -207,7 +207,7 @@ fn two_machines_on_a_bus_are_told_apart() {
     );
 }
 
-/// Whatever a file holds, it is read or refused in words.
+/// A file with arbitrary contents is read or rejected with a message.
 #[test]
 fn no_log_makes_the_reader_panic() {
     let good = [candump(12), asc(12, "absolute")];

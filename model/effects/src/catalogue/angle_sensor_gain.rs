@@ -1,6 +1,7 @@
-//! `angle-sensor-gain`: the angle sensor shows too much or too little.
+//! `angle-sensor-gain`: gain error of the angle sensor.
 //!
-//! `y = (1 + g) angle`; 0.5 to 1 % of full scale is usual for a hall sensor, more for a worn lever or a wrong supply.
+//! `y = (1 + g) angle`; typical values are 0.5 to 1 % of full scale for a hall sensor, more for a worn lever or a wrong
+//! supply.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions, SensorStage};
 use hitch_plant::{Channel, Parameter, ParameterKind, Reading, SizeResponse};
@@ -15,7 +16,7 @@ pub static ANGLE_SENSOR_GAIN: Described = Described {
     equation: "y = (1 + gain) angle",
     source: "hall angle sensors, +-0.5 to 1 % of full scale; a ratiometric sensor on a wrong supply \
          more",
-    shows: "the angle travels too far or too short for the oil that flowed, lifting and lowering \
+    shows: "the angle changes too much or too little for the oil that flowed, lifting and lowering \
          alike; easily taken for a wrong stroke",
     parameters: &[Parameter {
         name: "gain",

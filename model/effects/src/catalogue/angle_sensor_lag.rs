@@ -1,8 +1,7 @@
-//! `angle-sensor-lag`: the angle sensor or its filter shows the angle late.
+//! `angle-sensor-lag`: lag of the angle sensor or its filter.
 //!
-//! `tau y' + y = angle`, first order. Hall sensors lag by 2 to 10 ms; filtering in the logger adds up to some 0.2 s. A
-//! sensor that averages over a window, or sends on a bus, has dead time as well: what it shows is some time old before
-//! any filter.
+//! `tau y' + y = angle`, first order. Hall sensors lag by 2 to 10 ms; filtering in the logger adds up to about 0.2 s. A
+//! sensor that averages over a window, or sends on a bus, also has a dead time before any filter.
 
 use std::collections::VecDeque;
 
@@ -14,11 +13,12 @@ use crate::described::Described;
 
 const CHANNELS: &[Channel] = &[Channel::RockerAngle];
 
-/// Longest step of a sensor, which takes the angle between two steps from a straight line, s. Where a motion starts or
-/// stops, lines of 20 ms are as far off as the sensor's own noise, and least for whole samples of dead time.
+/// Longest step of a sensor with lag, which interpolates the angle linearly between two steps, s. At the start and end
+/// of a motion, steps of 20 ms cause errors as large as the sensor's own noise; whole samples of dead time are affected
+/// least.
 const STEP_S: f64 = 0.005;
 
-/// A sensor that filters.
+/// A sensor with a filter.
 pub static FILTERING: Described = Described {
     id: "angle-sensor-lag",
     form: None,
@@ -46,7 +46,7 @@ pub static FILTERING: Described = Described {
     attach: |values, _, hooks| attach(values[0], 0.0, hooks),
 };
 
-/// A sensor that sends late what it filters.
+/// A sensor with a filter and a dead time.
 pub static DELAYED: Described = Described {
     id: "angle-sensor-lag",
     form: Some("delayed"),
@@ -61,7 +61,7 @@ pub static DELAYED: Described = Described {
             unit: "s",
             kind: ParameterKind::Time,
             key: "lag_s",
-            meaning: "how late it follows an even motion",
+            meaning: "delay behind a steady motion",
             null: 0.0,
             typical: 0.06,
             low: 0.0,
@@ -93,7 +93,7 @@ fn attach(time_constant_s: f64, dead_s: f64, hooks: &mut EffectHooks) {
     if time_constant_s + dead_s > 0.0 {
         hooks.limit_step(STEP_S);
     }
-    hooks.sensors.push(Box::new(LateAngle {
+    hooks.sensors.push(Box::new(DelayedAngle {
         time_constant_s,
         dead_s,
         filter: Lag::at_rest(time_constant_s, 0.0),
@@ -103,16 +103,16 @@ fn attach(time_constant_s: f64, dead_s: f64, hooks: &mut EffectHooks) {
 
 /// A sensor with dead time before its filter.
 #[derive(Debug)]
-struct LateAngle {
+struct DelayedAngle {
     time_constant_s: f64,
     dead_s: f64,
     filter: Lag,
-    /// How long ago, s, the angle was what, degree; the oldest first, the first of them old enough.
+    /// Buffer of past angles: age, s, and angle, degree; the oldest first, the first at least as old as the dead time.
     past: VecDeque<(f64, f64)>,
 }
 
-impl LateAngle {
-    /// The angle of `dead_s` ago, degree, when `dt_s` after the last one it is `now_deg`.
+impl DelayedAngle {
+    /// The angle of `dead_s` ago, degree; the present angle is `now_deg`, `dt_s` after the previous one.
     fn delayed_deg(&mut self, now_deg: f64, dt_s: f64) -> f64 {
         for (ago_s, _) in &mut self.past {
             *ago_s += dt_s;
@@ -131,7 +131,7 @@ impl LateAngle {
     }
 }
 
-impl SensorStage for LateAngle {
+impl SensorStage for DelayedAngle {
     fn rest(&mut self, reading: &mut Reading) {
         self.filter = Lag::at_rest(self.time_constant_s, reading.rocker_angle_deg);
         self.past = [self.dead_s, 0.0]
@@ -153,17 +153,17 @@ impl SensorStage for LateAngle {
 mod tests {
     use std::collections::VecDeque;
 
-    use super::LateAngle;
+    use super::DelayedAngle;
     use hitch_plant::Reading;
     use hitch_plant::components::lag::Lag;
     use hitch_plant::hooks::effect_hooks::SensorStage;
 
-    /// Steady motion at 10 degree a second is followed as late as filter and dead time together; the start shows after
-    /// the dead time, sooner by no more than the step in which it lies.
+    /// A steady motion of 10 degree/s is delayed by the sum of filter lag and dead time; its start shows after the dead
+    /// time, at most one step early.
     #[test]
     fn a_ramp_is_followed_as_late_as_the_parameters_say() {
         for (time_constant_s, dead_s) in [(0.0, 0.05), (0.02, 0.03), (0.01, 0.004)] {
-            let mut sensor = LateAngle {
+            let mut sensor = DelayedAngle {
                 time_constant_s,
                 dead_s,
                 filter: Lag::at_rest(time_constant_s, 0.0),

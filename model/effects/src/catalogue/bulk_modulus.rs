@@ -1,14 +1,15 @@
-//! `bulk-modulus`: the oil is softer or stiffer than declared.
+//! `bulk-modulus`: deviation of the oil's bulk modulus from the declared value.
 //!
-//! `E = (1 + change) E_declared`. Mineral oil in steel has 1.4 to 1.8e9 Pa; what oil, line and cylinder wall come to
-//! together is 0.7 to 1.4e9 Pa (Jelali & Kroll 3.2). A declared value is often off by a third. Unlike a hose, which takes
-//! up the same volume wherever the piston is, it acts on the whole volume of oil, and alike at all pressures.
+//! `E = (1 + change) E_declared`. Mineral oil in steel has 1.4 to 1.8e9 Pa; the effective value with line and cylinder
+//! wall is 0.7 to 1.4e9 Pa (Jelali & Kroll 3.2). A declared value is often off by a third. Unlike the compliance of a
+//! hose, which is independent of the piston position, it scales with the whole volume of oil; it does not depend on the
+//! pressure.
 
 use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
-/// Another bulk modulus than declared.
+/// Deviation of the bulk modulus.
 pub static BULK_MODULUS: Described = Described {
     id: "bulk-modulus",
     form: None,

@@ -1,10 +1,10 @@
-//! `check-valve-loss`: the open check valve throttles.
+//! `check-valve-loss`: pressure loss of the open check valve.
 //!
-//! Beyond its nominal cracking pressure the poppet takes `loss (steady + (1 - steady) (Q / 40 l/min)^2)`: a throttling
-//! seat, and with the share `steady` a spring that is stiffer than its data sheet. The compensator holds the sum of all
-//! drops, so the lift orifice keeps what is left of 1.5 bar. A poppet that its spring lets further out the more flows takes
-//! more in proportion instead, `Q / 40 l/min`. Throttling makes large flows fall short the more; the
-//! spring alone takes the same share of every flow and is `lift-flow-scale` by another name.
+//! Beyond the nominal cracking pressure the poppet has a loss of `loss (steady + (1 - steady) (Q / 40 l/min)^2)`: a
+//! throttling seat, and with the share `steady` a spring that is stiffer than in its data sheet. The compensator
+//! controls the sum of all drops, so the drop of the lift orifice decreases from 1.5 bar. A poppet whose opening
+//! increases with the flow has a linear loss instead, `Q / 40 l/min`. Throttling reduces large flows relatively more;
+//! the spring alone reduces all flows by the same share and is equivalent to `lift-flow-scale`.
 
 use hitch_plant::hooks::effect_hooks::EffectHooks;
 use hitch_plant::units::{m3_s_from_lpm, pa_from_bar};
@@ -12,7 +12,7 @@ use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
-/// Flow at which the loss is stated, l/min.
+/// Flow at which the loss is specified, l/min.
 const RATED_LPM: f64 = 40.0;
 
 const LOSS: Parameter = Parameter {
@@ -20,7 +20,7 @@ const LOSS: Parameter = Parameter {
     unit: "bar",
     kind: ParameterKind::Other,
     key: "loss_bar",
-    meaning: "pressure that it takes at 40 l/min beyond 2.5 bar",
+    meaning: "pressure loss at 40 l/min beyond 2.5 bar",
     null: 0.0,
     typical: 0.4,
     low: 0.0,
@@ -32,14 +32,14 @@ const STEADY: Parameter = Parameter {
     unit: "",
     kind: ParameterKind::Other,
     key: "steady",
-    meaning: "share of it that does not change with the flow",
+    meaning: "share of it that is independent of the flow",
     null: 0.5,
     typical: 0.0,
     low: 0.0,
     high: 1.0,
 };
 
-/// Pressure loss of a check valve whose seat throttles.
+/// Pressure loss of a check valve with a throttling seat.
 pub static THROTTLING: Described = Described {
     id: "check-valve-loss",
     form: None,
@@ -62,7 +62,7 @@ pub static THROTTLING: Described = Described {
     },
 };
 
-/// Pressure loss of a check valve whose poppet lifts against its spring.
+/// Pressure loss of a check valve whose poppet opens against its spring.
 pub static LIFTING: Described = Described {
     form: Some("lifting"),
     title: "Pressure loss of the check valve, whose poppet lifts with the flow",
@@ -78,7 +78,7 @@ pub static LIFTING: Described = Described {
     ..THROTTLING
 };
 
-/// Stiffens the spring by the steady share of a loss; returns the rest of it at the rated flow, Pa.
+/// Adds the steady share of a loss to the cracking pressure; returns the remaining loss at the rated flow, Pa.
 fn stiffened(values: &[f64], hooks: &mut EffectHooks) -> f64 {
     let (loss_pa, steady) = (pa_from_bar(values[0]), values[1]);
     hooks.cracking_extra_pa += steady * loss_pa;

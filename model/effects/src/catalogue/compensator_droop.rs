@@ -1,21 +1,21 @@
-//! `compensator-droop`: the compensator's margin falls with the pressure that it works at.
+//! `compensator-droop`: decrease of the compensator's margin with its load pressure.
 //!
-//! Force balance of its spool, `A_c (p_P - p_C) = F_0 + k x + 0.43 w x p_P`: the further it has to close and the higher
-//! the pressure, the smaller the margin. Linear about no load: `margin = 4 bar - c p_C`. What the lift orifice keeps
-//! shrinks from 1.5 bar, so the lift flow falls with its square root. The spool closes further the less flow it has to
-//! pass by, so the margin falls with the lift flow too: by a share `d` of the 4 bar from none to the pump's whole flow.
-//! A restrictor in the line that tells it the load, or its own mass, makes it late: 5 to 20 ms. Meanwhile the lift orifice
-//! feels what the cylinder pressure does, and takes from its ringing.
+//! Force balance of its spool, `A_c (p_P - p_C) = F_0 + k x + 0.43 w x p_P`: the margin decreases with the closing
+//! travel and with the pressure. Linearised at no load: `margin = 4 bar - c p_C`. The drop of the lift orifice
+//! decreases from 1.5 bar, so the lift flow falls with its square root. The spool closes further if less flow bypasses,
+//! so the margin also decreases with the lift flow: by a share `d` of the 4 bar from zero to the pump's full flow. A
+//! restrictor in its load-sensing line, or its own mass, delays it by 5 to 20 ms. During the delay the lift orifice
+//! sees the changes of the cylinder pressure, which damps its ringing.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
-/// A lag that is shorter than all else in the plant is none, s.
+/// Lag, s, below which a compensator counts as immediate: it is shorter than all other time constants of the plant.
 const SHORTEST_LAG_S: f64 = 1e-4;
 
-/// Longest step of the quasi-static plant that follows a late compensator, s.
+/// Longest step of the quasi-static plant that resolves a lagging compensator, s.
 const STEP_S: f64 = 0.002;
 
 const CHANNELS: &[Channel] = &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle];
@@ -25,7 +25,7 @@ const SLOPE: Parameter = Parameter {
     unit: "bar/bar",
     kind: ParameterKind::Other,
     key: "slope",
-    meaning: "margin lost for each bar of cylinder pressure",
+    meaning: "margin lost per bar of cylinder pressure",
     null: 0.0,
     typical: 0.005,
     low: -0.02,
@@ -37,14 +37,14 @@ const FLOW: Parameter = Parameter {
     unit: "",
     kind: ParameterKind::Other,
     key: "flow",
-    meaning: "share of the margin lost from no lift flow to the pump's whole",
+    meaning: "share of the margin lost from zero lift flow to the pump's full flow",
     null: 0.0,
     typical: 0.1,
     low: 0.0,
     high: 0.3,
 };
 
-/// Droop with the load alone.
+/// Droop with the load pressure.
 pub static WITH_LOAD: Described = Described {
     id: "compensator-droop",
     form: None,
@@ -61,7 +61,7 @@ pub static WITH_LOAD: Described = Described {
     attach: |values, _, hooks| fall_with_load(values[0], hooks),
 };
 
-/// Droop with the flow, and with the load.
+/// Droop with the load pressure and the flow.
 pub static WITH_FLOW: Described = Described {
     id: "compensator-droop",
     form: Some("flow"),
@@ -88,7 +88,7 @@ pub static WITH_FLOW: Described = Described {
     },
 };
 
-/// Droop of a compensator that is late.
+/// Droop of a lagging compensator.
 pub static LAGGING: Described = Described {
     id: "compensator-droop",
     form: Some("lagging"),

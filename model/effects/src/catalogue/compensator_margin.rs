@@ -1,9 +1,10 @@
-//! `compensator-margin`: the compensator keeps another margin than declared.
+//! `compensator-margin`: deviation of the compensator's margin from the declared value.
 //!
-//! `p_P - p_C = 4 bar + excess` while lifting. The preload of the spring is set by shims and settles with age; 10 to 30 %
-//! off the data sheet is usual. What the check valve's 2.5 bar leave drives the lift orifice, so a bar more on 1.5 bar is
-//! 29 % more lift flow. The same spring sets the idle pressure. In blocks where a bypass orifice sets that, its drop at the
-//! pump's flow is another number: the form `bypass` has both.
+//! `p_P - p_C = 4 bar + excess` while lifting. The preload of the spring is set by shims and settles with age; 10 to 30
+//! % deviation from the data sheet is typical. The margin less the check valve's 2.5 bar drives the lift orifice, so
+//! one bar more on 1.5 bar gives 29 % more lift flow. The same spring sets the idle pressure. In blocks with a bypass
+//! orifice, the idle pressure is the drop of that orifice at the pump's flow: the form `bypass` has a separate
+//! parameter for it.
 
 use hitch_plant::hooks::effect_hooks::EffectHooks;
 use hitch_plant::units::pa_from_bar;
@@ -11,7 +12,8 @@ use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
-/// Flow and angle change as well, but alike with the lift valve's flow scale: without a pump pressure it is that.
+/// Flow and angle change as well, but the lift valve's flow scale changes them alike: without a pump pressure the two
+/// are confounded.
 const CHANNELS: &[Channel] = &[Channel::PumpPressure];
 
 const EXCESS: Parameter = Parameter {
@@ -19,14 +21,14 @@ const EXCESS: Parameter = Parameter {
     unit: "bar",
     kind: ParameterKind::Other,
     key: "excess_bar",
-    meaning: "margin on top of the declared one",
+    meaning: "difference of the margin from the declared one",
     null: 0.0,
     typical: 0.5,
     low: -1.4,
     high: 10.0,
 };
 
-/// Another preload of the spring: margin and idle pressure change alike.
+/// Another preload of the spring: margin and idle pressure change by the same amount.
 pub static PRELOAD: Described = Described {
     id: "compensator-margin",
     form: None,
@@ -43,7 +45,7 @@ pub static PRELOAD: Described = Described {
     attach: |values, _, hooks| exceed(values[0], values[0], hooks),
 };
 
-/// Margin and idle pressure each off by its own amount.
+/// Margin and idle pressure change by different amounts.
 pub static BYPASS: Described = Described {
     id: "compensator-margin",
     form: Some("bypass"),
@@ -56,7 +58,7 @@ pub static BYPASS: Described = Described {
         Parameter {
             name: "idle excess",
             key: "idle_excess_bar",
-            meaning: "idle pressure on top of the declared one",
+            meaning: "difference of the idle pressure from the declared one",
             low: -4.0,
             high: 30.0,
             ..EXCESS

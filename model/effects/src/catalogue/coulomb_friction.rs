@@ -1,17 +1,17 @@
 //! `coulomb-friction`: dry friction of the cylinder's seals and of the links.
 //!
-//! Pressure is higher while lifting and lower while lowering by `F_C / A`. Two equations say what happens at rest: with
-//! a hyperbolic tangent, `F = F_C tanh(v / 3 mm/s)`, the friction is gone (Simscape's cylinder friction; Jelali & Kroll
-//! 4.3); bristles that bend before they slip hold what they held when the piston stopped (Dahl 1968; LuGre, Canudas de
-//! Wit 1995), until the trembling of a running machine has let them straighten. 100 to 300 N and 1 to 4 % of the
-//! pressure force are usual for a 76 mm cylinder, and some tenths of a millimetre of bending.
+//! The pressure is higher while lifting and lower while lowering by `F_C / A`. Two forms differ at rest. With a
+//! hyperbolic tangent, `F = F_C tanh(v / 3 mm/s)`, the friction vanishes (Simscape's cylinder friction; Jelali & Kroll
+//! 4.3). Bristles that deflect before they slip keep the force at which the piston stopped (Dahl 1968; LuGre, Canudas
+//! de Wit 1995), until vibration of the running machine has relaxed them. Typical values are 100 to 300 N plus 1 to 4 %
+//! of the pressure force for a 76 mm cylinder, and some tenths of a millimetre of deflection.
 
 use hitch_plant::hooks::effect_hooks::Bristles;
 use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
-/// Speed at which the friction has reached three quarters of its full value, m/s.
+/// Speed at which the friction reaches three quarters of its full value, m/s.
 pub(crate) const TRANSITION_SPEED_M_S: f64 = 0.003;
 
 const FORCE: Parameter = Parameter {
@@ -33,7 +33,7 @@ const CHANNELS: &[Channel] = &[
     Channel::RockerAngle,
 ];
 
-/// Friction that is gone at rest.
+/// Friction that vanishes at rest.
 pub static SMOOTH: Described = Described {
     id: "coulomb-friction",
     form: None,
@@ -55,10 +55,10 @@ pub static SMOOTH: Described = Described {
     },
 };
 
-/// Longest step that follows bristles as they bend, s.
+/// Longest step that resolves the deflection of the bristles, s.
 const STEP_S: f64 = 0.01;
 
-/// Friction that stays at rest.
+/// Friction that persists at rest.
 pub static BRISTLES: Described = Described {
     id: "coulomb-friction",
     form: Some("bristles"),
@@ -74,7 +74,7 @@ pub static BRISTLES: Described = Described {
             unit: "mm",
             kind: ParameterKind::Other,
             key: "bending_mm",
-            meaning: "how far the piston moves before the seal slips",
+            meaning: "travel of the piston before the seal slips",
             null: 0.0,
             typical: 0.3,
             low: 0.02,
@@ -85,7 +85,7 @@ pub static BRISTLES: Described = Described {
             unit: "mm/s",
             kind: ParameterKind::Other,
             key: "creep_mm_per_s",
-            meaning: "speed that trembling gives the seal under the full force; none: it holds for ever",
+            meaning: "creep speed of the seal at full force due to vibration; 0: no creep",
             null: 0.0,
             typical: 0.0,
             low: 0.0,

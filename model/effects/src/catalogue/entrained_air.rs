@@ -1,8 +1,8 @@
-//! `entrained-air`: undissolved air makes the oil soft at low pressure.
+//! `entrained-air`: undissolved air that reduces the bulk modulus at low pressure.
 //!
-//! `E = E_l [1 + a (pa/(pa+p))^(1/n)] / [1 + a pa^(1/n) E_l / (n (pa+p)^((n+1)/n))]` (Simscape's mixture), a the volume
-//! of air at atmospheric pressure over that of the oil: c / (1 - c) for a share c of the whole. The change of state
-//! lies between isothermal, n = 1, and adiabatic, n = 1.4.
+//! `E = E_l [1 + a (pa/(pa+p))^(1/n)] / [1 + a pa^(1/n) E_l / (n (pa+p)^((n+1)/n))]` (Simscape's mixture). `a` is the
+//! volume of air at atmospheric pressure relative to that of the oil: c / (1 - c) for a volume share c of air. The
+//! change of state is between isothermal, n = 1, and adiabatic, n = 1.4.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
@@ -11,7 +11,7 @@ use crate::described::Described;
 
 /// Atmospheric pressure, Pa.
 const ATMOSPHERE_PA: f64 = 101_325.0;
-/// Absolute pressure below which the mixture does not get softer, Pa.
+/// Absolute pressure below which the mixture's bulk modulus is constant, Pa.
 const LOWEST_PA: f64 = 2e4;
 
 /// Entrained air in the oil.
@@ -31,7 +31,7 @@ pub static ENTRAINED_AIR: Described = Described {
             unit: "",
             kind: ParameterKind::Other,
             key: "share",
-            meaning: "volume of air at atmospheric pressure over the whole volume",
+            meaning: "volume of air at atmospheric pressure relative to the whole volume",
             null: 0.0,
             typical: 0.01,
             low: 0.0,

@@ -1,11 +1,11 @@
-//! `flow-force`: the oil's momentum closes the lowering valve against its solenoid.
+//! `flow-force`: steady flow force that closes the lowering valve against its solenoid.
 //!
-//! Steady flow force `F = 0.43 w x dp` (Merritt 5.2) on a spool held by a spring k_s: `x = x_c / (1 + K dp)` with `K =
-//! 0.43 w / k_s`. The data sheet's curve holds at 15 bar, so the opening is `(1 + s) / (1 + s dp / 15 bar)` of it, `s`
-//! the ratio of flow force to spring force there. With the usual form the flow is that much of the table's, as if it
-//! grew with the opening all the way; with the other the spool travels that much of its way, and the table is read
-//! there: where the table is flat the force then shows in nothing. The lift valve's drop is held by the compensator:
-//! nothing to see.
+//! Steady flow force `F = 0.43 w x dp` (Merritt 5.2) on a spool with a spring k_s: `x = x_c / (1 + K dp)` with `K =
+//! 0.43 w / k_s`. The data sheet's curve holds at 15 bar, so the opening is multiplied by `(1 + s) / (1 + s dp / 15
+//! bar)`, where `s` is the ratio of flow force to spring force at 15 bar. The usual form applies this factor to the
+//! flow of the table, as if it were proportional to the opening. The other form applies it to the spool travel and
+//! evaluates the table there, so the force has no effect in flat parts of the table. The compensator keeps the lift
+//! valve's drop constant, so its flow force does not show.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, Law, RunConditions};
 use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
@@ -20,8 +20,8 @@ pub static ON_FLOW: Described = Described {
     equation: "Q = Q_table(I) sqrt(dp/dp_ref) (1 + s) / (1 + s dp/dp_ref), dp_ref = 15 bar",
     source: "Merritt 5.2: F = 2 Cd Cv A dp cos 69 deg; springs of 8 to 20 N/mm give 0.12 to 0.30 at \
          15 bar",
-    shows: "lowering flow grows less than with the square root of the pressure: light loads sink \
-         faster and heavy ones slower than the table says",
+    shows: "lowering flow increases less than with the square root of the pressure: light loads sink \
+         faster and heavy ones slower than by the table",
     parameters: &[Parameter {
         name: "ratio",
         unit: "",
@@ -57,7 +57,7 @@ fn attach_to_travel(values: &[f64], conditions: RunConditions<'_>, hooks: &mut E
     hooks.lower_travel_factor.push(opening(values, conditions));
 }
 
-/// What the force leaves of the opening, from the drop, Pa.
+/// Factor of the flow force on the opening, from the drop, Pa.
 fn opening(values: &[f64], conditions: RunConditions<'_>) -> Law {
     let ratio = values[0];
     let reference_pa = conditions.constants.lower_valve.reference_drop_pa;

@@ -1,8 +1,8 @@
-//! `lift-flow-scale`, `lower-flow-scale`: the valve passes a share more or less than its data sheet says.
+//! `lift-flow-scale`, `lower-flow-scale`: relative deviation of a valve's flow from its data sheet.
 //!
-//! `Q = (1 + scale) Q_table`, for one valve: orifice area and discharge coefficient (equations 5 and 6). The paper's
-//! valves saturate 6.7 % (lift) and 3.4 % (lowering) under the manufacturer's values. A metering edge that is cut
-//! otherwise passes another share when it is wide open: the scale grows with the opening.
+//! `Q = (1 + scale) Q_table`, per valve: orifice area and discharge coefficient (equations 5 and 6). The paper's valves
+//! saturate 6.7 % (lift) and 3.4 % (lowering) below the manufacturer's values. With a different shape of the metering
+//! edge the deviation depends on the opening: the scale increases linearly with it.
 
 use hitch_plant::hooks::effect_hooks::FlowFactor;
 use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
@@ -45,7 +45,7 @@ pub static LIFT: Described = Described {
     title: "Scaled flow of the lift valve",
     equation: "Q = (1 + scale) Q_table(I)",
     source: SOURCE,
-    shows: "lifting at every current alike in proportion: flow and speed; the same as another margin of the \
+    shows: "lifting at every current by the same share: flow and speed; equivalent to another margin of the \
             compensator, another discharge coefficient or a stiffer spring of the check valve",
     parameters: &[SCALE],
     channels: CHANNELS,
@@ -55,12 +55,12 @@ pub static LIFT: Described = Described {
     attach: |values, _, hooks| scale(&mut hooks.lift_flow_factor, values[0], 0.0),
 };
 
-/// Flow scale of the lift valve that grows with its opening.
+/// Flow scale of the lift valve that increases with its opening.
 pub static LIFT_UNEVEN: Described = Described {
     form: Some("uneven"),
     title: "Scaled flow of the lift valve, wide open otherwise",
     equation: "Q = (1 + scale (1 + growth (2 Q_table / Q_largest - 1))) Q_table(I)",
-    shows: "lifting at every current, fast otherwise in proportion than slowly: flow and speed",
+    shows: "lifting at every current, by another share when fast than when slow: flow and speed",
     parameters: &[SCALE, GROWTH],
     refines: true,
     attach: |values, _, hooks| scale(&mut hooks.lift_flow_factor, values[0], values[1]),
@@ -74,7 +74,7 @@ pub static LOWERING: Described = Described {
     title: "Scaled flow of the lowering valve",
     equation: "Q = (1 + scale) Q_table(I)",
     source: SOURCE,
-    shows: "lowering at every current and load alike in proportion: flow and speed",
+    shows: "lowering at every current and load by the same share: flow and speed",
     parameters: &[SCALE],
     channels: CHANNELS,
     needs: None,
@@ -83,12 +83,12 @@ pub static LOWERING: Described = Described {
     attach: |values, _, hooks| scale(&mut hooks.lower_flow_factor, values[0], 0.0),
 };
 
-/// Flow scale of the lowering valve that grows with its opening.
+/// Flow scale of the lowering valve that increases with its opening.
 pub static LOWERING_UNEVEN: Described = Described {
     form: Some("uneven"),
     title: "Scaled flow of the lowering valve, wide open otherwise",
     equation: "Q = (1 + scale (1 + growth (2 Q_table / Q_largest - 1))) Q_table(I)",
-    shows: "lowering at every current and load, fast otherwise in proportion than slowly: flow and speed",
+    shows: "lowering at every current and load, by another share when fast than when slow: flow and speed",
     parameters: &[SCALE, GROWTH],
     refines: true,
     attach: |values, _, hooks| scale(&mut hooks.lower_flow_factor, values[0], values[1]),

@@ -1,15 +1,15 @@
-//! `ground-contact`: the implement comes to rest on the ground before the end of the stroke.
+//! `ground-contact`: contact of the implement with the ground before the end of the stroke.
 //!
-//! `F = k z (1 + c z')` upwards at the hitch point, never pulling, where z is how deep it has sunk below the height at
-//! which the implement touches (Bekker with n = 1, damped as by Hunt & Crossley). Floors have 1e6 to 1e7 N/m, soil 5e4
-//! to 5e5 N/m. Where the ground itself damps, `F = k z + d z'` with 1e3 to 1e4 N s/m.
+//! `F = k z (1 + c z')` upwards at the hitch point, never downwards, where z is the depth below the height of first
+//! contact (Bekker with n = 1, damped as by Hunt & Crossley). Floors have 1e6 to 1e7 N/m, soil 5e4 to 5e5 N/m. With
+//! viscous damping of the ground, `F = k z + d z'` with 1e3 to 1e4 N s/m.
 
 use hitch_plant::hooks::effect_hooks::{Ground, RunConditions};
 use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
-/// Damping of the contact where nothing is known of it, s/m.
+/// Depth-proportional damping of the contact in forms without a parameter for it, s/m.
 const DAMPING_S_M: f64 = 1.5;
 
 const HEIGHT: Parameter = Parameter {
@@ -42,7 +42,7 @@ const CHANNELS: &[Channel] = &[
     Channel::RockerAngle,
 ];
 
-/// Contact with ground that hardly damps.
+/// Contact with ground of low damping.
 pub static SPRINGY: Described = Described {
     id: "ground-contact",
     form: None,
@@ -63,15 +63,15 @@ pub static SPRINGY: Described = Described {
     },
 };
 
-/// Contact with ground that damps.
+/// Contact with ground with viscous damping.
 pub static DAMPED: Described = Described {
     id: "ground-contact",
     form: Some("damped"),
     title: "Contact with ground that damps",
     equation: "F = stiffness (h_ground - h) - damping h', upwards; h_ground = lowest point of the stroke + height",
     source: "Bekker with exponent one; soil 1e3 to 1e4 N s/m",
-    shows: "lowering ends early and the cylinder pressure falls to nothing while the angle stands; what rings on the \
-         ground dies away sooner",
+    shows: "lowering ends early and the cylinder pressure falls to nothing while the angle stands; oscillation on \
+         the ground decays faster",
     parameters: &[
         HEIGHT,
         STIFFNESS,
@@ -80,7 +80,7 @@ pub static DAMPED: Described = Described {
             unit: "kN s/m",
             kind: ParameterKind::Other,
             key: "damping_kn_s_m",
-            meaning: "force over the speed of sinking in",
+            meaning: "damping force per speed of penetration",
             null: 0.0,
             typical: 5.0,
             low: 0.0,
@@ -99,7 +99,7 @@ pub static DAMPED: Described = Described {
     },
 };
 
-/// Ground of a height, m, and a stiffness, kN/m, without damping.
+/// Ground with a height, m, and a stiffness, kN/m, without damping.
 fn ground(values: &[f64], conditions: RunConditions<'_>) -> Ground {
     Ground {
         height_m: conditions.linkage.at(0.0).height_m + values[0],

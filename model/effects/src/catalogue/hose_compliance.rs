@@ -1,8 +1,8 @@
-//! `hose-compliance`: hoses and fittings swell with the pressure.
+//! `hose-compliance`: compliance of hoses and fittings.
 //!
 //! `dp/dt = (sum Q - A v) / (V/E + C)`. Two metres of half-inch two-wire hose have 3 to 6e-13 m3/Pa, as much as 0.6 l
-//! of oil; written in cm3/bar, 0.03 to 0.06. Rubber does not swell at once: a share of it creeps after the pressure
-//! (Kelvin-Voigt), which slows a fast ringing less than a slow one and damps both.
+//! of oil; in cm3/bar, 0.03 to 0.06. Rubber is viscoelastic: a share of the compliance creeps (Kelvin-Voigt), which
+//! reduces the frequency of a fast oscillation less than that of a slow one and damps both.
 
 use hitch_plant::hooks::effect_hooks::Hose;
 use hitch_plant::units::pa_from_bar;
@@ -15,7 +15,7 @@ const COMPLIANCE: Parameter = Parameter {
     unit: "cm3/bar",
     kind: ParameterKind::Other,
     key: "compliance_cm3_bar",
-    meaning: "volume that the hoses take up",
+    meaning: "volume of the hoses' expansion per pressure",
     null: 0.0,
     typical: 0.04,
     low: 0.0,
@@ -26,7 +26,7 @@ fn m3_pa(cm3_bar: f64) -> f64 {
     cm3_bar * 1e-6 / pa_from_bar(1.0)
 }
 
-/// Hoses that swell at once.
+/// Compliance without creep.
 pub static ELASTIC: Described = Described {
     id: "hose-compliance",
     form: None,
@@ -48,7 +48,7 @@ pub static ELASTIC: Described = Described {
     },
 };
 
-/// Hoses that creep.
+/// Compliance with creep.
 pub static CREEPING: Described = Described {
     id: "hose-compliance",
     form: Some("creeping"),
@@ -56,8 +56,8 @@ pub static CREEPING: Described = Described {
     equation: "dp/dt = (sum Q - A v - W') / (V/E + (1 - share) C), W' = (share C p - W) / creep",
     source: "Kelvin-Voigt in series with a spring, the standard linear solid (Ferry 1980, ch. 1); size as of hoses that \
          swell at once",
-    shows: "slower ringing of the cylinder pressure that dies away sooner, most where it is about as fast as the wall \
-         creeps",
+    shows: "slower ringing of the cylinder pressure that decays faster, most if its period is close to the creep \
+         time of the wall",
     parameters: &[
         COMPLIANCE,
         Parameter {

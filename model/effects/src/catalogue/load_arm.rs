@@ -1,14 +1,14 @@
-//! `load-arm`: the load's centre of gravity stands behind the hitch point.
+//! `load-arm`: the load's centre of gravity is behind the hitch point.
 //!
-//! A mast that pitches with the lift lifts an overhanging load more, or less, than the hitch point:
-//! `F_weight = m g (dh/dx + d cos(pitch) dpitch/dx)`. With a pitch that changes faster and faster over the stroke that is
-//! `F_weight (1 + s (m + (1 - |m|) (2 x / stroke - 1)))`: `s` is the change at the end of the stroke that it changes
-//! most, `m` tells how much of it is there all over the stroke. An overhang of 0.3 to 0.6 m and 5 to 12 degrees of
-//! pitch make 5 to 15 %.
+//! A mast that pitches with the lift moves an overhanging load by more, or less, than the hitch point:
+//! `F_weight = m g (dh/dx + d cos(pitch) dpitch/dx)`. With a pitch rate that varies linearly over the stroke that is
+//! `F_weight (1 + s (m + (1 - |m|) (2 x / stroke - 1)))`: `s` is the relative change at the end of the stroke with the
+//! larger change, `m` the share of it that is constant over the stroke. An overhang of 0.3 to 0.6 m and 5 to 12 degrees
+//! of pitch give 5 to 15 %.
 //!
-//! Looked at more closely, only the load pitches, not the links, and a top link that is shorter than the lower ones turns
-//! it fastest at both ends of the stroke: a bow of a quarter of the share, with a slope that goes with where the load
-//! is level.
+//! In more detail, only the load pitches, not the links, and a top link that is shorter than the lower links turns it
+//! fastest at both ends of the stroke: a curvature of a quarter of the share, with a slope that depends on where the
+//! load is level.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
@@ -43,7 +43,7 @@ pub static WITH_WEIGHT: Described = Described {
             unit: "",
             kind: ParameterKind::Other,
             key: "even",
-            meaning: "part of it that is there all over the stroke; negative: more at the low end",
+            meaning: "part of it that is constant over the stroke; negative: more at the low end",
             null: 0.5,
             typical: 0.0,
             low: -1.0,
@@ -62,7 +62,7 @@ pub static WITH_WEIGHT: Described = Described {
     attach: with_weight,
 };
 
-/// Arm of the load behind the hitch point, which pitches otherwise than the links.
+/// Arm of the load behind the hitch point, with a pitch that differs from that of the links.
 pub static WITH_LOAD: Described = Described {
     form: Some("load-only"),
     title: "Arm of the load behind the hitch point, without the links",

@@ -1,19 +1,19 @@
-//! `load-inertia`: the moving masses want a force to be accelerated.
+//! `load-inertia`: inertia force of the moving masses.
 //!
-//! `p A = F_weight + s M(x) dv/dt` with `M = (load + dead weight) (dh/dx)^2 + 20 kg`. One is the inertia of the weights
-//! as they are. On the dynamic starting point, which has that already, it is what comes on top: rocker, arms, mast. What
-//! turns with the shaft, `J (dphi/dx)^2` at the piston, no load makes heavier: a part of the share at 150 kg and mid stroke,
-//! it is a larger one at lighter loads.
+//! `p A = F_weight + s M(x) dv/dt` with `M = (load + dead weight) (dh/dx)^2 + 20 kg`. A share of one is the inertia of
+//! the known masses. In the dynamic model, which includes it, the share is additional: rocker, arms, mast. The inertia
+//! of the rocker shaft, `J (dphi/dx)^2` at the piston, is independent of the load: it is stated as a part of the share
+//! at 150 kg and mid-stroke, and is a larger one at lighter loads.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
-/// Longest step that follows the pressure of an accelerated load, s.
+/// Longest step that resolves the pressure of an accelerated load, s.
 const STEP_S: f64 = 0.005;
 
-/// Load at which the shaft's part is stated, kg.
+/// Load at which the shaft's part is specified, kg.
 const USUAL_LOAD_KG: f64 = 150.0;
 
 const SHARE: Parameter = Parameter {
@@ -28,7 +28,7 @@ const SHARE: Parameter = Parameter {
     high: 5.0,
 };
 
-/// Inertia that goes with the load.
+/// Inertia proportional to the load.
 pub static OF_LOAD: Described = Described {
     id: "load-inertia",
     form: None,
@@ -46,7 +46,7 @@ pub static OF_LOAD: Described = Described {
     attach: |values, _, hooks| resist(values[0], 0.0, hooks),
 };
 
-/// Inertia part of which is on the rocker shaft.
+/// Inertia with a part on the rocker shaft.
 pub static AND_SHAFT: Described = Described {
     form: Some("shaft"),
     title: "Inertia of load and linkage, part of it on the rocker shaft",
@@ -59,7 +59,7 @@ pub static AND_SHAFT: Described = Described {
             unit: "",
             kind: ParameterKind::Other,
             key: "shaft",
-            meaning: "part of it that turns with the rocker shaft, at 150 kg and mid stroke",
+            meaning: "share of it on the rocker shaft, at 150 kg and mid-stroke",
             null: 0.0,
             typical: 0.2,
             low: 0.0,

@@ -1,9 +1,9 @@
-//! `lowering-leakage`: the shut lowering valve and the check valve do not hold the load for ever.
+//! `lowering-leakage`: leakage through the closed lowering valve and the check valve.
 //!
 //! `Q = G p_C`, laminar flow through an annular gap (Merritt 3.3, `G = pi d c^3 / 12 mu l`), out of the cylinder past
-//! the flow meter. A seated poppet loses 5e-6 l/min/bar, a worn one a thousand times that. The gap widens or narrows
-//! with its housing, so that over a day's temperatures `G` may stay what it is; where the gap stays, it goes with the
-//! oil's fluidity.
+//! the flow meter. A seated poppet leaks 5e-6 l/min/bar, a worn one a thousand times that. Thermal expansion of the
+//! housing changes the gap, so `G` may be constant over a day's temperatures; with a constant gap it is proportional to
+//! the oil's fluidity.
 
 use hitch_plant::components::oil::viscosity_m2_s;
 use hitch_plant::hooks::effect_hooks::EffectHooks;
@@ -11,15 +11,15 @@ use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse, units};
 
 use crate::described::Described;
 
-/// Temperature at which the conductance of a gap that stays is told, degree Celsius.
-const TOLD_AT_C: f64 = 40.0;
+/// Temperature at which the conductance of a constant gap is specified, degree Celsius.
+const SPECIFIED_AT_C: f64 = 40.0;
 
 const PARAMETERS: &[Parameter] = &[Parameter {
     name: "conductance",
     unit: "l/min/bar",
     kind: ParameterKind::Other,
     key: "conductance_lpm_per_bar",
-    meaning: "leakage flow over cylinder pressure, with oil of 40 degC",
+    meaning: "leakage flow per cylinder pressure, with oil at 40 degC",
     null: 0.0,
     typical: 0.002,
     low: 0.0,
@@ -28,7 +28,7 @@ const PARAMETERS: &[Parameter] = &[Parameter {
 
 const CHANNELS: &[Channel] = &[Channel::RockerAngle];
 
-/// Leakage alike at all temperatures.
+/// Leakage independent of temperature.
 pub static EVEN: Described = Described {
     id: "lowering-leakage",
     form: None,
@@ -44,7 +44,7 @@ pub static EVEN: Described = Described {
     attach: |values, _, hooks| leak(values[0], hooks),
 };
 
-/// Leakage of hot, thin oil.
+/// Leakage proportional to the oil's fluidity.
 pub static THINNING: Described = Described {
     id: "lowering-leakage",
     form: Some("thinning"),
@@ -58,7 +58,8 @@ pub static THINNING: Described = Described {
     size_response: SizeResponse::Smooth,
     refines: false,
     attach: |values, conditions, hooks| {
-        let fluidity = viscosity_m2_s(TOLD_AT_C) / viscosity_m2_s(conditions.oil_temperature_c);
+        let fluidity =
+            viscosity_m2_s(SPECIFIED_AT_C) / viscosity_m2_s(conditions.oil_temperature_c);
         leak(values[0] * fluidity, hooks);
     },
 };

@@ -1,24 +1,25 @@
-//! The catalogue of physical effects: one file an effect, one line in [`CATALOGUE`] each.
+//! The catalogue of physical effects: one file per effect, one line in [`CATALOGUE`] each.
 //!
 //! # Adding an effect
-//! 1. A new file beside this one, named like the effect. Its doc comment states the equation, where it comes from and
-//!    how large the effect usually is.
-//! 2. In it one `pub static` of type `described::Described`: texts, parameters with unit, range, null value and typical
-//!    size, the channels in which it shows on a lab campaign, the starting point that it needs if not every one can show
-//!    it, how its size is looked for, and `attach`. The first parameter is the size: at its null value the effect is not
-//!    there, whatever the others are. `flow_force.rs` is a short example, `pin_backlash.rs` one that remembers.
-//! 3. `attach` gets a value for each parameter, in its unit, and what is known of the run ([`RunConditions`](hitch_plant::hooks::effect_hooks::RunConditions)), and puts
-//!    numbers, closures or small stateful parts at the [`EffectHooks`](hitch_plant::hooks::effect_hooks::EffectHooks) where the physics acts; SI inside. If no site is where
-//!    it acts, add one to `EffectHooks` and call it from the component concerned.
-//! 4. One `mod` and one line in [`CATALOGUE`].
+//! 1. Add a file to this folder, named after the effect. Its doc comment states the equation, its source and the
+//!    typical size of the effect.
+//! 2. The file has one `pub static` of type `described::Described`: texts, parameters with unit, range, null value and
+//!    typical size, the channels that the effect acts on in a lab campaign, the dynamics that it requires (if any), its
+//!    size response, and `attach`. The first parameter is the size: at its null value the effect is absent, regardless
+//!    of the other parameters. `flow_force.rs` is a short example, `pin_backlash.rs` one with state.
+//! 3. `attach` receives a value for each parameter, in its unit, and the conditions of the run
+//!    ([`RunConditions`](hitch_plant::hooks::effect_hooks::RunConditions)). It attaches numbers, closures or small
+//!    components with state to the [`EffectHooks`](hitch_plant::hooks::effect_hooks::EffectHooks), in SI units. If no
+//!    hook is suitable, add one to `EffectHooks` and evaluate it in the component concerned.
+//! 4. Add one `mod` and one line in [`CATALOGUE`].
 //!
-//! Where the literature has two equations for one effect, each is an effect of its own with the same id and a `form`;
-//! the usual one has none. A search tries all and keeps the better, as `oil_viscosity.rs` and `spool_stiction.rs` show.
+//! If the literature has two equations for one effect, each is an effect of its own with the same id and a `form`; the
+//! usual one has none. A search tries all forms and keeps the best, see `oil_viscosity.rs` and `spool_stiction.rs`.
 //!
-//! Nothing else: plant, model files, identification, reports and `hitch effects` go through the catalogue, and so do
-//! the generic tests of `tests/effects.rs`: the null value changes not a bit, next to it the effect is next to nothing,
-//! a typical size shows in the channels named. A term that is to be tried without recompiling goes into a model file
-//! instead (see `term.rs`).
+//! No other change is necessary: plant, model files, identification, reports and `hitch effects` use the catalogue, and
+//! so do the generic tests of `tests/effects.rs`: the null value changes nothing bit for bit, a size next to it almost
+//! nothing, and a typical size shows in the named channels. A term that is to be tried without recompilation is defined
+//! in a model file instead (see `term.rs`).
 
 mod angle_sensor_gain;
 mod angle_sensor_lag;
@@ -109,19 +110,19 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &pressure_sensor_offset::PRESSURE_SENSOR_OFFSET,
 ];
 
-/// Looks an effect up by its id, in its usual form.
+/// The effect with this id, in its usual form.
 #[must_use]
 pub fn find(id: &str) -> Option<&'static dyn Effect> {
     CATALOGUE.iter().copied().find(|effect| effect.id() == id)
 }
 
-/// Place of an effect of the catalogue in its order.
+/// Index of an effect in the catalogue.
 pub(crate) fn rank(id: &str) -> usize {
     let found = CATALOGUE.iter().position(|effect| effect.id() == id);
     found.unwrap_or(CATALOGUE.len())
 }
 
-/// Every effect that can be added to a model: the catalogue and then its own terms.
+/// Every effect that can be added to a model: the catalogue, then the model's own terms.
 #[must_use]
 pub fn available(model: &Model) -> Vec<&'static dyn Effect> {
     let own = model.terms.iter().copied();

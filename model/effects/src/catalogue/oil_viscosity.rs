@@ -1,13 +1,13 @@
-//! `oil-viscosity`: part of the flow through the valves is laminar.
+//! `oil-viscosity`: laminar share of the flow through the valves.
 //!
-//! A series about the point where the lowering valve's table holds says it with two numbers: `Q = Q_table(I) [(1 - s)
-//! sqrt(dp/dp_ref) + s (dp/dp_ref) nu(40 C)/nu(T)]`: `s` is the laminar share of the flow at the reference drop and 40
-//! degrees (a series of the laminar-turbulent transition of McCloy & Martin about that point). Viscosity falls by 4 to
-//! 6 % a kelvin: `nu = nu(40 C) exp(-fall (T - 40 C))`, a local form of Walther's equation.
+//! A series of the laminar-turbulent transition (McCloy & Martin) about the reference point of the lowering valve's
+//! table: `Q = Q_table(I) [(1 - s) sqrt(dp/dp_ref) + s (dp/dp_ref) nu(40 C)/nu(T)]`, where `s` is the laminar share of
+//! the flow at the reference drop and 40 degrees. The viscosity decreases by 4 to 6 % per kelvin:
+//! `nu = nu(40 C) exp(-fall (T - 40 C))`, a local form of Walther's equation.
 //!
 //! The transition itself, in both valves: `Q = Q_table(I) tanh(2 lambda / lambda_c)` with the flow number
-//! `lambda = D_h sqrt(2 dp / rho) / nu(T)`. The hydraulic diameter is twice the gap, which opens by 4 mm an ampere, so
-//! this one shows at the lowest currents.
+//! `lambda = D_h sqrt(2 dp / rho) / nu(T)`. The hydraulic diameter is twice the gap, which opens by 4 mm/A, so this
+//! form shows at the lowest currents.
 
 use hitch_plant::components::oil::viscosity_m2_s;
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
@@ -18,7 +18,7 @@ use crate::described::Described;
 /// Temperature at which the valve's table holds, degree Celsius.
 const REFERENCE_C: f64 = 40.0;
 
-/// Hydraulic diameter of a valve's gap for each ampere beyond the threshold, m/A: twice its opening, 4 mm/A.
+/// Hydraulic diameter of a valve's gap per ampere beyond the threshold, m/A: twice its opening, 4 mm/A.
 const DIAMETER_M_A: f64 = 2.0 * 0.004;
 
 /// Laminar share of the flow through the lowering valve.
@@ -48,7 +48,7 @@ pub static SERIES: Described = Described {
             unit: "1/K",
             kind: ParameterKind::Other,
             key: "fall_1_k",
-            meaning: "fall of the viscosity with temperature",
+            meaning: "relative decrease of the viscosity with temperature",
             null: 0.0,
             typical: 0.042,
             low: 0.02,
@@ -79,8 +79,8 @@ pub static FLOW_NUMBER: Described = Described {
     equation: "Q = Q_table(I) tanh(2 lambda / critical), lambda = 2 (4 mm/A) (I - I_0) sqrt(2 dp / rho) / nu(T)",
     source: "McCloy & Martin, Control of Fluid Power, 2nd ed. 1980; critical flow number 100 to 250 for spools; \
          viscosity of SAE 30 by Walther's equation",
-    shows: "less flow at the lowest currents, by far more when cold; at one temperature a twin of a \
-         threshold",
+    shows: "less flow at the lowest currents, by far more when cold; at one temperature indistinguishable \
+         from a threshold shift",
     parameters: &[Parameter {
         name: "critical",
         unit: "",

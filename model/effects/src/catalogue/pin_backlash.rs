@@ -1,8 +1,8 @@
 //! `pin-backlash`: play between the piston and the rocker angle's sensor.
 //!
-//! Gravity keeps the loaded pins closed, so play shows where the angle is taken off: the sensor follows the piston
-//! through a play operator of full width b, `w = clamp(w_before, x - b/2, x + b/2)`, and shows the angle at w. 0.5 to 2
-//! mm.
+//! Gravity keeps the loaded pins closed, so play only affects the angle measurement: the sensor follows the piston
+//! through a play operator of full width b, `w = clamp(w_before, x - b/2, x + b/2)`, and shows the angle at w. Typical
+//! widths are 0.5 to 2 mm.
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ pub static PIN_BACKLASH: Described = Described {
     title: "Backlash between piston and angle sensor",
     equation: "w = clamp(w_before, x - width/2, x + width/2); angle = angle(w)",
     source: "worn pins and sensor lever, 0.5 to 2 mm at the piston",
-    shows: "the angle stands for the first millimetres after every reversal while oil flows; lifting \
+    shows: "the angle stays constant for the first millimetres after every reversal while oil flows; lifting \
          and lowering differ by a constant angle",
     parameters: &[Parameter {
         name: "width",
@@ -75,7 +75,8 @@ impl SensorStage for Backlash {
                 .max(piston_m - self.half_width_m)
                 .min(piston_m + self.half_width_m);
             let follower = self.linkage.at(self.follower_m);
-            // The linkage ends with the stroke, the reading need not: only the difference is taken from it.
+            // The linkage ends with the stroke, but the reading may exceed it: only the difference is taken from the
+            // linkage.
             let there_rad = self.linkage.at(piston_m).rocker_angle_rad;
             reading.rocker_angle_deg += (follower.rocker_angle_rad - there_rad).to_degrees();
         }

@@ -1,8 +1,9 @@
 //! `pin-friction`: dry friction in the linkage's pins, proportional to the load.
 //!
-//! `F = e F_weight tanh(v / 3 mm/s)`: each pin resists with `mu r |F_pin|`, and all pin forces grow with the load. With
-//! mu 0.10 to 0.20 and radii of 10 to 30 mm, e is 0.03 to 0.08. What a pin adds to e goes with how much it turns for the
-//! piston's way, `e = sum mu r |F_pin| |dphi/dx| / F_weight`, and so with the stroke: a slope and a bow over it say how.
+//! `F = e F_weight tanh(v / 3 mm/s)`: each pin has a friction torque `mu r |F_pin|`, and all pin forces are
+//! proportional to the load. With mu of 0.10 to 0.20 and radii of 10 to 30 mm, e is 0.03 to 0.08. The contribution of a
+//! pin depends on its rotation per piston travel, `e = sum mu r |F_pin| |dphi/dx| / F_weight`, and thus on the stroke,
+//! with a linear and a quadratic term.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
@@ -45,13 +46,13 @@ pub static EVEN: Described = Described {
     attach: |values, conditions, hooks| rub(values[0], [0.0; 2], conditions, hooks),
 };
 
-/// Friction in pins that turn more in one part of the stroke than in another.
+/// Friction in the pins of the linkage that varies over the stroke.
 pub static UNEVEN: Described = Described {
     form: Some("uneven"),
     title: "Friction in the pins of the linkage, uneven over the stroke",
     equation: "F = share (1 + slope z + bow (3 z^2 - 1) / 2) F_weight tanh(v / 3 mm/s), z = 2 x / stroke - 1",
     shows: "cylinder pressure steps down from lifting to holding and again to lowering, in proportion to the load and \
-         elsewhere in the stroke by another share",
+         with a share that varies over the stroke",
     parameters: &[
         SHARE,
         over_the_stroke::shape(
@@ -73,7 +74,7 @@ pub static UNEVEN: Described = Described {
 fn rub(share: f64, shape: [f64; 2], conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
     let stroke_m = conditions.constants.cylinder.stroke_m;
     hooks.friction.push(Box::new(move |state, weight_n| {
-        // Friction never drives.
+        // Friction never drives the motion.
         let there = over_the_stroke::over_mean(shape, state.piston_m, stroke_m).max(0.0);
         share * there * weight_n * (state.speed_m_s / TRANSITION_SPEED_M_S).tanh()
     }));

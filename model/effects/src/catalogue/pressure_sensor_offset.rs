@@ -1,4 +1,4 @@
-//! `pressure-sensor-offset`: the cylinder pressure sensor is off by a constant.
+//! `pressure-sensor-offset`: constant offset of the cylinder pressure sensor.
 //!
 //! `y = p + o`; 0.25 to 1 % of a full scale of 250 or 350 bar is 0.6 to 3.5 bar, more with temperature.
 
@@ -14,14 +14,14 @@ pub static PRESSURE_SENSOR_OFFSET: Described = Described {
     title: "Offset of the cylinder pressure sensor",
     equation: "y = p_C + offset",
     source: "data sheets of mobile pressure sensors, 0.25 to 1 % of full scale",
-    shows: "cylinder pressure off by the same everywhere while pump pressure and flows fit; in \
+    shows: "cylinder pressure off by a constant while pump pressure and flows fit; in \
          pressure alone easily taken for dead weight",
     parameters: &[Parameter {
         name: "offset",
         unit: "bar",
         kind: ParameterKind::Other,
         key: "offset_bar",
-        meaning: "what the sensor shows too much",
+        meaning: "offset of the reading",
         null: 0.0,
         typical: 0.8,
         low: -20.0,

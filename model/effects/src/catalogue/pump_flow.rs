@@ -1,13 +1,13 @@
-//! `pump-flow`: the pump delivers another flow than declared.
+//! `pump-flow`: deviation of the pump's delivery from the declared value.
 //!
-//! `Q_pump = (1 + change) Q_declared`: another speed of the engine, or another displacement; a worn pump slips with the
-//! pressure instead (`pump-leakage`). It shows only where the lift valve asks for more than there is.
+//! `Q_pump = (1 + change) Q_declared`: another engine speed or displacement. The slip of a worn pump depends on the
+//! pressure instead (`pump-leakage`). It shows only if the lift valve demands more than the delivery.
 
 use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
-/// Another flow than declared.
+/// Deviation of the pump's delivery.
 pub static PUMP_FLOW: Described = Described {
     id: "pump-flow",
     form: None,

@@ -1,7 +1,7 @@
-//! `pump-leakage`: the pump slips under pressure.
+//! `pump-leakage`: internal leakage (slip) of the pump.
 //!
-//! Wilson's laminar slip, `Q = Q_0 - k p` (Merritt 4.2). The compensator sends what nobody needs to tank, so a smaller
-//! delivery shows only where the lift valve asks for more than is left.
+//! Wilson's laminar slip, `Q = Q_0 - k p` (Merritt 4.2). The compensator returns excess flow to tank, so a smaller
+//! delivery shows only if the lift valve demands more than that.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::units::{m3_s_from_lpm, pa_from_bar};
@@ -23,7 +23,7 @@ pub static PUMP_LEAKAGE: Described = Described {
         unit: "l/min/bar",
         kind: ParameterKind::Other,
         key: "slip_lpm_bar",
-        meaning: "flow lost for each bar of pump pressure",
+        meaning: "flow lost per bar of pump pressure",
         null: 0.0,
         typical: 0.1,
         low: 0.0,

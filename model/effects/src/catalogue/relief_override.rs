@@ -1,8 +1,9 @@
-//! `relief-override`: the relief valve opens before its setting and needs more than it to pass the whole flow.
+//! `relief-override`: pressure override of the relief valve.
 //!
-//! `p_P = p_crack + override Q_relief / Q_pump`: its spring gives as it opens (Merritt 5.6). The setting is stated at
-//! some flow: `above` is the part of the override that lies above the 154 bar, none if they hold at the pump's whole
-//! flow. 10 to 25 bar at 48 l/min; valves crack at 0.85 to 0.93 of their setting.
+//! `p_P = p_crack + override Q_relief / Q_pump`: the pressure increases as the valve opens against its spring (Merritt
+//! 5.6). The setting is specified at some flow: `above` is the part of the override above the 154 bar, zero if these
+//! hold at the pump's full flow. Typical values are 10 to 25 bar at 48 l/min; valves crack at 0.85 to 0.93 of their
+//! setting.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, ReliefOverride, RunConditions};
 use hitch_plant::units::pa_from_bar;
@@ -26,7 +27,7 @@ pub static RELIEF_OVERRIDE: Described = Described {
             unit: "bar",
             kind: ParameterKind::Other,
             key: "override_bar",
-            meaning: "rise of the pump pressure from cracking to the pump's whole flow",
+            meaning: "increase of the pump pressure from cracking to the pump's full flow",
             null: 0.0,
             typical: 15.0,
             low: 0.0,

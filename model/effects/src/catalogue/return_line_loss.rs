@@ -1,8 +1,8 @@
-//! `return-line-loss`: filter and line between lowering valve and tank hold the flow back.
+//! `return-line-loss`: pressure loss of filter and line between lowering valve and tank.
 //!
-//! `p_T = loss (Q / 40 l/min)^2`, turbulent: `dp = (lambda L/d + zeta) rho v^2 / 2`. The lowering valve's drop is what
-//! the cylinder pressure leaves. 1 bar at 60 l/min is usual, several bar with a clogged filter or a thin hose. Part of
-//! it may be laminar: `K mu Q` with `K = 128 L / (pi d^4)` (Hagen & Poiseuille), more when cold.
+//! `p_T = loss (Q / 40 l/min)^2`, turbulent: `dp = (lambda L/d + zeta) rho v^2 / 2`. It reduces the drop of the
+//! lowering valve. Typical is 1 bar at 60 l/min, several bar with a clogged filter or a thin hose. Part of it may be
+//! laminar: `K mu Q` with `K = 128 L / (pi d^4)` (Hagen & Poiseuille), larger when cold.
 
 use hitch_plant::components::oil::viscosity_m2_s;
 use hitch_plant::hooks::effect_hooks::EffectHooks;
@@ -10,10 +10,10 @@ use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse, units};
 
 use crate::described::Described;
 
-/// Flow at which the loss is stated, l/min.
+/// Flow at which the loss is specified, l/min.
 const REFERENCE_FLOW_LPM: f64 = 40.0;
 
-/// Temperature at which it is stated, degree Celsius.
+/// Temperature at which the loss is specified, degree Celsius.
 const REFERENCE_C: f64 = 40.0;
 
 const LOSS: Parameter = Parameter {
@@ -28,14 +28,14 @@ const LOSS: Parameter = Parameter {
     high: 20.0,
 };
 
-/// Turbulent back pressure of the return line behind the lowering valve.
+/// Turbulent back pressure of the return line.
 pub static TURBULENT: Described = Described {
     id: "return-line-loss",
     form: None,
     title: "Back pressure of the return line",
     equation: "p_T = loss * (Q_lower / 40 l/min)^2",
     source: "turbulent pipe and filter loss; filter 0.3 to 1 bar and 2 m of hose 0.5 bar at 60 l/min",
-    shows: "lowering at high current and light load is slower; at low flow nothing",
+    shows: "lowering at high current and light load is slower; no change at low flow",
     parameters: &[LOSS],
     channels: &[Channel::Flow, Channel::RockerAngle],
     needs: None,
@@ -44,7 +44,7 @@ pub static TURBULENT: Described = Described {
     attach: |values, _, hooks| hold_back(values[0], 0.0, hooks),
 };
 
-/// Back pressure of a return line through which part of the flow is laminar.
+/// Back pressure of the return line with a laminar part.
 pub static LAMINAR: Described = Described {
     form: Some("laminar"),
     title: "Back pressure of the return line, in part laminar",
@@ -74,7 +74,7 @@ pub static LAMINAR: Described = Described {
     ..TURBULENT
 };
 
-/// Holds the flow back by a turbulent and a laminar loss at the reference flow, bar.
+/// Adds a turbulent and a laminar back pressure, given at the reference flow, bar.
 fn hold_back(turbulent_bar: f64, laminar_bar: f64, hooks: &mut EffectHooks) {
     let reference_m3_s = units::m3_s_from_lpm(REFERENCE_FLOW_LPM);
     let turbulent_pa = units::pa_from_bar(turbulent_bar);

@@ -1,7 +1,7 @@
-//! `solenoid-hysteresis`: the spool sticks to where it was (magnetic hysteresis and friction of the armature).
+//! `solenoid-hysteresis`: hysteresis of spool position over current (magnetic hysteresis and friction of the armature).
 //!
-//! Play operator on either current, `w = clamp(w_before, I - H/2, I + H/2)`, `Q = Q_table(w)`: the flow over a slow
-//! triangular current runs on two branches H apart, the data sheet's curve between them (Visintin; Jelali & Kroll,
+//! Play operator on each current, `w = clamp(w_before, I - H/2, I + H/2)`, `Q = Q_table(w)`: over a slow triangular
+//! current the flow follows two branches at a distance H, with the data sheet's curve midway (Visintin; Jelali & Kroll,
 //! ch. 4). H is 3 to 6 % of 3.3 A with dither, 8 to 12 % on plain direct current.
 
 use hitch_plant::hooks::effect_hooks::{CurrentStage, EffectHooks, RunConditions};
@@ -73,7 +73,7 @@ struct Play {
 }
 
 impl CurrentStage for Play {
-    /// Coming from zero, the spool has followed as far as the play lets it.
+    /// Starting from zero current, the spool is at the upper end of the play.
     fn rest(&mut self, currents: Currents) -> Currents {
         self.spool = Currents::default();
         self.advance(currents, 0.0)

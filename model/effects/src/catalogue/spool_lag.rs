@@ -1,11 +1,10 @@
-//! `spool-lag`: the spools follow their currents late.
+//! `spool-lag`: lag of the spools behind their currents.
 //!
-//! Coil and spool together behave like a second-order, well damped system: 40 to 100 ms to 90 % of a step for valves of
-//! this class (Merritt, ch. 6; data sheets). The usual form is two first-order lags in series: `share` moves part of the
-//! lag into the second one; none is a plain first-order lag, a half is critical damping. A spool with less damping than
-//! that swings past its place: 5 to 15 Hz and a damping of 0.7 to 1 are usual. Both are exact at any step as long as the
-//! current runs linearly. On the dynamic starting point it comes on top of the 45 ms that are declared there; a negative
-//! lag takes from those, down to none.
+//! Coil and spool form a well-damped second-order system: 40 to 100 ms to 90 % of a step for valves of this class
+//! (Merritt, ch. 6; data sheets). The usual form is two first-order lags in series: `share` is the part of the lag in
+//! the second one; zero is a plain first-order lag, a half is critical damping. An underdamped spool overshoots: 5 to
+//! 15 Hz and a damping of 0.7 to 1 are typical. Both forms are exact at any step size for a linear current. In the
+//! dynamic model the lag is added to the declared 45 ms; a negative lag is subtracted from them, down to zero.
 
 use hitch_plant::components::lag::Lag;
 use hitch_plant::hooks::effect_hooks::{CurrentStage, EffectHooks, RunConditions};
@@ -15,7 +14,7 @@ use crate::described::Described;
 
 const CHANNELS: &[Channel] = &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle];
 
-/// Spools that creep to their place.
+/// Spools without overshoot.
 pub static CREEPING: Described = Described {
     id: "spool-lag",
     form: None,
@@ -56,7 +55,7 @@ pub static CREEPING: Described = Described {
     attach: attach_creeping,
 };
 
-/// Spools that swing past their place.
+/// Spools with overshoot.
 pub static SWINGING: Described = Described {
     id: "spool-lag",
     form: Some("swinging"),
@@ -72,7 +71,7 @@ pub static SWINGING: Described = Described {
             unit: "s",
             kind: ParameterKind::Time,
             key: "lag_s",
-            meaning: "how late it follows a ramp of the current",
+            meaning: "delay behind a ramp of the current",
             null: 0.0,
             typical: 0.05,
             low: 0.0,
@@ -148,19 +147,19 @@ impl CurrentStage for SpoolLag {
 struct SwingingSpools {
     frequency_rad_s: f64,
     damping: f64,
-    /// Of the last step: steps are mostly alike, and sine and `exp` are dear.
+    /// Coefficients of the last step: steps are mostly equal, and sine and `exp` are expensive.
     free: Free,
     spools: [Swinging; 2],
 }
 
-/// What becomes of a spool's swing in one step, the same for both.
+/// Free oscillation of a spool over one step, the same for both spools.
 #[derive(Debug, Clone, Copy, Default)]
 struct Free {
     dt_s: f64,
-    /// How fast it dies away, and its own frequency, 1/s.
+    /// Decay rate and damped angular frequency, 1/s.
     decay: f64,
     swing: f64,
-    /// What is left of it, and how far round it has gone.
+    /// Decay factor and phase angle over the step.
     left: f64,
     sine: f64,
     cosine: f64,
@@ -182,7 +181,7 @@ impl Free {
     }
 }
 
-/// One of them, in terms of the current.
+/// State of one spool, in terms of the current.
 #[derive(Debug, Clone, Copy, Default)]
 struct Swinging {
     input_a: f64,
@@ -191,8 +190,8 @@ struct Swinging {
 }
 
 impl Swinging {
-    /// Goes on while the current runs linearly to `input_a`, which it follows `late_s` behind: what is left of the way
-    /// to there swings and dies away.
+    /// Advances while the current changes linearly to `input_a`; the steady response lags by `late_s`, and the
+    /// deviation from it is a decaying oscillation.
     fn advance(&mut self, free: &Free, late_s: f64, input_a: f64) {
         let rate_a_s = (input_a - self.input_a) / free.dt_s;
         let behind_a = late_s * rate_a_s;

@@ -1,21 +1,20 @@
-//! `spool-stiction`: the spools stick, then jump.
+//! `spool-stiction`: stick-slip motion of the spools.
 //!
-//! Two-parameter stick-slip: a spool stays until the current has gone `band` away from where it stuck, then jumps after
-//! it by the share `jump` of the band. 0.5 to 2 % of the current range with dither, 3 to 6 % on plain direct current.
-//! What comes next is a matter of how much less friction a moving spool has: it sticks again at once (Kano 2004), or
-//! follows the current, half of what the jump left of the band behind, until that turns or stands still (Choudhury,
-//! Thornhill and Shah 2005).
+//! Two-parameter stick-slip: a spool sticks until the current has changed by `band`, then jumps by the share `jump` of
+//! the band. 0.5 to 2 % of the current range with dither, 3 to 6 % on plain direct current. Two forms differ in the
+//! friction of a moving spool: it sticks again at once (Kano 2004), or follows the current, lagging by half of the
+//! remaining band, until the current reverses or stops (Choudhury, Thornhill and Shah 2005).
 
 use hitch_plant::hooks::effect_hooks::{CurrentStage, EffectHooks};
 use hitch_plant::{Channel, Currents, Parameter, ParameterKind, SizeResponse, Valve};
 
 use crate::described::Described;
 
-/// Largest change of a current in a step, A: a jump is noticed at the end of a step, and what it is late on a fast ramp
-/// would be taken for a wider band.
+/// Largest change of a current per step, A: a jump is detected at the end of a step, and its delay on a fast ramp would
+/// be mistaken for a wider band.
 const CHANGE_A: f64 = 0.002;
 
-/// Change of the current under which it stands still, A/s: a cleaned record holds its plateaus to less.
+/// Rate of change below which a current counts as constant, A/s: plateaus of a conditioned record stay below it.
 const STILL_A_S: f64 = 0.005;
 
 const PARAMETERS: &[Parameter] = &[
@@ -24,7 +23,7 @@ const PARAMETERS: &[Parameter] = &[
         unit: "A",
         kind: ParameterKind::Current,
         key: "band_a",
-        meaning: "change of current that a resting spool does not follow",
+        meaning: "change of current that a sticking spool does not follow",
         null: 0.0,
         typical: 0.08,
         low: 0.0,
@@ -35,7 +34,7 @@ const PARAMETERS: &[Parameter] = &[
         unit: "",
         kind: ParameterKind::Other,
         key: "jump",
-        meaning: "share of the band that it makes good in one jump",
+        meaning: "share of the band that it recovers in one jump",
         null: 0.5,
         typical: 0.9,
         low: 0.5,
@@ -53,7 +52,7 @@ pub static STICKING: Described = Described {
     equation: "|I - w| > band: w = w + sign(I - w) jump band; else w stays; Q = Q_table(w)",
     source: "Kano et al. 2004; 0.5 to 2 % of 3.3 A with dither, 3 to 6 % on plain DC",
     shows: "a slow ramp of current gives plateaus and jumps of flow; small reversals change nothing; \
-         on steps alone a twin of hysteresis",
+         with steps alone indistinguishable from hysteresis",
     parameters: PARAMETERS,
     channels: CHANNELS,
     needs: None,
@@ -62,7 +61,7 @@ pub static STICKING: Described = Described {
     attach: |values, _, hooks| attach(values, hooks, Jumping::default()),
 };
 
-/// Spools that follow the current once they are loose.
+/// Spools that follow the current after breaking loose.
 pub static FOLLOWING: Described = Described {
     id: "spool-stiction",
     form: Some("following"),
@@ -71,7 +70,7 @@ pub static FOLLOWING: Described = Described {
          I turns or stands still; Q = Q_table(w)",
     source: "Choudhury, Thornhill & Shah 2005; 0.5 to 2 % of 3.3 A with dither, 3 to 6 % on plain DC",
     shows: "a slow ramp of current starts late and with a jump, a staircase gives plateaus and jumps; \
-         small reversals change nothing; on steps alone a twin of hysteresis",
+         small reversals change nothing; with steps alone indistinguishable from hysteresis",
     parameters: PARAMETERS,
     channels: CHANNELS,
     needs: None,
@@ -80,7 +79,7 @@ pub static FOLLOWING: Described = Described {
     attach: |values, _, hooks| attach(values, hooks, Following::default()),
 };
 
-/// Attaches spools of a kind to both valves.
+/// Attaches a type of spool to both valves.
 fn attach<S: Spool + 'static>(values: &[f64], hooks: &mut EffectHooks, spool: S) {
     hooks.limit_change(CHANGE_A);
     let band_a = values[0];
@@ -101,9 +100,9 @@ struct Friction {
     jump_a: f64,
 }
 
-/// A spool that sticks, in terms of the current.
+/// A sticking spool, in terms of the current.
 trait Spool: std::fmt::Debug + Copy + Default + Send + Sync {
-    /// Where it is, A, when the current has come to `current_a` within `dt_s`.
+    /// Its position, A, after the current has changed to `current_a` within `dt_s`.
     fn advance(&mut self, friction: Friction, current_a: f64, dt_s: f64) -> f64;
 }
 
@@ -116,7 +115,7 @@ struct Sticking<S> {
 }
 
 impl<S: Spool> CurrentStage for Sticking<S> {
-    /// Coming from zero, a spool that had to move has just jumped.
+    /// Starting from zero current, a spool that moved has just jumped.
     fn rest(&mut self, currents: Currents) -> Currents {
         (self.lift, self.lowering) = (S::default(), S::default());
         self.advance(currents, 0.0)
@@ -141,7 +140,7 @@ struct Jumping {
 }
 
 impl Spool for Jumping {
-    /// Every jump starts where the current was just a band away, whenever the step notices.
+    /// Every jump starts at a current exactly one band away, regardless of the step in which it is detected.
     fn advance(&mut self, friction: Friction, current_a: f64, _: f64) -> f64 {
         let away_a = current_a - self.place_a;
         let jumps = ((away_a.abs() - friction.band_a) / friction.jump_a)
@@ -152,15 +151,15 @@ impl Spool for Jumping {
     }
 }
 
-/// A spool that follows once it is loose.
+/// A spool that follows the current after breaking loose.
 #[derive(Debug, Clone, Copy, Default)]
 struct Following {
     place_a: f64,
-    /// The current before.
+    /// The previous current, A.
     before_a: f64,
-    /// The current at which it stuck.
+    /// The current at which it stuck, A.
     stuck_a: f64,
-    /// Sign of its motion, zero while it sticks.
+    /// Sign of its motion; zero while it sticks.
     direction: f64,
 }
 

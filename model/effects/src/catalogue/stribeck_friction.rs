@@ -1,8 +1,8 @@
-//! `stribeck-friction`: breaking loose takes more force than sliding.
+//! `stribeck-friction`: breakaway friction larger than sliding friction.
 //!
-//! `F = F_C [1 + (k - 1) exp(-|v| / v_s)] tanh(v / 3 mm/s)`: breaking loose takes k times the sliding friction F_C,
-//! which is reached within a few millimetres a second (Simscape's cylinder friction; Jelali & Kroll 4.3). k is 1.2 to
-//! 1.6, v_s 5 to 20 mm/s.
+//! `F = F_C [1 + (k - 1) exp(-|v| / v_s)] tanh(v / 3 mm/s)`: the breakaway force is k times the sliding friction F_C,
+//! which is reached within a few mm/s (Simscape's cylinder friction; Jelali & Kroll 4.3). k is 1.2 to 1.6, v_s 5 to 20
+//! mm/s.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::{Channel, Parameter, ParameterKind, SizeResponse};
@@ -36,7 +36,7 @@ pub static STRIBECK_FRICTION: Described = Described {
             unit: "",
             kind: ParameterKind::Other,
             key: "breakaway",
-            meaning: "friction at the point of breaking loose over that",
+            meaning: "breakaway friction relative to sliding friction",
             null: 1.0,
             typical: 1.6,
             low: 1.0,
@@ -47,7 +47,7 @@ pub static STRIBECK_FRICTION: Described = Described {
             unit: "mm/s",
             kind: ParameterKind::Other,
             key: "speed_mm_s",
-            meaning: "speed over which it falls to that",
+            meaning: "speed over which it decreases to sliding friction",
             null: 0.0,
             typical: 10.0,
             low: 2.0,

@@ -1,8 +1,8 @@
-//! `lift-threshold-shift`, `lower-threshold-shift`: the valve opens at another current.
+//! `lift-threshold-shift`, `lower-threshold-shift`: shift of a valve's threshold current.
 //!
-//! `Q = Q_table(I - dI)`, for one valve; the same as a spool overlap of 4 mm/A times dI. Units differ by 0.03 to
-//! 0.10 A from one to the next, and more after wear or a changed spring; the paper's lowering valve opens at 1.25 A
-//! instead of the data sheet's 0.999 A.
+//! `Q = Q_table(I - dI)`, per valve; equivalent to a spool overlap of 4 mm/A times dI. It varies by 0.03 to 0.10 A
+//! between units, and by more after wear or a changed spring; the paper's lowering valve opens at 1.25 A instead of the
+//! data sheet's 0.999 A.
 
 use hitch_plant::hooks::effect_hooks::{CurrentStage, EffectHooks, RunConditions};
 use hitch_plant::{Channel, Currents, Effect, Parameter, ParameterKind, Valve};
@@ -41,7 +41,7 @@ static PARAMETERS: [Parameter; 1] = [Parameter {
     unit: "A",
     kind: ParameterKind::Current,
     key: "shift_a",
-    meaning: "current by which the whole characteristic moves up",
+    meaning: "shift of the whole characteristic to higher currents",
     null: 0.0,
     typical: 0.05,
     low: -0.6,

@@ -1,9 +1,9 @@
-//! `viscous-friction`: friction that grows with speed.
+//! `viscous-friction`: friction proportional to speed.
 //!
-//! `F = f v`, oil sheared in seals and guides; 500 to 5000 N s/m, several times that when cold. In a guide's gap it goes
-//! with the viscosity, under a seal that floats on a film that grows with it with about its root (Jelali & Kroll 4.3). On
-//! the dynamic starting point it comes on top of the 12 000 N s/m declared there, and may take from them: together they
-//! are never less than none.
+//! `F = f v`, shear of oil in seals and guides; 500 to 5000 N s/m, several times that when cold. In the gap of a guide
+//! it is proportional to the viscosity; under a seal, whose oil film thickness also increases with the viscosity, it is
+//! roughly proportional to its square root (Jelali & Kroll 4.3). In the dynamic model it is added to the declared 12
+//! 000 N s/m, and may be negative; the sum is never less than zero.
 
 use hitch_plant::components::oil::viscosity_m2_s;
 use hitch_plant::hooks::effect_hooks::EffectHooks;
@@ -11,15 +11,15 @@ use hitch_plant::{Channel, Dynamics, Parameter, ParameterKind, SizeResponse};
 
 use crate::described::Described;
 
-/// Temperature at which the coefficient is told, degree Celsius.
-const TOLD_AT_C: f64 = 40.0;
+/// Temperature at which the coefficient is specified, degree Celsius.
+const SPECIFIED_AT_C: f64 = 40.0;
 
 const COEFFICIENT: Parameter = Parameter {
     name: "coefficient",
     unit: "N s/m",
     kind: ParameterKind::Other,
     key: "coefficient_n_s_m",
-    meaning: "force over speed, with oil of 40 degC",
+    meaning: "force per speed, with oil at 40 degC",
     null: 0.0,
     typical: 3000.0,
     low: 0.0,
@@ -33,7 +33,7 @@ const CHANNELS: &[Channel] = &[
     Channel::RockerAngle,
 ];
 
-/// Viscous friction alike at all temperatures.
+/// Viscous friction independent of temperature.
 pub static EVEN: Described = Described {
     id: "viscous-friction",
     form: None,
@@ -59,7 +59,7 @@ pub static EVEN: Described = Described {
     },
 };
 
-/// Viscous friction of cold, thick oil.
+/// Viscous friction that depends on the oil's viscosity.
 pub static THICKENING: Described = Described {
     id: "viscous-friction",
     form: Some("thickening"),
@@ -75,7 +75,7 @@ pub static THICKENING: Described = Described {
             unit: "",
             kind: ParameterKind::Other,
             key: "exponent",
-            meaning: "power of the viscosity that it goes with",
+            meaning: "exponent of its dependence on viscosity",
             null: 0.0,
             typical: 0.7,
             low: 0.0,
@@ -87,7 +87,8 @@ pub static THICKENING: Described = Described {
     size_response: SizeResponse::Smooth,
     refines: false,
     attach: |values, conditions, hooks| {
-        let thickness = viscosity_m2_s(conditions.oil_temperature_c) / viscosity_m2_s(TOLD_AT_C);
+        let thickness =
+            viscosity_m2_s(conditions.oil_temperature_c) / viscosity_m2_s(SPECIFIED_AT_C);
         oppose(values[0] * thickness.powf(values[1]), hooks);
     },
 };

@@ -1,4 +1,4 @@
-//! Infers the dimension of a formula, or says where its units do not agree.
+//! Dimensional analysis of a formula.
 
 use hitch_input::fault::{Fault, shown};
 use hitch_input::{Dimension, Unit};
@@ -10,7 +10,7 @@ use crate::expression::tree::{Kind, Node};
 /// The dimension of a formula whose parameters have these dimensions.
 ///
 /// # Errors
-/// At the innermost part whose units do not agree.
+/// The innermost part whose units do not agree.
 pub fn dimension(node: &Node, text: &str, parameters: &[Dimension]) -> Result<Dimension, Fault> {
     Checker { text, parameters }.dimension(node)
 }
@@ -79,7 +79,7 @@ impl Checker<'_> {
         }
     }
 
-    /// How to make two sides agree.
+    /// A correction that makes the units of two sides agree.
     fn reconcile(&self, sides: &[Node; 2], dimensions: [Dimension; 2]) -> String {
         for (side, other) in [(0, 1), (1, 0)] {
             let node = &sides[side];
@@ -159,7 +159,7 @@ fn signal_dimension(signal: &Signal) -> Dimension {
         .dimension
 }
 
-/// The value of an exponent that holds nothing but written numbers.
+/// The value of an exponent that consists of number literals only.
 fn written(node: &Node) -> Option<f64> {
     match &node.kind {
         Kind::Number(value, _) => Some(*value),

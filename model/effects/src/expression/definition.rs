@@ -1,4 +1,4 @@
-//! How somebody defines a term, and what can be wrong with it before its formula is looked at.
+//! The user's definition of a term, and the faults that can be found before its formula is parsed.
 
 use hitch_input::Unit;
 use hitch_input::fault::{Fault, shown};
@@ -8,36 +8,36 @@ use hitch_plant::hooks::signals::SIGNALS;
 use crate::expression::operation::Function;
 use crate::expression::token::is_whole_name;
 
-/// Most parameters of a term: measurements seldom tell more than two apart.
+/// Most parameters of a term: measurements rarely determine more than two.
 const MOST_PARAMETERS: usize = 8;
 
-/// A parameter as somebody defines it. Values are in its unit.
+/// A user's definition of a parameter. Values are in its unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParameterDefinition {
     /// Name in the formula.
     pub name: String,
     /// Unit; empty for a pure number.
     pub unit: String,
-    /// What it is; may be empty.
+    /// Description; may be empty.
     pub meaning: String,
-    /// Value that turns the term off. Of the first parameter only; the others keep their start value there.
+    /// Value at which the term is off; only used for the first parameter.
     pub null: f64,
-    /// Value to start a fit from: a size that is to be expected.
+    /// Start value of a fit: an expected size.
     pub start: f64,
-    /// Smallest value that makes sense.
+    /// Smallest allowed value.
     pub low: f64,
-    /// Largest value that makes sense.
+    /// Largest allowed value.
     pub high: f64,
 }
 
-/// A term as somebody defines it.
+/// A user's definition of a term.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TermDefinition {
-    /// Name in files, commands and reports.
+    /// Id in files, commands and reports.
     pub id: String,
-    /// Name in words; may be empty.
+    /// Title; may be empty.
     pub title: String,
-    /// Where it acts.
+    /// The place where it acts.
     pub place: Place,
     /// The formula.
     pub formula: String,
@@ -45,7 +45,7 @@ pub struct TermDefinition {
     pub parameters: Vec<ParameterDefinition>,
 }
 
-/// The part of a definition that is at fault.
+/// The faulty part of a definition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// The name of the term.
@@ -58,14 +58,14 @@ pub enum Part {
     Formula(usize),
 }
 
-/// What is wrong with the definition of a term, where, and how to mend it.
+/// A fault in the definition of a term: where, what, and a correction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TermError {
-    /// Where.
+    /// The faulty part.
     pub part: Part,
-    /// What.
+    /// Description.
     pub what: String,
-    /// How to mend it.
+    /// Suggested correction.
     pub mend: String,
 }
 
@@ -92,7 +92,7 @@ impl TermError {
 }
 
 impl ParameterDefinition {
-    /// Its key in a model file: the name with the unit in it, `force_n`, `gain_lpm_per_bar`.
+    /// Its key in a model file: the name including the unit, `force_n`, `gain_lpm_per_bar`.
     #[must_use]
     pub fn key(&self) -> String {
         let unit = self

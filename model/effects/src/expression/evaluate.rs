@@ -1,7 +1,7 @@
-//! Formulas compiled for evaluation: a list of steps that work on a small stack.
+//! Compiled formulas: a list of instructions for a small stack.
 //!
-//! The tree is written out from the leaves to the root, so evaluation is one pass over a list without a branch for the
-//! shape of the formula. What holds nothing but written numbers is worked out beforehand.
+//! The tree is flattened from the leaves to the root, so evaluation is one pass over a list. Constant subexpressions
+//! are evaluated at compile time.
 
 use hitch_plant::hooks::signals::{Signal, Signals};
 
@@ -9,27 +9,27 @@ use crate::expression::operation::{Binary, Unary};
 use crate::expression::parse::DEEPEST;
 use crate::expression::tree::{Kind, Node};
 
-/// Intermediate results that most formulas get by with; clearing more of them costs time.
+/// Stack size that is sufficient for most formulas; clearing a larger one costs time.
 const FEW: usize = 8;
-/// Intermediate results that the most deeply nested formula needs.
+/// Stack size for the most deeply nested formula.
 const MANY: usize = DEEPEST + 4;
 
 /// A formula ready to evaluate.
 #[derive(Debug)]
 pub struct Code {
-    steps: Box<[Step]>,
-    /// Most intermediate results at a time.
+    steps: Box<[Instruction]>,
+    /// Largest stack depth.
     depth: usize,
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Step {
+enum Instruction {
     Number(f64),
     Signal(&'static Signal),
     Parameter(usize),
     Unary(Unary),
     Binary(Binary),
-    /// An operation whose right side is a written number.
+    /// An operation whose right operand is a number literal.
     BinaryNumber(Binary, f64),
 }
 
@@ -45,7 +45,7 @@ impl Code {
         }
     }
 
-    /// The value, SI; not a number or infinite where the formula is. Parameters that are missing count as not a number.
+    /// The value, SI; NaN or infinite if the formula is. Missing parameters count as NaN.
     #[inline]
     #[must_use]
     pub fn evaluate(&self, parameters: &[f64], signals: &Signals) -> f64 {
@@ -58,18 +58,18 @@ impl Code {
 
     fn run<const SIZE: usize>(&self, parameters: &[f64], signals: &Signals) -> f64 {
         let mut stack = [0.0; SIZE];
-        // The topmost value is kept apart from the stack, so that a step on one value does not touch it.
+        // The top of the stack is kept in a variable, so that unary operations do not access the stack.
         let mut top = f64::NAN;
         let mut height = 0;
         for step in &self.steps {
             match *step {
-                Step::Unary(operation) => top = operation.of(top),
-                Step::BinaryNumber(operation, right) => top = operation.of(top, right),
-                Step::Binary(operation) => {
+                Instruction::Unary(operation) => top = operation.of(top),
+                Instruction::BinaryNumber(operation, right) => top = operation.of(top, right),
+                Instruction::Binary(operation) => {
                     height -= 1;
                     top = operation.of(stack[height], top);
                 }
-                Step::Number(_) | Step::Signal(_) | Step::Parameter(_) => {
+                Instruction::Number(_) | Instruction::Signal(_) | Instruction::Parameter(_) => {
                     stack[height] = top;
                     height += 1;
                     top = step.load(parameters, signals);
@@ -80,7 +80,7 @@ impl Code {
     }
 }
 
-impl Step {
+impl Instruction {
     #[inline]
     fn load(&self, parameters: &[f64], signals: &Signals) -> f64 {
         match *self {
@@ -94,7 +94,7 @@ impl Step {
 
 #[derive(Default)]
 struct Compiler {
-    steps: Vec<Step>,
+    steps: Vec<Instruction>,
     height: usize,
     most: usize,
 }
@@ -102,9 +102,9 @@ struct Compiler {
 impl Compiler {
     fn node(&mut self, node: &Node) {
         match &node.kind {
-            Kind::Number(value, _) => self.load(Step::Number(*value)),
-            Kind::Signal(signal) => self.load(Step::Signal(signal)),
-            Kind::Parameter(index) => self.load(Step::Parameter(*index)),
+            Kind::Number(value, _) => self.load(Instruction::Number(*value)),
+            Kind::Signal(signal) => self.load(Instruction::Signal(signal)),
+            Kind::Parameter(index) => self.load(Instruction::Parameter(*index)),
             Kind::Unary(operation, inner) => {
                 self.node(inner);
                 self.unary(*operation);
@@ -117,29 +117,29 @@ impl Compiler {
         }
     }
 
-    fn load(&mut self, step: Step) {
+    fn load(&mut self, step: Instruction) {
         self.steps.push(step);
         self.height += 1;
         self.most = self.most.max(self.height);
     }
 
     fn unary(&mut self, operation: Unary) {
-        if let Some(Step::Number(value)) = self.steps.last_mut() {
+        if let Some(Instruction::Number(value)) = self.steps.last_mut() {
             *value = operation.of(*value);
         } else {
-            self.steps.push(Step::Unary(operation));
+            self.steps.push(Instruction::Unary(operation));
         }
     }
 
     fn binary(&mut self, operation: Binary) {
-        let Some(&Step::Number(right)) = self.steps.last() else {
-            self.steps.push(Step::Binary(operation));
+        let Some(&Instruction::Number(right)) = self.steps.last() else {
+            self.steps.push(Instruction::Binary(operation));
             return;
         };
         self.steps.pop();
         match self.steps.last_mut() {
-            Some(Step::Number(left)) => *left = operation.of(*left, right),
-            _ => self.steps.push(Step::BinaryNumber(operation, right)),
+            Some(Instruction::Number(left)) => *left = operation.of(*left, right),
+            _ => self.steps.push(Instruction::BinaryNumber(operation, right)),
         }
     }
 }

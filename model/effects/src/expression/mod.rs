@@ -1,4 +1,4 @@
-//! Physical terms that a user writes into a model file, to be fitted like an effect of the catalogue.
+//! User-defined physical terms in a model file, fitted like effects of the catalogue.
 //!
 //! A formula such as `-c * ramp(1 - x / depth)` is made of
 //! * numbers: `0.5`, `2e-3`, and with a unit `3[mm/s]`; without one they are pure numbers;
@@ -6,11 +6,11 @@
 //! * `+ - * / ^`, a minus in front and parentheses, with the precedence of mathematics: `-2^2` is -4, `2^3^2` is 512;
 //! * [functions](operation::FUNCTIONS).
 //!
-//! Everything is SI inside, whatever unit a number or a parameter is written in, and the units are checked: a sum of a
-//! length and a speed is refused, with the column and a way to mend it. Angles are pure numbers. Where the base of a
-//! power has a unit, the exponent is a written number.
+//! Computation is in SI, regardless of the units of numbers and parameters, and the units are checked: a sum of a
+//! length and a speed is rejected, with the column and a suggested correction. Angles are pure numbers. If the base of
+//! a power has a unit, the exponent has to be a number literal.
 //!
-//! A text takes its way through [`token`], [`parse`], [`check`] and [`evaluate`]; [`Term`] puts them together with the
+//! A formula is processed by [`token`], [`parse`], [`check`] and [`evaluate`]; [`Term`] combines them with the
 //! [place](hitch_plant::Place) where the term acts and its parameters.
 
 pub mod check;

@@ -1,6 +1,6 @@
-//! What a formula can do with numbers.
+//! Operations of formulas.
 //!
-//! Whatever is not a number stays so: no function turns it into one, so a fault shows instead of hiding in a zero.
+//! NaN propagates through every operation, so that a fault is not hidden by a zero.
 
 /// An operation on one number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -9,7 +9,7 @@ pub enum Unary {
     Negative,
     /// Square root.
     Sqrt,
-    /// Square root of the size, with the sign of the number: flow through an orifice.
+    /// Signed square root: flow through an orifice.
     SignedSqrt,
     /// Absolute value.
     Abs,
@@ -25,9 +25,9 @@ pub enum Unary {
     Sin,
     /// Cosine.
     Cos,
-    /// The number where it is positive, else 0.
+    /// The number if positive, else 0.
     Ramp,
-    /// 1 where the number is positive, else 0.
+    /// 1 if the number is positive, else 0.
     Step,
 }
 
@@ -61,7 +61,7 @@ pub enum Function {
     Clamp,
 }
 
-/// Every function, with its arguments and what it gives, for documents and messages.
+/// Every function, with its arguments and a description, for documents and messages.
 pub const FUNCTIONS: [(&str, Function, &str); 14] = [
     (
         "sqrt",
@@ -136,7 +136,7 @@ pub const FUNCTIONS: [(&str, Function, &str); 14] = [
 ];
 
 impl Function {
-    /// Looks a function up by its name.
+    /// The function with this name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let found = FUNCTIONS.iter().find(|(known, ..)| *known == name);
@@ -186,10 +186,10 @@ impl Binary {
             Self::Subtract => a - b,
             Self::Multiply => a * b,
             Self::Divide => a / b,
-            // Squares are usual, and a product is faster than the general power.
+            // Squares are common, and a product is faster than the general power.
             Self::Power if b == 2.0 => a * a,
             Self::Power => a.powf(b),
-            // Not f64::min, which passes over what is not a number.
+            // Not `f64::min`, which ignores NaN.
             Self::Min if a < b || a.is_nan() => a,
             Self::Max if a > b || a.is_nan() => a,
             Self::Min | Self::Max => b,

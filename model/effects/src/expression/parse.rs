@@ -1,7 +1,7 @@
-//! Parses a formula by operator precedence.
+//! Operator-precedence parser for formulas.
 //!
-//! From loose to tight: `+ -`, then `* /`, both from the left; then the minus in front; then `^`, from the right. So
-//! `-2^2` is -4 and `2^3^2` is 512, as in mathematics.
+//! From low to high precedence: `+ -`, then `* /`, both left-associative; then unary minus; then `^`,
+//! right-associative. So `-2^2` is -4 and `2^3^2` is 512, as in mathematics.
 
 use std::ops::Range;
 
@@ -14,16 +14,16 @@ use crate::expression::operation::{Binary, FUNCTIONS, Function, Unary};
 use crate::expression::token::{Token, TokenKind, tokens};
 use crate::expression::tree::{Kind, Node};
 
-/// Deepest nesting. Each level holds one intermediate result, so it bounds what evaluation needs, too.
+/// Deepest nesting. Each level holds one intermediate result, so it also bounds the stack of the evaluation.
 pub const DEEPEST: usize = 60;
 
-/// Power with which a minus in front holds its operand.
-const MINUS_IN_FRONT: u8 = 5;
+/// Precedence of unary minus.
+const UNARY_MINUS: u8 = 5;
 
 /// Parses a formula whose parameters have these names.
 ///
 /// # Errors
-/// What is wrong with it, and where. Units are not looked at.
+/// A syntax error and its position. Units are not checked.
 pub fn parse(text: &str, parameters: &[&str]) -> Result<Node, Fault> {
     let mut parser = Parser {
         text,
@@ -60,7 +60,7 @@ impl<'t> Parser<'t> {
         &self.tokens[self.at]
     }
 
-    /// The next token; at the end, the end again.
+    /// The next token; after the end, the end token again.
     fn next(&mut self) -> Token {
         let token = self.peek().clone();
         self.at = (self.at + 1).min(self.tokens.len() - 1);
@@ -88,7 +88,7 @@ impl<'t> Parser<'t> {
         Fault::at(self.text, span.start, what, mend)
     }
 
-    /// An expression whose operators all hold at least as tight as `tightness`.
+    /// An expression whose operators all have at least this precedence.
     fn expression(&mut self, tightness: u8) -> Result<Node, Fault> {
         if self.depth == DEEPEST {
             let what = format!("the formula is nested more than {DEEPEST} deep");
@@ -118,7 +118,7 @@ impl<'t> Parser<'t> {
             TokenKind::Name if self.peek().kind == TokenKind::Sign('(') => self.call(&token.span),
             TokenKind::Name => self.name(token.span),
             TokenKind::Sign('-') => {
-                let inner = self.expression(MINUS_IN_FRONT)?;
+                let inner = self.expression(UNARY_MINUS)?;
                 let span = token.span.start..inner.outer.end;
                 Ok(Node::unary(span, Unary::Negative, inner))
             }
@@ -217,7 +217,7 @@ impl<'t> Parser<'t> {
         self.unknown(span, what, &FUNCTIONS.map(|(name, ..)| name))
     }
 
-    /// Closes the parenthesis that was opened at `open`; gives the byte behind it.
+    /// Expects the closing parenthesis of the one at `open`; returns the byte after it.
     fn close(&mut self, open: &Range<usize>) -> Result<usize, Fault> {
         match self.peek().kind {
             TokenKind::Sign(')') => Ok(self.next().span.end),
@@ -226,7 +226,7 @@ impl<'t> Parser<'t> {
         }
     }
 
-    /// The fault that the next token does not follow what stands before it.
+    /// The fault that the next token is not allowed here.
     fn stray(&self) -> Fault {
         let span = &self.peek().span;
         let piece = shown(self.piece(span));
@@ -256,7 +256,7 @@ impl<'t> Parser<'t> {
     }
 }
 
-/// An operator with the tightness it has and the one that its right operand must have.
+/// A binary operator with its precedence and that of its right operand.
 fn infix(sign: char) -> Option<(Binary, u8, u8)> {
     Some(match sign {
         '+' => (Binary::Add, 1, 2),

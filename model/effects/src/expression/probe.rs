@@ -1,4 +1,4 @@
-//! Tries a term on many states of the plant: it has to be finite on all of them, and zero when it is off.
+//! Evaluation of a term on many states of the plant: it has to be finite on all of them, and zero at its null value.
 
 use std::fmt::Write as _;
 use std::sync::LazyLock;
@@ -9,18 +9,17 @@ use crate::expression::definition::{Part, TermError};
 use crate::expression::term::Term;
 use crate::expression::tree::{Kind, Node};
 
-/// States drawn at random, beside rest and the two ends of every signal.
+/// Number of random states, in addition to rest and the two ends of every signal.
 const DRAWN: usize = 200;
 
-/// States that terms are tried on.
+/// Test states.
 static STATES: LazyLock<Vec<Signals>> = LazyLock::new(|| {
     let mut states = vec![
         state(|signal| 0.0_f64.clamp(signal.low, signal.high)),
         state(|signal| signal.low),
         state(|signal| signal.high),
     ];
-    // A Weyl sequence of its own irrational step for each signal fills the ranges evenly, and the same on every
-    // machine.
+    // Weyl sequences with a different irrational step per signal fill the ranges evenly and reproducibly.
     states.extend((1..=DRAWN).map(|k| {
         let mut step_squared = 1.0_f64;
         state(|signal| {
@@ -40,7 +39,7 @@ fn state(mut value: impl FnMut(&Signal) -> f64) -> Signals {
     signals
 }
 
-/// Checks that a term is finite at its start and at either end of every parameter, and zero at its null value.
+/// Checks that a term is finite at its start values and at both ends of every parameter, and zero at its null value.
 pub(crate) fn check(term: &Term, tree: &Node) -> Result<(), TermError> {
     let parameters = &term.definition().parameters;
     let start: Vec<f64> = parameters.iter().map(|parameter| parameter.start).collect();
@@ -94,7 +93,7 @@ fn refuse_where(
     })
 }
 
-/// The values of the parameters and of the signals that a formula holds: `c = 0, v = -0.3 m/s`.
+/// The values of the parameters and signals in a formula: `c = 0, v = -0.3 m/s`.
 fn circumstances(term: &Term, tree: &Node, values: &[f64], state: &Signals) -> String {
     let mut text = String::new();
     let mut add = |name: &str, value: f64, unit: &str| {
@@ -112,7 +111,7 @@ fn circumstances(term: &Term, tree: &Node, values: &[f64], state: &Signals) -> S
     text
 }
 
-/// A number to four digits, without an exponent where it stays readable.
+/// A number with four significant digits, without an exponent if it is readable that way.
 fn short(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }

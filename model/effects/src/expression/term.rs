@@ -11,7 +11,7 @@ use crate::expression::parse::parse;
 use crate::expression::tree::{Kind, Node};
 use crate::expression::{check, probe};
 
-/// A term whose syntax, units, ranges and null value are right.
+/// A term with valid syntax, units, ranges and null value.
 #[derive(Debug)]
 pub struct Term {
     definition: TermDefinition,
@@ -23,8 +23,8 @@ impl Term {
     /// Checks a definition and compiles its formula.
     ///
     /// # Errors
-    /// The first thing that is wrong with it: a name, a unit, a range, the syntax, the dimensions, a parameter that is
-    /// not used, a value that is not finite, or a null value that does not turn the term off.
+    /// The first fault: a name, a unit, a range, the syntax, the dimensions, an unused parameter, a value that is not
+    /// finite, or a null value at which the term is not zero.
     pub fn new(definition: TermDefinition) -> Result<Self, TermError> {
         check_id(&definition.id)?;
         let units = check_parameters(&definition.parameters)?;
@@ -69,8 +69,8 @@ impl Term {
 
     /// The value, in the SI unit of its place.
     ///
-    /// It is finite for the ranges of parameters and signals that were probed at its definition; elsewhere (a fraction
-    /// whose denominator passes through zero) it may be infinite or not a number.
+    /// It is finite on the states and parameter values that were tested at its definition; elsewhere (a fraction whose
+    /// denominator passes through zero) it may be infinite or NaN.
     #[inline]
     #[must_use]
     pub fn evaluate(&self, parameters_si: &[f64], signals: &Signals) -> f64 {

@@ -1,13 +1,13 @@
-//! Cuts a formula into numbers, units, names and signs.
+//! Tokenizer for formulas: numbers, units, names and signs.
 
 use std::ops::Range;
 
 use hitch_input::fault::{Fault, shown};
 
-/// Longest formula that is read, in bytes. It bounds the size of the tree.
+/// Longest formula, in bytes. It bounds the size of the tree.
 const LONGEST: usize = 1000;
 
-/// What a token is.
+/// Kind of a token.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TokenKind {
     /// A number, without its unit.
@@ -22,19 +22,19 @@ pub enum TokenKind {
     End,
 }
 
-/// A piece of a formula.
+/// A token of a formula.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Token {
-    /// What it is.
+    /// Its kind.
     pub kind: TokenKind,
-    /// Its bytes in the formula.
+    /// Its byte range in the formula.
     pub span: Range<usize>,
 }
 
 /// The tokens of a formula; the last one is [`TokenKind::End`].
 ///
 /// # Errors
-/// At the first character that belongs to none.
+/// The first character that does not belong to any token.
 pub fn tokens(text: &str) -> Result<Vec<Token>, Fault> {
     if text.len() > LONGEST {
         let what = format!("the formula is longer than {LONGEST} characters");
@@ -84,7 +84,7 @@ fn is_name(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_'
 }
 
-/// Whether a text is a name as a whole.
+/// Whether a text is a valid name.
 #[must_use]
 pub fn is_whole_name(text: &str) -> bool {
     let begins_well = text.chars().next().is_some_and(|c| !c.is_ascii_digit());
@@ -123,7 +123,7 @@ fn number(text: &str, at: usize) -> Result<(TokenKind, usize), Fault> {
     }
 }
 
-/// Length of digits, point and exponent at the beginning of a text.
+/// Length of the number literal at the beginning of a text: digits, point and exponent.
 fn number_length(bytes: &[u8]) -> usize {
     let digits = |from: usize| {
         from + bytes[from..]

@@ -1,4 +1,4 @@
-//! A formula as a tree.
+//! Syntax tree of a formula.
 
 use std::ops::Range;
 
@@ -7,54 +7,54 @@ use hitch_plant::hooks::signals::Signal;
 
 use crate::expression::operation::{Binary, Function, Unary};
 
-/// A node with all that is below it.
+/// A node with its subtree.
 #[derive(Debug)]
 pub struct Node {
-    /// Its bytes in the formula.
+    /// Its byte range in the formula.
     pub span: Range<usize>,
-    /// Its bytes with the parentheses around it.
+    /// Its byte range including its parentheses.
     pub outer: Range<usize>,
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
 }
 
-/// What a node is.
+/// Kind of a node.
 #[derive(Debug)]
 pub enum Kind {
-    /// A written number: its value in SI and its dimension.
+    /// A number literal: its value in SI and its dimension.
     Number(f64, Dimension),
     /// A signal of the plant.
     Signal(&'static Signal),
     /// A parameter, by its index.
     Parameter(usize),
-    /// An operation on one part.
+    /// A unary operation.
     Unary(Unary, Box<Node>),
-    /// An operation on two parts.
+    /// A binary operation.
     Binary(Binary, Box<[Node; 2]>),
 }
 
 impl Node {
-    /// A node without parentheses around it.
+    /// A node without parentheses.
     #[must_use]
     pub fn new(span: Range<usize>, kind: Kind) -> Self {
         let outer = span.clone();
         Self { span, outer, kind }
     }
 
-    /// An operation on one part.
+    /// A unary operation.
     #[must_use]
     pub fn unary(span: Range<usize>, operation: Unary, inner: Self) -> Self {
         Self::new(span, Kind::Unary(operation, Box::new(inner)))
     }
 
-    /// An operator between its operands.
+    /// A binary operation.
     #[must_use]
     pub fn infix(operation: Binary, left: Self, right: Self) -> Self {
         let span = left.outer.start..right.outer.end;
         Self::binary(span, operation, left, right)
     }
 
-    /// A function of its arguments; `None` if it takes another number of them.
+    /// A function call; `None` if the number of arguments is wrong.
     #[must_use]
     pub fn call(span: Range<usize>, function: Function, arguments: Vec<Self>) -> Option<Self> {
         Some(match function {
@@ -74,7 +74,7 @@ impl Node {
         })
     }
 
-    /// Whether any of its numbers, signals and parameters is such a one.
+    /// Whether any number, signal or parameter satisfies a predicate.
     pub fn has(&self, such: &dyn Fn(&Kind) -> bool) -> bool {
         match &self.kind {
             Kind::Unary(_, inner) => inner.has(such),

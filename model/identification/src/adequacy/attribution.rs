@@ -1,4 +1,4 @@
-//! What the part of the error that stays goes with.
+//! Signals on which the remaining error depends.
 
 use hitch_campaign::Bench;
 use hitch_plant::Channel;
@@ -6,19 +6,19 @@ use hitch_plant::Channel;
 use crate::data::experiment::Experiment;
 use crate::estimation::fit::Fit;
 
-/// Number of bins of a signal.
+/// Number of bins per signal.
 const BINS: usize = 12;
 
-/// What is left, and the signals that it goes with.
+/// The remaining error, and the signals it depends on.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Attribution {
-    /// Part of the squared error beyond the noise that stays, 0 to 1.
+    /// Remaining share of the squared error in excess of noise, 0 to 1.
     pub share: f64,
-    /// Names of signals, the one that the rest depends on most first.
+    /// Names of signals, by decreasing correlation ratio.
     pub depends_on: Vec<String>,
 }
 
-/// Names of the signals that the rest is held against.
+/// Names of the signals that are examined.
 const SIGNALS: [&str; 8] = [
     "rocker_angle_deg",
     "cylinder_pressure_bar",
@@ -30,7 +30,7 @@ const SIGNALS: [&str; 8] = [
     "time_s",
 ];
 
-/// Ranks signals by how much of the scatter of the squared residuals their bins explain.
+/// Ranks signals by the share of the variance of the squared residuals that their bins explain.
 #[must_use]
 pub fn attribute(experiment: &Experiment, before: &Fit, after: &Fit) -> Attribution {
     let excess = |fit: &Fit| (fit.error().powi(2) - 1.0).max(0.0);
@@ -59,7 +59,7 @@ pub fn attribute(experiment: &Experiment, before: &Fit, after: &Fit) -> Attribut
     }
 }
 
-/// Sum of squared residuals over the channels at each sample, capped so that single edges do not decide.
+/// Sum of squared residuals over the channels at each sample, capped to limit the influence of single edges.
 fn squares_by_sample(experiment: &Experiment, fit: &Fit) -> Vec<f64> {
     const CAP: f64 = 100.0;
     let mut squares = Vec::new();
@@ -74,7 +74,7 @@ fn squares_by_sample(experiment: &Experiment, fit: &Fit) -> Vec<f64> {
     squares
 }
 
-/// A signal, by its name, at every sample of every run; `None` for another name.
+/// A signal, by its name, at every sample of every run; `None` for an unknown name.
 pub(crate) fn signal_values(experiment: &Experiment, name: &str) -> Option<Vec<f64>> {
     let signal = SIGNALS.iter().position(|&signal| signal == name)?;
     let mut values = Vec::new();
@@ -103,7 +103,7 @@ pub(crate) fn signal_values(experiment: &Experiment, name: &str) -> Option<Vec<f
     Some(values)
 }
 
-/// Part of the variance of `y` that lies between the bins of `x` (Pearson's correlation ratio, squared).
+/// Share of the variance of `y` between the bins of `x` (square of Pearson's correlation ratio).
 fn correlation_ratio(x: &[f64], y: &[f64]) -> f64 {
     let known = || x.iter().zip(y).filter(|(x, _)| x.is_finite());
     let (low, high) = known().fold(

@@ -1,7 +1,7 @@
-//! Whether what a model leaves is noise, judged by its worst cell.
+//! Lack-of-fit test: whether the residuals are noise, judged by the worst cell.
 //!
-//! A cell is a channel in a regime at a load. An error that is small on the whole can be large in one corner; a
-//! correct fit leaves every cell's mean square near one, a wrong or incomplete one does not.
+//! A cell is a channel in a regime at a load. An error that is small on average can be large in one cell. A correct fit
+//! leaves every cell's mean square near one; a wrong or incomplete one does not.
 
 use std::collections::BTreeMap;
 
@@ -12,28 +12,29 @@ use crate::data::experiment::Experiment;
 use crate::data::regime::Regime;
 use crate::estimation::fit::Fit;
 
-/// Fewest samples that make a cell.
+/// Fewest samples of a cell.
 const FEWEST: usize = 30;
 
-/// A mean square above this is not noise, however small the cell's scatter.
+/// A mean square above this is not noise, however small its standard error.
 const TOLERATED: f64 = 1.35;
 
-/// A ringing pressure may be off by this much more: single swings after a switch are as good as the stop, the seal and
-/// the hose that they ring against are known.
+/// The same for a ringing pressure: single oscillations after a switch are only as accurate as the constants of the
+/// stop, the seal and the hose.
 const TOLERATED_RINGING: f64 = 4.0;
 
-/// An effect of the right form changes what a model shows to within this share of the change: the tables, areas and loads
-/// that it works with are good to half a percent, and when a hitch comes down on the ground to within a sample.
+/// Relative accuracy with which an effect of the right form reproduces a change of the channels: tables, areas and
+/// loads are accurate to half a percent, and the instant of ground contact to one sample.
 const EXACT: f64 = 0.03;
 
-/// The valves' tables are good to this share of a flow, and so is no model that is made of them any better: a tenth of a
-/// litre in sixty, which a bench's hundred samples would show.
+/// Relative accuracy of the valves' flow tables, and thus of any model based on them: 0.1 in 60 l/min, which a hundred
+/// samples of a flow bench would resolve.
 const TABLES: f64 = 0.002;
 
-/// Standard deviations that the largest of some hundred cells may lie above one.
+/// Standard errors by which the largest of some hundred mean squares may exceed one.
 const DEVIATIONS: f64 = 6.0;
 
-/// By how much slow noise spreads a mean square: a fifth of the variance with a correlation time of 0.4 s gives 1.8.
+/// Factor by which slow noise increases the variance of a mean square: a fifth of the noise variance with a correlation
+/// time of 0.4 s gives 1.8.
 pub(crate) const SLOW_NOISE: f64 = 2.0;
 
 /// One cell of the residuals.
@@ -41,7 +42,7 @@ pub(crate) const SLOW_NOISE: f64 = 2.0;
 pub struct Cell {
     /// Channel.
     pub channel: Channel,
-    /// What the plant was doing.
+    /// Regime of the plant.
     pub regime: Regime,
     /// Hitch or flow bench, with its load or port pressure.
     pub bench: Bench,
@@ -51,20 +52,20 @@ pub struct Cell {
     pub mean: f64,
     /// Mean square of the whitened residuals.
     pub mean_square: f64,
-    /// Mean square that is borne with however small the cell's scatter is.
+    /// Tolerated mean square, independent of its standard error.
     pub tolerated: f64,
-    /// Mean square that the tables' own error may add to noise.
+    /// Mean square that the error of the flow tables may add to that of noise.
     pub of_tables: f64,
 }
 
 impl Cell {
-    /// Mean square that noise alone would hardly exceed.
+    /// Largest mean square that is compatible with noise.
     #[must_use]
     pub fn limit(&self) -> f64 {
         limit(self.samples, self.tolerated) + self.of_tables
     }
 
-    /// How far the cell is beyond what noise explains; above one it is not noise.
+    /// Excess of the mean square over one relative to the limit's; a value above one is lack of fit.
     #[must_use]
     pub fn excess(&self) -> f64 {
         (self.mean_square - 1.0) / (self.limit() - 1.0)
@@ -72,13 +73,13 @@ impl Cell {
 }
 
 /// Channel, regime, and kind and level of the bench.
-type Key = (usize, Regime, u8, i64);
+type CellKey = (usize, Regime, u8, i64);
 
-/// Bench, number of samples, and the sums of their residuals, of the squares, and of the squares of the readings over the
+/// Bench, number of samples, and sums of the residuals, of their squares, and of the squared readings in units of the
 /// noise.
 type Sums = (Bench, usize, f64, f64, f64);
 
-/// Mean square of a channel, by its index, that is borne with.
+/// Tolerated mean square of a channel, by its index.
 fn tolerated(experiment: &Experiment, channel: usize) -> f64 {
     let pressure = matches!(
         Channel::ALL[channel],
@@ -91,14 +92,14 @@ fn tolerated(experiment: &Experiment, channel: usize) -> f64 {
     }
 }
 
-/// Mean square of a number of samples that noise alone would hardly exceed.
+/// Largest mean square of this many samples that is compatible with noise.
 fn limit(samples: usize, tolerated: f64) -> f64 {
     let scatter = (2.0 * SLOW_NOISE / samples as f64).sqrt();
     (1.0 + DEVIATIONS * scatter).max(tolerated)
 }
 
-/// The cells of a fit to which effects were added, where the model without them had others: what the effects explain
-/// there they need not explain to the last bit.
+/// The cells of a fit after effects were added. Where the fit without them had larger residuals (`before`), the
+/// tolerance grows accordingly, as an effect explains a change only to a relative accuracy.
 #[must_use]
 pub fn cells_since(before: &[Cell], experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
     let mut cells = cells(experiment, fit);
@@ -116,15 +117,15 @@ pub fn cells_since(before: &[Cell], experiment: &Experiment, fit: &Fit) -> Vec<C
     cells
 }
 
-/// The worst first.
+/// Sorts by decreasing excess.
 fn sort(cells: &mut [Cell]) {
     cells.sort_by(|a, b| b.excess().total_cmp(&a.excess()));
 }
 
-/// All cells of a fit that have enough samples, worst first.
+/// All cells of a fit that have enough samples, by decreasing excess.
 #[must_use]
 pub fn cells(experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
-    let mut sums: BTreeMap<Key, Sums> = BTreeMap::new();
+    let mut sums: BTreeMap<CellKey, Sums> = BTreeMap::new();
     let whitened = fit.residuals.iter().zip(&fit.weights.runs);
     for (run, (residual, weights)) in experiment.runs.iter().zip(whitened) {
         let (kind, level) = match run.bench {
@@ -171,7 +172,8 @@ pub fn cells(experiment: &Experiment, fit: &Fit) -> Vec<Cell> {
     cells
 }
 
-/// Whether every cell is noise, and every channel as a whole: many cells too small to judge can still add up.
+/// Whether every cell, and every channel as a whole, is compatible with noise: many cells with too few samples can
+/// still add up.
 #[must_use]
 pub fn adequate(experiment: &Experiment, cells: &[Cell], fit: &Fit) -> bool {
     let cells_are_noise = cells.first().is_none_or(|worst| worst.excess() <= 1.0);

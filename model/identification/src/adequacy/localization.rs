@@ -1,4 +1,4 @@
-//! Where along a signal, and in which motion, the residuals of a fit are large.
+//! Location of large residuals: along a signal, and by motion.
 
 use hitch_plant::Channel;
 
@@ -6,19 +6,19 @@ use crate::adequacy::attribution::signal_values;
 use crate::data::experiment::{Experiment, ReadyRun};
 use crate::estimation::fit::Fit;
 
-/// Number of bins of a signal.
+/// Number of bins per signal.
 const BINS: usize = 16;
 
-/// Fewest samples of a bin that is looked at.
+/// Fewest samples of a bin.
 const FEWEST: usize = 20;
 
-/// A bin belongs to the stretch around the worst one while it has this share of its excess.
+/// Share of the worst bin's excess that a neighbouring bin needs to belong to the same stretch.
 const STRETCH: f64 = 0.3;
 
-/// Part of the excess that a motion has to have to be named.
+/// Share of the excess that a motion needs to be named.
 const MOSTLY: f64 = 0.6;
 
-/// Part of the signal's range that counts as near its end.
+/// Share of the signal's range that counts as near its end.
 const NEAR: f64 = 0.35;
 
 /// Current from which a valve counts as driven, A.
@@ -46,16 +46,16 @@ pub struct ErrorProfile {
     pub channel: Channel,
     /// Bins with enough samples, in the order of the signal.
     pub bins: Vec<Bin>,
-    /// Where the residuals are large.
+    /// Range of the signal in which the residuals are large, in its unit.
     pub stretch: (f64, f64),
-    /// The motion to which most of them there belong.
+    /// The motion to which most of the squared residuals in the stretch belong.
     pub motion: Option<&'static str>,
-    /// The end of the travel that the stretch lies at.
+    /// The end of the travel near which the stretch lies.
     pub end: Option<&'static str>,
 }
 
 impl ErrorProfile {
-    /// Profile along a signal, by the attribution's name; `None` if the campaign does not show it.
+    /// Profile along a signal, by the attribution's name; `None` if the campaign does not contain it.
     #[must_use]
     pub fn new(experiment: &Experiment, fit: &Fit, signal: &str) -> Option<Self> {
         let compared = Channel::ALL
@@ -175,7 +175,7 @@ fn stretch(bins: &[Bin]) -> Option<(f64, f64)> {
     Some((bins[worst - before].centre - half, bins[last].centre + half))
 }
 
-/// The motion to which most of the squared residuals between two values belong.
+/// The motion to which most of the squared residuals between two values of the signal belong.
 fn motion(samples: &[Sample], low: f64, high: f64) -> Option<&'static str> {
     let inside = || samples.iter().filter(|s| (low..=high).contains(&s.0));
     let energy = |wanted: Option<&str>| -> f64 {

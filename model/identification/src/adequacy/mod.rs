@@ -1,4 +1,4 @@
-//! What a fit leaves: lack of fit, where it is and what it depends on.
+//! Adequacy of a fit: lack of fit, its location and the signals it depends on.
 
 pub mod attribution;
 pub mod lack_of_fit;

@@ -1,4 +1,4 @@
-//! Whether a model is so wrong everywhere that no missing effect explains it: another machine, or a base never fitted.
+//! Test for an unsuitable base model: another machine, or a base that was never fitted.
 
 use hitch_campaign::Bench;
 use hitch_plant::Channel;
@@ -8,16 +8,17 @@ use crate::data::experiment::Experiment;
 use crate::data::regime::Regime;
 use crate::estimation::fit::Fit;
 
-/// Error, in sigma, over all channels and in each single one, above which the base is suspected.
+/// Root mean square error, in sigma, over all channels and in each channel, above which the base is suspected.
 const FAR: f64 = 10.0;
 const FAR_IN_A_CHANNEL: f64 = 3.0;
 
-/// Share of the judged cells that are beyond noise before effects are added, and with them.
+/// Share of the judged cells with lack of fit, before effects are added and with them, above which the base is
+/// unsuitable.
 const MOST: f64 = 0.9;
 const STILL_MOST: f64 = 0.5;
 
-/// Whether the error of `before` is large in every measured channel and in nearly every cell, and the effects of `after`
-/// leave most cells wrong.
+/// Whether the error of `before` is large in every measured channel and in nearly every cell, and the effects of
+/// `after` leave most cells with lack of fit.
 #[must_use]
 pub fn is_unsuitable(experiment: &Experiment, before: &Fit, after: &Fit) -> bool {
     let mut measured = (0..4).filter(|&channel| before.weights.counts[channel] > 0);
@@ -28,7 +29,7 @@ pub fn is_unsuitable(experiment: &Experiment, before: &Fit, after: &Fit) -> bool
         && wrong_share(&cells(experiment, after)) > STILL_MOST
 }
 
-/// Share of the judged cells that are beyond noise.
+/// Share of the judged cells with lack of fit.
 #[must_use]
 pub fn wrong_share(cells: &[Cell]) -> f64 {
     let judged: Vec<&Cell> = cells.iter().filter(|cell| is_judged(cell)).collect();
@@ -36,7 +37,8 @@ pub fn wrong_share(cells: &[Cell]) -> f64 {
     wrong as f64 / judged.len().max(1) as f64
 }
 
-/// Whether a cell tells machines apart: any model holds still, and a flow bench sets the pressure at its port.
+/// Whether a cell depends on the machine: any model fits a hitch at rest, and a flow bench prescribes the pressure at
+/// its port.
 fn is_judged(cell: &Cell) -> bool {
     let is_set =
         matches!(cell.bench, Bench::Flow { .. }) && cell.channel == Channel::CylinderPressure;

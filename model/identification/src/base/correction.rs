@@ -6,7 +6,7 @@ use nalgebra::DVector;
 
 use crate::base::parameter::Parameter;
 
-/// The constants that corrections make of the declared ones. Flow curves stay monotone.
+/// The declared constants with corrections applied. Flow curves stay monotone.
 pub fn corrected(
     declared: &Constants,
     parameters: &[Parameter],
@@ -44,7 +44,7 @@ fn curve(
     if shift_a == 0.0 && flows == declared.flows_m3_s() {
         return declared.clone();
     }
-    // A point at no current stays there.
+    // A point at zero current is not shifted.
     let moved = usize::from(currents[0] == 0.0);
     let shift_a = f64::max(shift_a, -0.9 * currents[moved]);
     currents[moved..]

@@ -5,15 +5,15 @@ use nalgebra::{DMatrix, DVector};
 use crate::base::normal::{Normal, Point, Problem};
 use crate::residuals::whitening::Weights;
 
-/// Dampings tried for one step, the first of a descent, and how much larger each is than the one before.
+/// Number of damping values tried for one step, the first of a descent, and the factor from one to the next.
 const TRIES: usize = 5;
 const FIRST_DAMPING: f64 = 1e-3;
-const DAMPED_MORE: f64 = 20.0;
+const DAMPING_FACTOR: f64 = 20.0;
 
-/// Relative fall of the cost that is still worth a step.
+/// Smallest relative reduction of the cost that justifies another step.
 const WORTHWHILE: f64 = 1e-6;
 
-/// Descends from `start` under given weights with at most so many Jacobians.
+/// Descends from `start` under given weights with at most `jacobians` Jacobians.
 pub fn descend(problem: &Problem<'_>, weights: &Weights, start: &Point, jacobians: usize) -> Point {
     let mut point = problem.point(weights, start.theta.clone(), start.estimate.clone());
     let mut damping = FIRST_DAMPING;
@@ -23,7 +23,7 @@ pub fn descend(problem: &Problem<'_>, weights: &Weights, start: &Point, jacobian
         };
         let normal = Normal::of(&columns);
         let before = point.cost;
-        let tries = std::iter::successors(Some(damping), |d| Some(DAMPED_MORE * d)).take(TRIES);
+        let tries = std::iter::successors(Some(damping), |d| Some(DAMPING_FACTOR * d)).take(TRIES);
         for tried in tries {
             let Some(moved) = step(problem, weights, &normal, &point, tried) else {
                 continue;
@@ -41,7 +41,7 @@ pub fn descend(problem: &Problem<'_>, weights: &Weights, start: &Point, jacobian
     point
 }
 
-/// Where a damped step leads. Unknowns that would leave their range are held while the others step.
+/// The end of a damped step. Unknowns that would leave their range are fixed, and the others are solved without them.
 fn step(
     problem: &Problem<'_>,
     weights: &Weights,
@@ -74,7 +74,7 @@ fn step(
     Some(problem.point(weights, theta, estimate))
 }
 
-/// Takes an unknown out of normal equations: its step is nothing.
+/// Removes an unknown from the normal equations: its step is zero.
 fn hold(matrix: &mut DMatrix<f64>, right: &mut DVector<f64>, unknown: usize) {
     matrix.row_mut(unknown).fill(0.0);
     matrix.column_mut(unknown).fill(0.0);

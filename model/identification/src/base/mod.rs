@@ -1,8 +1,9 @@
-//! Fit of the base model: the constants of its components, as the paper fits them, before any effect is added.
+//! Fit of the base model: the constants of its components, before any effect is added.
 //!
-//! Every constant has a prior: the declared value with the tolerance that data sheets leave ([`parameter`]). The flow
-//! curves of both valves are corrected point by point, smoothed by a Gaussian process (`prior`). Clocks and loads are
-//! fitted as for effects. What a campaign cannot determine stays as it is declared and is named ([`outcome`]).
+//! Every constant has a prior: the declared value with the tolerance of data sheets ([`parameter`]). The flow curves of
+//! both valves are corrected point by point, with a Gaussian process as a smoothness prior (`prior`). Clocks and loads
+//! are fitted as for effects. Constants that a campaign cannot determine keep their declared values and are listed
+//! ([`outcome`]).
 mod correction;
 mod descent;
 mod normal;

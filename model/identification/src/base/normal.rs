@@ -1,4 +1,4 @@
-//! Residuals of a campaign under corrected constants, their sensitivities, and the normal equations with each run's load
+//! Residuals of a campaign with corrected constants, their sensitivities, and the normal equations with each run's load
 //! error eliminated.
 
 use hitch_plant::Model;
@@ -13,33 +13,33 @@ use crate::estimate::Estimate;
 use crate::estimation::jacobian::{dot, huber, huber_residuals, square_sum};
 use crate::residuals::whitening::Weights;
 
-/// Step of a difference quotient to either side, in sigmas of the prior. Quotients are central: some directions are hardly
-/// determined (cracking pressure against flow), and the curvature that a one-sided quotient takes for a slope would
+/// Step of a difference quotient to either side, in sigmas of the prior. Quotients are central: some directions are
+/// hardly determined (cracking pressure against flow), and the curvature error of a one-sided quotient would appear to
 /// determine them.
 const STEP: f64 = 0.02;
 
-/// A campaign and a declared model whose constants are looked for.
+/// The least-squares problem: a campaign and a declared model whose constants are unknown.
 pub struct Problem<'a> {
     /// The campaign.
     pub experiment: &'a Experiment,
-    /// The declared model with the effects that it has.
+    /// The declared model with its effects.
     pub declared: &'a Model,
     /// The unknowns.
     pub parameters: &'a [Parameter],
-    /// What is known of them.
+    /// Prior of the unknowns.
     pub prior: &'a Prior,
-    /// Unknowns that stay as they are.
+    /// Whether each unknown is fixed.
     pub held: &'a [bool],
 }
 
-/// Values of the unknowns with what they leave.
+/// Values of the unknowns with their cost.
 #[derive(Debug, Clone)]
 pub struct Point {
     /// Corrections.
     pub theta: DVector<f64>,
     /// Loads and clocks.
     pub estimate: Estimate,
-    /// Cost with all priors; infinite if the constants make no model.
+    /// Cost with all priors; infinite if the constants are not valid.
     pub cost: f64,
 }
 
@@ -47,14 +47,14 @@ pub struct Point {
 struct Sides {
     down: Model,
     up: Model,
-    /// How far the unknown is apart between the two.
+    /// Difference of the unknown between the two.
     apart: f64,
 }
 
 /// Sensitivities of one run.
 pub struct RunColumns {
     residual: Vec<f64>,
-    /// A column for each unknown.
+    /// One column per unknown.
     pub columns: Vec<Vec<f64>>,
     load: Option<Vec<f64>>,
     load_value: f64,
@@ -67,7 +67,7 @@ struct RunNormal {
     load: Option<LoadRow>,
 }
 
-/// What ties a run's load error to the unknowns.
+/// Coupling of a run's load error to the unknowns.
 struct LoadRow {
     coupling: DVector<f64>,
     square: f64,
@@ -76,21 +76,21 @@ struct LoadRow {
 
 /// Normal equations of all runs, without the prior.
 pub struct Normal {
-    /// Information of the campaign.
+    /// Information matrix of the campaign.
     pub matrix: DMatrix<f64>,
-    /// Pull of the residuals.
+    /// Gradient of the residuals.
     pub right: DVector<f64>,
     loads: Vec<Option<LoadRow>>,
 }
 
 impl Problem<'_> {
-    /// The model that corrections make; `None` if its dimensions make no linkage.
+    /// The corrected model; `None` if its dimensions form no valid linkage.
     pub fn model(&self, theta: &DVector<f64>) -> Option<Model> {
         let constants = corrected(self.declared.constants(), self.parameters, theta);
         self.declared.with_constants(constants).ok()
     }
 
-    /// What corrections, loads and clocks leave.
+    /// The cost of corrections, loads and clocks.
     pub fn point(&self, weights: &Weights, theta: DVector<f64>, estimate: Estimate) -> Point {
         let cost = self.model(&theta).map_or(f64::INFINITY, |model| {
             let residuals = huber_residuals(self.experiment, &model, weights, &estimate);
@@ -103,8 +103,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Models a step up and down in each unknown, each with its step; `None` where an unknown is held or there is no such
-    /// model.
+    /// Models a step down and up in each unknown; `None` if it is fixed or one of the models is not valid.
     fn moved(&self, theta: &DVector<f64>) -> Vec<Option<Sides>> {
         (0..theta.len())
             .into_par_iter()
@@ -127,7 +126,7 @@ impl Problem<'_> {
             .collect()
     }
 
-    /// Sensitivities of all runs at a point; `None` if it is no model.
+    /// Sensitivities of all runs at a point; `None` if its model is not valid.
     pub fn columns(&self, weights: &Weights, point: &Point) -> Option<Vec<RunColumns>> {
         let model = self.model(&point.theta)?;
         let moved = self.moved(&point.theta);
@@ -154,7 +153,7 @@ impl Problem<'_> {
             huber(vec![weights.runs[index].whiten(run, &trace)]).swap_remove(0)
         };
         let here = residual(model, estimate.nuisances[index]);
-        // The residual falls where the simulation rises.
+        // The residual decreases where the simulation increases.
         let column = |down: Vec<f64>, up: Vec<f64>, apart: f64| -> Vec<f64> {
             let both = down.iter().zip(up);
             both.map(|(down, up)| (down - up) / apart).collect()
@@ -233,7 +232,7 @@ impl Normal {
         normal
     }
 
-    /// Load errors after a step of the unknowns, set in an estimate.
+    /// An estimate with the load errors that follow from a step of the unknowns.
     pub fn with_loads(&self, estimate: &Estimate, step: &DVector<f64>) -> Estimate {
         let mut moved = estimate.clone();
         for (run, load) in self.loads.iter().enumerate() {

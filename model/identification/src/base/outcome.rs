@@ -1,4 +1,4 @@
-//! The fit of the base model from start to end, and what it determined.
+//! The fit of the base model, and which constants it determined.
 
 use hitch_model_file::Valve;
 use hitch_plant::Model;
@@ -15,27 +15,28 @@ use crate::explanation::explain::fit_base;
 use crate::residuals::whitening::Weights;
 use crate::selection::evidence::variance_inflation;
 
-/// A campaign determines what it knows to this share of the prior sigma.
+/// Ratio of posterior to prior sigma below which a constant counts as determined.
 const DETERMINED: f64 = 0.7;
 
-/// So many times wider the data sheets of all other constants are taken when it is asked whether the campaign determines a
-/// constant: what only those determine (a length that trades with the bore) is left as declared.
+/// Factor on the tolerances of all other constants in the test whether the campaign determines a constant: one that is
+/// determined only by the others' tolerances (a length that trades off against the bore) keeps its declared value.
 const WIDER: f64 = 3.0;
 
-/// Rounds of the fit: the first looks at flow and angle, as ringing pressures make valleys; each gets new weights.
+/// Rounds of the fit, each with new weights, and Jacobians per round. The first round relies on flow and angle, as
+/// ringing pressures create local minima.
 const ROUNDS: usize = 3;
 const JACOBIANS: usize = 5;
 
-/// No constant is better than this share: tables, areas and integration are not.
+/// Relative standard deviation of a constant that no campaign can improve: errors of tables, areas and integration.
 const MODEL_ERROR: f64 = 0.002;
 
 /// Half width of a 95 % interval, in sigmas.
 const INTERVAL: f64 = 1.96;
 
-/// A constant with what a campaign says of it.
+/// A constant with its estimate.
 #[derive(Debug, Clone)]
 pub struct FittedConstant {
-    /// `table.key` of a model file; of a threshold, table and `threshold_a`.
+    /// `table.key` of a model file; for a threshold, the table and `threshold_a`.
     pub name: String,
     /// Unit.
     pub unit: &'static str,
@@ -43,18 +44,18 @@ pub struct FittedConstant {
     pub declared: f64,
     /// Fitted value; the declared one if it is not determined.
     pub fitted: f64,
-    /// 95 % interval, data sheet and campaign together.
+    /// 95 % interval, from data sheet and campaign.
     pub interval: (f64, f64),
     /// Whether the campaign determines it.
     pub determined: bool,
-    /// Whether it went as far from the declared value as is believed.
+    /// Whether it is at the bound of its accepted range.
     pub at_an_end: bool,
 }
 
 /// A point of a flow curve.
 #[derive(Debug, Clone)]
 pub struct CurvePoint {
-    /// Which valve.
+    /// The valve.
     pub valve: Valve,
     /// Fitted current, A.
     pub current_a: f64,
@@ -64,11 +65,11 @@ pub struct CurvePoint {
     pub fitted_lpm: f64,
     /// 95 % interval of the flow, l/min.
     pub interval_lpm: (f64, f64),
-    /// Whether the campaign determines it; if not it follows its neighbours.
+    /// Whether the campaign determines it; if not, it follows its neighbours.
     pub determined: bool,
 }
 
-/// The base model as a campaign has it.
+/// The base model fitted to a campaign.
 #[derive(Debug, Clone)]
 pub struct BaseFit {
     /// The fitted model, with the effects of the declared one.
@@ -83,7 +84,7 @@ pub struct BaseFit {
     pub curves: Vec<CurvePoint>,
 }
 
-/// Fits the constants of a model to a campaign; `say` is told of what is being done.
+/// Fits the constants of a model to a campaign; `say` receives the current task.
 #[must_use]
 pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&str)) -> BaseFit {
     let parameters = parameters(declared.constants());
@@ -118,7 +119,7 @@ pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&s
     let model = problem.model(&point.theta);
     let model = model.unwrap_or_else(|| declared.clone());
     let after = refine(experiment, &model, point.estimate.clone());
-    let told = Report {
+    let report = Report {
         declared,
         model: &model,
         parameters: &parameters,
@@ -128,8 +129,8 @@ pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&s
         prior: &prior,
     };
     BaseFit {
-        constants: told.constants(),
-        curves: told.curves(),
+        constants: report.constants(),
+        curves: report.curves(),
         model,
         before,
         after,
@@ -153,7 +154,7 @@ fn improved(problem: &Problem<'_>, point: Point, coarse: bool) -> Point {
     point
 }
 
-/// What stays as declared: constants that are not determined, and curves of which no point is.
+/// Fixed unknowns: constants that are not determined, and curves without any determined point.
 fn held(parameters: &[Parameter], determined: &[bool]) -> Vec<bool> {
     let any_point = |valve: Valve| {
         let mut all = parameters.iter().zip(determined);
@@ -169,8 +170,8 @@ fn held(parameters: &[Parameter], determined: &[bool]) -> Vec<bool> {
     .collect()
 }
 
-/// One sigma of each unknown, campaign and prior together, and whether the campaign determines it. What the fit leaves
-/// beyond noise, and noise that is slow, make the campaign say less.
+/// Posterior sigma of each unknown, from campaign and prior, and whether the campaign determines it. Residuals beyond
+/// noise and slow noise reduce the campaign's information.
 fn posterior(problem: &Problem<'_>, point: &Point) -> (Vec<f64>, Vec<bool>) {
     let prior = problem.prior;
     let found = problem.model(&point.theta).and_then(|model| {
@@ -213,7 +214,7 @@ fn sigma_of(information: DMatrix<f64>, unknown: usize, largest: f64) -> f64 {
     variance.map_or(largest, |variance| variance.sqrt().min(largest))
 }
 
-/// What is told of a fit.
+/// The result of a fit, for reporting.
 struct Report<'a> {
     declared: &'a Model,
     model: &'a Model,

@@ -1,10 +1,10 @@
-//! What a fit of the base model may change, and how far data sheets can be off.
+//! Unknowns of a fit of the base model, and the tolerances of data sheets.
 
 use hitch_model_file::Valve;
 use hitch_plant::units::{M3_S_PER_LPM, PA_PER_BAR};
 use hitch_plant::{Constants, Dynamics};
 
-/// Tolerance of a threshold current, A, one sigma: coil, spring and overlap differ from one valve to the next.
+/// Tolerance of a threshold current, A, one sigma: coil, spring and overlap vary between valves.
 pub const THRESHOLD_SIGMA_A: f64 = 0.05;
 
 /// A constant with its tolerance.
@@ -12,24 +12,24 @@ pub const THRESHOLD_SIGMA_A: f64 = 0.05;
 pub struct Scalar {
     /// Its name in a model file, `table.key`.
     pub name: &'static str,
-    /// Unit of the key, for people.
+    /// Display unit of the key.
     pub unit: &'static str,
     /// One unit of the key in SI.
     pub si: f64,
-    /// One sigma of its logarithm: how far the data sheet or the drawing may be off.
+    /// Standard deviation of its logarithm: tolerance of the data sheet or the drawing.
     pub tolerance: f64,
-    /// Whether only the dynamic plant has it.
+    /// Whether only the dynamic model uses it.
     pub dynamic: bool,
-    /// Whether it shows apart from all others.
+    /// Whether it is identifiable separately from all others.
     pub separable: bool,
-    /// Where the model keeps it, in SI.
+    /// Accessor of the constant in the model, in SI.
     pub place: fn(&mut Constants) -> &mut f64,
 }
 
-/// The constants that a fit estimates. Tolerances: pump with efficiency 5 %, springs 10 % to 20 %, bore 2 %, weight of the
-/// links 10 %, lengths 1 %; lag, stiffness and friction are rarely stated and may be off by a third and more.
+/// The constants that a fit estimates. Tolerances: pump with efficiency 5 %, springs 10 % to 20 %, bore 2 %, weight of
+/// the links 10 %, lengths 1 %; lag, stiffness and friction are rarely stated and may be off by a third and more.
 ///
-/// The cracking pressure shows only in the flow of the lift valve, whose curve would take up any other value.
+/// The cracking pressure only affects the flow of the lift valve, whose flow curve can compensate any value.
 #[rustfmt::skip]
 pub static SCALARS: [Scalar; 11] = [
     Scalar { name: "pump.theoretical_flow_lpm", unit: "l/min", si: M3_S_PER_LPM, tolerance: 0.05, dynamic: false, separable: true, place: |c| &mut c.pump.theoretical_flow_m3_s },
@@ -57,7 +57,7 @@ pub enum Parameter {
 }
 
 impl Parameter {
-    /// Whether it shows apart from all others.
+    /// Whether it is identifiable separately from all others.
     #[must_use]
     pub fn is_separable(&self) -> bool {
         !matches!(self, Self::Scalar(scalar) if !scalar.separable)
@@ -70,7 +70,7 @@ impl Parameter {
     }
 }
 
-/// All unknowns of a model: constants that are zero have no logarithm and stay so.
+/// All unknowns of a model. Constants that are zero have no logarithm and stay zero.
 #[must_use]
 pub fn parameters(declared: &Constants) -> Vec<Parameter> {
     let mut copy = declared.clone();

@@ -1,22 +1,23 @@
-//! What is known of the unknowns before a campaign: data-sheet tolerances, and flow curves that are wrong smoothly.
+//! Prior of the unknowns: data-sheet tolerances, and smooth errors of the flow curves.
 
 use hitch_plant::Constants;
 use nalgebra::{DMatrix, DVector};
 
 use crate::base::parameter::{Parameter, THRESHOLD_SIGMA_A};
 
-/// Sigma of the error that all points of a flow curve share, and of the one that changes over the current: 20 % together.
+/// Standard deviation of the error that all points of a flow curve share, and of the one that varies over the current:
+/// 20 % together.
 const SHARED: f64 = 0.14;
 const CHANGING: f64 = 0.14;
 
-/// Current over which the error of a curve changes, as a share of the range from threshold to current limit.
+/// Correlation length of a curve's error over the current, as a share of the range from threshold to current limit.
 const REACH: f64 = 0.3;
 
-/// Error of a single point: reading a printed curve.
+/// Standard deviation of a single point: reading error of a printed curve.
 const SINGLE: f64 = 0.02;
 
-/// Unknowns are never believed to be further off than this many sigmas.
-const FARTHEST: f64 = 4.0;
+/// Bound on an unknown, in sigmas.
+const BOUND: f64 = 4.0;
 
 /// Gaussian prior about the declared values.
 #[derive(Debug, Clone)]
@@ -41,7 +42,7 @@ impl Prior {
         Self { sigma, precision }
     }
 
-    /// The precision with all unknowns but one, which goes with no other, known so many times worse.
+    /// The precision with the tolerances of all unknowns but one, which is uncorrelated, multiplied by `times`.
     pub fn widened(&self, times: f64, unknown: usize) -> DMatrix<f64> {
         let mut precision = &self.precision / (times * times);
         precision[(unknown, unknown)] = self.precision[(unknown, unknown)];
@@ -53,17 +54,17 @@ impl Prior {
         theta.dot(&(&self.precision * theta))
     }
 
-    /// The nearest values that are not too far off to be believed.
+    /// The nearest values within the bounds.
     pub fn bounded(&self, theta: &DVector<f64>) -> DVector<f64> {
         DVector::from_fn(theta.len(), |k, _| {
-            let farthest = FARTHEST * self.sigma[k];
+            let farthest = BOUND * self.sigma[k];
             theta[k].clamp(-farthest, farthest)
         })
     }
 
-    /// Whether an unknown is as far off as is believed.
+    /// Whether an unknown is at its bound.
     pub fn is_at_an_end(&self, theta: &DVector<f64>, unknown: usize) -> bool {
-        theta[unknown].abs() >= 0.999 * FARTHEST * self.sigma[unknown]
+        theta[unknown].abs() >= 0.999 * BOUND * self.sigma[unknown]
     }
 }
 

@@ -1,31 +1,30 @@
-//! What a log's clocks may be off by: each channel against the currents.
+//! Clock offsets of a log: each channel against the currents.
 
 use hitch_plant::Channel;
 use hitch_plant::simulation::Trace;
 
-/// Prior sigma of an offset, s: a channel may be a sample of 20 ms out of step (docs/campaigns.md).
+/// Prior standard deviation of a clock offset, s: a channel may be one sample of 20 ms out of step (docs/campaigns.md).
 pub const OFFSET_PRIOR_S: f64 = 0.008;
 
-/// Farthest offset, s: a little more than the sample that a channel may be out of step. What is later lags for another
-/// reason.
-pub const FARTHEST_S: f64 = 0.024;
+/// Largest clock offset, s: slightly more than one sample. Larger delays have another cause.
+pub const LARGEST_OFFSET_S: f64 = 0.024;
 
-/// Clock errors of a campaign.
+/// Clock offsets of a campaign.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Clocks {
-    /// How late each channel is stamped against the currents, s, by [`Channel::index`].
+    /// Offset of each channel against the currents, s, by [`Channel::index`]; positive if stamped late.
     pub offsets_s: [f64; 4],
 }
 
 impl Clocks {
-    /// Whether any channel is off by more than one sigma of the prior.
+    /// Whether any offset exceeds one standard deviation of the prior.
     #[must_use]
     pub fn are_off(&self) -> bool {
         let mut offsets_s = self.offsets_s.iter();
         offsets_s.any(|offset_s| offset_s.abs() > OFFSET_PRIOR_S)
     }
 
-    /// A simulated trace as channels with these offsets would have been logged at `time_s`.
+    /// A simulated trace as logged at `time_s` with these clock offsets.
     #[must_use]
     pub fn stamped(&self, time_s: &[f64], trace: &Trace) -> Trace {
         Trace {
@@ -47,12 +46,12 @@ impl Clocks {
     }
 }
 
-/// Steps of a log that differ by no more than this share are one.
+/// Relative difference of time steps up to which they count as equal.
 const EVEN: f64 = 1e-6;
 
-/// A record `delay_s` later, by cubic interpolation (Catmull & Rom): a straight line would flatten a pressure that
-/// rings with four samples a period. Held between its neighbours, so that the jump of a pump pressure does not spill
-/// over.
+/// A record delayed by `delay_s`, by cubic interpolation (Catmull & Rom): linear interpolation would attenuate a
+/// pressure that rings with four samples per period. The result is clamped to the two neighbouring samples, so that the
+/// jump of a pump pressure does not overshoot.
 fn later(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
     let last = values.len() - 1;
     let step_s = (time_s[last] - time_s[0]) / last as f64;
@@ -63,7 +62,7 @@ fn later(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
             .map(|sample| value_at(time_s, values, time_s[sample] - delay_s))
             .collect();
     }
-    // Nearly every log is even, and there each sample lies at the same share of the way between two others.
+    // Nearly all logs are equidistant: each sample then has the same interpolation weights.
     let (shift, share) = (steps.ceil(), steps.ceil() - steps);
     let weights = catmull_rom(share);
     let sample_of_window = 1 + shift as isize;
@@ -78,7 +77,7 @@ fn later(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
     moved
 }
 
-/// A record at one instant, held at its ends.
+/// Interpolated value of a record, constant beyond its ends.
 fn value_at(time_s: &[f64], values: &[f64], at_s: f64) -> f64 {
     let last = values.len() - 1;
     let at_s = at_s.clamp(time_s[0], time_s[last]);
@@ -89,17 +88,17 @@ fn value_at(time_s: &[f64], values: &[f64], at_s: f64) -> f64 {
     held(around.map(|k| values[k]), catmull_rom(share))
 }
 
-/// A weighted sum of four points, no further than to the two in the middle.
+/// A weighted sum of four points, clamped to the range of the two in the middle.
 fn held([a, b, c, d]: [f64; 4], [of_a, of_b, of_c, of_d]: [f64; 4]) -> f64 {
     (of_a * a + of_b * b + of_c * c + of_d * d)
         .max(b.min(c))
         .min(b.max(c))
 }
 
-/// Weights of four equidistant points in the value at a share of the way from the second to the third.
+/// Weights of four equidistant points for the value at a share of the way from the second to the third.
 fn catmull_rom(share: f64) -> [f64; 4] {
     let (s, s2, s3) = (share, share * share, share * share * share);
-    // Of the slopes at the two points in the middle, half the difference of their neighbours each.
+    // Slopes at the two middle points: half the difference of their neighbours each.
     let (of_first, of_second) = (0.5 * (s3 - 2.0 * s2 + s), 0.5 * (s3 - s2));
     let (leaving, arriving) = (2.0 * s3 - 3.0 * s2 + 1.0, 3.0 * s2 - 2.0 * s3);
     [
@@ -114,9 +113,9 @@ fn catmull_rom(share: f64) -> [f64; 4] {
 mod tests {
     use super::{later, value_at};
 
-    /// An even log takes a short cut; it has to lead where the long way leads, at the edges too.
+    /// The fast path for equidistant logs agrees with the general one, also at the ends.
     #[test]
-    fn the_short_cut_of_even_logs_is_no_other_way() {
+    fn the_fast_path_equals_the_general_one() {
         let time_s: Vec<f64> = (0..40).map(|k| 3.0 + 0.02 * f64::from(k)).collect();
         let values: Vec<f64> = time_s.iter().map(|t| (9.0 * t).sin() + t * t).collect();
         for delay_s in [

@@ -1,8 +1,8 @@
-//! Runs on fewer samples: means over short stretches in which the currents run straight.
+//! Condensed runs: means over short stretches of samples with a constant slope of the currents.
 //!
-//! A search asks a thousand times how a simulation changes with an effect. Of a log at 50 Hz most samples say what their
-//! neighbours say, so those are simulated and compared as one, with the noise of their mean. After a jump of a current,
-//! where lags show, each sample stays. Fits and evidence take all samples.
+//! A search simulates thousands of changes. Most samples of a 50 Hz log are redundant, so a stretch is simulated and
+//! compared as one sample, with the noise of its mean. After a jump of a current, where lags show, every sample is
+//! kept. Fits and evidence use all samples.
 
 use std::ops::Range;
 
@@ -12,21 +12,21 @@ use hitch_plant::simulation::Trace;
 use crate::data::conditioning::Drive;
 use crate::data::experiment::ReadyRun;
 
-/// Longest stretch that becomes one sample, s.
+/// Longest stretch that is averaged, s.
 const LONGEST_S: f64 = 0.1;
 
-/// How long after a jump of a current every sample stays, s: lags of spools and sensors show there.
+/// Time after a jump of a current during which every sample is kept, s: lags of spools and sensors show there.
 const AFTER_A_JUMP_S: f64 = 0.12;
 
-/// A current whose slope changes from one sample to the next by more than so many sigmas of its noise jumps.
+/// Change of a current's slope between two samples that counts as a jump, in sigmas of its noise.
 const JUMP_SIGMAS: f64 = 3.0;
 
-/// Stretches of samples of a run, one a sample of the condensed run.
+/// Stretches of samples of a run, one per sample of the condensed run.
 #[derive(Debug, Clone)]
 pub(crate) struct Stretches(Vec<Range<usize>>);
 
 impl Stretches {
-    /// Those of a run whose currents have this noise, one sigma, A.
+    /// The stretches of a run whose currents have this noise, one sigma, A.
     pub fn of(run: &ReadyRun, noise: Currents) -> Self {
         let samples = run.len();
         let jumps = jumps(&run.drive, noise);
@@ -62,12 +62,12 @@ impl Stretches {
         self.0.len()
     }
 
-    /// The first sample of each.
+    /// The first sample of each stretch.
     pub fn firsts(&self) -> impl Iterator<Item = usize> {
         self.0.iter().map(|stretch| stretch.start)
     }
 
-    /// Number of samples in each.
+    /// Number of samples in each stretch.
     pub fn sizes(&self) -> Vec<f64> {
         self.0.iter().map(|stretch| stretch.len() as f64).collect()
     }
@@ -103,7 +103,7 @@ impl Stretches {
     }
 }
 
-/// Where a current jumps, a sample.
+/// Whether a current jumps, per sample.
 fn jumps(drive: &Drive, noise: Currents) -> Vec<bool> {
     let currents = &drive.currents;
     let bent = |before: f64, here: f64, after: f64, sigma_a: f64| {

@@ -1,47 +1,48 @@
-//! Logged currents, cleaned once before they drive a model.
+//! Conditioning of the logged currents before they drive a model.
 //!
-//! A log carries 3 to 5 mA of noise on each current. Led through a valve of 40 l/min/A that is as much as the flow
-//! meter's own noise, so it has to go; but a plain low-pass would bend the ramps. Each sample is therefore estimated
-//! by the straight line through the widest window around it that the noise can explain (the idea of intersecting
-//! confidence intervals, Goldenshluger & Nemirovski 1997): wide on plateaus and ramps, narrow at corners. No delay.
+//! A log has 3 to 5 mA of noise on each current. At a valve gain of 40 l/min/A that is as much as the flow meter's own
+//! noise, so it has to be removed, but a plain low-pass filter would distort the ramps. Each sample is therefore
+//! estimated by a straight line through the widest window around it that is compatible with the noise (intersection of
+//! confidence intervals, Goldenshluger & Nemirovski 1997): wide on plateaus and ramps, narrow at corners, without
+//! delay.
 //!
-//! A ramp rarely begins on a sample. Where the lines of two neighbouring samples cross between them, the current turned
-//! there: such a corner becomes a point of its own, since a straight line from sample to sample would cut it off.
+//! A ramp rarely begins at a sample. If the lines of two neighbouring samples intersect between them, the intersection
+//! becomes a corner point of the current: a straight line from sample to sample would cut it off.
 
 use hitch_plant::Currents;
 
 use crate::data::condense::Stretches;
 
-/// Reach of a window to either side of the sample, samples.
+/// Half-widths of a window to either side of the sample, samples.
 const REACHES: [usize; 7] = [0, 1, 2, 4, 8, 16, 32];
 
-/// A current that jumps between two samples may have done so anywhere between them: one sigma of an even spread, as a
-/// share of the jump.
+/// Standard deviation of a uniform distribution, as a share of its width: a jump between two samples may have occurred
+/// anywhere between them.
 const JUMP_SHARE: f64 = 0.29;
 
-/// A corner nearer to a sample than this, as a share of the way to the next, is at the sample.
+/// Distance from a sample, as a share of the step, below which a corner is placed at the sample.
 const NEAREST: f64 = 0.02;
 
-/// Slopes differ if a sample's time makes a difference of so many sigmas of them.
+/// Smallest significant difference of two slopes, in sigmas.
 const CORNER_SIGMAS: f64 = 3.0;
 
-/// Cleaned currents and how well each is known.
+/// Conditioned currents and their uncertainty.
 #[derive(Debug, Clone)]
 pub struct Drive {
     /// Time stamps, s.
     pub time_s: Vec<f64>,
-    /// Cleaned currents, A.
+    /// Conditioned currents, A.
     pub currents: Vec<Currents>,
-    /// One sigma of the cleaned currents, A: what is left of the noise, and of when a jump happened.
+    /// One sigma of the conditioned currents, A: remaining noise and uncertain instants of jumps.
     pub spread: Vec<Currents>,
     /// Samples, and corners between them.
     course: Course,
 }
 
-/// A current over time as a line through points: the samples, and the corners between them.
+/// A piecewise linear current: points at the samples and at the corners between them.
 #[derive(Debug, Clone)]
 struct Course {
-    /// When, s.
+    /// Time, s.
     time_s: Vec<f64>,
     /// Current, A.
     currents: Vec<Currents>,
@@ -52,8 +53,8 @@ struct Course {
 }
 
 impl Drive {
-    /// Cleans the two logged currents, A, whose noise has the given sigmas, A; `slow_share` of its variance is so slow
-    /// that no window takes it away.
+    /// Conditions the two logged currents, A, whose noise has the given sigmas, A. No window removes the share
+    /// `slow_share` of the noise variance, which is slow.
     #[must_use]
     pub fn new(
         time_s: &[f64],
@@ -62,8 +63,8 @@ impl Drive {
         sigma: Currents,
         slow_share: f64,
     ) -> Self {
-        let lift = Cleaned::new(lift_a, sigma.lift_a, slow_share);
-        let lower = Cleaned::new(lower_a, sigma.lower_a, slow_share);
+        let lift = ConditionedCurrent::new(lift_a, sigma.lift_a, slow_share);
+        let lower = ConditionedCurrent::new(lower_a, sigma.lower_a, slow_share);
         let join = |lift: &[f64], lower: &[f64]| -> Vec<Currents> {
             let both = lift.iter().zip(lower);
             both.map(|(&lift_a, &lower_a)| Currents { lift_a, lower_a })
@@ -80,26 +81,26 @@ impl Drive {
         }
     }
 
-    /// When the currents of [`Drive::shifted`] are, s.
+    /// Times of the currents of [`Drive::shifted`], s.
     #[must_use]
     pub fn course_s(&self) -> &[f64] {
         &self.course.time_s
     }
 
-    /// Which points of [`Drive::course_s`] are samples.
+    /// Indices of the samples among the points of [`Drive::course_s`].
     #[must_use]
     pub fn samples(&self) -> &[usize] {
         &self.course.samples
     }
 
-    /// Whether a current turns between a sample and the one before it.
+    /// Whether there is a corner of a current between a sample and the previous one.
     #[must_use]
     pub fn turns_before(&self, sample: usize) -> bool {
         let at = &self.course.samples;
         sample > 0 && at[sample] > at[sample - 1] + 1
     }
 
-    /// The drive on the means over stretches of samples; corners between them stay.
+    /// The drive averaged over stretches of samples; corners between them are kept.
     #[must_use]
     pub(crate) fn condensed(&self, stretches: &Stretches) -> Self {
         let time_s = stretches.means(&self.time_s);
@@ -128,8 +129,7 @@ impl Drive {
         }
     }
 
-    /// The currents at the points of [`Drive::course_s`] as the valves felt them if the log's clock was ahead by
-    /// `skew_s`, moved by `spreads` sigmas.
+    /// The currents at the points of [`Drive::course_s`], delayed by `skew_s` and shifted by `spreads` sigmas.
     #[must_use]
     pub fn shifted(&self, skew_s: f64, spreads: f64) -> Vec<Currents> {
         let Course {
@@ -166,8 +166,8 @@ impl Drive {
     }
 }
 
-/// How far off all jumps of some currents may be together, s: half a sample for one that is nothing but jumps, nothing
-/// for one that runs steadily. A machine and the log of its bus keep step, and then all jumps are off alike.
+/// Largest common time error of all jumps of some currents, s: half a sample for a current that only jumps, zero for
+/// one without jumps. If machine and bus log are synchronous, all jumps have the same error.
 #[must_use]
 pub fn jumps_within_s<'a>(drives: impl Iterator<Item = &'a Drive>) -> f64 {
     let (mut unplaced, mut all) = (0.0, 0.0);
@@ -184,7 +184,7 @@ pub fn jumps_within_s<'a>(drives: impl Iterator<Item = &'a Drive>) -> f64 {
     if all > 0.0 { unplaced / all } else { 0.0 }
 }
 
-/// Currents at a share of the way from one to the other.
+/// Linear interpolation between two currents.
 fn between(from: Currents, to: Currents, share: f64) -> Currents {
     Currents {
         lift_a: from.lift_a + (to.lift_a - from.lift_a) * share,
@@ -206,7 +206,7 @@ impl Course {
         time_s: &[f64],
         currents: &[Currents],
         spread: &[Currents],
-        cleaned: [&Cleaned; 2],
+        conditioned: [&ConditionedCurrent; 2],
     ) -> Self {
         let mut course = Self::with_capacity(time_s.len());
         for sample in 0..time_s.len() {
@@ -216,8 +216,8 @@ impl Course {
                 break;
             }
             let step_s = time_s[sample + 1] - time_s[sample];
-            let [lift, lower] = cleaned.map(|valve| valve.corner_after(sample));
-            // Both currents turn within one sample in no log that anyone would make.
+            let [lift, lower] = conditioned.map(|valve| valve.corner_after(sample));
+            // At most one current has a corner within a step in any realistic log.
             let Some((share, corner_a)) = lift.or(lower) else {
                 continue;
             };
@@ -240,7 +240,7 @@ impl Course {
     }
 }
 
-/// Height of a jump between the sample before and this one: what the rise has more than those before and after it.
+/// Height of a jump between the previous sample and this one: the excess of its difference over the neighbouring ones.
 fn jump_before(current_a: impl Fn(usize) -> f64, samples: usize, sample: usize) -> f64 {
     if sample < 2 || sample + 1 >= samples {
         return 0.0;
@@ -253,19 +253,19 @@ fn jump_before(current_a: impl Fn(usize) -> f64, samples: usize, sample: usize) 
         .clamp(0.0, own.abs())
 }
 
-/// One cleaned current.
-struct Cleaned {
+/// One conditioned current.
+struct ConditionedCurrent {
     /// Current, A.
     current_a: Vec<f64>,
     /// One sigma of it, A.
     spread_a: Vec<f64>,
-    /// How much it rises from one sample to the next on the line that it was read from, A.
+    /// Slope of the line fitted at each sample, A per sample.
     slope_a: Vec<f64>,
     /// One sigma of that, A.
     slope_spread_a: Vec<f64>,
 }
 
-impl Cleaned {
+impl ConditionedCurrent {
     fn new(logged_a: &[f64], sigma_a: f64, slow_share: f64) -> Self {
         let samples = logged_a.len();
         let mut lines = Lines {
@@ -299,9 +299,9 @@ impl Cleaned {
         }
     }
 
-    /// Where the current turns between a sample and the next, as a share of the way, and what it is there, A.
+    /// Position of a corner between a sample and the next, as a share of the step, and the current there, A.
     ///
-    /// Corners of a ramp only: two lines that differ in height alone are a jump, which may be anywhere between.
+    /// Only for corners of a ramp: two lines that differ in height alone are a jump, whose instant is unknown.
     fn corner_after(&self, sample: usize) -> Option<(f64, f64)> {
         let (before, after) = (self.slope_a[sample], self.slope_a[sample + 1]);
         let spread_a = self.slope_spread_a[sample].hypot(self.slope_spread_a[sample + 1]);
@@ -316,7 +316,7 @@ impl Cleaned {
     }
 }
 
-/// Lines through noise, one for each sample; variances in units of the noise's.
+/// Fitted lines, one per sample; variances in units of the noise variance.
 struct Lines {
     value: Vec<f64>,
     variance: Vec<f64>,
@@ -325,8 +325,8 @@ struct Lines {
 }
 
 impl Lines {
-    /// Fits a line over `behind..=ahead` around every sample and keeps it where the noise explains what it leaves and
-    /// the estimate is better than what is there.
+    /// Fits a line over `behind..=ahead` around every sample. It replaces the present one if its residuals are
+    /// compatible with the noise and its variance is smaller.
     fn try_window(&mut self, logged: &[f64], sigma: f64, behind: usize, ahead: usize) {
         let count = behind + ahead + 1;
         let n = count as f64;

@@ -1,39 +1,42 @@
-//! What drafts are short of fine simulations.
+//! Defect correction: the difference between simulations with fine and coarse time steps.
 //!
-//! A search asks thousands of times how a simulation changes with an effect, and the same integrator in steps twice as
-//! long answers that nearly as well at half the penalty. What the long steps themselves make of a run (ringing that is
-//! out of phase after some periods) is reckoned once, where the search starts, and added to every draft: there it is a
-//! fine simulation, and nearby the error of the steps cancels in every difference. Fits and evidence take fine ones.
+//! A search simulates thousands of changes, for which time steps of twice the length are almost as accurate at half the
+//! cost. The error of the coarse steps (a phase error of ringing after some periods) is computed once, at the start of
+//! the search, and added to every coarse simulation. At the start this reproduces the fine simulation, and nearby the
+//! error of the steps cancels in all differences. Fits and evidence use fine simulations.
 
 use hitch_plant::simulation::Trace;
 
-/// What drafts of a run are short of fine simulations.
+/// Difference between a fine and a coarse simulation of a run.
 #[derive(Debug, Clone)]
 pub(crate) struct DefectCorrection(Trace);
 
 impl DefectCorrection {
-    /// Between a fine simulation and a draft of the same.
-    pub fn new(fine: &Trace, draft: &Trace) -> Self {
-        let short = |(fine, draft): (&Vec<f64>, &Vec<f64>)| {
-            let samples = fine.iter().zip(draft);
-            samples.map(|(fine, draft)| fine - draft).collect()
+    /// The difference of a fine and a coarse simulation of the same model.
+    pub fn new(fine: &Trace, coarse: &Trace) -> Self {
+        let difference = |(fine, coarse): (&Vec<f64>, &Vec<f64>)| {
+            let samples = fine.iter().zip(coarse);
+            samples.map(|(fine, coarse)| fine - coarse).collect()
         };
         Self(Trace {
-            channels: std::array::from_fn(|c| short((&fine.channels[c], &draft.channels[c]))),
-            true_angle_deg: short((&fine.true_angle_deg, &draft.true_angle_deg)),
+            channels: std::array::from_fn(|c| difference((&fine.channels[c], &coarse.channels[c]))),
+            true_angle_deg: difference((&fine.true_angle_deg, &coarse.true_angle_deg)),
             idle_pressure_bar: 0.0,
         })
     }
 
-    /// A draft with as much added.
-    pub fn added_to(&self, mut draft: Trace) -> Trace {
-        let short = self.0.channels.iter().chain([&self.0.true_angle_deg]);
-        let coarse_in_time = draft.channels.iter_mut().chain([&mut draft.true_angle_deg]);
-        for (values, short) in coarse_in_time.zip(short) {
-            for (value, short) in values.iter_mut().zip(short) {
-                *value += short;
+    /// A coarse simulation with the correction added.
+    pub fn added_to(&self, mut coarse: Trace) -> Trace {
+        let difference = self.0.channels.iter().chain([&self.0.true_angle_deg]);
+        let channels = coarse
+            .channels
+            .iter_mut()
+            .chain([&mut coarse.true_angle_deg]);
+        for (values, difference) in channels.zip(difference) {
+            for (value, difference) in values.iter_mut().zip(difference) {
+                *value += difference;
             }
         }
-        draft
+        coarse
     }
 }

@@ -1,4 +1,4 @@
-//! A campaign made ready for comparing and fitting: cleaned currents, instrument noise, regimes, masks.
+//! A campaign prepared for comparison and fitting: conditioned currents, instrument noise, regimes, masks.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use hitch_plant::{
 };
 use rayon::prelude::*;
 
-use crate::data::clocks::{Clocks, FARTHEST_S};
+use crate::data::clocks::{Clocks, LARGEST_OFFSET_S};
 use crate::data::condense::Stretches;
 use crate::data::conditioning::{Drive, jumps_within_s};
 use crate::data::defect_correction::DefectCorrection;
@@ -21,10 +21,10 @@ use crate::data::regime::{Regime, regimes};
 use crate::data::start_angle::{likely_deg, measured_deg};
 use crate::data::trace_cache::{CurrentShift, Traces};
 
-/// How far, relative to the declared port pressure, a flow bench may be off and still count as set up.
+/// Relative deviation from the port pressure within which a flow bench counts as settled.
 const PORT_TOLERANCE: f64 = 0.05;
 
-/// What a run may be off by without any physics missing: fitted with a prior for every run.
+/// Nuisance parameters of a run: errors of the set-up, fitted with a prior.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Nuisance {
     /// Error of the weighed load, relative.
@@ -34,33 +34,33 @@ pub struct Nuisance {
 /// Prior sigma of [`Nuisance::load`]: a load is weighed to about half a percent (docs/campaigns.md).
 pub const LOAD_PRIOR: f64 = 0.005;
 
-/// One run, ready.
+/// A prepared run.
 #[derive(Debug, Clone)]
 pub struct ReadyRun {
     /// File name, for reports.
     pub file: String,
-    /// What the valve block was bolted to.
+    /// Test stand of the run.
     pub bench: Bench,
     /// Oil temperature, degree Celsius.
     pub oil_temperature_c: f64,
-    /// Cleaned currents.
+    /// Conditioned currents.
     pub drive: Drive,
-    /// Measured channels by [`Channel::index`], in their units; NaN where there is nothing to compare with.
+    /// Measured channels by [`Channel::index`], in their units; NaN for samples that are not compared.
     pub measured: [Option<Vec<f64>>; 4],
-    /// What the plant was doing, a sample.
+    /// Regime of each sample.
     pub regimes: Vec<Regime>,
     /// Rocker angle at the start, degree; NaN on a flow bench.
     pub start_angle_deg: f64,
-    /// Number of samples of the log that each sample is the mean of: one, but in a condensed run.
+    /// Number of log samples that each sample is the mean of; one except in a condensed run.
     pub averaged: Vec<f64>,
-    /// Samples left out because a flow bench had not reached its pressure yet.
+    /// Number of samples left out before a flow bench reached its pressure.
     pub settling_samples: usize,
     traces: Traces,
-    /// What drafts of the run are short of; `None` where it is simulated finely.
+    /// Correction of simulations with coarse time steps; `None` if the run is simulated with fine steps.
     defect_correction: Option<Arc<DefectCorrection>>,
 }
 
-/// A campaign, ready.
+/// A prepared campaign.
 #[derive(Debug, Clone)]
 pub struct Experiment {
     /// Name of the campaign.
@@ -71,24 +71,24 @@ pub struct Experiment {
     pub noise: [f64; 4],
     /// One sigma of the logged currents, A.
     pub current_noise: Currents,
-    /// How far off all jumps of the logged currents may be together, s.
+    /// Largest common time error of all jumps of the logged currents, s.
     pub jumps_within_s: f64,
-    /// Variance of the mean of the currents' noise over half a second, in that of white noise: one and up.
+    /// Variance of the mean of the currents' noise over half a second relative to that of white noise; at least one.
     pub current_persistence: f64,
-    /// How far a channel may be stamped off the currents, s; nothing where one clock stamps all.
+    /// Largest clock offset between a channel and the currents, s; zero if one clock stamps all.
     pub clocks_within_s: f64,
-    /// Whether the model's pressures ring, so that phase and size of the ringing are to be borne with.
+    /// Whether the model's pressures ring, so that errors of the ringing's phase and amplitude are tolerated.
     pub ringing: bool,
 }
 
 impl Experiment {
-    /// Makes a campaign ready; `model` says where the valves' thresholds and the ends of the stroke are.
+    /// Prepares a campaign; `model` defines the valves' thresholds and the ends of the stroke.
     #[must_use]
     pub fn new(campaign: &Campaign, model: &Model) -> Self {
         let noise = Channel::ALL.map(|channel| channel_noise(campaign, channel));
         let sigma = current_noise(campaign);
         let persistence = current_persistence(campaign, sigma);
-        // What of the noise no mean over half a second takes away.
+        // Share of the noise variance that averaging over half a second does not remove.
         let slow_share = (persistence - 1.0) / persistence_block(campaign) as f64;
         let runs: Vec<_> = campaign
             .runs
@@ -106,14 +106,14 @@ impl Experiment {
             current_persistence: persistence,
             clocks_within_s: match campaign.synchronous {
                 true => 0.0,
-                false => FARTHEST_S,
+                false => LARGEST_OFFSET_S,
             },
             ringing: model.constants().dynamics == Dynamics::Dynamic,
         }
     }
 
-    /// The experiment with its runs coarse_in_time around a fitted model with its nuisances, one a run: as good there, and for
-    /// the search near it.
+    /// The experiment with coarse time steps, corrected around a fitted model with one nuisance per run: exact at this
+    /// model and accurate near it.
     #[must_use]
     pub fn coarse_in_time(&self, model: &Model, nuisances: &[Nuisance]) -> Self {
         let runs = self.runs.par_iter().zip(nuisances);
@@ -125,8 +125,8 @@ impl Experiment {
         }
     }
 
-    /// The experiment with its runs condensed around a fitted model with its nuisances, one a run, where that takes away
-    /// most of the samples and nothing rings between those that are left; the same experiment where not.
+    /// The experiment with condensed runs, corrected around a fitted model with one nuisance per run. Unchanged if that
+    /// would not remove most of the samples, or if pressures ring between the remaining ones.
     #[must_use]
     pub fn condensed(&self, model: &Model, nuisances: &[Nuisance]) -> Self {
         if self.ringing {
@@ -152,14 +152,14 @@ impl Experiment {
         self.runs.iter().map(ReadyRun::len).sum()
     }
 
-    /// Whether any run has a channel.
+    /// Whether any run measures a channel.
     #[must_use]
     pub fn measures(&self, channel: Channel) -> bool {
         let mut runs = self.runs.iter();
         runs.any(|run| run.measured[channel.index()].is_some())
     }
 
-    /// Name and noise alone, to be filled with some of the runs.
+    /// The experiment without its runs.
     #[must_use]
     pub fn without_runs(&self) -> Self {
         Self {
@@ -203,7 +203,7 @@ impl ReadyRun {
         }
     }
 
-    /// The run from where it is likely to have begun if its log does not say.
+    /// The run, with an estimated start angle if its log has no angle.
     fn started(self, model: &Model, noise: [f64; 4]) -> Self {
         if self.on_hitch() && self.start_angle_deg.is_nan() {
             self.started_at(likely_deg(&self, model, noise))
@@ -212,7 +212,7 @@ impl ReadyRun {
         }
     }
 
-    /// The run from another rocker angle, degree.
+    /// The run with another start angle, degree.
     #[must_use]
     pub(crate) fn started_at(&self, start_angle_deg: f64) -> Self {
         Self {
@@ -222,16 +222,17 @@ impl ReadyRun {
         }
     }
 
-    /// The run coarse_in_time around a model and a nuisance; as it is if there are no drafts of it.
+    /// The run with coarse time steps, corrected around a model and a nuisance. Unchanged on a flow bench, for a
+    /// quasi-static model, and for a hitch that bounces.
     fn coarse_in_time(&self, model: &Model, nuisance: Nuisance) -> Self {
-        // A model without inertia takes long steps already.
+        // A model without inertia takes long steps anyway.
         let rings = model.constants().dynamics == Dynamics::Dynamic;
         if !self.on_hitch() || !rings || bounces(model) {
             return self.clone();
         }
         let in_step = CurrentShift::default();
         let fine = self.trace(model, nuisance, in_step);
-        let coarse_in_time = self.driven(Steps::DRAFT, model, nuisance, in_step);
+        let coarse_in_time = self.driven(Steps::COARSE, model, nuisance, in_step);
         Self {
             traces: Traces::new(self.len()),
             defect_correction: Some(Arc::new(DefectCorrection::new(&fine, &coarse_in_time))),
@@ -239,7 +240,7 @@ impl ReadyRun {
         }
     }
 
-    /// The run condensed around a model and a nuisance.
+    /// The run condensed and corrected around a model and a nuisance.
     fn condensed(&self, model: &Model, nuisance: Nuisance, noise: Currents) -> Self {
         let stretches = Stretches::of(self, noise);
         let measured = self.measured.each_ref();
@@ -258,12 +259,12 @@ impl ReadyRun {
         };
         let in_step = CurrentShift::default();
         let all = stretches.mean_trace(&self.trace(model, nuisance, in_step));
-        let few = condensed.driven(Steps::DRAFT, model, nuisance, in_step);
+        let few = condensed.driven(Steps::COARSE, model, nuisance, in_step);
         condensed.defect_correction = Some(Arc::new(DefectCorrection::new(&all, &few)));
         condensed
     }
 
-    /// Whether two samples have the same channels to compare.
+    /// Whether two samples have the same measured channels.
     #[must_use]
     pub(crate) fn compares_alike(&self, one: usize, other: usize) -> bool {
         let mut channels = self.measured.iter().flatten();
@@ -276,19 +277,19 @@ impl ReadyRun {
         self.drive.time_s.len()
     }
 
-    /// Whether the run has no samples; a read campaign has no such run.
+    /// Whether the run has no samples; a campaign that was read from files has no such run.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.drive.time_s.is_empty()
     }
 
-    /// Whether the run has a load and a start angle to be unsure of.
+    /// Whether the run is on the hitch, and thus has a load error and a start angle.
     #[must_use]
     pub fn on_hitch(&self) -> bool {
         matches!(self.bench, Bench::Hitch { .. })
     }
 
-    /// The rig as the nuisance has it.
+    /// The rig with the load error of `nuisance`.
     #[must_use]
     pub fn rig(&self, nuisance: Nuisance) -> Rig {
         match self.bench {
@@ -302,10 +303,10 @@ impl ReadyRun {
         }
     }
 
-    /// The run simulated with every channel in step, driven by its cleaned currents as far as they are off by `shift`.
+    /// Simulated trace without clock offsets, driven by the conditioned currents shifted by `shift`.
     #[must_use]
     pub fn trace(&self, model: &Model, nuisance: Nuisance, shift: CurrentShift) -> Arc<Trace> {
-        // A flow bench has no load that could be off.
+        // A flow bench has no load error.
         let nuisance = if self.on_hitch() {
             nuisance
         } else {
@@ -315,18 +316,18 @@ impl ReadyRun {
         self.traces.trace(model, nuisance, shift, simulated)
     }
 
-    /// [`ReadyRun::trace`] made anew, even if it is kept.
+    /// [`ReadyRun::trace`] without the cache.
     #[must_use]
     pub fn simulated(&self, model: &Model, nuisance: Nuisance, shift: CurrentShift) -> Trace {
         match &self.defect_correction {
             Some(defect_correction) if !bounces(model) => {
-                defect_correction.added_to(self.driven(Steps::DRAFT, model, nuisance, shift))
+                defect_correction.added_to(self.driven(Steps::COARSE, model, nuisance, shift))
             }
             _ => self.driven(Steps::FINE, model, nuisance, shift),
         }
     }
 
-    /// What the model makes of the run's currents in such steps.
+    /// Simulates the run with the given time steps.
     fn driven(
         &self,
         steps: Steps,
@@ -349,7 +350,7 @@ impl ReadyRun {
         trace
     }
 
-    /// The run simulated as clocks with these errors would have logged it.
+    /// Simulated trace with these clock offsets.
     #[must_use]
     pub fn simulate(&self, model: &Model, nuisance: Nuisance, clocks: &Clocks) -> Trace {
         self.stamped(
@@ -358,14 +359,14 @@ impl ReadyRun {
         )
     }
 
-    /// A trace as clocks with these errors would have logged it.
+    /// A trace as logged with these clock offsets.
     #[must_use]
     pub fn stamped(&self, in_step: &Trace, clocks: &Clocks) -> Trace {
         clocks.stamped(&self.drive.time_s, in_step)
     }
 }
 
-/// Whether a hitch bounces on stiff ground: steps that are twice as long follow the ringing of load on oil, not that.
+/// Whether a hitch may bounce on stiff ground: coarse steps resolve the ringing of the load on the oil, but not that.
 fn bounces(model: &Model) -> bool {
     let lands = |added: &AddedEffect| {
         added.effect.size_response() == SizeResponse::Located && !added.is_null()
@@ -373,8 +374,8 @@ fn bounces(model: &Model) -> bool {
     model.constants().dynamics == Dynamics::Dynamic && model.effects.iter().any(lands)
 }
 
-/// Samples at the start of a flow-bench run before the port has the pressure that it then keeps: by the gauge, which
-/// need not agree with the declared one.
+/// Number of samples at the start of a flow-bench run before the port reaches its steady pressure, by the measured
+/// pressure, which need not agree with the declared one.
 fn settling_samples(run: &Run) -> usize {
     if !matches!(run.bench, Bench::Flow { .. }) {
         return 0;
@@ -390,7 +391,7 @@ fn settling_samples(run: &Run) -> usize {
     let settled = pressure
         .iter()
         .position(|bar| (bar - kept_bar).abs() <= tolerance_bar);
-    // A bench that takes longer has a fault, which is to be shown, not hidden.
+    // A bench that takes longer has a fault, which has to stay visible.
     settled
         .filter(|&samples| samples <= run.time_s.len() / 4)
         .unwrap_or(0)

@@ -1,4 +1,4 @@
-//! What a campaign gives: prepared runs, cleaned currents, noise, regimes, clocks.
+//! Preparation of a campaign: runs, conditioned currents, noise, regimes, clock offsets.
 
 pub mod clocks;
 pub(crate) mod condense;

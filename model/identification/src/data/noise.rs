@@ -1,12 +1,12 @@
-//! Noise of instruments and currents: as declared, or from their own records where no data sheet declares it.
+//! Noise of instruments and currents: as declared, or estimated from their records.
 
 use hitch_campaign::Campaign;
 use hitch_plant::{Channel, Currents};
 
-/// One sigma of the noise of a record, in its unit: from the median of its second differences.
+/// Standard deviation of the noise of a record, in its unit, from the median of its second differences.
 ///
-/// Second differences remove level and drift, the median ignores the manoeuvres; `1 - 2 + 1` has a variance of six.
-/// The model's residual is not used: it would hide the effect that is looked for. `None` for fewer than ten samples.
+/// Second differences remove level and drift, the median ignores the manoeuvres; the variance of `1 - 2 + 1` is six.
+/// The model's residuals are not used, as they contain the missing effect. `None` for fewer than ten samples.
 #[must_use]
 pub fn from_second_differences(record: &[f64]) -> Option<f64> {
     let mut bends: Vec<f64> = record
@@ -23,13 +23,13 @@ pub fn from_second_differences(record: &[f64]) -> Option<f64> {
     Some(*median / (MEDIAN_OF_ABSOLUTE_NORMAL * 6.0_f64.sqrt()))
 }
 
-/// Smallest noise that is believed of each channel, in its unit, by [`Channel::index`]: a logger's last digit.
+/// Smallest accepted noise of each channel, in its unit, by [`Channel::index`]: a logger's last digit.
 const NOISE_FLOOR: [f64; 4] = [0.01, 0.01, 0.01, 0.005];
 
-/// Noise of a current if it is neither declared nor seen, A.
+/// Smallest accepted noise of a current, A.
 const CURRENT_NOISE_FLOOR_A: f64 = 1e-4;
 
-/// Declared noise of a channel, else the median of what its runs show, else NaN.
+/// Declared noise of a channel, else the median of the estimates from its runs; NaN without the channel.
 pub(crate) fn channel_noise(campaign: &Campaign, channel: Channel) -> f64 {
     let records = || campaign.runs.iter().filter_map(|run| run.channel(channel));
     if records().next().is_none() {
@@ -82,9 +82,9 @@ pub(crate) fn persistence_block(campaign: &Campaign) -> usize {
     ((0.5 * campaign.sample_rate_hz).round() as usize).max(2)
 }
 
-/// How much more the mean of the currents' noise over half a second varies than that of white noise would.
+/// Ratio of the variance of the currents' noise averaged over half a second to that of white noise.
 ///
-/// Part of a logger's noise is slow; on plateaus of the current the variance of block means shows how much.
+/// Part of a logger's noise is slow; the variance of block means on plateaus of the current shows how much.
 pub(crate) fn current_persistence(campaign: &Campaign, sigma: Currents) -> f64 {
     let block = persistence_block(campaign);
     let (mut ratio_sum, mut blocks) = (0.0, 0.0);
@@ -110,7 +110,7 @@ pub(crate) fn current_persistence(campaign: &Campaign, sigma: Currents) -> f64 {
     (ratio_sum / blocks).max(1.0)
 }
 
-/// Stretches of at least `shortest` samples over which a current stays put, well above its zero.
+/// Stretches of at least `shortest` samples over which a current is constant and well above zero.
 fn plateaus(record: &[f64], sigma_a: f64, shortest: usize) -> Vec<&[f64]> {
     let mut found = Vec::new();
     let mut start = 0;

@@ -1,27 +1,28 @@
-//! What the plant is doing at a sample, told from the log alone, so that models can be compared cell by cell.
+//! Regime of the plant at a sample, determined from the log alone, so that models can be compared cell by cell.
 
 use hitch_plant::Model;
 
 use crate::data::conditioning::Drive;
 
-/// How long after a valve was switched the sample counts as switching, s: spool lag and pressure swing live there.
+/// Time after a valve was switched during which samples count as switching, s: spool lag and pressure oscillation occur
+/// there.
 const SWITCHING_S: f64 = 0.2;
 
-/// How near an end of the swing is near, rad.
+/// Distance from an end of the swing that counts as near, rad.
 const NEAR_END_RAD: f64 = 5.0 * std::f64::consts::PI / 180.0;
 
-/// What the plant is doing.
+/// Regime of the plant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Regime {
-    /// Both valves shut.
+    /// Both valves closed.
     Holding,
-    /// A valve has just been opened or shut.
+    /// A valve has just been opened or closed.
     Switching,
     /// Lift valve open.
     Lifting,
     /// Lowering valve open.
     Lowering,
-    /// Any of these close to an end of the stroke.
+    /// Any of these near an end of the stroke.
     NearEnd,
 }
 

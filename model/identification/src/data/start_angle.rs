@@ -1,7 +1,7 @@
-//! Where a hitch stood when its log began.
+//! Start angle of a hitch.
 //!
-//! A log with the angle says so. Without it the rest of the log has to: at rest the lever arms of the linkage make the
-//! pressure, and later the stops say how far it was to them.
+//! A log with the angle contains it. Otherwise it is estimated from the other channels: the pressure at rest depends on
+//! the linkage's lever arms, and the stops show the remaining travel.
 
 use hitch_campaign::Run;
 use hitch_plant::{Channel, Model};
@@ -9,14 +9,14 @@ use hitch_plant::{Channel, Model};
 use crate::data::experiment::{Nuisance, ReadyRun};
 use crate::data::trace_cache::CurrentShift;
 
-/// Samples that a measured start is the mean of.
+/// Samples that a measured start angle is averaged over.
 const START_SAMPLES: usize = 5;
 
-/// Starts that are tried between two bounds, and how often the bounds close in on the best of them.
+/// Number of trial angles minus one between two bounds, and number of refinements of the bounds around the best.
 const TRIED: u32 = 16;
 const ROUNDS: usize = 4;
 
-/// The rocker angle that a log begins with, degree; `None` if it has no angle.
+/// Measured start angle, degree; `None` if the log has no angle.
 pub(crate) fn measured_deg(run: &Run) -> Option<f64> {
     let angle = run.channel(Channel::RockerAngle)?;
     let finite = angle.iter().copied().filter(|angle| angle.is_finite());
@@ -24,7 +24,7 @@ pub(crate) fn measured_deg(run: &Run) -> Option<f64> {
     (!seen.is_empty()).then(|| seen.iter().sum::<f64>() / seen.len() as f64)
 }
 
-/// The rocker angle, degree, from which a model comes nearest to what else a run has.
+/// Start angle, degree, with which a model fits the measured channels of a run best.
 pub(crate) fn likely_deg(run: &ReadyRun, model: &Model, noise: [f64; 4]) -> f64 {
     let left = |start_angle_deg: f64| left(run, model, noise, start_angle_deg);
     let (low, high) = model.linkage().swing_rad();
@@ -43,7 +43,7 @@ pub(crate) fn likely_deg(run: &ReadyRun, model: &Model, noise: [f64; 4]) -> f64 
     best
 }
 
-/// What a model leaves of a run from a start: the sum of magnitudes, for what is missing still may leave much in places.
+/// Sum of absolute residuals of a run with a start angle: robust against large residuals of missing effects.
 fn left(run: &ReadyRun, model: &Model, noise: [f64; 4], start_angle_deg: f64) -> f64 {
     let started = run.started_at(start_angle_deg);
     let trace = started.simulated(model, Nuisance::default(), CurrentShift::default());

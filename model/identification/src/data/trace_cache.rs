@@ -1,7 +1,7 @@
-//! Simulated traces of one run, the latest ones kept.
+//! Cache of the latest simulated traces of a run.
 //!
-//! Two simulations in five of a search would repeat one that there was already: the point that difference quotients
-//! start from, a load that a flow bench does not have, clocks that move a channel but not the plant.
+//! Two of five simulations of a search would be repetitions: the base point of difference quotients, load errors of a
+//! flow bench, clock offsets that shift a channel without changing the plant.
 
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
@@ -12,37 +12,37 @@ use quick_cache::sync::Cache;
 
 use crate::data::experiment::Nuisance;
 
-/// Samples of traces that are kept for one run: some 5 MB.
+/// Samples of cached traces per run: about 5 MB.
 const KEPT_SAMPLES: usize = 120_000;
 
-/// Fewest traces that are kept, however long they are.
+/// Fewest cached traces, regardless of their length.
 const FEWEST_KEPT: usize = 6;
 
-/// How the currents that drive a simulation differ from the cleaned ones.
+/// Difference between the currents of a simulation and the conditioned ones.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct CurrentShift {
-    /// How much later the valves felt them, s.
+    /// Delay, s.
     pub later_s: f64,
-    /// How many of their sigmas they are off.
+    /// Shift, in sigmas of the currents.
     pub spreads: f64,
 }
 
-/// Everything that a trace of one run depends on.
+/// Everything that the trace of a run depends on.
 #[derive(Debug, Clone)]
-struct Key {
-    /// Kept alive, so that its address stays its own.
+struct TraceKey {
+    /// Keeps the constants alive, so that their address stays unique.
     constants: Arc<Constants>,
-    /// Effects in the order in which they act: name, address, bits of the values.
+    /// Effects in order of action: id, address, bits of the values.
     effects: Vec<(&'static str, usize, Vec<u64>)>,
     /// Bits of the load error and of the shift.
     numbers: [u64; 3],
 }
 
-impl Key {
-    /// Zero of either sign is one number.
+impl TraceKey {
+    /// Positive and negative zero are the same key.
     fn new(model: &Model, nuisance: Nuisance, shift: CurrentShift) -> Self {
         let bits = |value: f64| (value + 0.0).to_bits();
-        // An effect at its null value is not there at all.
+        // An effect at its null value has no influence.
         let present = model.effects.iter().filter(|added| !added.is_null());
         let effect = |added: &AddedEffect| {
             let address = std::ptr::from_ref(added.effect).addr();
@@ -61,7 +61,7 @@ impl Key {
     }
 }
 
-impl PartialEq for Key {
+impl PartialEq for TraceKey {
     fn eq(&self, other: &Self) -> bool {
         self.constants_address() == other.constants_address()
             && self.numbers == other.numbers
@@ -69,9 +69,9 @@ impl PartialEq for Key {
     }
 }
 
-impl Eq for Key {}
+impl Eq for TraceKey {}
 
-impl Hash for Key {
+impl Hash for TraceKey {
     fn hash<H: Hasher>(&self, state: &mut H) {
         self.constants_address().hash(state);
         self.numbers.hash(state);
@@ -79,14 +79,14 @@ impl Hash for Key {
     }
 }
 
-/// The latest traces of a run; clones share them.
+/// The latest traces of a run, shared by clones.
 #[derive(Debug, Clone)]
 pub(crate) struct Traces {
-    kept: Arc<Cache<Key, Arc<Trace>>>,
+    kept: Arc<Cache<TraceKey, Arc<Trace>>>,
 }
 
 impl Traces {
-    /// Nothing yet of a run of so many samples.
+    /// An empty cache for a run of this many samples.
     pub fn new(samples: usize) -> Self {
         let traces = (KEPT_SAMPLES / samples.max(1)).max(FEWEST_KEPT);
         Self {
@@ -94,7 +94,8 @@ impl Traces {
         }
     }
 
-    /// The trace of a model under a nuisance and currents that are off; `simulate` makes it if it is not there.
+    /// The cached trace of a model with a nuisance and a shift of the currents; `simulate` computes it if it is
+    /// missing.
     pub fn trace(
         &self,
         model: &Model,
@@ -102,8 +103,9 @@ impl Traces {
         shift: CurrentShift,
         simulate: impl FnOnce() -> Trace,
     ) -> Arc<Trace> {
-        let key = Key::new(model, nuisance, shift);
-        // Looked for first: to wait for another thread that makes the same one would cost more than to make it twice.
+        let key = TraceKey::new(model, nuisance, shift);
+        // A plain look-up: waiting for another thread that computes the same trace would cost more than computing it
+        // twice.
         if let Some(trace) = self.kept.get(&key) {
             return trace;
         }

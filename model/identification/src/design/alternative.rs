@@ -1,4 +1,4 @@
-//! Effects that explain a campaign as well as the named one, and how far apart the two are on it.
+//! Confounded alternatives of an effect, and the angle between their signatures.
 
 use hitch_plant::{AddedEffect, Effect, Model};
 
@@ -8,48 +8,47 @@ use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{Jacobian, difference, dot, residuals};
 use crate::estimation::nuisance_projection::NuisanceProjection;
 
-/// An effect that would explain the campaign as well in place of another.
+/// A confounded alternative: an effect that would explain the campaign as well in place of another.
 #[derive(Debug, Clone)]
 pub struct Alternative {
-    /// Which effect.
+    /// The effect.
     pub effect: &'static dyn Effect,
-    /// Angle between the two effects' signatures at their fitted sizes, all that is free besides projected out, degree:
-    /// 0 if they are one on this campaign, 90 if they have nothing in common.
+    /// Angle between the projected signatures of the two effects at their fitted sizes, degree: 0 if they are identical
+    /// on this campaign, 90 if they are orthogonal.
     pub angle_deg: f64,
     /// Fitted values of its parameters, in their units.
     pub values: Vec<f64>,
-    /// By how much it is likelier than the named one, as a likelihood ratio with its parameters paid for; negative:
-    /// less likely.
-    pub likelier: f64,
-    /// Error of the model with it instead.
+    /// Penalised likelihood ratio relative to the named effect; negative if less probable.
+    pub relative_likelihood_ratio: f64,
+    /// Error of the model with it in place of the named effect.
     pub error_after: f64,
-    /// The model with it instead, as fitted; it is the last of the effects.
+    /// The model with it in place of the named effect, fitted; it is the last effect.
     pub fit: Fit,
 }
 
 impl Alternative {
-    /// An effect that was fitted, last of all, in place of the last one of `whole`, and is so much likelier.
+    /// An effect that was fitted as the last one in place of the last one of `whole`, with its likelihood ratio.
     #[must_use]
     pub fn new(
         experiment: &Experiment,
         model: &Model,
         whole: &Fit,
-        (fit, likelier): (Fit, f64),
+        (fit, relative_likelihood_ratio): (Fit, f64),
     ) -> Option<Self> {
         let added = fit.estimate.effects.last()?.clone();
         Some(Self {
             effect: added.effect,
             angle_deg: angle_deg(experiment, model, whole, &added)?,
             values: added.values,
-            likelier,
+            relative_likelihood_ratio,
             error_after: fit.error(),
             fit,
         })
     }
 }
 
-/// Angle between what the last effect of a fit does to the campaign and what `other` would do in its place, degree,
-/// both without what the other effects, the loads and the clocks can imitate. `None` without a last effect.
+/// Angle between the signatures of the last effect of a fit and of `other` in its place, degree, with the other
+/// effects, the loads and the clocks projected out. `None` without a last effect.
 #[must_use]
 pub fn angle_deg(
     experiment: &Experiment,
@@ -57,31 +56,31 @@ pub fn angle_deg(
     whole: &Fit,
     other: &AddedEffect,
 ) -> Option<f64> {
-    Some(Place::new(experiment, model, whole)?.angle_deg(other))
+    Some(Replacement::new(experiment, model, whole)?.angle_deg(other))
 }
 
-/// The place of the last effect of a fit, for others to be tried in.
-pub struct Place<'a> {
+/// The last effect of a fit, for comparison with other effects in its place.
+pub struct Replacement<'a> {
     experiment: &'a Experiment,
     model: &'a Model,
     whole: &'a Fit,
     last: usize,
-    /// All that is free besides the last effect.
+    /// Projection of all other free parameters.
     projection: NuisanceProjection<Jacobian>,
-    /// Residuals with nothing in the place.
+    /// Residuals without the last effect.
     empty: Vec<Vec<f64>>,
-    /// What the last effect does that nothing else can imitate.
+    /// Projected signature of the last effect.
     own: Vec<Vec<f64>>,
 }
 
-impl<'a> Place<'a> {
-    /// The place of the last effect; `None` if there is none.
+impl<'a> Replacement<'a> {
+    /// Compares to the last effect of a fit; `None` if there is none.
     #[must_use]
     pub fn new(experiment: &'a Experiment, model: &'a Model, whole: &'a Fit) -> Option<Self> {
         let last = whole.estimate.effects.len().checked_sub(1)?;
         let jacobian = Jacobian::new(experiment, model, &whole.weights, &whole.estimate);
         let jacobian = without(jacobian, last);
-        let mut place = Self {
+        let mut replacement = Self {
             experiment,
             model,
             whole,
@@ -90,18 +89,19 @@ impl<'a> Place<'a> {
             empty: Vec::new(),
             own: Vec::new(),
         };
-        place.empty = place.residuals(AddedEffect::null(whole.estimate.effects[last].effect));
-        place.own = place.signature(&whole.residuals);
-        Some(place)
+        replacement.empty =
+            replacement.residuals(AddedEffect::null(whole.estimate.effects[last].effect));
+        replacement.own = replacement.signature(&whole.residuals);
+        Some(replacement)
     }
 
-    /// Angle between the signatures of the effect that is there and of `other` in its place, degree.
+    /// Angle between the projected signatures of the last effect and of `other` in its place, degree.
     #[must_use]
     pub fn angle_deg(&self, other: &AddedEffect) -> f64 {
         self.likeness(other).0
     }
 
-    /// [`Place::angle_deg`], and how many times `other` comes nearest to the effect that is there.
+    /// [`Replacement::angle_deg`], and the multiple of `other` that is closest to the last effect.
     #[must_use]
     pub fn likeness(&self, other: &AddedEffect) -> (f64, f64) {
         let others = self.signature(&self.residuals(other.clone()));
@@ -114,13 +114,13 @@ impl<'a> Place<'a> {
         (between_deg(&self.own, &others), share)
     }
 
-    /// Fall of the cost that only the effect which is there explains, to first order.
+    /// Cost reduction that only the last effect explains, to first order.
     #[must_use]
     pub fn explained(&self) -> f64 {
         product(&self.own, &self.own)
     }
 
-    /// What is done to the campaign by what leaves some residuals, less what all that is free besides can imitate.
+    /// Projected signature of a change that leads to the residuals `present`.
     fn signature(&self, present: &[Vec<f64>]) -> Vec<Vec<f64>> {
         self.projection.project(difference(&self.empty, present))
     }
@@ -156,7 +156,7 @@ fn product(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     a.iter().zip(b).map(|(a, b)| dot(a, b)).sum()
 }
 
-/// Angle between two signatures, degree; a right one if either is nothing.
+/// Angle between two signatures, degree; 90 if either is zero.
 fn between_deg(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     let (aa, bb, ab) = (product(a, a), product(b, b), product(a, b));
     if aa <= 0.0 || bb <= 0.0 {

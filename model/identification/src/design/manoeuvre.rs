@@ -1,17 +1,18 @@
-//! The manoeuvres that a next experiment is chosen from.
+//! The manoeuvres for a next experiment.
 //!
-//! Each is the cheapest known way to show something apart from something else: a triangle shows hysteresis, two rates
-//! part it from lag, two loads part what goes with pressure from what goes with flow, two temperatures what goes with
-//! viscosity. Currents are those of the paper's valves, which open at 1.0 to 1.25 A and are fully open at 3.1 to 3.3 A.
+//! Each is the cheapest known way to separate some effects from others: a triangle shows hysteresis, two rates separate
+//! it from lag, two loads separate pressure-dependent from flow-dependent effects, two temperatures identify those that
+//! depend on viscosity. Currents are for the paper's valves, which open at 1.0 to 1.25 A and are fully open at 3.1 to
+//! 3.3 A.
 
 use hitch_plant::Currents;
 
 use crate::design::plan::{Manoeuvre, RunPlan, Segment, Stand, USUAL_OIL_C};
 
-/// A current controller's fastest change, s.
+/// Ramp of a step of the current, s: the fastest change of a current controller.
 const STEP_S: f64 = 0.01;
 
-/// Ramp of an ordinary move, s.
+/// Ramp of an ordinary motion, s.
 const RAMP_S: f64 = 0.2;
 
 const LIGHT_KG: f64 = 50.0;
@@ -21,7 +22,7 @@ const HEAVY_KG: f64 = 250.0;
 const COLD_C: f64 = 18.0;
 const WARM_C: f64 = 60.0;
 
-/// Starts of a move up, of one either way and of one down, as shares of the swing.
+/// Start angles for lifting, for both directions and for lowering, as shares of the swing.
 const LOW: f64 = 0.06;
 const MIDDLE: f64 = 0.5;
 const HIGH: f64 = 0.94;

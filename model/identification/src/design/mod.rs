@@ -1,10 +1,10 @@
-//! What to measure next when a campaign leaves two effects alike.
+//! Design of the next experiment, if a campaign leaves two effects confounded.
 //!
-//! * [`alternative`]: how far apart two effects are on the campaign as it is, as an angle.
-//! * [`manoeuvre`]: what could be measured, as data; [`plan`] says what a manoeuvre is and what log it leaves.
-//! * [`separation`]: what a manoeuvre would tell of two rivals, once the wrong one has adapted.
-//! * [`next`]: the choice among the manoeuvres.
-//! * [`sensor`]: what to measure instead if no manoeuvre helps.
+//! * [`alternative`]: the angle between two effects on the present campaign.
+//! * [`manoeuvre`]: the list of manoeuvres; [`plan`] defines a manoeuvre and simulates its log.
+//! * [`separation`]: the expected likelihood ratio of a manoeuvre between two rivals, after refitting the wrong one.
+//! * [`next`]: the selection of a manoeuvre.
+//! * [`sensor`]: an additional sensor, if no manoeuvre helps.
 
 pub mod alternative;
 pub mod manoeuvre;
@@ -13,6 +13,6 @@ pub mod plan;
 pub mod sensor;
 pub mod separation;
 
-pub use alternative::{Alternative, Place};
+pub use alternative::{Alternative, Replacement};
 pub use next::{NextExperiment, next_experiment};
 pub use separation::{Pair, Rival};

@@ -1,4 +1,4 @@
-//! The manoeuvre that tells most, a minute of rig time, of what a campaign leaves alike.
+//! Selection of the manoeuvre with the largest expected likelihood ratio per minute of rig time.
 
 use std::fmt;
 
@@ -8,27 +8,27 @@ use rayon::prelude::*;
 use crate::data::experiment::Experiment;
 use crate::design::manoeuvre::MANOEUVRES;
 use crate::design::plan::Manoeuvre;
-use crate::design::sensor::telling_instrument;
-use crate::design::separation::{Bench, Known, Pair};
-use crate::selection::evidence::TOLD_APART;
+use crate::design::sensor::additional_instrument;
+use crate::design::separation::{Pair, PairPrior, TestBench};
+use crate::selection::evidence::DISTINGUISHABLE;
 
-/// Expected likelihood ratio that decides for sure: a measured one scatters by twice its root, and this one stays above
-/// [`TOLD_APART`] in 19 of 20 measurements.
+/// Expected likelihood ratio that is decisive: a measured one has a standard deviation of twice its square root, and
+/// with this expectation exceeds [`DISTINGUISHABLE`] in 19 of 20 measurements.
 const DECISIVE: f64 = 26.0;
 
-/// What to measure next.
+/// The next experiment.
 #[derive(Debug, Clone)]
 pub struct NextExperiment {
-    /// What to do, a sentence without its full stop.
+    /// The instruction, a sentence without its full stop.
     pub manoeuvre: String,
-    /// What it is good for, a sentence without its full stop; empty if the first says it all.
+    /// The reason, a sentence without its full stop; empty if the instruction is sufficient.
     pub why: String,
-    /// The effects that it would tell from each other.
+    /// The pairs of effects that it would distinguish.
     pub separates: Vec<(&'static dyn Effect, &'static dyn Effect)>,
-    /// Smallest likelihood ratio to expect for these, by whose root times two a measured one scatters; of all listed
-    /// manoeuvres the largest if none separates anything, not a number if nothing was simulated.
+    /// Smallest expected likelihood ratio of these pairs; a measured one has a standard deviation of twice its square
+    /// root. If no manoeuvre separates any pair, the largest one of all manoeuvres; NaN if nothing was simulated.
     pub expected_likelihood_ratio: f64,
-    /// Rig time, minutes, with setting up; not a number if no manoeuvre is proposed.
+    /// Rig time, minutes, with set-up; NaN if no manoeuvre is proposed.
     pub minutes: f64,
 }
 
@@ -43,7 +43,7 @@ impl fmt::Display for NextExperiment {
 }
 
 impl NextExperiment {
-    /// What a campaign lacks altogether, without which nothing can be simulated.
+    /// A manoeuvre that the campaign lacks, without which nothing can be simulated.
     #[must_use]
     pub fn missing(what: &str) -> Self {
         Self {
@@ -62,16 +62,16 @@ impl NextExperiment {
         bar: f64,
         instrument: Option<&str>,
     ) -> Self {
-        let told = |above: bool| {
+        let distinguished = |above: bool| {
             let ratios = pairs.iter().zip(&judged.likelihood_ratios);
             let chosen = ratios.filter(move |(_, ratio)| (**ratio >= bar) == above);
             chosen.map(|(pair, _)| (pair.named.effect, pair.other.effect))
         };
         let (ratio, minutes) = (judged.smallest(bar), manoeuvre.minutes());
-        let left = distinct(told(false).map(|(a, b)| either(a, b)));
+        let left = distinct(distinguished(false).map(|(a, b)| either(a, b)));
         let mut why = format!(
-            "it would tell {} apart (expected likelihood ratio {}, about {} minutes)",
-            distinct(told(true).map(|(a, b)| both(a, b))).join(", and "),
+            "it would distinguish {} (expected likelihood ratio {}, about {} minutes)",
+            distinct(distinguished(true).map(|(a, b)| both(a, b))).join(", and "),
             rounded(ratio),
             rounded(minutes),
         );
@@ -84,7 +84,7 @@ impl NextExperiment {
         Self {
             manoeuvre: manoeuvre.instruction.to_owned(),
             why,
-            separates: told(true).collect(),
+            separates: distinguished(true).collect(),
             expected_likelihood_ratio: ratio,
             minutes,
         }
@@ -99,7 +99,7 @@ impl NextExperiment {
         );
         Self {
             manoeuvre: format!(
-                "none of the listed manoeuvres would tell {} apart",
+                "none of the listed manoeuvres would distinguish {}",
                 named.join(", or ")
             ),
             why: format!("they act alike on every channel that is measured; {instead}"),
@@ -110,37 +110,38 @@ impl NextExperiment {
     }
 }
 
-/// A manoeuvre's expected likelihood ratios, a pair each.
+/// The expected likelihood ratios of a manoeuvre, one per pair.
 struct Judged {
     likelihood_ratios: Vec<f64>,
 }
 
 impl Judged {
-    fn told(&self, bar: f64) -> impl Iterator<Item = f64> {
+    fn distinguished(&self, bar: f64) -> impl Iterator<Item = f64> {
         let ratios = self.likelihood_ratios.iter().copied();
         ratios.filter(move |ratio| *ratio >= bar)
     }
 
-    /// Smallest ratio of the pairs that are told apart.
+    /// Smallest ratio of the pairs that are distinguished.
     fn smallest(&self, bar: f64) -> f64 {
-        self.told(bar).fold(f64::INFINITY, f64::min)
+        self.distinguished(bar).fold(f64::INFINITY, f64::min)
     }
 
     fn largest(&self) -> f64 {
-        self.told(0.0).fold(0.0, f64::max)
+        self.distinguished(0.0).fold(0.0, f64::max)
     }
 }
 
-/// The listed manoeuvre that separates the most pairs, and of these the one whose smallest likelihood ratio a minute is
-/// largest; or, if none separates any, what else to measure. `None` without pairs.
+/// The manoeuvre that distinguishes the most pairs, and of these the one with the largest value of smallest likelihood
+/// ratio per minute. If none distinguishes any pair, the result names an additional sensor instead. `None` without
+/// pairs.
 #[must_use]
 pub fn next_experiment(
     experiment: &Experiment,
     model: &Model,
     pairs: &[Pair],
 ) -> Option<NextExperiment> {
-    let bench = Bench::new(experiment, model, pairs.first()?.named.fit);
-    let known: Vec<Known> = pairs.iter().map(|pair| bench.known(*pair)).collect();
+    let bench = TestBench::new(experiment, model, pairs.first()?.named.fit);
+    let known: Vec<PairPrior> = pairs.iter().map(|pair| bench.known(*pair)).collect();
     let judged: Vec<Judged> = MANOEUVRES
         .par_iter()
         .map(|manoeuvre| Judged {
@@ -149,26 +150,26 @@ pub fn next_experiment(
         .collect();
     let best = judged.iter().map(Judged::largest).fold(0.0, f64::max);
     let instrument = (best < DECISIVE)
-        .then(|| telling_instrument(&bench, MANOEUVRES, pairs[0]))
+        .then(|| additional_instrument(&bench, MANOEUVRES, pairs[0]))
         .flatten();
-    if best < TOLD_APART {
+    if best < DISTINGUISHABLE {
         return Some(NextExperiment::none(best, pairs, instrument));
     }
     let bar = if best >= DECISIVE {
         DECISIVE
     } else {
-        TOLD_APART
+        DISTINGUISHABLE
     };
     let merit = |(manoeuvre, judged): &(&Manoeuvre, &Judged)| {
         (
-            judged.told(bar).count(),
+            judged.distinguished(bar).count(),
             judged.smallest(bar) / manoeuvre.minutes(),
         )
     };
     MANOEUVRES
         .iter()
         .zip(&judged)
-        .filter(|(_, judged)| judged.told(bar).count() > 0)
+        .filter(|(_, judged)| judged.distinguished(bar).count() > 0)
         .max_by(|a, b| {
             let ((a_count, a_rate), (b_count, b_rate)) = (merit(a), merit(b));
             a_count.cmp(&b_count).then(a_rate.total_cmp(&b_rate))
@@ -176,7 +177,7 @@ pub fn next_experiment(
         .map(|(manoeuvre, judged)| NextExperiment::of(manoeuvre, judged, pairs, bar, instrument))
 }
 
-/// Texts without repetitions: two forms of an effect have one name.
+/// Texts without duplicates: two forms of an effect have the same name.
 fn distinct(texts: impl Iterator<Item = String>) -> Vec<String> {
     let mut distinct: Vec<String> = Vec::new();
     for text in texts {
@@ -195,7 +196,7 @@ fn either(a: &dyn Effect, b: &dyn Effect) -> String {
     format!("{} or {}", a.id(), b.id())
 }
 
-/// A number as precise as an expectation is: two digits.
+/// A number rounded to two digits, the precision of an expectation.
 fn rounded(value: f64) -> String {
     if value < 10.0 {
         return format!("{value:.1}");

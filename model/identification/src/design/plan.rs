@@ -1,46 +1,46 @@
-//! A manoeuvre as data: benches, loads, temperatures and courses of the currents, and the log it would leave.
+//! A manoeuvre as data: benches, loads, temperatures and current profiles; and its simulated log.
 
 use hitch_campaign::{Bench, Run};
 use hitch_plant::simulation::simulate;
 use hitch_plant::{Channel, Currents, HitchRig, Model, Rig, units};
 
-/// Rest before the first current rises, s: an idle plant to start from.
+/// Time at rest before the first current rises, s, so that the run starts from an idle plant.
 const REST_S: f64 = 0.5;
 
-/// Minutes that a run costs besides its own time: moving to the start, logging, naming the file.
+/// Minutes per run in addition to its duration: moving to the start, logging, naming the file.
 const RUN_MIN: f64 = 0.5;
 
-/// Minutes to change the load on the hitch.
+/// Minutes for a change of the load on the hitch.
 const LOAD_MIN: f64 = 5.0;
 
-/// Minutes to bolt the valve block to a flow bench and set a port pressure.
+/// Minutes for mounting the valve block on a flow bench and setting a port pressure.
 const FLOW_BENCH_MIN: f64 = 15.0;
 
-/// Minutes to bring the oil to another temperature.
+/// Minutes for a change of the oil temperature.
 const OIL_MIN: f64 = 20.0;
 
-/// Oil temperature at which campaigns are usually measured, degree Celsius.
+/// Usual oil temperature of campaigns, degree Celsius.
 pub(crate) const USUAL_OIL_C: f64 = 40.0;
 
-/// One piece of a course: straight to these currents, then along them.
+/// One segment of a current profile: a linear ramp to these currents, then a plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
-    /// Currents that are reached, A.
+    /// Currents at the end of the ramp, A.
     pub to: Currents,
-    /// Time to reach them, s.
+    /// Duration of the ramp, s.
     pub ramp_s: f64,
-    /// Time to stay, s.
+    /// Duration of the plateau, s.
     pub stay_s: f64,
 }
 
-/// What a run is measured on.
+/// Test stand of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stand {
     /// Cylinder, linkage and a load.
     Hitch {
         /// Load at the hitch point, kg.
         load_kg: f64,
-        /// Where the rocker starts, as a share of its swing: 0 down, 1 up.
+        /// Start position of the rocker as a share of its swing: 0 down, 1 up.
         start: f64,
     },
     /// A flow bench.
@@ -53,11 +53,11 @@ pub enum Stand {
 /// One run of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunPlan {
-    /// What it is measured on.
+    /// Test stand.
     pub stand: Stand,
     /// Oil temperature, degree Celsius.
     pub oil_temperature_c: f64,
-    /// Course of the currents.
+    /// Current profile.
     pub course: &'static [Segment],
 }
 
@@ -66,14 +66,14 @@ pub struct RunPlan {
 pub struct Manoeuvre {
     /// Short name.
     pub name: &'static str,
-    /// What to do, one sentence without its full stop.
+    /// Instruction, one sentence without its full stop.
     pub instruction: &'static str,
     /// The runs to log.
     pub runs: &'static [RunPlan],
 }
 
 impl Manoeuvre {
-    /// Rig time that it costs, minutes: the runs and what has to be set up for them.
+    /// Rig time, minutes: the runs and their set-up.
     #[must_use]
     pub fn minutes(&self) -> f64 {
         let (mut minutes, mut load_kg, mut oil_c) = (0.0, f64::NAN, USUAL_OIL_C);
@@ -99,8 +99,8 @@ impl Manoeuvre {
         minutes
     }
 
-    /// What a logger with these channels, by [`Channel::index`], would write if `model` were the rig and no instrument
-    /// had noise, at a sample rate, Hz.
+    /// Simulated noise-free log of the manoeuvre with `model` as the rig, for the given channels, by
+    /// [`Channel::index`], at a sample rate, Hz.
     #[must_use]
     pub fn log(&self, model: &Model, rate_hz: f64, channels: [bool; 4]) -> Vec<Run> {
         self.runs
@@ -145,7 +145,7 @@ impl RunPlan {
         from
     }
 
-    /// The rig that it is measured on.
+    /// The rig of the run.
     #[must_use]
     pub fn rig(&self, model: &Model) -> Rig {
         match self.stand {
@@ -169,7 +169,7 @@ impl RunPlan {
         (0..=samples).map(|k| k as f64 / rate_hz).collect()
     }
 
-    /// What a logger with these channels would write if no instrument had noise; see [`Manoeuvre::log`].
+    /// Simulated noise-free log of the run; see [`Manoeuvre::log`].
     #[must_use]
     pub fn log(&self, model: &Model, rate_hz: f64, channels: [bool; 4]) -> Run {
         let time_s = self.time_s(rate_hz);

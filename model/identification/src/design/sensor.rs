@@ -1,12 +1,12 @@
-//! The quantity in which two effects differ that the campaign's instruments do not show.
+//! Selection of an additional sensor that shows the difference of two effects.
 
 use hitch_plant::{Channel, Model, Plant, units};
 use rayon::prelude::*;
 
 use crate::design::plan::{Manoeuvre, RunPlan};
-use crate::design::separation::{Bench, Pair};
+use crate::design::separation::{Pair, TestBench};
 
-/// An instrument that a rig could have, with one sigma of an ordinary one in its unit.
+/// An instrument for a rig, with its usual noise, one sigma, in its unit.
 struct Instrument {
     name: &'static str,
     channel: Option<Channel>,
@@ -14,7 +14,7 @@ struct Instrument {
     value: fn(&Plant) -> f64,
 }
 
-/// Every quantity of the plant that can be measured.
+/// Every measurable quantity of the plant.
 static INSTRUMENTS: [Instrument; 6] = [
     Instrument {
         name: "a pressure sensor at the pump",
@@ -54,11 +54,11 @@ static INSTRUMENTS: [Instrument; 6] = [
     },
 ];
 
-/// The instrument that would show most of the difference of a pair and that the campaign lacks; `None` if none would
-/// show more than its own noise.
+/// The instrument with the largest difference between the effects of a pair that the campaign lacks; `None` if no
+/// difference exceeds the instrument's noise.
 #[must_use]
-pub fn telling_instrument(
-    bench: &Bench,
+pub fn additional_instrument(
+    bench: &TestBench,
     manoeuvres: &[Manoeuvre],
     pair: Pair,
 ) -> Option<&'static str> {

@@ -1,10 +1,10 @@
-//! What a manoeuvre would tell of two rival effects, before it is measured.
+//! Expected likelihood ratio of a manoeuvre between two rival effects, before it is measured.
 //!
-//! The manoeuvre is simulated as if one rival were the truth; the model with the other is then compared with that log
-//! as a measured one would be, under the same weights. The other's parameters, the loads and the clocks adapt as far as
-//! the campaign lets them: its normal matrix is the prior (T-optimality with refit, Atkinson & Fedorov 1975, to first
-//! order). What is left, in units of the residuals' variance and of its inflation by slow noise as the campaign shows
-//! it, is the likelihood ratio to expect. Either rival may be the true one; the smaller ratio counts.
+//! The manoeuvre is simulated with one rival as the truth; the model with the other is then compared with that log
+//! under the weights of a measured one. The other's parameters, the loads and the clocks are refitted, with the
+//! campaign's normal matrix as the prior (T-optimality with refit, Atkinson & Fedorov 1975, to first order). The
+//! remaining cost, in units of the residual variance and of its inflation by slow noise in the campaign, is the
+//! expected likelihood ratio. Either rival may be the true one; the smaller ratio counts.
 
 use hitch_campaign::{Campaign, Noise};
 use hitch_plant::simulation::simulate;
@@ -19,21 +19,21 @@ use crate::estimation::jacobian::{Jacobian, square_sum, subtract};
 use crate::residuals::whitening::Weights;
 use crate::selection::evidence::{expected_inflation, persistence};
 
-/// An effect, and the fit of the campaign in which it stands.
+/// An effect, and the fit of the campaign that contains it.
 #[derive(Debug, Clone, Copy)]
 pub struct Rival<'a> {
-    /// Which effect.
+    /// The effect.
     pub effect: &'static dyn Effect,
     /// The campaign's fit with it.
     pub fit: &'a Fit,
 }
 
-/// Two effects that explain a campaign alike.
+/// Two confounded effects.
 #[derive(Debug, Clone, Copy)]
 pub struct Pair<'a> {
     /// The named one.
     pub named: Rival<'a>,
-    /// The one that could stand in its place.
+    /// The confounded alternative.
     pub other: Rival<'a>,
 }
 
@@ -45,31 +45,31 @@ impl<'a> Pair<'a> {
     }
 }
 
-/// What manoeuvres are judged by: the campaign's instruments and the noise that it shows.
-pub struct Bench<'a> {
+/// The campaign's instruments and noise, for the evaluation of manoeuvres.
+pub struct TestBench<'a> {
     model: &'a Model,
     experiment: &'a Experiment,
     rate_hz: f64,
-    /// Mean square of what the named model leaves, one at least.
+    /// Mean square of the residuals of the named model, at least one.
     variance: f64,
-    /// Autocorrelation of what the named model leaves, by channel.
+    /// Autocorrelation of the residuals of the named model, by channel.
     persistence: [Vec<f64>; 4],
 }
 
-/// A pair with what the campaign says of either's parameters.
-pub struct Known<'a> {
+/// A pair with the campaign's information on the parameters of both.
+pub struct PairPrior<'a> {
     pair: Pair<'a>,
     normals: [Normal; 2],
 }
 
-/// Normal matrix of a fit, with the parameters that its rows belong to.
+/// Normal matrix of a fit, with the parameters of its rows.
 struct Normal {
     shared: Vec<Shared>,
     matrix: DMatrix<f64>,
 }
 
-impl<'a> Bench<'a> {
-    /// The bench of a campaign whose best fit is `fit`.
+impl<'a> TestBench<'a> {
+    /// The test bench of a campaign whose best fit is `fit`.
     #[must_use]
     pub fn new(experiment: &'a Experiment, model: &'a Model, fit: &Fit) -> Self {
         let compared = fit.weights.count().max(1) as f64;
@@ -82,9 +82,9 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// A pair with what the campaign says of either's parameters.
+    /// A pair with the campaign's information on the parameters of both.
     #[must_use]
-    pub fn known(&self, pair: Pair<'a>) -> Known<'a> {
+    pub fn known(&self, pair: Pair<'a>) -> PairPrior<'a> {
         let normals = pair.rivals().map(|rival| {
             let (experiment, fit) = (self.experiment, rival.fit);
             let jacobian = Jacobian::new(experiment, self.model, &fit.weights, &fit.estimate);
@@ -93,12 +93,12 @@ impl<'a> Bench<'a> {
                 shared: jacobian.shared,
             }
         });
-        Known { pair, normals }
+        PairPrior { pair, normals }
     }
 
-    /// Likelihood ratio to expect of a manoeuvre for each pair, whichever rival is true.
+    /// Expected likelihood ratio of a manoeuvre for each pair: the smaller one of either rival being true.
     #[must_use]
-    pub fn likelihood_ratios(&self, manoeuvre: &Manoeuvre, pairs: &[Known]) -> Vec<f64> {
+    pub fn likelihood_ratios(&self, manoeuvre: &Manoeuvre, pairs: &[PairPrior]) -> Vec<f64> {
         pairs
             .iter()
             .map(|known| {
@@ -129,7 +129,7 @@ impl<'a> Bench<'a> {
         self.experiment.noise.map(f64::is_finite)
     }
 
-    /// Likelihood ratio against `wrong` if `truth` is there, once `wrong` has adapted.
+    /// Expected likelihood ratio against `wrong` if `truth` is true, after refitting `wrong`.
     fn likelihood_ratio(
         &self,
         manoeuvre: &Manoeuvre,
@@ -148,7 +148,7 @@ impl<'a> Bench<'a> {
         cost / (self.variance * expected_inflation(&logged, &self.persistence, &left))
     }
 
-    /// A manoeuvre as the campaign's instruments would log it without noise if a rival were there, with their noise
+    /// Noise-free log of a manoeuvre by the campaign's instruments with a rival as the truth, with the campaign's noise
     /// declared.
     fn measured(&self, manoeuvre: &Manoeuvre, truth: Rival) -> Experiment {
         let noise = self.experiment.noise;
@@ -172,15 +172,15 @@ impl<'a> Bench<'a> {
         };
         let truth = self.with(truth);
         for run in &mut logged.runs {
-            as_cleaned(run, &truth);
+            with_conditioned_currents(run, &truth);
         }
         logged
     }
 }
 
-/// Replaces what a run measured by what `truth` gives under the currents as they were cleaned: cleaning rounds corners
-/// by less than the currents' noise, which must not count as a difference between rivals.
-fn as_cleaned(run: &mut ReadyRun, truth: &Model) {
+/// Replaces the measured channels of a run by a simulation of `truth` under the conditioned currents: conditioning
+/// rounds corners by less than the noise of the currents, which must not count as a difference between rivals.
+fn with_conditioned_currents(run: &mut ReadyRun, truth: &Model) {
     let (rig, drive) = (run.rig(Nuisance::default()), &run.drive);
     let trace = simulate(
         truth,
@@ -196,8 +196,8 @@ fn as_cleaned(run: &mut ReadyRun, truth: &Model) {
     }
 }
 
-/// Cost that stays, and residuals, once all that is free has adapted: the effects' parameters and the clocks against
-/// the campaign's normal matrix, each run's load against its prior. `None` if nothing can be solved.
+/// Cost and residuals after refitting to first order: the effects' parameters and the clocks with the campaign's normal
+/// matrix as the prior, each run's load with its own prior. `None` if the system is singular.
 fn adapted(
     jacobian: &Jacobian,
     estimate: &Estimate,
@@ -232,7 +232,7 @@ fn adapted(
 }
 
 impl Normal {
-    /// Its rows and columns in another order of the parameters; nothing is known of one that it does not have.
+    /// The matrix in another order of the parameters; zero for a parameter that it does not contain.
     fn of(&self, shared: &[Shared]) -> DMatrix<f64> {
         let places: Vec<Option<usize>> = shared
             .iter()
@@ -250,7 +250,7 @@ impl Normal {
 /// Sample rate of a campaign, Hz: that of its first run.
 fn rate_hz(experiment: &Experiment) -> f64 {
     const USUAL_HZ: f64 = 50.0;
-    /// No logger of a hitch is slower or faster; a log may still say so.
+    /// Range of the sample rates of loggers, Hz; a log may claim others.
     const LOGGERS_HZ: (f64, f64) = (1.0, 1000.0);
     let time_s = experiment.runs.first().map(|run| &run.drive.time_s);
     time_s

@@ -1,10 +1,11 @@
-//! Sensitivities for intervals: differences both ways.
+//! Central differences for confidence intervals.
 //!
-//! To descend, a quotient one way will do. An interval hangs on what is left of a column when all others are taken out,
-//! and of parameters that all but imitate each other (how much a hose takes up, what share of it creeps and how fast)
-//! only hundredths are left. The error of a quotient one way is as large, half the step times the curvature, and no other
-//! column imitates it: it counts as information that is not there, and the interval comes out too narrow. Both ways
-//! the curvature drops out (Nocedal & Wright 2006, ch. 8.1), so the way may be longer and no single sample decides.
+//! A forward difference is accurate enough for a descent. A confidence interval depends on the part of a column that is
+//! orthogonal to all other columns. For nearly collinear parameters (compliance of a hose, its creeping share and its
+//! time constant) only hundredths remain. The error of a forward difference, half the step times the curvature, is as
+//! large and not collinear with any column, so it counts as information and makes the interval too narrow. Central
+//! differences cancel the curvature (Nocedal & Wright 2006, ch. 8.1). They allow a longer step, so that no single
+//! sample dominates.
 
 use hitch_plant::{Model, SizeResponse};
 use rayon::prelude::*;
@@ -14,13 +15,13 @@ use crate::estimate::Shared;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{Jacobian, difference, huber_residuals};
 
-/// Step to either side, as a share of the parameter, or of its scale if that is more.
+/// Step to either side, as a share of the parameter's value, or of its scale if that is larger.
 const STEP: f64 = 0.01;
 
-/// The Jacobian with the columns of the last effect's parameters taken both ways, as far as their ranges let them.
+/// The Jacobian with the columns of the last effect's parameters replaced by central differences, within their ranges.
 ///
-/// What is met at a place is left as it is: there a longer way meets something else.
-pub(crate) fn both_ways(
+/// Columns of switching and located sizes stay as they are: a longer step would cross other events.
+pub(crate) fn with_central_differences(
     experiment: &Experiment,
     model: &Model,
     fit: &Fit,
@@ -49,7 +50,7 @@ pub(crate) fn both_ways(
     jacobian
 }
 
-/// Change of the simulation a step of one scale.
+/// Change of the simulation per step of one scale.
 fn quotient(experiment: &Experiment, model: &Model, fit: &Fit, shared: Shared) -> Vec<Vec<f64>> {
     let (value, scale) = (fit.estimate.get(shared), fit.estimate.scale(shared));
     let step = STEP * value.abs().max(scale);
@@ -60,7 +61,7 @@ fn quotient(experiment: &Experiment, model: &Model, fit: &Fit, shared: Shared) -
     });
     let taken = (above.get(shared) - below.get(shared)) / scale;
     let left = |estimate| huber_residuals(experiment, model, &fit.weights, estimate);
-    // The residual falls where the simulation rises.
+    // The residual decreases where the simulation increases.
     let mut change = difference(&left(&below), &left(&above));
     for sample in change.iter_mut().flatten() {
         *sample /= taken;

@@ -1,23 +1,24 @@
-//! The clocks of channels that ring.
+//! Global search for the clock offsets of ringing channels.
 //!
-//! A pressure that rings fits nearly as well a whole period too late, and a descent from a wrong stiffness or a wrong
-//! friction ends there: no gradient leads back. Moving a channel of a trace costs nothing, so all offsets are tried.
+//! A ringing pressure fits nearly as well one whole period late. A descent from a wrong stiffness or friction ends in
+//! such a local minimum, and no gradient leads out of it. Shifting a channel of a simulated trace is cheap, so all
+//! offsets on a grid are evaluated.
 
 use hitch_plant::Model;
 use rayon::prelude::*;
 
-use crate::data::clocks::{Clocks, FARTHEST_S, OFFSET_PRIOR_S};
+use crate::data::clocks::{Clocks, LARGEST_OFFSET_S, OFFSET_PRIOR_S};
 use crate::data::experiment::Experiment;
 use crate::data::trace_cache::CurrentShift;
 use crate::estimate::Estimate;
 use crate::estimation::jacobian::{dot, huber};
 use crate::residuals::whitening::Weights;
 
-/// From one offset to the next, s: a tenth of the fastest period that a sample of 20 ms still shows.
+/// Grid step of the offsets, s: a tenth of the shortest period that a sampling time of 20 ms resolves.
 const STEP_S: f64 = 0.004;
 
-/// The estimate with the clocks that fit best as everything else is; as it is where nothing rings or the clocks are
-/// known.
+/// The estimate with the clock offsets of least cost, all other parameters fixed. Unchanged if nothing rings or the
+/// clocks are known.
 pub(crate) fn synchronised(
     experiment: &Experiment,
     model: &Model,
@@ -27,7 +28,7 @@ pub(crate) fn synchronised(
     if !experiment.ringing || experiment.clocks_within_s == 0.0 {
         return estimate;
     }
-    let steps = (FARTHEST_S / STEP_S).round() as i32;
+    let steps = (LARGEST_OFFSET_S / STEP_S).round() as i32;
     let tried: Vec<Clocks> = (-steps..=steps)
         .map(|step| Clocks {
             offsets_s: [f64::from(step) * STEP_S; 4],
@@ -48,7 +49,7 @@ pub(crate) fn synchronised(
     better
 }
 
-/// Cost of each channel under each of some clocks, with the clocks' prior.
+/// Cost of each channel for each set of clock offsets, including their prior.
 fn costs(
     experiment: &Experiment,
     model: &Model,

@@ -1,6 +1,6 @@
-//! Fits of effects, clocks and each run's nuisances, output error throughout.
+//! Output-error fits of the effects, the clocks and each run's nuisance parameters.
 //!
-//! Simulated trajectories are compared, never one-step predictions: those feed the measured pressure back and hide
+//! The fit compares simulated trajectories, not one-step predictions: those feed the measured pressure back and hide
 //! leakage and friction.
 
 use hitch_plant::Model;
@@ -12,31 +12,31 @@ use crate::estimation::jacobian::{huber, load_steps, residuals, square_sum};
 use crate::estimation::least_squares::{Descent, Moves, descend};
 use crate::residuals::whitening::Weights;
 
-/// Coarse weights of the channels (pump pressure, cylinder pressure, flow, angle): ringing pressures make valleys
-/// that a fit falls into, so the first round looks at flow and angle.
+/// Factors on the weights of the channels (pump pressure, cylinder pressure, flow, angle) in the coarse round. Ringing
+/// pressures create local minima, so the first round relies on flow and angle.
 pub(crate) const COARSE: [f64; 4] = [0.04, 0.04, 0.15, 0.25];
 
 /// Iterations of the coarse and of each fine round.
 const COARSE_ITERATIONS: usize = 4;
 const FINE_ITERATIONS: usize = 12;
 
-/// Iterations from a start that is all but there.
+/// Iterations from a start that has almost converged.
 const LAST_ITERATIONS: usize = 2;
 
 /// A fitted model.
 #[derive(Debug, Clone)]
 pub struct Fit {
-    /// The values found.
+    /// The fitted values.
     pub estimate: Estimate,
-    /// Weights under these values.
+    /// Weights at these values.
     pub weights: Weights,
     /// Whitened residuals of each run, channel after channel.
     pub residuals: Vec<Vec<f64>>,
-    /// Sum of Huber's losses plus the cost of the priors.
+    /// Sum of the Huber losses plus the cost of the priors.
     pub cost: f64,
 }
 
-/// Sums of squares of whitened residuals and numbers of samples, by channel.
+/// Sums of squared whitened residuals and numbers of samples, by channel.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ErrorSums {
     squares: [f64; 4],
@@ -50,9 +50,9 @@ impl ErrorSums {
         Self::summed(&fit.residuals, fit.weights.counts)
     }
 
-    /// The same with the residuals as a fit sees them.
+    /// Sums over all runs of a fit, with the residuals after Huber's loss.
     #[must_use]
-    pub fn seen(fit: &Fit) -> Self {
+    pub fn with_huber_loss(fit: &Fit) -> Self {
         Self::summed(&huber(fit.residuals.clone()), fit.weights.counts)
     }
 
@@ -71,7 +71,7 @@ impl ErrorSums {
         sums
     }
 
-    /// Sums of sums.
+    /// Sum over several parts.
     #[must_use]
     pub fn total(parts: &[Self]) -> Self {
         let mut total = Self::default();
@@ -90,7 +90,7 @@ impl ErrorSums {
         (self.squares[channel] / self.counts[channel] as f64).sqrt()
     }
 
-    /// Error over all channels that have samples, each weighted alike; NaN without any.
+    /// Root mean square over all channels that have samples, with equal weight per channel; NaN without any.
     #[must_use]
     pub fn error(&self) -> f64 {
         let compared: Vec<f64> = (0..4)
@@ -102,11 +102,16 @@ impl ErrorSums {
 }
 
 impl Fit {
-    /// Its cost under the yardsticks of another fit, or its own if that is less, for those compare as well. A spool that
-    /// sticks does not follow the noise of the currents: under its own yardsticks what it leaves weighs four times as
-    /// much. A threshold that is off makes a hitch miss a stop, where under the other's nothing was compared.
+    /// Cost under the weights of another fit, or under its own if that is less. Weights depend on the model. A sticking
+    /// spool does not follow the noise of the currents, so under its own weights the same residuals weigh four times as
+    /// much. A wrong threshold makes a simulated hitch miss a stop, where the other fit's weights exclude all samples.
     #[must_use]
-    pub fn cost_beside(&self, experiment: &Experiment, model: &Model, other: &Self) -> f64 {
+    pub fn cost_under_weights_of(
+        &self,
+        experiment: &Experiment,
+        model: &Model,
+        other: &Self,
+    ) -> f64 {
         let (estimate, weights) = (self.estimate.clone(), other.weights.clone());
         let beside = evaluate_weighted(experiment, model, estimate, weights).cost;
         beside.min(self.cost)
@@ -118,13 +123,13 @@ impl Fit {
         ErrorSums::of(self).channel(channel)
     }
 
-    /// Error over all channels, each weighted alike.
+    /// Error over all channels, with equal weight per channel.
     #[must_use]
     pub fn error(&self) -> f64 {
         ErrorSums::of(self).error()
     }
 
-    /// Mean square of the residuals, at least that of noise alone: one.
+    /// Mean square of the residuals, at least one, that of noise alone.
     #[must_use]
     pub fn variance(&self) -> f64 {
         (square_sum(&self.residuals) / self.weights.count() as f64).max(1.0)
@@ -156,16 +161,16 @@ pub fn evaluate_weighted(
     }
 }
 
-/// Fits everything that is free, from `start`, coarse to fine.
+/// Fits all free parameters from `start`, coarse to fine.
 #[must_use]
 pub fn fit(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
     let weights = Weights::new(experiment, model, &start);
-    let start = coarsely(experiment, model, &weights, start);
+    let start = coarse_descent(experiment, model, &weights, start);
     refine(experiment, model, start)
 }
 
-/// Where a start leads under weights that look at flow and angle first.
-fn coarsely(
+/// Descends with the coarse weights, which emphasise flow and angle.
+fn coarse_descent(
     experiment: &Experiment,
     model: &Model,
     weights: &Weights,
@@ -175,9 +180,10 @@ fn coarsely(
     descend(experiment, model, &coarse, start, moves, COARSE_ITERATIONS).estimate
 }
 
-/// Fits roughly, under given weights, to see whether an effect deserves a full fit. From `far` away it starts coarse.
+/// A short fit under given weights that decides whether an effect deserves a full fit. If `far`, it starts with the
+/// coarse weights.
 #[must_use]
-pub fn sketch(
+pub fn short_fit(
     experiment: &Experiment,
     model: &Model,
     weights: &Weights,
@@ -185,7 +191,7 @@ pub fn sketch(
     far: bool,
 ) -> Descent {
     let start = if far {
-        coarsely(experiment, model, weights, start)
+        coarse_descent(experiment, model, weights, start)
     } else {
         start
     };
@@ -199,7 +205,7 @@ pub fn sketch(
     )
 }
 
-/// Fits from a start that is already near.
+/// Fits from a start near the optimum.
 #[must_use]
 pub fn refine(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
     let found = |weights: &Weights, start: Estimate| {
@@ -209,14 +215,14 @@ pub fn refine(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
     };
     let weights = Weights::new(experiment, model, &start);
     let near = found(&weights, start);
-    // The weights belong to the values: once more with those of the values found.
+    // The weights depend on the values: repeat with the weights at the values found.
     let weights = Weights::new(experiment, model, &near);
     let there = found(&weights, near);
     evaluate_weighted(experiment, model, there, weights)
 }
 
-/// One round under given weights from a start that is all but there already. The sizes of what jumps stay: a slope that
-/// leads some runs a little further down misses the jumps of all others.
+/// A few iterations under given weights from a start that has almost converged. Sizes of switching effects stay fixed:
+/// a step that improves a few runs slightly moves the switching instants of all others.
 #[must_use]
 pub fn refine_once(
     experiment: &Experiment,
@@ -224,11 +230,11 @@ pub fn refine_once(
     weights: &Weights,
     start: Estimate,
 ) -> Estimate {
-    let moves = Moves::AllButJumps;
+    let moves = Moves::AllButSwitching;
     descend(experiment, model, weights, start, moves, LAST_ITERATIONS).estimate
 }
 
-/// Fits only each run's load error, under given weights: two Gauss-Newton steps, it is all but linear.
+/// Fits only each run's load error under given weights, by two Gauss-Newton steps: the problem is nearly linear.
 #[must_use]
 pub fn fit_loads(
     experiment: &Experiment,

@@ -1,9 +1,8 @@
-//! Sensitivities of the whitened residuals, and the normal equations with each run's own nuisance eliminated.
+//! Sensitivities of the whitened residuals, and the normal equations with each run's load error eliminated.
 //!
-//! Every run has a load error of its own, so the normal equations have an arrow's shape: shared parameters couple all
-//! runs, a run's nuisance only itself. Eliminating the latter run by run (Schur complement) leaves a system as small
-//! as the number of shared parameters, and columns from which a nuisance can no longer take anything: the projected
-//! signatures.
+//! Every run has a load error of its own, so the normal matrix has arrow structure: shared parameters couple all runs,
+//! a load error affects only its own run. Eliminating the load errors run by run (Schur complement) leaves a system of
+//! the size of the shared parameters. Its columns are the projected signatures, orthogonal to the load columns.
 
 use hitch_plant::{Channel, Model, SizeResponse};
 use nalgebra::{DMatrix, DVector};
@@ -15,26 +14,26 @@ use crate::data::trace_cache::CurrentShift;
 use crate::estimate::{Estimate, Shared, Step};
 use crate::residuals::whitening::Weights;
 
-/// Step of a difference quotient, as a share of the parameter, or of its scale if that is more.
+/// Step of a difference quotient, as a share of the parameter's value, or of its scale if that is larger.
 const STEP: f64 = 0.02;
 
-/// The same where a small change soon makes all different. What rings a hundredth slower is a third of a radian behind
-/// after five swings, and a secant is no slope any more; a hitch that stands on the ground hangs above one that is
-/// millimetres lower.
+/// The same for parameters with a short range of linearity. A frequency that is one percent lower lags a third of a
+/// radian after five periods, so a longer secant no longer approximates the slope. A hitch standing on the ground loses
+/// contact if the ground is millimetres lower.
 const FINE_STEP: f64 = 0.002;
 
-/// The same for a channel's offset, in prior sigmas.
+/// Step of a channel's clock offset, in prior sigmas.
 const STEP_OF_OFFSET: f64 = 0.25;
 
-/// One run's residuals and their sensitivities to steps of one scale.
+/// One run's residuals and their sensitivities per step of one scale.
 #[derive(Debug, Clone)]
 pub struct RunJacobian {
     /// Whitened residuals.
     pub residual: Vec<f64>,
-    /// A column for each shared parameter: change of the simulation, whitened.
+    /// Whitened change of the simulation, one column per shared parameter.
     pub shared: Vec<Vec<f64>>,
-    /// Column of the load error; `None` on a flow bench, and where it stands at an end of its range and would leave it:
-    /// what cannot move on absorbs nothing.
+    /// Column of the load error. `None` on a flow bench, and at an end of its range if the gradient points outwards: a
+    /// parameter that cannot move absorbs nothing.
     pub load: Option<Vec<f64>>,
     /// Present load error, in prior sigmas.
     pub load_value: f64,
@@ -49,8 +48,8 @@ pub struct Jacobian {
     pub shared: Vec<Shared>,
 }
 
-/// Size from which a whitened residual counts no longer by its square but by its distance.
-const OUTLYING: f64 = 10.0;
+/// Threshold of Huber's loss, in sigmas: beyond it the loss grows linearly instead of quadratically.
+const HUBER_THRESHOLD: f64 = 10.0;
 
 /// Whitened residuals of every run under an estimate.
 #[must_use]
@@ -71,16 +70,16 @@ pub fn residuals(
         .collect()
 }
 
-/// Residuals as a fit sees them: their squares are Huber's losses.
+/// Residuals transformed such that their squares are Huber losses.
 ///
-/// While an effect is missing a simulation may run against a stop that the hitch never reached, and a thousand sigmas
-/// of dead-head pressure would drown all else. Below `OUTLYING` nothing changes.
+/// While an effect is missing, a simulation may run against a stop that the real hitch never reached. A thousand sigmas
+/// of dead-head pressure would then dominate the cost. Residuals below `HUBER_THRESHOLD` are unchanged.
 #[must_use]
 pub fn huber(mut residuals: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     for residual in residuals.iter_mut().flatten() {
         let size = residual.abs();
-        if size > OUTLYING {
-            *residual = (2.0 * OUTLYING * size - OUTLYING * OUTLYING)
+        if size > HUBER_THRESHOLD {
+            *residual = (2.0 * HUBER_THRESHOLD * size - HUBER_THRESHOLD * HUBER_THRESHOLD)
                 .sqrt()
                 .copysign(*residual);
         }
@@ -88,7 +87,7 @@ pub fn huber(mut residuals: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     residuals
 }
 
-/// [`residuals`] as a fit sees them.
+/// [`residuals`] transformed by [`huber`].
 #[must_use]
 pub fn huber_residuals(
     experiment: &Experiment,
@@ -105,7 +104,8 @@ pub fn square_sum(residuals: &[Vec<f64>]) -> f64 {
     residuals.iter().map(|run| dot(run, run)).sum()
 }
 
-/// Dot product. Eight sums side by side: one alone could not be vectorised, as the order of a sum of floats counts.
+/// Dot product, with eight partial sums: floating-point addition is not associative, so a single sum could not be
+/// vectorised.
 #[must_use]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a_parts, a_rest) = a.as_chunks::<8>();
@@ -120,7 +120,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
-/// What residuals `a` have more than `b`, run by run.
+/// Residuals `a` minus `b`, run by run.
 #[must_use]
 pub fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let runs = a.iter().zip(b);
@@ -128,14 +128,14 @@ pub fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Takes `share` times `part` from `column`.
+/// Subtracts `share` times `part` from `column`.
 pub fn subtract(column: &mut [f64], share: f64, part: &[f64]) {
     for (value, part) in column.iter_mut().zip(part) {
         *value -= share * part;
     }
 }
 
-/// Change of the simulation a step of one scale: the residual falls where the simulation rises.
+/// Change of the simulation per step of one scale: the residual decreases where the simulation increases.
 fn quotient(base: &[Vec<f64>], moved: Vec<Vec<f64>>, step: f64) -> Vec<Vec<f64>> {
     moved
         .into_iter()
@@ -179,7 +179,7 @@ fn shared_column(
     )
 }
 
-/// Sensitivity of all runs to their load errors, a step of one prior sigma.
+/// Sensitivities of all runs to their load errors, per step of one prior sigma.
 fn load_columns(
     experiment: &Experiment,
     model: &Model,
@@ -193,7 +193,7 @@ fn load_columns(
             let load = estimate.load(run);
             moved.set_load(run, load + 1.0);
             if moved.load(run) - load < 0.5 {
-                // It stands at the end of its range.
+                // The load error is at the end of its range.
                 moved.set_load(run, load - 1.0);
             }
             moved.load(run) - load
@@ -207,9 +207,9 @@ fn load_columns(
     columns
 }
 
-/// Sensitivities of all runs to the channels' offsets, a step of one prior sigma; by channel, then by run.
+/// Sensitivities of all runs to the channels' clock offsets, per step of one prior sigma; by channel, then by run.
 ///
-/// An offset only moves a channel of a trace that is there already: one simulation serves all four.
+/// An offset only shifts a channel of an existing trace: one simulation serves all four.
 fn offset_columns(
     experiment: &Experiment,
     model: &Model,
@@ -227,7 +227,7 @@ fn offset_columns(
             let base = huber(vec![weights.runs[index].whiten(run, &stamped)]);
             std::array::from_fn(|channel| {
                 if channel == Channel::PumpPressure.index() && !experiment.ringing {
-                    // All that a clock could move are its jumps, and those are left out.
+                    // A clock would move only its jumps, and samples next to those are left out.
                     return vec![0.0; base[0].len()];
                 }
                 let mut moved = clocks;
@@ -243,7 +243,7 @@ fn offset_columns(
     std::array::from_fn(|channel| columns.iter().map(|run| run[channel].clone()).collect())
 }
 
-/// Columns that hardly change from one iteration to the next: of the clocks and of the loads.
+/// Columns that hardly change between iterations: those of the clocks and the loads.
 #[derive(Debug, Clone)]
 pub struct SlowColumns {
     /// In the order of [`crate::estimate::CLOCKS`], by run.
@@ -252,7 +252,7 @@ pub struct SlowColumns {
 }
 
 impl SlowColumns {
-    /// Difference quotients at `estimate`, which leaves the residuals `base`.
+    /// Difference quotients at `estimate`, whose residuals are `base`.
     #[must_use]
     pub fn new(
         experiment: &Experiment,
@@ -269,7 +269,7 @@ impl SlowColumns {
     }
 }
 
-/// Steps of the load errors alone, in prior sigmas, that fit best with all else held.
+/// Optimal steps of the load errors, in prior sigmas, with all other parameters fixed.
 #[must_use]
 pub fn load_steps(
     experiment: &Experiment,
@@ -306,7 +306,7 @@ impl Jacobian {
         Self::with_slow_columns(experiment, model, weights, estimate, &base, &slow)
     }
 
-    /// The same with the residuals known, and the columns of clocks and loads taken from a point nearby.
+    /// The same with given residuals, and with the columns of clocks and loads from a nearby estimate.
     #[must_use]
     pub fn with_slow_columns(
         experiment: &Experiment,
@@ -339,7 +339,7 @@ impl Jacobian {
         Self { runs, shared }
     }
 
-    /// Normal matrix and right-hand side of the shared parameters with the runs' loads eliminated.
+    /// Normal matrix and right-hand side of the shared parameters, with the load errors eliminated.
     #[must_use]
     pub fn reduced(&self, estimate: &Estimate) -> (DMatrix<f64>, DVector<f64>) {
         let size = self.shared.len();
@@ -359,10 +359,11 @@ impl Jacobian {
         (matrix, right)
     }
 
-    /// The step that the damped normal equations give with what is `held` where it is; `None` if they are singular.
+    /// Solution of the damped normal equations with the parameters selected by `held` fixed; `None` if they are
+    /// singular.
     ///
-    /// A parameter that stands at an end of its range and would leave it is held there, and the others step without it:
-    /// stopped only afterwards it would drag them along to where it cannot follow.
+    /// A parameter at an end of its range whose step points outwards is fixed there, and the others are solved without
+    /// it. Clamping it after the solution would leave the others at a step that assumes it had moved.
     #[must_use]
     pub fn step(
         &self,
@@ -398,9 +399,9 @@ impl Jacobian {
 }
 
 impl Jacobian {
-    /// Sum of squares of the residuals that a step leaves, to first order.
+    /// Sum of squared residuals predicted for a step, to first order.
     #[must_use]
-    pub fn promised(&self, step: &Step) -> f64 {
+    pub fn predicted_square_sum(&self, step: &Step) -> f64 {
         let runs = self.runs.iter().zip(&step.loads);
         runs.map(|(run, &load)| {
             let left = run.left(&step.shared, load);
@@ -409,13 +410,13 @@ impl Jacobian {
         .sum()
     }
 
-    /// Goes on to where a step led, with the sensitivities corrected so that they would have led there (Broyden 1965).
+    /// Moves to the end of a step, with Broyden's rank-one update of the sensitivities (Broyden 1965).
     pub fn correct(&mut self, step: &Step, residuals: &[Vec<f64>], estimate: &Estimate) {
         for (index, run) in self.runs.iter_mut().enumerate() {
             let load = run.load.as_ref().map_or(0.0, |_| step.loads[index]);
             let square = step.shared.norm_squared() + load * load;
             if square > 0.0 {
-                // What the step left is more than was promised by so much.
+                // Excess of the residuals over the linear prediction.
                 let mut missed = residuals[index].clone();
                 subtract(&mut missed, 1.0, &run.left(&step.shared, load));
                 for (column, &own) in run.shared.iter_mut().zip(step.shared.iter()) {
@@ -431,7 +432,7 @@ impl Jacobian {
     }
 }
 
-/// Takes an unknown out of normal equations: its step is nothing.
+/// Removes an unknown from the normal equations: its step is zero.
 fn hold(matrix: &mut DMatrix<f64>, right: &mut DVector<f64>, unknown: usize) {
     matrix.row_mut(unknown).fill(0.0);
     matrix.column_mut(unknown).fill(0.0);
@@ -440,7 +441,8 @@ fn hold(matrix: &mut DMatrix<f64>, right: &mut DVector<f64>, unknown: usize) {
 }
 
 impl RunJacobian {
-    /// The load's column, its squared length with the unit prior, and its pull on `residual`, prior included.
+    /// The load's column, its squared norm plus the unit prior, and the gradient of `residual` along it, prior
+    /// included.
     #[must_use]
     pub fn load_pull(&self, residual: &[f64]) -> Option<(&[f64], f64, f64)> {
         let load = self.load.as_deref()?;
@@ -448,7 +450,7 @@ impl RunJacobian {
         Some((load, dot(load, load) + 1.0, pull))
     }
 
-    /// Residuals that steps of the shared parameters and of the load error leave, to first order.
+    /// Residuals after steps of the shared parameters and of the load error, to first order.
     fn left(&self, shared: &DVector<f64>, load: f64) -> Vec<f64> {
         let mut left = self.residual.clone();
         for (column, &step) in self.shared.iter().zip(shared.iter()) {
@@ -460,7 +462,7 @@ impl RunJacobian {
         left
     }
 
-    /// Step of the load error, in prior sigmas, that fits `residual` best.
+    /// Step of the load error, in prior sigmas, that minimises `residual`.
     fn load_step(&self, residual: &[f64]) -> f64 {
         self.load_pull(residual)
             .map_or(0.0, |(_, square, pull)| pull / square)

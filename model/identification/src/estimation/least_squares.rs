@@ -1,10 +1,11 @@
-//! Bounded Levenberg-Marquardt over effects, clocks and each run's nuisances.
+//! Bounded Levenberg-Marquardt over effects, clocks and each run's load error.
 //!
-//! The general crates have no bounds and know nothing of the arrow shape of the normal equations (see
-//! [`crate::estimation::jacobian`]), which makes a fit of 45 parameters cost as much as one of five.
+//! General crates have no bounds and do not exploit the arrow structure of the normal equations (see
+//! [`crate::estimation::jacobian`]), with which a fit of 45 parameters costs as much as one of five.
 //!
-//! A Jacobian takes a simulation a parameter, a step takes one. So while steps bring what a Jacobian promised it is kept
-//! and corrected by what they showed (Broyden 1965); a descent ends only where one made anew promises nothing more.
+//! A Jacobian takes one simulation per parameter, a step takes one. While steps achieve the predicted reduction, the
+//! Jacobian is kept and updated by Broyden's method (Broyden 1965). A descent ends only if a fresh Jacobian predicts no
+//! further reduction.
 
 use hitch_plant::{Model, SizeResponse};
 
@@ -14,44 +15,45 @@ use crate::estimate::{Estimate, Shared};
 use crate::estimation::jacobian::{Jacobian, SlowColumns, huber_residuals, square_sum};
 use crate::residuals::whitening::Weights;
 
-/// Jacobians after which the columns of clocks and loads, which hardly change, are computed anew.
+/// Number of Jacobians after which the columns of clocks and loads, which hardly change, are recomputed.
 const SLOW_EVERY: usize = 4;
 
-/// Dampings tried for one step, the first of a descent, and how much larger each is than the one before.
+/// Number of damping values tried for one step, the first of a descent, and the factor from one to the next.
 const TRIES: usize = 4;
 const FIRST_DAMPING: f64 = 1e-3;
-const DAMPED_MORE: f64 = 30.0;
+const DAMPING_FACTOR: f64 = 30.0;
 
-/// Relative fall of the cost that is still worth a step.
+/// Smallest relative reduction of the cost that justifies another step.
 const WORTHWHILE: f64 = 1e-5;
 
-/// Share of the promised fall of the cost that a step has to bring for its Jacobian to be kept, how often one is, and
-/// fewest parameters of effects with which that saves more than the steps that it spoils.
+/// Share of the predicted reduction of the cost that a step has to achieve for its Jacobian to be kept, how many times
+/// a Jacobian is kept in succession, and fewest effect parameters with which keeping it saves more than it costs in
+/// poorer steps.
 const KEPT: f64 = 0.5;
 const MOST_KEPT: usize = 3;
 const WORTH_KEEPING: usize = 4;
 
-/// Where a descent came to.
+/// Result of a descent.
 #[derive(Debug, Clone)]
 pub struct Descent {
-    /// The values found.
+    /// The estimate at its end.
     pub estimate: Estimate,
-    /// Sum of Huber's losses plus the cost of the priors.
+    /// Sum of the Huber losses plus the cost of the priors.
     pub cost: f64,
-    /// What the cost fell by in the last iteration.
-    pub falling: f64,
+    /// Reduction of the cost in the last iteration.
+    pub last_reduction: f64,
 }
 
-/// What a descent moves.
+/// Which parameters a descent moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Moves {
-    /// All that is free.
+    /// All free parameters.
     All,
-    /// All but sizes of what jumps.
-    AllButJumps,
+    /// All but the sizes of switching effects.
+    AllButSwitching,
 }
 
-/// Descends from `start` under given weights with at most so many Jacobians.
+/// Descends from `start` under given weights with at most `jacobians` Jacobians.
 pub(crate) fn descend(
     experiment: &Experiment,
     model: &Model,
@@ -60,22 +62,22 @@ pub(crate) fn descend(
     moves: Moves,
     jacobians: usize,
 ) -> Descent {
-    let slopes = Slopes {
+    let problem = LeastSquares {
         experiment,
         model,
         weights,
         moves,
     };
-    let mut point = slopes.point(start);
+    let mut point = problem.point(start);
     let mut damping = FIRST_DAMPING;
     let mut slow = None;
-    let mut falling = 0.0;
+    let mut last_reduction = 0.0;
     for made in 0..jacobians {
         if made % SLOW_EVERY == 0 {
             slow = None;
         }
-        let columns = slow.take().unwrap_or_else(|| slopes.slow_columns(&point));
-        let mut jacobian = slopes.jacobian(&point, &columns);
+        let columns = slow.take().unwrap_or_else(|| problem.slow_columns(&point));
+        let mut jacobian = problem.jacobian(&point, &columns);
         slow = Some(columns);
         let before = point.cost;
         let simulated = jacobian.shared.iter().filter(|shared| !shared.has_prior());
@@ -84,13 +86,13 @@ pub(crate) fn descend(
             false => 0,
         };
         for kept in 0..=most_kept {
-            let Some(taken) = slopes.step(&jacobian, &point, damping) else {
+            let Some(taken) = problem.step(&jacobian, &point, damping) else {
                 break;
             };
             damping = (taken.damping * 0.1).max(1e-9);
-            let fall = point.cost - taken.to.cost;
-            let brings = fall >= KEPT * taken.promised && fall > WORTHWHILE * point.cost;
-            let goes_on = brings && kept < most_kept && !taken.jumping;
+            let reduction = point.cost - taken.to.cost;
+            let brings = reduction >= KEPT * taken.predicted && reduction > WORTHWHILE * point.cost;
+            let goes_on = brings && kept < most_kept && !taken.has_switching;
             if goes_on {
                 jacobian.correct(&taken.step, &taken.to.residuals, &taken.to.estimate);
             }
@@ -99,38 +101,38 @@ pub(crate) fn descend(
                 break;
             }
         }
-        falling = before - point.cost;
-        if falling <= WORTHWHILE * before {
+        last_reduction = before - point.cost;
+        if last_reduction <= WORTHWHILE * before {
             break;
         }
     }
     Descent {
         estimate: point.estimate,
         cost: point.cost,
-        falling,
+        last_reduction,
     }
 }
 
-/// What is descended on.
-struct Slopes<'a> {
+/// The least-squares problem of a descent.
+struct LeastSquares<'a> {
     experiment: &'a Experiment,
     model: &'a Model,
     weights: &'a Weights,
     moves: Moves,
 }
 
-/// A step that was taken.
-struct Taken {
+/// An accepted step.
+struct AcceptedStep {
     step: Step,
     to: Point,
     damping: f64,
-    /// Fall of the cost that the Jacobian promised.
-    promised: f64,
-    /// Whether a parameter that jumps is free.
-    jumping: bool,
+    /// Reduction of the cost that the Jacobian predicted.
+    predicted: f64,
+    /// Whether the size of a switching effect is free.
+    has_switching: bool,
 }
 
-impl Slopes<'_> {
+impl LeastSquares<'_> {
     fn point(&self, estimate: Estimate) -> Point {
         let residuals = huber_residuals(self.experiment, self.model, self.weights, &estimate);
         let cost = square_sum(&residuals) + estimate.prior_cost();
@@ -158,41 +160,43 @@ impl Slopes<'_> {
         Jacobian::with_slow_columns(experiment, model, weights, estimate, residuals, slow)
     }
 
-    /// The first step, by rising damping, that lowers the cost.
-    fn step(&self, jacobian: &Jacobian, point: &Point, damping: f64) -> Option<Taken> {
-        // The slope of what jumps says little of where a step of it leads, and spoils that of all the others.
-        let jumps = |shared| point.estimate.size_response(shared) == SizeResponse::Switching;
-        let jumping = jacobian.shared.iter().any(|&shared| jumps(shared));
+    /// The first step, by increasing damping, that reduces the cost.
+    fn step(&self, jacobian: &Jacobian, point: &Point, damping: f64) -> Option<AcceptedStep> {
+        // The slope of a switching effect says little about the result of a finite step, and spoils the steps of all
+        // others.
+        let is_switching = |shared| point.estimate.size_response(shared) == SizeResponse::Switching;
+        let has_switching = jacobian.shared.iter().any(|&shared| is_switching(shared));
         let better = |held: &dyn Fn(Shared) -> bool, damping: f64| {
             let step = jacobian.step(&point.estimate, damping, held)?;
             let moved = point.estimate.moved(&jacobian.shared, &step);
             let step = moved.step_from(&point.estimate, &jacobian.shared);
-            let promised = point.cost - jacobian.promised(&step) - moved.prior_cost();
+            let predicted = point.cost - jacobian.predicted_square_sum(&step) - moved.prior_cost();
             let to = self.point(moved);
-            (to.cost < point.cost).then_some(Taken {
+            (to.cost < point.cost).then_some(AcceptedStep {
                 step,
                 to,
                 damping,
-                promised,
-                jumping,
+                predicted,
+                has_switching,
             })
         };
         let all = || dampings(damping).find_map(|damping| better(&|_| false, damping));
-        let all_but_jumps = || dampings(FIRST_DAMPING).find_map(|damping| better(&jumps, damping));
+        let all_but_switching =
+            || dampings(FIRST_DAMPING).find_map(|damping| better(&is_switching, damping));
         match self.moves {
-            _ if !jumping => all(),
-            Moves::All => all().or_else(all_but_jumps),
-            Moves::AllButJumps => all_but_jumps(),
+            _ if !has_switching => all(),
+            Moves::All => all().or_else(all_but_switching),
+            Moves::AllButSwitching => all_but_switching(),
         }
     }
 }
 
-/// Dampings to try one after the other.
+/// The damping values to try, in order.
 fn dampings(first: f64) -> impl Iterator<Item = f64> {
-    std::iter::successors(Some(first), |&damping| Some(DAMPED_MORE * damping)).take(TRIES)
+    std::iter::successors(Some(first), |&damping| Some(DAMPING_FACTOR * damping)).take(TRIES)
 }
 
-/// An estimate with what it leaves.
+/// An estimate with its residuals and cost.
 struct Point {
     estimate: Estimate,
     residuals: Vec<Vec<f64>>,

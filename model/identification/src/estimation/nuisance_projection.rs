@@ -1,4 +1,4 @@
-//! What the parameters that are already free could absorb, taken out of residuals and signatures.
+//! Projection of the free nuisance parameters out of residuals and signatures.
 
 use std::borrow::Borrow;
 use std::ops::Range;
@@ -8,18 +8,18 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use crate::estimate::Estimate;
 use crate::estimation::jacobian::{Jacobian, RunJacobian, dot, square_sum, subtract};
 
-/// Columns of a Jacobian that are free, ready to be projected out, with every run's load.
+/// The free columns of a Jacobian and each run's load, prepared for projection.
 pub struct NuisanceProjection<J> {
     jacobian: J,
     kept: Vec<usize>,
-    /// Normal matrix of the kept columns, the loads eliminated, and its root.
+    /// Normal matrix of the kept columns with the loads eliminated, and its Cholesky factor.
     matrix: DMatrix<f64>,
     normal: Option<Cholesky<f64, Dyn>>,
-    /// How far each kept parameter may still go within its range, in scales.
+    /// Distances of each kept parameter to the ends of its range, in scales.
     room: Vec<(f64, f64)>,
     /// Each run's load.
     loads: Vec<Option<Load>>,
-    /// Pull of the priors of the shared parameters.
+    /// Gradient of the priors of the shared parameters.
     priors: DVector<f64>,
     /// Products of the projection's own residuals.
     own: Products,
@@ -27,17 +27,17 @@ pub struct NuisanceProjection<J> {
     here: f64,
 }
 
-/// A run's load in a projection.
+/// A run's load column in a projection.
 struct Load {
-    /// Squared length of its column, with the unit prior.
+    /// Squared norm of its column plus the unit prior.
     square: f64,
     /// Present load error, in prior sigmas.
     value: f64,
-    /// Products of its column with the kept ones.
+    /// Dot products with the kept columns.
     coupling: DVector<f64>,
 }
 
-/// Products of residuals with the columns of a projection: all of theirs that is linear in them.
+/// Dot products of residuals with the columns of a projection; linear in the residuals.
 #[derive(Clone)]
 struct Products {
     /// With each run's load.
@@ -47,8 +47,8 @@ struct Products {
 }
 
 impl Products {
-    /// Those of twice the residuals whose products these are, less others.
-    fn twice_less(&self, less: &Self) -> Self {
+    /// Products of twice the residuals of these minus those of others.
+    fn mirrored(&self, less: &Self) -> Self {
         let loads = self.loads.iter().zip(&less.loads);
         Self {
             loads: loads.map(|(own, less)| 2.0 * own - less).collect(),
@@ -58,14 +58,14 @@ impl Products {
 }
 
 impl<J: Borrow<Jacobian>> NuisanceProjection<J> {
-    /// All shared parameters of the Jacobian but the columns `left_out`, and but those that stand at an end of their
-    /// range: a clock that cannot move on absorbs nothing.
+    /// Keeps all shared parameters of the Jacobian except the columns `left_out` and those at an end of their range: a
+    /// clock that cannot move absorbs nothing.
     #[must_use]
     pub fn new(owner: J, estimate: &Estimate, left_out: Range<usize>) -> Self {
         Self::keeping(owner, estimate, |column| !left_out.contains(&column))
     }
 
-    /// The columns that `keeps` says by their index, but those that stand at an end of their range.
+    /// Keeps the columns selected by `keeps`, except those at an end of their range.
     #[must_use]
     pub fn keeping(owner: J, estimate: &Estimate, keeps: impl Fn(usize) -> bool) -> Self {
         let jacobian: &Jacobian = owner.borrow();
@@ -115,21 +115,22 @@ impl<J: Borrow<Jacobian>> NuisanceProjection<J> {
         projection
     }
 
-    /// Removes from a signature what the free parameters and the loads can imitate.
+    /// Removes the component of a signature that the free parameters and the loads can reproduce.
     #[must_use]
     pub fn project(&self, signature: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         self.project_with_penalty(signature).0
     }
 
-    /// [`NuisanceProjection::project`], and what the imitation costs in priors: a load far from what was weighed speaks against it.
+    /// [`NuisanceProjection::project`], and the prior cost of the removed component: a load far from the weighed one
+    /// counts against it.
     #[must_use]
     pub fn project_with_penalty(&self, signature: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, f64) {
         let shares = self.shares(&self.coupling(&signature));
         self.without(signature, &shares)
     }
 
-    /// [`NuisanceProjection::project_with_penalty`] of what is there as it stands, not of a direction: no parameter imitates it
-    /// beyond the end of its range.
+    /// [`NuisanceProjection::project_with_penalty`] of an actual change instead of a direction: every parameter stays
+    /// within its range.
     #[must_use]
     pub fn project_within_range(&self, signature: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, f64) {
         let coupling = self.coupling(&signature);
@@ -154,7 +155,7 @@ impl<J: Borrow<Jacobian>> NuisanceProjection<J> {
         self.without(signature, &shares)
     }
 
-    /// Shares of the free parameters with some of them held; `None` if they cannot be told apart.
+    /// Optimal values of the free parameters with some of them fixed; `None` if the system is singular.
     fn shares_beside(
         &self,
         coupling: &DVector<f64>,
@@ -173,7 +174,8 @@ impl<J: Borrow<Jacobian>> NuisanceProjection<J> {
         Some(matrix.cholesky()?.solve(&right))
     }
 
-    /// A signature less shares of the free columns and what the loads can imitate of the rest, and the penalty of both.
+    /// A signature minus given shares of the free columns and minus the optimal shares of the loads, and the prior cost
+    /// of both.
     fn without(&self, mut signature: Vec<Vec<f64>>, shares: &DVector<f64>) -> (Vec<Vec<f64>>, f64) {
         let with_prior = |&(&kept, _): &(&usize, &f64)| self.jacobian().shared[kept].has_prior();
         let clocks = self.kept.iter().zip(shares.iter()).filter(with_prior);
@@ -192,14 +194,14 @@ impl<J: Borrow<Jacobian>> NuisanceProjection<J> {
         (signature, penalty)
     }
 
-    /// Cost that would be left if the free parameters took from `residuals` what they can, to first order; `residuals`
-    /// belong to the projection's estimate with something else changed.
+    /// Cost of `residuals` once the free parameters have been re-optimised, to first order. `residuals` belong to the
+    /// projection's estimate with something else changed.
     #[must_use]
     pub fn cost_after(&self, residuals: &[Vec<f64>]) -> f64 {
         self.cost(square_sum(residuals), &self.products(residuals))
     }
 
-    /// An estimate that leaves `residuals`, with its clocks where they take from those what they can, to first order.
+    /// An estimate with residuals `residuals`, its clocks re-optimised to first order.
     #[must_use]
     pub fn synchronised(&self, estimate: &Estimate, residuals: &[Vec<f64>]) -> Estimate {
         let pull = self.pull(&self.products(residuals)) + &self.priors;
@@ -215,14 +217,15 @@ impl<J: Borrow<Jacobian>> NuisanceProjection<J> {
         synchronised
     }
 
-    /// [`NuisanceProjection::cost_after`] of the projection's own residuals: what there is without anything changed.
+    /// [`NuisanceProjection::cost_after`] of the projection's own residuals.
     #[must_use]
     pub fn here(&self) -> f64 {
         self.here
     }
 
-    /// How far to go from the projection's own residuals to `residuals` for the least [`NuisanceProjection::cost_after`], within `low` to
-    /// `high` times the way, and that cost: a parabola through both ends and the same way backwards.
+    /// Share of the way from the projection's own residuals to `residuals` that minimises
+    /// [`NuisanceProjection::cost_after`], within `low` to `high`, and that cost. The cost is a parabola through both
+    /// ends and the mirrored end.
     #[must_use]
     pub fn along(&self, residuals: &[Vec<f64>], low: f64, high: f64) -> (f64, f64) {
         let (mut own, mut mixed, mut moved) = (0.0, 0.0, 0.0);
@@ -233,7 +236,7 @@ impl<J: Borrow<Jacobian>> NuisanceProjection<J> {
         }
         let products = self.products(residuals);
         let ahead = self.cost(moved, &products);
-        let behind = self.cost(4.0 * (own - mixed) + moved, &self.own.twice_less(&products));
+        let behind = self.cost(4.0 * (own - mixed) + moved, &self.own.mirrored(&products));
         let here = self.here;
         let (slope, bend) = (0.5 * (ahead - behind), 0.5 * (ahead + behind) - here);
         if bend <= 0.0 {
@@ -271,7 +274,7 @@ impl<J: Borrow<Jacobian>> NuisanceProjection<J> {
         Products { loads, columns }
     }
 
-    /// Pull of residuals with these products on the free parameters, the loads eliminated.
+    /// Gradient of residuals with these products along the free parameters, with the loads eliminated.
     fn pull(&self, products: &Products) -> DVector<f64> {
         let mut pull = products.columns.clone();
         for (load, product) in self.loads.iter().zip(&products.loads) {
@@ -282,7 +285,7 @@ impl<J: Borrow<Jacobian>> NuisanceProjection<J> {
         pull
     }
 
-    /// Products of a signature with the free columns, the loads eliminated.
+    /// Dot products of a signature with the free columns, with the loads eliminated.
     fn coupling(&self, signature: &[Vec<f64>]) -> DVector<f64> {
         let products = self.products(signature);
         let mut coupling = products.columns;

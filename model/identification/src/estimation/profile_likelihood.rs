@@ -1,10 +1,10 @@
-//! How far a parameter may go before the cost tells.
+//! ProfileLikelihood-likelihood bounds of a parameter.
 //!
-//! The slope of the cost at its least promises an interval, and keeps the promise where the plant is smooth. A spool
-//! that breaks loose, or a hitch that comes down on the ground, does so at one sample or the next: the cost is a
-//! staircase, flat where its slope says steep. There the interval ends where the cost has risen by as much as the
-//! promise said it would (profile likelihood, Venzon & Moolgavkar 1988), all that is free besides adapting to first
-//! order.
+//! The curvature of the cost at its minimum gives a confidence interval that holds where the plant is smooth. A spool
+//! that breaks loose, or a hitch that touches the ground, does so at a discrete sample: the cost is then piecewise
+//! constant, flat where its slope predicts a rise. There the interval ends where the cost has actually risen by the
+//! predicted amount (profile likelihood, Venzon & Moolgavkar 1988), with all other free parameters re-optimised to
+//! first order.
 
 use hitch_plant::Model;
 
@@ -14,53 +14,53 @@ use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{Jacobian, huber_residuals};
 use crate::estimation::nuisance_projection::NuisanceProjection;
 
-/// A rise of the cost that is less than this share of the promised one breaks the promise.
-const KEPT: f64 = 0.5;
+/// Share of the predicted rise of the cost below which the quadratic approximation is rejected.
+const ACCEPTED_SHARE: f64 = 0.5;
 
-/// Once it is broken, the cost has to rise by so many times what was promised: a step of a staircase is one sample, and
-/// the noise of the current decides on which side of it a spool breaks loose.
-const BROKEN: f64 = 8.0;
+/// Factor on the required rise of the cost once the approximation is rejected: one step of the piecewise constant cost
+/// is a single sample, and the noise of the current decides on which side of it a spool breaks loose.
+const DISCRETE_RISE: f64 = 8.0;
 
-/// How much farther each look goes than the one before.
-const FARTHER: f64 = 1.5;
+/// Factor from one trial distance to the next.
+const DISTANCE_FACTOR: f64 = 1.5;
 
-/// Most looks, and how often the way between the last two is halved.
-const LOOKS: usize = 8;
-const HALVINGS: usize = 3;
+/// Largest number of trial distances, and number of bisections between the last two.
+const TRIALS: usize = 8;
+const BISECTIONS: usize = 3;
 
 /// The cost along one parameter of a fit.
-pub struct Profile<'a> {
-    /// What was measured.
+pub struct ProfileLikelihood<'a> {
+    /// The measured data.
     pub experiment: &'a Experiment,
     /// The model without effects.
     pub model: &'a Model,
-    /// The fit, whose weights hold.
+    /// The fit, whose weights are used.
     pub fit: &'a Fit,
-    /// Which parameter.
+    /// The parameter.
     pub shared: Shared,
-    /// All that is free besides it, at the fit.
+    /// Projection of all other free parameters, at the fit.
     pub projection: &'a NuisanceProjection<&'a Jacobian>,
 }
 
-impl Profile<'_> {
-    /// Where the interval ends that the slopes promise `half` away, in the parameter's unit, negative for downwards, and
-    /// at a cost that is higher by `rise`.
+impl ProfileLikelihood<'_> {
+    /// End of the interval, relative to the fitted value, in the parameter's unit; `half` is the bound of the quadratic
+    /// approximation, negative for the lower one, where it predicts a `rise` of the cost.
     #[must_use]
     pub fn end(&self, half: f64, rise: f64) -> f64 {
-        if self.rise(half) >= KEPT * rise {
+        if self.rise(half) >= ACCEPTED_SHARE * rise {
             return half;
         }
-        let told = |away: f64| self.rise(away) >= BROKEN * rise;
-        let (mut near, mut far) = (half, FARTHER * half);
-        for _ in 0..LOOKS {
-            if told(far) {
+        let exceeds = |away: f64| self.rise(away) >= DISCRETE_RISE * rise;
+        let (mut near, mut far) = (half, DISTANCE_FACTOR * half);
+        for _ in 0..TRIALS {
+            if exceeds(far) {
                 break;
             }
-            (near, far) = (far, FARTHER * far);
+            (near, far) = (far, DISTANCE_FACTOR * far);
         }
-        for _ in 0..HALVINGS {
+        for _ in 0..BISECTIONS {
             let middle = 0.5 * (near + far);
-            if told(middle) {
+            if exceeds(middle) {
                 far = middle;
             } else {
                 near = middle;
@@ -69,7 +69,7 @@ impl Profile<'_> {
         far
     }
 
-    /// Rise of the cost where the parameter is `away` from its fitted value.
+    /// Rise of the cost with the parameter `away` from its fitted value.
     fn rise(&self, away: f64) -> f64 {
         let mut moved = self.fit.estimate.clone();
         let (low, high) = moved.range(self.shared);

@@ -1,8 +1,8 @@
-//! Which physics is missing: the set of effects that a campaign asks for, stated as steps from the model to it.
+//! Explanation of a campaign: the identified set of effects, as steps from the model to it.
 //!
-//! The search ([`crate::search::subset`]) finds the set. Here its members are put in the order of what they explain, each is
-//! weighed beside all others (size, interval, detectability, probability), what could stand in its place is named, and
-//! what is left is judged.
+//! The search ([`crate::search::subset`]) finds the set. Here its members are ordered by the cost reduction they add
+//! and weighed against the model with all others (size, interval, detectability, probability). Confounded alternatives
+//! are listed, and the remaining residuals are tested for lack of fit.
 
 use hitch_plant::{Effect, Model};
 
@@ -18,25 +18,25 @@ use crate::search::candidates::{Progress, showing};
 use crate::search::single_effects::{confidences, try_each};
 use crate::search::subset::{Found, Options, search};
 use crate::selection::candidate::{Candidate, weigh};
-use crate::selection::evidence::TOLD_APART;
+use crate::selection::evidence::DISTINGUISHABLE;
 use crate::selection::hold_out::{HeldOut, held_out};
 use crate::selection::posterior::{Weighed, key_of};
 
-/// Fewest compared samples that anything is concluded from.
+/// Fewest compared samples for any conclusion.
 const FEWEST_SAMPLES: usize = 50;
 
-/// What an explanation comes to.
+/// Conclusion of an explanation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// The model was adequate as it was.
+    /// The model is adequate without any change.
     NothingMissing,
-    /// With the named effects the model is adequate.
+    /// The model is adequate with the named effects.
     Explained,
-    /// Adequate, but some named effect could be another.
+    /// Adequate, but a named effect is confounded with another.
     Ambiguous,
-    /// Something is left that is not in the catalogue.
+    /// A lack of fit remains that no effect of the catalogue explains.
     Unexplained,
-    /// The campaign cannot decide.
+    /// The campaign has too few data.
     NotEnoughData,
 }
 
@@ -54,77 +54,77 @@ impl Verdict {
     }
 }
 
-/// An effect that was added.
+/// An effect that was added or changed.
 #[derive(Debug, Clone)]
-pub struct Step {
-    /// Which effect.
+pub struct ExplanationStep {
+    /// The effect.
     pub effect: &'static dyn Effect,
     /// Error of the model before the step.
     pub error_before: f64,
     /// Error with the effect.
     pub error_after: f64,
-    /// What the model before the step leaves in held-out runs.
+    /// Error of the model before the step in held-out runs.
     pub held_out_before: HeldOut,
-    /// What it leaves there with the effect.
+    /// Error with the effect in held-out runs.
     pub held_out_after: HeldOut,
-    /// Probability that the effect is there beside the other steps', shared evenly with those that it cannot be told
-    /// from.
+    /// Posterior probability that the effect is present in addition to those of the other steps; confounded
+    /// alternatives share it.
     pub confidence: f64,
     /// Root mean square of its projected signature, in sigmas.
     pub detectability: f64,
-    /// Of the mean square that would be left beyond noise without it, where it shows, the share that it explains.
+    /// Share of the mean square beyond noise that the effect explains, weighted by its signature.
     pub explained_share: f64,
-    /// Effects that would explain the campaign as well in its place.
+    /// Confounded alternatives: effects that would explain the campaign as well in its place.
     pub indistinguishable: Vec<Alternative>,
-    /// Other forms of it that would explain the campaign as well; `None` is the usual one.
+    /// Other forms of it that would explain the campaign as well; `None` is the form without a name.
     pub other_forms: Vec<Option<&'static str>>,
     /// Values of its parameters in the final model.
     pub values: Vec<f64>,
     /// Their 95 % intervals.
     pub intervals: Vec<(f64, f64)>,
-    /// The size with which the effect was adopted; `None` if it is new.
+    /// The size before the search; `None` if the effect is new.
     pub changed_from: Option<f64>,
-    /// The model after the step, as it was fitted then.
+    /// The model after the step, as fitted.
     pub fit: Fit,
 }
 
-/// The way from a model to one that explains a campaign.
+/// The identified effects of a campaign, with the fits on the way.
 #[derive(Debug, Clone)]
 pub struct Explanation {
-    /// The model before, with its nuisances fitted and its effects as they were adopted.
+    /// The given model with its nuisance parameters fitted and its effects unchanged.
     pub before: Fit,
-    /// The model before with its effects fitted anew; `None` if it has none.
+    /// The given model with its effects refitted; `None` if it has none.
     pub refitted: Option<Fit>,
     /// The model after the last step.
     pub after: Fit,
     /// The steps in order.
-    pub steps: Vec<Step>,
-    /// What it comes to.
+    pub steps: Vec<ExplanationStep>,
+    /// The conclusion.
     pub verdict: Verdict,
-    /// Cells of the residuals after the last step, worst first.
+    /// Cells of the residuals after the last step, by decreasing excess.
     pub cells: Vec<Cell>,
-    /// What the rest goes with; empty if the rest is noise.
+    /// Signals on which the remaining error depends; empty unless the verdict is [`Verdict::Unexplained`].
     pub rest: Attribution,
-    /// What to measure next if the campaign cannot decide, or not between two effects.
+    /// The experiment to do next if the campaign cannot decide, or not between two effects.
     pub next_experiment: Option<NextExperiment>,
-    /// Effects that the campaign would not show; empty if what it does show is not explained.
+    /// Effects that the campaign could not detect; empty if the verdict is [`Verdict::Unexplained`].
     pub undetected: Vec<Undetected>,
-    /// Whether the time was up before the search had ended.
+    /// Whether the deadline passed before the search ended.
     pub unfinished: bool,
 }
 
-/// A campaign and a model with every effect of the catalogue tried once.
+/// A campaign and a model with every effect of the catalogue added once.
 #[derive(Debug, Clone)]
 pub struct Diagnosis {
-    /// The model as it is, with its nuisances fitted.
+    /// The given model, with its nuisance parameters fitted.
     pub base: Fit,
-    /// Effects tried, the most likely first.
+    /// The effects, by decreasing probability.
     pub candidates: Vec<Candidate>,
     /// Probability of each candidate among all and none.
     pub confidences: Vec<f64>,
 }
 
-/// Fits loads and clocks to a model whose effects stay as they are.
+/// Fits loads and clocks of a model; its effects stay unchanged.
 #[must_use]
 pub fn fit_base(experiment: &Experiment, model: &Model) -> Fit {
     let start = Estimate::new(experiment, model.effects.clone());
@@ -138,7 +138,7 @@ pub fn fit_freely(experiment: &Experiment, model: &Model) -> Fit {
     fit(experiment, model, start)
 }
 
-/// Tries every effect that the model does not have.
+/// Adds each effect that the model lacks, one at a time.
 #[must_use]
 pub fn diagnose(
     experiment: &Experiment,
@@ -149,7 +149,7 @@ pub fn diagnose(
     diagnose_each(experiment, model, base, progress, &|_, _| {})
 }
 
-/// [`diagnose`] that tells of each form as soon as it is weighed, in any order, and of how many there are.
+/// [`diagnose`] with a callback for each form once it is weighed, in any order, with the number of forms.
 #[must_use]
 pub fn diagnose_each(
     experiment: &Experiment,
@@ -159,8 +159,8 @@ pub fn diagnose_each(
     weighed: &(dyn Fn(&Candidate, usize) + Sync),
 ) -> Diagnosis {
     let absent = showing(experiment, model, &base.estimate);
-    let told = |candidate: &Candidate| weighed(candidate, absent.len());
-    let candidates = try_each(experiment, model, &base, &absent, progress, &told);
+    let report = |candidate: &Candidate| weighed(candidate, absent.len());
+    let candidates = try_each(experiment, model, &base, &absent, progress, &report);
     let confidences = confidences(&candidates);
     Diagnosis {
         base,
@@ -169,7 +169,7 @@ pub fn diagnose_each(
     }
 }
 
-/// Finds what is missing and what of the model has changed.
+/// Finds missing effects and changed ones of the model.
 #[must_use]
 pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Explanation {
     explain_with(experiment, model, Options::default(), progress)
@@ -193,13 +193,13 @@ pub fn explain_with(
     };
     progress("how sure that is");
     let mut steps = steps(experiment, model, &before, &found);
-    while let Some(doubtful) = steps.iter().position(may_be_nothing) {
-        let effect = found.order[doubtful];
-        let lighter = found.fit.estimate.without(effect);
-        let removed = lighter.effects.len() < found.fit.estimate.effects.len();
-        found.fit = refine(experiment, model, lighter);
+    while let Some(insignificant) = steps.iter().position(may_be_absent) {
+        let effect = found.order[insignificant];
+        let reduced = found.fit.estimate.without(effect);
+        let removed = reduced.effects.len() < found.fit.estimate.effects.len();
+        found.fit = refine(experiment, model, reduced);
         found.held_out = held_out(experiment, model, &found.fit);
-        found.order.remove(doubtful);
+        found.order.remove(insignificant);
         for other in &mut found.order {
             *other -= usize::from(removed && *other > effect);
         }
@@ -209,9 +209,9 @@ pub fn explain_with(
     concluded(experiment, model, base, found, steps)
 }
 
-/// Whether the interval of a step's size holds its absence. One jump that the noise of a current decided is as much
-/// evidence as anybody could ask for, and says nothing.
-fn may_be_nothing(step: &Step) -> bool {
+/// Whether the interval of a step's size contains its absent value. A single jump that the noise of a current decides
+/// can have any likelihood ratio, and is still no evidence.
+fn may_be_absent(step: &ExplanationStep) -> bool {
     let null = step.effect.parameters()[0].null;
     let off = step.changed_from.unwrap_or(null);
     match step.intervals.as_slice() {
@@ -220,10 +220,15 @@ fn may_be_nothing(step: &Step) -> bool {
     }
 }
 
-/// The members of the set that was found as steps, those first that explain most beside the ones before.
-fn steps(experiment: &Experiment, model: &Model, before: &Fit, found: &Found) -> Vec<Step> {
+/// The members of the set as steps, in greedy order of the cost reduction that each adds.
+fn steps(
+    experiment: &Experiment,
+    model: &Model,
+    before: &Fit,
+    found: &Found,
+) -> Vec<ExplanationStep> {
     let weighed = found.refitted.weighed(experiment, model, &found.fit);
-    let mut steps: Vec<Step> = Vec::new();
+    let mut steps: Vec<ExplanationStep> = Vec::new();
     for (count, &effect) in found.order.iter().enumerate() {
         let last = count + 1 == found.order.len();
         let fit = match last {
@@ -239,19 +244,19 @@ fn steps(experiment: &Experiment, model: &Model, before: &Fit, found: &Found) ->
             false => held_out(experiment, model, &fit),
         };
         let whole = with_last(experiment, model, &found.fit, effect);
-        let candidate = beside_others(experiment, model, whole.clone());
+        let candidate = weighed_last(experiment, model, whole.clone());
         let estimate = &found.fit.estimate;
         let id = estimate.effects[effect].effect.id();
         let with_it = weighed
             .iter()
             .filter(|set| set.key.ids().any(|own| own == id));
-        steps.push(Step {
+        steps.push(ExplanationStep {
             effect: candidate.effect,
             error_before,
             error_after: fit.error(),
             held_out_before,
             held_out_after,
-            confidence: with_it.map(|set| set.probability).sum::<f64>() * candidate.genuine(),
+            confidence: with_it.map(|set| set.probability).sum::<f64>() * candidate.plausibility(),
             detectability: candidate.detectability,
             explained_share: candidate.explained_share,
             other_forms: other_forms(&found.fit, id, &weighed),
@@ -265,7 +270,7 @@ fn steps(experiment: &Experiment, model: &Model, before: &Fit, found: &Found) ->
     steps
 }
 
-/// The fit with some of the effects that were added or changed, by their indices.
+/// The fit with a subset of the added or changed effects, by their indices.
 fn with_some(experiment: &Experiment, model: &Model, found: &Found, effects: &[usize]) -> Fit {
     let mut estimate = found.fit.estimate.clone();
     for effect in (0..estimate.effects.len()).rev() {
@@ -279,8 +284,8 @@ fn with_some(experiment: &Experiment, model: &Model, found: &Found, effects: &[u
     }
 }
 
-/// The last effect of a fit weighed beside all others.
-fn beside_others(experiment: &Experiment, model: &Model, whole: Fit) -> Candidate {
+/// The last effect of a fit weighed against the model with all others.
+fn weighed_last(experiment: &Experiment, model: &Model, whole: Fit) -> Candidate {
     let last = whole.estimate.effects.len() - 1;
     let named = whole.estimate.effects[last].effect;
     let without = whole.estimate.without(last);
@@ -288,15 +293,17 @@ fn beside_others(experiment: &Experiment, model: &Model, whole: Fit) -> Candidat
     weigh(experiment, model, &base, named, whole)
 }
 
-/// Forms of an effect of a fit that explain the campaign as well in the place of its own.
+/// Forms of an effect that explain the campaign as well as its own.
 fn other_forms(fit: &Fit, id: &str, weighed: &[Weighed]) -> Vec<Option<&'static str>> {
     let own = key_of(&fit.estimate);
-    let near = weighed.iter().filter(|set| set.likelier > -TOLD_APART);
+    let near = weighed
+        .iter()
+        .filter(|set| set.relative_likelihood_ratio > -DISTINGUISHABLE);
     near.filter_map(|set| own.form_in_place(set.key, id))
         .collect()
 }
 
-/// Effects that explain the campaign as well in the place of the last one of a fit.
+/// Confounded alternatives of the last effect of a fit.
 fn alternatives(
     experiment: &Experiment,
     model: &Model,
@@ -316,7 +323,7 @@ fn alternatives(
             && kept
                 .into_iter()
                 .all(|&id| set.key.ids().any(|its| its == id));
-        (same && set.likelier > -TOLD_APART).then_some(other)
+        (same && set.relative_likelihood_ratio > -DISTINGUISHABLE).then_some(other)
     };
     let mut alternatives: Vec<Alternative> = weighed
         .iter()
@@ -325,10 +332,18 @@ fn alternatives(
             let effects = &set.fit.estimate.effects;
             let index = effects.iter().position(|added| added.effect.id() == id)?;
             let its = with_last(experiment, model, set.fit, index);
-            Alternative::new(experiment, model, whole, (its, set.likelier))
+            Alternative::new(
+                experiment,
+                model,
+                whole,
+                (its, set.relative_likelihood_ratio),
+            )
         })
         .collect();
-    alternatives.sort_by(|a, b| b.likelier.total_cmp(&a.likelier));
+    alternatives.sort_by(|a, b| {
+        b.relative_likelihood_ratio
+            .total_cmp(&a.relative_likelihood_ratio)
+    });
     alternatives
 }
 
@@ -337,7 +352,7 @@ fn concluded(
     model: &Model,
     (before, refitted): (Fit, Option<Fit>),
     found: Found,
-    steps: Vec<Step>,
+    steps: Vec<ExplanationStep>,
 ) -> Explanation {
     let after = found.fit;
     let cells = cells_since(&cells(experiment, &before), experiment, &after);
@@ -371,9 +386,9 @@ fn concluded(
     }
 }
 
-/// Every named effect with each that could stand in its place.
-fn pairs<'a>(after: &'a Fit, steps: &'a [Step]) -> Vec<Pair<'a>> {
-    let of_step = |step: &'a Step| {
+/// Every named effect with each of its confounded alternatives.
+fn pairs<'a>(after: &'a Fit, steps: &'a [ExplanationStep]) -> Vec<Pair<'a>> {
+    let of_step = |step: &'a ExplanationStep| {
         step.indistinguishable.iter().map(|alternative| Pair {
             named: Rival {
                 effect: step.effect,
@@ -391,7 +406,7 @@ fn pairs<'a>(after: &'a Fit, steps: &'a [Step]) -> Vec<Pair<'a>> {
 fn verdict(
     experiment: &Experiment,
     cells: &[Cell],
-    steps: &[Step],
+    steps: &[ExplanationStep],
     after: &Fit,
     missing: Option<&str>,
 ) -> Verdict {
@@ -410,12 +425,12 @@ fn verdict(
     }
 }
 
-/// Whether there is anything to tell an effect from noise by.
+/// Whether there are enough samples to distinguish an effect from noise.
 fn enough(fit: &Fit) -> bool {
     fit.weights.count() >= FEWEST_SAMPLES
 }
 
-/// The manoeuvre without which a campaign cannot clear a model, if it lacks one.
+/// The manoeuvre that a campaign lacks to conclude that nothing is missing, if any.
 fn missing_manoeuvre(experiment: &Experiment, fit: &Fit) -> Option<&'static str> {
     let seen = |wanted: Regime| {
         let regimes = experiment.runs.iter().flat_map(|run| &run.regimes);

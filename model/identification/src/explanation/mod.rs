@@ -1,4 +1,4 @@
-//! The set of effects stated as steps from the model to it.
+//! The explanation of a campaign, as steps from the model to the identified set of effects.
 
 pub mod explain;
 pub mod undetected;

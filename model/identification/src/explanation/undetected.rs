@@ -1,7 +1,7 @@
-//! What a campaign could not show if it were there.
+//! Effects that a campaign could not detect.
 //!
-//! "Nothing missing" only holds for what would have been seen. A pump that slips shows where the demand exceeds what
-//! it delivers, a relief valve at a stop: duty cycles have neither, and then a clean answer says nothing of them.
+//! "Nothing missing" only covers detectable effects. The slip of a pump shows if the demand exceeds its delivery, a
+//! relief valve at a stop. Duty cycles contain neither, so their verdict says nothing about these effects.
 
 use hitch_plant::{AddedEffect, Channel, Effect, Model};
 use rayon::prelude::*;
@@ -13,18 +13,19 @@ use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::search::candidates::absent;
 use crate::selection::evidence::{VISIBLE, detectability};
 
-/// An effect of typical size that a campaign would not show.
+/// An effect of typical size that a campaign could not detect.
 #[derive(Debug, Clone)]
 pub struct Undetected {
-    /// Which effect.
+    /// The effect.
     pub effect: &'static dyn Effect,
-    /// Root mean square of what it would change and nothing that is free could imitate, in sigmas.
+    /// Root mean square of its signature with all free parameters projected out, in sigmas.
     pub detectability: f64,
-    /// Channels that it shows in and the campaign does not have.
+    /// Channels that it acts on and that the campaign lacks.
     pub missing: Vec<Channel>,
 }
 
-/// Effects, at their typical size, that a campaign would not show beside what a fit has; the faintest first.
+/// Effects, at their typical size, whose signature beyond the free parameters of a fit is too small; by increasing
+/// detectability.
 #[must_use]
 pub fn undetected(experiment: &Experiment, model: &Model, fit: &Fit) -> Vec<Undetected> {
     let experiment =
@@ -53,7 +54,7 @@ pub fn undetected(experiment: &Experiment, model: &Model, fit: &Fit) -> Vec<Unde
     undetected
 }
 
-/// Channels that an effect shows in and no run has.
+/// Channels that an effect acts on and that no run contains.
 fn missing(experiment: &Experiment, effect: &dyn Effect) -> Vec<Channel> {
     let channels = effect.channels().iter().copied();
     channels

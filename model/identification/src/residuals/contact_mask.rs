@@ -1,7 +1,7 @@
-//! Where a hitch without inertia comes down on the ground or leaves it.
+//! Mask of the samples where a hitch without inertia touches the ground or leaves it.
 //!
-//! Its flow ends there within a few milliseconds, and a sample that was taken just before or just after is off by the
-//! whole flow: a tenth of a degree decides on which side it lies.
+//! The flow stops within a few milliseconds there. A sample just before or just after is off by the whole flow, and a
+//! tenth of a degree decides on which side it lies.
 
 use hitch_plant::hooks::effect_hooks::{EffectHooks, RunConditions};
 use hitch_plant::simulation::Trace;
@@ -10,7 +10,8 @@ use hitch_plant::{AddedEffect, Dynamics, Model, SizeResponse};
 
 use crate::data::experiment::ReadyRun;
 
-/// Samples next to a landing or a lift-off in either of two traces of a run. A ringing hitch bounces instead, which lasts.
+/// Samples next to a ground contact or a lift-off in either of two traces of a run. A dynamic model bounces for some
+/// time instead and has no such samples.
 pub(crate) fn contact_mask(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
     let mut near = vec![false; run.len()];
     let (true, Some(ground_deg)) = (run.on_hitch(), ground_deg(run, model)) else {
@@ -32,7 +33,7 @@ pub(crate) fn contact_mask(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -
     near
 }
 
-/// Rocker angle at which the hitch touches the ground, degree, in a quasi-static model that has ground.
+/// Rocker angle at which the hitch touches the ground, degree; `None` in a dynamic model or without ground.
 fn ground_deg(run: &ReadyRun, model: &Model) -> Option<f64> {
     if model.constants().dynamics == Dynamics::Dynamic {
         return None;
@@ -44,7 +45,7 @@ fn ground_deg(run: &ReadyRun, model: &Model) -> Option<f64> {
     Some(linkage.at(piston_m).rocker_angle_rad.to_degrees())
 }
 
-/// Height of the ground over the rocker shaft, m, that the effects of a model bring.
+/// Height of the ground above the rocker shaft, m, set by the effects of a model.
 fn ground_m(run: &ReadyRun, model: &Model) -> Option<f64> {
     let located = |added: &&AddedEffect| added.effect.size_response() == SizeResponse::Located;
     let mut hooks = EffectHooks::default();

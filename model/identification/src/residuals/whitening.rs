@@ -1,14 +1,14 @@
-//! Measured minus simulated, in units of what the instruments and the logged current leave unknown.
+//! Whitening of residuals: measured minus simulated, in units of their standard deviation.
 //!
-//! * Pressures and flow: the yardstick of a sample is the instrument's noise and, in quadrature, what the uncertainty
-//!   of the logged current and of the time of sampling make of the simulated value. Samples that a log cannot say at
-//!   all (a pressure edge that may lie on either side of the sample) are left out.
-//! * The angle integrates the flow, so errors of the logged current add up in it as a random walk whose steps are
-//!   known. A scalar Kalman filter takes that walk out: what is compared is each sample with its prediction from the
-//!   model and the samples before (Kristensen, Madsen & Jorgensen 2004, with the diffusion known instead of fitted).
-//!   Drift without flow through a valve is not excused. The start angle's uncertainty is the walk's first step.
+//! * Pressures and flow: the standard deviation of a sample combines, in quadrature, the instrument's noise and the
+//!   effect of the uncertainty of the logged current and of the sampling time on the simulated value. Samples that a
+//!   log cannot resolve (a pressure edge that may lie on either side of the sample) are left out.
+//! * Angle: it integrates the flow, so errors of the logged current accumulate as a random walk with known step
+//!   variance. A scalar Kalman filter removes the walk: each sample is compared with its prediction from the model and
+//!   the previous samples (Kristensen, Madsen & Jorgensen 2004, with known instead of fitted diffusion). Drift without
+//!   flow through a valve is not removed. The uncertainty of the start angle is the walk's first step.
 //!
-//! Both are linear in the difference, so sensitivities go through the same filter.
+//! Both are linear in the difference, so sensitivities pass through the same filter.
 
 use std::sync::Arc;
 
@@ -21,45 +21,45 @@ use crate::data::trace_cache::CurrentShift;
 use crate::estimate::Estimate;
 use crate::residuals::contact_mask::contact_mask;
 
-/// A sample whose yardstick grows beyond this many times the instrument's noise is left out.
-const UNKNOWABLE: f64 = 8.0;
+/// Samples whose standard deviation exceeds this multiple of the instrument's noise are left out.
+const LARGEST_DEVIATION: f64 = 8.0;
 
-/// This near to an end of the swing, degree, the hitch stands against the stop. What the angle's walk has added up is
-/// lost there: the hitch arrives a little earlier or later than simulated, and then stands where it must.
+/// Distance from an end of the swing, degree, within which the hitch rests against the stop. The angle's random walk is
+/// reset there: the hitch arrives slightly earlier or later than simulated, and then stands at the stop.
 const AT_A_STOP_DEG: f64 = 0.2;
 
-/// How long after a stop what was trapped there still rings, s: a heavy load loses three quarters of it in this time.
+/// Time after leaving a stop during which the trapped oil still rings, s: a heavy load decays to a quarter in it.
 const AFTER_A_STOP_S: f64 = 1.5;
 
-/// What remains unknown of when a sample was taken, one sigma, s: a twentieth of a 50 Hz sample. On ramps it moves the
-/// flow, after a switch it turns the phase of a ringing pressure.
+/// Uncertainty of the sampling time, one sigma, s: a twentieth of a 50 Hz sample. On ramps it changes the flow, after a
+/// switch the phase of a ringing pressure.
 const TIMING_S: f64 = 0.001;
 
-/// Part of a pressure's swing within [`RINGING_S`] of a sample that a dynamic model may be off by: frequency and
-/// damping of the ringing hang on oil, hose, seals and stops, whose constants nobody knows to better than some percent.
+/// Error of a ringing pressure, as a share of its standard deviation within [`RINGING_S`] (s) of a sample, in a dynamic
+/// model: frequency and damping depend on oil, hose, seals and stops, whose constants are known only to some percent.
 const RINGING_SHARE: f64 = 0.07;
 const RINGING_S: f64 = 0.1;
 
-/// How one run's differences are whitened.
+/// Whitening of one run's differences.
 #[derive(Debug, Clone)]
 pub struct RunWeights {
-    /// One over the yardstick of every sample, channel after channel; zero where nothing can be compared.
+    /// Reciprocal standard deviation of every sample, channel after channel; zero for samples that are left out.
     pub scale: Vec<f64>,
     /// Gain of the angle's filter at every sample.
     gain: Vec<f64>,
 }
 
-/// How all differences are whitened.
+/// Whitening of all differences.
 #[derive(Debug, Clone)]
 pub struct Weights {
-    /// One entry a run.
+    /// One entry per run.
     pub runs: Vec<RunWeights>,
     /// Compared samples of each channel by [`Channel::index`].
     pub counts: [usize; 4],
 }
 
 impl Weights {
-    /// Weights as they are under `estimate`.
+    /// Weights at `estimate`.
     #[must_use]
     pub fn new(experiment: &Experiment, model: &Model, estimate: &Estimate) -> Self {
         let model = estimate.applied_to(model);
@@ -70,7 +70,7 @@ impl Weights {
         Self::counted(runs)
     }
 
-    /// The weights of some of the runs.
+    /// The weights of the runs `picked`.
     #[must_use]
     pub fn of_runs(&self, picked: &[usize]) -> Self {
         let runs = picked.iter().map(|&run| self.runs[run].clone()).collect();
@@ -93,7 +93,7 @@ impl Weights {
         self.counts.iter().sum()
     }
 
-    /// The same weights with each channel's multiplied by a factor.
+    /// The same weights, multiplied by a factor per channel.
     #[must_use]
     pub fn scaled(mut self, factors: [f64; 4]) -> Self {
         for run in &mut self.runs {
@@ -130,7 +130,7 @@ impl RunWeights {
         let at_an_edge = |sample: usize| edges.as_ref().is_some_and(|edges| edges[sample]);
         let stops = at_a_stop(run, model, [&below, &above]);
         let contact_mask = contact_mask(run, model, [&below, &above]);
-        let hangs_on_a_hair = |sample: usize| stops[sample] || contact_mask[sample];
+        let is_discontinuous = |sample: usize| stops[sample] || contact_mask[sample];
         let ringing = experiment.ringing;
         for channel in [
             Channel::PumpPressure,
@@ -152,12 +152,12 @@ impl RunWeights {
                     0.5 * (above.channel(channel)[sample] - below.channel(channel)[sample]);
                 let shift = 0.5 * (late.channel(channel)[sample] - early.channel(channel)[sample]);
                 let noise = sigma / run.averaged[sample].sqrt();
-                let yardstick = noise.hypot(spread).hypot(shift).hypot(tolerance[sample]);
-                let known = yardstick <= UNKNOWABLE * sigma
-                    && !hangs_on_a_hair(sample)
+                let deviation = noise.hypot(spread).hypot(shift).hypot(tolerance[sample]);
+                let known = deviation <= LARGEST_DEVIATION * sigma
+                    && !is_discontinuous(sample)
                     && !(channel == Channel::PumpPressure && at_an_edge(sample));
                 if value.is_finite() && known {
-                    weights.scale[offset + sample] = 1.0 / yardstick;
+                    weights.scale[offset + sample] = 1.0 / deviation;
                 }
             }
         }
@@ -165,7 +165,7 @@ impl RunWeights {
         weights
     }
 
-    /// Gains of the scalar filter for the random walk that the noise of the currents makes of the angle.
+    /// Gains of the scalar Kalman filter for the random walk of the angle.
     fn filter_angle(
         &mut self,
         experiment: &Experiment,
@@ -179,7 +179,7 @@ impl RunWeights {
         let of_sample = experiment.noise[Channel::RockerAngle.index()].powi(2);
         let offset = Channel::RockerAngle.index() * run.len();
         let steps = walk_steps_deg(experiment, run, model, traces);
-        // The first guess of the start angle is good to one sigma of the sensor.
+        // The initial start angle has the uncertainty of one sensor reading.
         let mut variance = of_sample;
         for (sample, value) in measured.iter().enumerate() {
             variance += steps[sample] * steps[sample];
@@ -201,7 +201,7 @@ impl RunWeights {
         part.iter().filter(|&&scale| scale > 0.0).count()
     }
 
-    /// Whitened residuals of the run, channel after channel; zero where nothing is compared.
+    /// Whitened residuals of the run, channel after channel; zero for samples that are left out.
     #[must_use]
     pub fn whiten(&self, run: &ReadyRun, trace: &Trace) -> Vec<f64> {
         let mut residual = vec![0.0; 4 * run.len()];
@@ -215,10 +215,10 @@ impl RunWeights {
             for sample in 0..run.len() {
                 let scale = self.scale[offset + sample];
                 if scale > 0.0 {
-                    let surprise = measured[sample] - simulated[sample] - walk;
-                    residual[offset + sample] = surprise * scale;
+                    let innovation = measured[sample] - simulated[sample] - walk;
+                    residual[offset + sample] = innovation * scale;
                     if channel == Channel::RockerAngle {
-                        walk += self.gain[sample] * surprise;
+                        walk += self.gain[sample] * innovation;
                     }
                 }
             }
@@ -227,7 +227,7 @@ impl RunWeights {
     }
 }
 
-/// What a ringing pressure may be off by at each sample, in its unit: a share of its standard deviation nearby.
+/// Tolerance of a ringing pressure at each sample, in its unit: a share of its local standard deviation.
 fn ringing_tolerance(time_s: &[f64], pressure: &[f64]) -> Vec<f64> {
     let step_s = (time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64;
     let reach = (RINGING_S / step_s).round().max(1.0) as usize;
@@ -243,15 +243,15 @@ fn ringing_tolerance(time_s: &[f64], pressure: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// How many samples on either side of a jump of the pump pressure are left out: a log whose channels may be a sample
-/// out of step cannot say on which side of the jump they lie.
+/// Samples on either side of a jump of the pump pressure that are left out: channels of a log may be offset by one
+/// sample.
 const EDGE_SAMPLES: usize = 2;
 
-/// How far the current may be off, in its sigmas, where it decides whether the lift valve opens at all: a plateau of a
-/// staircase that lies at the threshold says nothing of the pump pressure.
+/// Uncertainty of the current, in sigmas, for deciding whether the lift valve opens at all: a plateau of a staircase at
+/// the threshold carries no information on the pump pressure.
 const EDGE_SPREADS: f64 = 3.0;
 
-/// Samples next to a jump of the pump pressure between idle and load pressure.
+/// Mask of the samples next to a jump of the pump pressure between idle and load pressure.
 fn pump_edges(run: &ReadyRun, traces: [Arc<Trace>; 2]) -> Vec<bool> {
     let last = run.len() - 1;
     let lifts = |sample: usize| {
@@ -270,8 +270,8 @@ fn pump_edges(run: &ReadyRun, traces: [Arc<Trace>; 2]) -> Vec<bool> {
         .collect()
 }
 
-/// Samples at which the hitch stands against a stop, measured or simulated: pressure and flow there hang on the stop's
-/// stiffness and on how hard it was met. What a simulated sensor shows, that may read wrong, does not matter.
+/// Mask of the samples at which the hitch rests against a stop, measured or simulated: pressure and flow then depend on
+/// the stop's stiffness and the impact. The true simulated angle is used, not the reading of a sensor.
 fn at_a_stop(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
     let (low_rad, high_rad) = model.linkage().swing_rad();
     let stops_deg = [low_rad.to_degrees(), high_rad.to_degrees()];
@@ -295,7 +295,7 @@ fn at_a_stop(run: &ReadyRun, model: &Model, traces: [&Trace; 2]) -> Vec<bool> {
         .collect()
 }
 
-/// Standard deviation of the angle's walk from one sample to the next, degree.
+/// Standard deviation of the angle's random walk per sample, degree.
 fn walk_steps_deg(
     experiment: &Experiment,
     run: &ReadyRun,
@@ -326,7 +326,7 @@ fn walk_steps_deg(
             let angle_deg = above.channel(Channel::RockerAngle)[sample];
             let travel_m = units::m3_s_from_lpm(flow_lpm * share) / area_m2
                 * (time_s[sample] - time_s[sample - 1]);
-            // Of independent steps the squares add up.
+            // Variances of independent steps add up.
             travel_m / run.averaged[sample].sqrt()
                 * linkage
                     .angle_slope_rad_m(angle_deg.to_radians())
@@ -336,7 +336,7 @@ fn walk_steps_deg(
         .collect()
 }
 
-/// The value that belongs to the valve that is on.
+/// The value of the valve that is driven.
 fn active(values: Currents, currents: Currents) -> f64 {
     if currents.lift_a > currents.lower_a {
         values.lift_a

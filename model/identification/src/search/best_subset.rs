@@ -1,7 +1,7 @@
-//! The best subsets of a dictionary's columns by a quadratic cost.
+//! Best subsets of the dictionary's columns under the quadratic cost.
 //!
-//! Subsets of up to [`EXACT`] columns are all looked at. Larger ones grow from the best [`BEAM`] of one fewer: of three
-//! columns that explain a campaign the two that matter most are among those.
+//! Subsets of up to [`EXACT`] columns are enumerated. Larger ones are extended from the best [`BEAM`] of one column
+//! less: of three columns that explain a campaign, the two most important are among those.
 
 use std::collections::HashSet;
 
@@ -10,30 +10,30 @@ use rayon::prelude::*;
 use crate::search::dictionary_entry::Entry;
 use crate::search::gram_matrix::Gram;
 
-/// Size up to which every subset is looked at.
+/// Size up to which all subsets are enumerated.
 const EXACT: usize = 2;
 
-/// Subsets of one size from which larger ones grow.
+/// Number of subsets of one size that are extended.
 const BEAM: usize = 400;
 
 /// Most columns of a subset.
 pub(crate) const MOST: usize = 6;
 
-/// Sweeps of the coordinate descent that finds shares within their ranges.
+/// Sweeps of the coordinate descent for the bounded shares.
 const SWEEPS: usize = 12;
 
-/// A subset of the columns with the shares that fit best.
+/// A subset of the columns with its optimal shares.
 #[derive(Debug, Clone)]
 pub(crate) struct Subset {
-    /// Indices of the columns, rising.
+    /// Indices of the columns, ascending.
     pub columns: Vec<usize>,
     /// Share of each.
     pub shares: Vec<f64>,
-    /// Cost that is left.
+    /// Remaining cost.
     pub cost: f64,
 }
 
-/// The subsets of each size up to `largest`, by size and then by their cost.
+/// The subsets of each size up to `largest`, by size and then by cost.
 pub(crate) fn best_subsets(gram: &Gram, entries: &[Entry], largest: usize) -> Vec<Vec<Subset>> {
     let empty = Subset {
         columns: Vec::new(),
@@ -52,7 +52,7 @@ pub(crate) fn best_subsets(gram: &Gram, entries: &[Entry], largest: usize) -> Ve
     sizes
 }
 
-/// All subsets with one column more than the best of some, each once, by their cost.
+/// All subsets with one column more than the `beam` best of `smaller`, without duplicates, by cost.
 fn grown(gram: &Gram, entries: &[Entry], smaller: &[Subset], beam: usize) -> Vec<Subset> {
     let mut seen = HashSet::new();
     let mut wanted = Vec::new();
@@ -78,11 +78,11 @@ fn grown(gram: &Gram, entries: &[Entry], smaller: &[Subset], beam: usize) -> Vec
     grown
 }
 
-/// The shares of some columns that leave the least cost within their ranges.
+/// The optimal shares of some columns within their bounds.
 pub(crate) fn fitted(gram: &Gram, entries: &[Entry], columns: Vec<usize>) -> Subset {
     let count = columns.len();
     let mut shares = [0.0; MOST];
-    // The slope of half the cost.
+    // Gradient of half the cost.
     let mut slope = [0.0; MOST];
     for (slope, &column) in slope.iter_mut().zip(&columns) {
         *slope = -gram.pull[column];

@@ -5,17 +5,17 @@ use hitch_plant::{Effect, Model};
 use crate::data::experiment::Experiment;
 use crate::estimate::Estimate;
 
-/// Report of what is being done, for progress displays.
+/// Callback with a description of the current task, for progress displays.
 pub type Progress<'a> = &'a (dyn Fn(&str) + Sync);
 
-/// Effects that the plant can have and the estimate has not.
+/// Effects that the plant can have and that the estimate does not contain.
 pub(crate) fn absent(model: &Model, estimate: &Estimate) -> Vec<&'static dyn Effect> {
     possible(model)
         .filter(|effect| !has(estimate, *effect))
         .collect()
 }
 
-/// Those of them that show in a channel that the experiment has. An angle sensor that nobody logged is no explanation.
+/// Those of them that act on a measured channel: an angle sensor that was not logged explains nothing.
 pub(crate) fn showing(
     experiment: &Experiment,
     model: &Model,

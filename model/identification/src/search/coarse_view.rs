@@ -1,11 +1,11 @@
-//! What a search looks at before it fits: a fit seen on a condensed experiment.
+//! A fit on a condensed experiment, for screening before full fits.
 
 use hitch_plant::Model;
 
 use crate::data::experiment::Experiment;
 use crate::estimation::fit::{Fit, evaluate, evaluate_weighted};
 
-/// A fit and what it was fitted to, both condensed where that saves most of the work.
+/// A fit and its experiment, both condensed if that saves most of the work.
 pub(crate) struct Coarse<'a> {
     /// All samples.
     pub experiment: &'a Experiment,
@@ -15,14 +15,14 @@ pub(crate) struct Coarse<'a> {
     pub present: &'a Fit,
     /// The experiment on fewer samples.
     pub few: Experiment,
-    /// What the same estimate leaves there.
+    /// The estimate of `present`, evaluated on `few`.
     pub seen: Fit,
-    /// The same runs coarse_in_time around it.
+    /// The runs of `few` with coarse time steps, corrected around the present fit.
     pub coarse_in_time: Experiment,
 }
 
 impl<'a> Coarse<'a> {
-    /// A fit seen coarsely.
+    /// Condenses the experiment of a fit.
     pub fn new(experiment: &'a Experiment, model: &'a Model, present: &'a Fit) -> Self {
         let fitted = present.estimate.applied_to(model);
         let nuisances = &present.estimate.nuisances;
@@ -42,7 +42,7 @@ impl<'a> Coarse<'a> {
         }
     }
 
-    /// The cost of another fit there, under the yardsticks of this one or its own, whichever is less.
+    /// Cost of another fit on the condensed experiment, under the weights of this one or its own, whichever is less.
     pub fn cost(&self, fit: &Fit) -> f64 {
         let estimate = || fit.estimate.clone();
         if fit.cost == self.present.cost {

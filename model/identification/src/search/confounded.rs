@@ -1,14 +1,15 @@
-//! Confounded alternatives: what may explain as much as an effect that was found.
+//! Confounded alternatives: effects that may explain as much as an identified one.
 
 use crate::search::best_subset::fitted;
 use crate::search::dictionary::Dictionary;
 use crate::search::dictionary_entry::Kind;
 
-/// Share of what an effect explains that another has to promise beside the same others. A secant promises at the size
-/// that was simulated; what explains as much at its best size promises most of it.
-const AS_MUCH: f64 = 0.5;
+/// Share of the cost reduction of an effect that an alternative has to predict in its place. A secant predicts at the
+/// simulated size; an alternative that explains as much at its optimal size predicts most of it at that one.
+const CONFOUNDED_SHARE: f64 = 0.5;
 
-/// The ids of the effects that promise as much as one of the fit that a dictionary was made around, by its index there.
+/// Ids of the effects that predict about the same cost reduction as one of the effects of the dictionary's fit, by its
+/// index.
 pub(crate) fn confounded(dictionary: &Dictionary, effect: usize) -> Vec<&'static str> {
     let (gram, entries) = (&dictionary.gram, dictionary.entries.as_slice());
     let columns = |keeps: &dyn Fn(Kind) -> bool| -> Vec<usize> {
@@ -27,7 +28,7 @@ pub(crate) fn confounded(dictionary: &Dictionary, effect: usize) -> Vec<&'static
     let explained = without - cost(Some(own));
     let mut ids: Vec<&'static str> = columns(&|kind| !matches!(kind, Kind::Present(_)))
         .into_iter()
-        .filter(|&column| without - cost(Some(column)) >= AS_MUCH * explained)
+        .filter(|&column| without - cost(Some(column)) >= CONFOUNDED_SHARE * explained)
         .map(|column| entries[column].id())
         .collect();
     ids.sort_unstable();

@@ -1,8 +1,8 @@
-//! What is late by itself and what is only stamped late.
+//! Separation of a real lag from a clock offset.
 //!
-//! A lag and the clocks of the channels that it delays share what is late between them. Its kind (how much of it is
-//! dead time, how much a second stage) tells them apart, but between two samples a moved clock rounds the corners as a
-//! second stage does: there are valleys with clocks that are off, and no slope leads from one to the next.
+//! The delay of a channel is split between a lag and the channel's clock offset. The form of the lag (its dead time and
+//! its second stage) distinguishes them, but between two samples a clock offset rounds corners as a second stage does.
+//! The cost therefore has separate local minima with different clock offsets, and no descent path between them.
 
 use hitch_plant::{Effect, Model, ParameterKind};
 
@@ -11,25 +11,26 @@ use crate::data::experiment::Experiment;
 use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, refine};
 
-/// A fit's clocks are off by so much, s, if a lag may be in another valley.
-const ASTRAY_S: f64 = 0.5 * OFFSET_PRIOR_S;
+/// Clock offset of a fit, s, above which its lag may be in another local minimum.
+const AMBIGUOUS_OFFSET_S: f64 = 0.5 * OFFSET_PRIOR_S;
 
-/// The better of a fit and of the one that a start with the same lateness, but all of it a lag's, leads to.
-pub(crate) fn on_time(experiment: &Experiment, model: &Model, fit: Fit) -> Fit {
-    let Some(start) = given_back(&fit.estimate) else {
+/// The better of a fit and of the fit from a start with the same total delay, all of it assigned to the lag.
+pub(crate) fn with_best_delay_split(experiment: &Experiment, model: &Model, fit: Fit) -> Fit {
+    let Some(start) = with_offsets_in_lag(&fit.estimate) else {
         return fit;
     };
     let other = refine(experiment, model, start);
     if other.cost < fit.cost { other } else { fit }
 }
 
-/// Whether an effect delays what a channel shows: its size is a time.
+/// Whether an effect delays a channel: its size is a time.
 pub(crate) fn is_delay(effect: &dyn Effect) -> bool {
     effect.parameters()[0].kind == ParameterKind::Time
 }
 
-/// An estimate whose lag has what the clocks of its channels took; `None` without a lag or where the clocks are in step.
-fn given_back(estimate: &Estimate) -> Option<Estimate> {
+/// An estimate with the clock offsets of the lag's channels moved into the lag; `None` without a lag or with clocks
+/// that are in step.
+fn with_offsets_in_lag(estimate: &Estimate) -> Option<Estimate> {
     let is_lag =
         |&index: &usize| is_delay(estimate.effects[index].effect) && !estimate.is_unchanged(index);
     let index = (0..estimate.effects.len()).find(is_lag)?;
@@ -40,7 +41,7 @@ fn given_back(estimate: &Estimate) -> Option<Estimate> {
         .collect();
     late_s.sort_by(f64::total_cmp);
     let late_s = late_s.get(late_s.len() / 2).copied()?;
-    (late_s.abs() > ASTRAY_S).then(|| {
+    (late_s.abs() > AMBIGUOUS_OFFSET_S).then(|| {
         let mut start = estimate.clone();
         let added = &mut start.effects[index];
         added.values[0] = (added.values[0] + late_s).max(effect.parameters()[0].low);

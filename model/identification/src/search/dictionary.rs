@@ -1,4 +1,4 @@
-//! The dictionary: every way in which a model may be wrong, simulated around a fit.
+//! The dictionary: candidate changes of a model, each simulated around a fit as a column.
 
 use hitch_plant::{AddedEffect, Effect, SizeResponse};
 use rayon::prelude::*;
@@ -14,30 +14,30 @@ use crate::search::dictionary_entry::{Entry, Kind};
 use crate::search::gram_matrix::Gram;
 use crate::search::scan_cache::Scans;
 use crate::search::screening::Screen;
-use crate::search::secant_ends::FARTHEST;
+use crate::search::secant_ends::LARGEST_SHARE;
 use crate::search::shape_starts::scaled;
 use crate::selection::candidate::{jacobian_by, slow_columns};
 
-/// Sizes to which an adopted effect is changed: shares of its own and of its typical size that are added.
+/// Sizes of a changed adopted effect: increments as shares of its own size and of its typical size.
 const CHANGES: [(f64, f64); 4] = [(-0.5, 0.0), (-1.0, 0.0), (0.5, 0.25), (1.5, 1.0)];
 
-/// Sizes of a form that has another beside it, in typical ones.
-const BESIDE: [f64; 3] = [0.1, 0.3, 1.0];
+/// Sizes of another form that acts in addition to the present one, in typical sizes.
+const SMALL_SIZES: [f64; 3] = [0.1, 0.3, 1.0];
 
-/// Largest share of a secant to a changed size.
-const CHANGED: f64 = 1.5;
+/// Largest share of the secant to a changed size.
+const LARGEST_CHANGE: f64 = 1.5;
 
-/// The ways in which a fitted model may be wrong.
+/// Columns of candidate effects and changes of a fitted model.
 pub(crate) struct Dictionary {
     /// The columns.
     pub entries: Vec<Entry>,
-    /// Their products, all nuisances projected out, from a model without any of them.
+    /// Gram matrix of the columns, nuisance parameters projected out, around the model without any of them.
     pub gram: Gram,
-    /// Whether it has what fine searches find of effects whose cost has many valleys.
+    /// Whether it includes the results of fine scans for effects whose cost has many local minima.
     pub is_thorough: bool,
-    /// Residuals without any of them.
+    /// Residuals without any of the columns.
     without: Vec<Vec<f64>>,
-    /// Sensitivities to what adapts, at the fit that it was made around.
+    /// Sensitivities to the nuisance parameters, at the fit in the centre.
     pub jacobian: Jacobian,
     estimate: Estimate,
 }
@@ -61,8 +61,8 @@ impl Dictionary {
         }
     }
 
-    /// Whether a column is at a size that a fit can start from: what jumps or is met at a place does so where a fine
-    /// search has found it.
+    /// Whether the size of a column is suitable as the start of a fit. Switching and located effects need a size from a
+    /// fine scan.
     pub fn is_start(&self, column: usize) -> bool {
         let entry = &self.entries[column];
         let search = entry.added.effect.size_response();
@@ -70,7 +70,7 @@ impl Dictionary {
         self.is_thorough || entry.kind != Kind::New || !is_sought
     }
 
-    /// The residuals that a subset leaves to first order, once all nuisances have adapted.
+    /// Residuals of a subset to first order, with all nuisance parameters re-optimised.
     pub fn left(&self, subset: &Subset) -> Vec<Vec<f64>> {
         let mut left = self.without.clone();
         for (&column, &share) in subset.columns.iter().zip(&subset.shares) {
@@ -82,19 +82,19 @@ impl Dictionary {
     }
 }
 
-/// What a dictionary is made around.
-pub(crate) struct Around<'a> {
+/// The inputs of a dictionary.
+pub(crate) struct DictionaryBuilder<'a> {
     pub coarse: &'a Coarse<'a>,
-    /// Effects that are looked for.
+    /// Effects that are searched for.
     pub effects: Vec<&'static dyn Effect>,
-    /// Whether adopted effects may have changed.
+    /// Whether the sizes of adopted effects may change.
     pub changes: bool,
     pub scans: &'a Scans,
-    /// Fall of the cost that an effect has to promise to be worth a closer look.
+    /// Smallest predicted reduction of the cost for which an effect is examined more closely.
     pub worthwhile: f64,
 }
 
-impl Around<'_> {
+impl DictionaryBuilder<'_> {
     /// The dictionary around a fit.
     pub fn dictionary(&self) -> Dictionary {
         let Coarse {
@@ -121,7 +121,7 @@ impl Around<'_> {
         Dictionary::new(entries.collect(), without, jacobian, &seen.estimate)
     }
 
-    /// A dictionary with what fine searches find of effects whose cost has many valleys.
+    /// A dictionary extended by fine scans for effects whose cost has many local minima.
     pub fn thorough(&self, dictionary: Dictionary) -> Dictionary {
         let seen = &self.coarse.seen;
         let Dictionary {
@@ -156,8 +156,8 @@ impl Around<'_> {
         }
     }
 
-    /// What the search has added or changed so far, each from nothing to where it stands: taking it away again is judged
-    /// exactly.
+    /// Columns of the effects that the search has added or changed, from absent to their present sizes: removing one is
+    /// simulated exactly.
     fn own(&self, screen: &Screen) -> Vec<Entry> {
         let estimate = &self.coarse.present.estimate;
         let indices = 0..estimate.effects.len();
@@ -165,7 +165,7 @@ impl Around<'_> {
             kind: Kind::Present(index),
             off: estimate.off(index),
             change: difference(&screen.residuals(&estimate.without(index)), screen.here),
-            share: (0.0, FARTHEST),
+            share: (0.0, LARGEST_SHARE),
             added: estimate.effects[index].clone(),
         };
         let own = indices.into_par_iter();
@@ -174,7 +174,7 @@ impl Around<'_> {
             .collect()
     }
 
-    /// What the search has added, in the other forms of the same effects.
+    /// Columns of the effects that the search has added, in their other forms.
     fn other_forms(&self, screen: &Screen, own: &[Entry]) -> Vec<Entry> {
         let estimate = &self.coarse.present.estimate;
         let added = own.par_iter().filter_map(|entry| match entry.kind {
@@ -201,14 +201,14 @@ impl Around<'_> {
                 kind: Kind::New,
                 off: form.parameters()[0].null,
                 change,
-                share: (0.0, FARTHEST),
+                share: (0.0, LARGEST_SHARE),
                 added,
             }
         };
         forms.map(column).collect()
     }
 
-    /// The adopted effects that are as they were, at other sizes.
+    /// Columns of unchanged adopted effects, at other sizes.
     fn changed(&self, screen: &Screen) -> Vec<Entry> {
         let estimate = &self.coarse.present.estimate;
         let indices = (0..estimate.effects.len()).into_par_iter();
@@ -225,7 +225,7 @@ impl Around<'_> {
                 kind: Kind::Change(index),
                 off,
                 change: difference(screen.here, &screen.residuals(&other)),
-                share: (0.0, CHANGED),
+                share: (0.0, LARGEST_CHANGE),
                 added: other.effects[index].clone(),
             }
         };
@@ -233,15 +233,16 @@ impl Around<'_> {
     }
 }
 
-/// An effect in another form. Where the size of that is no parameter of its own form, it has all of that beside it, and a
-/// little is tried as well: from much of it no share of the whole leads back.
+/// An effect in another form. If the size parameter of that form is not a parameter of the present form, it acts in
+/// addition to the present effect. Small sizes are then included as well: the secant to the full size does not predict
+/// them.
 fn in_form(added: &AddedEffect, form: &'static dyn Effect) -> Vec<AddedEffect> {
     let other = added.in_form(form);
     let size = &form.parameters()[0];
     let mut own = added.effect.parameters().iter();
     match own.any(|parameter| parameter.name == size.name) {
         true => vec![other],
-        false => BESIDE.map(|share| scaled(&other, share)).to_vec(),
+        false => SMALL_SIZES.map(|share| scaled(&other, share)).to_vec(),
     }
 }
 
@@ -260,7 +261,7 @@ fn changed_sizes(adopted: &AddedEffect) -> Vec<f64> {
     sizes
 }
 
-/// Columns that adapt to whatever entries do: clocks, and the shapes of effects that are there.
+/// Columns of the nuisance parameters: clocks, and the shape parameters of present effects.
 fn nuisances(jacobian: &Jacobian) -> Vec<usize> {
     let adapts = |shared: &Shared| !matches!(shared, Shared::Effect(_, 0));
     let columns = jacobian.shared.iter().enumerate();
@@ -270,7 +271,7 @@ fn nuisances(jacobian: &Jacobian) -> Vec<usize> {
         .collect()
 }
 
-/// Adds columns to others.
+/// Adds `others` to `columns`.
 fn add(columns: &mut [Vec<f64>], others: &[Vec<f64>]) {
     for (column, other) in columns.iter_mut().zip(others) {
         subtract(column, -1.0, other);

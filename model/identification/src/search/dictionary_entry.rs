@@ -1,18 +1,18 @@
-//! One way in which a model may be wrong, with what it changes.
+//! An entry of the dictionary: a change of the model and its effect on the residuals.
 
 use hitch_plant::AddedEffect;
 
 use crate::estimate::Estimate;
 
-/// A share this near to one is the size that was simulated.
+/// A share within this distance of one counts as the simulated size.
 const AS_SIMULATED: f64 = 0.1;
 
-/// What an entry does to a model.
+/// How an entry changes the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// Adds an effect that the model does not have.
     New,
-    /// Keeps an effect that the search has added already, by its index.
+    /// Keeps an effect that the search has already added, by its index.
     Present(usize),
     /// Changes the size of an effect that the model had before the search, by its index.
     Change(usize),
@@ -21,20 +21,20 @@ pub(crate) enum Kind {
 /// A column of the dictionary: an effect at one size, simulated.
 #[derive(Debug, Clone)]
 pub(crate) struct Entry {
-    /// What it does.
+    /// Kind of the change.
     pub kind: Kind,
     /// The effect at the end of the secant.
     pub added: AddedEffect,
-    /// Its size at the start of the secant: absent, or as it was adopted.
+    /// Its size at the start of the secant: its null value, or its adopted size.
     pub off: f64,
-    /// By how much the whitened residuals fall from the start of the secant to its end, by run.
+    /// Decrease of the whitened residuals from the start of the secant to its end, by run.
     pub change: Vec<Vec<f64>>,
-    /// Smallest and largest share of the secant that its range and the trust in it allow.
+    /// Bounds of the share of the secant: the range of the size and the trust region.
     pub share: (f64, f64),
 }
 
 impl Entry {
-    /// Effects with the same name exclude each other.
+    /// Entries with the same id exclude each other.
     pub fn id(&self) -> &'static str {
         self.added.effect.id()
     }
@@ -46,8 +46,8 @@ impl Entry {
         added
     }
 
-    /// The share of the secant from which a fit starts where a subset takes such a share: what jumps does so at the size
-    /// that was simulated, and not beside it.
+    /// Share of the secant at which a fit starts if a subset has this share: a new rough effect starts at exactly the
+    /// simulated size.
     pub fn start(&self, share: f64) -> f64 {
         let jumps = self.kind == Kind::New && self.added.effect.size_response().is_rough();
         if jumps && (share - 1.0).abs() < AS_SIMULATED {
@@ -57,7 +57,7 @@ impl Entry {
         }
     }
 
-    /// Number of parameters that a fit of it finds.
+    /// Number of free parameters in a fit.
     pub fn parameters(&self) -> usize {
         match self.kind {
             Kind::Change(_) => 1,
@@ -66,8 +66,8 @@ impl Entry {
     }
 }
 
-/// An estimate with exactly these entries at these shares: what else the search had added is gone, and what it had
-/// changed is as it was adopted.
+/// An estimate with exactly these entries at these shares: other added effects are removed, and other changed effects
+/// return to their adopted sizes.
 pub(crate) fn with_entries(
     present: &Estimate,
     given: &[AddedEffect],

@@ -1,8 +1,8 @@
-//! Products of the dictionary's columns, with all nuisances projected out.
+//! Gram matrix of the dictionary's columns, with all nuisance parameters projected out.
 //!
-//! A cost that is quadratic in the shares of the columns needs nothing but these: every subset is then judged without
-//! a simulation. Loads are eliminated run by run, clocks and the shapes of effects by a Schur complement, each with its
-//! prior.
+//! The cost is quadratic in the shares of the columns, so this matrix is sufficient to evaluate every subset without a
+//! simulation. Load errors are eliminated run by run, clocks and the shapes of effects by a Schur complement, each with
+//! its prior.
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -14,20 +14,20 @@ use crate::search::dictionary_entry::Entry;
 /// The quadratic cost `square - 2 pull x + x matrix x` of shares `x`.
 #[derive(Debug, Clone)]
 pub(crate) struct Gram {
-    /// Products of the columns.
+    /// Dot products of the columns.
     pub matrix: DMatrix<f64>,
-    /// Products of the columns with the residuals.
+    /// Dot products of the columns with the residuals.
     pub pull: DVector<f64>,
-    /// Cost with all shares nothing.
+    /// Cost at zero shares.
     pub square: f64,
 }
 
-/// Share of a nuisance's own square under which what is left of it counts as nothing.
+/// Remaining share of a nuisance parameter's diagonal entry below which it is singular.
 const SINGULAR: f64 = 1e-9;
 
 impl Gram {
-    /// The products of entries, from residuals without any of them; `nuisances` are those columns of the Jacobian that
-    /// adapt to whatever the entries do.
+    /// The matrix of `entries`, around `residuals` without any of them; `nuisances` are the columns of the Jacobian to
+    /// project out.
     pub fn new(
         jacobian: &Jacobian,
         estimate: &Estimate,
@@ -72,7 +72,7 @@ impl Gram {
     }
 }
 
-/// Products of the columns of one run, its load eliminated.
+/// Dot products of the columns of one run, its load error eliminated.
 fn of_run(run: &RunJacobian, columns: &[&[f64]]) -> DMatrix<f64> {
     let size = columns.len();
     let mut matrix = DMatrix::zeros(size, size);
@@ -93,7 +93,7 @@ fn of_run(run: &RunJacobian, columns: &[&[f64]]) -> DMatrix<f64> {
     matrix
 }
 
-/// Takes the first unknowns out of a matrix of products, one after the other.
+/// Eliminates the first `count` unknowns from a Gram matrix, one after the other.
 fn eliminate(matrix: &mut DMatrix<f64>, count: usize) {
     let own: Vec<f64> = (0..count).map(|k| matrix[(k, k)]).collect();
     for k in 0..count {
@@ -118,9 +118,9 @@ mod tests {
     use super::eliminate;
     use nalgebra::DMatrix;
 
-    /// Eliminating an unknown leaves the cost that is least over it.
+    /// Eliminating an unknown equals projecting its column out of the others.
     #[test]
-    fn an_eliminated_unknown_has_taken_what_it_can() {
+    fn eliminating_an_unknown_projects_its_column_out() {
         let columns = DMatrix::from_row_slice(
             4,
             3,

@@ -1,9 +1,9 @@
-//! The size of what jumps, once all else is right.
+//! Line search for the size of a switching effect at the end of a fit.
 //!
-//! The size of a spool that sticks is known to a few hundredths of a percent or not at all: a little beside, and the
-//! tenth jump comes at another time. Slopes lead nowhere there, and while the clocks still stood in for what was missing
-//! a look through all sizes met the valley a little off. With a fit beside it the last step is a fine search. Where the
-//! cost comes down over ledges it is a wide one: slopes end at the first of them.
+//! The size of a sticking spool is determined to a few hundredths of a percent or not at all: at a slightly different
+//! size the tenth jump occurs at another time. Slopes are useless there, and the earlier scan over all sizes found the
+//! minimum with a small error, as the clocks still compensated for what was missing. Close to the optimum a fine search
+//! follows. A piecewise constant cost needs a wide search: a descent ends at its first step.
 
 use hitch_plant::{AddedEffect, Model, SizeResponse};
 use rayon::prelude::*;
@@ -12,15 +12,15 @@ use crate::data::experiment::Experiment;
 use crate::estimation::fit::{Fit, evaluate_weighted, refine};
 use crate::search::shape_starts::scaled;
 
-/// How far to either side sizes are tried, as powers of e, and how many.
-const BESIDE_JUMPS: [f64; 2] = [0.005, 0.000_8];
-const BESIDE_LEDGES: [f64; 2] = [1.0, 0.1];
+/// Distance of the trial sizes to either side, as powers of e, for switching and for stepped effects, and their number.
+const DISTANCES_SWITCHING: [f64; 2] = [0.005, 0.000_8];
+const DISTANCES_STEPPED: [f64; 2] = [1.0, 0.1];
 const TO_EITHER_SIDE: i32 = 10;
 
-/// How little of the band what all but jumps the whole of it falls short, as a share.
-const SHORT: f64 = 0.01;
+/// Largest distance of a shape parameter from the upper end of its range, as a share, at which the end is tried too.
+const NEARLY_WHOLE: f64 = 0.01;
 
-/// The better of a fit and of the ones that the sizes of its last effect nearby lead to, if that jumps.
+/// The better of a fit and of the fits from nearby sizes of its last effect, if that is switching or stepped.
 pub(crate) fn line_searched(experiment: &Experiment, model: &Model, fit: Fit) -> Fit {
     let last = fit.estimate.effects.last();
     let reaches = match last.filter(|added| !added.is_null()) {
@@ -58,17 +58,17 @@ fn better(one: Fit, other: Fit) -> Fit {
     if other.cost < one.cost { other } else { one }
 }
 
-/// How far sizes are looked for. Where nothing rings slopes lead there, and a wide search only finds the luckiest ledge:
-/// intervals around that held the truth in 88 % of campaigns, not in 94 %.
+/// Distances of the trial sizes. Without ringing a descent finds the size of a stepped effect, and a wide search only
+/// finds the step that fits the noise best: intervals around it held the truth in 88 % of campaigns instead of 94 %.
 fn reaches(response: SizeResponse, ringing: bool) -> &'static [f64] {
     match response {
-        SizeResponse::Switching => &BESIDE_JUMPS,
-        SizeResponse::Stepped if ringing => &BESIDE_LEDGES,
+        SizeResponse::Switching => &DISTANCES_SWITCHING,
+        SizeResponse::Stepped if ringing => &DISTANCES_STEPPED,
         SizeResponse::Stepped | SizeResponse::Smooth | SizeResponse::Located => &[],
     }
 }
 
-/// The best of the sizes nearby, all else as it is.
+/// The best of the nearby sizes, all other parameters fixed.
 fn nearby(experiment: &Experiment, model: &Model, fit: &Fit, reach: f64) -> Fit {
     let sizes = (-TO_EITHER_SIDE..=TO_EITHER_SIDE).into_par_iter();
     sizes
@@ -84,20 +84,21 @@ fn nearby(experiment: &Experiment, model: &Model, fit: &Fit, reach: f64) -> Fit 
         .expect("there are sizes")
 }
 
-/// What all but jumps the whole band, as one that does: the narrow_valleys is at the end of the range, and slopes stop short
-/// of it.
+/// A switching effect with its shape at the end of the range (a jump over the whole band), if it almost is there: the
+/// narrow minimum lies at the end, and slopes stop short of it.
 fn whole(added: &AddedEffect) -> Option<AddedEffect> {
     let shape = added.effect.parameters().get(1)?;
     let short = shape.high - added.values[1];
     let jumps = added.effect.size_response() == SizeResponse::Switching;
-    (jumps && short > 0.0 && short < SHORT).then(|| {
+    (jumps && short > 0.0 && short < NEARLY_WHOLE).then(|| {
         let mut whole = added.clone();
         whole.values[1] = shape.high;
         whole
     })
 }
 
-/// An effect at a multiple of its size. What its shape leaves of the size over a ledge shows and is known already.
+/// An effect at a multiple of its size. A stepped effect keeps the product of its size and the distance of its shape
+/// from one, which the data determine well.
 fn resized(added: &AddedEffect, share: f64) -> AddedEffect {
     let mut resized = scaled(added, share);
     let parameters = added.effect.parameters();

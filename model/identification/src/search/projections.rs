@@ -1,4 +1,4 @@
-//! What adapts to a set of effects: what is free at the present fit and part of the set as well.
+//! Nuisance projections for sets of effects: the parameters that are free at the present fit and belong to the set.
 
 use std::sync::OnceLock;
 
@@ -8,18 +8,18 @@ use crate::estimate::{Estimate, Shared};
 use crate::estimation::jacobian::Jacobian;
 use crate::estimation::nuisance_projection::NuisanceProjection;
 
-/// The projections of sets that have some of the effects of the present fit.
+/// The projections for sets that share effects with the present fit.
 pub(crate) struct Projections<'a> {
     jacobian: &'a Jacobian,
     present: &'a Estimate,
-    /// One a subset of the effects that are free at the present fit, by the bits of its number.
+    /// One projection per subset of the free effects of the present fit; bit `i` of the index stands for `free[i]`.
     projections: Vec<OnceLock<NuisanceProjection<&'a Jacobian>>>,
-    /// The effects that are free at the present fit, by their indices.
+    /// Indices of the effects that are free at the present fit.
     free: Vec<usize>,
 }
 
 impl<'a> Projections<'a> {
-    /// Of the sensitivities at the present fit.
+    /// Projections of the sensitivities at the present fit.
     pub fn new(jacobian: &'a Jacobian, present: &'a Estimate) -> Self {
         let effects = 0..present.effects.len();
         let free: Vec<usize> = effects
@@ -33,7 +33,8 @@ impl<'a> Projections<'a> {
         }
     }
 
-    /// The projection for residuals of an estimate. An effect of the present fit that it is without adapts to nothing.
+    /// The projection for residuals of an estimate. Effects of the present fit that the estimate lacks are not
+    /// projected out.
     pub fn of(&self, estimate: &Estimate) -> &NuisanceProjection<&'a Jacobian> {
         let has = |&index: &usize| {
             let own = self.present.effects[index].effect;

@@ -1,4 +1,4 @@
-//! Which subsets of a dictionary are worth a fit with the full model.
+//! Selection of the subsets that are fitted with the full model.
 
 use hitch_plant::Model;
 
@@ -9,32 +9,32 @@ use crate::search::coarse_view::Coarse;
 use crate::search::dictionary::Dictionary;
 use crate::search::dictionary_entry::{Entry, Kind, with_entries};
 use crate::selection::complexity_penalty::Penalty;
-use crate::selection::posterior::{Key, Refitted, key};
+use crate::selection::posterior::{EffectSet, Refitted, key};
 
-/// Subsets of each size that are looked at, and how many of all are fitted.
-const LOOKED_AT: usize = 40;
+/// Subsets of each size that are ranked, and subsets in total that are fitted.
+const RANKED: usize = 40;
 const FITTED: usize = 12;
 
-/// Starts of one set of effects where the cost of one of them has many valleys.
-pub(crate) const VALLEYS: usize = 2;
+/// Starts of one set of effects whose cost has many local minima.
+pub(crate) const LOCAL_MINIMA: usize = 2;
 
-/// Share of the fall of the cost, or of what an effect explains that is replaced, that a secant's promise may be off by:
-/// a further effect that promises less is left to the next dictionary.
+/// Relative error of a secant's prediction, as a share of the predicted cost reduction or of that of a replaced effect.
+/// A further effect that predicts less is left to the next dictionary.
 const INEXACT: f64 = 0.04;
 
-/// A subset is fitted if it leaves at most this share of what it has not in common with the most promising one
-/// unexplained, or costs that differ by no more likelihood ratios than this.
+/// A subset is fitted if its cost exceeds the best one by at most this share of what the two do not have in common, or
+/// by at most this likelihood ratio.
 pub(crate) const NEAR: f64 = 0.15;
 pub(crate) const CLOSE: f64 = 60.0;
 
-/// Where fits start, and the penalty of effects beside what the dictionary promises to leave.
+/// Starts of fits, and the penalty of effects given the residuals that the dictionary predicts.
 pub(crate) struct Starts {
     pub estimates: Vec<Estimate>,
     pub penalty: Penalty,
 }
 
-/// Starts of the subsets that promise as much as the best one, or nearly, were not fitted yet, and have at most so many
-/// effects more than the present ones.
+/// Starts of the subsets whose predicted cost is least or close to it, that were not fitted yet, and that have at most
+/// `more` effects more than the present ones.
 pub(crate) fn starts(
     coarse: &Coarse,
     dictionary: &Dictionary,
@@ -58,7 +58,7 @@ pub(crate) fn starts(
     let variance = lowest.cost / seen.weights.count() as f64;
     let penalty = Penalty::new(few, present.weights.count(), variance, &left);
     let whole = with_all_present(dictionary);
-    let promise = |subset: &Subset| {
+    let predicted_cost = |subset: &Subset| {
         let explained = (seen.cost - lowest.cost).max(apart(dictionary, subset, &whole));
         let inexact = INEXACT * explained.max(0.0);
         let members = subset
@@ -74,17 +74,16 @@ pub(crate) fn starts(
         });
         subset.cost + prices.sum::<f64>()
     };
-    let looked_at = sizes
-        .iter()
-        .flat_map(|subsets| subsets.iter().take(LOOKED_AT));
-    let mut ranked: Vec<(f64, &Subset)> =
-        looked_at.map(|subset| (promise(subset), subset)).collect();
+    let candidates = sizes.iter().flat_map(|subsets| subsets.iter().take(RANKED));
+    let mut ranked: Vec<(f64, &Subset)> = candidates
+        .map(|subset| (predicted_cost(subset), subset))
+        .collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (best, leader) = ranked[0];
     let close = CLOSE * penalty.unit;
-    let mut taken: Vec<Key> = vec![own];
+    let mut taken: Vec<EffectSet> = vec![own];
     let mut estimates = Vec::new();
-    for (promise, subset) in ranked {
+    for (predicted_cost, subset) in ranked {
         let near = best + (NEAR * apart(dictionary, subset, leader)).max(close);
         let key = key_of(dictionary, subset);
         let known = taken.iter().filter(|taken| **taken == key).count();
@@ -96,11 +95,11 @@ pub(crate) fn starts(
                 .is_rough()
         };
         let most = if subset.columns.iter().any(is_rough) {
-            VALLEYS
+            LOCAL_MINIMA
         } else {
             1
         };
-        if promise > near || is_more(subset, leader) || known >= most {
+        if predicted_cost > near || is_more(subset, leader) || known >= most {
             continue;
         }
         let starts = |&column: &usize| dictionary.is_start(column);
@@ -115,7 +114,7 @@ pub(crate) fn starts(
     Starts { estimates, penalty }
 }
 
-/// The subset of all effects that are there.
+/// The subset of all present effects.
 fn with_all_present(dictionary: &Dictionary) -> Subset {
     let columns = dictionary.entries.iter().enumerate();
     let present = columns.filter(|(_, entry)| matches!(entry.kind, Kind::Present(_)));
@@ -123,7 +122,7 @@ fn with_all_present(dictionary: &Dictionary) -> Subset {
     fitted(&dictionary.gram, &dictionary.entries, present)
 }
 
-/// What the leading subset explains beyond what another has in common with it.
+/// Cost reduction of the leading subset beyond that of its intersection with another.
 fn apart(dictionary: &Dictionary, subset: &Subset, leader: &Subset) -> f64 {
     let common = subset.columns.iter().copied();
     let common = common
@@ -132,7 +131,7 @@ fn apart(dictionary: &Dictionary, subset: &Subset, leader: &Subset) -> f64 {
     fitted(&dictionary.gram, &dictionary.entries, common).cost - leader.cost
 }
 
-/// Whether a subset has all of another, and more.
+/// Whether a subset is a proper superset of another.
 fn is_more(subset: &Subset, other: &Subset) -> bool {
     let has = |column: &usize| subset.columns.contains(column);
     subset.columns.len() > other.columns.len() && other.columns.iter().all(has)
@@ -149,10 +148,10 @@ fn start(dictionary: &Dictionary, present: &Fit, model: &Model, subset: &Subset)
     with_entries(&present.estimate, &model.effects, &members)
 }
 
-fn key_of(dictionary: &Dictionary, subset: &Subset) -> Key {
+fn key_of(dictionary: &Dictionary, subset: &Subset) -> EffectSet {
     let members = subset.columns.iter().map(|&column| {
         let effect = dictionary.entries[column].added.effect;
         (effect.id(), effect.form())
     });
-    Key::new(members.collect())
+    EffectSet::new(members.collect())
 }

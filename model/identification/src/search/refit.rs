@@ -1,47 +1,50 @@
-//! Promising sets of effects fitted with the full model.
+//! Fits of promising sets of effects with the full model.
 
 use hitch_plant::SizeResponse;
 use rayon::prelude::*;
 
 use crate::data::clocks::Clocks;
 use crate::estimate::Estimate;
-use crate::estimation::fit::{Fit, evaluate_weighted, refine, sketch, with_last};
+use crate::estimation::fit::{Fit, evaluate_weighted, refine, short_fit, with_last};
 use crate::estimation::jacobian::{Jacobian, huber_residuals, square_sum};
 use crate::estimation::least_squares::Descent;
 use crate::search::candidates::Progress;
 use crate::search::coarse_view::Coarse;
-use crate::search::delays::on_time;
+use crate::search::delays::with_best_delay_split;
 use crate::search::line_search::line_searched;
 use crate::search::projections::Projections;
-use crate::search::promising_subsets::{CLOSE, NEAR, VALLEYS};
+use crate::search::promising_subsets::{CLOSE, LOCAL_MINIMA, NEAR};
 use crate::search::subset::Options;
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::posterior::{Refitted, key, key_of};
 
-/// Most starts that are sketched, and sketches that are refined.
-const SKETCHED: usize = 5;
+/// Most starts that get a short fit, and short fits that are refined.
+const SHORT_FITS: usize = 5;
 const REFINED: usize = 3;
 
-/// Error from which a sketch may be in a valley of its own, so that it starts coarse as well.
-const ASTRAY: f64 = 2.0;
+/// Root mean square error, in sigma, above which a short fit may be in a local minimum, so that it is repeated with the
+/// coarse weights first.
+const POOR_ERROR: f64 = 2.0;
 
-/// How many times the least cost what jumps may leave on fewer samples and still be the best on all.
-const MISSED: f64 = 2.0;
+/// Factor over the least cost up to which a set with rough effects stays a candidate: their sizes are less exact on
+/// fewer samples.
+const ROUGH_TOLERANCE: f64 = 2.0;
 
-/// What sets are fitted around.
+/// The context of the fits.
 pub(crate) struct Refits<'a> {
     pub coarse: &'a Coarse<'a>,
-    /// The cost of the best fit so far with its penalty, seen as coarsely.
+    /// Penalised cost of the best fit so far, on the condensed experiment.
     pub best: f64,
     pub penalty: Penalty,
     pub options: Options<'a>,
 }
 
 impl Refits<'_> {
-    /// Fits of some starts: each is simulated once and rid of members that do not keep their promise, the best ones are
-    /// sketched under the present yardsticks, the best of those fitted coarsely, and the likely ones to all samples.
+    /// Fits from some starts. Each start is simulated once and pruned of members whose cost reduction is below their
+    /// penalty. The best starts get a short fit under the present weights, the best of those a fit on coarse time
+    /// steps, and those close to the best a fit to all samples.
     ///
-    /// `jacobian` has the sensitivities at the coarse fit.
+    /// `jacobian` holds the sensitivities at the coarse fit.
     pub fn of(
         &self,
         starts: Vec<Estimate>,
@@ -60,37 +63,43 @@ impl Refits<'_> {
         let residuals = |estimate: &Estimate| {
             huber_residuals(coarse_in_time, model, &present.weights, estimate)
         };
-        // The clocks have stood in for what is missing: where a start gives them back, slopes lead nowhere.
+        // Clock offsets have compensated for what is missing. Where a start makes them unnecessary, no descent path
+        // leads back.
         let cost = |estimate: &Estimate| {
             let projection = projections.of(estimate);
             let left = residuals(estimate);
-            let promised = projection.cost_after(&left);
+            let predicted = projection.cost_after(&left);
             let synchronised = projection.synchronised(estimate, &left);
-            let kept = square_sum(&residuals(&synchronised)) + synchronised.prior_cost();
+            let resimulated = square_sum(&residuals(&synchronised)) + synchronised.prior_cost();
             let penalty = self.penalty.of_all(estimate);
-            match kept < promised {
-                true => (kept + penalty, synchronised),
-                false => (promised + penalty, estimate.clone()),
+            match resimulated < predicted {
+                true => (resimulated + penalty, synchronised),
+                false => (predicted + penalty, estimate.clone()),
             }
         };
         let starts = starts.into_par_iter();
-        let starts = starts.map(|start| lightened(start, cost)).collect();
+        let starts = starts.map(|start| pruned(start, cost)).collect();
         let mut starts = distinct(starts);
         starts.retain(|(_, start)| !known.contains(&key_of(start)));
-        let sketch = |start: Estimate| {
-            let found = self.sketched(start);
+        let short_fit = |start: Estimate| {
+            let found = self.short_fit_from(start);
             (
                 found.cost + self.penalty.of_all(&found.estimate),
                 found.estimate,
             )
         };
-        let unless_over = |start: Estimate| (!self.options.is_over()).then(|| sketch(start));
-        let starts = self.nearest(starts, SKETCHED).into_par_iter();
-        let sketches: Vec<(f64, Estimate)> = starts.filter_map(unless_over).collect();
-        let nearest = self.nearest(sketches, REFINED).into_par_iter();
-        let approached: Vec<(f64, Fit)> = nearest
+        let unless_past_deadline =
+            |start: Estimate| (!self.options.is_over()).then(|| short_fit(start));
+        let starts = self.nearest(starts, SHORT_FITS).into_par_iter();
+        let short_fits: Vec<(f64, Estimate)> = starts.filter_map(unless_past_deadline).collect();
+        let nearest = self.nearest(short_fits, REFINED).into_par_iter();
+        let coarse_fits: Vec<(f64, Fit)> = nearest
             .map(|start| {
-                let fit = on_time(coarse_in_time, model, refine(coarse_in_time, model, start));
+                let fit = with_best_delay_split(
+                    coarse_in_time,
+                    model,
+                    refine(coarse_in_time, model, start),
+                );
                 let (estimate, weights) = (fit.estimate.clone(), present.weights.clone());
                 let under_present =
                     evaluate_weighted(coarse_in_time, model, estimate, weights).cost;
@@ -98,9 +107,9 @@ impl Refits<'_> {
                 (cost, fit)
             })
             .collect();
-        let likely = self.likely(approached).into_par_iter();
+        let likely = self.likely(coarse_fits).into_par_iter();
         let refined = likely.map(|estimate| {
-            let fit = on_time(experiment, model, refine(experiment, model, estimate));
+            let fit = with_best_delay_split(experiment, model, refine(experiment, model, estimate));
             let fit = self.line_searched(fit);
             progress(&key(&fit).name());
             fit
@@ -108,23 +117,25 @@ impl Refits<'_> {
         refined.collect()
     }
 
-    /// Those of some coarse fits that may be the best to all samples: whose cost with its penalty is near the least one.
-    /// Sizes of effects that jump are less exact on fewer samples.
-    fn likely(&self, approached: Vec<(f64, Fit)>) -> Vec<Estimate> {
-        let Some((least, best)) = approached.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else {
+    /// The coarse fits that may be the best on all samples: their penalised cost is close to the least one. The
+    /// tolerance is larger for rough effects, whose sizes are less exact on fewer samples.
+    fn likely(&self, coarse_fits: Vec<(f64, Fit)>) -> Vec<Estimate> {
+        let Some((least, best)) = coarse_fits.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else {
             return Vec::new();
         };
         let least = least.min(self.best);
-        let near = least + CLOSE * Penalty::beside(&self.coarse.coarse_in_time, best).unit;
-        let near_for_jumps = MISSED * least;
+        let near = least + CLOSE * Penalty::given(&self.coarse.coarse_in_time, best).unit;
+        let near_if_rough = ROUGH_TOLERANCE * least;
         let is_near = |(cost, fit): &(f64, Fit)| {
-            *cost <= near || (is_rough(&fit.estimate) && *cost <= near_for_jumps)
+            *cost <= near || (is_rough(&fit.estimate) && *cost <= near_if_rough)
         };
-        let near = approached.iter().filter(|approached| is_near(approached));
+        let near = coarse_fits
+            .iter()
+            .filter(|coarse_fits| is_near(coarse_fits));
         near.map(|(_, fit)| fit.estimate.clone()).collect()
     }
 
-    /// At most so many estimates whose cost with its penalty is near the least one.
+    /// At most `most` estimates whose penalised cost is close to the least one.
     fn nearest(&self, mut penalized: Vec<(f64, Estimate)>, most: usize) -> Vec<Estimate> {
         penalized.sort_by(|a, b| a.0.total_cmp(&b.0));
         let least = penalized
@@ -137,16 +148,16 @@ impl Refits<'_> {
         near.take(most).map(|(_, estimate)| estimate).collect()
     }
 
-    /// The fit from one start. Where the clocks are off, one with all in step is tried as well: what is late may be the
-    /// effect, and between two valleys no slope leads.
+    /// The fit from one start. If clocks are off, a start with all clocks in step is tried as well: the delay may
+    /// belong to the effect, and there is no descent path between the two minima.
     pub fn one(&self, start: Estimate) -> Fit {
         let Coarse {
             experiment, model, ..
         } = self.coarse;
         let from = |start: Estimate| {
-            let found = self.sketched(start);
+            let found = self.short_fit_from(start);
             let fit = refine(experiment, model, found.estimate);
-            self.line_searched(on_time(experiment, model, fit))
+            self.line_searched(with_best_delay_split(experiment, model, fit))
         };
         let in_step = start.clocks.are_off().then(|| {
             let clocks = Clocks::default();
@@ -162,8 +173,8 @@ impl Refits<'_> {
         }
     }
 
-    /// Where a start leads under the present yardsticks; far from the data also by way of a coarse fit.
-    fn sketched(&self, start: Estimate) -> Descent {
+    /// A short fit under the present weights; far from the data also by way of the coarse weights.
+    fn short_fit_from(&self, start: Estimate) -> Descent {
         let Coarse {
             model,
             seen,
@@ -171,17 +182,17 @@ impl Refits<'_> {
             ..
         } = self.coarse;
         let weights = &seen.weights;
-        let from = |far: bool| sketch(coarse_in_time, model, weights, start.clone(), far);
+        let from = |far: bool| short_fit(coarse_in_time, model, weights, start.clone(), far);
         let near = from(false);
         let samples = weights.count() as f64;
-        if (near.cost / samples).sqrt() <= ASTRAY {
+        if (near.cost / samples).sqrt() <= POOR_ERROR {
             return near;
         }
         let far = from(true);
         if far.cost < near.cost { far } else { near }
     }
 
-    /// A fit with the size of what jumps looked for finely.
+    /// A fit after the line search for the size of a switching or stepped effect.
     fn line_searched(&self, fit: Fit) -> Fit {
         let estimate = &fit.estimate;
         let jumps = (0..estimate.effects.len()).find(|&index| {
@@ -202,15 +213,15 @@ impl Refits<'_> {
     }
 }
 
-/// An estimate without those members that do not explain as much as they have to, and its cost with their penalty; `cost`
-/// gives that and the estimate adapted.
-fn lightened(start: Estimate, cost: impl Fn(&Estimate) -> (f64, Estimate)) -> (f64, Estimate) {
+/// An estimate without the members whose cost reduction is below their penalty, and its penalised cost. `cost` returns
+/// the penalised cost and the adapted estimate.
+fn pruned(start: Estimate, cost: impl Fn(&Estimate) -> (f64, Estimate)) -> (f64, Estimate) {
     let (mut least, mut estimate) = cost(&start);
     let mut index = 0;
     while index < estimate.effects.len() {
         if !estimate.is_unchanged(index) {
-            let lighter = estimate.without(index);
-            let (without, adapted) = cost(&lighter);
+            let reduced = estimate.without(index);
+            let (without, adapted) = cost(&reduced);
             if without < least {
                 let removed = adapted.effects.len() < estimate.effects.len();
                 (estimate, least) = (adapted, without);
@@ -223,13 +234,13 @@ fn lightened(start: Estimate, cost: impl Fn(&Estimate) -> (f64, Estimate)) -> (f
     (least, estimate)
 }
 
-/// Whether the cost does not fall smoothly along the size of some effect.
+/// Whether the cost is not smooth along the size of some effect.
 fn is_rough(estimate: &Estimate) -> bool {
     let mut effects = estimate.effects.iter();
     effects.any(|added| added.effect.size_response().is_rough())
 }
 
-/// Of each set the estimate with the least cost, or the best few where there are many valleys.
+/// The best estimate of each set, or the best [`LOCAL_MINIMA`] if its cost has many local minima.
 fn distinct(mut penalized: Vec<(f64, Estimate)>) -> Vec<(f64, Estimate)> {
     penalized.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut distinct: Vec<(f64, Estimate)> = Vec::new();
@@ -239,7 +250,7 @@ fn distinct(mut penalized: Vec<(f64, Estimate)>) -> Vec<(f64, Estimate)> {
             .iter()
             .filter(|(_, other)| key_of(other) == key)
             .count();
-        if known < if is_rough(&estimate) { VALLEYS } else { 1 } {
+        if known < if is_rough(&estimate) { LOCAL_MINIMA } else { 1 } {
             distinct.push((cost, estimate));
         }
     }

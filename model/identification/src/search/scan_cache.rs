@@ -1,36 +1,36 @@
-//! What fine searches found, kept from one round of adding effects to the next.
+//! Cache of fine scans across the rounds of a search.
 //!
-//! An effect that takes little of the cost leaves the valleys of the others where they were, and looking through them
-//! once more would only find the same.
+//! An effect that reduces the cost little leaves the local minima of the others in place, so a new scan would find the
+//! same.
 
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
 use hitch_plant::{AddedEffect, Effect};
 
-/// Share of the cost under which another search may find something else.
-const MUCH_LESS: f64 = 0.7;
+/// Ratio of the cost to that of the cached scan below which a scan is repeated.
+const RESCAN_RATIO: f64 = 0.7;
 
 /// An effect in one of its forms.
 type Name = (&'static str, Option<&'static str>);
 
-/// The latest search for each effect.
+/// The latest scan for each effect.
 #[derive(Debug, Default)]
 pub struct Scans {
-    latest: Mutex<HashMap<Name, Scan>>,
+    latest: Mutex<HashMap<Name, CachedScan>>,
 }
 
-/// What a search found.
+/// The result of a scan.
 #[derive(Debug, Clone)]
-struct Scan {
-    /// The cost of what it was made on.
+struct CachedScan {
+    /// Cost of the fit that was scanned around.
     cost: f64,
     found: Vec<AddedEffect>,
 }
 
 impl Scans {
-    /// What a search for an effect on a model of some cost finds: what the latest one found unless the cost is much less
-    /// than it was then.
+    /// The result of a scan for an effect around a fit of some cost: the cached one unless the cost has dropped by much
+    /// since.
     pub(crate) fn of(
         &self,
         effect: &'static dyn Effect,
@@ -39,12 +39,12 @@ impl Scans {
     ) -> Vec<AddedEffect> {
         let name = (effect.id(), effect.form());
         if let Some(latest) = self.latest(name)
-            && cost > MUCH_LESS * latest.cost
+            && cost > RESCAN_RATIO * latest.cost
         {
             return latest.found;
         }
         let found = search();
-        let latest = Scan {
+        let latest = CachedScan {
             cost,
             found: found.clone(),
         };
@@ -52,12 +52,12 @@ impl Scans {
         found
     }
 
-    fn latest(&self, name: Name) -> Option<Scan> {
+    fn latest(&self, name: Name) -> Option<CachedScan> {
         self.lock().get(&name).cloned()
     }
 
-    fn lock(&self) -> std::sync::MutexGuard<'_, HashMap<Name, Scan>> {
-        // A map that is only inserted into is whole whoever panicked.
+    fn lock(&self) -> std::sync::MutexGuard<'_, HashMap<Name, CachedScan>> {
+        // Every insertion is atomic, so the map is valid even after a panic.
         self.latest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

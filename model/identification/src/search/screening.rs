@@ -1,8 +1,8 @@
-//! What effects that a model does not have would change, each looked for by itself.
+//! Screening of single effects that a model lacks.
 //!
-//! A secant at one size misses what saturates, jumps, or begins late, so each form of an effect is simulated at two
-//! sizes, and those that promise most also where their secants lead, at the ends of their shapes, and where a fine
-//! search finds a valley if one is asked for.
+//! A secant at one size misses effects that saturate, switch or have a threshold, so each form is simulated at two
+//! sizes or more. The forms with the best predictions are also simulated where their secants lead, at the ends of their
+//! shape ranges, and at the results of a fine scan if requested.
 
 use hitch_plant::{AddedEffect, Effect, SizeResponse, is_same};
 use rayon::prelude::*;
@@ -15,74 +15,73 @@ use crate::search::coarse_view::Coarse;
 use crate::search::dictionary_entry::{Entry, Kind};
 use crate::search::scan_cache::Scans;
 use crate::search::secant_ends::{End, best, columns, trusted};
-use crate::search::shape_starts::{scaled, valleys, with_extreme_shapes, with_opposite_shapes};
+use crate::search::shape_starts::{scaled, scan_grid, with_extreme_shapes, with_opposite_shapes};
 use crate::search::size_scan::scan;
 
-/// Sizes of the first secants, in typical sizes: of an effect along whose size the cost falls smoothly, and of one that
-/// jumps or is met at a place.
+/// Sizes of the first secants, in typical sizes: of smooth effects, and of all others.
 const SMOOTH: &[f64] = &[0.3, 2.0];
 const ROUGH: &[f64] = &[0.3, 1.0, 2.0];
 
-/// Sizes of the other sign, in typical sizes, of an effect that may have either: where edges of a signal move, a secant
-/// promises little at half its size.
+/// Sizes of the opposite sign, in typical sizes, of effects of either sign: if edges of a signal move, the secant at
+/// half the size predicts little.
 const OPPOSITE: &[f64] = &[-0.3, -1.0];
 
-/// A form is looked at closely if it promises at least this share of what the best one does.
+/// Share of the best predicted cost reduction above which a form is examined closely.
 const PROMISING: f64 = 0.2;
 
-/// Promises of secants that are simulated one after the other, how far from a simulated end one is, as a share, and
-/// what it has to promise, as a share of what is worthwhile.
-const PROMISES: usize = 4;
+/// Largest number of secant predictions that are simulated one after the other, smallest distance of one from a
+/// simulated end, as a share, and smallest predicted reduction, as a share of `worthwhile`.
+const PREDICTIONS: usize = 4;
 const MOVED: f64 = 0.1;
 const GAIN: f64 = 0.2;
 
-/// Sections of the search for the size of what begins late.
+/// Sections of the golden section search for the size of an effect with a threshold.
 const SECTIONS: usize = 5;
 
-/// Error above which a model leaves enough for a fine search for what secants see nothing of.
+/// Root mean square error above which a model leaves enough for a fine scan for effects that secants do not show.
 pub(crate) const EXPLAINED: f64 = 1.05;
 
-/// Effects looked for one by one.
+/// Screening of single effects around a fit.
 pub(crate) struct Screen<'a> {
-    /// The experiment that effects are simulated on: the condensed one, or its drafts.
+    /// The experiment for simulations: the condensed one, or its version with coarse time steps.
     pub experiment: &'a Experiment,
     pub coarse: &'a Coarse<'a>,
     pub scans: &'a Scans,
-    /// Fall of the cost that an effect has to promise to be worth a closer look.
+    /// Smallest predicted reduction of the cost for which an effect is examined closely.
     pub worthwhile: f64,
-    /// The present residuals as a fit sees them.
+    /// The present residuals, after Huber's loss.
     pub here: &'a [Vec<f64>],
-    /// What is free at the present fit, and adapts to an effect.
+    /// Projection of the free parameters of the present fit.
     pub projection: NuisanceProjection<&'a Jacobian>,
 }
 
 impl Screen<'_> {
-    /// The columns of effects that the model does not have.
+    /// The columns of effects that the model lacks.
     pub fn columns(&self, effects: Vec<&'static dyn Effect>) -> Vec<Entry> {
         let forms = effects.into_par_iter();
-        let mut forms: Vec<Vec<End>> = forms.map(|effect| self.roughly(effect)).collect();
+        let mut forms: Vec<Vec<End>> = forms.map(|effect| self.at_first_sizes(effect)).collect();
         let here = self.cost();
-        let promised: Vec<f64> = forms.par_iter().map(|ends| self.promised(ends)).collect();
-        let least = promised.iter().copied().fold(here, f64::min);
+        let predicted: Vec<f64> = forms.par_iter().map(|ends| self.predicted(ends)).collect();
+        let least = predicted.iter().copied().fold(here, f64::min);
         let worthwhile = (PROMISING * (here - least)).max(self.worthwhile);
-        let looked_at = forms.par_iter_mut().zip(&promised);
-        looked_at.for_each(|(ends, promised)| {
-            if here - promised > worthwhile {
-                self.closely(ends);
+        let examined = forms.par_iter_mut().zip(&predicted);
+        examined.for_each(|(ends, predicted)| {
+            if here - predicted > worthwhile {
+                self.examine(ends);
             }
         });
         let columns = |ends: Vec<End>| columns(ends, self.here);
         forms.into_iter().flat_map(columns).collect()
     }
 
-    /// Columns with those that fine searches find of effects whose cost has many valleys.
+    /// The columns, with the results of fine scans for effects whose cost has many local minima.
     pub fn fine_columns(&self, entries: Vec<Entry>) -> Vec<Entry> {
-        let has_valleys = |entry: &Entry| {
+        let has_local_minima = |entry: &Entry| {
             let effect = entry.added.effect;
-            entry.kind == Kind::New && valleys(self.coarse.experiment, effect).is_some()
+            entry.kind == Kind::New && scan_grid(self.coarse.experiment, effect).is_some()
         };
         let (searched, mut entries): (Vec<Entry>, Vec<Entry>) =
-            entries.into_iter().partition(has_valleys);
+            entries.into_iter().partition(has_local_minima);
         let mut forms: Vec<Vec<End>> = Vec::new();
         for entry in &searched {
             let end = self.end_of(entry);
@@ -93,8 +92,8 @@ impl Screen<'_> {
             }
         }
         let found = forms.into_par_iter().flat_map_iter(|mut ends| {
-            let promising = self.cost() - self.promised(&ends) > self.worthwhile;
-            self.finely(&mut ends, promising);
+            let promising = self.cost() - self.predicted(&ends) > self.worthwhile;
+            self.fine_scan(&mut ends, promising);
             columns(ends, self.here)
         });
         entries.par_extend(found);
@@ -112,13 +111,13 @@ impl Screen<'_> {
         }
     }
 
-    /// The cost without any effect, once what is free has adapted.
+    /// The cost without any effect, with the free parameters re-optimised.
     fn cost(&self) -> f64 {
         self.coarse.seen.cost.min(self.projection.here())
     }
 
-    /// The least cost that the secants of a form promise.
-    fn promised(&self, ends: &[End]) -> f64 {
+    /// The least cost that the secants of a form predict.
+    fn predicted(&self, ends: &[End]) -> f64 {
         let of_end = |index: usize| {
             let (low, high) = trusted(ends, index);
             let along = self.projection.along(&ends[index].residuals, low, high);
@@ -127,8 +126,8 @@ impl Screen<'_> {
         (0..ends.len()).map(of_end).fold(f64::INFINITY, f64::min)
     }
 
-    /// A form at a few sizes.
-    fn roughly(&self, effect: &'static dyn Effect) -> Vec<End> {
+    /// A form at its first sizes.
+    fn at_first_sizes(&self, effect: &'static dyn Effect) -> Vec<End> {
         let range = &effect.parameters()[0];
         let typical = AddedEffect::typical(effect);
         let sizes = match effect.size_response() {
@@ -141,14 +140,14 @@ impl Screen<'_> {
             self.ends(sizes.filter(within).collect(), true)
         };
         let mut ends = at(sizes);
-        self.begin(&mut ends);
+        self.find_threshold(&mut ends);
         ends.extend(at(OPPOSITE));
         ends.extend(self.ends(with_opposite_shapes(effect), false));
         ends
     }
 
-    /// More ends of a form: where its secants lead, and the ends of its shapes.
-    fn closely(&self, ends: &mut Vec<End>) {
+    /// Further ends of a form: where its secants lead, and the ends of its shape ranges.
+    fn examine(&self, ends: &mut Vec<End>) {
         self.follow(ends);
         if let Some(best) = best(ends) {
             let shapes = with_extreme_shapes(&best.added);
@@ -157,8 +156,8 @@ impl Screen<'_> {
         }
     }
 
-    /// More ends of a form: what a fine search finds, if its cost has many valleys.
-    fn finely(&self, ends: &mut Vec<End>, promising: bool) {
+    /// Further ends of a form from a fine scan, if its cost has many local minima.
+    fn fine_scan(&self, ends: &mut Vec<End>, promising: bool) {
         let Some(hint) = best(ends).map(|best| best.added.clone()) else {
             return;
         };
@@ -168,11 +167,12 @@ impl Screen<'_> {
             present,
             ..
         } = self.coarse;
-        let astray = present.error() > EXPLAINED;
-        if let Some(grid) = valleys(experiment, hint.effect)
-            && (promising || (astray && !grid.hinted))
+        let is_unexplained = present.error() > EXPLAINED;
+        if let Some(grid) = scan_grid(experiment, hint.effect)
+            && (promising || (is_unexplained && !grid.hinted))
         {
-            // Condensed runs do not show when a spool jumps; drafts show how a pressure rings.
+            // Condensed runs do not show when a spool jumps; runs with coarse time steps do show the ringing of a
+            // pressure.
             let runs = match experiment.ringing {
                 true => self.experiment,
                 false => *experiment,
@@ -183,17 +183,24 @@ impl Screen<'_> {
         }
     }
 
-    /// Looks between a size that does nothing and the next larger one, which does too much: no secant leads to the best
-    /// size of what begins late, like the slip of a pump with flow to spare (golden section search).
-    fn begin(&self, ends: &mut Vec<End>) {
+    /// Golden section search between a size without any change and the next larger one, which overshoots: no secant
+    /// predicts the best size of an effect with a threshold, like the slip of a pump with excess flow.
+    fn find_threshold(&self, ends: &mut Vec<End>) {
         let does = |end: &End| (end.cost - self.coarse.seen.cost).abs() > self.worthwhile;
-        let Some(begun) = ends.iter().position(does).filter(|&begun| begun > 0) else {
+        let Some(first_change) = ends
+            .iter()
+            .position(does)
+            .filter(|&first_change| first_change > 0)
+        else {
             return;
         };
-        if self.cost() - ends[begun].cost > self.worthwhile {
+        if self.cost() - ends[first_change].cost > self.worthwhile {
             return;
         }
-        let (nothing, much) = (&ends[begun - 1].added, ends[begun].added.clone());
+        let (nothing, much) = (
+            &ends[first_change - 1].added,
+            ends[first_change].added.clone(),
+        );
         let null = much.effect.parameters()[0].null;
         let (mut low, mut high) = ((nothing.values[0] - null) / (much.values[0] - null), 1.0);
         let inner = 0.5 * (5f64.sqrt() - 1.0);
@@ -215,26 +222,26 @@ impl Screen<'_> {
         ends.extend([left, right]);
     }
 
-    /// Simulates what the best secant promises, until that is no promise any more.
+    /// Simulates the best prediction of the secants, repeatedly, until none improves.
     ///
-    /// A secant is trusted half way to the sizes that were simulated beside its end.
+    /// A secant is trusted up to the geometric mean of its end and the next simulated size.
     fn follow(&self, ends: &mut Vec<End>) {
-        for _ in 0..PROMISES {
+        for _ in 0..PREDICTIONS {
             let least = ends.iter().map(|end| end.cost).fold(self.cost(), f64::min);
-            let promises = (0..ends.len()).filter_map(|index| {
+            let predictions = (0..ends.len()).filter_map(|index| {
                 let (low, high) = trusted(ends, index);
                 let end = &ends[index];
                 let (share, cost) = self.projection.along(&end.residuals, low, high);
                 let moved = (share - 1.0).abs() > MOVED && share != 0.0;
                 moved.then(|| (cost, scaled(&end.added, share)))
             });
-            let Some((cost, promised)) = promises.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+            let Some((cost, predicted)) = predictions.min_by(|a, b| a.0.total_cmp(&b.0)) else {
                 return;
             };
-            if least - cost < GAIN * self.worthwhile || promised.is_null() {
+            if least - cost < GAIN * self.worthwhile || predicted.is_null() {
                 return;
             }
-            ends.push(self.end(promised, false));
+            ends.push(self.end(predicted, false));
         }
     }
 
@@ -255,7 +262,7 @@ impl Screen<'_> {
         }
     }
 
-    /// Residuals of an estimate as a fit sees them, under the present yardsticks.
+    /// Residuals of an estimate after Huber's loss, under the present weights.
     pub fn residuals(&self, estimate: &Estimate) -> Vec<Vec<f64>> {
         let Coarse { model, seen, .. } = self.coarse;
         huber_residuals(self.experiment, model, &seen.weights, estimate)

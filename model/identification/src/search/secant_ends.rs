@@ -1,45 +1,44 @@
-//! One form of an effect simulated at several sizes: the ends of its secants.
+//! One form of an effect at several sizes: the ends of its secants.
 
 use hitch_plant::{AddedEffect, SizeResponse};
 
 use crate::estimation::jacobian::difference;
 use crate::search::dictionary_entry::{Entry, Kind};
 
-/// Ends of secants that are kept of each form besides the first ones: those that promise most.
+/// Further ends of each form that are kept besides the first ones: those of least cost.
 const KEPT: usize = 2;
 
-/// Ends of secants nearer than this share of their size are one, where the cost falls smoothly along the size and where
-/// it does not.
+/// Relative distance of sizes below which two ends count as one, for smooth effects and for all others.
 const SAME: f64 = 0.3;
 const SAME_ROUGH: f64 = 0.005;
 
-/// Largest share of a secant that a subset may take: beyond it a secant says too little of where it leads.
-pub(crate) const FARTHEST: f64 = 3.0;
+/// Bound on the share of a secant in a subset: extrapolation beyond it is unreliable.
+pub(crate) const LARGEST_SHARE: f64 = 3.0;
 
-/// The same for what jumps or is met at a place: a size beside it is another column. The little slack bears with what
-/// else is missing.
-const JUMPING: (f64, f64) = (0.95, 1.05);
+/// The same for switching and located effects, where every size is a separate column. The slack allows for other
+/// missing effects.
+const ROUGH_SHARES: (f64, f64) = (0.95, 1.05);
 
-/// One added effect simulated.
+/// A simulated effect at one size.
 pub(crate) struct End {
     /// The effect.
     pub added: AddedEffect,
     /// Whitened residuals with it, by run.
     pub residuals: Vec<Vec<f64>>,
-    /// Cost with it, once all that is free has adapted to first order.
+    /// Cost with it, with the free parameters re-optimised to first order.
     pub cost: f64,
-    /// Whether it is one of the first sizes, which stay in the dictionary whatever they promise.
+    /// Whether it is one of the first sizes, which are always kept in the dictionary.
     pub first: bool,
 }
 
-/// Shares of a secant that are nearer to its end than to any other that was simulated, within its range.
+/// Trust region: the shares of a secant that are nearer to its end than to any other simulated size, within its range.
 pub(crate) fn trusted(ends: &[End], index: usize) -> (f64, f64) {
     let own = &ends[index].added;
     let range = &own.effect.parameters()[0];
     let size = own.values[0] - range.null;
     let of_range = [range.low, range.high].map(|end| (end - range.null) / size);
-    let mut low = of_range[0].min(of_range[1]).max(-FARTHEST);
-    let mut high = of_range[0].max(of_range[1]).min(FARTHEST);
+    let mut low = of_range[0].min(of_range[1]).max(-LARGEST_SHARE);
+    let mut high = of_range[0].max(of_range[1]).min(LARGEST_SHARE);
     for other in ends {
         if other.added.values[1..] != own.values[1..] {
             continue;
@@ -61,7 +60,7 @@ pub(crate) fn best(ends: &[End]) -> Option<&End> {
     ends.iter().min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
-/// The columns of a form: its first sizes, which say what it would do in another's place, and the best ones.
+/// The columns of a form: its first sizes, which show whether it could replace another effect, and the best ones.
 pub(crate) fn columns(ends: Vec<End>, here: &[Vec<f64>]) -> Vec<Entry> {
     let trusted: Vec<(f64, f64)> = (0..ends.len()).map(|index| trusted(&ends, index)).collect();
     let mut ends: Vec<(End, (f64, f64))> = ends.into_iter().zip(trusted).collect();
@@ -81,7 +80,7 @@ pub(crate) fn columns(ends: Vec<End>, here: &[Vec<f64>]) -> Vec<Entry> {
         .collect()
 }
 
-/// Whether two sizes of an effect are next to each other.
+/// Whether two sizes of an effect are close to each other.
 fn is_same(one: &AddedEffect, other: &AddedEffect) -> bool {
     let (a, b) = (one.values[0], other.values[0]);
     let same = match one.effect.size_response() {
@@ -93,7 +92,7 @@ fn is_same(one: &AddedEffect, other: &AddedEffect) -> bool {
 
 fn column(end: End, trusted: (f64, f64), here: &[Vec<f64>]) -> Entry {
     let share = match end.added.effect.size_response() {
-        SizeResponse::Switching | SizeResponse::Located => JUMPING,
+        SizeResponse::Switching | SizeResponse::Located => ROUGH_SHARES,
         SizeResponse::Smooth | SizeResponse::Stepped => trusted,
     };
     Entry {

@@ -1,9 +1,9 @@
-//! Sizes and shapes at which an effect is simulated to see what it may explain.
+//! Sizes and shapes at which effects are simulated for screening.
 
 use hitch_plant::{AddedEffect, Channel, Effect, Parameter, SizeResponse};
 
 use crate::data::experiment::Experiment;
-use crate::search::size_scan::{Grid, JUMPS, PLACES, PLACES_AT_REST, RINGING};
+use crate::search::size_scan::{Grid, LOCATED, LOCATED_WITHOUT_RINGING, RINGING, SWITCHING};
 
 /// An effect at a multiple of its size.
 pub(crate) fn scaled(added: &AddedEffect, share: f64) -> AddedEffect {
@@ -13,33 +13,32 @@ pub(crate) fn scaled(added: &AddedEffect, share: f64) -> AddedEffect {
     scaled
 }
 
-/// How to look through an effect's cost if that has many valleys: the phase of a ringing pressure makes them, and what
-/// jumps or bounces.
-pub(crate) fn valleys(experiment: &Experiment, effect: &dyn Effect) -> Option<&'static Grid> {
+/// The scan grid of an effect whose cost has many local minima: due to the phase of a ringing pressure, or to switching
+/// or bouncing.
+pub(crate) fn scan_grid(experiment: &Experiment, effect: &dyn Effect) -> Option<&'static Grid> {
     let pressure_alone = effect.channels() == [Channel::CylinderPressure];
     match effect.size_response() {
-        SizeResponse::Switching => Some(&JUMPS),
-        SizeResponse::Located if experiment.ringing => Some(&PLACES),
-        SizeResponse::Located => Some(&PLACES_AT_REST),
+        SizeResponse::Switching => Some(&SWITCHING),
+        SizeResponse::Located if experiment.ringing => Some(&LOCATED),
+        SizeResponse::Located => Some(&LOCATED_WITHOUT_RINGING),
         SizeResponse::Smooth if experiment.ringing && pressure_alone => Some(&RINGING),
         SizeResponse::Smooth | SizeResponse::Stepped => None,
     }
 }
 
-/// An effect at its typical size with each parameter of its shape that may have either sign at both ends of its range:
-/// an arm that grows over the stroke and one that is there all over it have nothing in common, and where one is hidden
-/// no secant of the other leads anywhere.
+/// An effect at its typical size with each signed shape parameter at both ends of its range. A load arm that grows over
+/// the stroke and one that is constant have nothing in common, so the secant of one does not reveal the other.
 pub(crate) fn with_opposite_shapes(effect: &'static dyn Effect) -> Vec<AddedEffect> {
     let typical = AddedEffect::typical(effect);
     with_shapes(&typical, |shape| shape.low < 0.0 && shape.high > 0.0)
 }
 
-/// An effect with each parameter of its shape towards either end of its range in turn; none without a shape.
+/// An effect with each shape parameter towards either end of its range in turn; none without a shape.
 pub(crate) fn with_extreme_shapes(at: &AddedEffect) -> Vec<AddedEffect> {
     with_shapes(at, |_| true)
 }
 
-/// [`with_extreme_shapes`] of those parameters that are `chosen`.
+/// [`with_extreme_shapes`] for the parameters selected by `chosen`.
 fn with_shapes(at: &AddedEffect, chosen: impl Fn(&Parameter) -> bool) -> Vec<AddedEffect> {
     let parameters = at.effect.parameters().iter().enumerate().skip(1);
     parameters
@@ -55,8 +54,9 @@ fn with_shapes(at: &AddedEffect, chosen: impl Fn(&Parameter) -> bool) -> Vec<Add
         .collect()
 }
 
-/// A value as extreme as is of use for a start: the end of the range, unless that is an order of magnitude away.
-/// There, where the ground is all but rigid, the slopes vanish that would lead back.
+/// A start value near the end of the range. For a range over several orders of magnitude it is the geometric mean of
+/// the typical value and the end: near the end itself, where for instance the ground is almost rigid, the gradient
+/// vanishes.
 fn extreme(range: &Parameter, end: f64) -> f64 {
     if range.is_by_magnitude() {
         (range.typical * end).sqrt()

@@ -9,7 +9,7 @@ use crate::estimation::fit::{Fit, evaluate_weighted};
 use crate::search::best_subset::fitted;
 use crate::search::candidates::Progress;
 use crate::search::coarse_view::Coarse;
-use crate::search::dictionary::Around;
+use crate::search::dictionary::DictionaryBuilder;
 use crate::search::dictionary_entry::Kind;
 use crate::search::refit::Refits;
 use crate::search::scan_cache::Scans;
@@ -18,13 +18,13 @@ use crate::selection::candidate::{Candidate, slow_columns, weigh, weigh_by};
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::evidence::shares;
 
-/// Forms that are fitted in full, the most promising ones; of the others the start of a fit is weighed.
+/// Number of the most promising forms that are fitted in full; the others are weighed at the start of their fit.
 const FITTED: usize = 8;
 
-/// Report of a form of an effect that was weighed.
-pub type Weighed<'a> = &'a (dyn Fn(&Candidate) + Sync);
+/// Callback with each form of an effect once it is weighed.
+pub type OnWeighed<'a> = &'a (dyn Fn(&Candidate) + Sync);
 
-/// Each effect in its best form beside a fit, weighed; the likeliest first.
+/// Each effect in its best form added to a fit and weighed, by decreasing probability.
 #[must_use]
 pub fn try_effects(
     experiment: &Experiment,
@@ -36,7 +36,7 @@ pub fn try_effects(
     try_each(experiment, model, base, effects, progress, &|_| {})
 }
 
-/// [`try_effects`] that tells of each form as soon as it is weighed, in any order.
+/// [`try_effects`] with a callback for each form once it is weighed, in any order.
 #[must_use]
 pub fn try_each(
     experiment: &Experiment,
@@ -44,19 +44,19 @@ pub fn try_each(
     base: &Fit,
     effects: &[&'static dyn Effect],
     progress: Progress,
-    weighed: Weighed,
+    weighed: OnWeighed,
 ) -> Vec<Candidate> {
     let scans = Scans::default();
-    let penalty = Penalty::beside(experiment, base);
+    let penalty = Penalty::given(experiment, base);
     let coarse = Coarse::new(experiment, model, base);
-    let around = Around {
+    let builder = DictionaryBuilder {
         coarse: &coarse,
         effects: effects.to_vec(),
         changes: false,
         scans: &scans,
-        worthwhile: 0.5 * penalty.of_nothing(),
+        worthwhile: 0.5 * penalty.minimum(),
     };
-    let dictionary = around.thorough(around.dictionary());
+    let dictionary = builder.thorough(builder.dictionary());
     let (gram, entries) = (&dictionary.gram, dictionary.entries.as_slice());
     let start = |effect: &'static dyn Effect| -> Option<(f64, Estimate)> {
         let own = |&column: &usize| {
@@ -86,7 +86,7 @@ pub fn try_each(
         options: Options::default(),
     };
     let slow = slow_columns(experiment, model, base);
-    let promising = |cost: f64| coarse.seen.cost - cost > around.worthwhile || effects.len() == 1;
+    let promising = |cost: f64| coarse.seen.cost - cost > builder.worthwhile || effects.len() == 1;
     let tried = starts.into_par_iter().enumerate();
     let tried = tried.map(|(rank, (cost, effect, estimate))| {
         progress(effect.id());
@@ -110,7 +110,8 @@ pub fn try_each(
     likeliest_forms(tried.collect())
 }
 
-/// Probability of each candidate among all and none, all other differences aside, that it is what it is called.
+/// Probability of each candidate among all candidates and none, times the probability that it is the named effect
+/// rather than an unknown one.
 #[must_use]
 pub fn confidences(candidates: &[Candidate]) -> Vec<f64> {
     let none = 0.0;
@@ -119,12 +120,12 @@ pub fn confidences(candidates: &[Candidate]) -> Vec<f64> {
     let mut confidences = shares(&odds);
     confidences.truncate(candidates.len());
     for (confidence, candidate) in confidences.iter_mut().zip(candidates) {
-        *confidence *= candidate.genuine();
+        *confidence *= candidate.plausibility();
     }
     confidences
 }
 
-/// Of each effect the likeliest form, the likeliest effect first.
+/// The most probable form of each effect, by decreasing probability.
 fn likeliest_forms(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
     candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
     let mut forms: Vec<Candidate> = Vec::new();

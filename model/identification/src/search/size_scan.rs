@@ -1,9 +1,9 @@
-//! A fine search for the size of an effect whose cost has many valleys, on the runs that tell most of it.
+//! Fine scan over the size of an effect whose cost has many local minima, on the most informative runs.
 //!
-//! A spool that sticks on a ramp jumps once a band: with a band that is a fiftieth off, the twentieth jump comes at
-//! the wrong time, and the fit is worse than without the effect. A pressure that rings ten times before it has died
-//! away is out of step with the model's as soon as the stiffness is a tenth off. No secant leads there. But a few runs
-//! are enough to see it, and a second of computing goes through hundreds of sizes.
+//! A spool that sticks on a ramp jumps once per band: with a band that is two percent off, the twentieth jump comes at
+//! the wrong time, and the fit is worse than without the effect. A pressure with ten visible oscillations is out of
+//! phase once the stiffness is ten percent off. No secant leads to the minimum, but a few runs show it, and hundreds of
+//! sizes are simulated in a second.
 
 use hitch_plant::{AddedEffect, Model, Parameter};
 use rayon::prelude::*;
@@ -14,141 +14,143 @@ use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::residuals;
 use crate::search::shape_starts::scaled;
 
-/// What is looked through, and how finely.
+/// The grid of a scan.
 pub(crate) struct Grid {
     /// Smallest and largest size, in typical sizes.
     sizes: [f64; 2],
-    /// How far a size is from the one before.
-    step: Step,
-    /// Which runs are looked at.
-    telling: Telling,
-    /// What makes narrow_valleys.
-    narrow_valleys: Option<NarrowValleys>,
-    /// How far to either side of what the telling runs found all runs are looked at, as a share of the size.
+    /// Spacing of the sizes.
+    spacing: Spacing,
+    /// Criterion for the runs that are scanned.
+    informative: Informative,
+    /// Additional fine grid for narrow minima.
+    narrow_minima: Option<NarrowMinima>,
+    /// Half-width of the sizes evaluated on all runs around the results from the informative runs, as a share of the
+    /// size.
     all_runs: f64,
-    /// Values of the first shape from one end of its range to the other, by its magnitude if that is what counts; a fit
-    /// finds the others from where the effect has them.
+    /// Number of values of the first shape parameter over its range, spaced by magnitude if the range is; a fit finds
+    /// the other shape parameters from their values in the hint.
     shapes: usize,
-    /// How far two sizes of a shape are apart at least, as a share of the size.
-    apart: f64,
-    /// How many are kept after a closer look.
+    /// Smallest distance between two sizes of a shape, as a share of the size.
+    distance: f64,
+    /// Number of results of the closer scans.
     best: usize,
-    /// The closer looks at them: how far to either side, as a share of the size and of the range of a shape.
+    /// Half-widths of the closer scans, as shares of the size and of the range of a shape parameter.
     closer: &'static [(f64, f64)],
-    /// Whether it is seen without the ringing of the pressure, at a tenth of the time.
+    /// Whether it is scanned with a quasi-static model, without pressure ringing, at a tenth of the time.
     quasi_static: bool,
-    /// Whether secants see something of it: what they find next to nothing of is not there.
+    /// Whether secants respond to the effect: it is then absent if they predict almost nothing.
     pub hinted: bool,
-    /// Share of the telling runs' loss without the effect that it may leave at most to be looked at more closely. While
-    /// loads and clocks stand in for what is missing, the right place may leave nearly all of a loss that is bounded.
-    leaves: f64,
+    /// Largest remaining share of the informative runs' loss for a closer scan. While loads and clocks compensate for
+    /// what is missing, the bounded loss may stay almost as large at the right size.
+    remaining_loss: f64,
 }
 
-/// Sizes with the shape at its upper end: a spool that sticks on a ramp and jumps by the whole band comes to the same
-/// places again and again, so that the smaller a band is, the closer it has to be met.
+/// Fine grid of sizes with the shape at its upper end. A spool that sticks on a ramp and jumps by the whole band
+/// returns to the same places, so the minimum is narrower for smaller bands.
 #[derive(Clone, Copy)]
-struct NarrowValleys {
+struct NarrowMinima {
     /// Smallest and largest size, in typical sizes.
     sizes: [f64; 2],
-    /// Share by which a size is larger than the one before, for each typical size, and at most.
+    /// Relative spacing of the sizes per typical size, and its largest value.
     finer: f64,
     coarsest: f64,
 }
 
-/// How far a size is from the one before.
+/// Spacing of the sizes.
 #[derive(Clone, Copy)]
-enum Step {
-    /// A share of it.
+enum Spacing {
+    /// A share of the size.
     Share(f64),
-    /// So many typical sizes.
+    /// A constant, in typical sizes.
     Even(f64),
 }
 
-/// The runs that tell most of an effect.
+/// Criterion for the informative runs.
 #[derive(Clone, Copy)]
-enum Telling {
-    /// Those that a size changes which is a little off.
+enum Informative {
+    /// Runs that a small change of the size changes.
     Changed,
-    /// Those that the model fails without it.
+    /// Runs in which the model without the effect has large residuals.
     Failed,
 }
 
-/// For jumps and bounces.
-pub(crate) static JUMPS: Grid = Grid {
+/// For switching effects.
+pub(crate) static SWITCHING: Grid = Grid {
     sizes: [0.12, 4.0],
-    step: Step::Share(0.008),
-    telling: Telling::Changed,
-    narrow_valleys: Some(NarrowValleys {
+    spacing: Spacing::Share(0.008),
+    informative: Informative::Changed,
+    narrow_minima: Some(NarrowMinima {
         sizes: [0.25, 3.0],
         finer: 0.003,
         coarsest: 0.004,
     }),
     all_runs: 0.005,
     shapes: 3,
-    apart: 0.03,
+    distance: 0.03,
     best: 2,
     closer: &[(0.01, 0.25), (0.002, 0.05), (0.000_4, 0.01)],
     quasi_static: true,
     hinted: true,
-    leaves: 0.92,
+    remaining_loss: 0.92,
 };
 
-/// For ringing: a valley reaches a seventh of the size to either side, and descending from there needs no closer look.
+/// For ringing: a minimum extends over a seventh of the size to either side, so that a descent from the grid needs no
+/// closer scan.
 pub(crate) static RINGING: Grid = Grid {
     sizes: [0.1, 8.0],
-    step: Step::Share(0.06),
-    telling: Telling::Changed,
-    narrow_valleys: None,
+    spacing: Spacing::Share(0.06),
+    informative: Informative::Changed,
+    narrow_minima: None,
     all_runs: 0.0,
     shapes: 5,
-    apart: 0.1,
+    distance: 0.1,
     best: 4,
     closer: &[],
     quasi_static: false,
     hinted: false,
-    leaves: f64::INFINITY,
+    remaining_loss: f64::INFINITY,
 };
 
-/// For what is met somewhere: what stands at the place or comes down on it is right within a few millimetres, and what
-/// rings on it has a valley for every period.
-pub(crate) static PLACES: Grid = Grid {
+/// For located effects: the hitch resting on or reaching the place is reproduced within a few millimetres, and ringing
+/// there causes one local minimum per period.
+pub(crate) static LOCATED: Grid = Grid {
     sizes: [0.1, 6.5],
-    step: Step::Even(0.06),
-    telling: Telling::Failed,
-    narrow_valleys: None,
+    spacing: Spacing::Even(0.06),
+    informative: Informative::Failed,
+    narrow_minima: None,
     all_runs: 0.0,
     shapes: 5,
-    apart: 0.05,
+    distance: 0.05,
     best: 2,
     closer: &[(0.04, 0.125)],
     quasi_static: true,
     hinted: false,
-    leaves: f64::INFINITY,
+    remaining_loss: f64::INFINITY,
 };
 
-/// The same where nothing rings: secants see what stands at the place, though not how stiff it is.
-pub(crate) static PLACES_AT_REST: Grid = Grid {
+/// The same without ringing: secants show that something is there, though not its stiffness.
+pub(crate) static LOCATED_WITHOUT_RINGING: Grid = Grid {
     hinted: true,
-    ..PLACES
+    ..LOCATED
 };
 
-/// Sizes of each shape that are looked at more closely, and of all shapes.
+/// Results per shape that are scanned more closely, and in total.
 const PER_SHAPE: usize = 2;
-const LOOKED_AT: usize = 6;
+const SCANNED_CLOSELY: usize = 6;
 
-/// How many of the sizes that fit the telling runs best are tried on all: what little tells those apart may tell others
-/// well.
-const SEEN_BY_ALL: usize = 60;
+/// Number of the best sizes on the informative runs that are evaluated on all runs, which may distinguish them better.
+const EVALUATED_ON_ALL: usize = 60;
 
-/// Values of a closer look to either side.
+/// Values of a closer scan to either side.
 const TO_EITHER_SIDE: i32 = 5;
 
-/// Share of the sizes, the best on so many of the most telling runs, that are tried on the others.
-const WINNOWED: f64 = 0.25;
-const MOST_TELLING: usize = 2;
+/// Share of the sizes, those that are best on the first few of the informative runs, that are evaluated on the others,
+/// and the number of these first runs.
+const PRESELECTED: f64 = 0.25;
+const FIRST_INFORMATIVE: usize = 2;
 
-/// The sizes and shapes of an effect around those that fit the runs best which tell them apart; `hint` is any size of
-/// it.
+/// The sizes and shapes of an effect around those that fit the most informative runs best; `hint` is the effect at any
+/// size.
 pub(crate) fn scan(
     experiment: &Experiment,
     model: &Model,
@@ -157,32 +159,32 @@ pub(crate) fn scan(
     grid: &Grid,
 ) -> Vec<AddedEffect> {
     let failed = failed(base);
-    let telling = match grid.telling {
-        Telling::Changed => {
+    let informative = match grid.informative {
+        Informative::Changed => {
             let changed = changed(experiment, model, base, hint);
-            of_each_valve(experiment, &both(&changed, &unexplained(base)))
+            of_each_valve(experiment, &geometric_mean(&changed, &unexplained(base)))
         }
-        Telling::Failed => enough(experiment, &failed, ENOUGH),
+        Informative::Failed => most_informative_runs(experiment, &failed, INFORMATIVE_SAMPLES),
     };
     let scan = Scan {
         experiment,
         model: model.clone(),
         base,
-        telling,
+        informative,
     };
     let all: Vec<usize> = (0..experiment.runs.len()).collect();
     let without = failed.iter().enumerate();
     let visible: f64 = without
-        .map(|(run, failed)| scan.unlikely(run, grid.leaves * failed))
+        .map(|(run, failed)| scan.negative_log_likelihood(run, grid.remaining_loss * failed))
         .sum();
     let ringing = experiment.ringing;
-    let looked_at = if ringing { grid.best } else { LOOKED_AT };
+    let closer_count = if ringing { grid.best } else { SCANNED_CLOSELY };
     let mut best = scan.ranked(scan.better(coarse(hint, grid), grid, &all), &all);
-    best.truncate(looked_at);
+    best.truncate(closer_count);
     best.retain(|(left, _)| *left < visible);
     for &reach in grid.closer {
         let closer = best.into_iter().map(|(_, added)| {
-            let nearby = scan.ranked(around(&added, reach), &scan.telling);
+            let nearby = scan.ranked(around(&added, reach), &scan.informative);
             nearby
                 .into_iter()
                 .next()
@@ -197,47 +199,46 @@ pub(crate) fn scan(
         .collect()
 }
 
-/// What is scanned.
+/// The context of a scan.
 #[derive(Clone)]
 struct Scan<'a> {
     experiment: &'a Experiment,
     model: Model,
     base: &'a Fit,
-    /// The runs that are looked at, the most telling first.
-    telling: Vec<usize>,
+    /// The informative runs, the most informative first.
+    informative: Vec<usize>,
 }
 
 impl Scan<'_> {
-    /// The same seen without the ringing of the pressure: what that leaves all but hides a narrow_valleys, but not from the
-    /// better ones.
-    fn still(&self) -> Self {
+    /// The same scan with a quasi-static model: its residuals mask narrow minima almost, but not those of the best
+    /// sizes.
+    fn as_quasi_static(&self) -> Self {
         Self {
             model: self.model.quasi_static(),
             ..self.clone()
         }
     }
 
-    /// A few of many added effects, of every shape those that fit the telling runs best and, where simulating takes
-    /// little, all runs.
+    /// The best few sizes per shape on the informative runs and, if simulations are cheap, on all runs.
     fn better(&self, added: Vec<AddedEffect>, grid: &Grid, all: &[usize]) -> Vec<AddedEffect> {
         let rings = self.experiment.ringing;
         let seen = if grid.quasi_static {
-            self.still()
+            self.as_quasi_static()
         } else {
             self.clone()
         };
-        let mut ranked = seen.winnowed(added);
+        let mut ranked = seen.preselected(added);
         if grid.quasi_static {
-            ranked.truncate(SEEN_BY_ALL);
+            ranked.truncate(EVALUATED_ON_ALL);
             ranked = seen.ranked(without_losses(ranked), all);
             if rings {
-                ranked = self.ranked(without_losses(ranked), &self.telling);
+                ranked = self.ranked(without_losses(ranked), &self.informative);
             }
         }
-        without_losses(apart(ranked, grid.apart))
+        without_losses(spaced(ranked, grid.distance))
     }
 
-    /// How little likely what an added effect leaves of some runs is.
+    /// Negative log-likelihood of the residuals of some runs with an added effect.
     fn left(&self, added: &AddedEffect, runs: &[usize]) -> f64 {
         let mut effects = self.base.estimate.effects.clone();
         effects.push(added.clone());
@@ -247,19 +248,19 @@ impl Scan<'_> {
             let ready = &self.experiment.runs[run];
             let trace = ready.simulate(&model, estimate.nuisances[run], &estimate.clocks);
             let whitened = self.base.weights.runs[run].whiten(ready, &trace);
-            self.unlikely(run, whitened.into_iter().map(bounded_loss).sum())
+            self.negative_log_likelihood(run, whitened.into_iter().map(bounded_loss).sum())
         });
         left.sum()
     }
 
-    /// How little likely a loss of a run is whose noise may be of any size: another effect that is missing still, and
-    /// that some runs alone are full of, has no say in those that an effect explains.
-    fn unlikely(&self, run: usize, loss: f64) -> f64 {
+    /// Negative log-likelihood of a run's loss with unknown noise variance: a second missing effect that dominates some
+    /// runs then does not affect the evaluation of the others.
+    fn negative_log_likelihood(&self, run: usize, loss: f64) -> f64 {
         let samples = self.experiment.runs[run].len() as f64;
         samples * (loss / samples).ln_1p()
     }
 
-    /// Added effects by what they leave on some runs, the best first.
+    /// Added effects by their negative log-likelihood on some runs, ascending.
     fn ranked(&self, added: Vec<AddedEffect>, runs: &[usize]) -> Vec<(f64, AddedEffect)> {
         let mut ranked: Vec<(f64, AddedEffect)> = added
             .into_par_iter()
@@ -269,12 +270,12 @@ impl Scan<'_> {
         ranked
     }
 
-    /// The better ones of added effects by what they leave on all telling runs, the best first.
-    fn winnowed(&self, added: Vec<AddedEffect>) -> Vec<(f64, AddedEffect)> {
-        let most_telling = &self.telling[..self.telling.len().min(MOST_TELLING)];
-        let mut better = self.ranked(added, most_telling);
-        better.truncate((WINNOWED * better.len() as f64).ceil() as usize);
-        self.ranked(without_losses(better), &self.telling)
+    /// The better part of added effects by their negative log-likelihood on all informative runs, ascending.
+    fn preselected(&self, added: Vec<AddedEffect>) -> Vec<(f64, AddedEffect)> {
+        let most_informative = &self.informative[..self.informative.len().min(FIRST_INFORMATIVE)];
+        let mut better = self.ranked(added, most_informative);
+        better.truncate((PRESELECTED * better.len() as f64).ceil() as usize);
+        self.ranked(without_losses(better), &self.informative)
     }
 }
 
@@ -282,8 +283,8 @@ fn without_losses(ranked: Vec<(f64, AddedEffect)>) -> Vec<AddedEffect> {
     ranked.into_iter().map(|(_, added)| added).collect()
 }
 
-/// The best few of every shape whose sizes are this share apart.
-fn apart(ranked: Vec<(f64, AddedEffect)>, share: f64) -> Vec<(f64, AddedEffect)> {
+/// The best few per shape whose sizes are this share apart.
+fn spaced(ranked: Vec<(f64, AddedEffect)>, share: f64) -> Vec<(f64, AddedEffect)> {
     let mut best: Vec<(f64, AddedEffect)> = Vec::new();
     for (loss, added) in ranked {
         let alike = |(_, other): &&(f64, AddedEffect)| added.values[1..] == other.values[1..];
@@ -298,25 +299,25 @@ fn apart(ranked: Vec<(f64, AddedEffect)>, share: f64) -> Vec<(f64, AddedEffect)>
     best
 }
 
-/// Sigmas beyond which a residual counts no more.
+/// Residual, in sigma, from which the loss is constant.
 const BOUND: f64 = 3.0;
 
-/// Sizes on either side of a hint that the telling runs have to tell apart, in the hint's.
-const TOLD_APART: [f64; 2] = [0.9, 1.1];
+/// Sizes on either side of the hint whose loss has to differ in an informative run, as shares of the hint's.
+const HINT_VARIATIONS: [f64; 2] = [0.9, 1.1];
 
-/// Samples of runs that are enough to tell sizes apart.
-const ENOUGH: usize = 1200;
+/// Number of samples of the informative runs.
+const INFORMATIVE_SAMPLES: usize = 1200;
 
-/// The loss of a residual, of whose size nothing counts beyond [`BOUND`]: the noise of the current decides here and
-/// there whether a spool jumps, and what comes after a jump that was missed must not outweigh all others.
+/// Loss of a residual, constant beyond [`BOUND`]: the noise of the current decides whether a spool jumps at some
+/// instants, and the samples after a missed jump must not dominate.
 fn bounded_loss(residual: f64) -> f64 {
     (residual * residual).min(BOUND * BOUND)
 }
 
-/// Loss by which two sizes of the effect differ in each run. One that it changes much, but by any size alike, like a
-/// plateau that is reached from below, leaves them all in question.
+/// Loss between two sizes of the effect in each run. A run that every size changes alike, like a plateau that is
+/// reached from below, does not determine the size.
 fn changed(experiment: &Experiment, model: &Model, base: &Fit, hint: &AddedEffect) -> Vec<f64> {
-    let [smaller, larger] = TOLD_APART.map(|share| {
+    let [smaller, larger] = HINT_VARIATIONS.map(|share| {
         let mut with = base.estimate.clone();
         with.effects.push(scaled(hint, share));
         residuals(experiment, model, &base.weights, &with)
@@ -343,27 +344,34 @@ fn unexplained(base: &Fit) -> Vec<f64> {
     .collect()
 }
 
-/// The geometric mean of two losses in each run: what differs by the size tells nothing where nothing is missing.
-fn both(one: &[f64], other: &[f64]) -> Vec<f64> {
+/// The geometric mean of two losses in each run: a run that depends on the size is only informative if it has
+/// unexplained residuals.
+fn geometric_mean(one: &[f64], other: &[f64]) -> Vec<f64> {
     let runs = one.iter().zip(other);
     runs.map(|(one, other)| (one * other).sqrt()).collect()
 }
 
-/// Runs that tell enough, as many of lifting as of lowering if there are runs of the one and of the other, the most
-/// telling ones first: what else is missing may spoil the runs of one valve.
-fn of_each_valve(experiment: &Experiment, told: &[f64]) -> Vec<usize> {
+/// Informative runs, most informative first, alternating between lifting and lowering if both exist: another missing
+/// effect may spoil the runs of one valve.
+fn of_each_valve(experiment: &Experiment, information: &[f64]) -> Vec<usize> {
     let [mut lifting, mut lowering] = [
         [Regime::Lifting, Regime::Lowering],
         [Regime::Lowering, Regime::Lifting],
     ]
     .map(|[wanted, other]| {
         let alone = |run: &ReadyRun| run.regimes.contains(&wanted) && !run.regimes.contains(&other);
-        let told = experiment.runs.iter().zip(told);
-        let told = told.map(|(run, &told)| if alone(run) { told } else { 0.0 });
-        enough(experiment, &told.collect::<Vec<_>>(), ENOUGH / 2).into_iter()
+        let information = experiment.runs.iter().zip(information);
+        let information =
+            information.map(|(run, &information)| if alone(run) { information } else { 0.0 });
+        most_informative_runs(
+            experiment,
+            &information.collect::<Vec<_>>(),
+            INFORMATIVE_SAMPLES / 2,
+        )
+        .into_iter()
     });
     if lifting.len().min(lowering.len()) == 0 {
-        return enough(experiment, told, ENOUGH);
+        return most_informative_runs(experiment, information, INFORMATIVE_SAMPLES);
     }
     let pairs = std::iter::from_fn(|| {
         let pair = [lowering.next(), lifting.next()];
@@ -372,10 +380,16 @@ fn of_each_valve(experiment: &Experiment, told: &[f64]) -> Vec<usize> {
     pairs.flatten().flatten().collect()
 }
 
-/// Runs with so many samples as are enough, the most telling first for their length, by what each tells.
-fn enough(experiment: &Experiment, told: &[f64], enough: usize) -> Vec<usize> {
-    let density = |run: usize| told[run] / experiment.runs[run].regimes.len().max(1) as f64;
-    let mut runs: Vec<usize> = (0..told.len()).filter(|&run| told[run] > 0.0).collect();
+/// The most informative runs per sample, until `enough` samples are reached; `information` is per run.
+fn most_informative_runs(
+    experiment: &Experiment,
+    information: &[f64],
+    enough: usize,
+) -> Vec<usize> {
+    let density = |run: usize| information[run] / experiment.runs[run].regimes.len().max(1) as f64;
+    let mut runs: Vec<usize> = (0..information.len())
+        .filter(|&run| information[run] > 0.0)
+        .collect();
     runs.sort_by(|&a, &b| density(b).total_cmp(&density(a)));
     let mut samples = 0;
     let few = |&run: &usize| {
@@ -386,12 +400,12 @@ fn enough(experiment: &Experiment, told: &[f64], enough: usize) -> Vec<usize> {
     runs.into_iter().take_while(few).collect()
 }
 
-/// Every size with every shape, and what makes narrow_valleys.
+/// The grid of all sizes and shapes, and the fine grid for narrow minima.
 fn coarse(hint: &AddedEffect, grid: &Grid) -> Vec<AddedEffect> {
     let share = |k: usize| k as f64 / (grid.shapes - 1) as f64;
-    let next = |size: f64| match grid.step {
-        Step::Share(share) => size * (1.0 + share),
-        Step::Even(step) => size + step,
+    let next = |size: f64| match grid.spacing {
+        Spacing::Share(share) => size * (1.0 + share),
+        Spacing::Even(step) => size + step,
     };
     let even = combinations(hint, |index, range| match index {
         0 => sizes(range, grid.sizes, next),
@@ -400,22 +414,21 @@ fn coarse(hint: &AddedEffect, grid: &Grid) -> Vec<AddedEffect> {
             .collect(),
         other => vec![hint.values[other]],
     });
-    let narrow_valleys = grid
-        .narrow_valleys
+    let narrow_minima = grid
+        .narrow_minima
         .as_ref()
-        .map_or_else(Vec::new, |narrow_valleys| {
-            let next = |size: f64| {
-                size * (1.0 + (narrow_valleys.finer * size).min(narrow_valleys.coarsest))
-            };
+        .map_or_else(Vec::new, |narrow_minima| {
+            let next =
+                |size: f64| size * (1.0 + (narrow_minima.finer * size).min(narrow_minima.coarsest));
             combinations(hint, |index, range| match index {
-                0 => sizes(range, narrow_valleys.sizes, next),
+                0 => sizes(range, narrow_minima.sizes, next),
                 _ => vec![range.high],
             })
         });
-    [even, narrow_valleys].concat()
+    [even, narrow_minima].concat()
 }
 
-/// Sizes from the smallest to the largest, in typical ones, each with the next larger one.
+/// Sizes from the smallest to the largest, in typical sizes, each followed by `next`.
 fn sizes(size: &Parameter, [smallest, largest]: [f64; 2], next: impl Fn(f64) -> f64) -> Vec<f64> {
     std::iter::successors(Some(smallest), |&at| Some(next(at)))
         .take_while(|&at| at <= largest)
@@ -424,7 +437,7 @@ fn sizes(size: &Parameter, [smallest, largest]: [f64; 2], next: impl Fn(f64) -> 
         .collect()
 }
 
-/// Sizes and shapes around others.
+/// A grid of sizes and shapes around an effect.
 fn around(at: &AddedEffect, (size_reach, shape_reach): (f64, f64)) -> Vec<AddedEffect> {
     combinations(at, |index, range| {
         let value = at.values[index];

@@ -1,14 +1,14 @@
-//! Which set of effects a campaign asks for, found as a whole.
+//! Search for the set of effects that explains a campaign.
 //!
-//! 1. Dictionary: every way in which the model may be wrong is simulated at a few sizes around the present fit.
-//! 2. Best subset: in the linear space of those columns, nuisances projected out, the best subsets of each size are
-//!    found without a simulation.
-//! 3. Refit: the most promising ones are fitted with the full model and judged by what they leave and by the penalty of
-//!    what they say. Around the best of them a new dictionary is made, until the set stays.
-//! 4. Posterior: the weights of all sets that were refitted give the probability of each effect.
+//! 1. Dictionary: candidate changes of the model are simulated at a few sizes around the present fit.
+//! 2. Best subset: in the linear span of those columns, with nuisance parameters projected out, the best subsets of
+//! each size are found without a simulation.
+//! 3. Refit: the most promising subsets are fitted with the full model and compared by their penalised cost. A new
+//! dictionary is built around the best of them, until the set no longer changes.
+//! 4. Posterior: the weights of all refitted sets give the probability of each effect.
 //!
-//! A forward search takes the best single effect first, which may stand for two others, and needs rules to get rid of
-//! it again. A subset is judged with all its members at once.
+//! A forward search would take the best single effect first, which may stand in for two others, and would need rules to
+//! remove it again. A subset is judged with all its members at once.
 
 use std::time::Instant;
 
@@ -20,7 +20,7 @@ use crate::estimation::fit::{Fit, evaluate, evaluate_weighted};
 use crate::search::candidates::{Progress, showing};
 use crate::search::coarse_view::Coarse;
 use crate::search::confounded::confounded;
-use crate::search::dictionary::{Around, Dictionary};
+use crate::search::dictionary::{Dictionary, DictionaryBuilder};
 use crate::search::promising_subsets::starts;
 use crate::search::refit::Refits;
 use crate::search::scan_cache::Scans;
@@ -30,27 +30,27 @@ use crate::selection::complexity_penalty::Penalty;
 use crate::selection::hold_out::{HeldOut, held_out};
 use crate::selection::posterior::{Refitted, key};
 
-/// Most dictionaries that are made.
+/// Most dictionaries of a search.
 const ROUNDS: usize = 6;
 
-/// How many effects more than the present ones a set may have that a dictionary leads to.
+/// Most effects that one dictionary may add to the present set.
 const MORE: usize = 2;
 
-/// Largest error without an effect at which an effect that jumps may explain as much in its place. Above it the instants
-/// of the jumps tell the two apart.
-const FAINT: f64 = 1.5;
+/// Largest error, in sigma, of the model without an effect at which a switching effect can be confounded with another
+/// one. Above it, the switching instants distinguish them.
+const CONFOUNDABLE_ERROR: f64 = 1.5;
 
-/// Sets that are tried on held-out runs in one round.
+/// Sets per round that are evaluated on held-out runs.
 const TRIED: usize = 3;
 
-/// What a search may do.
+/// Options of a search.
 #[derive(Clone, Copy)]
 pub struct Options<'a> {
-    /// Whether effects that the model had before the search may have changed.
+    /// Whether the sizes of effects that the model had before the search may change.
     pub changes: bool,
-    /// When the search has to end with what it has.
+    /// Time at which the search returns its best result so far.
     pub deadline: Option<Instant>,
-    /// Receives each fit that becomes the best one while the search goes on.
+    /// Callback with each fit that becomes the best one during the search.
     pub improved: &'a (dyn Fn(&Fit) + Sync),
 }
 
@@ -74,7 +74,7 @@ impl std::fmt::Debug for Options<'_> {
 }
 
 impl Options<'_> {
-    /// Whether the time is up.
+    /// Whether the deadline has passed.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.deadline
@@ -82,22 +82,22 @@ impl Options<'_> {
     }
 }
 
-/// What a search came to.
+/// The result of a search.
 pub(crate) struct Found {
     /// The best fit.
     pub fit: Fit,
-    /// What it leaves in held-out runs.
+    /// Its error in held-out runs.
     pub held_out: HeldOut,
     /// All sets that were fitted in full.
     pub refitted: Refitted,
-    /// The effects of the best fit, by their indices, those first that explain most beside the ones before.
+    /// Indices of the effects of the best fit, in greedy order of the cost reduction that each adds.
     pub order: Vec<usize>,
-    /// Whether the time was up before the set stayed.
+    /// Whether the deadline passed before the set stopped changing.
     pub unfinished: bool,
 }
 
 impl Found {
-    /// Nothing beyond the model.
+    /// The model alone.
     pub fn nothing(base: &Fit) -> Self {
         Self {
             fit: base.clone(),
@@ -109,7 +109,7 @@ impl Found {
     }
 }
 
-/// The set of effects that explains a campaign best, from a fit of the model without any.
+/// Searches the set of effects that explains a campaign best, from a fit of the model alone.
 pub(crate) fn search(
     experiment: &Experiment,
     model: &Model,
@@ -134,7 +134,7 @@ pub(crate) fn search(
         if options.is_over() {
             break;
         }
-        if search.looks_further() || search.looks_for_rivals() {
+        if search.extend() || search.tries_alternatives() {
             let added = base.estimate.effects.len()..search.present.estimate.effects.len();
             search.order = added.collect();
         } else {
@@ -145,7 +145,7 @@ pub(crate) fn search(
     search.found(unfinished)
 }
 
-/// A search under way.
+/// State of a search.
 struct Search<'a> {
     experiment: &'a Experiment,
     model: &'a Model,
@@ -153,60 +153,61 @@ struct Search<'a> {
     progress: Progress<'a>,
     scans: Scans,
     refitted: Refitted,
-    /// The best fit so far, and what it leaves in held-out runs.
+    /// The best fit so far, and its error in held-out runs.
     present: Fit,
     left: HeldOut,
-    /// Its effects, those first that explain most.
+    /// Indices of its effects, in greedy order of cost reduction.
     order: Vec<usize>,
-    /// Its effects with the ids of those that may stand in the place of each.
+    /// Indices of its effects, each with the ids of its confounded alternatives.
     rivals: Vec<(usize, Vec<&'static str>)>,
 }
 
 impl Search<'_> {
-    /// Makes a dictionary around the present fit and goes on to the best set that it leads to; whether there is one.
-    fn looks_further(&mut self) -> bool {
+    /// Builds a dictionary around the present fit and moves to the best set that it leads to. Returns whether there is
+    /// one.
+    fn extend(&mut self) -> bool {
         let name = key(&self.present).name();
         (self.progress)(&format!("what is missing beside {name}"));
         let present = self.present.clone();
         let coarse = Coarse::new(self.experiment, self.model, &present);
-        let around = self.around(&coarse, |_| true);
-        let dictionary = around.dictionary();
-        self.tries(&coarse, &dictionary, MORE);
+        let builder = self.builder(&coarse, |_| true);
+        let dictionary = builder.dictionary();
+        self.fits_subsets(&coarse, &dictionary, MORE);
         let effects = 0..present.estimate.effects.len();
         let own = effects.filter(|&index| !present.estimate.is_unchanged(index));
         self.rivals = own
             .map(|index| (index, confounded(&dictionary, index)))
             .collect();
         self.order = in_order(&dictionary);
-        // LeaveOneOut an effect that was found already, a plain dictionary goes on as long as it leads anywhere.
-        if key(&present).len() > 0 && self.goes_on() {
+        // Once an effect has been found, the plain dictionary is sufficient as long as it leads to improvements.
+        if key(&present).len() > 0 && self.moves_to_best() {
             return true;
         }
         if self.refitted.least_error() > EXPLAINED {
-            let dictionary = self.around(&coarse, |_| true).thorough(dictionary);
-            self.tries(&coarse, &dictionary, MORE);
-            self.looks_in_step(&present);
+            let dictionary = self.builder(&coarse, |_| true).thorough(dictionary);
+            self.fits_subsets(&coarse, &dictionary, MORE);
+            self.tries_synchronised(&present);
         }
-        self.goes_on()
+        self.moves_to_best()
     }
 
-    /// Tries what is late while clocks stand in for it.
-    fn looks_in_step(&mut self, present: &Fit) {
+    /// Repeats the dictionary with all clocks in step, for delays that clock offsets compensate.
+    fn tries_synchronised(&mut self, present: &Fit) {
         let in_step = synchronous(self.experiment, self.model, present);
         if let Some(in_step) = in_step
             && self.refitted.least_error() > EXPLAINED
         {
             let coarse = Coarse::new(self.experiment, self.model, &in_step);
-            let dictionary = self.around(&coarse, delays::is_delay).dictionary();
-            // Sets that were fitted with clocks that are off may be in another valley with all in step.
+            let dictionary = self.builder(&coarse, delays::is_delay).dictionary();
+            // A set that was fitted with clock offsets may have another local minimum with all clocks in step.
             let known = Refitted::new(present);
-            self.tries_beside(&known, &coarse, &dictionary, MORE);
+            self.fits_subsets_except(&known, &coarse, &dictionary, MORE);
         }
     }
 
-    /// Looks for what stands in the place of each effect of the present fit, and goes on to it if it is better; whether
-    /// there is one. What explains the same does not show beside it.
-    fn looks_for_rivals(&mut self) -> bool {
+    /// Tries the confounded alternatives of each effect in its place, and moves to one if it is better. Returns whether
+    /// there is one. Added beside the effect, an alternative would explain nothing.
+    fn tries_alternatives(&mut self) -> bool {
         let estimate = self.present.estimate.clone();
         for (index, rivals) in std::mem::take(&mut self.rivals) {
             if rivals.is_empty() || self.options.is_over() {
@@ -218,42 +219,42 @@ impl Search<'_> {
             let without = estimate.without(index);
             let center = evaluate_weighted(self.experiment, self.model, without, weights);
             let coarse = Coarse::new(self.experiment, self.model, &center);
-            let around = self.around(&coarse, |effect| rivals.contains(&effect.id()));
-            let dictionary = match center.error() < FAINT {
-                true => around.thorough(around.dictionary()),
-                false => around.dictionary(),
+            let builder = self.builder(&coarse, |effect| rivals.contains(&effect.id()));
+            let dictionary = match center.error() < CONFOUNDABLE_ERROR {
+                true => builder.thorough(builder.dictionary()),
+                false => builder.dictionary(),
             };
-            self.tries(&coarse, &dictionary, 1);
+            self.fits_subsets(&coarse, &dictionary, 1);
         }
-        self.goes_on()
+        self.moves_to_best()
     }
 
-    /// What a dictionary is made of around a fit, of the effects whose ids are wanted.
-    fn around<'a>(
+    /// The inputs of a dictionary around a fit, with the effects selected by `wanted`.
+    fn builder<'a>(
         &'a self,
         coarse: &'a Coarse,
         wanted: impl Fn(&dyn Effect) -> bool,
-    ) -> Around<'a> {
+    ) -> DictionaryBuilder<'a> {
         let (experiment, model) = (self.experiment, self.model);
         let mut effects = showing(experiment, model, &coarse.present.estimate);
         effects.retain(|effect| wanted(*effect));
-        Around {
+        DictionaryBuilder {
             coarse,
             effects,
             changes: self.options.changes,
             scans: &self.scans,
-            worthwhile: 0.5 * Penalty::beside(experiment, coarse.present).of_nothing(),
+            worthwhile: 0.5 * Penalty::given(experiment, coarse.present).minimum(),
         }
     }
 
-    /// Fits the most promising sets of a dictionary around a fit, with at most so many effects more than that.
-    fn tries(&mut self, coarse: &Coarse, dictionary: &Dictionary, more: usize) {
+    /// Fits the most promising sets of a dictionary, with at most `more` effects more than its fit.
+    fn fits_subsets(&mut self, coarse: &Coarse, dictionary: &Dictionary, more: usize) {
         let known = self.refitted.clone();
-        self.tries_beside(&known, coarse, dictionary, more);
+        self.fits_subsets_except(&known, coarse, dictionary, more);
     }
 
-    /// The same without those sets that are known.
-    fn tries_beside(
+    /// The same without the sets in `known`.
+    fn fits_subsets_except(
         &mut self,
         known: &Refitted,
         coarse: &Coarse,
@@ -274,15 +275,16 @@ impl Search<'_> {
         }
     }
 
-    /// Goes on to the best set that is better than the present one and leaves less in held-out runs; whether there is one.
-    fn goes_on(&mut self) -> bool {
+    /// Moves to the best set that is better than the present one and has less error in held-out runs. Returns whether
+    /// there is one.
+    fn moves_to_best(&mut self) -> bool {
         let (experiment, model) = (self.experiment, self.model);
         let better = self.refitted.better(experiment, model, &self.present);
         let admitted = better.into_iter().take(TRIED).find_map(|fit| {
             let its = held_out(experiment, model, fit);
             let fewer = key(fit).len() < key(&self.present).len();
             let gain = self.left.excess() - its.excess();
-            // A campaign of one run has no held-out runs; it is not held against what explains it.
+            // A campaign of one run has no held-out runs; the test is then skipped.
             (fewer || gain.is_nan() || gain > 0.0).then(|| (fit.clone(), its))
         });
         let found = admitted.is_some();
@@ -310,8 +312,8 @@ impl Search<'_> {
     }
 }
 
-/// A fit with its clocks in step, if they are off: what is missing may be late, and while clocks stand in for that no
-/// secant shows it.
+/// A fit re-evaluated with all clocks in step, if they are off: clock offsets that compensate for a missing delay hide
+/// it from the secants.
 fn synchronous(experiment: &Experiment, model: &Model, fit: &Fit) -> Option<Fit> {
     fit.estimate.clocks.are_off().then(|| {
         let mut estimate = fit.estimate.clone();
@@ -320,7 +322,7 @@ fn synchronous(experiment: &Experiment, model: &Model, fit: &Fit) -> Option<Fit>
     })
 }
 
-/// The effects that are there, those first that explain most beside the ones before.
+/// The present effects in greedy order of the cost reduction that each adds.
 fn in_order(dictionary: &Dictionary) -> Vec<usize> {
     use crate::search::best_subset::fitted;
     use crate::search::dictionary_entry::Kind;

@@ -1,4 +1,4 @@
-//! One effect fitted beside everything that was free already, and weighed.
+//! An effect fitted in addition to the free parameters of a model, and its evidence.
 
 use hitch_plant::{AddedEffect, Effect, Model};
 use rayon::prelude::*;
@@ -6,51 +6,51 @@ use rayon::prelude::*;
 use crate::adequacy::lack_of_fit::SLOW_NOISE;
 use crate::data::experiment::Experiment;
 use crate::estimate::Shared;
-use crate::estimation::central_differences::both_ways;
+use crate::estimation::central_differences::with_central_differences;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{
     Jacobian, RunJacobian, SlowColumns, difference, huber, huber_residuals, square_sum,
 };
 use crate::estimation::nuisance_projection::NuisanceProjection;
-use crate::estimation::profile_likelihood::Profile;
+use crate::estimation::profile_likelihood::ProfileLikelihood;
 use crate::selection::evidence::{detectability, log_odds, variance_inflation};
 
-/// Ratio of the mean square that an effect explains to what is left where it acts at which it is as likely itself as the
-/// nearest to something else. In drawn campaigns with physics outside the catalogue no name had more than 17, in those
-/// with the effect itself 45 of 46 had more than 400 (benchmark `hidden_effects`, steady rig, lab plan, seeds 1 to 60 and,
-/// with `--kind outside`, 101 to 130).
+/// Ratio of the mean square that an effect explains to the remaining one, weighted by its signature, at which it is
+/// equally probable to be itself or the closest match to an unknown effect. In drawn campaigns with physics outside the
+/// catalogue the largest ratio was 17; in those with the effect itself 45 of 46 had more than 400 (benchmark
+/// `hidden_effects`, steady rig, lab plan, seeds 1 to 60 and, with `--kind outside`, 101 to 130).
 const EVEN_RATIO: f64 = 25.0;
 
-/// Standard deviations by which a mean square exceeds noise before it counts as left.
+/// Standard errors by which a mean square exceeds noise before it counts as lack of fit.
 const SCATTERS: f64 = 2.0;
 
-/// See [`systematic`].
+/// Systematic errors of currents (A), times (s) and ratios, one sigma: see [`systematic`].
 const SYSTEMATIC_A: f64 = 0.000_9;
 const SYSTEMATIC_S: f64 = 0.001;
 const SYSTEMATIC_SHARE: f64 = 0.005;
 
-/// An effect fitted beside everything that was free already.
+/// An effect fitted in addition to the free parameters of a model.
 #[derive(Debug, Clone)]
 pub struct Candidate {
-    /// Which effect.
+    /// The effect.
     pub effect: &'static dyn Effect,
     /// The fitted model with it.
     pub fit: Fit,
-    /// Fall of the cost in units of the residuals' variance and the effect's variance inflation: about chi-squared
-    /// with one degree of freedom where the effect is absent.
+    /// Reduction of the cost in units of the residual variance times the effect's variance inflation: approximately
+    /// chi-squared with one degree of freedom if the effect is absent.
     pub likelihood_ratio: f64,
     /// Variance inflation of the effect.
     pub inflation: f64,
     /// Root mean square of its projected signature at the fitted size, in sigmas.
     pub detectability: f64,
-    /// Of the mean square that would be left beyond noise without it, where it shows, the share that it explains.
+    /// Share of the mean square beyond noise that the effect explains, weighted by its signature.
     pub explained_share: f64,
-    /// 95 % intervals of its parameters, in their units; not numbers if the screen found nothing of the effect.
+    /// 95 % confidence intervals of its parameters, in their units; NaN if the screening found nothing of the effect.
     pub intervals: Vec<(f64, f64)>,
 }
 
 impl Candidate {
-    /// The candidate of an effect that a screen found nothing of, in a fit at its null value.
+    /// The candidate of an effect that the screening rejected, with a fit at its null value.
     #[must_use]
     pub fn absent(effect: &'static dyn Effect, fit: Fit) -> Self {
         Self {
@@ -64,7 +64,7 @@ impl Candidate {
         }
     }
 
-    /// Logarithm of the odds that the effect is there: a shape of its own costs an effect as much as it has to explain.
+    /// Log-odds that the effect is present, less the penalty of its parameters.
     #[must_use]
     pub fn log_odds(&self) -> f64 {
         log_odds(
@@ -74,21 +74,21 @@ impl Candidate {
         )
     }
 
-    /// Compared samples at their effective number.
+    /// Effective number of compared samples.
     #[must_use]
     pub fn effective_samples(&self) -> f64 {
         self.fit.weights.count() as f64 / self.inflation
     }
 
-    /// Probability that it is what it is called: see [`genuine`].
+    /// Probability that it is the named effect and not an unknown one: see [`plausibility`].
     #[must_use]
-    pub fn genuine(&self) -> f64 {
-        genuine(self.explained_share)
+    pub fn plausibility(&self) -> f64 {
+        plausibility(self.explained_share)
     }
 
-    /// Fall of the cost, under the yardsticks of the model without it.
+    /// Reduction of the cost, under the weights of the model without it.
     #[must_use]
-    pub fn fallen(&self) -> f64 {
+    pub fn cost_reduction(&self) -> f64 {
         self.likelihood_ratio * self.fit.variance() * self.inflation
     }
 
@@ -100,13 +100,13 @@ impl Candidate {
     }
 }
 
-/// Probability that an effect is what it is called and not the nearest to something that is in no catalogue, from
+/// Probability that an effect is the named one and not the closest match to an unknown effect, from
 /// [`Candidate::explained_share`].
 ///
-/// A different mechanism never fits everywhere, and what it leaves lies where the effect acts. The odds grow with the
-/// square of the ratio of what is explained there to what is left there; they are even at a ratio of 25.
+/// A different mechanism never fits everywhere, and its residuals lie where the effect acts. The odds grow with the
+/// square of the ratio of explained to remaining mean square there; they are even at a ratio of 25.
 #[must_use]
-pub fn genuine(explained_share: f64) -> f64 {
+pub fn plausibility(explained_share: f64) -> f64 {
     let left = EVEN_RATIO * (1.0 - explained_share);
     explained_share.powi(2) / (explained_share.powi(2) + left.powi(2)).max(f64::MIN_POSITIVE)
 }
@@ -122,17 +122,17 @@ pub fn weigh(
 ) -> Candidate {
     let slow = slow_columns(experiment, model, &fit);
     let jacobian = jacobian_by(experiment, model, &fit, &slow);
-    let jacobian = both_ways(experiment, model, &fit, jacobian);
+    let jacobian = with_central_differences(experiment, model, &fit, jacobian);
     weigh_with(experiment, model, base, effect, fit, &jacobian)
 }
 
-/// Columns of clocks and loads at a fit, whose residuals are known.
+/// Columns of clocks and loads at a fit, from its residuals.
 pub(crate) fn slow_columns(experiment: &Experiment, model: &Model, fit: &Fit) -> SlowColumns {
     let residuals = huber(fit.residuals.clone());
     SlowColumns::new(experiment, model, &fit.weights, &fit.estimate, &residuals)
 }
 
-/// Sensitivities at a fit, whose residuals are known, with the columns of clocks and loads from there or nearby.
+/// Jacobian at a fit, from its residuals and the columns of clocks and loads there or nearby.
 pub(crate) fn jacobian_by(
     experiment: &Experiment,
     model: &Model,
@@ -144,7 +144,8 @@ pub(crate) fn jacobian_by(
     Jacobian::with_slow_columns(experiment, model, weights, estimate, &residuals, slow)
 }
 
-/// [`weigh`] with the columns of clocks and loads from a point nearby, and differences one way: enough to compare effects.
+/// [`weigh`] with the columns of clocks and loads from a nearby estimate, and with forward differences: accurate enough
+/// to rank effects.
 pub(crate) fn weigh_by(
     experiment: &Experiment,
     model: &Model,
@@ -171,11 +172,11 @@ fn weigh_with(
     let signatures: Vec<Signature> = (0..effect.parameters().len().min(free))
         .map(|parameter| Signature::new(experiment, &fit, jacobian, index, parameter))
         .collect();
-    let Seen {
+    let Evidence {
         detectability,
         inflation,
         explained_share,
-    } = Seen::new(experiment, model, &fit, jacobian);
+    } = Evidence::new(experiment, model, &fit, jacobian);
     let intervals = signatures
         .par_iter()
         .map(|signature| {
@@ -183,8 +184,8 @@ fn weigh_with(
             let value = fit.estimate.get(signature.shared);
             let range = &effect.parameters()[signature.parameter];
             let systematic = 1.96 * systematic(&fit.estimate.effects[index], signature.parameter);
-            let promised = 1.96 * deviation * fit.estimate.scale(signature.shared);
-            let profile = Profile {
+            let predicted = 1.96 * deviation * fit.estimate.scale(signature.shared);
+            let profile = ProfileLikelihood {
                 experiment,
                 model,
                 fit: &fit,
@@ -192,17 +193,17 @@ fn weigh_with(
                 projection: &signature.projection,
             };
             let rise = 1.96f64.powi(2) * variance * signature.inflation;
-            let [down, up] = [-promised, promised].map(|half| profile.end(half, rise));
+            let [down, up] = [-predicted, predicted].map(|half| profile.end(half, rise));
             (
                 (value - down.hypot(systematic)).max(range.low),
                 (value + up.hypot(systematic)).min(range.high),
             )
         })
         .collect();
-    let fallen = base.cost - fit.cost_beside(experiment, model, base);
+    let cost_reduction = base.cost - fit.cost_under_weights_of(experiment, model, base);
     Candidate {
         effect,
-        likelihood_ratio: fallen / (variance * inflation),
+        likelihood_ratio: cost_reduction / (variance * inflation),
         inflation,
         detectability,
         explained_share,
@@ -211,12 +212,12 @@ fn weigh_with(
     }
 }
 
-/// One sigma of what no number of samples takes away from a parameter of an effect, in its unit.
+/// Systematic error of an effect's parameter, one sigma, in its unit; it does not decrease with the number of samples.
 ///
-/// A log tells where a ramp of the current bends only to within a sample, and the last of its noise holds a play open:
-/// some 0.9 mA, and as much time as a tenth of a sample. Loads, areas and tables are good to half a percent, here and
-/// there, and so is what a shape says of the one against the other. What part of a lag is of which kind is known no
-/// better than as much time.
+/// A log locates the bend of a current ramp only to within a sample, and the remaining noise of the current keeps a
+/// play open: about 0.9 mA, and a time of a tenth of a sample. Loads, areas and tables have errors of half a percent
+/// that vary over the range, and so do shape parameters that compare one part of the range with another. The split of a
+/// lag into its stages is uncertain by the same time.
 pub(crate) fn systematic(added: &AddedEffect, parameter: usize) -> f64 {
     let (parameters, values) = (added.effect.parameters(), &added.values);
     let absolute = match (parameters[0].unit, parameters[parameter].unit) {
@@ -230,13 +231,13 @@ pub(crate) fn systematic(added: &AddedEffect, parameter: usize) -> f64 {
     absolute.hypot(SYSTEMATIC_SHARE * values[parameter].abs().max(whole))
 }
 
-/// A parameter's signature, a step of one scale, with all that is free besides it projected out.
+/// A parameter's signature per step of one scale, with all other free parameters projected out.
 struct Signature<'a> {
     parameter: usize,
     shared: Shared,
-    /// All that is free besides it.
+    /// Projection of all other free parameters.
     projection: NuisanceProjection<&'a Jacobian>,
-    /// Squared length of what is left, and what imitating the rest costs in priors.
+    /// Squared norm of the projected signature, plus the prior cost of the removed part.
     square: f64,
     inflation: f64,
 }
@@ -269,10 +270,10 @@ impl<'a> Signature<'a> {
     }
 }
 
-/// How much of the last effect of a fit is seen.
-struct Seen {
-    /// Root mean square of what it changes at its fitted size, in sigmas, less what all that is free besides it can
-    /// imitate.
+/// Evidence of the last effect of a fit.
+struct Evidence {
+    /// Root mean square of its change of the residuals at the fitted size, in sigmas, with all other free parameters
+    /// projected out.
     detectability: f64,
     /// Variance inflation of that change.
     inflation: f64,
@@ -280,8 +281,9 @@ struct Seen {
     explained_share: f64,
 }
 
-impl Seen {
-    /// From the whole change, not its derivative: an effect that begins late, or jumps, is less than that promises.
+impl Evidence {
+    /// Uses the whole change instead of its derivative: the derivative of an effect with a threshold or a switching
+    /// effect overestimates it.
     fn new(experiment: &Experiment, model: &Model, fit: &Fit, jacobian: &Jacobian) -> Self {
         let last = fit.estimate.effects.len() - 1;
         let without = fit.estimate.without(last);
@@ -301,9 +303,9 @@ impl Seen {
     }
 }
 
-/// Of the mean square that would be left beyond noise without an effect the share that it explains, both weighted with
-/// the square of what it changes: what something else leaves elsewhere says nothing of it, and what an effect that is
-/// there in its place leaves lies where it acts.
+/// Share of the mean square beyond noise that an effect explains, both weighted by its squared change of the residuals.
+/// Residuals elsewhere do not count, as they say nothing about this effect. A wrong effect in place of the true one
+/// leaves residuals where it acts.
 fn explained_share(changes: &[Vec<f64>], residuals: &[Vec<f64>]) -> f64 {
     let (mut weight, mut weight_square, mut explained, mut left) = (0.0, 0.0, 0.0, 0.0);
     let pairs = changes.iter().flatten().zip(residuals.iter().flatten());
@@ -317,7 +319,7 @@ fn explained_share(changes: &[Vec<f64>], residuals: &[Vec<f64>]) -> f64 {
     if weight == 0.0 {
         return 0.0;
     }
-    // Scatter of a weighted mean of squares of noise, a part of which is slow.
+    // Standard error of the weighted mean square of partly slow noise.
     let scatter = (2.0 * SLOW_NOISE * weight_square).sqrt() / weight;
     let left = (left / weight - SCATTERS * scatter).max(0.0);
     let explained = explained / weight;

@@ -1,4 +1,4 @@
-//! What an effect has to explain to be worth its parameters.
+//! Complexity penalty: the cost reduction that an effect needs to justify its parameters.
 
 use hitch_plant::AddedEffect;
 
@@ -8,37 +8,37 @@ use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::square_sum;
 use crate::selection::evidence::{VISIBLE, variance_inflation};
 
-/// Number of effects, in their forms, that are tried: the best of so many has that much luck.
+/// Number of effects, in their forms, that are tried: correction for multiple testing.
 const TRIED: f64 = 50.0;
 
-/// Logarithm of how much rarer than usual forms those are that say more: where another effect explains as much, it is
-/// that one.
+/// Log prior odds against a form that is more specific than the usual one of its effect: an alternative that explains
+/// as much is then preferred.
 const RARER: f64 = 3.0;
 
-/// Mean square up to which a model leaves no more than noise.
+/// Mean square up to which the residuals are compatible with noise.
 const NOISE: f64 = 1.0;
 
-/// Smallest detectability that is believed where a model leaves no more than noise and no runs can be held out: nothing
-/// refutes a faint signature there.
+/// Smallest accepted detectability, in sigma, if the model alone is compatible with noise and the campaign has a single
+/// run: no held-out run can then refute a faint signature.
 const VISIBLE_UNREFUTED: f64 = 0.3;
 
-/// The penalty of effects beside a fit, in units of its cost.
+/// The penalty of effects given the residuals of a fit, in units of its cost.
 ///
-/// Each parameter costs what Schwarz's criterion asks for at the effective number of samples, each effect the logarithm
-/// of the number of effects tried, and what the smallest detectability that is believed would explain. All grow with
-/// what the fit leaves: beside two sigmas that nothing explains, a tenth of a sigma says nothing.
+/// Each parameter costs Schwarz's penalty at the effective number of samples. Each effect costs the logarithm of the
+/// number of effects tried, and the cost reduction at the smallest accepted detectability. All terms scale with the
+/// residuals of the fit: with two sigmas unexplained, a signature of a tenth of a sigma is not significant.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Penalty {
     samples: f64,
     variance: f64,
-    /// Smallest detectability that is believed, sigmas.
+    /// Smallest accepted detectability, in sigma.
     visible: f64,
-    /// What the cost falls by for a likelihood ratio of one.
+    /// Cost per unit of the likelihood ratio.
     pub unit: f64,
 }
 
 impl Penalty {
-    /// The penalty beside residuals whose mean square is `variance`.
+    /// The penalty given residuals whose mean square is `variance`.
     pub fn new(
         experiment: &Experiment,
         samples: usize,
@@ -58,19 +58,19 @@ impl Penalty {
         }
     }
 
-    /// The penalty beside a fit.
-    pub fn beside(experiment: &Experiment, fit: &Fit) -> Self {
+    /// The penalty given the residuals of a fit.
+    pub fn given(experiment: &Experiment, fit: &Fit) -> Self {
         let samples = fit.weights.count();
         let variance = square_sum(&fit.residuals) / samples as f64;
         Self::new(experiment, samples, variance, &fit.residuals)
     }
 
-    /// What an effect with so many free parameters has to explain.
+    /// Cost reduction that an effect with this many free parameters needs.
     pub fn of(&self, added: &AddedEffect, parameters: usize) -> f64 {
-        self.seen() + self.unit * self.log_odds(added, parameters)
+        self.visibility_cost() + self.unit * self.log_odds(added, parameters)
     }
 
-    /// What all effects of an estimate that were added or changed have to explain.
+    /// Cost reduction that all added or changed effects of an estimate need.
     pub fn of_all(&self, estimate: &Estimate) -> f64 {
         let effects = (0..estimate.effects.len()).filter(|&index| !estimate.is_unchanged(index));
         let prices = effects.map(|index| {
@@ -81,17 +81,17 @@ impl Penalty {
         prices.sum()
     }
 
-    /// What an effect has to explain at least, whatever it says.
-    pub fn of_nothing(&self) -> f64 {
-        self.seen()
+    /// Cost reduction that any effect needs, regardless of its parameters.
+    pub fn minimum(&self) -> f64 {
+        self.visibility_cost()
     }
 
-    /// What the smallest detectability that is believed explains.
-    fn seen(&self) -> f64 {
+    /// Cost reduction at the smallest accepted detectability.
+    fn visibility_cost(&self) -> f64 {
         self.visible * self.visible * self.samples * self.variance
     }
 
-    /// Twice the logarithm of the odds against an effect before anything is seen.
+    /// Twice the log prior odds against an effect.
     fn log_odds(&self, added: &AddedEffect, parameters: usize) -> f64 {
         let effective = (self.samples * self.variance / self.unit).max(2.0);
         let rare = if added.effect.refines() { RARER } else { 0.0 };

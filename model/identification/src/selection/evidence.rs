@@ -1,19 +1,19 @@
-//! How much the data say, with autocorrelated residuals counted at their effective number.
+//! Evidence of effects, with autocorrelated residuals counted at their effective sample size.
 //!
-//! Part of the noise of real instruments is slow, and what is left of a missing effect is slower still; counted as
-//! independent samples such residuals make nine false alarms in ten. The variance of a signature's amplitude is
-//! therefore taken from the autocovariances of residual and signature together (Newey & West 1987, Bartlett window),
-//! for each effect on its own: a signature that changes quickly is hurt less than one that drifts.
+//! Part of the noise of real instruments is slow, and the residuals of a missing effect are slower still. Counted as
+//! independent samples, such residuals cause nine false alarms in ten. The variance of a signature's amplitude is
+//! therefore computed from the autocovariances of residual and signature together (Newey & West 1987, Bartlett window),
+//! for each effect separately: autocorrelation affects a fast signature less than a slowly varying one.
 
 use rayon::prelude::*;
 
 use crate::data::experiment::{Experiment, ReadyRun};
 use crate::estimation::jacobian::{dot, square_sum};
 
-/// Reach of the autocovariances, s.
+/// Window length of the autocovariances, s.
 const REACH_S: f64 = 2.0;
 
-/// By how much autocorrelation inflates the variance of the amplitude of `signature` in `residuals`; one for white
+/// Factor by which autocorrelation increases the variance of the amplitude of `signature` in `residuals`; one for white
 /// residuals.
 #[must_use]
 pub fn variance_inflation(
@@ -46,14 +46,14 @@ pub fn variance_inflation(
     }
 }
 
-/// Reach of the autocovariances in a run, samples.
+/// Window length of the autocovariances in a run, samples.
 fn reach(run: &ReadyRun) -> usize {
     let (samples, time_s) = (run.len(), &run.drive.time_s);
     let step_s = (time_s[samples - 1] - time_s[0]) / (samples - 1) as f64;
     ((REACH_S / step_s) as usize).clamp(1, samples / 2)
 }
 
-/// Mean product of a series with itself `lag` samples later.
+/// Autocovariance of a series of zero mean at a lag, in samples.
 fn covariance(series: &[f64], lag: usize) -> f64 {
     dot(&series[lag..], &series[..series.len() - lag]) / series.len() as f64
 }
@@ -63,7 +63,7 @@ fn bartlett(lag: usize, reach: usize) -> f64 {
     1.0 - lag as f64 / (reach + 1) as f64
 }
 
-/// Bartlett-windowed sum of products of autocovariances, and its term without lag.
+/// Bartlett-windowed sum of products of autocovariances, and its term at lag zero.
 fn windowed(residual: &[f64], signature: &[f64], reach: usize) -> (f64, f64) {
     if signature.iter().all(|&value| value == 0.0) {
         return (0.0, 0.0);
@@ -112,8 +112,7 @@ pub fn persistence(experiment: &Experiment, residuals: &[Vec<f64>]) -> [Vec<f64>
     })
 }
 
-/// [`variance_inflation`] that a signature will meet in runs yet to be measured, whose noise is as persistent as that
-/// of runs which were.
+/// Expected [`variance_inflation`] of a signature in a planned experiment whose noise has the given autocorrelation.
 #[must_use]
 pub fn expected_inflation(
     experiment: &Experiment,
@@ -141,20 +140,20 @@ pub fn expected_inflation(
     }
 }
 
-/// Root mean square of a signature over the compared samples, in sigmas; `penalty` is what imitating it costs in priors.
+/// Root mean square of a signature over the compared samples, in sigmas; `penalty` is the prior cost of its projected
+/// part.
 #[must_use]
 pub fn detectability(signature: &[Vec<f64>], penalty: f64, compared: usize) -> f64 {
     ((square_sum(signature) + penalty) / compared as f64).sqrt()
 }
 
-/// Logarithm of the odds that an effect with one more parameter is there: the fall of the cost, in effective units,
-/// less Schwarz's penalty of a parameter.
+/// Log-odds that an effect with `parameters` parameters is present: half the likelihood ratio less Schwarz's penalty.
 #[must_use]
 pub fn log_odds(likelihood_ratio: f64, parameters: usize, effective_samples: f64) -> f64 {
     0.5 * likelihood_ratio - 0.5 * parameters as f64 * effective_samples.max(2.0).ln()
 }
 
-/// Shares that add up to one from logarithms of odds.
+/// Probabilities that add up to one, from log-odds.
 #[must_use]
 pub fn shares(log_odds: &[f64]) -> Vec<f64> {
     let largest = log_odds.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -163,13 +162,14 @@ pub fn shares(log_odds: &[f64]) -> Vec<f64> {
     odds.iter().map(|o| o / total).collect()
 }
 
-/// Likelihood ratio that an effect needs: chi-squared with one degree of freedom at 5 % over some fifty tries.
-pub const BELIEVED: f64 = 11.0;
+/// Smallest accepted likelihood ratio of an effect: chi-squared with one degree of freedom at 5 %, corrected for some
+/// fifty tests.
+pub const SIGNIFICANT: f64 = 11.0;
 
-/// Likelihood ratio by which an alternative has to be worse to be told apart.
-pub const TOLD_APART: f64 = 10.0;
+/// Likelihood ratio above which two alternatives are distinguishable.
+pub const DISTINGUISHABLE: f64 = 10.0;
 
-/// Smallest detectability that is believed, sigmas. Channels a few milliseconds out of step, a logger's rounding and
-/// the plant's discretisation make signatures of up to 0.05 on steady and 0.09 on ringing campaigns with nothing
-/// hidden.
+/// Smallest accepted detectability, in sigma. Clock offsets of a few milliseconds, a logger's rounding and the
+/// discretisation of the plant cause signatures of up to 0.05 on steady and 0.09 on ringing campaigns without hidden
+/// effects.
 pub(crate) const VISIBLE: f64 = 0.1;

@@ -1,4 +1,4 @@
-//! Error in runs that were not used to fit.
+//! Cross-validation: error in held-out runs.
 
 use hitch_plant::Model;
 use rayon::prelude::*;
@@ -8,25 +8,25 @@ use crate::estimate::Estimate;
 use crate::estimation::fit::{ErrorSums, Fit, evaluate_weighted, fit_loads, refine_once};
 use crate::residuals::whitening::Weights;
 
-/// Number of parts that the runs are dealt into, each held out once.
+/// Number of folds.
 const FOLDS: usize = 4;
 
-/// How much more the other fit leaves under stricter yardsticks than under its own.
-const STRICTER: f64 = 1.5;
+/// Ratio of the other fit's cost under the weights of this fit to that under its own, above which the two fits are
+/// compared under the same weights.
+const INCOMPARABLE: f64 = 1.5;
 
-/// What a model leaves in runs that were not used to fit, sigmas.
+/// Error of a model in held-out runs, in sigma.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeldOut {
-    /// Its error, as [`crate::estimation::fit::Fit::error`] counts it.
+    /// Error as defined by [`crate::estimation::fit::Fit::error`].
     pub error: f64,
-    /// The same of the residuals as a fit sees them, by which models are compared. While a second effect is missing one
-    /// run may be simulated against a stop that the hitch never reached, and its dead-head pressure would be all that
-    /// the error tells of the first.
+    /// The same after Huber's loss; models are compared by this. While a second effect is missing, a run may be
+    /// simulated against a stop that the hitch never reached, and its dead-head pressure would dominate the error.
     pub loss: f64,
 }
 
 impl HeldOut {
-    /// Nothing was held out, or not yet.
+    /// No runs were held out.
     pub const NONE: Self = Self {
         error: f64::NAN,
         loss: f64::NAN,
@@ -39,11 +39,11 @@ impl HeldOut {
     }
 }
 
-/// What a model leaves in held-out runs after it was fitted to all.
+/// Error of a model in held-out runs after a fit to all runs.
 ///
-/// The runs are dealt round-robin, whole: samples of one run are never on both sides. Shared parameters come from the
-/// other runs; a held-out run only chooses its own load error, within its prior. The yardsticks are those of the fit to
-/// all runs. [`HeldOut::NONE`] with fewer than two runs.
+/// Whole runs are assigned to the folds in turn, so samples of one run are never on both sides. Shared parameters come
+/// from the other runs; for a held-out run only its load error is fitted, within its prior. The weights are those of
+/// the fit to all runs. [`HeldOut::NONE`] with fewer than two runs.
 #[must_use]
 pub fn held_out(experiment: &Experiment, model: &Model, fit: &Fit) -> HeldOut {
     let folds = FOLDS.min(experiment.runs.len());
@@ -66,7 +66,7 @@ pub fn held_out(experiment: &Experiment, model: &Model, fit: &Fit) -> HeldOut {
             };
             let loaded = fit_loads(&test, model, &weights, start);
             let tested = evaluate_weighted(&test, model, loaded, weights);
-            (ErrorSums::of(&tested), ErrorSums::seen(&tested))
+            (ErrorSums::of(&tested), ErrorSums::with_huber_loss(&tested))
         })
         .collect();
     let (errors, losses): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
@@ -76,10 +76,10 @@ pub fn held_out(experiment: &Experiment, model: &Model, fit: &Fit) -> HeldOut {
     }
 }
 
-/// What it leaves under the yardsticks of the fit that it is compared with, if its own are so much stricter that the two
-/// are no measure of each other: a spool that sticks does not follow the noise of the currents.
+/// Held-out error of `fit` under the weights of `other`, if its own weights are so different that the two are not
+/// comparable: a sticking spool does not follow the noise of the currents.
 #[must_use]
-pub fn held_out_beside(
+pub fn held_out_under_weights_of(
     experiment: &Experiment,
     model: &Model,
     fit: &Fit,
@@ -87,8 +87,8 @@ pub fn held_out_beside(
 ) -> Option<HeldOut> {
     let (estimate, weights) = (other.estimate.clone(), fit.weights.clone());
     let under_its = evaluate_weighted(experiment, model, estimate, weights).cost;
-    let stricter = under_its > STRICTER * other.cost;
-    stricter.then(|| {
+    let incomparable = under_its > INCOMPARABLE * other.cost;
+    incomparable.then(|| {
         let weights = other.weights.clone();
         held_out(
             experiment,
@@ -101,7 +101,7 @@ pub fn held_out_beside(
     })
 }
 
-/// The runs that `chosen` picks, with their weights and the estimate for them.
+/// The runs selected by `chosen`, with their weights and their estimate.
 fn part(
     experiment: &Experiment,
     fit: &Fit,

@@ -1,7 +1,7 @@
-//! Effects weighed beside all others that a fitted model has.
+//! Leave-one-out evaluation of the effects of a fitted model.
 //!
-//! An effect that is weighed as it is added takes on what effects after it stand for: neither its value nor its
-//! evidence is what is left of them once those are there too.
+//! An effect that is weighed when it is added absorbs part of the effects added later: neither its value nor its
+//! evidence is final.
 
 use hitch_plant::Model;
 
@@ -9,26 +9,31 @@ use crate::data::experiment::Experiment;
 use crate::estimation::fit::{Fit, refine, with_last};
 use crate::selection::candidate::{Candidate, weigh};
 
-/// An effect beside all others.
+/// An effect weighed against the model with all other effects.
 #[derive(Debug, Clone)]
 pub struct LeaveOneOut {
-    /// The effect, weighed against the model that has all others.
+    /// The weighed effect.
     pub candidate: Candidate,
-    /// That model, fitted.
+    /// The model with all other effects, fitted.
     pub without: Fit,
 }
 
-/// Weighs each effect of a fitted model from the `first` one on beside all others.
+/// Weighs each effect of a fitted model, from the `first` one on, against the model with all others.
 #[must_use]
-pub fn beside(experiment: &Experiment, model: &Model, fit: &Fit, first: usize) -> Vec<LeaveOneOut> {
+pub fn leave_one_out(
+    experiment: &Experiment,
+    model: &Model,
+    fit: &Fit,
+    first: usize,
+) -> Vec<LeaveOneOut> {
     let effects = first..fit.estimate.effects.len();
     effects
-        .map(|index| beside_others(experiment, model, fit, index))
+        .map(|index| leave_one_out_of(experiment, model, fit, index))
         .collect()
 }
 
-/// Weighs one effect of a fitted model beside all others.
-pub(crate) fn beside_others(
+/// Weighs one effect of a fitted model against the model with all others.
+pub(crate) fn leave_one_out_of(
     experiment: &Experiment,
     model: &Model,
     fit: &Fit,

@@ -1,4 +1,4 @@
-//! What speaks for a set of effects: evidence, hold-out, penalty, probability.
+//! Model selection: evidence, hold-out, complexity penalty, posterior probability.
 
 pub mod candidate;
 pub(crate) mod complexity_penalty;

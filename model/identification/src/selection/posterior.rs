@@ -1,4 +1,4 @@
-//! Sets of effects that were fitted, and how probable each is.
+//! Posterior probabilities of the fitted sets of effects.
 
 use std::collections::HashMap;
 
@@ -10,14 +10,14 @@ use crate::estimation::fit::{Fit, evaluate_weighted};
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::evidence::shares;
 
-/// Least fall of the cost with its penalty by which a set is better than another: numbers that differ by less are equal.
+/// Smallest reduction of the penalised cost that counts as better.
 const BETTER: f64 = 1.0;
 
-/// A set of effects: the names of its members and their forms, sorted.
+/// A set of effects: the sorted ids and forms of its members.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct Key(Vec<(&'static str, Option<&'static str>)>);
+pub(crate) struct EffectSet(Vec<(&'static str, Option<&'static str>)>);
 
-impl Key {
+impl EffectSet {
     /// The key of some members.
     pub fn new(mut members: Vec<(&'static str, Option<&'static str>)>) -> Self {
         members.sort_unstable();
@@ -39,7 +39,7 @@ impl Key {
         self.0.iter().copied()
     }
 
-    /// The form in which a member differs from the one of the same id in another key that has all other members alike.
+    /// The form of a member in another key, if that differs from this key only in the form of this member.
     pub fn form_in_place(&self, other: &Self, id: &str) -> Option<Option<&'static str>> {
         let others = |key: &Self| -> Vec<_> { key.members().filter(|own| own.0 != id).collect() };
         let form = |key: &Self| key.members().find(|own| own.0 == id).map(|own| own.1);
@@ -47,7 +47,7 @@ impl Key {
         (own != its && others(self) == others(other)).then_some(its)
     }
 
-    /// The names of the members.
+    /// Display name: the members' names joined by ` + `.
     pub fn name(&self) -> String {
         let names = self.0.iter().map(|(id, form)| match form {
             Some(form) => format!("{id}/{form}"),
@@ -61,51 +61,51 @@ impl Key {
     }
 }
 
-/// What a fit has beyond the model: effects that were added, and adopted ones that changed.
-pub(crate) fn key(fit: &Fit) -> Key {
+/// The changes of a fit relative to the model: added effects, and changed adopted ones.
+pub(crate) fn key(fit: &Fit) -> EffectSet {
     key_of(&fit.estimate)
 }
 
-/// What an estimate has beyond the model.
-pub(crate) fn key_of(estimate: &Estimate) -> Key {
+/// The changes of an estimate relative to the model.
+pub(crate) fn key_of(estimate: &Estimate) -> EffectSet {
     let beyond = (0..estimate.effects.len()).filter(|&index| !estimate.is_unchanged(index));
     let members = beyond.map(|index| {
         let effect = estimate.effects[index].effect;
         (effect.id(), effect.form())
     });
-    Key::new(members.collect())
+    EffectSet::new(members.collect())
 }
 
 /// Sets that were fitted in full, the best fit of each.
 #[derive(Debug, Clone)]
 pub(crate) struct Refitted {
-    fits: HashMap<Key, Fit>,
+    fits: HashMap<EffectSet, Fit>,
 }
 
 impl Refitted {
-    /// With the model alone.
+    /// Only the model alone.
     pub fn new(base: &Fit) -> Self {
         let fits = HashMap::from([(key(base), base.clone())]);
         Self { fits }
     }
 
     /// Whether a set was fitted.
-    pub fn contains(&self, key: &Key) -> bool {
+    pub fn contains(&self, key: &EffectSet) -> bool {
         self.fits.contains_key(key)
     }
 
     /// The fit of a set, if it was fitted.
-    pub fn fit_of(&self, key: &Key) -> Option<&Fit> {
+    pub fn fit_of(&self, key: &EffectSet) -> Option<&Fit> {
         self.fits.get(key)
     }
 
-    /// The least error that a set leaves.
+    /// Least error of all sets.
     pub fn least_error(&self) -> f64 {
         let errors = self.fits.values().map(Fit::error);
         errors.fold(f64::INFINITY, f64::min)
     }
 
-    /// Adds a fit, unless there is a better one of the same set.
+    /// Adds a fit, unless a better one of the same set is known.
     pub fn insert(&mut self, fit: Fit) {
         let key = key(&fit);
         let better = self
@@ -117,7 +117,7 @@ impl Refitted {
         }
     }
 
-    /// Sets that are better than the present one, the best first.
+    /// Sets that are better than the present one, by penalised cost.
     pub fn better(&self, experiment: &Experiment, model: &Model, present: &Fit) -> Vec<&Fit> {
         let penalty = self.penalty(experiment);
         let here = penalized(experiment, model, present, present, penalty);
@@ -131,16 +131,16 @@ impl Refitted {
         better.into_iter().map(|(_, fit)| fit).collect()
     }
 
-    /// The penalty of effects beside what the best fit leaves.
+    /// The penalty of effects given the residuals of the best fit.
     fn penalty(&self, experiment: &Experiment) -> Penalty {
         let fits = self.fits.values();
         let least = fits.min_by(|a, b| a.cost.total_cmp(&b.cost));
-        Penalty::beside(experiment, least.expect("the model alone is there"))
+        Penalty::given(experiment, least.expect("the model alone is there"))
     }
 
-    /// The probability of each set beside the best one, and by how much its likelihood ratio with its penalty is less.
+    /// Posterior probability of each set, and its penalised likelihood ratio relative to the best one.
     pub fn weighed(&self, experiment: &Experiment, model: &Model, best: &Fit) -> Vec<Weighed<'_>> {
-        let penalty = Penalty::beside(experiment, best);
+        let penalty = Penalty::given(experiment, best);
         let here = penalized(experiment, model, best, best, penalty);
         let mut weighed: Vec<Weighed> = self
             .fits
@@ -150,14 +150,17 @@ impl Refitted {
                 Weighed {
                     key,
                     fit,
-                    likelier: (here - cost) / penalty.unit,
+                    relative_likelihood_ratio: (here - cost) / penalty.unit,
                     probability: 0.0,
                 }
             })
             .collect();
-        // A map's order is another every time.
+        // The iteration order of a hash map is random.
         weighed.sort_by(|a, b| a.key.cmp(b.key));
-        let odds: Vec<f64> = weighed.iter().map(|set| 0.5 * set.likelier).collect();
+        let odds: Vec<f64> = weighed
+            .iter()
+            .map(|set| 0.5 * set.relative_likelihood_ratio)
+            .collect();
         for (set, share) in weighed.iter_mut().zip(shares(&odds)) {
             set.probability = share;
         }
@@ -165,17 +168,17 @@ impl Refitted {
     }
 }
 
-/// A set with its weight.
+/// A set with its posterior weight.
 pub(crate) struct Weighed<'a> {
-    pub key: &'a Key,
+    pub key: &'a EffectSet,
     pub fit: &'a Fit,
-    /// Likelihood ratio by which it is better than the best one, prices paid.
-    pub likelier: f64,
+    /// Penalised likelihood ratio relative to the best set; negative if worse.
+    pub relative_likelihood_ratio: f64,
     pub probability: f64,
 }
 
-/// The cost of a fit with the penalty of what it says, under the yardsticks of another or its own, whichever is less: a
-/// spool that sticks does not follow the noise of the currents, and under its own yardsticks what it leaves weighs more.
+/// Penalised cost of a fit, under the weights of another fit or its own, whichever is less: a sticking spool does not
+/// follow the noise of the currents, and under its own weights its residuals are larger.
 fn penalized(
     experiment: &Experiment,
     model: &Model,

@@ -1,13 +1,13 @@
-//! A formula for what the catalogue does not explain: a candidate for a user's own term, never an identified cause.
+//! Suggestion of a formula for residuals that the catalogue does not explain: a candidate for a user-defined term, not
+//! an identified cause.
 //!
-//! A typed grammar (`shapes`) writes terms at every place whose channels are off, of the signals that the residuals go
-//! with. Each is a real [`TermEffect`]: it is simulated at a small size, and what its change of the trajectories
-//! explains once all that is free has adapted ranks it (`screen`). The best few are fitted like effects of the
-//! catalogue and judged by the error in held-out runs of the simulated model, not by how well a curve follows the
-//! residual.
+//! A typed grammar (`shapes`) writes terms at every place that acts on channels with lack of fit, as functions of the
+//! signals on which the residuals depend. Each is a [`TermEffect`]: it is simulated at a small size and ranked by the
+//! cost reduction of its signature after the free parameters are projected out (`screen`). The best few are fitted like
+//! effects of the catalogue and judged by the error in held-out runs, not by how well a curve matches the residuals.
 //!
-//! Before the catalogue gives up it may have added effects that stand in for the true one. The search therefore starts
-//! twice, from the model without them and from the model with them, and prefers the former where it is as good.
+//! The explanation may contain effects of the catalogue that stand in for the true one. The search therefore starts
+//! twice, from the model without them and from the model with them, and prefers the former unless the latter is better.
 
 mod screen;
 mod shapes;
@@ -23,50 +23,50 @@ use crate::explanation::explain::{Explanation, Verdict};
 use crate::search::candidates::Progress;
 use crate::search::single_effects::try_effects;
 use crate::selection::candidate::{Candidate, weigh};
-use crate::selection::evidence::BELIEVED;
+use crate::selection::evidence::SIGNIFICANT;
 use crate::selection::hold_out::{HeldOut, held_out};
 
-/// Screened terms that are fitted, of either start.
+/// Screened terms that are fitted, per start.
 const FITTED: usize = 5;
 
-/// The same for a plant that rings, which is far dearer to simulate.
+/// The same for a plant with pressure ringing, whose simulations are far slower.
 const FITTED_RINGING: usize = 3;
 
-/// Fitted terms that are tried on held-out runs, of either start.
+/// Fitted terms that are evaluated on held-out runs, per start.
 const HELD_OUT: usize = 2;
 
-/// Part of the held-out squared error above the noise that a term has to take to be offered.
+/// Share of the excess squared error in held-out runs that a suggested term has to remove.
 const WORTH_OFFERING: f64 = 0.25;
 
-/// Part of it that may stay for the search to end with the first start.
+/// Remaining share of it below which the second start is skipped.
 const SETTLED: f64 = 0.1;
 
-/// Growth of what is left in held-out runs that one parameter less is worth.
+/// Relative increase of the held-out error that is accepted for one parameter less.
 const PER_PARAMETER: f64 = 0.01;
 
-/// Significant digits of the values that are written into the definition.
+/// Significant digits of the values in the definition.
 const DIGITS: usize = 3;
 
-/// A term that would help.
+/// A suggested term.
 #[derive(Debug, Clone)]
 pub struct Suggestion {
-    /// The term, its parameters starting at the fitted values.
+    /// The term, with the fitted values as start values of its parameters.
     pub term: &'static TermEffect,
     /// Its fitted values.
     pub values: Vec<f64>,
     /// Their 95 % intervals.
     pub intervals: Vec<(f64, f64)>,
-    /// What the model that the explanation ended with leaves in held-out runs.
+    /// Error of the explanation's final model in held-out runs.
     pub held_out_before: HeldOut,
-    /// What it leaves there with the term.
+    /// Error with the term in held-out runs.
     pub held_out_after: HeldOut,
-    /// The model with the term, and of the explanation's steps those that are needed beside it.
+    /// The model with the term and with those steps of the explanation that are still needed.
     pub fit: Fit,
-    /// Steps of the explanation that are not needed once the term is there.
-    pub needless: Vec<&'static dyn Effect>,
+    /// Steps of the explanation that are not needed with the term.
+    pub unneeded: Vec<&'static dyn Effect>,
 }
 
-/// Looks for a term where an explanation ended with something unexplained.
+/// Searches for a term if the verdict of an explanation is [`Verdict::Unexplained`].
 #[must_use]
 pub fn suggest(
     experiment: &Experiment,
@@ -95,7 +95,7 @@ pub fn suggest(
     (left < 1.0 - WORTH_OFFERING).then(|| best.suggestion(experiment, model, found, present))
 }
 
-/// A term fitted on a start, and what it leaves in held-out runs.
+/// A term fitted on a start, and its error in held-out runs.
 struct Trial {
     term: &'static TermEffect,
     candidate: Candidate,
@@ -103,7 +103,7 @@ struct Trial {
 }
 
 impl Trial {
-    /// What is left in held-out runs, the more parameters of effects the dearer.
+    /// Error in held-out runs, penalised by the number of parameters.
     fn score(&self) -> f64 {
         let effects = &self.candidate.fit.estimate.effects;
         let parameters: usize = effects.iter().map(|added| added.values.len()).sum();
@@ -118,7 +118,7 @@ impl Trial {
         held_out_before: HeldOut,
     ) -> Suggestion {
         let given = model.effects.len();
-        let (candidate, dropped) = without_needless(experiment, model, self.candidate, given);
+        let (candidate, dropped) = without_unneeded(experiment, model, self.candidate, given);
         let held_out_after = if dropped {
             held_out(experiment, model, &candidate.fit)
         } else {
@@ -134,20 +134,20 @@ impl Trial {
             effects.any(|added| added.effect.id() == effect.id())
         };
         let steps = found.steps.iter().map(|step| step.effect);
-        let needless = steps.filter(|effect| !kept(*effect)).collect();
+        let unneeded = steps.filter(|effect| !kept(*effect)).collect();
         Suggestion {
             term,
             values: candidate.values().to_vec(),
             intervals: candidate.intervals,
             held_out_before,
             held_out_after,
-            needless,
+            unneeded,
             fit,
         }
     }
 }
 
-/// The most promising terms beside what a start has, fitted and tried on held-out runs.
+/// The most promising terms added to a start, fitted and evaluated on held-out runs.
 fn trials(
     experiment: &Experiment,
     model: &Model,
@@ -166,7 +166,7 @@ fn trials(
     let tried = try_effects(experiment, model, start, &effects, progress);
     tried
         .iter()
-        .filter(|candidate| candidate.likelihood_ratio >= BELIEVED)
+        .filter(|candidate| candidate.likelihood_ratio >= SIGNIFICANT)
         .take(HELD_OUT)
         .filter_map(|candidate| {
             let id = candidate.effect.id();
@@ -181,8 +181,8 @@ fn trials(
         .collect()
 }
 
-/// The candidate without the steps that are not needed beside it, and whether there were any.
-fn without_needless(
+/// The candidate without the steps that are not needed with it, and whether there were any.
+fn without_unneeded(
     experiment: &Experiment,
     model: &Model,
     mut candidate: Candidate,
@@ -191,19 +191,20 @@ fn without_needless(
     let mut dropped = false;
     let mut index = given;
     while index + 1 < candidate.fit.estimate.effects.len() {
-        let mut lighter = candidate.fit.estimate.clone();
-        let AddedEffect { effect, .. } = lighter.effects.remove(index);
-        let lighter = refine(experiment, model, lighter);
+        let mut reduced = candidate.fit.estimate.clone();
+        let AddedEffect { effect, .. } = reduced.effects.remove(index);
+        let reduced = refine(experiment, model, reduced);
         let mut whole = candidate.fit.estimate.clone();
         let moved = whole.effects.remove(index);
         whole.effects.push(moved);
         let whole = evaluate(experiment, model, whole);
-        let needed = weigh(experiment, model, &lighter, effect, whole).likelihood_ratio >= BELIEVED;
+        let needed =
+            weigh(experiment, model, &reduced, effect, whole).likelihood_ratio >= SIGNIFICANT;
         if needed {
             index += 1;
         } else {
             dropped = true;
-            candidate.fit = lighter;
+            candidate.fit = reduced;
         }
     }
     if dropped {
@@ -215,7 +216,7 @@ fn without_needless(
     (candidate, dropped)
 }
 
-/// The same term with its parameters starting at their fitted values, rounded.
+/// The same term with its fitted values, rounded, as the start values of its parameters.
 fn settled(term: &'static TermEffect, values: &[f64]) -> &'static TermEffect {
     let mut definition: TermDefinition = term.term().definition().clone();
     for (parameter, value) in definition.parameters.iter_mut().zip(values) {

@@ -1,4 +1,4 @@
-//! A cheap ranking of terms: one simulation each, and what its signature explains of the residuals.
+//! Screening of terms: one simulation each, ranked by the cost reduction of the signature.
 
 use hitch_effects::TermEffect;
 use hitch_effects::expression::TermDefinition;
@@ -10,10 +10,11 @@ use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{Jacobian, dot, huber_residuals};
 use crate::estimation::nuisance_projection::NuisanceProjection;
 
-/// Size of the secant, in usual sizes: large enough for what sets in late, small enough to scale.
+/// Size of the secant, in typical sizes: large enough for terms with a threshold, small enough for linear scaling.
 const SIZE: f64 = 0.5;
 
-/// The terms that explain most of what a fit leaves, each shape of a signal at a place once, the best first.
+/// The `count` terms with the largest cost reduction, without duplicates of a shape of a signal at a place, by cost
+/// reduction.
 #[must_use]
 pub fn best(
     experiment: &Experiment,
@@ -50,7 +51,7 @@ pub fn best(
     chosen
 }
 
-/// The size of a small step, and how the residuals fall with it.
+/// The size of a small step, and the decrease of the residuals with it.
 fn secant(
     experiment: &Experiment,
     model: &Model,
@@ -72,12 +73,12 @@ fn secant(
     (size, signature)
 }
 
-/// Part of the cost that a term explains at its best size within its range, to first order.
+/// Cost reduction of a term at its best size within its range, to first order.
 fn explained(term: &TermEffect, size: f64, left: &[Vec<f64>], signature: &[Vec<f64>]) -> f64 {
     let product =
         |a: &[Vec<f64>], b: &[Vec<f64>]| -> f64 { a.iter().zip(b).map(|(a, b)| dot(a, b)).sum() };
     let square = product(signature, signature);
-    // A signature of a thousandth of a sigma at a sample is rounding.
+    // A signature below a thousandth of a sigma per sample is rounding error.
     let samples: usize = left.iter().map(Vec::len).sum();
     if square.is_nan() || square < 1e-6 * samples as f64 {
         return 0.0;

@@ -1,4 +1,4 @@
-//! The grammar of suggestions: places, signals and shapes that make a term with a physical meaning.
+//! The grammar of suggestions: combinations of place, signal and shape with a physical meaning.
 
 use hitch_effects::expression::{ParameterDefinition, TermDefinition};
 use hitch_plant::{Model, Place};
@@ -7,9 +7,9 @@ use crate::data::experiment::Experiment;
 use crate::estimation::fit::Fit;
 use crate::suggestion::spread;
 
-/// A place with the unit of sizes there, a usual size and the largest, and the signals that physics has it depend on,
-/// the most usual first.
-struct Ground {
+/// A place with the unit of sizes there, a typical and the largest size, and the physically plausible signals, the most
+/// usual first.
+struct PlaceGrammar {
     place: Place,
     unit: &'static str,
     usual: f64,
@@ -17,13 +17,13 @@ struct Ground {
     signals: &'static [&'static str],
 }
 
-const fn ground(
+const fn place_grammar(
     place: Place,
     unit: &'static str,
     [usual, largest]: [f64; 2],
     signals: &'static [&'static str],
-) -> Ground {
-    Ground {
+) -> PlaceGrammar {
+    PlaceGrammar {
         place,
         unit,
         usual,
@@ -32,69 +32,69 @@ const fn ground(
     }
 }
 
-static GROUNDS: [Ground; 12] = [
-    ground(
+static PLACES: [PlaceGrammar; 12] = [
+    place_grammar(
         Place::LowerFlowFactor,
         "",
         [0.2, 1.0],
         &["x", "q_lower", "p_cyl", "i_lower", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::LiftFlowFactor,
         "",
         [0.2, 1.0],
         &["x", "q_lift", "p_cyl", "i_lift", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::LowerCurrent,
         "A",
         [0.05, 0.6],
         &["i_lower", "x", "p_cyl", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::LiftCurrent,
         "A",
         [0.05, 0.6],
         &["i_lift", "x", "p_cyl", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::Leakage,
         "l/min",
         [0.2, 10.0],
         &["p_cyl", "x", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::Friction,
         "N",
         [400.0, 8000.0],
         &["x", "v", "p_cyl", "t_oil"],
     ),
-    ground(Place::Weight, "N", [400.0, 8000.0], &["x"]),
-    ground(
+    place_grammar(Place::Weight, "N", [400.0, 8000.0], &["x"]),
+    place_grammar(
         Place::CylinderPressureSensor,
         "bar",
         [0.5, 20.0],
         &["p_cyl", "x", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::AngleSensor,
         "deg",
         [1.0, 15.0],
         &["rocker_angle", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::FlowSensor,
         "l/min",
         [0.5, 10.0],
         &["q_lift", "q_lower"],
     ),
-    ground(
+    place_grammar(
         Place::ReturnPressure,
         "bar",
         [1.0, 30.0],
         &["q_lower", "t_oil"],
     ),
-    ground(
+    place_grammar(
         Place::CompensatorMargin,
         "bar",
         [0.3, 4.0],
@@ -102,7 +102,7 @@ static GROUNDS: [Ground; 12] = [
     ),
 ];
 
-/// How a term follows its signal: name, formula with `S` for the signal and `W` for the parameter of its scale.
+/// Shapes of a term: name, and formula with `S` for the signal and `W` for its scale parameter.
 const SHAPES: [(&str, &str); 6] = [
     ("below", "c * ramp(1 - S / W)"),
     ("above", "c * ramp(S / W - 1)"),
@@ -112,7 +112,7 @@ const SHAPES: [(&str, &str); 6] = [
     ("limit", "-c * ramp(1 - W / max(S, 0.1[l/min]))"),
 ];
 
-/// A signal's unit for readers, and one of it in SI.
+/// A signal's display unit, and one of it in SI.
 fn unit(signal: &str) -> (&'static str, f64) {
     match signal {
         "x" => ("mm", 1e-3),
@@ -125,7 +125,7 @@ fn unit(signal: &str) -> (&'static str, f64) {
     }
 }
 
-/// Signals of formulas that go with a name of the attribution.
+/// Signals of formulas for a signal of the attribution.
 fn signals_of(name: &str) -> &'static [&'static str] {
     match name {
         "rocker_angle_deg" => &["x", "rocker_angle"],
@@ -138,13 +138,13 @@ fn signals_of(name: &str) -> &'static [&'static str] {
     }
 }
 
-/// Names of the attribution whose signals are tried.
+/// Number of signals of the attribution that are used.
 const FIRST_NAMES: usize = 3;
 
-/// Error of a channel from which it counts as off.
+/// Root mean square error of a channel, in sigma, above which it has lack of fit.
 const OFF: f64 = 1.05;
 
-/// Terms to screen on a fitted model whose residuals go with signals, by the attribution's names, best first.
+/// Terms to screen on a fitted model; `depends_on` lists the attribution's signals, the most important first.
 #[must_use]
 pub fn definitions(
     experiment: &Experiment,
@@ -162,19 +162,22 @@ pub fn definitions(
         channels.any(|channel| fit.channel_error(channel.index()) > OFF)
     };
     let mut definitions = Vec::new();
-    for ground in GROUNDS.iter().filter(|ground| off(ground.place)) {
-        let signals = ground.signals.iter().enumerate();
+    for place_grammar in PLACES
+        .iter()
+        .filter(|place_grammar| off(place_grammar.place))
+    {
+        let signals = place_grammar.signals.iter().enumerate();
         for (_, signal) in signals.filter(|(rank, signal)| *rank == 0 || wanted.contains(signal)) {
             if let Some(scales) = spread::quantiles(experiment, model, signal) {
-                ground.push(signal, scales, &mut definitions);
+                place_grammar.push(signal, scales, &mut definitions);
             }
         }
     }
     definitions
 }
 
-impl Ground {
-    /// Terms of a signal, with the scales of their shapes started at each of `scales`, SI.
+impl PlaceGrammar {
+    /// Adds the terms of a signal, with the scale of each shape starting at each of `scales`, SI.
     fn push(&self, signal: &str, scales: [f64; 3], definitions: &mut Vec<TermDefinition>) {
         for (shape, formula) in SHAPES {
             if !self.suits(shape, signal) {
@@ -212,7 +215,7 @@ impl Ground {
             (size.start, size.low, size.high) = (0.9, 0.0, 1.0);
         }
         let scale = if shape == "wave" {
-            // Turns of an eccentric or a universal joint for one of the shaft.
+            // Cycles per revolution of the shaft, as of an eccentric or a universal joint.
             parameter("turns", "", [1.0, 2.0, 4.0][rank], 0.5, 12.0)
         } else {
             let start = digits(scale / one).max(1e-3);
@@ -257,7 +260,7 @@ fn parameter(name: &str, unit: &str, start: f64, low: f64, high: f64) -> Paramet
     }
 }
 
-/// A number to two digits: what is written into a file, and as few different definitions as need be.
+/// A number rounded to two digits, for readable files and few distinct definitions.
 fn digits(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }

@@ -1,14 +1,14 @@
-//! Where in a campaign a signal lies: the widths of ramps and bumps start there.
+//! Distribution of a signal in a campaign: start values for the scales of shapes.
 
 use hitch_plant::{Channel, Model, units};
 
 use crate::data::experiment::{Experiment, ReadyRun};
 
-/// Shares of the samples below the places at which a shape is started.
+/// Quantiles at which the scale of a shape starts.
 pub const QUANTILES: [f64; 3] = [0.2, 0.45, 0.7];
 
-/// Quantiles of a signal, in SI, over the samples at which it matters: those with flow for a flow or a speed, those
-/// with current for a current. `None` if the campaign does not show it.
+/// Quantiles of a signal, in SI, over the relevant samples: those with flow for a flow or a speed, those with current
+/// for a current. `None` if the campaign does not contain it.
 #[must_use]
 pub fn quantiles(experiment: &Experiment, model: &Model, signal: &str) -> Option<[f64; 3]> {
     let mut values: Vec<f64> = experiment

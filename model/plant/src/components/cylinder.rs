@@ -7,7 +7,7 @@ pub struct Cylinder {
     pub bore_m: f64,
     /// Stroke, m.
     pub stroke_m: f64,
-    /// Volume of line and cylinder with the piston fully in, m3.
+    /// Volume of line and cylinder with the piston fully retracted, m3.
     pub dead_volume_m3: f64,
     /// Viscous friction at the piston, N s/m; used by the dynamic plant.
     pub viscous_friction_n_s_m: f64,
@@ -26,8 +26,8 @@ impl Cylinder {
         self.dead_volume_m3 + self.area_m2() * piston_m
     }
 
-    /// Whether an end stop takes what drives a piston at `piston_m` that moves with `speed_m_s` and would be accelerated by
-    /// `acceleration_m_s2`, m, m/s, m/s2.
+    /// Whether an end stop carries the driving force on a piston at `piston_m` with speed `speed_m_s` and acceleration
+    /// `acceleration_m_s2`.
     #[must_use]
     pub fn stops(&self, piston_m: f64, speed_m_s: f64, acceleration_m_s2: f64) -> bool {
         let inwards = speed_m_s <= 0.0 && acceleration_m_s2 <= 0.0;

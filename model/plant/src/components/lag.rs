@@ -1,4 +1,4 @@
-//! A first-order lag: a spool behind its current, a sensor behind its quantity.
+//! A first-order lag, of a spool or a sensor.
 
 /// First-order lag `tau y' + y = u`, solved exactly for an input that changes linearly over a step.
 ///
@@ -8,7 +8,7 @@ pub struct Lag {
     time_constant_s: f64,
     input: f64,
     output: f64,
-    /// Last step, s, and what of a deviation is left after it: steps are mostly alike, and `exp` is dear.
+    /// Last step, s, and the decay factor over it: most steps are equal, and `exp` is expensive.
     decay: (f64, f64),
 }
 
@@ -24,7 +24,7 @@ impl Lag {
         }
     }
 
-    /// Goes on by `dt_s` while the input runs linearly to `input`; returns the output.
+    /// Advances by `dt_s` while the input changes linearly to `input`; returns the output.
     pub fn advance(&mut self, input: f64, dt_s: f64) -> f64 {
         let tau_s = self.time_constant_s;
         if tau_s > 0.0 && dt_s > 0.0 {

@@ -33,7 +33,7 @@ pub struct LinkageDimensions {
 /// One position of the linkage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Posture {
-    /// Rocker angle, rad; a quarter turn with the rocker straight down.
+    /// Rocker angle, rad; pi/2 with the rocker straight down.
     pub rocker_angle_rad: f64,
     /// Height of the hitch point G over the shaft C, m.
     pub height_m: f64,
@@ -43,11 +43,12 @@ pub struct Posture {
     pub d2h_dx2_1_m: f64,
 }
 
-/// The linkage solved once over the stroke; look-ups are linear between 1024 nodes, good to 1e-5 of the transmission.
+/// The linkage, solved once over the stroke; interpolated linearly between 1024 nodes, accurate to 1e-5 of the
+/// transmission.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linkage {
     step_m: f64,
-    /// One over the step: a division less in the plant's innermost loop.
+    /// Reciprocal of the step, which saves a division in the plant's innermost loop.
     cells_per_m: f64,
     nodes: Vec<Posture>,
 }
@@ -85,7 +86,7 @@ impl LinkageDimensions {
             rocker_angle_deg: angle_rad.to_degrees(),
         })?;
         let unit = span / reach;
-        // Of the two ways to close the triangle F-D-E the one with E below the lift arm.
+        // The triangle F-D-E closes in two ways; E is below the lift arm.
         let joint = along * unit - across * Vector2::new(-unit.y, unit.x);
         let hitch = pivot + joint * (self.lower_link_m / self.lift_rod_joint_m);
         Ok(hitch.y)
@@ -106,10 +107,10 @@ fn square_root(value: f64) -> Option<f64> {
 }
 
 impl Linkage {
-    /// Solves the linkage for a stroke placed so that the rocker swings symmetrically about straight down.
+    /// Solves the linkage over a stroke whose rocker swing is symmetric about straight down.
     ///
     /// # Errors
-    /// [`LinkageError`] when the dimensions cannot be assembled over the whole stroke.
+    /// [`LinkageError`] if the dimensions cannot be assembled over the whole stroke.
     pub fn new(dimensions: &LinkageDimensions, stroke_m: f64) -> Result<Self, LinkageError> {
         let half_swing_rad = half_swing_rad(dimensions, stroke_m)?;
         let down = std::f64::consts::FRAC_PI_2;
@@ -129,7 +130,7 @@ impl Linkage {
         })
     }
 
-    /// The posture at piston travel `piston_m`; travel beyond the stroke is held at its end.
+    /// The posture at piston travel `piston_m`, clamped to the stroke.
     #[must_use]
     pub fn at(&self, piston_m: f64) -> Posture {
         let (node, share) = self.cell(piston_m);
@@ -162,7 +163,7 @@ impl Linkage {
         )
     }
 
-    /// Turn of the rocker shaft over piston travel, rad/m, and its derivative, rad/m2, at piston travel `piston_m`.
+    /// Rotation of the rocker shaft per piston travel, rad/m, and its derivative, rad/m2, at piston travel `piston_m`.
     #[must_use]
     pub fn shaft_transmission(&self, piston_m: f64) -> (f64, f64) {
         let (node, share) = self.cell(piston_m);
@@ -176,7 +177,7 @@ impl Linkage {
         )
     }
 
-    /// Piston travel, m, at a rocker angle; angles beyond the swing are held at its end.
+    /// Piston travel, m, at a rocker angle, clamped to the swing.
     #[must_use]
     pub fn piston_m(&self, rocker_angle_rad: f64) -> f64 {
         let upper = self
@@ -191,7 +192,7 @@ impl Linkage {
         self.step_m * ((upper - 1) as f64 + share)
     }
 
-    /// Change of the rocker angle over piston travel, rad/m, at a rocker angle.
+    /// Derivative of the rocker angle with respect to piston travel, rad/m, at a rocker angle.
     #[must_use]
     pub fn angle_slope_rad_m(&self, rocker_angle_rad: f64) -> f64 {
         let (node, _) = self.cell(self.piston_m(rocker_angle_rad));
@@ -214,13 +215,13 @@ impl Linkage {
     }
 }
 
-/// What the pin travels from half a swing before straight down to half a swing behind, m.
+/// Travel of the pin from half a swing before straight down to half a swing after it, m.
 fn sweep_m(dimensions: &LinkageDimensions, half_rad: f64) -> Result<f64, LinkageError> {
     let down = std::f64::consts::FRAC_PI_2;
     Ok(dimensions.pin_m(down + half_rad)? - dimensions.pin_m(down - half_rad)?)
 }
 
-/// Half the swing that sweeps `stroke_m`: bisection, the travel grows with the swing.
+/// Half the swing over `stroke_m`, by bisection: the travel increases with the swing.
 fn half_swing_rad(dimensions: &LinkageDimensions, stroke_m: f64) -> Result<f64, LinkageError> {
     let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
     for _ in 0..200 {
@@ -237,7 +238,7 @@ fn half_swing_rad(dimensions: &LinkageDimensions, stroke_m: f64) -> Result<f64, 
     }
 }
 
-/// Why no swing sweeps `stroke_m`.
+/// Error of a stroke that no swing covers.
 fn too_long(dimensions: &LinkageDimensions, stroke_m: f64) -> LinkageError {
     const TRIES: i32 = 900;
     if let Err(open) = sweep_m(dimensions, 0.0) {
@@ -254,7 +255,7 @@ fn too_long(dimensions: &LinkageDimensions, stroke_m: f64) -> LinkageError {
     }
 }
 
-/// Rocker angle, rad, with the piston pin at `pin_x`: Newton from a near-by angle.
+/// Rocker angle, rad, with the piston pin at `pin_x`: Newton's method from a nearby angle.
 fn angle_at_pin(
     dimensions: &LinkageDimensions,
     pin_x: f64,
@@ -275,7 +276,7 @@ fn angle_at_pin(
     Ok(angle_rad)
 }
 
-/// Derivatives over piston travel by central differences over the rocker angle.
+/// Posture, with derivatives over piston travel by central differences over the rocker angle.
 fn posture(dimensions: &LinkageDimensions, angle_rad: f64) -> Result<Posture, LinkageError> {
     const STEP_RAD: f64 = 2e-4;
     let (x0, h0) = dimensions.pin_and_height_m(angle_rad)?;

@@ -1,6 +1,6 @@
-//! What dimensions lack that make no linkage, and which of them would mend it.
+//! Errors of linkage dimensions, and the constants that may correct them.
 
-/// Why dimensions make no linkage.
+/// Reason why dimensions do not form a linkage.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LinkageError {
     /// The rocker cannot sweep the cylinder's stroke.
@@ -15,7 +15,7 @@ pub enum LinkageError {
         connecting_rod_m: f64,
         /// Stroke, m.
         stroke_m: f64,
-        /// What it sweeps at most, symmetrically about straight down, m.
+        /// Largest sweep, symmetric about straight down, m.
         most_m: f64,
     },
     /// The connecting rod does not reach from the rocker to the cylinder's axis.
@@ -26,9 +26,9 @@ pub enum LinkageError {
     ConnectingRod {
         /// Connecting rod, m.
         connecting_rod_m: f64,
-        /// What it has to span across at least, m.
+        /// Distance across that it has to span, m.
         rise_m: f64,
-        /// Rocker angle at which it doesn't, degrees.
+        /// Rocker angle at which it does not reach, degrees.
         rocker_angle_deg: f64,
     },
     /// The lift rod does not join the lift arm to the lower link.
@@ -39,11 +39,11 @@ pub enum LinkageError {
     LiftRod {
         /// Lift rod, m.
         lift_rod_m: f64,
-        /// What would do at this angle, m: from so much,
+        /// Shortest rod that would join at this angle, m.
         least_m: f64,
-        /// to so much.
+        /// Longest rod that would join at this angle, m.
         most_m: f64,
-        /// Rocker angle at which it can't, degrees.
+        /// Rocker angle at which it does not join, degrees.
         rocker_angle_deg: f64,
     },
 }
@@ -52,7 +52,7 @@ pub enum LinkageError {
 pub type Key = (&'static str, &'static str);
 
 impl LinkageError {
-    /// The constants that it may be about, the likeliest first.
+    /// The constants that may be wrong, the most probable first.
     #[must_use]
     pub const fn keys(&self) -> &'static [Key] {
         match self {
@@ -77,7 +77,7 @@ impl LinkageError {
         }
     }
 
-    /// How to mend it.
+    /// Suggested correction.
     #[must_use]
     pub fn mend(&self) -> String {
         match self {

@@ -1,4 +1,4 @@
-//! What hangs on the hitch.
+//! The masses of hitch and load.
 
 use crate::units::GRAVITY_M_S2;
 
@@ -18,7 +18,7 @@ impl Masses {
         (load_kg + self.dead_weight_kg) * GRAVITY_M_S2 * dh_dx
     }
 
-    /// What part of the weight is the load's, in kg; the rest is dead weight.
+    /// Share of the load in the weight; the rest is dead weight.
     #[must_use]
     pub fn load_share(&self, load_kg: f64) -> f64 {
         load_kg / (load_kg + self.dead_weight_kg)

@@ -1,4 +1,4 @@
-//! The components, one file each: constants and equations.
+//! The components, one per file: constants and equations.
 
 pub mod check_valve;
 pub mod compensator;

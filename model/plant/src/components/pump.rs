@@ -2,7 +2,7 @@
 
 /// Fixed-displacement pump.
 ///
-/// `Q = Q_theoretical * eta_v` (paper, Table 4: 54.5 l/min, 88 %, 1500 rev/min). Slip over pressure is an effect.
+/// `Q = Q_theoretical * eta_v` (paper, Table 4: 54.5 l/min, 88 %, 1500 rev/min). Pressure-dependent slip is an effect.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pump {
     /// Displacement times speed, m3/s.

@@ -1,6 +1,6 @@
 //! The relief valve at the pump.
 
-/// Ideal relief valve: passes whatever flow is left over at its set pressure (paper, Table 4: 154 bar).
+/// Ideal relief valve: passes any excess flow at its set pressure (paper, Table 4: 154 bar).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReliefValve {
     /// Set pressure above tank, Pa.
@@ -8,7 +8,7 @@ pub struct ReliefValve {
 }
 
 impl ReliefValve {
-    /// The pump pressure that can stand when `wanted_pa` is asked for, Pa.
+    /// Pump pressure, Pa, limited to the set pressure.
     #[must_use]
     pub fn limit_pa(&self, wanted_pa: f64) -> f64 {
         wanted_pa.min(self.set_pressure_pa)

@@ -1,8 +1,8 @@
-//! Flow of a proportional valve over solenoid current, as a manufacturer tabulates it.
+//! Flow of a proportional valve over solenoid current, as tabulated by a manufacturer.
 
-/// A flow characteristic: rising currents (A) and the flow (m3/s) at the valve's reference pressure drop.
+/// A flow characteristic: increasing currents (A) and the flow (m3/s) at the valve's reference pressure drop.
 ///
-/// Between the points it is linear; beyond the ends the end values hold.
+/// Linear between the points, constant beyond the ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ValveCurve {
     current_a: Vec<f64>,
@@ -10,7 +10,7 @@ pub struct ValveCurve {
     threshold_a: f64,
 }
 
-/// What is wrong with the points of a [`ValveCurve`].
+/// Error in the points of a [`ValveCurve`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ValveCurveError {
     /// Fewer than two points, or lists of different lengths.
@@ -23,7 +23,7 @@ pub enum ValveCurveError {
         /// Number of flows given.
         flows: usize,
     },
-    /// The currents do not rise strictly, or a value is not a finite, non-negative number.
+    /// The currents do not increase strictly, or a value is not a finite, non-negative number.
     #[error(
         "point {index} of a valve curve: currents must rise strictly, flows must not fall, and both be finite and not negative"
     )]
@@ -37,7 +37,7 @@ impl ValveCurve {
     /// A curve through `(current_a, flow_m3_s)`.
     ///
     /// # Errors
-    /// [`ValveCurveError`] unless currents rise strictly, flows never fall and all are finite and not negative.
+    /// [`ValveCurveError`] unless currents increase strictly, flows never decrease and all are finite and not negative.
     pub fn new(current_a: Vec<f64>, flow_m3_s: Vec<f64>) -> Result<Self, ValveCurveError> {
         if current_a.len() != flow_m3_s.len() || current_a.len() < 2 {
             return Err(ValveCurveError::Length {
@@ -57,7 +57,7 @@ impl ValveCurve {
         Ok(Self::through(current_a, flow_m3_s))
     }
 
-    /// A valve that passes nothing at any current.
+    /// A valve without flow at any current.
     #[must_use]
     pub fn shut() -> Self {
         Self::through(vec![0.0, 1.0], vec![0.0, 0.0])
@@ -76,7 +76,7 @@ impl ValveCurve {
     /// Flow at the reference drop, m3/s, for a current in A.
     #[must_use]
     pub fn flow_m3_s(&self, current_a: f64) -> f64 {
-        // Most of the time a valve is shut, and this is in the plant's innermost loop.
+        // Valves are closed most of the time, and this is in the plant's innermost loop.
         let upper = if current_a > self.threshold_a {
             self.current_a
                 .partition_point(|&point_a| point_a <= current_a)
@@ -106,7 +106,7 @@ impl ValveCurve {
         &self.flow_m3_s
     }
 
-    /// Current up to which the valve is shut, A: the last point with no flow before the first with flow.
+    /// Current up to which the valve is closed, A: the last point without flow before the first one with flow.
     #[must_use]
     pub fn threshold_a(&self) -> f64 {
         self.threshold_a

@@ -1,4 +1,4 @@
-//! What an effect is to the plant: texts, parameters, and a function that puts it at the hooks.
+//! The interface of an effect: texts, parameters, and a function that attaches it to the hooks.
 
 use std::any::Any;
 
@@ -6,10 +6,11 @@ use crate::channel::Channel;
 use crate::constants::Dynamics;
 use crate::hooks::effect_hooks::{EffectHooks, RunConditions};
 
-/// Share of the end of a parameter's range, or of its typical value, within which a value counts as at that end.
+/// Distance from an end of a parameter's range, relative to that end or to the typical value, within which a value
+/// counts as at the end.
 const AT_A_LIMIT: f64 = 1e-3;
 
-/// What a parameter is to a logger: it samples currents with noise and stamps them with a clock.
+/// Kind of a parameter with respect to a logger, which samples currents with noise and stamps them with a clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ParameterKind {
     /// A coil current.
@@ -25,26 +26,26 @@ pub enum ParameterKind {
 pub struct Parameter {
     /// Name, without the unit.
     pub name: &'static str,
-    /// Unit as it is written in reports; empty for a pure number.
+    /// Unit in reports; empty for a pure number.
     pub unit: &'static str,
-    /// Which kind of quantity it is.
+    /// Kind of the quantity.
     pub kind: ParameterKind,
-    /// Key in a model file: the name with the unit in it.
+    /// Key in a model file: the name including the unit.
     pub key: &'static str,
-    /// What it is, in a few words.
+    /// Short description.
     pub meaning: &'static str,
-    /// Value that turns the effect off exactly; of no account for a parameter that is not the size.
+    /// Value at which the effect is off exactly; only meaningful for the size.
     pub null: f64,
-    /// A size that is often met, for starting values, signatures and tests.
+    /// Typical value, for start values, signatures and tests.
     pub typical: f64,
-    /// Smallest value that makes sense.
+    /// Smallest allowed value.
     pub low: f64,
-    /// Largest value that makes sense.
+    /// Largest allowed value.
     pub high: f64,
 }
 
 impl Parameter {
-    /// Whether a value is at an end of the range, and that end does not turn the effect off.
+    /// Whether a value is at an end of the range other than the null value.
     #[must_use]
     pub fn is_at_a_limit(&self, value: f64) -> bool {
         let near = |end: f64| AT_A_LIMIT * end.abs().max(self.typical.abs());
@@ -53,18 +54,18 @@ impl Parameter {
     }
 }
 
-/// How what the instruments show depends on the size of an effect.
+/// Response of the readings to the size of an effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SizeResponse {
-    /// Smoothly: from most sizes a least-squares fit leads to the best one.
+    /// Smooth: a least-squares fit converges from most sizes.
     Smooth,
-    /// The size decides when something switches: a size that is a few percent off switches at another time, and can
-    /// explain less than none.
+    /// The size determines a switching instant: a size that is a few percent off switches at another time, and can fit
+    /// worse than no effect.
     Switching,
-    /// In steps: whether a spool moves on a step of the current is the same for a range of sizes. The first shape is a
-    /// share of the size, and the rest of the size is what shows.
+    /// Piecewise constant: whether a spool moves on a step of the current is the same for a range of sizes. The first
+    /// shape parameter is a share of the size, and the rest of the size is what the readings depend on.
     Stepped,
-    /// The size is a place in the stroke, and nothing shows before the hitch gets there.
+    /// The size is a position in the stroke, and the effect only acts there.
     Located,
 }
 
@@ -76,17 +77,17 @@ impl SizeResponse {
     }
 }
 
-/// Ratio of the ends of a range from which a parameter is taken by its order of magnitude.
+/// Ratio of the ends of a range above which a parameter is varied by its order of magnitude.
 const DECADE: f64 = 10.0;
 
 impl Parameter {
-    /// Whether its range covers so much that its order of magnitude is what counts.
+    /// Whether a parameter is varied by its order of magnitude.
     #[must_use]
     pub fn is_by_magnitude(&self) -> bool {
         self.low > 0.0 && self.high.is_finite() && self.high > DECADE * self.low
     }
 
-    /// The value that lies a share of its range above another, evenly or by its order of magnitude, within the range.
+    /// A value moved by a share of the range, linearly or by order of magnitude, clamped to the range.
     #[must_use]
     pub fn moved(&self, value: f64, share: f64) -> f64 {
         let moved = if self.is_by_magnitude() {
@@ -97,7 +98,8 @@ impl Parameter {
         moved.clamp(self.low, self.high)
     }
 
-    /// A natural size of a step of it, in its unit: from nothing to the typical value, or what there is of that.
+    /// Scale of its steps, in its unit: the distance from the null to the typical value, or the first non-zero
+    /// substitute.
     #[must_use]
     pub fn scale(&self) -> f64 {
         let width = self.high - self.low;
@@ -109,43 +111,43 @@ impl Parameter {
     }
 }
 
-/// A physical effect that a plant can have beyond the paper's model.
+/// A physical effect that extends the paper's model.
 pub trait Effect: Any + Sync {
-    /// Its name in files, commands and reports.
+    /// Its id in files, commands and reports.
     fn id(&self) -> &'static str;
-    /// Which of several equations it is where one effect is known in more than one form; `None` for the usual one.
+    /// Its form, if there are several equations for one effect; `None` for the usual one.
     fn form(&self) -> Option<&'static str> {
         None
     }
-    /// Its name in words.
+    /// Its title.
     fn title(&self) -> &'static str;
     /// Its equation, as text.
     fn equation(&self) -> &'static str;
-    /// Where the equation and the typical size come from.
+    /// Source of the equation and of the typical size.
     fn source(&self) -> &'static str;
-    /// Where it shows and what it is easily taken for.
+    /// Where it shows, and which effects it is easily confused with.
     fn shows(&self) -> &'static str;
-    /// Its parameters; the first one is its size, and at its null value the effect is off whatever the others are.
+    /// Its parameters. The first one is its size; at the size's null value the effect is off regardless of the others.
     fn parameters(&self) -> &'static [Parameter];
     /// The channels that it changes directly on a lab campaign.
     fn channels(&self) -> &'static [Channel];
-    /// The starting point that it needs, if not every one can show it.
+    /// The dynamics that it requires, if any.
     fn needs(&self) -> Option<Dynamics> {
         None
     }
-    /// How what the instruments show depends on its size.
+    /// Response of the readings to its size.
     fn size_response(&self) -> SizeResponse {
         SizeResponse::Smooth
     }
-    /// Whether it only says more of what its effect's usual form says: it is looked for from what that one finds.
+    /// Whether its form is a refinement of the effect's usual form: the search starts from the result of the usual one.
     fn refines(&self) -> bool {
         false
     }
-    /// Its place in the order in which effects act where several act at one hook, from the coil to the instruments.
+    /// Rank in the order of effects at the same hook, from the coil to the instruments.
     fn rank(&self) -> usize {
         usize::MAX
     }
-    /// Puts it into a plant, with a value for each parameter.
+    /// Attaches it to a plant, with a value for each parameter.
     fn attach(&self, values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks);
 }
 
@@ -155,7 +157,7 @@ impl std::fmt::Debug for dyn Effect {
     }
 }
 
-/// The name of an effect with its form, as commands take it: `id`, or `id/form`.
+/// The name of an effect with its form, as used in commands: `id`, or `id/form`.
 #[must_use]
 pub fn full_name(effect: &dyn Effect) -> String {
     let id = effect.id();
@@ -164,18 +166,18 @@ pub fn full_name(effect: &dyn Effect) -> String {
         .map_or_else(|| id.to_owned(), |form| format!("{id}/{form}"))
 }
 
-/// Whether two effects are the same in the same form.
+/// Whether two effects have the same id and form.
 #[must_use]
 pub fn is_same(one: &dyn Effect, other: &dyn Effect) -> bool {
     one.id() == other.id() && one.form() == other.form()
 }
 
-/// An effect with values for its parameters, as a model holds it.
+/// An effect with parameter values, as part of a model.
 #[derive(Debug, Clone)]
 pub struct AddedEffect {
-    /// Which effect.
+    /// The effect.
     pub effect: &'static dyn Effect,
-    /// One value a parameter, in the parameter's unit.
+    /// One value per parameter, in the parameter's unit.
     pub values: Vec<f64>,
 }
 
@@ -187,7 +189,7 @@ impl AddedEffect {
         Self { effect, values }
     }
 
-    /// The same effect in another form: what both have keeps its value, the rest has its typical one.
+    /// The same effect in another form: common parameters keep their values, the others are typical.
     #[must_use]
     pub fn in_form(&self, form: &'static dyn Effect) -> Self {
         let own = self.effect.parameters().iter().zip(&self.values);
@@ -201,7 +203,7 @@ impl AddedEffect {
         }
     }
 
-    /// The effect turned off.
+    /// The effect at its null value.
     #[must_use]
     pub fn null(effect: &'static dyn Effect) -> Self {
         let mut added = Self::typical(effect);
@@ -215,7 +217,7 @@ impl AddedEffect {
         self.values[0] == self.effect.parameters()[0].null
     }
 
-    /// Puts it into a plant; an effect at its null value is not there at all.
+    /// Attaches it to a plant, unless it is at its null value.
     pub fn attach(&self, conditions: RunConditions<'_>, hooks: &mut EffectHooks) {
         if !self.is_null() {
             self.effect.attach(&self.values, conditions, hooks);

@@ -1,7 +1,8 @@
-//! The places in the plant where a physical effect can act.
+//! The hooks of the plant at which physical effects act.
 //!
-//! An effect (see [`Effect`](crate::hooks::effect::Effect)) attaches closures or small stateful parts here; the plant calls them where the
-//! physics has them. With nothing attached every sum is empty and the plant is the paper's.
+//! An effect (see [`Effect`](crate::hooks::effect::Effect)) attaches closures or small components with state here; the
+//! plant evaluates them at the corresponding point of its equations. Without any, every sum is empty and the plant is
+//! the paper's.
 
 use std::sync::Arc;
 
@@ -12,7 +13,7 @@ use crate::hooks::reading::Reading;
 use crate::hooks::signals::Signals;
 use crate::state::MechanicalState;
 
-/// Which of the two solenoid valves.
+/// One of the two solenoid valves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Valve {
     /// The lift valve, pump to cylinder.
@@ -31,7 +32,7 @@ pub struct Currents {
 }
 
 impl Currents {
-    /// The same change to both currents.
+    /// Applies a function to both currents.
     #[must_use]
     pub fn map(self, mut change: impl FnMut(Valve, f64) -> f64) -> Self {
         Self {
@@ -40,7 +41,7 @@ impl Currents {
         }
     }
 
-    /// The currents at a share of the way to others.
+    /// Linear interpolation between these currents and others.
     #[must_use]
     pub fn towards(self, to: Self, share: f64) -> Self {
         Self {
@@ -49,73 +50,74 @@ impl Currents {
         }
     }
 
-    /// By how much the current differs that differs more, A.
+    /// Largest difference of a current, A.
     #[must_use]
-    pub fn furthest_from_a(self, other: Self) -> f64 {
+    pub fn largest_difference_a(self, other: Self) -> f64 {
         let lift_a = (self.lift_a - other.lift_a).abs();
         lift_a.max((self.lower_a - other.lower_a).abs())
     }
 }
 
-/// A part between coil current and effective spool current; it may remember (hysteresis, lag).
+/// A stage between coil current and effective spool current; it may have state (hysteresis, lag).
 pub trait CurrentStage: Send + Sync + std::fmt::Debug {
-    /// Puts the part at rest under these currents and returns what it passes on.
+    /// Sets the stage to rest at these currents and returns its output.
     fn rest(&mut self, currents: Currents) -> Currents;
-    /// Goes on by `dt_s` while the currents run linearly to `currents`; returns what it passes on.
+    /// Advances by `dt_s` while the currents change linearly to `currents`; returns the output.
     fn advance(&mut self, currents: Currents, dt_s: f64) -> Currents;
 }
 
-/// A part between a physical quantity and what its instrument shows; it may remember (lag).
+/// A stage between a physical quantity and the reading of its instrument; it may have state (lag).
 pub trait SensorStage: Send + Sync + std::fmt::Debug {
-    /// Puts the instrument at rest at this reading.
+    /// Sets the instrument to rest at this reading.
     fn rest(&mut self, reading: &mut Reading);
-    /// Goes on by `dt_s` to `reading` and turns it into what is shown.
+    /// Advances by `dt_s` to the true `reading` and replaces it by the instrument's reading.
     fn advance(&mut self, reading: &mut Reading, dt_s: f64);
-    /// The rocker angle, degree, at which an instrument at rest shows `shown_deg`.
+    /// The true rocker angle, degree, at which an instrument at rest shows `shown_deg`.
     fn angle_behind_deg(&self, shown_deg: f64) -> f64 {
         shown_deg
     }
 }
 
-/// A quantity as a function of one other; units where it is used.
+/// A function of one quantity; the units are given where it is used.
 pub type Law = Box<dyn Fn(f64) -> f64 + Send + Sync>;
-/// A factor on the weight's force, from the piston travel, m, and the load's share in the weight; the rest is the links'.
+/// A factor on the weight's force, from the piston travel, m, and the load's share in the weight; the rest is that of
+/// the links.
 pub type WeightFactor = Box<dyn Fn(f64, f64) -> f64 + Send + Sync>;
 /// A force on the piston against its motion, N, from its state and the weight's force on it, N.
 pub type FrictionForce = Box<dyn Fn(&MechanicalState, f64) -> f64 + Send + Sync>;
 
-/// A relief valve whose pressure rises with the flow through it.
+/// A relief valve whose pressure increases with the flow through it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReliefOverride {
-    /// Rise of the pressure from cracking to the pump's whole flow, Pa.
+    /// Pressure increase from cracking to the pump's full flow, Pa.
     pub override_pa: f64,
-    /// How far below its setting it cracks, Pa.
+    /// Difference of the set pressure and the cracking pressure, Pa.
     pub below_setting_pa: f64,
 }
 
-/// What takes pressure in line with an orifice: a pipe, a filter, an open seat.
+/// A flow resistance in series with an orifice: a pipe, a filter, an open seat.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Line {
-    /// Pressure over the square of the flow, Pa s2/m6.
+    /// Turbulent coefficient: pressure per square of the flow, Pa s2/m6.
     pub turbulent_pa_s2_m6: f64,
-    /// Pressure over the flow, Pa s/m3.
+    /// Laminar coefficient: pressure per flow, Pa s/m3.
     pub laminar_pa_s_m3: f64,
 }
 
 impl Line {
-    /// Whether it holds nothing back.
+    /// Whether it has no resistance.
     #[must_use]
     pub fn is_free(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Pressure before it, Pa, at a flow through it, m3/s.
+    /// Pressure drop, Pa, at a flow, m3/s.
     #[must_use]
     pub fn pressure_pa(&self, flow_m3_s: f64) -> f64 {
         (self.laminar_pa_s_m3 + self.turbulent_pa_s2_m6 * flow_m3_s) * flow_m3_s
     }
 
-    /// Flow through an orifice in line with it, m3/s, where a pressure, Pa, would drive `free_m3_s` through the
+    /// Flow through an orifice in series with it, m3/s, at a pressure, Pa, that would drive `free_m3_s` through the
     /// orifice alone: the root of `p = (p / Q_free^2 + turbulent) Q^2 + laminar Q`.
     #[must_use]
     pub fn behind_orifice_m3_s(&self, free_m3_s: f64, pressure_pa: f64) -> f64 {
@@ -125,12 +127,12 @@ impl Line {
     }
 }
 
-/// What a valve's flow is multiplied by.
+/// A factor on a valve's flow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlowFactor {
-    /// At half the largest flow.
+    /// Factor at half the largest flow.
     pub at_half: f64,
-    /// What it grows by from there to the largest flow.
+    /// Increase of the factor from there to the largest flow.
     pub growth: f64,
 }
 
@@ -144,7 +146,7 @@ impl Default for FlowFactor {
 }
 
 impl FlowFactor {
-    /// The factor where the table has a flow, which is `largest` at most.
+    /// The factor at a tabulated flow; the largest tabulated flow is `largest`.
     #[must_use]
     pub fn at(&self, flow: f64, largest: f64) -> f64 {
         if self.growth == 0.0 || largest <= 0.0 {
@@ -154,17 +156,17 @@ impl FlowFactor {
     }
 }
 
-/// Ground under the hitch: a spring and damper that can only push; its damping starts from nothing (Hunt & Crossley 1975)
-/// or is there at once.
+/// Ground under the hitch: a unilateral spring and damper, whose damping is proportional to the depth (Hunt & Crossley
+/// 1975) or independent of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ground {
-    /// Height of the ground over the shaft, m, where the hitch point touches it.
+    /// Height of the ground above the shaft, m, at which the hitch point touches it.
     pub height_m: f64,
     /// Stiffness, N/m.
     pub stiffness_n_m: f64,
-    /// Damping, s/m: share by which the force grows for each metre a second of approach; the dynamic plant only.
+    /// Depth-proportional damping, s/m: relative increase of the force per m/s of approach; dynamic plant only.
     pub damping_s_m: f64,
-    /// Damping that goes with the speed alone, N s/m; the dynamic plant only.
+    /// Viscous damping, N s/m; dynamic plant only.
     pub damping_n_s_m: f64,
 }
 
@@ -182,21 +184,21 @@ impl Ground {
     }
 }
 
-/// Dry friction that remembers: bristles between piston and seal bend before they slip (Dahl 1968; LuGre with a level
-/// that does not hang on the speed, Canudas de Wit 1995), and straighten at rest as far as the machine trembles.
+/// Dry friction with state: bristles between piston and seal deflect before they slip (Dahl 1968; LuGre with a
+/// speed-independent level, Canudas de Wit 1995), and relax at rest due to vibration of the machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bristles {
-    /// Force of bristles that slip, N.
+    /// Friction force with slipping bristles, N.
     pub force_n: f64,
-    /// How far they are bent then, m.
+    /// Deflection of slipping bristles, m.
     pub reach_m: f64,
-    /// Speed of the piston at which their straightening takes half of the force, m/s; it goes on at rest.
+    /// Relaxation rate: speed of the piston at which the relaxation reduces the force by half, m/s.
     pub creep_m_s: f64,
 }
 
 impl Bristles {
-    /// How far they are bent, m, once the piston has moved on: `z' = v - (|v| + creep) z / reach`, exactly for an
-    /// even speed.
+    /// Deflection of the bristles, m, after the piston moved by `moved_m`: `z' = v - (|v| + creep) z / reach`, exact
+    /// for a constant speed.
     #[must_use]
     pub fn bent_m(&self, before_m: f64, moved_m: f64, dt_s: f64) -> f64 {
         let share = (moved_m.abs() + self.creep_m_s * dt_s) / self.reach_m;
@@ -208,20 +210,20 @@ impl Bristles {
     }
 }
 
-/// A hose whose wall swells with the pressure: partly at once, and partly creeping after it (a spring beside a spring
-/// with a damper, the standard linear solid; Ferry, Viscoelastic Properties of Polymers, 1980, ch. 1).
+/// A hose whose wall expands with the pressure, partly at once and partly by creep (a spring in parallel with a spring
+/// and damper, the standard linear solid; Ferry, Viscoelastic Properties of Polymers, 1980, ch. 1).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Hose {
-    /// What it takes up at once, m3/Pa.
+    /// Immediate compliance, m3/Pa.
     pub at_once_m3_pa: f64,
-    /// What it takes up in the long run besides, m3/Pa.
+    /// Additional compliance after complete creep, m3/Pa.
     pub creeping_m3_pa: f64,
-    /// How fast that catches up with a pressure that stands still, 1/s of what it is behind.
+    /// Creep rate at constant pressure, 1/s, relative to the remaining creep.
     pub catching_up_1_s: f64,
 }
 
 impl Hose {
-    /// Flow, m3/s, that its creeping wall takes while it is so far behind the pressure, Pa.
+    /// Flow, m3/s, into its creeping wall, which lags behind the pressure by `behind_pa`.
     #[inline(always)]
     #[must_use]
     pub fn creep_m3_s(&self, behind_pa: f64) -> f64 {
@@ -229,12 +231,12 @@ impl Hose {
     }
 }
 
-/// A term of a user's own, in the SI unit of its place, from the state of the plant.
+/// A user-defined term, in the SI unit of its place, from the state of the plant.
 pub type TermFunction = Box<dyn Fn(&Signals) -> f64 + Send + Sync>;
 
-/// What the active effects have attached to one plant.
+/// Everything that the active effects have attached to one plant.
 pub struct EffectHooks {
-    /// Between coil current and effective spool current, in order.
+    /// Stages between coil current and effective spool current, in order.
     pub currents: Vec<Box<dyn CurrentStage>>,
     /// Factor on the lift valve's flow.
     pub lift_flow_factor: FlowFactor,
@@ -242,57 +244,57 @@ pub struct EffectHooks {
     pub lower_flow_factor: FlowFactor,
     /// Factors on the lowering valve's flow, from its pressure drop, Pa.
     pub lower_drop_factor: Vec<Law>,
-    /// Factors on how far the lowering spool is beyond where it opens, from the valve's pressure drop, Pa.
+    /// Factors on the travel of the lowering spool beyond its opening point, from the valve's pressure drop, Pa.
     pub lower_travel_factor: Vec<Law>,
-    /// What the flow through either valve turns laminar with: twice its flow number over the critical one is this times
-    /// the current beyond the threshold, A, and the root of the drop, Pa. None if it stays turbulent.
+    /// Laminar transition of both valves: twice the flow number over the critical one is this value times the current
+    /// beyond the threshold, A, and the square root of the drop, Pa. `None` for turbulent flow.
     pub flow_number_1_a_sqrt_pa: Option<f64>,
     /// Added to the compensator's margin, Pa, from the cylinder pressure, Pa.
     pub margin: Vec<Law>,
-    /// Added to the pump pressure with the lift valve shut, Pa.
+    /// Added to the pump pressure with the lift valve closed, Pa.
     pub idle_extra_pa: f64,
-    /// Added to the model's own lag of the spools, s; negative where they are quicker than declared.
+    /// Added to the model's own lag of the spools, s; negative for spools faster than declared.
     pub spool_lag_extra_s: f64,
-    /// What the compensator's margin loses for each lift flow, Pa/(m3/s).
+    /// Decrease of the compensator's margin per lift flow, Pa/(m3/s).
     pub margin_lost_to_flow_pa_s_m3: f64,
-    /// How long the compensator takes to get to its pressure, s.
+    /// Time constant of the compensator, s.
     pub compensator_lag_s: f64,
     /// Added to the check valve's cracking pressure, Pa.
     pub cracking_extra_pa: f64,
-    /// What the open check valve takes.
+    /// Flow resistance of the open check valve.
     pub check_valve: Line,
     /// Pump flow lost to slip, m3/s, from the pump pressure, Pa.
     pub pump_slip: Vec<Law>,
-    /// What the relief valve lacks of an ideal one.
+    /// Override of the relief valve; `None` for an ideal one.
     pub relief: Option<ReliefOverride>,
-    /// What is behind the lowering valve.
+    /// Flow resistance downstream of the lowering valve.
     pub return_line: Line,
     /// Flow out of the cylinder past the valves, m3/s, from the cylinder pressure, Pa.
     pub leakage: Vec<Law>,
-    /// Factors on the oil's bulk modulus, from the cylinder pressure, Pa; the dynamic plant only.
+    /// Factors on the oil's bulk modulus, from the cylinder pressure, Pa; dynamic plant only.
     pub stiffness_factor: Vec<Law>,
-    /// What hoses and fittings take up besides the oil; the dynamic plant only.
+    /// Compliance of hoses and fittings; dynamic plant only.
     pub hose: Hose,
     /// Friction at the piston.
     pub friction: Vec<FrictionForce>,
-    /// Friction at the piston that remembers.
+    /// Friction with state at the piston.
     pub bristles: Option<Bristles>,
     /// Factors on the weight's force.
     pub weight_factor: Vec<WeightFactor>,
-    /// Inertia that comes on top of the model's own, as a share of load and dead weight.
+    /// Inertia in addition to the model's own, as a share of load and dead weight.
     pub inertia_share: f64,
-    /// Inertia on the rocker shaft that comes on top, kg m2, whatever the load.
+    /// Additional inertia of the rocker shaft, kg m2, independent of the load.
     pub shaft_inertia_kg_m2: f64,
-    /// Longest step, s, that follows what is sudden: a pressure that goes with the change of speed over the last step,
-    /// or a sensor that remembers; the quasi-static plant only.
+    /// Longest step, s, that resolves fast changes: a pressure that depends on the acceleration over the last step, or
+    /// a sensor with state; quasi-static plant only.
     pub longest_step_s: f64,
-    /// Largest change of a coil current in a step of the spools, A, that tells when one jumps.
+    /// Largest change of a coil current per step of the spools, A, that resolves the instant of a spool's jump.
     pub largest_change_a: f64,
     /// Ground under the hitch.
     pub ground: Option<Ground>,
     /// Instruments, in order.
     pub sensors: Vec<Box<dyn SensorStage>>,
-    /// Terms of a user's own, with the place where each acts.
+    /// User-defined terms, with the place where each acts.
     pub terms: Vec<(Place, TermFunction)>,
 }
 
@@ -341,25 +343,25 @@ fn product(laws: &[Law], of: f64) -> f64 {
 }
 
 impl EffectHooks {
-    /// Whether a term of a user's own acts at a place.
+    /// Whether a user-defined term acts at a place.
     #[inline(always)]
     #[must_use]
     pub fn has_term(&self, place: Place) -> bool {
         self.terms.iter().any(|(at, _)| *at == place)
     }
 
-    /// Has the quasi-static plant take steps of at most `longest_s`, s.
+    /// Limits the steps of the quasi-static plant to `longest_s`, s.
     pub fn limit_step(&mut self, longest_s: f64) {
         self.longest_step_s = self.longest_step_s.min(longest_s);
     }
 
-    /// Has the spools take steps in which no current changes by more than `largest_a`, A, and with them the quasi-static
-    /// plant, whose piston follows at once.
+    /// Limits the change of any current within a step of the spools to `largest_a`, A, and with it the steps of the
+    /// quasi-static plant, whose piston follows at once.
     pub fn limit_change(&mut self, largest_a: f64) {
         self.largest_change_a = self.largest_change_a.min(largest_a);
     }
 
-    /// Sum of the terms at a place, in its SI unit; one that is not finite is left out.
+    /// Sum of the terms at a place, in its SI unit; values that are not finite are skipped.
     #[must_use]
     pub fn term(&self, place: Place, signals: &Signals) -> f64 {
         let here = self.terms.iter().filter(|(at, _)| *at == place);
@@ -367,48 +369,48 @@ impl EffectHooks {
         values.filter(|value| value.is_finite()).sum()
     }
 
-    /// Sum of the friction forces, N, in a state under a weight's force, N.
+    /// Sum of the friction forces, N, in a state with a weight's force, N.
     #[must_use]
     pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {
         let forces = self.friction.iter();
         forces.map(|force| force(state, weight_n)).sum()
     }
 
-    /// Force of bristles, N, that are bent so far, m.
+    /// Force of the bristles, N, at a deflection, m.
     #[must_use]
     pub fn bristles_n(&self, bent_m: f64) -> f64 {
         self.bristles
             .map_or(0.0, |bristles| bristles.force_n * bent_m / bristles.reach_m)
     }
 
-    /// [`Bristles::bent_m`]; nothing without any.
+    /// [`Bristles::bent_m`]; zero without bristles.
     #[must_use]
     pub fn bent_m(&self, before_m: f64, moved_m: f64, dt_s: f64) -> f64 {
         self.bristles
             .map_or(0.0, |bristles| bristles.bent_m(before_m, moved_m, dt_s))
     }
 
-    /// Factor on the weight's force at a piston travel, m, if the load makes so much of the weight.
+    /// Factor on the weight's force at a piston travel, m, with the load's share in the weight.
     #[must_use]
     pub fn weight_factor(&self, piston_m: f64, load_share: f64) -> f64 {
         let factors = self.weight_factor.iter();
         factors.map(|factor| factor(piston_m, load_share)).product()
     }
 
-    /// Pressure behind the lowering valve, Pa, at a flow through it, m3/s.
+    /// Pressure downstream of the lowering valve, Pa, at a flow through it, m3/s.
     #[must_use]
     pub fn return_pressure_pa(&self, flow_m3_s: f64) -> f64 {
         self.return_line.pressure_pa(flow_m3_s)
     }
 
-    /// Whether a hitch at rest behind two shut valves stays as it is.
+    /// Whether a hitch at rest with both valves closed stays at rest.
     #[must_use]
-    pub fn holds_still(&self) -> bool {
+    pub fn stays_at_rest(&self) -> bool {
         let straighten = |bristles: Bristles| bristles.creep_m_s > 0.0;
         self.leakage.is_empty() && self.terms.is_empty() && !self.bristles.is_some_and(straighten)
     }
 
-    /// Sum of the leakages, m3/s, at a cylinder pressure, Pa.
+    /// Sum of the leakage flows, m3/s, at a cylinder pressure, Pa.
     #[must_use]
     pub fn leakage_m3_s(&self, cylinder_pressure_pa: f64) -> f64 {
         sum(&self.leakage, cylinder_pressure_pa)
@@ -420,13 +422,13 @@ impl EffectHooks {
         product(&self.lower_drop_factor, drop_pa)
     }
 
-    /// Factor on the lowering spool's travel beyond where it opens, at the valve's pressure drop, Pa.
+    /// Factor on the travel of the lowering spool beyond its opening point, at the valve's pressure drop, Pa.
     #[must_use]
     pub fn lower_travel_factor(&self, drop_pa: f64) -> f64 {
         product(&self.lower_travel_factor, drop_pa)
     }
 
-    /// What comes on top of the compensator's margin, Pa, at a cylinder pressure, Pa.
+    /// Sum of the additions to the compensator's margin, Pa, at a cylinder pressure, Pa.
     #[must_use]
     pub fn margin_pa(&self, cylinder_pressure_pa: f64) -> f64 {
         sum(&self.margin, cylinder_pressure_pa)
@@ -445,7 +447,7 @@ impl EffectHooks {
     }
 }
 
-/// What an effect may know of the run and of the plant that it is attached to.
+/// The run and the plant that an effect is attached to.
 #[derive(Debug, Clone, Copy)]
 pub struct RunConditions<'m> {
     /// Oil temperature, degree Celsius.

@@ -1,4 +1,4 @@
-//! Where physical effects act: the hooks that they fill, the signals and readings that they see.
+//! The hooks where physical effects act, and the signals and readings of the plant.
 
 pub mod effect;
 pub mod effect_hooks;

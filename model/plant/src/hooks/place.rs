@@ -1,8 +1,8 @@
-//! Where in the plant a term acts.
+//! The places in the plant where a term acts.
 
 use crate::channel::Channel;
 
-/// Where a term acts. Its unit there is SI.
+/// The place where a term acts. Terms are in SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Place {
     /// Added to the effective current of the lift spool, A.
@@ -19,21 +19,21 @@ pub enum Place {
     Friction,
     /// Added to the force of the weight at the piston, N.
     Weight,
-    /// Added to what the cylinder's pressure sensor shows, Pa.
+    /// Added to the reading of the cylinder's pressure sensor, Pa.
     CylinderPressureSensor,
-    /// Added to what the pump's pressure sensor shows, Pa.
+    /// Added to the reading of the pump's pressure sensor, Pa.
     PumpPressureSensor,
-    /// Added to what the angle sensor shows, rad.
+    /// Added to the reading of the angle sensor, rad.
     AngleSensor,
-    /// Added to what the flow sensor shows, m3/s.
+    /// Added to the reading of the flow sensor, m3/s.
     FlowSensor,
-    /// Pressure behind the lowering valve, Pa.
+    /// Pressure downstream of the lowering valve, Pa.
     ReturnPressure,
     /// Added to the margin of the pressure compensator, Pa.
     CompensatorMargin,
 }
 
-/// What is known of a place.
+/// Properties of a place.
 struct About {
     place: Place,
     id: &'static str,
@@ -84,31 +84,31 @@ impl Place {
         ABOUT.iter().map(|about| about.place)
     }
 
-    /// Looks a place up by its name in a model file.
+    /// The place with this id.
     #[must_use]
     pub fn named(id: &str) -> Option<Self> {
         Self::all().find(|place| place.id() == id)
     }
 
-    /// Its name in a model file.
+    /// Its id in a model file.
     #[must_use]
     pub fn id(self) -> &'static str {
         self.about().id
     }
 
-    /// The SI unit of a term there.
+    /// The SI unit of a term at this place.
     #[must_use]
     pub fn unit(self) -> &'static str {
         self.about().unit
     }
 
-    /// What a term does there.
+    /// Description of the action of a term at this place.
     #[must_use]
     pub fn meaning(self) -> &'static str {
         self.about().meaning
     }
 
-    /// The channels that a term there changes directly.
+    /// The channels that a term at this place changes directly.
     #[must_use]
     pub fn channels(self) -> &'static [Channel] {
         self.about().channels

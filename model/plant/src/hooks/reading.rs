@@ -1,8 +1,8 @@
-//! What the instruments show of the plant.
+//! Readings of the instruments.
 
 use crate::channel::Channel;
 
-/// What the instruments show, in their units.
+/// Readings of the instruments, in their units.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Reading {
     /// Pump pressure, bar.
@@ -11,7 +11,7 @@ pub struct Reading {
     pub cylinder_pressure_bar: f64,
     /// Flow into the cylinder, l/min.
     pub flow_lpm: f64,
-    /// Rocker angle, degree; on a flow bench not a number.
+    /// Rocker angle, degree; NaN on a flow bench.
     pub rocker_angle_deg: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What a term of a user's own may depend on: the state of the plant at one instant, by name.
+//! The signals that user-defined terms may depend on: the state of the plant at one instant, by name.
 
 /// The state of the plant at one instant, SI.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -31,20 +31,20 @@ pub struct Signals {
     pub viscosity_m2_s: f64,
 }
 
-/// One signal as formulas, documents and messages name it.
+/// A signal as named in formulas, documents and messages.
 #[derive(Debug)]
 pub struct Signal {
     /// Name in a formula.
     pub name: &'static str,
-    /// Its SI unit. A temperature counts from 0 degree Celsius, in steps of a kelvin.
+    /// Its SI unit; a temperature is in degree Celsius.
     pub unit: &'static str,
-    /// What it is.
+    /// Description.
     pub meaning: &'static str,
     /// Smallest value that occurs on a rig, SI.
     pub low: f64,
     /// Largest value that occurs on a rig, SI.
     pub high: f64,
-    /// Where it stands among the signals.
+    /// Accessor of its field.
     pub place: fn(&mut Signals) -> &mut f64,
     /// Its value.
     pub value: fn(&Signals) -> f64,

@@ -1,4 +1,4 @@
-//! What the instruments show of the plant.
+//! Readings of the instruments.
 
 use super::Plant;
 use crate::hooks::place::Place;
@@ -6,7 +6,7 @@ use crate::hooks::reading::Reading;
 use crate::units;
 
 impl Plant<'_> {
-    /// The quantities themselves, in the instruments' units.
+    /// The true quantities, in the instruments' units.
     pub(crate) fn truth(&self) -> Reading {
         Reading {
             pump_pressure_bar: units::bar_from_pa(self.flows.pump_pressure_pa),
@@ -16,7 +16,7 @@ impl Plant<'_> {
         }
     }
 
-    /// A reading with what terms of a user's own add to it.
+    /// A reading with user-defined terms added.
     pub(crate) fn with_sensor_terms(&self, mut reading: Reading) -> Reading {
         let term = |place| self.hooks.term(place, &self.signals);
         if !self.hooks.terms.is_empty() {

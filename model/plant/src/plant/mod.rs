@@ -18,7 +18,7 @@ use crate::solver::moment::Moment;
 use crate::solver::{dynamic, steady};
 use crate::state::{HitchRig, MechanicalState, Rig};
 
-/// Steps of the spools within one of the quasi-static piston, at most, while a current runs.
+/// Most steps of the spools within one step of the quasi-static piston, while a current changes.
 const SPOOL_STEPS: f64 = 2.0;
 
 /// The plant in motion.
@@ -29,26 +29,26 @@ pub struct Plant<'m> {
     hooks: EffectHooks,
     spools: [Lag; 2],
     spool_currents: Currents,
-    /// How fast the spools' currents changed over the last step, A/s.
+    /// Rate of change of the spools' currents over the last step, A/s.
     turning_a_s: f64,
     openings: Openings,
     state: MechanicalState,
-    /// Whether the quasi-static piston stood at either end of the last step: nothing of its inertia is left.
+    /// Whether the quasi-static piston was at rest at both ends of the last step, so that no inertia is left.
     stands: bool,
     lowest_m: f64,
     flows: Flows,
     input: Currents,
     reading: Reading,
-    /// Kept up only for terms of a user's own.
+    /// Only updated for user-defined terms.
     signals: Signals,
 }
 
 impl<'m> Plant<'m> {
-    /// A plant at rest under the currents `at_rest`, with the model's effects attached.
+    /// A plant at rest with the currents `at_rest`, with the model's effects attached.
     #[must_use]
     pub fn new(model: &'m Model, rig: Rig, oil_temperature_c: f64, at_rest: Currents) -> Self {
         let mut hooks = EffectHooks::default();
-        for effect in in_the_order_of_the_machine(&model.effects) {
+        for effect in ordered_by_rank(&model.effects) {
             let conditions = RunConditions {
                 oil_temperature_c,
                 constants: model.constants(),
@@ -83,12 +83,12 @@ impl<'m> Plant<'m> {
         plant.state = plant.state_at_rest();
         if let Rig::Hitch(rig) = rig {
             plant.lowest_m = plant.forces(&rig).lowest_m();
-            plant.stand_on_the_ground(&rig);
+            plant.place_on_ground(&rig);
         }
-        plant.remember();
+        plant.store_signals();
         plant.shift(effective.lift_a, effective.lower_a);
         plant.refresh();
-        plant.remember();
+        plant.store_signals();
         let mut reading = plant.truth();
         for sensor in &mut plant.hooks.sensors {
             sensor.rest(&mut reading);
@@ -97,16 +97,16 @@ impl<'m> Plant<'m> {
         plant
     }
 
-    /// The plant in other steps.
+    /// The plant with other time steps.
     #[must_use]
     pub fn in_steps(self, steps: Steps) -> Self {
         Self { steps, ..self }
     }
 
-    /// Goes on by `dt_s` while the coil currents run linearly to `currents`.
+    /// Advances by `dt_s` while the coil currents change linearly to `currents`.
     pub fn step(&mut self, currents: Currents, dt_s: f64) {
-        let longest_s = self.longest_step_s(currents.furthest_from_a(self.input) / dt_s);
-        // A hair of slack: 0.02 s read from a log as a difference must not become one piece more.
+        let longest_s = self.longest_step_s(currents.largest_difference_a(self.input) / dt_s);
+        // Slack for rounding: 0.02 s read from a log as a difference must not need another step.
         let pieces = (dt_s / longest_s - 1e-6).ceil().max(1.0) as usize;
         let (from, spools) = (self.input, self.spool_currents);
         for piece in 1..=pieces {
@@ -116,10 +116,10 @@ impl<'m> Plant<'m> {
                 self.read(dt_s / pieces as f64);
             }
         }
-        self.turning_a_s = self.spool_currents.furthest_from_a(spools) / dt_s;
+        self.turning_a_s = self.spool_currents.largest_difference_a(spools) / dt_s;
     }
 
-    /// Longest step, s, while the coil currents change by so much, A/s.
+    /// Longest step, s, at a rate of change of the coil currents, A/s.
     fn longest_step_s(&self, driven_a_s: f64) -> f64 {
         let turning_a_s = self.turning_a_s.max(driven_a_s);
         match (self.rig, self.model.constants().dynamics) {
@@ -142,7 +142,7 @@ impl<'m> Plant<'m> {
         }
     }
 
-    /// Reads the instruments `dt_s` after the last time.
+    /// Updates the readings, `dt_s` after the last update.
     fn read(&mut self, dt_s: f64) {
         self.refresh_unless_balanced();
         let mut reading = self.truth();
@@ -152,25 +152,25 @@ impl<'m> Plant<'m> {
         self.reading = self.with_sensor_terms(reading);
     }
 
-    /// What the instruments show now.
+    /// The present readings of the instruments.
     #[must_use]
     pub fn reading(&self) -> Reading {
         self.reading
     }
 
-    /// Piston travel, speed and cylinder pressure now.
+    /// The present piston travel, speed and cylinder pressure.
     #[must_use]
     pub fn state(&self) -> MechanicalState {
         self.state
     }
 
-    /// Flows and pump pressure now.
+    /// The present flows and pump pressure.
     #[must_use]
     pub fn flows(&self) -> Flows {
         self.flows
     }
 
-    /// Rocker angle, rad; on a flow bench not a number.
+    /// Rocker angle, rad; NaN on a flow bench.
     #[must_use]
     pub fn rocker_angle_rad(&self) -> f64 {
         match self.rig {
@@ -184,7 +184,7 @@ impl<'m> Plant<'m> {
         }
     }
 
-    /// Pump pressure with the lift valve shut, Pa.
+    /// Pump pressure with the lift valve closed, Pa.
     #[must_use]
     pub fn idle_pressure_pa(&self) -> f64 {
         self.circuit().idle_pressure_pa()
@@ -215,14 +215,14 @@ impl<'m> Plant<'m> {
         }
     }
 
-    /// Begins a step of a lagging compensator on the quasi-static plant.
+    /// Starts a step of a lagging compensator in the quasi-static plant.
     fn catch_up(&mut self, start: Openings, dt_s: f64) {
         let circuit = self.circuit();
         let (reached_pa, share) = circuit.catching_up(start, &self.state, dt_s);
         (self.state.compensator_pa, self.state.catching_up) = (reached_pa, share);
     }
 
-    /// Ends it.
+    /// Ends a step of a lagging compensator.
     fn settle(&mut self, end: Openings) {
         if self.hooks.compensator_lag_s > 0.0 {
             self.state.compensator_pa = self.circuit().compensator_pa(end.lift, &self.state);
@@ -245,7 +245,8 @@ impl<'m> Plant<'m> {
                 let start = self.openings;
                 let end = self.open(from, currents, dt_s);
                 let idles = self.circuit().idles(&self.state);
-                if self.stands && self.hooks.holds_still() && start.shut() && end.shut() && idles {
+                if self.stands && self.hooks.stays_at_rest() && start.shut() && end.shut() && idles
+                {
                     return;
                 }
                 self.catch_up(start, dt_s);
@@ -278,17 +279,17 @@ impl<'m> Plant<'m> {
         }
         if !self.hooks.terms.is_empty() {
             self.refresh_unless_balanced();
-            self.remember();
+            self.store_signals();
         }
     }
 
-    /// Takes the currents through effects and spools to openings while they run linearly from one value to another.
+    /// Advances effects and spools while the currents change linearly, and returns the openings.
     ///
-    /// In pieces in which none changes by more than tells when a spool jumps: a load on oil does not mind what happens
-    /// within a step of its own, but whether it happened.
+    /// The step is divided such that no current changes by more than resolves a spool's jump: the instant within a step
+    /// of the load does not matter, but whether a jump happened does.
     #[inline(always)]
     fn open(&mut self, from: Currents, to: Currents, dt_s: f64) -> Openings {
-        let changes = to.furthest_from_a(from) / self.hooks.largest_change_a;
+        let changes = to.largest_difference_a(from) / self.hooks.largest_change_a;
         if changes > 1.0 {
             let pieces = changes.ceil();
             let piece_s = dt_s / pieces;
@@ -303,7 +304,7 @@ impl<'m> Plant<'m> {
         self.shift(lift_a, lower_a)
     }
 
-    /// Takes the spools to where the currents have them after `dt_s`.
+    /// Advances the spools by `dt_s` to the currents.
     #[inline(always)]
     fn take_spools(&mut self, currents: Currents, dt_s: f64) {
         let effective = self
@@ -317,7 +318,7 @@ impl<'m> Plant<'m> {
         };
     }
 
-    /// Shifts the spools as far as effective currents, A, and terms of a user's own tell.
+    /// Sets the openings at effective currents, A, including user-defined terms.
     #[inline(always)]
     fn shift(&mut self, lift_a: f64, lower_a: f64) -> Openings {
         let (mut lift_a, mut lower_a) = (lift_a, lower_a);
@@ -334,8 +335,8 @@ impl<'m> Plant<'m> {
         openings
     }
 
-    /// Notes the signals of the present for the terms of the next step.
-    fn remember(&mut self) {
+    /// Stores the present signals for the terms of the next step.
+    fn store_signals(&mut self) {
         if self.hooks.terms.is_empty() {
             return;
         }
@@ -348,7 +349,7 @@ impl<'m> Plant<'m> {
         };
     }
 
-    /// Brings the quasi-static speed, pressure and flows up to the present openings and travel.
+    /// Updates the quasi-static speed, pressure and flows at the present openings and travel.
     fn balance(&mut self, rig: &HitchRig, before: Option<steady::Before>) {
         let (forces, circuit) = (self.forces(rig), self.circuit());
         let balance = steady::balance(&forces, &circuit, self.openings, self.state, before);
@@ -357,7 +358,7 @@ impl<'m> Plant<'m> {
         self.flows = balance.flows;
     }
 
-    /// Brings the flows up to the present state if the step has not done so itself.
+    /// Updates the flows at the present state, unless the step has done so.
     fn refresh_unless_balanced(&mut self) {
         if !matches!(
             (self.rig, self.model.constants().dynamics),
@@ -367,7 +368,7 @@ impl<'m> Plant<'m> {
         }
     }
 
-    /// Brings the flows up to the present state.
+    /// Updates the flows at the present state.
     fn refresh(&mut self) {
         match (self.rig, self.model.constants().dynamics) {
             (Rig::Hitch(rig), Dynamics::Steady) => self.balance(&rig, None),
@@ -376,10 +377,9 @@ impl<'m> Plant<'m> {
     }
 }
 
-/// Effects in the order in which the machine has them, terms of a user's own behind them: from the coil to the
-/// instruments, whichever was added first. A spool that sticks behind a solenoid with hysteresis is not the same the
-/// other way round.
-fn in_the_order_of_the_machine(effects: &[AddedEffect]) -> Vec<&AddedEffect> {
+/// Effects in the order of the machine, from the coil to the instruments, then user-defined terms, regardless of the
+/// order in which they were added: the order of a solenoid's hysteresis and a spool's stiction matters.
+fn ordered_by_rank(effects: &[AddedEffect]) -> Vec<&AddedEffect> {
     let mut ordered: Vec<&AddedEffect> = effects.iter().collect();
     ordered.sort_by_key(|added| added.effect.rank());
     ordered

@@ -1,4 +1,4 @@
-//! The plant at rest, as a run begins.
+//! The plant at rest, at the start of a run.
 
 use crate::components::oil;
 use crate::constants::Dynamics;
@@ -8,12 +8,12 @@ use crate::plant::Plant;
 use crate::solver::root;
 use crate::state::{HitchRig, MechanicalState, Rig};
 
-/// A hitch that is seen to stand no further from where the ground bears it lies there, m of travel: 0.15 degree. Its
-/// sensor is no better, and a hard floor turns that into the pressure of the whole weight.
-const HAIR_M: f64 = 0.3e-3;
+/// Distance from ground contact, m of travel, within which a hitch at rest counts as standing on the ground: 0.15
+/// degree, the accuracy of its sensor. On a stiff floor this distance makes the difference of the whole weight.
+const CONTACT_TOLERANCE_M: f64 = 0.3e-3;
 
 impl Plant<'_> {
-    /// The plant at rest with the angle that its sensor shows.
+    /// The plant at rest at the angle that its sensor shows.
     pub(crate) fn state_at_rest(&self) -> MechanicalState {
         match self.rig {
             Rig::Flow { port_pressure_pa } => MechanicalState {
@@ -27,12 +27,13 @@ impl Plant<'_> {
         }
     }
 
-    /// Puts a hitch that is seen at rest below the ground, or a hair above, on it. In the quasi-static plant it stays
-    /// where it is seen: below it stands in a hollow, and ground that is a hair higher carries it as well.
-    pub(crate) fn stand_on_the_ground(&mut self, rig: &HitchRig) {
+    /// Places a hitch at rest on the ground if its sensor shows it below or slightly above. In the quasi-static plant
+    /// it stays at the shown position: below the ground it stands in a hollow, and slightly above the ground carries it
+    /// as well.
+    pub(crate) fn place_on_ground(&mut self, rig: &HitchRig) {
         let dynamic = self.model.constants().dynamics == Dynamics::Dynamic;
         let off_m = self.state.piston_m - self.lowest_m;
-        if self.hooks.ground.is_some() && dynamic && off_m < HAIR_M {
+        if self.hooks.ground.is_some() && dynamic && off_m < CONTACT_TOLERANCE_M {
             self.state = self.held_at(rig, self.lowest_m);
         }
         self.lowest_m = self.lowest_m.min(self.state.piston_m);
@@ -50,7 +51,7 @@ impl Plant<'_> {
         }
     }
 
-    /// Nothing moves, and the pump's flow passes the compensator.
+    /// State without motion; the pump's flow passes the compensator.
     fn idle(&self) -> MechanicalState {
         MechanicalState {
             compensator_pa: self.idle_pressure_pa(),
@@ -80,7 +81,7 @@ impl Plant<'_> {
     }
 }
 
-/// The signals that a run has from its start.
+/// The signals that are constant over a run.
 pub(crate) fn signals_of_run(rig: Rig, oil_temperature_c: f64) -> Signals {
     let run = Signals {
         oil_temperature_c,

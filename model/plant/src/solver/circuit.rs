@@ -1,4 +1,4 @@
-//! The hydraulic circuit at one instant: which flows and which pump pressure go with a cylinder pressure.
+//! The hydraulic circuit at one instant: flows and pump pressure for a cylinder pressure.
 
 use crate::components::orifice_valve::OrificeValve;
 use crate::components::valve_curve::ValveCurve;
@@ -8,26 +8,26 @@ use crate::hooks::place::Place;
 use crate::solver::moment::Moment;
 use crate::state::MechanicalState;
 
-/// Within how much of its pressure a lagging compensator, and a hose's creeping wall, is at rest, Pa.
+/// Pressure deviation below which a lagging compensator, and a hose's creeping wall, is at rest, Pa.
 pub const AT_REST_PA: f64 = 10.0;
 
-/// How far a valve is open.
+/// Opening of a valve.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Opening {
     /// Flow at the reference drop, m3/s.
     pub flow_m3_s: f64,
-    /// How far its current is beyond the threshold, A; zero where nothing depends on it.
+    /// Current beyond the threshold, A; zero if nothing depends on it.
     pub beyond_threshold_a: f64,
 }
 
 impl Opening {
-    /// Whether the valve is shut.
+    /// Whether the valve is closed.
     #[must_use]
     pub fn shut(&self) -> bool {
         self.flow_m3_s <= 0.0
     }
 
-    /// The opening at a share of the way to another.
+    /// Linear interpolation between this opening and another.
     fn towards(self, to: Self, share: f64) -> Self {
         let between = |from: f64, to: f64| from + (to - from) * share;
         Self {
@@ -36,7 +36,7 @@ impl Opening {
         }
     }
 
-    /// The same opening with its flow multiplied.
+    /// The same opening with its flow multiplied by `factor`.
     fn scaled(self, factor: f64) -> Self {
         Self {
             flow_m3_s: self.flow_m3_s * factor,
@@ -45,7 +45,7 @@ impl Opening {
     }
 }
 
-/// How far the two valves are open.
+/// Openings of the two valves.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Openings {
     /// Lift valve.
@@ -55,20 +55,20 @@ pub struct Openings {
 }
 
 impl Openings {
-    /// Whether both valves are shut.
+    /// Whether both valves are closed.
     #[must_use]
     pub fn shut(&self) -> bool {
         self.lift.shut() && self.lower.shut()
     }
 
-    /// Whether both valves together are open further than in others.
+    /// Whether the total opening of both valves is larger than that of others.
     #[must_use]
     pub fn wider_than(&self, others: &Self) -> bool {
         let width = |of: &Self| of.lift.flow_m3_s + of.lower.flow_m3_s;
         width(self) > width(others)
     }
 
-    /// The openings at a share of the way to others.
+    /// Linear interpolation between these openings and others.
     #[must_use]
     pub fn towards(self, to: Self, share: f64) -> Self {
         Self {
@@ -92,13 +92,13 @@ pub struct Flows {
 }
 
 impl Flows {
-    /// What the flow meter in the cylinder line sees, m3/s, positive into the cylinder.
+    /// Flow at the flow meter in the cylinder line, m3/s, positive into the cylinder.
     #[must_use]
     pub fn metered_m3_s(&self) -> f64 {
         self.lift_m3_s - self.lower_m3_s
     }
 
-    /// What the oil in the cylinder gains, m3/s.
+    /// Net flow into the cylinder, m3/s.
     #[must_use]
     pub fn net_m3_s(&self) -> f64 {
         self.metered_m3_s() - self.leakage_m3_s
@@ -109,17 +109,17 @@ impl Flows {
 pub struct Circuit<'a> {
     /// The components.
     pub constants: &'a Constants,
-    /// What the effects attach to them.
+    /// The attached effects.
     pub hooks: &'a EffectHooks,
-    /// What terms may depend on.
+    /// The signals for terms.
     pub moment: Moment<'a>,
 }
 
-/// Greatest factor that terms can bring to a valve's flow.
+/// Largest factor of terms on a valve's flow.
 const GREATEST_FACTOR: f64 = 10.0;
 
 impl Circuit<'_> {
-    /// Opens the valves as far as effective currents, A, tell.
+    /// Openings of the valves at effective currents, A.
     #[inline(always)]
     #[must_use]
     pub fn openings(&self, lift_a: f64, lower_a: f64) -> Openings {
@@ -149,7 +149,7 @@ impl Circuit<'_> {
         self.hooks.flow_number_1_a_sqrt_pa.is_some() || !self.hooks.lower_travel_factor.is_empty()
     }
 
-    /// The lowering valve's opening with its spool as far as the oil lets it go over a drop, Pa.
+    /// The lowering valve's opening with the travel of its spool reduced by flow forces at a drop, Pa.
     fn travelled(&self, opening: Opening, drop_pa: f64) -> Opening {
         if self.hooks.lower_travel_factor.is_empty() {
             return opening;
@@ -167,7 +167,7 @@ impl Circuit<'_> {
         }
     }
 
-    /// Discharge of a valve's gap over that of a wide one: `tanh` of its flow number (McCloy & Martin).
+    /// Ratio of a valve's discharge coefficient to that of a wide opening: `tanh` of its flow number (McCloy & Martin).
     fn discharge(&self, opening: Opening, drop_pa: f64) -> f64 {
         let Some(flow_number) = self.hooks.flow_number_1_a_sqrt_pa else {
             return 1.0;
@@ -175,7 +175,7 @@ impl Circuit<'_> {
         (flow_number * opening.beyond_threshold_a * drop_pa.max(0.0).sqrt()).tanh()
     }
 
-    /// Solves the circuit with the piston and the oil under it in a state.
+    /// Solves the circuit for a state of piston and oil.
     #[inline]
     #[must_use]
     pub fn solve(&self, openings: Openings, state: &MechanicalState) -> Flows {
@@ -189,7 +189,7 @@ impl Circuit<'_> {
         }
     }
 
-    /// Pump pressure, Pa, that the compensator sets while lifting against the cylinder pressure of a state.
+    /// Pump pressure, Pa, set by the compensator while lifting against the cylinder pressure of a state.
     #[must_use]
     pub fn lifting_pressure_pa(&self, state: &MechanicalState) -> f64 {
         let compensator = &self.constants.compensator;
@@ -198,7 +198,7 @@ impl Circuit<'_> {
             + self.moment.term(Place::CompensatorMargin, state, |_| ())
     }
 
-    /// What terms of a user's own leave of the lift valve's opening.
+    /// The lift valve's opening with user-defined terms applied.
     fn lift_opening(&self, opening: Opening, state: &MechanicalState) -> Opening {
         if self.hooks.terms.is_empty() {
             return opening;
@@ -209,7 +209,7 @@ impl Circuit<'_> {
         opening.scaled((1.0 + term).clamp(0.0, GREATEST_FACTOR))
     }
 
-    /// What terms of a user's own leave of the lowering valve's opening.
+    /// The lowering valve's opening with user-defined terms applied.
     fn lower_opening(&self, opening: Opening, state: &MechanicalState) -> Opening {
         if self.hooks.terms.is_empty() {
             return opening;
@@ -220,7 +220,7 @@ impl Circuit<'_> {
         opening.scaled((1.0 + term).clamp(0.0, GREATEST_FACTOR))
     }
 
-    /// Pressure behind the lowering valve, Pa, at a flow through it, m3/s.
+    /// Pressure downstream of the lowering valve, Pa, at a flow through it, m3/s.
     fn return_pressure_pa(&self, flow_m3_s: f64, state: &MechanicalState) -> f64 {
         let term = self.moment.term(Place::ReturnPressure, state, |signals| {
             signals.lower_flow_m3_s = flow_m3_s;
@@ -228,7 +228,7 @@ impl Circuit<'_> {
         self.hooks.return_pressure_pa(flow_m3_s) + term
     }
 
-    /// What the lift orifice keeps of the drop from pump to cylinder, Pa.
+    /// Drop across the lift orifice out of that from pump to cylinder, Pa.
     #[must_use]
     pub fn lift_drop_pa(&self, pump_pressure_pa: f64, cylinder_pressure_pa: f64) -> f64 {
         let check_valve = &self.constants.check_valve;
@@ -236,7 +236,7 @@ impl Circuit<'_> {
         check_valve.remaining_drop_pa(pump_pressure_pa, load_pa)
     }
 
-    /// Flow through lift valve and check valve, m3/s, over the drop that the cracking pressure leaves, Pa.
+    /// Flow through lift valve and check valve, m3/s, over the drop less the cracking pressure, Pa.
     fn lift_valve_m3_s(&self, opening: Opening, drop_pa: f64) -> f64 {
         let lift_valve = &self.constants.lift_valve;
         let flow_m3_s =
@@ -263,7 +263,8 @@ impl Circuit<'_> {
         if flow_m3_s <= pumped_m3_s(wanted_pa) {
             return (flow_m3_s, wanted_pa);
         }
-        // The compensator is shut and still short of its margin: the pump's whole flow sets the drop (equation 5).
+        // The compensator is closed and does not reach its margin: the pump's full flow determines the drop (equation
+        // 5).
         let drop_pa = self.lift_drop_pa(wanted_pa, state.pressure_pa);
         let turbulent = self.hooks.flow_number_1_a_sqrt_pa.is_none();
         let short_pa = if self.hooks.pump_slip.is_empty() && turbulent {
@@ -277,7 +278,7 @@ impl Circuit<'_> {
         (pumped_m3_s(wanted_pa - short_pa), wanted_pa - short_pa)
     }
 
-    /// Lift flow, m3/s, over pump pressure, Pa.
+    /// Lift flow, m3/s, as a function of pump pressure, Pa.
     fn lift_flow_at(&self, opening: Opening, state: &MechanicalState) -> impl Fn(f64) -> f64 {
         let opening = self.lift_opening(opening, state);
         let cylinder_pressure_pa = state.pressure_pa;
@@ -287,8 +288,8 @@ impl Circuit<'_> {
         }
     }
 
-    /// Pump pressure, Pa, that compensator and relief valve seek with the lift valve so far open.
-    fn sought_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
+    /// Steady pump pressure, Pa, of compensator and relief valve for an opening of the lift valve.
+    fn steady_pressure_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
         if opening.shut() {
             return self.idle_pressure_pa();
         }
@@ -297,30 +298,30 @@ impl Circuit<'_> {
         self.relieved_pa(self.drooped_pa(without_flow_pa, &flow_at), &flow_at)
     }
 
-    /// Whether a lagging compensator has come to rest without a lift, or does not lag.
+    /// Whether the compensator is at its idle pressure, as it always is without a lag.
     #[must_use]
     pub fn idles(&self, state: &MechanicalState) -> bool {
         (state.compensator_pa - self.idle_pressure_pa()).abs() < AT_REST_PA
     }
 
-    /// Pump pressure with the lift valve shut, Pa.
+    /// Pump pressure with the lift valve closed, Pa.
     #[must_use]
     pub fn idle_pressure_pa(&self) -> f64 {
         self.constants.compensator.idle_pressure_pa() + self.hooks.idle_extra_pa
     }
 
-    /// How fast a lagging compensator gets to the pump pressure that it seeks, Pa/s; nothing without a lag.
+    /// Rate of the pump pressure of a lagging compensator, Pa/s; zero without a lag.
     #[must_use]
     pub fn compensator_pa_s(&self, openings: Openings, state: &MechanicalState) -> f64 {
         let lag_s = self.hooks.compensator_lag_s;
         match lag_s > 0.0 {
-            true => (self.sought_pa(openings.lift, state) - state.compensator_pa) / lag_s,
+            true => (self.steady_pressure_pa(openings.lift, state) - state.compensator_pa) / lag_s,
             false => 0.0,
         }
     }
 
-    /// What a lagging compensator starts a step of the quasi-static plant from, Pa, and the share of what that lacks at the
-    /// step's end that it has then caught up: exact for a sought pressure that moves evenly meanwhile,
+    /// Start value of a lagging compensator for a step of the quasi-static plant, Pa, and the share of the deviation at
+    /// the step's end that it has made up by then: exact for a steady pressure that changes linearly,
     /// `p_1 = e p_0 + b s_0 + (1 - e - b) s_1` with `e = exp(-dt / lag)` and `b = (1 - e) lag / dt - e`.
     #[must_use]
     pub fn catching_up(
@@ -336,25 +337,25 @@ impl Circuit<'_> {
         let left = (-dt_s / lag_s).exp();
         let before = (1.0 - left) * lag_s / dt_s - left;
         let reached_pa =
-            left * state.compensator_pa + before * self.sought_pa(openings.lift, state);
+            left * state.compensator_pa + before * self.steady_pressure_pa(openings.lift, state);
         (reached_pa / (left + before), 1.0 - left - before)
     }
 
-    /// Pump pressure that the compensator has got to with the lift valve so far open, Pa.
+    /// Present pump pressure of the compensator for an opening of the lift valve, Pa.
     #[must_use]
     pub fn compensator_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
         if self.hooks.compensator_lag_s == 0.0 {
-            return self.sought_pa(opening, state);
+            return self.steady_pressure_pa(opening, state);
         }
         if state.catching_up == 0.0 {
             return state.compensator_pa;
         }
-        let lacking_pa = self.sought_pa(opening, state) - state.compensator_pa;
+        let lacking_pa = self.steady_pressure_pa(opening, state) - state.compensator_pa;
         state.compensator_pa + state.catching_up * lacking_pa
     }
 
-    /// The pump pressure, Pa, that the compensator sets over the lift flow `flow_at` it, where it would set `wanted_pa`
-    /// without any.
+    /// The pump pressure, Pa, that the compensator sets with the lift flow `flow_at` that pressure; without flow it
+    /// would set `wanted_pa`.
     fn drooped_pa(&self, wanted_pa: f64, flow_at: &impl Fn(f64) -> f64) -> f64 {
         let lost_pa_s_m3 = self.hooks.margin_lost_to_flow_pa_s_m3;
         if lost_pa_s_m3 == 0.0 {
@@ -365,8 +366,8 @@ impl Circuit<'_> {
         crate::solver::root::rising(excess, wanted_pa - lost_pa(wanted_pa), wanted_pa, 10.0)
     }
 
-    /// The pump pressure, Pa, that the relief valve leaves of what the compensator wants; `flow_at` is the lift flow
-    /// over it.
+    /// The pump pressure, Pa, limited by the relief valve, where the compensator would set `wanted_pa`; `flow_at` is
+    /// the lift flow as a function of it.
     fn relieved_pa(&self, wanted_pa: f64, flow_at: &impl Fn(f64) -> f64) -> f64 {
         let Some(relief) = &self.hooks.relief else {
             return self.constants.relief_valve.limit_pa(wanted_pa);
@@ -375,7 +376,7 @@ impl Circuit<'_> {
         if wanted_pa <= crack_pa || relief.override_pa <= 0.0 {
             return wanted_pa.min(crack_pa);
         }
-        // It passes at most what the lift valve leaves of the pump's flow: p - p_crack = override (1 - Q/Q_pump).
+        // It passes at most the pump's flow less the lift flow: p - p_crack = override (1 - Q/Q_pump).
         let pump_m3_s = self.constants.pump.flow_m3_s();
         let excess = |pressure_pa: f64| {
             let left = 1.0 - flow_at(pressure_pa) / pump_m3_s;
@@ -393,7 +394,7 @@ impl Circuit<'_> {
         flow_m3_s * self.hooks.lower_drop_factor(drop_pa) * self.discharge(opening, drop_pa)
     }
 
-    /// Lowering flow, m3/s: the valve's drop is what the return line leaves.
+    /// Lowering flow, m3/s; the valve's drop is reduced by the return line.
     fn lower_m3_s(&self, opening: Opening, state: &MechanicalState) -> f64 {
         if opening.shut() {
             return 0.0;
@@ -416,8 +417,8 @@ impl Circuit<'_> {
             let drop_pa = state.pressure_pa - self.return_pressure_pa(flow_m3_s, state);
             self.lower_valve_m3_s(opening, drop_pa)
         };
-        // Root of f(Q) = Q - valve(p - p_T(Q)): it rises in Q, and lies between no flow and the free flow, or above
-        // that where a term draws oil off.
+        // Root of f(Q) = Q - valve(p - p_T(Q)), which increases with Q. It lies between zero and the free flow, or
+        // above if a term draws oil off.
         let highest_m3_s = if terms {
             free_m3_s.max(passed_m3_s(0.0)).max(passed_m3_s(free_m3_s))
         } else {

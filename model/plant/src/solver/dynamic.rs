@@ -1,16 +1,16 @@
 //! The dynamic plant: oil compressibility, inertia, viscous friction, end stops.
 //!
 //! `p' = (Q_lift - Q_lower - Q_leak - Q_hose - A v) / (V(x)/E + C)`,
-//! `M(x) v' = p A - F_weight(x) - M'(x) v^2 / 2 - b v - F_friction(v)`, `x' = v` (docs/plant.md). Classical
-//! Runge-Kutta of order four: the ringing at 10 to 40 Hz wants a high order, the noisy measured current makes step
-//! control pointless, and a fixed rhythm keeps the result smooth in the parameters. Where a nearly drained orifice makes
-//! the pressure stiff, the step is cut to stay stable.
+//! `M(x) v' = p A - F_weight(x) - M'(x) v^2 / 2 - b v - F_friction(v)`, `x' = v` (docs/plant.md). Classical Runge-Kutta of
+//! order four: the ringing at 10 to 40 Hz requires a high order, step control is pointless with the noisy measured
+//! current, and fixed steps keep the result smooth in the parameters. If an orifice with a small drop makes the
+//! pressure stiff, the step is divided for stability.
 //!
-//! Oil does not pull: a piston that flies on when its valve shuts leaves a void behind, which has to close before the
-//! pressure rises again. Within a step the pressure runs on below the vacuum as the account of that void.
+//! Oil does not carry tension: if the piston moves on after its valve has closed, a void forms, which has to close
+//! before the pressure rises again. Within a step the void is represented by a pressure below the vacuum.
 //!
-//! The end stops are stiff: they take the piston's speed, and what pushes it on. Neither gives way under the 70 kN of a
-//! dead-headed pump by as much as the oil does, so a spring would say nothing but how to step it.
+//! The end stops are rigid: they absorb the piston's speed and the force that drives it. They deflect less than the oil
+//! under the 70 kN of a dead-headed pump, so a spring would only add stiffness to the equations.
 
 use crate::constants::Constants;
 use crate::model::Model;
@@ -18,66 +18,67 @@ use crate::solver::circuit::{AT_REST_PA, Circuit, Openings};
 use crate::solver::forces::Forces;
 use crate::state::MechanicalState;
 
-/// How long the integrator's steps may be.
+/// Step sizes of the integrator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Steps {
-    /// In rad of the ringing of load on oil.
+    /// Longest step in rad of the oscillation of the load on the oil.
     longest_rad: f64,
-    /// In s, however slow the ringing: the spools' lag bends the openings.
+    /// Longest step, s, at any frequency, to resolve the lag of the spools.
     longest_s: f64,
-    /// In s, of the quasi-static plant while the spools stand or follow a ramp.
+    /// Step of the quasi-static plant, s, while the spools rest or follow a ramp.
     pub(crate) quasi_static_s: f64,
-    /// The same while a current jumps or a spool lags behind one that did, and where the hitch comes down on the ground:
-    /// the flow is no straight line then.
+    /// The same during a jump of a current or the lag of a spool after it, and at ground contact, when the flow is not
+    /// linear in time.
     pub(crate) jump_s: f64,
-    /// How much longer they may be than the effects ask for.
-    pub(crate) longer: f64,
+    /// Factor on the longest step that effects ask for.
+    pub(crate) effect_step_factor: f64,
 }
 
 impl Steps {
-    /// Classical Runge-Kutta keeps the amplitude of the ringing to 2e-3 a period and its phase to 5e-3 rad (`h^6 / 144`
-    /// and `h^5 / 120` a step).
+    /// Classical Runge-Kutta with amplitude errors of the ringing of 2e-3 and phase errors of 5e-3 rad per period
+    /// (`h^6 / 144` and `h^5 / 120` per step).
     pub const FINE: Self = Self {
         longest_rad: 0.55,
         longest_s: 0.004,
         // A sample of a 50 Hz log.
         quasi_static_s: 0.02,
         jump_s: 0.005,
-        longer: 1.0,
+        effect_step_factor: 1.0,
     };
 
-    /// For differences between simulations in the same steps. The amplitude is off by 4e-2 a period and the phase by
-    /// 5e-2 rad, most of which cancels there; three times as much, in steps a quarter longer, no longer does.
-    pub const DRAFT: Self = Self {
+    /// For differences between simulations with the same steps. The amplitude error is 4e-2 and the phase error 5e-2
+    /// rad per period, most of which cancels in the differences; with steps a quarter longer the errors are three times
+    /// as large and no longer cancel.
+    pub const COARSE: Self = Self {
         longest_rad: 1.0,
         longest_s: 0.008,
         quasi_static_s: 0.1,
         jump_s: 0.02,
-        longer: 4.0,
+        effect_step_factor: 4.0,
     };
 }
 
-/// Speed, m/s, and acceleration, m/s2, below which a hitch that nothing drives is at rest: what is left of the ringing
-/// is less than a hundredth of any instrument's last digit.
+/// Speed, m/s, and acceleration, m/s2, below which an undriven hitch is at rest: the remaining oscillation is less than
+/// a hundredth of any instrument's last digit.
 const AT_REST_M_S: f64 = 5e-7;
 const AT_REST_M_S2: f64 = 4e-5;
 
-/// Largest rate times step that the integrator is given; its stability ends at 2.78.
+/// Largest product of rate and step of the integrator; its stability limit is 2.78.
 const STABLE: f64 = 1.5;
 
-/// To within how much a working compensator keeps its margin in the solution of the circuit, Pa.
+/// Tolerance on the margin of a working compensator in the solution of the circuit, Pa.
 const TOLERANCE_PA: f64 = 100.0;
 
-/// Drop, Pa, under which an orifice's flow no longer counts.
+/// Drop, Pa, below which an orifice's flow is negligible.
 const SMALLEST_DROP_PA: f64 = 1000.0;
 
-/// A cylinder cannot hold more than a vacuum, Pa gauge.
+/// Lowest pressure of a cylinder, the vacuum, Pa gauge.
 const VACUUM_PA: f64 = -1.0e5;
 
-/// Rates of travel, speed, pressure, of what the hose's wall is behind, and of the compensator's pressure.
+/// Rates of travel, speed, pressure, lag of the hose's wall, and compensator pressure.
 type Derivative = [f64; 5];
 
-/// [`Derivative`] of a state: the innermost loop, in place, since what is handed over by value waits for its stores.
+/// [`Derivative`] of a state. This is the innermost loop; it is inlined, as passing values would wait for their stores.
 #[inline(always)]
 fn derivative(
     forces: &Forces,
@@ -128,7 +129,7 @@ fn derivative(
     ]
 }
 
-/// How much the pressure rises for a volume of oil, Pa/m3: one over `V/E(p) + C`, oil and hoses.
+/// Pressure increase per volume of oil, Pa/m3: reciprocal of `V/E(p) + C`, oil and hoses.
 fn stiffness_pa_m3(circuit: &Circuit, piston_m: f64, pressure_pa: f64) -> f64 {
     let constants = circuit.constants;
     let modulus_pa = constants.oil.bulk_modulus_pa * circuit.hooks.stiffness_factor(pressure_pa);
@@ -136,12 +137,12 @@ fn stiffness_pa_m3(circuit: &Circuit, piston_m: f64, pressure_pa: f64) -> f64 {
     modulus_pa / (volume_m3 + circuit.hooks.hose.at_once_m3_pa * modulus_pa)
 }
 
-/// The oil's own stiffness, without air and hoses, Pa/m3: what a void counts by while the oil column is torn.
+/// Stiffness of the oil alone, without air and hoses, Pa/m3: conversion of a void into a pressure.
 fn oil_stiffness_pa_m3(constants: &Constants, piston_m: f64) -> f64 {
     constants.oil.bulk_modulus_pa / constants.cylinder.volume_m3(piston_m.max(0.0))
 }
 
-/// The state with its void as pressure below the vacuum.
+/// The state with its void represented by a pressure below the vacuum.
 fn stretched(model: &Model, state: &MechanicalState) -> MechanicalState {
     if state.void_m3 == 0.0 {
         return *state;
@@ -154,7 +155,7 @@ fn stretched(model: &Model, state: &MechanicalState) -> MechanicalState {
     }
 }
 
-/// The state with pressure below the vacuum as a void.
+/// The state with a pressure below the vacuum represented by a void.
 fn torn(model: &Model, state: MechanicalState) -> MechanicalState {
     let missing_pa = VACUUM_PA - state.pressure_pa;
     if missing_pa <= 0.0 {
@@ -170,7 +171,7 @@ fn torn(model: &Model, state: MechanicalState) -> MechanicalState {
     }
 }
 
-/// The state with a piston beyond a stop put back to it, at rest; the oil has less room for it, or more.
+/// The state with a piston beyond a stop put back to it, at rest; the oil is compressed or expanded accordingly.
 fn within_stops(circuit: &Circuit, state: MechanicalState) -> MechanicalState {
     let cylinder = &circuit.constants.cylinder;
     let piston_m = state.piston_m.clamp(0.0, cylinder.stroke_m);
@@ -198,9 +199,9 @@ fn moved(state: &MechanicalState, rate: Derivative, dt_s: f64) -> MechanicalStat
     }
 }
 
-/// How fast the orifices alone settle the pressure within a step, 1/s: `E/V dQ/dp`, with `dQ/dp = Q / 2 dp` of each
-/// orifice whose drop hangs on the cylinder pressure. A flow goes with the root of its drop, and ends the more abruptly
-/// the smaller the drop gets: what counts is the drop that the step comes to.
+/// Rate at which the orifices settle the pressure within a step, 1/s: `E/V dQ/dp`, with `dQ/dp = Q / 2 dp` of each
+/// orifice whose drop depends on the cylinder pressure. The flow is proportional to the square root of the drop, so the
+/// rate increases as the drop decreases: the drop at the end of the step is used.
 fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState, dt_s: f64) -> f64 {
     let constants = circuit.constants;
     let flows = circuit.solve(openings, state);
@@ -219,8 +220,8 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState,
         -rise_pa,
         constants.lower_valve.transition_drop_pa,
     );
-    // A working compensator keeps the lift valve's drop whatever the cylinder pressure is, up to the relief valve's,
-    // unless it lags.
+    // A working compensator without lag keeps the lift valve's drop constant regardless of the cylinder pressure, up to
+    // the relief pressure.
     let drooped_pa = circuit.hooks.margin_lost_to_flow_pa_s_m3 * flows.lift_m3_s;
     let wanted_pa = circuit.lifting_pressure_pa(state);
     let lagging = circuit.hooks.compensator_lag_s > 0.0;
@@ -233,7 +234,7 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState,
     let lift = if compensated && rise_pa <= room_pa {
         0.0
     } else if lagging {
-        // The flow sets in at any moment, and while the drop is small it goes by the faster.
+        // The flow may start at any instant, and its rate is higher while the drop is small.
         1.5 * openings.lift.flow_m3_s / constants.lift_valve.reference_drop_pa
     } else {
         let drop_pa = circuit.lift_drop_pa(flows.pump_pressure_pa, state.pressure_pa);
@@ -247,7 +248,7 @@ fn settling_rate(circuit: &Circuit, openings: Openings, state: &MechanicalState,
     (lower + lift) * stiffness
 }
 
-/// How fast a hose's wall settles the pressure and itself, 1/s.
+/// Settling rate of a hose's creeping wall and of the pressure with it, 1/s.
 fn creeping_rate(circuit: &Circuit, state: &MechanicalState) -> f64 {
     let hose = &circuit.hooks.hose;
     if hose.creeping_m3_pa == 0.0 {
@@ -257,7 +258,7 @@ fn creeping_rate(circuit: &Circuit, state: &MechanicalState) -> f64 {
     hose.catching_up_1_s * (1.0 + hose.creeping_m3_pa * stiffness)
 }
 
-/// How fast a lagging compensator settles, 1/s.
+/// Settling rate of a lagging compensator, 1/s.
 fn lagging_rate(circuit: &Circuit) -> f64 {
     match circuit.hooks.compensator_lag_s {
         0.0 => 0.0,
@@ -265,7 +266,7 @@ fn lagging_rate(circuit: &Circuit) -> f64 {
     }
 }
 
-/// Longest step, s, that follows the ringing of load and oil where the piston stands.
+/// Longest step, s, that resolves the oscillation of the load on the oil at the present piston position.
 #[must_use]
 pub fn longest_step_s(
     forces: &Forces,
@@ -281,7 +282,7 @@ pub fn longest_step_s(
     (steps.longest_rad / ringing_rad_s).min(steps.longest_s)
 }
 
-/// Whether a step with these openings would leave the hitch where it stands.
+/// Whether the hitch stays at rest in a step with these openings.
 #[must_use]
 pub fn rests(
     forces: &Forces,
@@ -289,7 +290,7 @@ pub fn rests(
     state: &MechanicalState,
     openings: &[Openings; 3],
 ) -> bool {
-    circuit.hooks.holds_still()
+    circuit.hooks.stays_at_rest()
         && openings.iter().all(Openings::shut)
         && state.void_m3 == 0.0
         && state.speed_m_s.abs() < AT_REST_M_S
@@ -307,7 +308,7 @@ pub fn step(
     openings: &[Openings; 3],
     dt_s: f64,
 ) -> MechanicalState {
-    // The wider an orifice is open, the faster it settles.
+    // A wider opening settles faster.
     let [first, _, last] = openings;
     let widest = if first.wider_than(last) { first } else { last };
     let settling = match widest.shut() {
@@ -332,7 +333,7 @@ pub fn step(
     state
 }
 
-/// Openings at a share of the step, linear between start, middle and end.
+/// Openings at a share of the step, interpolated linearly between start, middle and end.
 fn between(openings: &[Openings; 3], share: f64) -> Openings {
     let (from, to, part) = if share <= 0.5 {
         (openings[0], openings[1], 2.0 * share)
@@ -357,7 +358,7 @@ fn runge_kutta(
     };
     let start = stretched(forces.model, state);
     let [first, middle, last] = openings;
-    // One place that asks for the rates lets the compiler keep them there.
+    // A single call site, so that the compiler inlines the derivative.
     let stages = [
         (0.0, 1.0, first),
         (0.5, 2.0, middle),
@@ -381,7 +382,7 @@ fn runge_kutta(
         forces.model,
         within_stops(circuit, moved(&start, mean, dt_s)),
     );
-    // A force that no integrator can follow, from a term or from constants far off: the plant stands still.
+    // Forces too large for any integrator, from a term or from invalid constants: the plant stops.
     if end.is_finite() {
         end
     } else {

@@ -1,4 +1,4 @@
-//! The forces on the piston besides the oil's pressure, with what the effects add to them.
+//! The forces on the piston other than the oil pressure, including those of effects.
 
 use crate::hooks::effect_hooks::EffectHooks;
 use crate::hooks::place::Place;
@@ -11,16 +11,17 @@ use crate::state::{HitchRig, MechanicalState};
 pub struct Forces<'a> {
     /// The model.
     pub model: &'a Model,
-    /// What the effects attach.
+    /// The attached effects.
     pub hooks: &'a EffectHooks,
     /// The load.
     pub rig: &'a HitchRig,
-    /// What terms may depend on.
+    /// The signals for terms.
     pub moment: Moment<'a>,
 }
 
 impl Forces<'_> {
-    /// Static force of load and dead weight, N, downwards, at piston travel `piston_m`, all else as it was before.
+    /// Static force of load and dead weight, N, downwards, at piston travel `piston_m`, all else as in the previous
+    /// step.
     #[must_use]
     pub fn weight_n(&self, piston_m: f64) -> f64 {
         let dh_dx = self.model.linkage().dh_dx(piston_m);
@@ -37,8 +38,8 @@ impl Forces<'_> {
             + self.moment.term(Place::Weight, state, |_| ())
     }
 
-    /// Inertia at the piston, kg, of what turns with the rocker shaft on top of the model's own, and half its derivative
-    /// over piston travel, kg/m: `J (dphi/dx)^2`.
+    /// Additional inertia of the rocker shaft at the piston, kg, and half its derivative over piston travel, kg/m:
+    /// `J (dphi/dx)^2`.
     #[must_use]
     pub fn shaft_inertia_kg(&self, piston_m: f64) -> (f64, f64) {
         let inertia_kg_m2 = self.hooks.shaft_inertia_kg_m2;
@@ -52,7 +53,7 @@ impl Forces<'_> {
         )
     }
 
-    /// A state at a piston travel, with speed and pressure of the step before.
+    /// A state at a piston travel, with speed and pressure of the previous step.
     #[must_use]
     pub fn before(&self, piston_m: f64) -> MechanicalState {
         MechanicalState {
@@ -73,7 +74,7 @@ impl Forces<'_> {
         ground.force_n(posture.height_m, speed_m_s * posture.dh_dx) * posture.dh_dx
     }
 
-    /// Friction against the motion, N, in a state under a weight's force, N.
+    /// Friction against the motion, N, in a state with a weight's force, N.
     #[must_use]
     pub fn friction_n(&self, state: &MechanicalState, weight_n: f64) -> f64 {
         self.hooks.friction_n(state, weight_n)
@@ -81,7 +82,7 @@ impl Forces<'_> {
             + self.moment.term(Place::Friction, state, |_| ())
     }
 
-    /// Lowest travel that the piston can sink to, m: the end of the stroke, or where the ground bears the weight.
+    /// Lowest travel of the piston, m: the end of the stroke, or where the ground carries the weight.
     #[must_use]
     pub fn lowest_m(&self) -> f64 {
         if self.hooks.ground.is_none() {

@@ -1,4 +1,4 @@
-//! The hydraulics at one instant, and the two ways to move the piston.
+//! Solvers: the hydraulics at one instant, and two integrators of the piston's motion.
 
 pub mod circuit;
 pub mod dynamic;

@@ -1,7 +1,7 @@
-//! The state of the plant at one instant, for terms of a user's own.
+//! The state of the plant at one instant, for user-defined terms.
 //!
-//! A term may depend on what it changes itself. What a place knows of the present instant and what it takes from the
-//! end of the step before (10 ms in the steady plant, 2 ms in the dynamic one) is this:
+//! A term may depend on quantities that it changes itself. This table lists which signals a place has from the present
+//! instant, and which from the end of the previous step (10 ms in the steady plant, 2 ms in the dynamic one):
 //!
 //! | place | now | of the step before |
 //! |---|---|---|
@@ -14,13 +14,13 @@
 //! | `weight` | travel, currents; `f_weight` without the terms | `p_pump`, flows; in the steady plant `p_cyl` |
 //! | sensors | all | |
 //!
-//! Travel stands for `x`, `rocker_angle` and `f_weight`. `v` is that of the step before in the steady plant (but for
-//! friction), which has it from the flows, and that of now in the dynamic plant. `i_lift` and `i_lower` are those of
-//! the end of the present step. `load`, `t_oil` and `nu` are the run's.
+//! Travel stands for `x`, `rocker_angle` and `f_weight`. In the steady plant, `v` follows from the flows and is that of
+//! the previous step (except for friction); in the dynamic plant it is the present one. `i_lift` and `i_lower` are
+//! those at the end of the present step. `load`, `t_oil` and `nu` are constant over the run.
 //!
-//! A flow bench has no piston: `x`, `v`, `rocker_angle`, `load` and `f_weight` are not numbers there, and neither is a
-//! term that depends on one of them, which therefore is absent. For the same reason a term is absent wherever its value
-//! is not finite: a fit then sees a model without it and turns elsewhere.
+//! A flow bench has no piston: `x`, `v`, `rocker_angle`, `load` and `f_weight` are NaN there. A term whose value is not
+//! finite is skipped, so terms that depend on one of these are absent, and a fit that reaches a non-finite term sees
+//! the model without it.
 
 use crate::hooks::effect_hooks::EffectHooks;
 use crate::hooks::place::Place;
@@ -28,20 +28,20 @@ use crate::hooks::signals::Signals;
 use crate::model::Model;
 use crate::state::MechanicalState;
 
-/// What is known of the plant at the present instant.
+/// The state of the plant at the present instant.
 #[derive(Clone, Copy)]
 pub struct Moment<'a> {
     /// The model.
     pub model: &'a Model,
-    /// What the effects attach.
+    /// The attached effects.
     pub hooks: &'a EffectHooks,
-    /// The signals at the end of the step before, with the currents of this one.
+    /// The signals at the end of the previous step, with the currents of this one.
     pub before: &'a Signals,
 }
 
 impl Moment<'_> {
-    /// Sum of the terms at a place, in its SI unit, with the piston and its oil in a state; `refine` sets what is known
-    /// better than from the step before.
+    /// Sum of the terms at a place, in its SI unit, for a state of piston and oil; `refine` sets the signals that are
+    /// known better than from the previous step.
     #[inline(always)]
     #[must_use]
     pub fn term(
@@ -50,7 +50,7 @@ impl Moment<'_> {
         state: &MechanicalState,
         refine: impl FnOnce(&mut Signals),
     ) -> f64 {
-        // Nearly every plant is without terms, and this is in its innermost loop.
+        // Nearly all plants have no terms, and this is in the innermost loop.
         if self.hooks.terms.is_empty() {
             return 0.0;
         }
@@ -73,7 +73,7 @@ impl Moment<'_> {
         self.hooks.term(place, &signals)
     }
 
-    /// The signals with the piston and its oil in a state.
+    /// The signals for a state of piston and oil.
     #[must_use]
     pub fn signals(&self, state: &MechanicalState) -> Signals {
         let mut signals = Signals {

@@ -1,12 +1,12 @@
-//! Bracketed roots of rising functions, for the algebraic loops of the plant.
+//! Bracketed root finding for increasing functions, for the algebraic loops of the plant.
 //!
-//! Illinois variant of the false position: no derivative, never leaves the bracket. Inside the plant's inner loop a
-//! general solver crate costs more than the physics, hence these lines.
+//! Illinois variant of regula falsi: it needs no derivative and never leaves the bracket. In the plant's inner loop a
+//! general solver crate would cost more than the physics.
 
 /// Most evaluations of one search.
 const MOST_EVALUATIONS: usize = 100;
 
-/// Root of a function that rises from at most zero at `low` to at least zero at `high`, to within `tolerance`.
+/// Root of a function that increases from at most zero at `low` to at least zero at `high`, to within `tolerance`.
 #[must_use]
 pub fn rising(function: impl Fn(f64) -> f64, low: f64, high: f64, tolerance: f64) -> f64 {
     let at = |argument: f64| (function(argument), argument);
@@ -20,11 +20,11 @@ pub fn rising(function: impl Fn(f64) -> f64, low: f64, high: f64, tolerance: f64
     illinois(at, (low, at_low), (high, at_high), tolerance, 0.0)
 }
 
-/// What belongs to the root of a function that rises about as fast as its argument or faster, within `low` to `high`, to
-/// within `tolerance`: an end of them if the function has one sign all the way.
+/// The outcome at the root of a function with a slope of about one or more, within `low` to `high`, to within
+/// `tolerance`; the outcome at an end if the function does not change its sign.
 ///
-/// `function` gives its value and what belongs to it. From a good `guess` three evaluations do: so steep a function has
-/// its root no further away than its value there.
+/// `function` returns its value and an outcome. From a good `guess` three evaluations are sufficient: with such a slope
+/// the root is no further away than the function's value.
 #[must_use]
 pub fn steep<T>(
     function: impl Fn(f64) -> (f64, T),
@@ -53,8 +53,8 @@ pub fn steep<T>(
     illinois(function, below, above, tolerance, tolerance)
 }
 
-/// What belongs to the root between two points, each with the function's value, of which the first is negative and the
-/// second positive: to within `tolerance` of the argument, or `small` in value.
+/// The outcome at the root between two points, given with the function's values, the first negative and the second
+/// positive: to within `tolerance` of the argument, or `small` in value.
 fn illinois<T>(
     function: impl Fn(f64) -> (f64, T),
     (mut low, mut at_low): (f64, f64),

@@ -3,8 +3,8 @@
 //! Stiff oil and no inertia: the piston's speed comes from the flow balance `A v = Q_lift - Q_lower - Q_leak`, the
 //! cylinder pressure from the static balance `p A = F_weight(x) + F_friction(v)`.
 //!
-//! The balance knows no contact force, so at a stop the piston stands while pressure and flow stay what they were
-//! (docs/plant.md defines it so); dead-heading the pump over the relief valve is the dynamic plant's business.
+//! The balance contains no contact force: at a stop the piston rests while pressure and flow keep their values (defined
+//! so in docs/plant.md). A dead-headed pump with the relief valve open requires the dynamic plant.
 
 use crate::hooks::effect_hooks::EffectHooks;
 use crate::hooks::place::Place;
@@ -13,22 +13,23 @@ use crate::solver::dynamic::Steps;
 use crate::solver::forces::Forces;
 use crate::state::MechanicalState;
 
-/// Currents that change faster than this jump, A/s.
+/// Rate of change above which a current counts as jumping, A/s.
 pub(crate) const JUMP_A_S: f64 = 2.5;
 
-/// Travel that the piston may sink by in a step, m.
+/// Largest descent of the piston in a step, m.
 const STEP_M: f64 = 0.003;
 
-/// Speed beyond all others by which terms of a user's own could move the piston, m/s.
+/// Largest additional piston speed due to user-defined terms, m/s.
 const FASTEST_M_S: f64 = 0.5;
 
-/// Whether the hitch stands on the ground or may come down on it within a step.
+/// Whether the hitch stands on the ground or may reach it within a step.
 #[must_use]
 pub fn lands(forces: &Forces, piston_m: f64) -> bool {
     forces.hooks.ground.is_some() && forces.ground_n(piston_m - STEP_M, 0.0) > 0.0
 }
 
-/// Longest step, s, with what the effects attach, while the spools' currents change by so much, A/s, or the hitch lands.
+/// Longest step, s, with the attached effects, at a rate of change of the spools' currents, A/s; `lands` near the
+/// ground.
 #[must_use]
 pub fn longest_step_s(steps: Steps, hooks: &EffectHooks, turning_a_s: f64, lands: bool) -> f64 {
     let own_s = if turning_a_s > JUMP_A_S || lands {
@@ -36,10 +37,10 @@ pub fn longest_step_s(steps: Steps, hooks: &EffectHooks, turning_a_s: f64, lands
     } else {
         steps.quasi_static_s
     };
-    own_s.min(steps.longer * hooks.longest_step_s)
+    own_s.min(steps.effect_step_factor * hooks.longest_step_s)
 }
 
-/// What the balances give at one instant.
+/// Solution of the balances at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Balance {
     /// Piston speed, m/s.
@@ -50,16 +51,16 @@ pub struct Balance {
     pub flows: Flows,
 }
 
-/// Where the motion comes from, for the inertia of an accelerated load.
+/// State at the start of a step, for the inertia of an accelerated load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Before {
-    /// Piston speed then, m/s.
+    /// Piston speed at the start, m/s.
     pub speed_m_s: f64,
-    /// Time since, s.
+    /// Time since then, s.
     pub dt_s: f64,
 }
 
-/// Flow and force balance where the piston stands, its bristles bent as they are there.
+/// Flow and force balance at the present piston position and bristle deflection.
 #[must_use]
 pub fn balance(
     forces: &Forces,
@@ -101,7 +102,7 @@ pub fn balance(
         forces.friction_n(&state, weight_n)
     };
     let terms = circuit.hooks.has_term(Place::Friction);
-    // Bent bristles press on a piston at rest, too, and so may a term: a spring does.
+    // Deflected bristles also act on a piston at rest, and so may a term, such as a spring.
     let free = at_force(0.0, held_n + friction_n(0.0));
     let free_m_s = free.flows.net_m3_s() / area_m2;
     let inertia_kg = inertia_kg(forces, piston_m);
@@ -112,7 +113,7 @@ pub fn balance(
             ..free
         };
     }
-    // Friction and inertia oppose a change of speed, so the speed lies between rest, the speed before and the free
+    // Friction and inertia oppose a change of speed, so the speed lies between zero, the previous speed and the free
     // speed.
     let at = |speed_m_s: f64| {
         let inertia_n = before.map_or(0.0, |b| inertia_kg * (speed_m_s - b.speed_m_s) / b.dt_s);
@@ -123,14 +124,14 @@ pub fn balance(
         (speed_m_s - balance.flows.net_m3_s() / area_m2, balance)
     };
     let speed_before = before.map_or(0.0, |b| b.speed_m_s);
-    // A term may be a force that drives: then the speed can be any that the valves let through.
+    // A term may be a driving force: then any speed that the valves permit is possible.
     let beyond_m_s = if terms { FASTEST_M_S } else { 0.0 };
     let low = free_m_s.min(speed_before).min(0.0) - beyond_m_s;
     let high = free_m_s.max(speed_before).max(0.0) + beyond_m_s;
     crate::solver::root::steep(excess, free_m_s, (low, high), 1e-9)
 }
 
-/// Inertia at the piston that the effects give the quasi-static plant, kg.
+/// Inertia at the piston that effects add to the quasi-static plant, kg.
 fn inertia_kg(forces: &Forces, piston_m: f64) -> f64 {
     let (share, (shaft_kg, _)) = (
         forces.hooks.inertia_share,
@@ -144,7 +145,7 @@ fn inertia_kg(forces: &Forces, piston_m: f64) -> f64 {
     share * masses.inertia_kg(forces.rig.load_kg, dh_dx) + shaft_kg
 }
 
-/// One step of Heun's method from a known balance to the openings at its end; returns the piston's travel there, m.
+/// One step of Heun's method from a known balance to the openings at its end; returns the piston travel there, m.
 ///
 /// `lowest_m` is the travel at which the piston rests on its stop or the hitch on the ground.
 #[must_use]

@@ -77,7 +77,7 @@ pub fn explained(session: &Session) -> Value {
 fn found(explained: &Explained) -> Value {
     let shown = &explained.shown;
     let steps = explained.explanation.steps.iter().zip(&shown.steps);
-    let step = |(found, shown): (&explain::Step, &explanation::Step)| {
+    let step = |(found, shown): (&explain::ExplanationStep, &explanation::Step)| {
         json!({
             "effect": described(found.effect),
             "changed_from": shown.changed_from,
