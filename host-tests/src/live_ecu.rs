@@ -5,8 +5,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use hitch_ecu::{AdcCode, Contact, Contacts};
-use hitch_workbench::can_door::CanDoor;
 use hitch_workbench::ecu::{Bench, Bus, EcuMachine, Order};
+use hitch_workbench::slcan_server::SlcanServer;
 
 /// What the operator does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,17 +52,22 @@ const WORK_DEG: f64 = 10.0;
 const MOST_BEHIND: Duration = Duration::from_millis(200);
 
 /// Runs it until `stop` is set. Service is switched on, so tools may write.
-pub fn run(machine: &mut impl EcuMachine, door: CanDoor, operator: Operator, stop: &AtomicBool) {
+pub fn run(
+    machine: &mut impl EcuMachine,
+    server: SlcanServer,
+    operator: Operator,
+    stop: &AtomicBool,
+) {
     let model = hitch_model_file::nominal();
     let mut bench = Bench::new(&model, LOAD_KG, OIL_TEMPERATURE_C, START_DEG, SEED);
-    bench.operator.obey(Order::Contact(Contact::Service, true));
-    let mut bus = Bus::behind(door);
+    bench.operator.apply(Order::Contact(Contact::Service, true));
+    let mut bus = Bus::served_by(server);
     let mut said = Vec::new();
     let mut due = Instant::now();
     let mut time_ms = 0_u32;
     while !stop.load(Ordering::Relaxed) {
         if let Some(lever_deg) = operator.moves_lever(time_ms) {
-            bench.operator.obey(Order::Lever(lever_deg));
+            bench.operator.apply(Order::Lever(lever_deg));
         }
         said.clear();
         let tamper = |contacts: &mut Contacts| {
@@ -70,10 +75,10 @@ pub fn run(machine: &mut impl EcuMachine, door: CanDoor, operator: Operator, sto
                 contacts.samples.lever = AdcCode::default();
             }
         };
-        let heard = bus.heard();
+        let heard = bus.receive();
         let ticked = bench.tick_with(machine, &heard, &mut said, tamper);
         ticked.expect("the machine goes on");
-        bus.tell(&said);
+        bus.send(&said);
         time_ms = time_ms.saturating_add(1);
         due += Duration::from_millis(1);
         match due.checked_duration_since(Instant::now()) {

@@ -68,7 +68,7 @@ fn work(mut bus: impl FnMut(u32) -> Vec<Frame>) -> (Vec<Reply>, usize) {
             let up = time_ms / 3_000 % 2 == 0;
             bench
                 .operator
-                .obey(Order::Lever(if up { 110.0 } else { 70.0 }));
+                .apply(Order::Lever(if up { 110.0 } else { 70.0 }));
         }
         said.clear();
         let moment = bench.tick(&mut machine, &bus(time_ms), &mut said).unwrap();

@@ -28,7 +28,7 @@ fn log(shift_a: f64, measured_period_ms: u32) -> String {
     let mut said = Vec::new();
     for time_ms in 0..1_000 * DURATION_S {
         if let Some((_, lever_deg)) = MOVES.iter().find(|(at_s, _)| 1_000 * at_s == time_ms) {
-            bench.operator.obey(Order::Lever(*lever_deg));
+            bench.operator.apply(Order::Lever(*lever_deg));
         }
         said.clear();
         bench.tick(&mut machine, &[], &mut said).unwrap();

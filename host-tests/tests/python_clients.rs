@@ -12,8 +12,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use hitch_campaign::{Campaign, Run};
 use hitch_plant::Channel;
-use hitch_workbench::can_door::CanDoor;
 use hitch_workbench::ecu::{CutFlash, EcuMachine, Emulator, FLASH_BYTES, OnHost, find_image};
+use hitch_workbench::slcan_server::SlcanServer;
 use host_tests::live_ecu;
 use host_tests::live_ecu::Operator;
 use host_tests::program::hitch;
@@ -37,11 +37,11 @@ fn client<M: EcuMachine>(
     let Some(python) = installed_python() else {
         return;
     };
-    let door = CanDoor::open("127.0.0.1:0").unwrap();
-    let bus = door.address().unwrap().to_string();
+    let server = SlcanServer::open("127.0.0.1:0").unwrap();
+    let bus = server.address().unwrap().to_string();
     let done = AtomicBool::new(false);
     let said = std::thread::scope(|scope| {
-        scope.spawn(|| live_ecu::run(&mut start(), door, operator, &done));
+        scope.spawn(|| live_ecu::run(&mut start(), server, operator, &done));
         let firmware = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware");
         let mut command = Command::new(python);
         let command = command.arg(scripts().join(script)).arg(&bus).arg(firmware);

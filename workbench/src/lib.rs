@@ -4,7 +4,6 @@
 pub mod base_fit;
 pub mod calibrate;
 pub mod calibration_file;
-pub mod can_door;
 pub mod cli;
 pub mod closed_loop;
 pub mod commands;
@@ -26,6 +25,7 @@ pub mod rebuild;
 pub mod report;
 pub mod search_args;
 pub mod serve;
+pub mod slcan_server;
 pub mod status_line;
 pub mod teaching;
 pub mod text;

@@ -1,7 +1,7 @@
 //! Mutation test of the parts that have to be right: every change to their code has to be noticed by their tests.
 //!
-//! That takes minutes, so `firmware/mutants.txt` says for which code of each part it was last done. Where a byte of that is
-//! different, it is done again.
+//! That takes minutes, so `firmware/mutants.txt` says for which code of each part it was last done. Where a byte of
+//! that is different, it is done again.
 
 use std::ffi::OsString;
 use std::fs;
@@ -31,7 +31,8 @@ struct Part {
     tests: &'static [&'static str],
     /// Tests that are left out: random ones whose steps would take most of the time.
     skipped: Option<&'static str>,
-    /// A change to this function makes a loop endless, which the tests notice by their time, and on the ECU the watchdog.
+    /// A change to this function makes a loop endless, which the tests notice by their time, and on the ECU the
+    /// watchdog.
     looping: Option<&'static str>,
 }
 
@@ -79,7 +80,7 @@ const PARTS: [Part; 4] = [
             "firmware/control/src/valve/closing.rs",
             "firmware/control/src/valve/drop_scale.rs",
             "firmware/quantities/src/fixed.rs",
-            "firmware/control/src/estimation/motion.rs",
+            "firmware/control/src/estimation/motion_observer.rs",
             "firmware/control/src/motion/position.rs",
             "firmware/quantities/src/units.rs",
             "firmware/control/src/valve/phase.rs",
@@ -104,7 +105,7 @@ const PARTS: [Part; 4] = [
             "firmware/safety/src/lib.rs",
             "firmware/safety/src/rows.rs",
             "firmware/safety/src/supply.rs",
-            "firmware/safety/src/tremble.rs",
+            "firmware/safety/src/noise_detector.rs",
             "firmware/quantities/src/signals/trip.rs",
         ],
         decides: &[

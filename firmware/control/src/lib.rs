@@ -1,29 +1,30 @@
-//! The control of the hitch: from lever and sensors to the currents that it asks for, and the regulation of those that
-//! the safety envelope lets pass. Pure, without clock, heap, I/O or floating point, and so bit-identical on the ECU and
+//! Control of the hitch: from lever and sensors to the requested currents, and the regulation of the currents that the
+//! safety envelope allows. Pure, without clock, heap, I/O or floating point, and so bit-identical on the ECU and
 //! on the host.
 //!
-//! It may depend on `hitch-quantities` alone: it knows nothing of the envelope that judges it, nor of the bus.
+//! It may depend on `hitch-quantities` alone: it does not depend on the safety envelope or the bus.
 //!
 //! ```text
 //! Inputs -> sensors -> start-up lock, modes -> position | rate control -> desired piston speed
 //!        -> check-valve and compensator logic -> inverse valve map -> currents that are asked for
 //! ```
 //!
-//! Its folders from the bottom to the top; one may use those above it in this list (`cargo xtask check` holds them to it):
+//! Its folders from the bottom to the top; one may use those above it in this list (`cargo xtask check` holds them to
+//! it):
 //!
-//! * [`valve`]: the valves' curves and their inverse, how they close, and what they are asked for,
-//! * [`sensing`]: what the sensors say, judged,
+//! * [`valve`]: valve curves and their inverse, closing of the valves, demand and phase,
+//! * [`sensing`]: validation of the sensors,
 //! * [`operator`]: lever, button, dials and switches, the start-up lock, and the mode that follows from them,
-//! * [`estimation`]: where the hitch is, how fast it goes, what it carries,
-//! * [`adaptation`]: what moves teach about this machine,
-//! * [`motion`]: laws of motion, from a set point or a button to a demanded speed,
-//! * [`sequencing`]: the check valve's conditions, the compensator's, and a hitch that leaves its place,
+//! * [`estimation`]: observers of motion, load and valve dynamics,
+//! * [`adaptation`]: adaptation of the valve model by the moves of this machine,
+//! * [`motion`]: position and rate law, from a set point or a button to a demanded speed,
+//! * [`sequencing`]: check-valve logic, stall detection, drift monitoring,
 //! * [`current`]: the regulation of a coil's current,
-//! * [`commissioning`]: how a machine is taught,
-//! * [`controller`]: all of it, a step a millisecond: [`Control`].
+//! * [`commissioning`]: teaching of a machine,
+//! * [`controller`]: the step of one millisecond and its feedback law: [`Control`].
 //!
-//! Quantities are integers with their unit in the type; their arithmetic saturates. The calibration has been validated, so
-//! that nothing here has to doubt it again.
+//! Quantities are integers with their unit in the type; their arithmetic saturates. The calibration has been validated
+//! before.
 //!
 //! ```
 //! use hitch_control::valve::valve_map::ValveCurves;
@@ -54,4 +55,4 @@ pub mod sensing;
 pub mod sequencing;
 pub mod valve;
 
-pub use controller::{Control, Request};
+pub use controller::{Control, ControlRequest};

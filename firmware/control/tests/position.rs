@@ -1,8 +1,8 @@
 //! Position control: which lever it follows, and how fast it goes.
 
-use hitch_control::estimation::motion::Motion;
+use hitch_control::estimation::motion_observer::MotionObserver;
 use hitch_control::motion::position::PositionControl;
-use hitch_control::valve::closing::Closing;
+use hitch_control::valve::closing::ClosingCurves;
 use hitch_control::valve::drop_scale::{DropReference, DropScale};
 use hitch_control::valve::phase::{Demand, Direction, Phase};
 use hitch_quantities::calibration::design_parameters::PositionParameters;
@@ -84,24 +84,24 @@ fn a_place_that_was_accepted_is_kept_until_the_lever_moves() {
 }
 
 /// Demand of a hitch towards `target`, with the reference's pressure drop times `drop_percent`.
-fn demand(motion: &Motion, target: i32, phase: Phase, drop_percent: i32) -> Demand {
+fn demand(motion: &MotionObserver, target: i32, phase: Phase, drop_percent: i32) -> Demand {
     let calibration = Calibration::nominal();
     let reference = calibration.hydraulics.reference_drop;
     let drop = MilliBar(reference.0 / 100 * drop_percent);
     let scale = DropScale::new(&DropReference::new(reference), drop);
-    let closing = Closing::of(&calibration);
+    let closing = ClosingCurves::of(&calibration);
     let target = Micrometre(target);
     PositionControl::default().demand(target, phase, motion, &closing, scale, &calibration)
 }
 
 /// At 0 and at rest.
-fn resting() -> Motion {
+fn resting() -> MotionObserver {
     resting_at(0)
 }
 
 /// At rest.
-fn resting_at(at_um: i32) -> Motion {
-    let mut motion = Motion::default();
+fn resting_at(at_um: i32) -> MotionObserver {
+    let mut motion = MotionObserver::default();
     motion.update(
         Micrometre(at_um),
         Phase::Holding,
@@ -173,14 +173,14 @@ fn ramps_of_lowering_go_with_the_root_of_the_pressure_drop_and_those_of_lifting_
 #[test]
 fn a_load_that_swings_is_lifted_with_gentle_ramps_and_lowered_as_any_other() {
     let (steady, mut swinging) = (resting(), resting());
-    swinging.overshot();
-    let lifted = |motion: &Motion| demand(motion, 20_000, Phase::Holding, 100);
+    swinging.confirm_oscillation();
+    let lifted = |motion: &MotionObserver| demand(motion, 20_000, Phase::Holding, 100);
     let (usual, gentle) = (lifted(&steady), lifted(&swinging));
     assert_eq!(usual.acceleration, PARAMETERS.lift_acceleration);
     assert_eq!(gentle.acceleration, PARAMETERS.swinging_acceleration);
     // The speed at a distance goes with the root of the deceleration.
     assert!(gentle.speed < usual.speed, "{gentle:?}, {usual:?}");
-    let lowered = |motion: &Motion| demand(motion, -20_000, Phase::Holding, 100);
+    let lowered = |motion: &MotionObserver| demand(motion, -20_000, Phase::Holding, 100);
     assert_eq!(lowered(&swinging), lowered(&steady));
 }
 
@@ -189,7 +189,7 @@ fn the_coil_is_cut_where_the_closing_valve_carries_the_hitch_to_its_set_point() 
     let calibration = Calibration::nominal();
     let reference = calibration.hydraulics.reference_drop;
     let scale = DropScale::new(&DropReference::new(reference), reference);
-    let closing = Closing::of(&calibration);
+    let closing = ClosingCurves::of(&calibration);
     let phase = Phase::Moving {
         direction: Direction::Lift,
         speed: PARAMETERS.lift_speed,
@@ -200,13 +200,15 @@ fn the_coil_is_cut_where_the_closing_valve_carries_the_hitch_to_its_set_point() 
     };
     let (mut motion, mut at_um) = (resting(), 0);
     for _ in 0..400 {
-        motion.drive(currents, false, scale, &calibration);
+        motion.apply_currents(currents, false, scale, &calibration);
         at_um += motion.model_speed().0 / 1_000;
         motion.update(Micrometre(at_um), phase, &calibration.motion);
     }
-    let run_on = motion.run_on(&calibration.hydraulics);
-    let cut = run_on.cut_point(motion.share_of_cut(&closing)).0;
-    let rest = run_on.resting_point().0;
+    let stop_prediction = motion.stop_prediction(&calibration.hydraulics);
+    let cut = stop_prediction
+        .predicted_stop_after_cut(motion.closing_share(&closing))
+        .0;
+    let rest = stop_prediction.predicted_stop().0;
     let band = PARAMETERS.stop_band.0;
     assert!(cut + band < rest, "cut {cut}, ramp {rest}");
     let speed = |target| demand(&motion, target, phase, 100).speed;

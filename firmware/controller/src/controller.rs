@@ -5,7 +5,7 @@ use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_control::current::Regulation;
 use hitch_control::operator::EngineWatch;
 use hitch_quantities::{Inputs, Outputs, Trip, ValidCalibration};
-use hitch_safety::{Command, Envelope, Limits, Machine};
+use hitch_safety::{Command, Envelope, Limits, MachineModel};
 
 use crate::memory_check::MemoryCheck;
 
@@ -31,8 +31,8 @@ impl Controller {
         Self::with(calibration, EngineWatch::default())
     }
 
-    /// The same, with what the engine has told so far. Not inlined: a copy of the controller would take its place on the
-    /// stack of the caller for good.
+    /// The same, with what the engine has told so far. Not inlined: a copy of the controller would take its place on
+    /// the stack of the caller for good.
     #[inline(never)]
     fn with(calibration: ValidCalibration, engine: EngineWatch) -> Self {
         Self {
@@ -99,17 +99,17 @@ impl Controller {
             safety: &calibration.safety,
             sensors: &calibration.sensors,
             damaged: self.memory.step(calibration),
-            machine: Machine::of(calibration),
-            slow_start: self.control.teaches(),
+            machine: MachineModel::of(calibration),
+            slow_start: self.control.is_teaching(),
         };
         let currents = self.envelope.pass(self.command, inputs, limits);
         if let Some(trip) = self.envelope.objection() {
             self.control.fail(trip.fault());
         }
-        if self.envelope.has_landed() {
-            self.control.land();
+        if self.envelope.has_ground_contact() {
+            self.control.accept_ground_contact();
         }
-        self.control.passed(currents);
+        self.control.set_regulated_currents(currents);
         let parameters = &self.control.calibration().current;
         let duties = self.regulation.drive(currents, inputs, parameters);
         let duties = self.envelope.release(duties);

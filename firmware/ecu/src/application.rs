@@ -21,19 +21,19 @@ use super::arbiter::Arbiter;
 use super::converter::Conversion;
 use super::drive::Drive;
 use super::enable_line::EnableLine;
-use super::flow::{FlowMonitor, Kick, Task};
 use super::hardware::{Contacts, FlashRegions, Hardware};
-use super::pace::Pace;
 use super::panel::Contact;
 use super::scaling::BoardScaling;
 use super::service::{Service, Storing};
 use super::status::status;
+use super::task_sequence_monitor::{Kick, Task, TaskSequenceMonitor};
+use super::tick_timer::TickTimer;
 use crate::service;
 
-/// Most frames that are heard in a millisecond: twice what a bus of 250 kbit/s carries at its fullest.
-const MOST_HEARD: usize = 8;
-/// Most frames that are made in a millisecond.
-const MOST_SAID: usize = 4;
+/// Largest number of frames received in a millisecond: twice what a bus of 250 kbit/s carries at its fullest.
+const MAX_RECEIVED: usize = 8;
+/// Largest number of frames created in a millisecond.
+const MAX_SENT: usize = 4;
 /// Frames that wait for the bus.
 const OUTBOX: usize = 8;
 /// The address of a node that has none.
@@ -57,8 +57,8 @@ pub struct Ecu<F> {
     charge: CoilCharge,
     angle_noise: AngleNoise,
     outbox: Deque<Frame, OUTBOX>,
-    pace: Pace,
-    flow: FlowMonitor,
+    tick_timer: TickTimer,
+    task_sequence: TaskSequenceMonitor,
     inputs: Inputs,
     outputs: Outputs,
 }
@@ -96,8 +96,8 @@ impl<F: NorFlash> Ecu<F> {
             charge: CoilCharge::default(),
             angle_noise: AngleNoise::default(),
             outbox: Deque::new(),
-            pace: Pace::default(),
-            flow: FlowMonitor::default(),
+            tick_timer: TickTimer::default(),
+            task_sequence: TaskSequenceMonitor::default(),
             inputs: Inputs::default(),
             outputs: Outputs::default(),
         }
@@ -108,17 +108,17 @@ impl<F: NorFlash> Ecu<F> {
     #[inline(never)]
     pub fn tick(&mut self, contacts: &Contacts, hardware: &mut impl Hardware) -> Option<Kick> {
         self.sample(contacts);
-        self.flow.passed(Task::Sample);
+        self.task_sequence.passed(Task::Sample);
         self.controller.control(&self.inputs);
-        self.flow.passed(Task::Control);
+        self.task_sequence.passed(Task::Control);
         self.outputs = self.controller.protect(&self.inputs);
         let wanted = Drive::new(&self.outputs, self.pwm_steps);
         let has_feedback = contacts.enable_feedback.is_some();
         hardware.drive(self.enable_line.pass(wanted, has_feedback));
-        self.flow.passed(Task::Drive);
+        self.task_sequence.passed(Task::Drive);
         self.serve_bus(contacts, hardware);
-        self.flow.passed(Task::Bus);
-        self.flow.end()
+        self.task_sequence.passed(Task::Bus);
+        self.task_sequence.end()
     }
 
     /// Whether a calibration is being stored, with both coils off and locked: milliseconds take as long as flash does
@@ -128,13 +128,13 @@ impl<F: NorFlash> Ecu<F> {
         self.service.is_storing()
     }
 
-    /// What the controller was told in the last millisecond.
+    /// Inputs of the controller in the last millisecond.
     #[must_use]
     pub const fn inputs(&self) -> &Inputs {
         &self.inputs
     }
 
-    /// What it asked for.
+    /// Outputs of the controller in the last millisecond.
     #[must_use]
     pub const fn outputs(&self) -> &Outputs {
         &self.outputs
@@ -144,11 +144,11 @@ impl<F: NorFlash> Ecu<F> {
         let mut inputs = contacts
             .panel
             .added_to(self.conversion.inputs(&contacts.samples));
-        inputs.step_time = self.pace.begin(contacts.clock_us);
+        inputs.step_time = self.tick_timer.begin(contacts.clock_us);
         inputs.clock_ratio = contacts.clock_ratio;
-        inputs.engine_speed = self.node.engine_speed(self.pace.now_ms());
+        inputs.engine_speed = self.node.engine_speed(self.tick_timer.now_ms());
         inputs.enable_line_fault = self.enable_line.read(contacts.enable_feedback);
-        // Many a part stands still while its flash is erased: nothing may move then.
+        // Some microcontrollers stop while their flash is erased: no motion is allowed then.
         inputs.switches.transport_lock |= self.service.is_storing();
         let limits = &self.controller.calibration().position;
         self.inputs = self.arbiter.decide(inputs, self.node.remote(), limits);
@@ -157,17 +157,17 @@ impl<F: NorFlash> Ecu<F> {
     fn serve_bus(&mut self, contacts: &Contacts, hardware: &mut impl Hardware) {
         let access = self.access(contacts);
         self.measure(hardware.frames_dropped());
-        self.hear(access, contacts.clock_us, hardware);
+        self.receive(access, contacts.clock_us, hardware);
         self.sample_for_tool(access, contacts.clock_us);
         let at_rest = is_at_rest(&self.outputs);
         let stored = self
             .service
             .update(&mut self.controller, &mut self.slave, at_rest);
-        self.say(hardware);
+        self.send(hardware);
         // One change of the flash a millisecond.
         let kept = stored == Storing::Idle && at_rest && self.keep_history();
         if stored == Storing::Busy || kept {
-            self.pace.forgive();
+            self.tick_timer.skip_interval();
         }
     }
 
@@ -205,7 +205,7 @@ impl<F: NorFlash> Ecu<F> {
             address: self.node.address().unwrap_or(NO_ADDRESS),
             charge: self.charge,
             calibration_state: self.service.pages.applied() as u8,
-            longest_step_us: self.pace.longest_us(),
+            longest_step_us: self.tick_timer.longest_us(),
             frames_dropped,
             angle_squares: self.angle_noise.sum_of_squares(),
         };
@@ -213,13 +213,13 @@ impl<F: NorFlash> Ecu<F> {
             .sample(&self.inputs, &self.outputs, &state);
     }
 
-    fn hear(&mut self, access: Access, now_us: u32, hardware: &mut impl Hardware) {
+    fn receive(&mut self, access: Access, now_us: u32, hardware: &mut impl Hardware) {
         self.slave.set_address(self.node.address());
-        for _ in 0..MOST_HEARD {
+        for _ in 0..MAX_RECEIVED {
             let Some(frame) = hardware.receive() else {
                 return;
             };
-            self.node.receive(&frame, self.pace.now_ms());
+            self.node.receive(&frame, self.tick_timer.now_ms());
             let mut memory = EcuMemory {
                 pages: &mut self.service.pages,
                 measurements: &self.measurements,
@@ -230,7 +230,7 @@ impl<F: NorFlash> Ecu<F> {
     }
 
     fn sample_for_tool(&mut self, access: Access, now_us: u32) {
-        let now_ms = self.pace.now_ms();
+        let now_ms = self.tick_timer.now_ms();
         let memory = EcuMemory {
             pages: &mut self.service.pages,
             measurements: &self.measurements,
@@ -248,8 +248,8 @@ impl<F: NorFlash> Ecu<F> {
         }
     }
 
-    /// Makes the frames that are due and hands over what the bus takes.
-    fn say(&mut self, hardware: &mut impl Hardware) {
+    /// Creates the frames that are due and passes them to the bus as far as it accepts them.
+    fn send(&mut self, hardware: &mut impl Hardware) {
         let found = self.trouble_finder.update(&self.inputs, &self.outputs);
         let status = status(
             &self.inputs,
@@ -258,14 +258,14 @@ impl<F: NorFlash> Ecu<F> {
             self.service.troubles().union(found),
             self.arbiter.is_overridden(),
         );
-        // The node's time goes on whether or not the bus takes anything: what is old then gives way.
-        for _ in 0..MOST_SAID {
-            let Some(frame) = self.node.poll(self.pace.now_ms(), &status) else {
+        // The node is polled even if the bus is blocked: old frames are then replaced.
+        for _ in 0..MAX_SENT {
+            let Some(frame) = self.node.poll(self.tick_timer.now_ms(), &status) else {
                 break;
             };
             self.push(frame);
         }
-        self.tell_loggers();
+        self.send_measured();
         while self.outbox.len() < OUTBOX
             && let Some(frame) = self.slave.poll()
         {
@@ -278,13 +278,13 @@ impl<F: NorFlash> Ecu<F> {
         }
     }
 
-    /// Sends what was measured, if that is due and the node has an address to send it from.
-    fn tell_loggers(&mut self) {
+    /// Sends the measured values if they are due and the node has an address.
+    fn send_measured(&mut self) {
         let Some(source) = self.node.address() else {
             return;
         };
         let period = self.controller.calibration().bus.measured_period;
-        let now_ms = self.pace.now_ms();
+        let now_ms = self.tick_timer.now_ms();
         let frames = self
             .measured
             .poll(source, now_ms, period, &self.inputs, self.charge);
@@ -298,7 +298,7 @@ impl<F: NorFlash> Ecu<F> {
         if self.outbox.is_full() {
             self.outbox.pop_front();
         }
-        // There is room now.
+        // There is space now.
         let _ = self.outbox.push_back(frame);
     }
 }

@@ -24,7 +24,7 @@ const SETTLING_MS: u8 = 5;
 
 /// What is known of the line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum State {
+enum EnableLineState {
     /// Low since power-up.
     #[default]
     Low,
@@ -41,7 +41,7 @@ enum State {
 /// Tests and watches the line.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EnableLine {
-    state: State,
+    state: EnableLineState,
     /// Level that was asked for in the last millisecond.
     asked: bool,
     /// For how long the read-back has agreed in the present state, ms.
@@ -55,7 +55,7 @@ impl EnableLine {
     /// faulty.
     pub fn read(&mut self, feedback: Option<bool>) -> bool {
         let Some(level) = feedback else {
-            return self.state == State::Faulty;
+            return self.state == EnableLineState::Faulty;
         };
         let agrees = level == self.asked;
         self.agreed_ms = if agrees {
@@ -70,32 +70,32 @@ impl EnableLine {
         };
         let settled = self.agreed_ms >= SETTLING_MS;
         self.state = match self.state {
-            _ if self.differed_ms >= SETTLING_MS => State::Faulty,
-            State::Low if settled => State::Untested,
-            State::Raised if settled => State::Proven,
+            _ if self.differed_ms >= SETTLING_MS => EnableLineState::Faulty,
+            EnableLineState::Low if settled => EnableLineState::Untested,
+            EnableLineState::Raised if settled => EnableLineState::Proven,
             state => state,
         };
-        self.state == State::Faulty
+        self.state == EnableLineState::Faulty
     }
 
     /// What the drivers get of what they are meant to get.
     pub fn pass(&mut self, wanted: Drive, has_feedback: bool) -> Drive {
         let drive = match self.state {
-            State::Faulty => Drive::OFF,
+            EnableLineState::Faulty => Drive::OFF,
             _ if !has_feedback => wanted,
-            State::Low => Drive::OFF,
-            State::Untested if wanted.enable => {
-                self.state = State::Raised;
+            EnableLineState::Low => Drive::OFF,
+            EnableLineState::Untested if wanted.enable => {
+                self.state = EnableLineState::Raised;
                 self.agreed_ms = 0;
                 RAISED
             }
-            State::Raised if wanted.enable => RAISED,
-            State::Raised => {
+            EnableLineState::Raised if wanted.enable => RAISED,
+            EnableLineState::Raised => {
                 // Called off before the line was proven: tested anew with the next drive.
-                self.state = State::Untested;
+                self.state = EnableLineState::Untested;
                 Drive::OFF
             }
-            State::Untested | State::Proven => wanted,
+            EnableLineState::Untested | EnableLineState::Proven => wanted,
         };
         self.asked = drive.enable;
         drive

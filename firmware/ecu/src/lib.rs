@@ -6,8 +6,9 @@
 //!                    bus <-> Node, XCP slave <- measurements <-+-> calibration pages <-> flash
 //! ```
 //!
-//! It may depend on all other crates of the firmware, and none of them on it. Pure as they are: what it runs on is a [`Hardware`], which the board, the emulator and the tests each
-//! have one of. So the same code runs on all three, and does the same.
+//! It may depend on all other crates of the firmware, and none of them on it. Pure as they are: what it runs on is a
+//! [`Hardware`], which the board, the emulator and the tests each have one of. So the same code runs on all three, and
+//! does the same.
 //!
 //! * `converter`, `scaling`, `panel`, `panel_inputs`: from codes and contacts to inputs,
 //! * `coil_driver`, `drive`, `enable_line`: from pulse widths to pins,
@@ -28,24 +29,24 @@ mod coil_driver;
 mod converter;
 mod drive;
 mod enable_line;
-mod flow;
 mod hardware;
+mod hosted_ecu;
 pub mod link;
-mod machine;
-mod pace;
 mod panel;
 mod panel_inputs;
 mod scaling;
 mod service;
 mod status;
+mod task_sequence_monitor;
+mod tick_timer;
 
 pub use application::Ecu;
 pub use coil_driver::{CoilDriver, CoilDriverError};
 pub use converter::{AdcCode, Conversion, Samples, Signal};
 pub use drive::{Compare, Drive};
-pub use flow::{FlowMonitor, Kick, Task};
 pub use hardware::{Contacts, FlashRegions, Hardware};
-pub use machine::{Machine, Probe};
+pub use hosted_ecu::{HostedEcu, Probe};
 pub use panel::{Contact, Panel};
 pub use panel_inputs::PanelInputs;
 pub use scaling::BoardScaling;
+pub use task_sequence_monitor::{Kick, Task, TaskSequenceMonitor};

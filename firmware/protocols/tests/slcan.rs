@@ -1,11 +1,11 @@
 //! The text form of CAN, as hosts write it.
 
-use hitch_protocols::can::slcan::{Adapter, Heard, decode, encode};
+use hitch_protocols::can::slcan::{Adapter, Completed, decode, encode};
 use hitch_protocols::can::{ExtendedId, Frame, Id, StandardId};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-fn said(adapter: &mut Adapter, text: &str) -> Vec<Heard> {
+fn completed_by(adapter: &mut Adapter, text: &str) -> Vec<Completed> {
     text.bytes()
         .filter_map(|byte| adapter.receive(byte))
         .collect()
@@ -37,35 +37,39 @@ fn frames_are_written_as_other_adapters_write_them() {
 fn a_host_opens_sends_and_closes() {
     let mut adapter = Adapter::default();
     // What python-can and slcand begin with: an empty line, close, bit rate, open.
-    let heard = said(&mut adapter, "\rC\rS5\rO\r");
+    let heard = completed_by(&mut adapter, "\rC\rS5\rO\r");
     assert!(
         heard
             .iter()
             .all(|heard| heard.reply == b"\r" && heard.frame.is_none())
     );
     assert!(adapter.is_open());
-    let heard = said(&mut adapter, "T0CFE458089B47C8FF7DC0FFFF\rt07A1ab\r");
+    let heard = completed_by(&mut adapter, "T0CFE458089B47C8FF7DC0FFFF\rt07A1ab\r");
     assert_eq!(heard[0].frame, Some(status()));
     assert_eq!(heard[0].reply, b"Z\r");
     assert_eq!(heard[1].frame.unwrap().data(), [0xAB], "small letters too");
     assert_eq!(heard[1].reply, b"z\r");
-    said(&mut adapter, "C\r");
+    completed_by(&mut adapter, "C\r");
     assert!(!adapter.is_open());
-    assert_eq!(said(&mut adapter, "t07A1AB\r")[0].reply, b"\x07", "closed");
+    assert_eq!(
+        completed_by(&mut adapter, "t07A1AB\r")[0].reply,
+        b"\x07",
+        "closed"
+    );
 }
 
 #[test]
 fn an_adapter_that_listens_sends_nothing() {
     let mut adapter = Adapter::default();
-    said(&mut adapter, "L\r");
+    completed_by(&mut adapter, "L\r");
     assert!(adapter.is_open());
-    assert_eq!(said(&mut adapter, "t07A0\r")[0].frame, None);
+    assert_eq!(completed_by(&mut adapter, "t07A0\r")[0].frame, None);
 }
 
 #[test]
 fn version_serial_and_flags_are_told() {
     let mut adapter = Adapter::default();
-    let replies: Vec<&[u8]> = said(&mut adapter, "V\rN\rF\r")
+    let replies: Vec<&[u8]> = completed_by(&mut adapter, "V\rN\rF\r")
         .iter()
         .map(|heard| heard.reply)
         .collect();
@@ -75,7 +79,7 @@ fn version_serial_and_flags_are_told() {
 #[test]
 fn what_is_no_command_is_refused_and_the_next_line_counts_again() {
     let mut adapter = Adapter::default();
-    said(&mut adapter, "O\r");
+    completed_by(&mut adapter, "O\r");
     for line in [
         "x",
         "t",
@@ -94,17 +98,17 @@ fn what_is_no_command_is_refused_and_the_next_line_counts_again() {
         "t07A1G0",
         "T0CFE458089B47C8FF7DC0FFFF00000000000000000000000000000000",
     ] {
-        let heard = said(&mut adapter, &format!("{line}\r"));
+        let heard = completed_by(&mut adapter, &format!("{line}\r"));
         assert_eq!(
             heard,
-            [Heard {
+            [Completed {
                 frame: None,
                 reply: b"\x07"
             }],
             "{line}"
         );
     }
-    assert_eq!(said(&mut adapter, "t07A0\r")[0].reply, b"z\r");
+    assert_eq!(completed_by(&mut adapter, "t07A0\r")[0].reply, b"z\r");
 }
 
 proptest! {
@@ -127,7 +131,7 @@ proptest! {
     fn no_bytes_do_harm(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
         let mut adapter = Adapter::default();
         bytes.iter().for_each(|&byte| { adapter.receive(byte); });
-        said(&mut adapter, "\rO\r");
+        completed_by(&mut adapter, "\rO\r");
         prop_assert!(adapter.is_open());
     }
 }

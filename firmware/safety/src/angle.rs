@@ -5,13 +5,14 @@ use hitch_quantities::fixed::Divisor;
 use hitch_quantities::units::{MilliAmp, MilliDegree, Millisecond};
 use hitch_quantities::{CoilCurrents, Inputs};
 
-use super::following::{Following, Shown, Standstill};
-use super::tremble::Tremble;
+use super::following::{AngleReading, FollowingMonitor, Standstill};
+use super::noise_detector::NoiseDetector;
 use crate::Limits;
 
-/// Samples whose mean is compared with the owed travel: noise of 0.1 degree is then 0.025 degree.
+/// Samples whose mean is compared with the required travel: noise of 0.1 degree is then 0.025 degree.
 const SPAN: usize = 16;
-/// The noise measure averages over this many samples: noise of +-0.8 degree is found in 18 ms, and that of a sensor with
+/// The noise measure averages over this many samples: noise of +-0.8 degree is found in 18 ms, and that of a sensor
+/// with
 /// 0.1 degree, one sigma, is seven of its own sigmas below the limit.
 const NOISE_SAMPLES: i32 = 16;
 
@@ -22,11 +23,11 @@ pub struct AngleFaults {
     pub missing: bool,
     /// Further from the last good sample than the hitch can move.
     pub jumps: bool,
-    /// The same to the last bit although the hitch owes travel.
+    /// The same to the last bit although travel is required.
     pub frozen: bool,
     /// Noisier than the sensor.
     pub noisy: bool,
-    /// Shows less travel than the hitch owes.
+    /// Shows less travel than required.
     pub not_following: bool,
     /// Moves against the energised coil.
     pub against: bool,
@@ -45,13 +46,13 @@ pub struct AngleWatch {
     last: MilliDegree,
     step: MilliDegree,
     /// Whether the sensor shows noise at rest, and how long its sample has been the same.
-    tremble: Tremble,
+    noise: NoiseDetector,
     /// Mean magnitude of the second difference, times [`NOISE_SAMPLES`].
     noise_sum: i32,
     /// Since the coil was switched on.
     stroke: Option<Stroke>,
     /// A hitch that was lowered stands still, and the command has not been off since.
-    landed: bool,
+    ground_contact: bool,
 }
 
 /// Motion since a coil was switched on.
@@ -61,8 +62,8 @@ struct Stroke {
     first: MilliDegree,
     /// Furthest such angle.
     furthest: MilliDegree,
-    /// Travel owed and seen.
-    following: Following,
+    /// Travel required and seen.
+    following: FollowingMonitor,
 }
 
 impl Default for AngleWatch {
@@ -74,10 +75,10 @@ impl Default for AngleWatch {
             bad_for: Millisecond::ZERO,
             last: MilliDegree::ZERO,
             step: MilliDegree::ZERO,
-            tremble: Tremble::default(),
+            noise: NoiseDetector::default(),
             noise_sum: 0,
             stroke: None,
-            landed: false,
+            ground_contact: false,
         }
     }
 }
@@ -106,10 +107,9 @@ impl AngleWatch {
         }
         // Noise of a bad signal isn't the sensor's.
         if faults != AngleFaults::default() {
-            self.tremble.forget();
+            self.noise.reset();
         }
-        faults.frozen =
-            self.tremble.is_noisy() && self.tremble.same_for() >= limits.safety.still_time;
+        faults.frozen = self.noise.is_noisy() && self.noise.same_for() >= limits.safety.still_time;
         match believed {
             Some(angle) => {
                 self.bad_for = Millisecond::ZERO;
@@ -121,22 +121,22 @@ impl AngleWatch {
         faults
     }
 
-    /// True while the lowering coil is cut, since the hitch may have landed.
-    pub const fn has_landed(&self) -> bool {
-        self.landed
+    /// True while the lowering coil is cut, because the hitch may be on the ground.
+    pub const fn has_ground_contact(&self) -> bool {
+        self.ground_contact
     }
 
-    /// Most that the coils get in a stroke that has yet to show motion.
-    pub fn gentle(&self, limits: Limits<'_>) -> Option<CoilCurrents> {
+    /// Current limit of a stroke until motion has been detected.
+    pub fn onset_limit(&self, limits: Limits<'_>) -> Option<CoilCurrents> {
         self.stroke
-            .map_or(Following::default(), |stroke| stroke.following)
-            .gentle(limits)
+            .map_or(FollowingMonitor::default(), |stroke| stroke.following)
+            .onset_limit(limits)
     }
 
-    /// The command without a lowering current if the hitch may have landed; a command without one ends that.
+    /// The command without a lowering current if the hitch may be on the ground; a command without one ends that.
     pub fn withhold(&mut self, command: CoilCurrents) -> CoilCurrents {
-        self.landed &= command.lower > MilliAmp::ZERO;
-        match self.landed {
+        self.ground_contact &= command.lower > MilliAmp::ZERO;
+        match self.ground_contact {
             true => CoilCurrents::OFF,
             false => command,
         }
@@ -164,8 +164,8 @@ impl AngleWatch {
     }
 
     /// What the sensor shows.
-    fn shown(&self) -> Shown {
-        Shown {
+    fn shown(&self) -> AngleReading {
+        AngleReading {
             mean: self.mean(SPAN),
             latest: self.mean(SPAN / 2),
             noise: MilliDegree(self.noise_sum / NOISE_SAMPLES),
@@ -184,7 +184,7 @@ impl AngleWatch {
         }
         let step = angle - self.last;
         self.last = angle;
-        self.tremble.update(step, at_rest);
+        self.noise.update(step, at_rest);
         // A single jump is no noise: it counts for no more than twice the limit.
         let most = safety.noise_limit + safety.noise_limit;
         let bend = (step - self.step).magnitude().min(most).0;
@@ -204,7 +204,7 @@ impl AngleWatch {
         self.filled = true;
     }
 
-    /// What an energised coil has to do with the angle. While no sample is believed the hitch owes what it owes.
+    /// Checks the effect of an energised coil on the angle. The required travel remains while no sample is valid.
     fn judge_motion(
         &mut self,
         believed: Option<MilliDegree>,
@@ -227,7 +227,7 @@ impl AngleWatch {
         let stroke = self.stroke.get_or_insert(Stroke {
             first: newest,
             furthest: newest,
-            following: Following::default(),
+            following: FollowingMonitor::default(),
         });
         if believed.is_some() {
             stroke.furthest = stroke.furthest.max(newest);
@@ -235,15 +235,15 @@ impl AngleWatch {
             let back = stroke.furthest - newest > most;
             // A hitch that was lowered far and comes up again has bounced off the ground: nothing is swapped.
             let bounced = back && !lifting && stroke.furthest - stroke.first > most;
-            self.landed |= bounced;
+            self.ground_contact |= bounced;
             faults.against = back && !bounced;
         }
         let safety = limits.safety;
         let stands = stroke.following.judge(shown, passed, inputs, limits);
         let fault = stands == Some(Standstill::Fault);
-        let same = self.tremble.same_for() >= safety.frozen_time;
+        let same = self.noise.same_for() >= safety.frozen_time;
         faults.frozen |= fault && same;
         faults.not_following = fault && !same;
-        self.landed |= stands == Some(Standstill::Landed);
+        self.ground_contact |= stands == Some(Standstill::GroundContact);
     }
 }

@@ -1,52 +1,58 @@
-//! Compares the travel that an energised coil must have caused with the travel that the angle shows.
+//! Following monitor: compares the travel that an energised coil must cause with the travel that the angle sensor
+//! shows.
 //!
-//! The samples of an angle sensor that sticks in motion, or just as the coil comes on, can look like those of a good one:
-//! it may keep its noise, and a good one may have none. But a coil that has had a current for some time moves the hitch,
-//! whatever the controller has done with that current since. So this watch works out the least travel that a healthy
-//! machine owes for the currents that were passed, and compares it with what is seen.
+//! An angle sensor that freezes during a move, or just as the coil is switched on, may still show noise, and a healthy
+//! one may show none. But a coil that has carried a current for some time moves the hitch, whatever the controller has
+//! requested since. This monitor computes the least travel of a healthy machine for the regulated currents (the
+//! required travel) and compares it with the measured travel.
 //!
-//! A stroke has two parts. Before motion is seen, nobody knows how late this machine starts: it may lie on the ground,
-//! compress its oil, or have a slow spool. There the travel that the valve curve gives for the passed currents is
-//! limited:
-//!
-//! ```text
-//! given travel  sum of valve curve(current)
-//! cap           (onset budget - given travel) / onset time, at least the onset speed
-//! standstill    given travel, where the current is above threshold + margin, > onset debt
-//! ```
-//!
-//! A hitch that is lifted off its lower end stop may owe the stop debt as well: the stop carried the load, and its oil has no
-//! pressure.
-//!
-//! Once motion has been seen:
+//! A stroke has two parts. Before motion is detected, the start delay of the machine is unknown: it may be on the
+//! ground, compress its oil, or have a slow spool. The travel that the valve curve predicts is limited in this part:
 //!
 //! ```text
-//! expected     current less margin -> flow of the valve curve -> piston speed -> two lags
-//! owed speed   a share of that; half of it, at most the following speed; half of the speed lately seen
-//! owed travel  since the place where the hitch was last ahead of it
-//! standstill   owed travel - seen travel > allowance
+//! predicted travel  sum of valve curve(current)
+//! limit             (onset budget - predicted travel) / onset time, at least the onset speed
+//! standstill        predicted travel, while the current is above threshold + margin, > onset debt
 //! ```
 //!
-//! * The margin on the current covers a threshold that is off and the hysteresis of coil and spool.
-//! * The lags cover slow spools, and loads on oil with air in it. A current that falls takes the owed speed with it at
-//!   once: no spool closes faster.
-//! * Share and following speed cover a load that stands although its valve is open. A load on soft oil that was braked
-//!   swings, and stands for up to 0.1 s where its speed would turn round. A load that is taken up from the ground first
-//!   moves by the spring of the ground, which looks like a start, and then waits for the pressure that carries it: the pump
-//!   raises it by some 0.1 bar/ms. Healthy machines were given up to 12 mm by the valve curve, less the margin, in such a
-//!   standstill, and the longest took 98 ms. They also cover a light load behind the lowering valve, cold oil, a slow
-//!   pump, and droop.
-//! * A hitch that ran and stops within milliseconds is none of these: half of the speed lately seen is owed. The average over
-//!   24 ms of it falls with a load that is braked.
+//! A hitch that is lifted off its lower end stop may lack the stop debt in addition: the stop carried the load, and the
+//! oil has no pressure.
+//!
+//! After motion has been detected:
+//!
+//! ```text
+//! expected         current less margin -> flow of the valve curve -> piston speed -> two lags
+//! required speed   a share of that; half of it, at most the following speed; half of the recent measured speed
+//! required travel  since the position where the hitch was last ahead of it
+//! standstill       required travel - measured travel > allowance
+//! ```
+//!
+//! * The margin of the current covers a threshold offset and the hysteresis of coil and spool.
+//! * The lags cover slow spools, and loads on oil with air. A falling current reduces the required speed at once: no
+//!   spool
+//!   closes faster.
+//! * Share and following speed cover a load that stands still behind an open valve. A braked load on soft oil
+//!   oscillates, and
+//!   stands still for up to 0.1 s at its reversals. A load that is lifted from the ground first moves by the spring of
+//!   the
+//!   ground, which looks like a start, and then waits for its pressure, which the pump raises by some 0.1 bar/ms. In
+//!   such a
+//!   standstill the valve curve, less the margin, predicted up to 12 mm for healthy machines, and the longest took 98
+//!   ms.
+//!   They also cover a light load behind the lowering valve, cold oil, a slow pump, and droop.
+//! * A hitch that stops within milliseconds is none of these: half of the recent measured speed is required. Its
+//!   average over
+//!   24 ms falls with a braked load.
 //! * The allowance covers noise and converter steps.
 //!
-//! So a creeping hitch, a correction or a spool that sticks owes little or nothing, a fast one its allowance in 20 ms.
+//! So little or no travel is required of a creeping hitch, a correction or a sticking spool, and the allowance is
+//! exceeded in 20 ms by a fast one.
 //!
-//! A hitch that can't go on owes nothing: near an end of its travel, on the ground (no pressure behind the lowering
-//! valve), or with the pump at its relief pressure. Without a sensor of pressure a hitch that stops while it is lowered
-//! may lie on the ground as well as have a frozen sensor, and one whose pressure has fallen by half lies on it with part
-//! of its weight. Then the lowering coil is cut until the command was off ([`Standstill::Landed`]), which is no fault: the
-//! hitch stops either way.
+//! No travel is required of a hitch that cannot move: near an end of its travel, on the ground (no pressure behind the
+//! lowering valve), or with the pump at its relief pressure. Without a pressure sensor a hitch that stops while it is
+//! lowered may be on the ground or have a frozen sensor; with half of its pressure lost it is on the ground with part
+//! of its weight. The lowering coil then is cut until the command has been off ([`Standstill::GroundContact`]). This is
+//! no fault: the hitch stops in either case.
 
 use hitch_quantities::calibration::design_parameters::{HydraulicParameters, SafetyParameters};
 use hitch_quantities::calibration::linkage::LinkageTable;
@@ -60,11 +66,11 @@ use crate::Limits;
 
 /// The speed that is seen is averaged over this many steps; over 64 a load that swings to a standstill would
 /// still have 0.1 m/s then.
-const SEEN_STEPS: i32 = 24;
+const AVERAGE_STEPS: i32 = 24;
 
-/// What the watch knows of the machine.
+/// Model of the machine for the monitor.
 #[derive(Clone, Copy, Debug)]
-pub struct Machine<'a> {
+pub struct MachineModel<'a> {
     /// Lift valve.
     lift: &'a ValveTable,
     /// Lowering valve.
@@ -77,7 +83,7 @@ pub struct Machine<'a> {
     ends: (MilliDegree, MilliDegree),
 }
 
-impl<'a> Machine<'a> {
+impl<'a> MachineModel<'a> {
     /// The machine of a calibration.
     #[must_use]
     pub const fn of(calibration: &'a Calibration) -> Self {
@@ -119,9 +125,9 @@ impl<'a> Machine<'a> {
     }
 }
 
-/// What the sensor shows.
+/// Averages of the angle sensor.
 #[derive(Clone, Copy, Debug)]
-pub struct Shown {
+pub struct AngleReading {
     /// Mean of the samples of 16 ms.
     pub mean: MilliDegree,
     /// Mean of the latest 8.
@@ -130,50 +136,50 @@ pub struct Shown {
     pub noise: MilliDegree,
 }
 
-/// What stands still although it owes travel.
+/// Result for a hitch that stands still although travel is required.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standstill {
-    /// The hitch, or the angle that is shown of it.
+    /// The hitch or its angle sensor has failed.
     Fault,
-    /// A hitch that was lowered, and may have come to the ground: nothing is known of its pressure.
-    Landed,
+    /// A lowered hitch that may be on the ground; its pressure is not known.
+    GroundContact,
 }
 
-/// The watch, while one coil is energised.
+/// The monitor, while one coil is energised.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Following {
-    /// Motion has been seen since the coil came on.
+pub struct FollowingMonitor {
+    /// Motion has been detected since the coil was switched on.
     started: bool,
     /// Travel that the currents have given by the valve curves, of a hitch that has yet to start, in millionths of a
     /// degree.
-    given_udeg: i32,
+    predicted_udeg: i32,
     /// The part of it that was given by currents above the threshold and the margin.
-    owed_udeg: i32,
+    required_udeg: i32,
     /// Rocker angle for a piston travel of a millimetre here, in thousandths of a degree.
     degrees: i32,
     /// Expected piston speed along the coil's way, of a hitch that has started, and of one that lately moved.
-    expected: Expected,
-    running: Expected,
-    /// Travel that is owed since the hitch was at `from`, in nanometres.
-    owed_nm: i32,
+    expected: ExpectedSpeed,
+    running: ExpectedSpeed,
+    /// Travel that is required since the hitch was at `from`, in nanometres.
+    required_nm: i32,
     from: Option<Micrometre>,
-    /// Where the coil came on.
+    /// Angle at which the coil was switched on.
     rest: Option<MilliDegree>,
-    /// The last travel, and the speed lately seen, in nanometres a step times [`SEEN_STEPS`].
+    /// The last travel, and the speed lately seen, in nanometres a step times [`AVERAGE_STEPS`].
     last: Option<Micrometre>,
-    seen_lately: i32,
-    /// Highest pressure in the cylinder.
-    most_pressure: MilliBar,
+    measured_speed_sum: i32,
+    /// Peak pressure in the cylinder.
+    peak_pressure: MilliBar,
 }
 
-impl Following {
-    /// Most that the coils get until motion has been seen.
-    pub fn gentle(&self, limits: Limits<'_>) -> Option<CoilCurrents> {
+impl FollowingMonitor {
+    /// Current limit until motion has been detected.
+    pub fn onset_limit(&self, limits: Limits<'_>) -> Option<CoilCurrents> {
         let (machine, safety) = (limits.machine, limits.safety);
         if self.started || limits.slow_start {
             return None;
         }
-        let left = safety.onset_budget - MilliDegree(self.given_udeg / 1_000);
+        let left = safety.onset_budget - MilliDegree(self.predicted_udeg / 1_000);
         let left = left.0.saturating_mul(1_000) / self.degrees.max(1);
         let speed = MicrometrePerSecond(
             safety
@@ -185,10 +191,10 @@ impl Following {
         Some(machine.currents(floors.map(|floor| speed.max(floor))))
     }
 
-    /// One step with the currents that were passed in the last one.
+    /// One step with the regulated currents of the last one.
     pub fn judge(
         &mut self,
-        shown: Shown,
+        shown: AngleReading,
         passed: CoilCurrents,
         inputs: &Inputs,
         limits: Limits<'_>,
@@ -218,61 +224,61 @@ impl Following {
                     self.rest = None;
                 }
                 let held = held || limits.slow_start;
-                let debt = onset_debt(angle, lifts, machine, safety);
-                self.starts(backwards, held, passed, machine, safety) > debt
+                let allowance = onset_allowance(angle, lifts, machine, safety);
+                self.onset_deficit(backwards, held, passed, machine, safety) > allowance
             }
-            true => self.follows(moved, along, held, passed, machine, safety),
+            true => self.exceeds_allowance(moved, along, held, passed, machine, safety),
         };
-        if self.owed_nm == 0 {
+        if self.required_nm == 0 {
             self.from = Some(along);
         }
-        let hangs = self.hangs(inputs);
+        let hangs = self.carries_load(inputs);
         stands.then_some(match lifts || hangs {
             true => Standstill::Fault,
-            false => Standstill::Landed,
+            false => Standstill::GroundContact,
         })
     }
 
-    /// True if a pressure is known that shows a load on the oil: less than half of what it was lies on the ground.
-    fn hangs(&mut self, inputs: &Inputs) -> bool {
+    /// True if the pressure shows that the oil carries the load: below half of its peak the load is on the ground.
+    fn carries_load(&mut self, inputs: &Inputs) -> bool {
         inputs.cylinder_pressure.is_some_and(|pressure| {
-            self.most_pressure = self.most_pressure.max(pressure);
-            pressure.0 >= self.most_pressure.0 / 2
+            self.peak_pressure = self.peak_pressure.max(pressure);
+            pressure.0 >= self.peak_pressure.0 / 2
         })
     }
 
-    /// A hitch that has yet to start; the travel that it owes.
-    fn starts(
+    /// Before motion: the predicted travel above the margin.
+    fn onset_deficit(
         &mut self,
         backwards: bool,
         held: bool,
         passed: CoilCurrents,
-        machine: Machine<'_>,
+        machine: MachineModel<'_>,
         safety: &SafetyParameters,
     ) -> MilliDegree {
         if self.started || held || backwards {
-            self.owed_nm = 0;
-            self.owed_udeg = 0;
-            self.given_udeg = 0;
+            self.required_nm = 0;
+            self.required_udeg = 0;
+            self.predicted_udeg = 0;
             return MilliDegree::ZERO;
         }
         let given = machine.speed(passed, MilliAmp::ZERO).0;
         let given = given.saturating_mul(self.degrees) / 1_000;
-        self.given_udeg = self.given_udeg.saturating_add(given);
+        self.predicted_udeg = self.predicted_udeg.saturating_add(given);
         if machine.speed(passed, safety.following_margin) > MicrometrePerSecond::ZERO {
-            self.owed_udeg = self.owed_udeg.saturating_add(given);
+            self.required_udeg = self.required_udeg.saturating_add(given);
         }
-        MilliDegree(self.owed_udeg / 1_000)
+        MilliDegree(self.required_udeg / 1_000)
     }
 
-    /// A hitch that has started; true if it owes more than noise hides.
-    fn follows(
+    /// After the start: true if the missing travel exceeds the allowance.
+    fn exceeds_allowance(
         &mut self,
         moved: Micrometre,
         along: Micrometre,
         held: bool,
         passed: CoilCurrents,
-        machine: Machine<'_>,
+        machine: MachineModel<'_>,
         safety: &SafetyParameters,
     ) -> bool {
         let lag = safety.following_lag.divisor();
@@ -281,51 +287,51 @@ impl Following {
             .follow(machine.speed(passed, margin), safety.started_lag.divisor());
         self.running
             .follow(machine.speed(passed, MilliAmp(margin.0 / 2)), lag);
-        self.see(along);
-        let owed = self.owed_speed(safety);
-        self.owed_nm = self.owed_nm.saturating_add(owed.0);
-        let owed = Micrometre(self.owed_nm / 1_000);
+        self.average_speed(along);
+        let required = self.required_speed(safety);
+        self.required_nm = self.required_nm.saturating_add(required.0);
+        let required = Micrometre(self.required_nm / 1_000);
         // Any motion beyond noise shows a sensor that lives, also that of a load that swings back.
         let alive = Micrometre(safety.following_allowance.0 / 4);
-        if held || moved.magnitude() >= owed.min(alive) {
-            self.owed_nm = 0;
+        if held || moved.magnitude() >= required.min(alive) {
+            self.required_nm = 0;
             return false;
         }
-        owed > safety.following_allowance
+        required > safety.following_allowance
     }
 
-    /// Averages the speed that is seen.
-    fn see(&mut self, along: Micrometre) {
+    /// Averages the measured speed.
+    fn average_speed(&mut self, along: Micrometre) {
         let step = along - self.last.unwrap_or(along);
         self.last = Some(along);
-        let forgotten = self.seen_lately / SEEN_STEPS;
-        self.seen_lately = self
-            .seen_lately
+        let forgotten = self.measured_speed_sum / AVERAGE_STEPS;
+        self.measured_speed_sum = self
+            .measured_speed_sum
             .saturating_add(step.0.saturating_mul(1_000))
             .saturating_sub(forgotten);
     }
 
-    /// Speed that is owed now: of a hitch that has started, or half of what it lately had and the current still gives.
-    fn owed_speed(&self, safety: &SafetyParameters) -> MicrometrePerSecond {
+    /// Required speed: a share of the expected one, or half of the recent measured speed that the current still gives.
+    fn required_speed(&self, safety: &SafetyParameters) -> MicrometrePerSecond {
         let half = |speed: MicrometrePerSecond| MicrometrePerSecond(speed.0 / 2);
         let expected = self.expected.speed;
         let started = expected.scaled(safety.following_share.0, Divisor::at_least_one(1_000));
         let least = half(expected).min(safety.following_speed);
-        let lately = MicrometrePerSecond(self.seen_lately / SEEN_STEPS);
+        let lately = MicrometrePerSecond(self.measured_speed_sum / AVERAGE_STEPS);
         started.max(least).max(half(lately.min(self.running.speed)))
     }
 }
 
-/// A speed behind two equal lags.
+/// A speed after two equal lags.
 #[derive(Clone, Copy, Debug, Default)]
-struct Expected {
-    /// Behind one of them.
+struct ExpectedSpeed {
+    /// After the first.
     opening: MicrometrePerSecond,
-    /// Behind both.
+    /// After both.
     speed: MicrometrePerSecond,
 }
 
-impl Expected {
+impl ExpectedSpeed {
     /// One step: rises slowly towards `target`, falls with it.
     fn follow(&mut self, target: MicrometrePerSecond, lag: Divisor) {
         let behind = |target: MicrometrePerSecond, speed: MicrometrePerSecond| {
@@ -337,11 +343,11 @@ impl Expected {
     }
 }
 
-/// Travel that a hitch may owe at its start: more as it comes off the lower end stop, which carried its load.
-fn onset_debt(
+/// Allowed missing travel at the start: more at the lower end stop, which carried the load.
+fn onset_allowance(
     angle: MilliDegree,
     lifts: bool,
-    machine: Machine<'_>,
+    machine: MachineModel<'_>,
     safety: &SafetyParameters,
 ) -> MilliDegree {
     match lifts && angle <= machine.ends.0 + safety.end_zone {
@@ -355,7 +361,7 @@ fn is_held(
     angle: MilliDegree,
     lifts: bool,
     inputs: &Inputs,
-    machine: Machine<'_>,
+    machine: MachineModel<'_>,
     safety: &SafetyParameters,
 ) -> bool {
     let hydraulics = machine.hydraulics;

@@ -3,10 +3,10 @@
 //! It may depend on `hitch-quantities` alone. Nothing of control is in its reach, nor is it in the reach of control:
 //! `hitch-controller` hands the one's command to the other.
 //!
-//! It gets requested currents and the raw inputs, and limits the currents that are regulated ([`Envelope::pass`]): inside
-//! the coils' limits, rising no faster than their slope, never both coils, only on a command of this step, only after the
-//! operator has touched lever or button, and only while no row of its table ([`rows`]) holds. Otherwise both coils are
-//! off. The regulation then makes pulse widths of these currents. They pass through the envelope as well
+//! It gets requested currents and the raw inputs, and limits the currents that are regulated ([`Envelope::pass`]):
+//! inside the coils' limits, rising no faster than their slope, never both coils, only on a command of this step, only
+//! after the operator has touched lever or button, and only while no row of its table ([`rows`]) holds. Otherwise both
+//! coils are off. The regulation then makes pulse widths of these currents. They pass through the envelope as well
 //! ([`Envelope::release`]), which sets those of a coil without a current to zero. Nothing comes between that and the
 //! drivers.
 //!
@@ -21,19 +21,20 @@
 //!                                                                              +---------+
 //! ```
 //!
-//! Its parts are watches, each for some rows of the table: `angle` (with `following` and `tremble`), `coils`, `supply`,
+//! Its parts are watches, each for some rows of the table: `angle` (with `following` and `noise_detector`), `coils`,
+//! `supply`,
 //! `measuring`; `arming` for the operator's touch; and [`rows`], which counts how long each row has been holding.
 //!
 //! ```
 //! use hitch_quantities::{CoilCurrents, Inputs, ValidCalibration};
-//! use hitch_safety::{Command, Envelope, Limits, Machine};
+//! use hitch_safety::{Command, Envelope, Limits, MachineModel};
 //!
 //! let calibration = ValidCalibration::nominal();
 //! let limits = Limits {
 //!     safety: &calibration.safety,
 //!     sensors: &calibration.sensors,
 //!     damaged: false,
-//!     machine: Machine::of(&calibration),
+//!     machine: MachineModel::of(&calibration),
 //!     slow_start: false,
 //! };
 //! let mut envelope = Envelope::default();
@@ -55,9 +56,9 @@ mod coils;
 mod command;
 mod following;
 mod measuring;
+mod noise_detector;
 pub mod rows;
 mod supply;
-mod tremble;
 
 use hitch_quantities::calibration::design_parameters::{SafetyParameters, SensorParameters};
 use hitch_quantities::units::{Duty, MilliAmp, Millisecond};
@@ -67,7 +68,7 @@ use angle::AngleWatch;
 use arming::Arming;
 use coils::CoilWatch;
 pub use command::{Command, Step};
-pub use following::Machine;
+pub use following::MachineModel;
 use measuring::MeasuringFaults;
 use rows::{Debounce, Rows};
 use supply::SupplyWatch;
@@ -85,9 +86,9 @@ pub struct Limits<'a> {
     /// They, or others of their calibration, have changed in memory.
     pub damaged: bool,
     /// What currents do to the hitch.
-    pub machine: Machine<'a>,
-    /// The command's currents rise slowly from below any threshold, as in teaching. Then the thresholds needn't be those
-    /// of the calibration: nothing is owed, and nothing is held back, before motion is seen.
+    pub machine: MachineModel<'a>,
+    /// The command's currents rise slowly from below any threshold, as in teaching. Then the thresholds needn't be
+    /// those of the calibration: nothing is required, and nothing is held back, before motion is seen.
     pub slow_start: bool,
 }
 
@@ -149,8 +150,8 @@ impl Envelope {
         self.passed
     }
 
-    /// The last act of a step: the pulse widths that the drivers may get. Zero for a coil that [`Self::pass`] has let no
-    /// current pass to in this step; zero for both if it wasn't called since the last release.
+    /// The last act of a step: the pulse widths that the drivers may get. Zero for a coil that [`Self::pass`] has let
+    /// no current pass to in this step; zero for both if it wasn't called since the last release.
     #[must_use]
     pub fn release(&mut self, duties: Duties) -> Duties {
         let released = core::mem::take(&mut self.released);
@@ -179,8 +180,8 @@ impl Envelope {
 
     /// True while the lowering coil is cut, since the hitch stands still and may lie on the ground.
     #[must_use]
-    pub const fn has_landed(&self) -> bool {
-        self.angle.has_landed()
+    pub const fn has_ground_contact(&self) -> bool {
+        self.angle.has_ground_contact()
     }
 
     /// True if the command was more than a hitch gets that has yet to start: its ramp has to wait.
@@ -247,11 +248,11 @@ impl Envelope {
             // A step with both coils off, so that the angle watch starts anew.
             return CoilCurrents::OFF;
         }
-        let gentle = self.angle.gentle(limits).unwrap_or(CoilCurrents {
+        let onset_limit = self.angle.onset_limit(limits).unwrap_or(CoilCurrents {
             lift: parameters.lift_current_limit,
             lower: parameters.lower_current_limit,
         });
-        self.holds_back = command.lift > gentle.lift || command.lower > gentle.lower;
+        self.holds_back = command.lift > onset_limit.lift || command.lower > onset_limit.lower;
         let bound = |command: MilliAmp, passed: MilliAmp, limit: MilliAmp| {
             let rising = passed.max(parameters.free_current) + MilliAmp(parameters.current_slope.0);
             command.max(MilliAmp::ZERO).min(limit).min(rising)
@@ -260,12 +261,12 @@ impl Envelope {
             lift: bound(
                 command.lift,
                 self.passed.lift,
-                parameters.lift_current_limit.min(gentle.lift),
+                parameters.lift_current_limit.min(onset_limit.lift),
             ),
             lower: bound(
                 command.lower,
                 self.passed.lower,
-                parameters.lower_current_limit.min(gentle.lower),
+                parameters.lower_current_limit.min(onset_limit.lower),
             ),
         }
     }

@@ -13,13 +13,13 @@ use hitch_plant::Model;
 use hitch_protocols::can::Frame;
 
 use super::loop_::{calibration, load_kg};
-use crate::can_door::CanDoor;
 use crate::ecu::{
     Bench, Bus, CutFlash, EcuMachine, Emulator, FLASH_BYTES, MachineError, OnHost, Order, QEMU,
     delivered, find_image,
 };
 use crate::error::Error;
 use crate::output::{check_writable, no_stdout, write_file};
+use crate::slcan_server::SlcanServer;
 use crate::status_line::StatusLine;
 
 /// Where the hitch is at the start, degree.
@@ -75,8 +75,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
     args.flash.as_deref().map_or(Ok(()), check_writable)?;
     let model = hitch_model_file::named(&args.model)?;
     let flash = flash(args)?;
-    let door = args.can.as_deref().map(open_door).transpose()?;
-    let mut session = Session::new(&model, args, door);
+    let server = args.can.as_deref().map(open_slcan_server).transpose()?;
+    let mut session = Session::new(&model, args, server);
     if args.host {
         let cells = CutFlash::holding(flash);
         let result = session.run(&mut OnHost::start(cells.clone()));
@@ -126,8 +126,8 @@ fn keep(path: Option<&Path>, flash: &[u8]) -> Result<(), Error> {
     path.map_or(Ok(()), |path| write_file(path, flash))
 }
 
-fn open_door(address: &str) -> Result<CanDoor, Error> {
-    CanDoor::open(address).map_err(|error| {
+fn open_slcan_server(address: &str) -> Result<SlcanServer, Error> {
+    SlcanServer::open(address).map_err(|error| {
         Error::Usage(format!(
             "--can {address}: can't be opened: {error}; name an address of this machine and a free port, as in 127.0.0.1:7701"
         ))
@@ -163,7 +163,8 @@ fn orders() -> Receiver<String> {
     let (sender, receiver) = mpsc::channel();
     thread::spawn(move || {
         for line in io::stdin().lock().split(b'\n').map_while(Result::ok) {
-            // Bytes that are no text become U+FFFD, which is in no order: the line is reported, and the next one obeyed.
+            // Bytes that are no text become U+FFFD, which is in no order: the line is reported, and the next one
+            // obeyed.
             let line = String::from_utf8_lossy(&line).into_owned();
             if sender.send(line).is_err() {
                 return;
@@ -184,14 +185,14 @@ struct Session<'m> {
 }
 
 impl<'m> Session<'m> {
-    fn new(model: &'m Model, args: &Args, door: Option<CanDoor>) -> Self {
+    fn new(model: &'m Model, args: &Args, server: Option<SlcanServer>) -> Self {
         /// Oil temperature of the rig's data, C.
         const OIL_TEMPERATURE_C: f64 = 40.0;
-        let address = door.as_ref().and_then(|door| door.address().ok());
+        let address = server.as_ref().and_then(|server| server.address().ok());
         Self {
             address,
             bench: Bench::new(model, args.load, OIL_TEMPERATURE_C, START_DEG, 1),
-            bus: door.map(Bus::behind),
+            bus: server.map(Bus::served_by),
             status: StatusLine::start(),
             last_ms: args
                 .seconds
@@ -210,17 +211,17 @@ impl<'m> Session<'m> {
         let mut due = Instant::now();
         for time_ms in 0..self.last_ms {
             if time_ms == PICK_UP_MS {
-                self.bench.operator.obey(Order::Lever(START_DEG));
+                self.bench.operator.apply(Order::Lever(START_DEG));
             }
             if !self.take_orders(&orders, machine)? {
                 break;
             }
-            let heard = self.bus.as_mut().map(Bus::heard).unwrap_or_default();
+            let received = self.bus.as_mut().map(Bus::receive).unwrap_or_default();
             said.clear();
-            let moment = self.bench.tick(machine, &heard, &mut said);
+            let moment = self.bench.tick(machine, &received, &mut said);
             let moment = moment.map_err(|error: MachineError| failed(error))?;
             let clients = self.bus.as_mut().map(|bus| {
-                bus.tell(&said);
+                bus.send(&said);
                 bus.connected()
             });
             self.status.show(&moment, clients).map_err(Error::Stdout)?;
@@ -244,7 +245,7 @@ impl<'m> Session<'m> {
                 _ if line.trim().is_empty() => {}
                 Ok(Order::Quit) => return Ok(false),
                 Ok(Order::Power) => machine.power_cycle().map_err(failed)?,
-                Ok(order) => self.bench.operator.obey(order),
+                Ok(order) => self.bench.operator.apply(order),
                 // A slip of the tongue is no reason to end.
                 Err(what) => self.status.say(&what),
             }

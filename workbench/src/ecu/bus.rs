@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use hitch_protocols::can::Frame;
 
-use crate::can_door::CanDoor;
+use crate::slcan_server::SlcanServer;
 
 /// Frames of eight bytes that 250 kbit/s carry in a millisecond, at most.
 const MOST_FRAMES: usize = 2;
@@ -14,35 +14,35 @@ const MOST_WAITING: usize = 1_000;
 /// The bus.
 #[derive(Debug)]
 pub struct Bus {
-    door: CanDoor,
+    server: SlcanServer,
     waiting: VecDeque<Frame>,
 }
 
 impl Bus {
-    /// The bus behind a door.
-    pub fn behind(door: CanDoor) -> Self {
+    /// The bus served by an SLCAN server.
+    pub fn served_by(server: SlcanServer) -> Self {
         Self {
-            door,
+            server,
             waiting: VecDeque::new(),
         }
     }
 
     /// How many are connected.
     pub fn connected(&self) -> usize {
-        self.door.connected()
+        self.server.connected()
     }
 
-    /// What comes to the ECU in this millisecond.
-    pub fn heard(&mut self) -> Vec<Frame> {
+    /// Frames that the ECU receives in this millisecond.
+    pub fn receive(&mut self) -> Vec<Frame> {
         if self.waiting.len() < MOST_WAITING {
-            self.waiting.extend(self.door.receive());
+            self.waiting.extend(self.server.receive());
         }
         let count = self.waiting.len().min(MOST_FRAMES);
         self.waiting.drain(..count).collect()
     }
 
-    /// Passes on what the ECU said.
-    pub fn tell(&mut self, said: &[Frame]) {
-        said.iter().for_each(|frame| self.door.send(frame));
+    /// Passes on what the ECU has sent.
+    pub fn send(&mut self, frames: &[Frame]) {
+        frames.iter().for_each(|frame| self.server.send(frame));
     }
 }

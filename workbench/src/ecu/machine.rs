@@ -3,7 +3,7 @@
 use std::io;
 
 use hitch_ecu::link::Reply;
-use hitch_ecu::{BoardScaling, Contacts, Machine};
+use hitch_ecu::{BoardScaling, Contacts, HostedEcu};
 use hitch_protocols::can::Frame;
 
 use super::flash::CutFlash;
@@ -46,20 +46,20 @@ const SERIAL_NUMBER: u32 = 1;
 #[derive(Debug)]
 pub struct OnHost {
     flash: CutFlash,
-    machine: Machine<CutFlash>,
+    machine: HostedEcu<CutFlash>,
 }
 
 impl OnHost {
     /// Powers it up.
     pub fn start(flash: CutFlash) -> Self {
         Self {
-            machine: Machine::start(flash.regions(), SERIAL_NUMBER, BoardScaling::NOMINAL),
+            machine: HostedEcu::start(flash.regions(), SERIAL_NUMBER, BoardScaling::NOMINAL),
             flash,
         }
     }
 
     /// The application.
-    pub const fn machine(&self) -> &Machine<CutFlash> {
+    pub const fn machine(&self) -> &HostedEcu<CutFlash> {
         &self.machine
     }
 }
@@ -72,12 +72,12 @@ impl EcuMachine for OnHost {
         said: &mut Vec<Frame>,
     ) -> Result<Reply, MachineError> {
         let reply = self.machine.tick(contacts, heard);
-        said.extend_from_slice(self.machine.said());
+        said.extend_from_slice(self.machine.sent());
         Ok(reply)
     }
 
     fn power_cycle(&mut self) -> Result<(), MachineError> {
-        self.machine = Machine::start(self.flash.regions(), SERIAL_NUMBER, BoardScaling::NOMINAL);
+        self.machine = HostedEcu::start(self.flash.regions(), SERIAL_NUMBER, BoardScaling::NOMINAL);
         Ok(())
     }
 }

@@ -95,7 +95,7 @@ impl Operator {
     }
 
     /// Does what can be done with hands; power isn't among it.
-    pub fn obey(&mut self, order: Order) {
+    pub fn apply(&mut self, order: Order) {
         match order {
             Order::Lever(angle_deg) => self.lever_target_deg = angle_deg,
             Order::Contact(contact, closed) => self.panel = self.panel.with(contact, closed),

@@ -1,4 +1,4 @@
-//! What moves teach about this machine, kept until the supply goes.
+//! Adaptation to this machine by its moves; lost with the supply.
 
-pub mod learning;
-pub mod offset;
+pub mod threshold_offset;
+pub mod valve_adaptation;

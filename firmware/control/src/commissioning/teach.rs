@@ -29,8 +29,8 @@ use hitch_quantities::{Calibration, CoilCurrents};
 use super::teach_lag::{STEP, Way};
 use super::teach_twin::Twin;
 use super::{teach_hysteresis, teach_lag};
-use crate::adaptation::offset::FIRST_LIFT;
-use crate::estimation::lag::known_lags;
+use crate::adaptation::threshold_offset::INITIAL_LIFT_OFFSET;
+use crate::estimation::spool_lag::nominal_lags;
 use crate::valve::drop_scale::DropScale;
 use crate::valve::phase::Direction;
 
@@ -81,7 +81,7 @@ impl Taught {
     pub fn applied_to(&self, calibration: &Calibration) -> Calibration {
         let mut taught = calibration.clone();
         // What an untaught lift valve is taken to open late by has been found with the rest.
-        shift(&mut taught.lift, self.lift_shift - FIRST_LIFT);
+        shift(&mut taught.lift, self.lift_shift - INITIAL_LIFT_OFFSET);
         shift(&mut taught.lower, self.lower_shift);
         taught.hydraulics.spool_lag = self.lift_lag;
         taught.hydraulics.lower_spool_lag = self.lower_lag;
@@ -113,17 +113,17 @@ fn mean_offset(lower: MilliDegree, upper: MilliDegree, calibration: &Calibration
     MilliDegree(Divisor::at_least_one(2).divide(sum.0))
 }
 
-/// What teaching is doing.
+/// Stage of teaching.
 #[derive(Clone, Copy, Debug)]
-enum Step {
+enum TeachStage {
     Rest(Millisecond),
     Ramp(Ramp),
     Open(Opening),
-    Drive(Drive),
+    Drive(TeachDrive),
     Done,
 }
 
-/// A ramp, and its twin on the calibration's curve.
+/// Current ramp, with the model of the calibrated curve.
 #[derive(Clone, Copy, Debug)]
 struct Ramp {
     start: Micrometre,
@@ -134,7 +134,7 @@ struct Ramp {
     twin_at: Option<MilliAmp>,
 }
 
-/// After a step of current, and its twin.
+/// Response to a current step, and that of the model.
 #[derive(Clone, Copy, Debug)]
 struct Opening {
     start: Micrometre,
@@ -144,9 +144,9 @@ struct Opening {
     ways: [Way; 2],
 }
 
-/// On the way to an end.
+/// Move to an end of the travel.
 #[derive(Clone, Copy, Debug)]
-struct Drive {
+struct TeachDrive {
     looked: Micrometre,
     age: Millisecond,
     total: Millisecond,
@@ -155,7 +155,7 @@ struct Drive {
 /// The procedure.
 #[derive(Clone, Copy, Debug)]
 pub struct Teach {
-    step: Step,
+    step: TeachStage,
     /// Ramps, drives and steps that are over.
     finished: usize,
     filtered_udeg: Option<i32>,
@@ -170,7 +170,7 @@ pub struct Teach {
 impl Default for Teach {
     fn default() -> Self {
         Self {
-            step: Step::Rest(Millisecond::ZERO),
+            step: TeachStage::Rest(Millisecond::ZERO),
             finished: 0,
             filtered_udeg: None,
             shifts: [[MilliAmp::ZERO; REPEATS]; 2],
@@ -196,7 +196,7 @@ impl Teach {
 
     fn end(&mut self, result: Result<Taught, TeachError>) {
         self.result = self.result.or(Some(result));
-        self.step = Step::Done;
+        self.step = TeachStage::Done;
     }
 
     /// One step; the currents to ask for.
@@ -211,11 +211,13 @@ impl Teach {
             .travel(self.filtered(angle, calibration));
         let direction = self.direction();
         let outcome = match self.step {
-            Step::Rest(rested) => Ok(self.rest(rested, travel, calibration)),
-            Step::Ramp(ramp) => self.ramp(ramp, direction, travel, scale, calibration),
-            Step::Open(opening) => Ok(self.open(opening, direction, travel, scale, calibration)),
-            Step::Drive(drive) => self.drive(drive, direction, travel, calibration),
-            Step::Done => Ok(MilliAmp::ZERO),
+            TeachStage::Rest(rested) => Ok(self.rest(rested, travel, calibration)),
+            TeachStage::Ramp(ramp) => self.ramp(ramp, direction, travel, scale, calibration),
+            TeachStage::Open(opening) => {
+                Ok(self.open(opening, direction, travel, scale, calibration))
+            }
+            TeachStage::Drive(drive) => self.drive(drive, direction, travel, calibration),
+            TeachStage::Done => Ok(MilliAmp::ZERO),
         };
         let current = outcome.unwrap_or_else(|error| {
             self.end(Err(error));
@@ -255,9 +257,9 @@ impl Teach {
     ) -> MilliAmp {
         let parameters = &calibration.teach;
         self.step = if rested < parameters.rest_time {
-            Step::Rest(rested.next())
+            TeachStage::Rest(rested.next())
         } else if self.finished < RAMPS {
-            Step::Ramp(Ramp {
+            TeachStage::Ramp(Ramp {
                 start: travel,
                 current_ua: parameters.ramp_start.0.saturating_mul(1000),
                 twin: Twin::default(),
@@ -265,14 +267,14 @@ impl Teach {
                 twin_at: None,
             })
         } else if self.finished < RAMPS_AND_DRIVES {
-            Step::Drive(Drive {
+            TeachStage::Drive(TeachDrive {
                 looked: travel,
                 // A cylinder that was pressed against its end has to lose 150 bar first.
                 age: -parameters.rest_time,
                 total: Millisecond::ZERO,
             })
         } else {
-            Step::Open(Opening {
+            TeachStage::Open(Opening {
                 start: travel,
                 age: Millisecond::ZERO,
                 twin: Twin::default(),
@@ -306,7 +308,7 @@ impl Teach {
         {
             ramp.twin_at = ramp.twin_at.or(Some(current));
         }
-        self.step = Step::Ramp(ramp);
+        self.step = TeachStage::Ramp(ramp);
         if let Some((moved_at, twin_at)) = ramp.moved_at.zip(ramp.twin_at) {
             self.note_shift(moved_at - twin_at, direction, parameters)?;
             return Ok(MilliAmp::ZERO);
@@ -338,7 +340,7 @@ impl Teach {
             *slot = shift;
         }
         self.finished = self.finished.saturating_add(1);
-        self.step = Step::Rest(Millisecond::ZERO);
+        self.step = TeachStage::Rest(Millisecond::ZERO);
         if self.finished < RAMPS {
             return Ok(());
         }
@@ -369,18 +371,18 @@ impl Teach {
             .0
             .saturating_mul(1000)
             .saturating_sub(falling.saturating_mul(parameters.ramp_slope.0));
-        let on_curve = MilliAmp(Divisor::THOUSAND.divide(current_ua));
+        let to_nominal_currents = MilliAmp(Divisor::THOUSAND.divide(current_ua));
         let travelled = Micrometre(direction.sign((travel - opening.start).0));
         let twin_travelled = opening.twin.step(current_ua, direction, scale, calibration);
         let [real, twin] = &mut opening.ways;
         real.note(opening.age, travelled);
         twin.note(opening.age, twin_travelled);
         opening.age = opening.age.next();
-        if on_curve > parameters.ramp_start {
-            self.step = Step::Open(opening);
-            return on_curve + mean(&self.shifts[valve]);
+        if to_nominal_currents > parameters.ramp_start {
+            self.step = TeachStage::Open(opening);
+            return to_nominal_currents + mean(&self.shifts[valve]);
         }
-        self.step = Step::Rest(Millisecond::ZERO);
+        self.step = TeachStage::Rest(Millisecond::ZERO);
         if opening.start.0 > parameters.stroke.0 >> 2 {
             let [real, twin] = opening.ways;
             self.note_opening(&real, &twin, calibration);
@@ -392,7 +394,7 @@ impl Teach {
         let valve = self.finished % 2;
         let (motion, hydraulics) = (&calibration.motion, &calibration.hydraulics);
         let usual = [motion.lift_trail, motion.lowering_trail][valve];
-        let known = known_lags(hydraulics)[valve];
+        let known = nominal_lags(hydraulics)[valve];
         self.lags[valve] = teach_lag::found(real, twin, usual, known, motion.lag_limit);
         let rate = calibration.teach.ramp_slope;
         let hysteresis = teach_hysteresis::found(real, twin, rate, hydraulics.hysteresis);
@@ -431,7 +433,7 @@ impl Teach {
     /// One step towards an end, which is where the hitch stands still.
     fn drive(
         &mut self,
-        mut drive: Drive,
+        mut drive: TeachDrive,
         direction: Direction,
         travel: Micrometre,
         calibration: &Calibration,
@@ -450,7 +452,7 @@ impl Teach {
             drive.age = Millisecond::ZERO;
             drive.looked = travel;
         }
-        self.step = Step::Drive(drive);
+        self.step = TeachStage::Drive(drive);
         let valve = self.finished % 2;
         Ok(Self::driving(calibration)[valve] + mean(&self.shifts[valve]))
     }
@@ -462,7 +464,7 @@ impl Teach {
     ) -> Result<(), TeachError> {
         let angle = MilliDegree(Divisor::THOUSAND.divide(self.filtered_udeg.unwrap_or(0)));
         let [lower, upper] = &mut self.ends;
-        self.step = Step::Rest(Millisecond::ZERO);
+        self.step = TeachStage::Rest(Millisecond::ZERO);
         self.finished = self.finished.saturating_add(1);
         if direction == Direction::Lift {
             *upper = angle;

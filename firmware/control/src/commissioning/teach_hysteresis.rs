@@ -7,9 +7,9 @@
 //! way while it falls = v (H / s + c)      c: the curve's, and the lag's      H = s (t - t_twin)     t: that way over v
 //! ```
 //!
-//! That leaves out by how much the spool's lag differs from the twin's: 10 ms make 4 mA of it. A valve with less than the
-//! calibration says (dither can take all of it) is left at that: believing in more than there is makes a hitch stop a bit
-//! sooner, believing in less sends it beyond its set point.
+//! That leaves out by how much the spool's lag differs from the twin's: 10 ms make 4 mA of it. A valve with less than
+//! the calibration says (dither can take all of it) is left at that: believing in more than there is makes a hitch stop
+//! a bit sooner, believing in less sends it beyond its set point.
 
 use hitch_quantities::fixed::Divisor;
 use hitch_quantities::units::{MilliAmp, MilliAmpPerSecond};
@@ -23,7 +23,7 @@ const LONGEST: i32 = 750;
 /// at `rate`: at least what is `known`, and just that if one of them stood still.
 #[must_use]
 pub fn found(real: &Way, twin: &Way, rate: MilliAmpPerSecond, known: MilliAmp) -> MilliAmp {
-    let (Some(real), Some(twin)) = (real.run_on(), twin.run_on()) else {
+    let (Some(real), Some(twin)) = (real.coasting_time(), twin.coasting_time()) else {
         return known;
     };
     let later = real.saturating_sub(twin).clamp(0, LONGEST);
@@ -41,11 +41,11 @@ mod tests {
     const KNOWN: MilliAmp = MilliAmp(80);
     const RATE: MilliAmpPerSecond = MilliAmpPerSecond(400);
 
-    /// The way at a steady `speed`, um/ms, which goes on for `run_on` ms once the current falls.
-    fn way(speed: i32, run_on: i32) -> Way {
+    /// The way at a steady `speed`, um/ms, which goes on for `coasting_time` ms once the current falls.
+    fn way(speed: i32, coasting_time: i32) -> Way {
         let mut way = Way::default();
         for age in 0..STEP.0 + 1_500 {
-            let gone = Micrometre(speed * age.min(STEP.0 + run_on));
+            let gone = Micrometre(speed * age.min(STEP.0 + coasting_time));
             way.note(Millisecond(age), gone);
         }
         way
@@ -59,8 +59,8 @@ mod tests {
     fn the_hysteresis_is_what_the_current_falls_until_the_hitch_slows_down() {
         let twin = way(17, 130);
         for speed in [8, 17, 30] {
-            for (run_on, exact) in [(380, 100), (505, 150), (630, 200)] {
-                let found = hysteresis(&way(speed, run_on), &twin);
+            for (coasting_time, exact) in [(380, 100), (505, 150), (630, 200)] {
+                let found = hysteresis(&way(speed, coasting_time), &twin);
                 assert!((found - exact).abs() <= 1, "{found}, not {exact} mA");
             }
         }

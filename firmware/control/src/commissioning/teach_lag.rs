@@ -58,7 +58,7 @@ impl Way {
 
     /// How long the way since the windows would have taken at the steady speed, ms.
     #[must_use]
-    pub fn run_on(&self) -> Option<i32> {
+    pub fn coasting_time(&self) -> Option<i32> {
         self.time_for((self.last - self.steady).0, WINDOW * (LATE - EARLY))
     }
 

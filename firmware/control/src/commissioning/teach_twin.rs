@@ -5,7 +5,7 @@ use hitch_quantities::fixed::Divisor;
 use hitch_quantities::piston::piston_speed;
 use hitch_quantities::units::{Micrometre, MilliAmp};
 
-use crate::estimation::lag::known_lags;
+use crate::estimation::spool_lag::nominal_lags;
 use crate::valve::drop_scale::DropScale;
 use crate::valve::phase::Direction;
 
@@ -26,7 +26,7 @@ impl Twin {
         scale: DropScale,
         calibration: &Calibration,
     ) -> Micrometre {
-        let [lift_lag, lower_lag] = known_lags(&calibration.hydraulics);
+        let [lift_lag, lower_lag] = nominal_lags(&calibration.hydraulics);
         let lag = match direction {
             Direction::Lift => lift_lag,
             Direction::Lower => lower_lag,

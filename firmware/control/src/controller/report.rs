@@ -1,4 +1,4 @@
-//! What control says of itself.
+//! Outputs of control.
 
 use hitch_quantities::{Outputs, State};
 
@@ -28,13 +28,13 @@ impl Control {
                 },
             ) => State::Lowering,
             _ if self.float.is_floating() => State::Floating,
-            _ if self.saturation.rests() => State::Stalled,
+            _ if self.stall.is_waiting() => State::Stalled,
             (_, Phase::Settling { .. }) => State::Settling,
             (_, Phase::Holding) => State::Holding,
         }
     }
 
-    /// What control has to say of a step. Currents, pulse widths and trip are not its own: they are left out.
+    /// Outputs of a step, without currents, pulse widths and trip, which the caller adds.
     #[must_use]
     pub fn outputs(&self) -> Outputs {
         Outputs {

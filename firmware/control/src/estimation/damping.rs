@@ -1,47 +1,46 @@
-//! Damps a load that swings on its oil while it is lifted.
+//! Active damping of the load's oscillation on its oil during a lift.
 //!
-//! Oil and the air in it are a spring under the load, at 5 to 12 Hz, that hardly anything damps: a lift that begins
-//! in 40 ms still swings when it has to stop, and where it comes to rest is then a matter of the moment. An outflow
-//! that goes with the pressure would damp it, and a valve that is open for the lift can make one. With what the
-//! load's speed `v` and the pressure `p` are off by, the oil's compliance `C`, and a demand `g v` that the spool
-//! follows with its lag `T`:
+//! The oil and its air are a spring under the load, at 5 to 12 Hz, with hardly any damping. A lift that begins in 40 ms
+//! still oscillates when it has to stop, so its rest position would depend on the phase of the oscillation. An outflow
+//! proportional to the pressure damps it, and an open lift valve can produce one. With the deviations of load speed `v`
+//! and pressure `p`, the oil compliance `C`, and a demand `g v` that the spool follows with its lag `T`:
 //!
 //! ```text
 //! M v' = A p     C p' = A (u - v)     u + T u' = g v          w^2 = A^2 / (M C)
 //! v'' = -w^2 (1 - g / (1 + j w T)) v          damping ratio:  g w T / (2 (1 + w^2 T^2))
 //! ```
 //!
-//! So it is the spool's own lag that turns a demand which goes *with* the speed of the swing into one that is
-//! against its pressure. The ratio is greatest where `w T` is one, and `g` = 1/2 makes it 0.12 there, and 0.08 at
-//! 10 Hz behind 45 ms: in the two periods that braking takes, a third of the swing is left. What `g` is beyond that
-//! feeds what the sensors see of noise and their lag.
+//! The spool lag shifts the phase of the demand, so that positive feedback of the speed becomes negative feedback of
+//! the pressure. The ratio is largest at `w T = 1`. A gain `g` of 1/2 gives 0.12 there, and 0.08 at 10 Hz with 45 ms: a
+//! third of the amplitude remains after the two periods that braking takes. A larger gain amplifies sensor noise and
+//! lag.
 //!
-//! A load that swings on its compensator ([`super::swing`]) does it by what its valve gives, and more than twice as
-//! slow: that is no swing to be damped so. Nor are lowering loads, whose valve lets more through the higher the
-//! pressure is.
+//! An oscillation on the compensator ([`super::compensator_oscillation`]) is caused by the valve flow and has less than
+//! half of that frequency; it is not damped by this law. A lowering load needs no damping: the flow of its valve rises
+//! with the pressure.
 
 use hitch_quantities::units::MicrometrePerSecond;
 
-/// The speed of the hitch, as soon as the sensor tells it.
+/// Measured speed of the hitch with a short filter.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Damping {
-    place_nm: i32,
+    position_nm: i32,
     /// Nanometres a millisecond.
     speed: i32,
 }
 
 impl Damping {
-    /// One step. The speed is smoothed over 8 and 4 ms: noise of 0.02 degree makes 2 mm/s of it, and a swing of 10 Hz
-    /// is an eighth of its period late.
+    /// One step. The speed is low-passed with 8 and 4 ms: noise of 0.02 degree gives 2 mm/s, and an oscillation of 10
+    /// Hz is delayed by an eighth of its period.
     pub fn step(&mut self, measured_nm: i32) {
-        let speed = measured_nm.saturating_sub(self.place_nm) >> 3;
-        self.place_nm = self.place_nm.saturating_add(speed);
+        let speed = measured_nm.saturating_sub(self.position_nm) >> 3;
+        self.position_nm = self.position_nm.saturating_add(speed);
         self.speed = self
             .speed
             .saturating_add(speed.saturating_sub(self.speed) >> 2);
     }
 
-    /// What to ask the valve for beyond the `expected` speed, which is without the swing.
+    /// Speed correction; `expected`: speed without the oscillation.
     #[must_use]
     pub fn demand(&self, expected: MicrometrePerSecond) -> MicrometrePerSecond {
         MicrometrePerSecond(self.speed.saturating_sub(expected.0) >> 1)
@@ -58,7 +57,7 @@ mod tests {
         const STEP_S: f64 = 1e-3;
         const SPEED: MicrometrePerSecond = MicrometrePerSecond(50_000);
         let squared = (TAU * frequency_hz).powi(2);
-        let (mut damping, mut place_nm) = (Damping::default(), 0.0);
+        let (mut damping, mut position_nm) = (Damping::default(), 0.0);
         // Speeds in um/s beyond the expected one.
         let (mut swing, mut acceleration, mut flow) = (0.0, 0.0, 0.0);
         let mut greatest = 0.0_f64;
@@ -66,7 +65,7 @@ mod tests {
             if step == 500 {
                 swing = 20_000.0;
             }
-            damping.step(place_nm as i32);
+            damping.step(position_nm as i32);
             let demand = match damped {
                 true => f64::from(damping.demand(SPEED).0),
                 false => 0.0,
@@ -80,7 +79,7 @@ mod tests {
                 acceleration += squared * (flow - swing) * STEP_S;
                 swing += acceleration * STEP_S;
             }
-            place_nm += f64::from(SPEED.0) + swing;
+            position_nm += f64::from(SPEED.0) + swing;
             let at = f64::from(step) * STEP_S - 0.5 - seconds;
             if at.abs() < 0.5 / frequency_hz {
                 greatest = greatest.max(swing.abs());

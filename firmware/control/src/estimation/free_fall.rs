@@ -1,4 +1,5 @@
-//! How a load comes down through an opening: gravity pulls, and what holds it goes with the square of its speed.
+//! Model of a load that sinks through a valve opening: gravity accelerates it, and the pressure rises with the square
+//! of its speed.
 //!
 //! The cylinder carries the weight and the load's acceleration, `p = p_rest (1 + R a / g)` with the rise `R` of the
 //! load over travel of the piston, and the flow through an opening goes with the root of `p`. So with the speed `v_s`
@@ -8,8 +9,8 @@
 //! v' = (g / R) (1 - (v / v_s)^2)
 //! ```
 //!
-//! A valve that opens fast can't make the load fall faster than freely, and one that closes lets more pass than at
-//! rest. Near the settled speed that is a lag of `v_s R / 2g`, 40 ms at 190 mm/s, the same for every weight.
+//! A fast opening cannot exceed free fall, and a closing valve passes more flow than in steady state. Near the settled
+//! speed that is a lag of `v_s R / 2g`, 40 ms at 190 mm/s, the same for every weight.
 
 use hitch_quantities::fixed::{Divisor, mul_div};
 use hitch_quantities::units::{Micrometre, MicrometrePerSecond};
@@ -50,7 +51,7 @@ fn coarse_squared(speed: MicrometrePerSecond) -> i32 {
 /// That is the `f` for which `x + T v_s + f(v)` moves with the demanded speed: `f' v' = v_s - v`, so with the law above
 /// near the settled speed `f = v^2 R / 4g`.
 #[must_use]
-pub fn run_out(speed: MicrometrePerSecond) -> Micrometre {
+pub fn free_fall_stopping_distance(speed: MicrometrePerSecond) -> Micrometre {
     Micrometre(FOUR_FALLS.divide(coarse_squared(speed)))
 }
 
@@ -105,10 +106,10 @@ mod tests {
     }
 
     #[test]
-    fn a_ramp_to_rest_ends_where_the_run_out_says() {
+    fn a_ramp_to_rest_ends_at_the_stopping_distance() {
         // The opening closes gently, without a spool's lag.
         let mut speed = MicrometrePerSecond(150_000);
-        let expected = run_out(speed).0;
+        let expected = free_fall_stopping_distance(speed).0;
         let (mut way_nm, mut valve_nm) = (0, 0);
         for settled in (0..150_000).rev().step_by(250) {
             speed = next_speed(speed, MicrometrePerSecond(settled));

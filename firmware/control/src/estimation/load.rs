@@ -9,7 +9,7 @@ use hitch_quantities::calibration::design_parameters::HydraulicParameters;
 use hitch_quantities::fixed::{Divisor, mul_div, mul_shift_16};
 use hitch_quantities::units::{MicrometrePerSecond, MilliBar};
 
-use super::motion::Motion;
+use super::motion_observer::MotionObserver;
 use crate::valve::phase::{Direction, Phase};
 
 /// Sinking slower than this (of the map's 280 mm/s) says more about the threshold than about the load.
@@ -52,7 +52,7 @@ impl LoadEstimate {
         &mut self,
         sensor: Option<MilliBar>,
         phase: Phase,
-        motion: &Motion,
+        motion: &MotionObserver,
         hydraulics: &HydraulicParameters,
     ) {
         match (phase, sensor) {
@@ -91,7 +91,7 @@ impl LoadEstimate {
         self.resting_microbar = self.resting_microbar.saturating_add(step);
     }
 
-    fn learn(&mut self, motion: &Motion, hydraulics: &HydraulicParameters) {
+    fn learn(&mut self, motion: &MotionObserver, hydraulics: &HydraulicParameters) {
         let model = -motion.model_speed();
         if model < TELLING_SPEED {
             return;

@@ -1,12 +1,13 @@
-//! Where the hitch is, how fast it goes, what it carries, and how its spools and its load behave on the way.
+//! State estimation: position, speed, load, and the dynamics of valves and load during a move.
 
-pub mod course;
+pub mod compensator_oscillation;
 pub mod damping;
 pub mod free_fall;
-pub mod lag;
-pub mod late;
+pub mod hysteresis_compensation;
 pub mod load;
-pub mod motion;
-pub mod outrun;
+pub mod motion_observer;
+pub mod move_record;
+pub mod peak_velocity_ratio;
 pub mod rest;
-pub mod swing;
+pub mod spool_lag;
+pub mod valve_closing_delay;

@@ -1,4 +1,4 @@
-//! Laws of motion: from a set point, or from a button, to the speed that is demanded.
+//! Control laws: from a set point or a button to the demanded speed.
 
 pub mod position;
 pub mod rate;

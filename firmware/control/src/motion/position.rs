@@ -1,27 +1,26 @@
-//! Position control: from the distance that remains to the piston speed that is right now.
+//! Position law: from the distance to the target to the demanded piston speed.
 //!
-//! The controlled point is where the hitch would come to rest ([`RunOn::resting_point`]); it moves with
-//! exactly the demanded speed, so any speed profile that falls to zero with the distance `r` arrives
-//! without overshoot. This one decelerates at a constant `a`, and for the last bit in proportion:
+//! The controlled variable is the predicted stop of the hitch ([`StopPrediction::predicted_stop`]). It moves with
+//! exactly the demanded speed, so a speed profile that falls to zero with the remaining distance `r` arrives without
+//! overshoot. The profile has a constant deceleration `a`, and a linear end with the gain `k`:
 //!
 //! ```text
 //! u(r) = k r                        r <= a / k^2
-//! u(r) = sqrt(2 a (r - a / 2k^2))   beyond; value and slope meet
+//! u(r) = sqrt(2 a (r - a / 2k^2))   above; value and slope are continuous
 //! ```
 //!
-//! It never asks for less than a creep speed: the end of the approach is then a cut of the coil, at the
-//! moment from which the closing spool carries the hitch onto the set point ([`RunOn::cut_point`]). A load that is
-//! stopped at a speed `v` swings on by `v / w` of its frequency on the oil, so that is slow: all of it is within the
-//! half degree in which the move is over, and costs no time. A hitch that came to rest elsewhere is brought there at some
-//! times that speed.
+//! The demand is never below the creep speed. The approach ends with a cut of the coil, from which the closing spool
+//! carries the hitch to the set point ([`StopPrediction::predicted_stop_after_cut`]). A load that stops from a speed
+//! `v` oscillates on its oil with the amplitude `v / w`, so the creep speed is low. The creep phase lies within the
+//! tolerance of half a degree, so it does not delay the move. A correction runs at a multiple of the creep speed.
 //!
-//! A load that swings back before its coil is cut seems to have some way left. A valve that opens for that once more
-//! gives the next swing its flow, and carries the hitch beyond: what has slowed down to its end stays slow.
+//! A load that oscillates backwards before the cut seems to have distance left. Reopening the valve for that would
+//! excite the next oscillation and cause an overshoot. Therefore a move does not accelerate again once the final
+//! approach has begun.
 //!
-//! A spool whose play was taken up while it slowed down, and that friction then holds back, needs the current of the
-//! way up again to move any further. At its slowest a move isn't worth that: a hitch may stand a tenth of a degree away
-//! from where its coil would be cut, and stay there with the coil on. So the band in which it is cut gets wider when
-//! the end takes long.
+//! A spool that has moved through its hysteresis and is held by friction needs the current of the rising branch to move
+//! again. The hitch may then stand still a tenth of a degree before the cut position, with its coil on. Therefore the
+//! stop band widens when the final approach takes long.
 
 use hitch_quantities::Calibration;
 use hitch_quantities::calibration::design_parameters::PositionParameters;
@@ -31,55 +30,54 @@ use hitch_quantities::units::{
     PerSecond,
 };
 
-use crate::estimation::motion::{Motion, RunOn};
-use crate::valve::closing::Closing;
+use crate::estimation::motion_observer::{MotionObserver, StopPrediction};
+use crate::valve::closing::ClosingCurves;
 use crate::valve::drop_scale::DropScale;
 use crate::valve::phase::{Demand, Direction, Phase};
 
-/// A correction goes so many times as fast as the slowest approach: a whole one at that speed would take seconds.
-const CORRECTION: i32 = 3;
-/// ... and a move that has slowed down so far doesn't get faster again: half of a millimetre is left then.
-const END: i32 = 6;
-/// A move that has been at its end for so long isn't waited for ...
-const PATIENCE: Millisecond = Millisecond(110);
-/// ... each millisecond from then on it is spared so much of its way, um: half of what it should go at its slowest ...
-const SPARED: i32 = 2;
-/// ... but no more than this: with the stop band that makes 0.17 degree.
-const MOST_SPARED: i32 = 130;
+/// Speed limit of a correction, in creep speeds: at the creep speed it would take seconds.
+const CORRECTION_FACTOR: i32 = 3;
+/// Speed limit of the final approach, in creep speeds: the remaining distance is half a millimetre.
+const FINAL_APPROACH_FACTOR: i32 = 6;
+/// Duration of the final approach from which the stop band widens.
+const STOP_BAND_DELAY: Millisecond = Millisecond(110);
+/// Growth of the stop band, um/ms: half of the creep speed.
+const STOP_BAND_GROWTH: i32 = 2;
+/// Largest growth of the stop band, um: with the stop band itself 0.17 degree.
+const MAX_STOP_BAND_EXTENSION: i32 = 130;
 
-/// Follows the lever.
+/// The position controller.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PositionControl {
     set_point: Option<MilliDegree>,
-    /// The set point that all of what follows is about: the one in use is within the dead band of it.
-    asked: MilliDegree,
-    /// The hitch has rested at this set point: leaving it now is its own doing.
+    /// Set point for which the state below holds. The one in use is within the dead band of it.
+    reference_set_point: MilliDegree,
+    /// The hitch has been at rest at this set point: a later deviation is drift.
     arrived: bool,
-    /// A move to this set point has begun: another one is a correction.
+    /// A move to this set point has begun: the next one is a correction.
     started: bool,
-    /// The present move is one, for the move itself ended elsewhere.
-    retries: bool,
-    /// For how long the present move has been at its end: since it had slowed down to it.
-    ending: Millisecond,
-    /// The present place is taken for the set point until the lever moves (end stop).
+    /// The present move corrects a move that has missed its set point.
+    is_correction: bool,
+    /// Duration of the final approach of the present move.
+    approach_time: Millisecond,
+    /// The present position counts as the set point until the lever moves (end stop).
     accepted: bool,
 }
 
-/// Why a resting hitch moves.
+/// Reason for which a hitch at rest moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reason {
+pub enum MoveReason {
     /// The lever was moved.
     SetPoint,
-    /// The hitch left its place by itself.
+    /// The hitch has drifted.
     Drift,
 }
 
 impl PositionControl {
-    /// Takes in the lever, and the limit that caps it; true if that is a new set point.
+    /// Takes in the lever and its upper limit. True if that is a new set point.
     ///
-    /// On the way to a set point every movement of the lever counts, but small ones make no new set point of it: what
-    /// the hitch does then is still about the same one. Once it has arrived, they are noise, also while it is being
-    /// brought back.
+    /// During a move to a set point every movement of the lever changes the target, but small ones do not reset the
+    /// state. After arrival, and during corrections, small movements are noise.
     pub fn follow(
         &mut self,
         lever: MilliDegree,
@@ -89,11 +87,11 @@ impl PositionControl {
     ) -> bool {
         let lever = lever.limited(parameters.lower_limit, upper_limit);
         let changed = self.set_point.is_none()
-            || (lever - self.asked).magnitude() > parameters.lever_deadband;
+            || (lever - self.reference_set_point).magnitude() > parameters.lever_deadband;
         if changed {
             *self = Self {
                 set_point: Some(lever),
-                asked: lever,
+                reference_set_point: lever,
                 ..Self::default()
             };
         } else if moving && !self.arrived {
@@ -108,24 +106,24 @@ impl PositionControl {
         self.set_point.unwrap_or(otherwise)
     }
 
-    /// Takes the present place for the set point until the lever moves.
+    /// Accepts the present position as the set point until the lever moves.
     pub fn accept(&mut self) {
         self.accepted = true;
     }
 
-    /// True if the hitch has rested at the set point: where it is now, it went by itself.
+    /// True if the hitch has been at rest at the set point.
     #[must_use]
     pub const fn has_arrived(&self) -> bool {
         self.arrived
     }
 
-    /// The reason for which a resting hitch should move to `target`, if there is one.
+    /// The reason for which a hitch at rest has to move to `target`, if there is one.
     pub fn reason_to_move(
         &mut self,
         target: Micrometre,
         rest: Micrometre,
         parameters: &PositionParameters,
-    ) -> Option<Reason> {
+    ) -> Option<MoveReason> {
         if self.accepted || (target - rest).magnitude() <= parameters.restart_band {
             self.arrived = true;
             return None;
@@ -133,31 +131,31 @@ impl PositionControl {
         Some(self.reason())
     }
 
-    /// A move starts now: for this reason.
-    pub fn start(&mut self) -> Reason {
+    /// A move starts; the reason for it.
+    pub fn start(&mut self) -> MoveReason {
         let reason = self.reason();
-        self.retries = self.started && !self.arrived;
+        self.is_correction = self.started && !self.arrived;
         self.started = true;
-        self.ending = Millisecond::ZERO;
+        self.approach_time = Millisecond::ZERO;
         reason
     }
 
-    const fn reason(&self) -> Reason {
+    const fn reason(&self) -> MoveReason {
         if self.arrived || self.started {
-            Reason::Drift
+            MoveReason::Drift
         } else {
-            Reason::SetPoint
+            MoveReason::SetPoint
         }
     }
 
-    /// The demand of a hitch that moves, or has a reason to, towards `target`.
+    /// The demand of a move to `target`.
     #[must_use]
     pub fn demand(
         &self,
         target: Micrometre,
         phase: Phase,
-        motion: &Motion,
-        closing: &Closing,
+        motion: &MotionObserver,
+        closing: &ClosingCurves,
         scale: DropScale,
         calibration: &Calibration,
     ) -> Demand {
@@ -167,7 +165,7 @@ impl PositionControl {
             _ => Direction::of((target - motion.position()).0),
         };
         let (limit, acceleration, deceleration) = match direction {
-            Direction::Lift if motion.swings() => (
+            Direction::Lift if motion.has_compensator_oscillation() => (
                 parameters.lift_speed,
                 parameters.swinging_acceleration,
                 parameters.swinging_deceleration,
@@ -184,12 +182,13 @@ impl PositionControl {
             ),
         };
         let ahead_of = |point: Micrometre| Micrometre(direction.sign((target - point).0));
-        let run_on: RunOn = motion.run_on(&calibration.hydraulics);
-        let remaining = ahead_of(run_on.resting_point());
-        // A cut carries less far than a ramp to zero, so it needn't be looked at before that would do.
-        let band = parameters.stop_band + self.spared();
-        let cut =
-            remaining <= band && ahead_of(run_on.cut_point(motion.share_of_cut(closing))) <= band;
+        let stop_prediction: StopPrediction = motion.stop_prediction(&calibration.hydraulics);
+        let remaining = ahead_of(stop_prediction.predicted_stop());
+        // The stopping distance after a cut is shorter than that of a ramp, so the ramp is checked first.
+        let band = parameters.stop_band + self.stop_band_extension();
+        let cut = remaining <= band
+            && ahead_of(stop_prediction.predicted_stop_after_cut(motion.closing_share(closing)))
+                <= band;
         let approach = approach_speed(remaining, deceleration, parameters.approach_gain);
         let speed = match cut {
             true => MicrometrePerSecond::ZERO,
@@ -202,49 +201,51 @@ impl PositionControl {
         }
     }
 
-    /// How much of the way the present move is spared, for it has been at its end for long.
-    fn spared(&self) -> Micrometre {
-        let since = (self.ending - PATIENCE).0.clamp(0, MOST_SPARED / SPARED);
-        Micrometre(since.wrapping_mul(SPARED))
+    /// Growth of the stop band in a long final approach.
+    fn stop_band_extension(&self) -> Micrometre {
+        let since = (self.approach_time - STOP_BAND_DELAY)
+            .0
+            .clamp(0, MAX_STOP_BAND_EXTENSION / STOP_BAND_GROWTH);
+        Micrometre(since.wrapping_mul(STOP_BAND_GROWTH))
     }
 
-    /// The `demand`, but slow once the move has slowed down to its end, and creeping if the last one didn't get there.
+    /// Limits the `demand` in the final approach and in a correction.
     ///
-    /// What sent that one elsewhere the estimate doesn't know, and a short way doesn't tell in time: in a hurry this one
-    /// would end as far beyond, and the next one as well. What leaves its place after it has rested there didn't err.
-    /// `lower_speed`: the fastest lowering that the operator allows.
+    /// The cause of a missed set point is unknown to the observer, and a short correction does not identify it in time:
+    /// a fast correction would miss the set point by the same error. A drift after arrival needs no such limit.
+    /// `lower_speed`: lowering limit of the operator.
     #[must_use]
-    pub fn paced(
+    pub fn limit_approach(
         &mut self,
         mut demand: Demand,
         lower_speed: MicrometrePerSecond,
         parameters: &PositionParameters,
     ) -> Demand {
-        // A dial that is nearly shut is no end: it may be opened during the move.
+        // A low limit of the dial is no final approach: the dial may be opened during the move.
         let by_dial = demand.direction == Direction::Lower && demand.speed >= lower_speed;
         if by_dial {
             demand.speed = lower_speed;
         }
-        let slow = !by_dial && demand.speed <= creeping(END, parameters);
-        if slow || self.ending > Millisecond::ZERO {
-            self.ending = self.ending.next();
+        let slow = !by_dial && demand.speed <= creep_multiple(FINAL_APPROACH_FACTOR, parameters);
+        if slow || self.approach_time > Millisecond::ZERO {
+            self.approach_time = self.approach_time.next();
         }
-        let times = match (self.retries, self.ending > Millisecond::ZERO) {
-            (true, _) => CORRECTION,
-            (false, true) => END,
+        let times = match (self.is_correction, self.approach_time > Millisecond::ZERO) {
+            (true, _) => CORRECTION_FACTOR,
+            (false, true) => FINAL_APPROACH_FACTOR,
             (false, false) => return demand,
         };
-        demand.speed = demand.speed.min(creeping(times, parameters));
+        demand.speed = demand.speed.min(creep_multiple(times, parameters));
         demand
     }
 }
 
-/// So many times as fast as the slowest approach.
-fn creeping(times: i32, parameters: &PositionParameters) -> MicrometrePerSecond {
+/// A multiple of the creep speed.
+fn creep_multiple(times: i32, parameters: &PositionParameters) -> MicrometrePerSecond {
     MicrometrePerSecond(parameters.creep_speed.0.saturating_mul(times))
 }
 
-/// The profile `u(r)` of the module's head.
+/// The speed profile `u(r)` of the module documentation.
 #[must_use]
 pub fn approach_speed(
     remaining: Micrometre,
@@ -303,7 +304,10 @@ mod tests {
     #[test]
     fn a_move_that_ended_elsewhere_is_made_good_slowly_but_not_as_slowly_as_a_move_ends() {
         let parameters = PositionParameters::NOMINAL;
-        let (fast, creep) = (parameters.lift_speed, creeping(CORRECTION, &parameters));
+        let (fast, creep) = (
+            parameters.lift_speed,
+            creep_multiple(CORRECTION_FACTOR, &parameters),
+        );
         assert!(creep > parameters.creep_speed && creep.0 < fast.0 / 10);
         let demand = Demand {
             direction: Direction::Lift,
@@ -317,53 +321,60 @@ mod tests {
                 let here = Micrometre::ZERO;
                 assert_eq!(position.reason_to_move(here, here, &parameters), None);
             }
-            position.paced(demand, fast, &parameters).speed
+            position.limit_approach(demand, fast, &parameters).speed
         };
-        assert_eq!(moved(Reason::SetPoint, false), fast);
-        assert_eq!(moved(Reason::Drift, true), creep, "ended elsewhere");
-        assert_eq!(moved(Reason::Drift, false), fast, "left its place");
+        assert_eq!(moved(MoveReason::SetPoint, false), fast);
+        assert_eq!(moved(MoveReason::Drift, true), creep, "ended elsewhere");
+        assert_eq!(moved(MoveReason::Drift, false), fast, "left its place");
     }
 
     #[test]
     fn a_move_that_has_slowed_down_to_its_end_stays_slow_until_the_next_one() {
         let parameters = PositionParameters::NOMINAL;
-        let (fast, end) = (parameters.lift_speed, creeping(END, &parameters));
-        let paced = |position: &mut PositionControl, speed| {
+        let (fast, end) = (
+            parameters.lift_speed,
+            creep_multiple(FINAL_APPROACH_FACTOR, &parameters),
+        );
+        let limit_approach = |position: &mut PositionControl, speed| {
             let demand = Demand {
                 direction: Direction::Lift,
                 speed,
                 acceleration: parameters.lift_acceleration,
             };
-            position.paced(demand, fast, &parameters).speed
+            position.limit_approach(demand, fast, &parameters).speed
         };
         let (low, high) = (MilliDegree(80_000), MilliDegree(90_000));
         let mut position = PositionControl::default();
         position.follow(low, parameters.upper_limit, false, &parameters);
         position.start();
         for speed in [fast, end + MicrometrePerSecond(1), fast] {
-            assert_eq!(paced(&mut position, speed), speed, "under way");
+            assert_eq!(limit_approach(&mut position, speed), speed, "under way");
         }
         let slow = parameters.creep_speed;
-        for (asked, given) in [(end, end), (fast, end), (slow, slow), (fast, end)] {
-            assert_eq!(paced(&mut position, asked), given);
+        for (reference_set_point, given) in [(end, end), (fast, end), (slow, slow), (fast, end)] {
+            assert_eq!(limit_approach(&mut position, reference_set_point), given);
         }
         position.follow(high, parameters.upper_limit, true, &parameters);
-        assert_eq!(paced(&mut position, fast), fast, "another set point");
-        assert_eq!(paced(&mut position, end), end);
+        assert_eq!(
+            limit_approach(&mut position, fast),
+            fast,
+            "another set point"
+        );
+        assert_eq!(limit_approach(&mut position, end), end);
         let here = Micrometre::ZERO;
         assert_eq!(position.reason_to_move(here, here, &parameters), None);
         position.start();
-        assert_eq!(paced(&mut position, fast), fast, "another move");
+        assert_eq!(limit_approach(&mut position, fast), fast, "another move");
     }
 
     /// For how long a hitch that stands still `short_of` where its coil is cut is waited for, ms.
-    fn waited_for(position: &mut PositionControl, short_of: Micrometre) -> Option<i32> {
+    fn time_to_cut(position: &mut PositionControl, short_of: Micrometre) -> Option<i32> {
         let calibration = Calibration::nominal();
         let parameters = &calibration.position;
-        let closing = Closing::of(&calibration);
+        let closing = ClosingCurves::of(&calibration);
         let drop = calibration.hydraulics.reference_drop;
         let scale = DropScale::new(&DropReference::new(drop), drop);
-        let mut motion = Motion::default();
+        let mut motion = MotionObserver::default();
         motion.update(Micrometre::ZERO, Phase::Holding, &calibration.motion);
         let phase = Phase::Moving {
             direction: Direction::Lift,
@@ -372,7 +383,7 @@ mod tests {
         let target = parameters.stop_band + short_of;
         (0..2_000).find(|_| {
             let demand = position.demand(target, phase, &motion, &closing, scale, &calibration);
-            let demand = position.paced(demand, parameters.lower_speed, parameters);
+            let demand = position.limit_approach(demand, parameters.lower_speed, parameters);
             demand.speed == MicrometrePerSecond::ZERO
         })
     }
@@ -381,14 +392,17 @@ mod tests {
     fn a_hitch_that_stands_just_short_of_its_set_point_is_not_waited_for() {
         let mut position = PositionControl::default();
         position.start();
-        assert_eq!(waited_for(&mut position, Micrometre::ZERO), Some(0));
-        for (short_of, longest_ms) in [(20, 120), (MOST_SPARED, 180)] {
+        assert_eq!(time_to_cut(&mut position, Micrometre::ZERO), Some(0));
+        for (short_of, longest_ms) in [(20, 120), (MAX_STOP_BAND_EXTENSION, 180)] {
             position.start();
-            let waited_ms = waited_for(&mut position, Micrometre(short_of)).unwrap();
+            let waited_ms = time_to_cut(&mut position, Micrometre(short_of)).unwrap();
             assert!((100..=longest_ms).contains(&waited_ms), "{waited_ms} ms");
         }
         position.start();
-        assert_eq!(waited_for(&mut position, Micrometre(MOST_SPARED + 1)), None);
+        assert_eq!(
+            time_to_cut(&mut position, Micrometre(MAX_STOP_BAND_EXTENSION + 1)),
+            None
+        );
     }
 
     #[test]
@@ -401,24 +415,31 @@ mod tests {
         };
         let mut position = PositionControl::default();
         position.start();
-        let end = creeping(END, &parameters);
-        let _ = position.paced(demand(end), parameters.lower_speed, &parameters);
-        for _ in 0..PATIENCE.0 {
+        let end = creep_multiple(FINAL_APPROACH_FACTOR, &parameters);
+        let _ = position.limit_approach(demand(end), parameters.lower_speed, &parameters);
+        for _ in 0..STOP_BAND_DELAY.0 {
             let fast = demand(parameters.lift_speed);
-            let _ = position.paced(fast, parameters.lower_speed, &parameters);
+            let _ = position.limit_approach(fast, parameters.lower_speed, &parameters);
         }
-        let waited_ms = waited_for(&mut position, Micrometre(20)).unwrap();
+        let waited_ms = time_to_cut(&mut position, Micrometre(20)).unwrap();
         assert!(waited_ms <= 10, "{waited_ms} ms more");
     }
 
     #[test]
     fn a_hitch_that_goes_on_at_its_slowest_gets_where_it_should() {
         let way_per_ms = PositionParameters::NOMINAL.creep_speed.0 / 1_000;
-        assert!(SPARED < way_per_ms, "is given up sooner than it goes");
-        let end_mm_per_s = creeping(END, &PositionParameters::NOMINAL).0 / 1_000;
+        assert!(
+            STOP_BAND_GROWTH < way_per_ms,
+            "is given up sooner than it goes"
+        );
+        let end_mm_per_s =
+            creep_multiple(FINAL_APPROACH_FACTOR, &PositionParameters::NOMINAL).0 / 1_000;
         let at_end_um = 1_000 * end_mm_per_s / PositionParameters::NOMINAL.approach_gain.0;
         let slowest_um = at_end_um - PositionParameters::NOMINAL.stop_band.0;
-        assert!(slowest_um / way_per_ms <= PATIENCE.0, "{slowest_um} um");
+        assert!(
+            slowest_um / way_per_ms <= STOP_BAND_DELAY.0,
+            "{slowest_um} um"
+        );
     }
 
     #[test]
@@ -426,20 +447,23 @@ mod tests {
         let parameters = PositionParameters::NOMINAL;
         let mut position = PositionControl::default();
         position.start();
-        let mut paced = |speed, dial| {
+        let mut limit_approach = |speed, dial| {
             let demand = Demand {
                 direction: Direction::Lower,
                 speed,
                 acceleration: parameters.lower_acceleration,
             };
-            position.paced(demand, dial, &parameters).speed
+            position.limit_approach(demand, dial, &parameters).speed
         };
-        let (fast, end) = (parameters.lower_speed, creeping(END, &parameters));
+        let (fast, end) = (
+            parameters.lower_speed,
+            creep_multiple(FINAL_APPROACH_FACTOR, &parameters),
+        );
         for dial in [MicrometrePerSecond::ZERO, parameters.creep_speed, end, fast] {
-            assert_eq!(paced(dial, dial), dial);
+            assert_eq!(limit_approach(dial, dial), dial);
         }
-        assert_eq!(paced(end, fast), end, "its end");
-        assert_eq!(paced(fast, fast), end);
+        assert_eq!(limit_approach(end, fast), end, "its end");
+        assert_eq!(limit_approach(fast, fast), end);
     }
 
     #[test]

@@ -1,9 +1,9 @@
-//! Rate control: the rocker turns at the speed that a button asks for, as long as it is held.
+//! Rate law: the rocker turns at the rate that a button demands while it is held.
 //!
-//! The asked rate is ramped, turned into piston speed by the linkage, and slowed down before the ends of
-//! travel with the same profile as position control. The motion estimate's bias corrects what the
-//! valve map gets wrong, so the speed doesn't depend on the load. Where a valve's hysteresis leaves a rest of
-//! error, as on the kink of a curve, a slow integral takes it away once the ramp is over.
+//! The demanded rate is ramped and converted to piston speed by the linkage. Before the ends of travel it is limited by
+//! the speed profile of the position law. The bias of the motion observer corrects the error of the valve map, so the
+//! speed does not depend on the load. A slow integral removes the remaining error of the hysteresis once the ramp has
+//! ended.
 
 use hitch_quantities::Calibration;
 use hitch_quantities::calibration::design_parameters::RateParameters;
@@ -11,15 +11,15 @@ use hitch_quantities::fixed::Divisor;
 use hitch_quantities::units::{Micrometre, MicrometrePerSecond, MilliDegree, MilliDegreePerSecond};
 
 use super::position::approach_speed;
-use crate::estimation::motion::Motion;
+use crate::estimation::motion_observer::MotionObserver;
 use crate::valve::phase::{Demand, Direction};
 
-/// Follows a requested rate.
+/// The rate controller.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RateControl {
-    /// Ramped rate in millionths of a degree a second, so that slow ramps aren't rounded away.
+    /// Ramped rate, 1e-6 degree/s: the resolution of slow ramps.
     rate_micro: i32,
-    /// Piston speed along the way that the valve has to be asked for less, in nanometres a second.
+    /// Integral trim, nm/s: reduces the demanded speed in the direction of the move.
     trim_nm_per_s: i32,
 }
 
@@ -30,7 +30,7 @@ impl RateControl {
         request: MilliDegreePerSecond,
         angle: MilliDegree,
         upper_limit: MilliDegree,
-        motion: &Motion,
+        motion: &MotionObserver,
         calibration: &Calibration,
     ) -> Demand {
         let parameters = &calibration.rate;
@@ -73,18 +73,18 @@ impl RateControl {
             .min(limit);
     }
 
-    /// Piston speed along the way that the valve has to be asked for less.
+    /// Integral trim: reduces the demanded speed in the direction of the move.
     #[must_use]
     pub fn trim(&self) -> MicrometrePerSecond {
         MicrometrePerSecond(Divisor::THOUSAND.divide(self.trim_nm_per_s))
     }
 }
 
-/// Fastest speed from which the hitch still stops at the end of its travel.
+/// Largest speed from which the hitch stops before the end of its travel.
 fn speed_before_limit(
     direction: Direction,
     upper_limit: MilliDegree,
-    motion: &Motion,
+    motion: &MotionObserver,
     calibration: &Calibration,
 ) -> MicrometrePerSecond {
     let position = &calibration.position;
@@ -92,8 +92,10 @@ fn speed_before_limit(
         Direction::Lift => (upper_limit, position.lift_deceleration),
         Direction::Lower => (position.lower_limit, position.lower_deceleration),
     };
-    let remaining =
-        calibration.linkage.travel(limit) - motion.run_on(&calibration.hydraulics).resting_point();
+    let remaining = calibration.linkage.travel(limit)
+        - motion
+            .stop_prediction(&calibration.hydraulics)
+            .predicted_stop();
     let ahead = Micrometre(direction.sign(remaining.0));
     if ahead <= position.stop_band {
         MicrometrePerSecond::ZERO

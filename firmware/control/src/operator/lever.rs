@@ -1,36 +1,37 @@
 //! The lever without its noise.
 //!
-//! A lever that nobody touches trembles in the last digits of its converter. Averaging it would make a hitch wait for
-//! its operator; so only what may be noise is averaged, what is moved further takes the average along, and a step is
-//! taken over as it is:
+//! An untouched lever shows noise in the last digits of its converter. A plain low-pass filter would delay the
+//! operator, so only changes within the noise band are filtered. A larger change moves the filter output along, and a
+//! step is taken over at once:
 //!
 //! ```text
-//! y' = (x - y) / T,    x - d <= y <= x + d        d: what the lever may tremble by
+//! y' = (x - y) / T,    x - d <= y <= x + d        d: noise band
 //! ```
 
 use hitch_quantities::units::MilliDegree;
 
 /// Averaged in units of 2^-5 millidegrees over so many bits of steps: 32 ms, less than the shortest move takes.
 const BITS: u32 = 5;
-/// Further than this no hand gets in a millisecond: a lever that is switched, or hasn't been followed.
-const STEP: MilliDegree = MilliDegree(1_000);
+/// Larger than any movement by hand in a millisecond: the lever was switched, or the filter was not active.
+const STEP_LIMIT: MilliDegree = MilliDegree(1_000);
 
-/// A lever that holds still when nobody touches it.
+/// Lever filter.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SteadyLever {
     fine: i32,
 }
 
 impl SteadyLever {
-    /// One step; `trembles`: what may be noise.
-    pub fn follow(&mut self, sample: MilliDegree, trembles: MilliDegree) -> MilliDegree {
+    /// One step; `noise_band`: half-width of the noise band.
+    pub fn follow(&mut self, sample: MilliDegree, noise_band: MilliDegree) -> MilliDegree {
         let away = sample - MilliDegree(self.fine >> BITS);
         self.fine = self.fine.saturating_add(away.0);
-        let trembles = match away.magnitude() > STEP {
+        let noise_band = match away.magnitude() > STEP_LIMIT {
             true => MilliDegree::ZERO,
-            false => trembles,
+            false => noise_band,
         };
-        let steady = MilliDegree(self.fine >> BITS).limited(sample - trembles, sample + trembles);
+        let steady =
+            MilliDegree(self.fine >> BITS).limited(sample - noise_band, sample + noise_band);
         // Whole millidegrees only where it was taken along.
         if steady.0 != self.fine >> BITS {
             self.fine = steady.0.saturating_mul(1 << BITS);
@@ -43,12 +44,12 @@ impl SteadyLever {
 mod tests {
     use super::*;
 
-    const TREMBLES: MilliDegree = MilliDegree(200);
+    const NOISE_BAND: MilliDegree = MilliDegree(200);
 
     #[test]
     fn a_hand_is_followed_at_once_and_exactly_soon_after() {
         let mut lever = SteadyLever::default();
-        let at = |lever: &mut SteadyLever, sample| lever.follow(MilliDegree(sample), TREMBLES).0;
+        let at = |lever: &mut SteadyLever, sample| lever.follow(MilliDegree(sample), NOISE_BAND).0;
         assert_eq!(at(&mut lever, 90_000), 90_000);
         assert_eq!(at(&mut lever, 90_700), 90_500);
         let after = (0..150).fold(0, |_, _| at(&mut lever, 90_700));
@@ -70,7 +71,7 @@ mod tests {
             (random >> 16).cast_signed() % 160 - 80
         };
         for step in 0..100_000 {
-            let steady = lever.follow(MilliDegree(90_000 + noise() + noise()), TREMBLES);
+            let steady = lever.follow(MilliDegree(90_000 + noise() + noise()), NOISE_BAND);
             let error = (steady.0 - 90_000).abs();
             assert!(step < 300 || error < 70, "{error} mdeg");
         }
@@ -80,8 +81,8 @@ mod tests {
     fn extremes_stay_finite() {
         for sample in [i32::MIN, -1, 0, 1, i32::MAX] {
             let mut lever = SteadyLever { fine: i32::MAX };
-            let _ = lever.follow(MilliDegree(sample), TREMBLES);
-            let _ = lever.follow(MilliDegree(sample), TREMBLES);
+            let _ = lever.follow(MilliDegree(sample), NOISE_BAND);
+            let _ = lever.follow(MilliDegree(sample), NOISE_BAND);
         }
     }
 }

@@ -151,7 +151,7 @@ pub fn upper_limit(dial: Option<MilliDegree>, position: &PositionParameters) -> 
     })
 }
 
-/// Fastest lowering that the rate dial allows: nothing at its shut end, the speed of a new machine in
+/// Largest lowering speed that the rate dial allows: nothing at its shut end, the speed of a new machine in
 /// the middle, all of it at its open end, straight in between. Without a dial it is all of it.
 #[must_use]
 pub fn lowering_limit(

@@ -1,5 +1,5 @@
-//! Which coil may be on when: the check valve's conditions and the compensator's, and a hitch that leaves its place.
+//! Sequencing of the valves: check-valve logic, stall detection, drift monitoring.
 
-pub mod saturation;
-pub mod sink;
+pub mod drift_monitor;
+pub mod stall_detector;
 pub mod valve_logic;

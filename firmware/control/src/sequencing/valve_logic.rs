@@ -31,8 +31,8 @@ impl Phase {
         hold: &HoldParameters,
     ) -> Self {
         match self {
-            Self::Holding => Self::from_rest(demand),
-            Self::Moving { direction, speed } => Self::on_the_way(
+            Self::Holding => Self::start(demand),
+            Self::Moving { direction, speed } => Self::ramp_speed(
                 direction,
                 speed,
                 demand,
@@ -48,7 +48,7 @@ impl Phase {
 
     /// The same, but no faster than `before`: a ramp that waits.
     #[must_use]
-    pub fn no_faster_than(self, before: Self) -> Self {
+    pub fn limited_to_speed_of(self, before: Self) -> Self {
         match (self, before) {
             (Self::Moving { direction, speed }, Self::Moving { speed: most, .. }) => Self::Moving {
                 direction,
@@ -69,17 +69,17 @@ impl Phase {
         }
     }
 
-    fn from_rest(demand: Option<Demand>) -> Self {
+    fn start(demand: Option<Demand>) -> Self {
         match demand {
             Some(demand) if demand.speed > MicrometrePerSecond::ZERO => Self::Moving {
                 direction: demand.direction,
-                speed: demand.speed.min(step_of(demand.acceleration)),
+                speed: demand.speed.min(speed_change_per_step(demand.acceleration)),
             },
             _ => Self::Holding,
         }
     }
 
-    fn on_the_way(
+    fn ramp_speed(
         direction: Direction,
         speed: MicrometrePerSecond,
         demand: Option<Demand>,
@@ -91,9 +91,11 @@ impl Phase {
             demand.speed.min(available)
         });
         let rise = demand.map_or(MicrometrePerSecond::ZERO, |demand| {
-            step_of(demand.acceleration)
+            speed_change_per_step(demand.acceleration)
         });
-        let speed = goal.min(speed + rise).max(speed - step_of(abort));
+        let speed = goal
+            .min(speed + rise)
+            .max(speed - speed_change_per_step(abort));
         if speed <= MicrometrePerSecond::ZERO {
             return Self::Settling {
                 waited: Millisecond::ZERO,
@@ -104,6 +106,6 @@ impl Phase {
 }
 
 /// Change of speed in one millisecond: 1 mm/s2 is 1 um/s a millisecond.
-fn step_of(slope: MillimetrePerSecondSquared) -> MicrometrePerSecond {
+fn speed_change_per_step(slope: MillimetrePerSecondSquared) -> MicrometrePerSecond {
     MicrometrePerSecond(slope.0.max(1))
 }

@@ -17,14 +17,14 @@ use hitch_quantities::units::MilliAmp;
 
 /// How both valves close.
 #[derive(Clone, Copy, Debug)]
-pub struct Closing {
+pub struct ClosingCurves {
     /// Lift valve.
     pub lift: ClosingCurve,
     /// Lowering valve.
     pub lower: ClosingCurve,
 }
 
-impl Closing {
+impl ClosingCurves {
     /// The curves of a calibration's valves.
     #[must_use]
     pub fn of(calibration: &Calibration) -> Self {

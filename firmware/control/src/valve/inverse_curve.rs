@@ -6,13 +6,13 @@
 //! ```
 //!
 //! A valve's breakpoints are where the valve has its kinks, so they are kept: on an even grid they would be missed by
-//! milliamperes. They are further apart than a cell of the grid is wide ([`ValveTable::least_gap`]), so that one comparison
-//! finds the piece. The first piece is "no flow, no current", the last one begins at saturation, and what is outside the
-//! range is in the first or the last cell: nothing is left to be limited.
+//! milliamperes. They are further apart than a cell of the grid is wide ([`ValveTable::least_gap`]), so that one
+//! comparison finds the piece. The first piece is "no flow, no current", the last one begins at saturation, and what is
+//! outside the range is in the first or the last cell: nothing is left to be limited.
 //!
 //! A base is the current at no flow of the piece's straight line, with what rounding needs. Slopes stop short of a
-//! milliampere a step, three hundred times that of the rig's valves; a steeper piece is followed at that slope and ends in
-//! a step.
+//! milliampere a step, three hundred times that of the rig's valves; a steeper piece is followed at that slope and ends
+//! in a step.
 
 use hitch_quantities::calibration::valve_table::{VALVE_POINTS, ValvePoint, ValveTable};
 use hitch_quantities::units::{MicroLitrePerSecond, MilliAmp};
@@ -45,7 +45,7 @@ impl FlowSteps {
     }
 
     /// A breakpoint, half a milliampere higher: what is looked up is rounded down.
-    const fn place(self, point: &ValvePoint) -> Place {
+    const fn place(self, point: &ValvePoint) -> CurvePoint {
         let current = (point.current.0 as u64) << CURRENT_BITS;
         (self.of(point.flow), current.wrapping_add(HALF))
     }
@@ -69,7 +69,8 @@ pub struct InverseCurve {
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 struct Piece {
-    /// Current at no flow of the line that the piece is on, in milliamperes and in 2^-32 mA beyond them: below zero it wraps.
+    /// Current at no flow of the line that the piece is on, in milliamperes and in 2^-32 mA beyond them: below zero it
+    /// wraps.
     base: (u32, u32),
     /// In 2^-32 mA a step.
     slope: u32,
@@ -77,18 +78,18 @@ struct Piece {
 }
 
 /// A place on the curve: steps, and current in 2^-32 mA.
-type Place = (i32, u64);
+type CurvePoint = (i32, u64);
 
 impl Piece {
-    /// The first one with flow, raised by half a milliampere: the smallest flow asks for just more than the threshold, and
-    /// the end for no more than what is there.
-    fn first(threshold: u64, to: Place) -> Self {
+    /// The first one with flow, raised by half a milliampere: the smallest flow asks for just more than the threshold,
+    /// and the end for no more than what is there.
+    fn first(threshold: u64, to: CurvePoint) -> Self {
         let from = (1, threshold.wrapping_add(HALF));
         Self::between(from, (to.0, to.1.wrapping_add(HALF - 1)))
     }
 
     /// The slope is rounded down: the end is not overshot.
-    fn between(from: Place, to: Place) -> Self {
+    fn between(from: CurvePoint, to: CurvePoint) -> Self {
         let run = to.0.wrapping_sub(from.0).cast_unsigned().max(1);
         let slope = to.1.wrapping_sub(from.1) / u64::from(run);
         let slope = u32::try_from(slope).unwrap_or(u32::MAX);
@@ -115,8 +116,8 @@ impl InverseCurve {
         }; PIECES],
     };
 
-    /// Makes this the inverse of the curve in `table`, which validation has seen, over an axis in `steps`. It is made in its
-    /// place: a copy would take a large part of the stack.
+    /// Makes this the inverse of the curve in `table`, which validation has seen, over an axis in `steps`. It is made
+    /// in its place: a copy would take a large part of the stack.
     #[inline(never)]
     pub fn fill(&mut self, table: &ValveTable, steps: FlowSteps) {
         let points = table.used();
@@ -140,8 +141,8 @@ impl InverseCurve {
         }
     }
 
-    /// Sets a piece that begins behind a flow, and begins the cells from there to its end in it. Those beyond saturation may
-    /// as well begin in the one before.
+    /// Sets a piece that begins behind a flow, and begins the cells from there to its end in it. Those beyond
+    /// saturation may as well begin in the one before.
     fn set_piece(&mut self, at: usize, begins: i32, piece: Piece) {
         let cells = self.cell(begins).wrapping_add(1)..self.cell(piece.end).wrapping_add(1);
         let cells = self.first_piece.get_mut(cells).unwrap_or_default();

@@ -30,7 +30,7 @@ fn every_bit_that_flips_is_noticed_within_a_second() {
     for word in 0..CALIBRATION_WORDS {
         for bit in [0, 7, 16, 31] {
             let mut controller = healthy.clone();
-            controller.control.flip(word, bit);
+            controller.control.flip_calibration_bit(word, bit);
             assert!(
                 tripped_after(&mut controller).is_some(),
                 "word {word}, bit {bit}"
@@ -74,7 +74,9 @@ fn a_flipped_bit_stops_a_moving_hitch_for_good() {
     let moved = (0..300).any(|_| step(&mut controller, 130_000).lift_current > MilliAmp::ZERO);
     assert!(moved);
     // Not one that the move depends on.
-    controller.control.flip(CALIBRATION_WORDS - 1, 3);
+    controller
+        .control
+        .flip_calibration_bit(CALIBRATION_WORDS - 1, 3);
     assert!((0..LONGEST).any(|_| step(&mut controller, 130_000).trip == Some(Trip::Memory)));
     let still = |outputs: Outputs| {
         (outputs.lift_current, outputs.lower_current) == (MilliAmp::ZERO, MilliAmp::ZERO)

@@ -8,7 +8,7 @@ use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 use hitch_ecu::link::Reply;
-use hitch_ecu::{AdcCode, BoardScaling, Contacts, FlashRegions, Machine, Panel, Samples};
+use hitch_ecu::{AdcCode, BoardScaling, Contacts, FlashRegions, HostedEcu, Panel, Samples};
 use hitch_protocols::can::Frame;
 use hitch_protocols::j1939::{Id, Pgn};
 use hitch_quantities::State;
@@ -28,8 +28,8 @@ impl NorFlashError for PowerCut {
     }
 }
 
-/// Flash with error correction: each 8 bytes can be programmed once after they were erased. Clones share it. What is read
-/// and written is the calibration's region; the log of faults is behind it.
+/// Flash with error correction: each 8 bytes can be programmed once after they were erased. Clones share it. What is
+/// read and written is the calibration's region; the log of faults is behind it.
 #[derive(Clone)]
 pub struct Flash {
     bytes: Rc<RefCell<Vec<u8>>>,
@@ -107,7 +107,7 @@ impl NorFlash for Flash {
 
 /// The ECU, its hitch and its operator.
 pub struct Bench {
-    pub machine: Machine<Flash>,
+    pub machine: HostedEcu<Flash>,
     pub panel: Panel,
     /// Thousandths of a degree.
     pub lever: i32,
@@ -115,35 +115,35 @@ pub struct Bench {
     pub reply: Reply,
     pub now_ms: u32,
     /// Frames for the next millisecond.
-    pub heard: Vec<Frame>,
+    pub received: Vec<Frame>,
     /// Frames that the ECU has sent, with their time.
-    pub said: Vec<(u32, Frame)>,
+    pub sent: Vec<(u32, Frame)>,
 }
 
 impl Bench {
     /// Powered up at 90 degrees with the lever elsewhere.
     pub fn start(flash: Flash) -> Self {
         Self {
-            machine: Machine::start(flash.regions(), 1, BoardScaling::NOMINAL),
+            machine: HostedEcu::start(flash.regions(), 1, BoardScaling::NOMINAL),
             panel: Panel::FIELD,
             lever: 100_000,
             angle_micro: 90_000_000,
             reply: Reply::default(),
             now_ms: 0,
-            heard: Vec::new(),
-            said: Vec::new(),
+            received: Vec::new(),
+            sent: Vec::new(),
         }
     }
 
     /// A message from another node.
-    pub fn hear(&mut self, pgn: Pgn, source: u8, bytes: [u8; 8]) {
+    pub fn receive(&mut self, pgn: Pgn, source: u8, bytes: [u8; 8]) {
         let id = Id {
             priority: 3,
             pgn,
             destination: 0xFF,
             source,
         };
-        self.heard.push(id.frame(bytes));
+        self.received.push(id.frame(bytes));
     }
 
     /// One millisecond, in which `tamper` changes what the ECU is told.
@@ -159,10 +159,10 @@ impl Bench {
             clock_ratio: Some(PerMille(1_000)),
         };
         tamper(&mut contacts);
-        let heard = std::mem::take(&mut self.heard);
-        self.reply = self.machine.tick(&contacts, &heard);
-        let said = self.machine.said().iter();
-        self.said.extend(said.map(|&frame| (self.now_ms, frame)));
+        let received = std::mem::take(&mut self.received);
+        self.reply = self.machine.tick(&contacts, &received);
+        let sent = self.machine.sent().iter();
+        self.sent.extend(sent.map(|&frame| (self.now_ms, frame)));
         let up = i64::from((i32::from(self.reply.lift_ma) - 1_126).max(0)) * 40;
         let down = i64::from((i32::from(self.reply.lower_ma) - 999).max(0)) * 40;
         self.angle_micro += up - down;

@@ -12,7 +12,7 @@ fn still_with_engine(bench: &mut Bench, speed: u16, ms: u32) -> bool {
     (0..ms).fold(true, |still, _| {
         if bench.now_ms.is_multiple_of(20) {
             let [low, high] = (8 * speed).to_le_bytes();
-            bench.hear(
+            bench.receive(
                 Pgn::ENGINE,
                 0,
                 [0xFF, 0xFF, 0xFF, low, high, 0xFF, 0xFF, 0xFF],
@@ -75,7 +75,7 @@ fn an_engine_that_stops_under_a_moving_hitch_stops_it_at_once() {
         bench.run(1);
     }
     still_with_engine(&mut bench, 400, 1);
-    // The frame is heard at the end of its millisecond.
+    // The frame is received at the end of its millisecond.
     assert!(still_with_engine(&mut bench, 400, 500));
     assert_eq!(bench.state(), State::Locked);
     assert!(
@@ -97,7 +97,7 @@ fn an_engine_that_falls_silent_or_says_that_it_does_not_know_counts_as_stopped()
         still_with_engine(&mut bench, 800, 600);
         assert!(!lever_moves(&mut bench, 800));
         if let Some(bytes) = ending {
-            bench.hear(Pgn::ENGINE, 0, bytes);
+            bench.receive(Pgn::ENGINE, 0, bytes);
         }
         let silent_ms = (0..1_000)
             .position(|_| bench.run(1) == State::Locked)

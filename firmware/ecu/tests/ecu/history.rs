@@ -48,11 +48,11 @@ fn lever_breaks(bench: &mut Bench, ms: u32) {
 
 /// Asks for a group of at most one trouble code, or to clear the codes; the answer's first code and count.
 fn ask(bench: &mut Bench, group: Pgn) -> Option<([u8; 3], u8)> {
-    bench.said.clear();
+    bench.sent.clear();
     let [a, b, c] = group.to_bytes();
-    bench.hear(Pgn::REQUEST, 0x26, [a, b, c, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF]);
+    bench.receive(Pgn::REQUEST, 0x26, [a, b, c, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF]);
     bench.run(20);
-    let answer = bench.said.iter().find_map(|(_, frame)| {
+    let answer = bench.sent.iter().find_map(|(_, frame)| {
         let id = hitch_protocols::j1939::Id::unpack(frame.extended_data_id()?);
         (id.pgn == group).then(|| frame.data().to_vec())
     })?;

@@ -27,7 +27,7 @@ pub type Line = Vec<u8, LONGEST_LINE>;
 
 /// What a byte from the host completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Heard {
+pub struct Completed {
     /// A frame for the bus.
     pub frame: Option<Frame>,
     /// What the host has to be answered.
@@ -61,7 +61,7 @@ impl Adapter {
     }
 
     /// Takes a byte from the host; `Some` at the end of a line.
-    pub fn receive(&mut self, byte: u8) -> Option<Heard> {
+    pub fn receive(&mut self, byte: u8) -> Option<Completed> {
         if byte == b'\n' {
             return None;
         }
@@ -69,17 +69,17 @@ impl Adapter {
             self.overlong |= self.line.push(byte).is_err();
             return None;
         }
-        let heard = if self.overlong { None } else { self.obey() };
+        let completed = if self.overlong { None } else { self.dispatch() };
         self.line.clear();
         self.overlong = false;
-        Some(heard.unwrap_or(Heard {
+        Some(completed.unwrap_or(Completed {
             frame: None,
             reply: BELL,
         }))
     }
 
     /// Does what the line says; `None` if it can't be done.
-    fn obey(&mut self) -> Option<Heard> {
+    fn dispatch(&mut self) -> Option<Completed> {
         let Some((command, rest)) = self.line.split_first() else {
             return Some(done(b"\r"));
         };
@@ -95,7 +95,7 @@ impl Adapter {
             b't' | b'T' | b'r' | b'R' => {
                 let frame = decode_frame(*command, rest)?;
                 let may_send = self.open == Channel::Open;
-                return may_send.then_some(Heard {
+                return may_send.then_some(Completed {
                     frame: Some(frame),
                     reply: if command.is_ascii_uppercase() {
                         b"Z\r"
@@ -110,8 +110,8 @@ impl Adapter {
     }
 }
 
-const fn done(reply: &'static [u8]) -> Heard {
-    Heard { frame: None, reply }
+const fn done(reply: &'static [u8]) -> Completed {
+    Completed { frame: None, reply }
 }
 
 /// The frame of a line without its `\r`, if it is one.

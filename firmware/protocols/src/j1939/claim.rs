@@ -33,7 +33,7 @@ const PRIORITY: u8 = 6;
 
 /// Where a node stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
+enum ClaimState {
     /// Nothing was sent yet.
     Idle,
     /// A claim is to be sent, or was sent at `since_ms`.
@@ -49,7 +49,7 @@ enum State {
 pub struct AddressClaim {
     name: Name,
     address: u8,
-    state: State,
+    state: ClaimState,
     /// When a claim or "cannot claim" is due, if one is owed.
     due_ms: Option<u32>,
     last_sent_ms: Option<u32>,
@@ -64,7 +64,7 @@ impl AddressClaim {
         Self {
             name,
             address: preferred,
-            state: State::Idle,
+            state: ClaimState::Idle,
             due_ms: None,
             last_sent_ms: None,
             taken: [0; 8],
@@ -75,7 +75,7 @@ impl AddressClaim {
     #[must_use]
     pub const fn address(&self) -> Option<u8> {
         match self.state {
-            State::Claimed => Some(self.address),
+            ClaimState::Claimed => Some(self.address),
             _ => None,
         }
     }
@@ -84,8 +84,8 @@ impl AddressClaim {
     #[must_use]
     pub const fn claimed_or_claiming(&self) -> Option<u8> {
         match self.state {
-            State::Idle | State::CannotClaim => None,
-            State::Waiting { .. } | State::Claimed => Some(self.address),
+            ClaimState::Idle | ClaimState::CannotClaim => None,
+            ClaimState::Waiting { .. } | ClaimState::Claimed => Some(self.address),
         }
     }
 
@@ -108,9 +108,9 @@ impl AddressClaim {
     /// Somebody asks who is there.
     pub fn asked(&mut self, now_ms: u32) {
         match self.state {
-            State::CannotClaim => self.owe(now_ms.wrapping_add(self.own_delay_ms())),
-            State::Waiting { .. } | State::Claimed => self.owe(now_ms),
-            State::Idle => {}
+            ClaimState::CannotClaim => self.owe(now_ms.wrapping_add(self.own_delay_ms())),
+            ClaimState::Waiting { .. } | ClaimState::Claimed => self.owe(now_ms),
+            ClaimState::Idle => {}
         }
     }
 
@@ -142,10 +142,10 @@ impl AddressClaim {
     /// The claim that is due.
     pub fn poll(&mut self, now_ms: u32) -> Option<Frame> {
         match self.state {
-            State::Idle => self.begin(now_ms),
-            State::Waiting {
+            ClaimState::Idle => self.begin(now_ms),
+            ClaimState::Waiting {
                 since_ms: Some(since),
-            } if since_ms(since, now_ms) >= SILENCE_MS => self.state = State::Claimed,
+            } if since_ms(since, now_ms) >= SILENCE_MS => self.state = ClaimState::Claimed,
             _ => {}
         }
         let due = self.due_ms.is_some_and(|due| reached(due, now_ms));
@@ -157,7 +157,7 @@ impl AddressClaim {
         }
         self.due_ms = None;
         self.last_sent_ms = Some(now_ms);
-        if let State::Waiting { since_ms } = &mut self.state {
+        if let ClaimState::Waiting { since_ms } = &mut self.state {
             // A contender was answered: the wait is for those who haven't heard us yet, so it goes on.
             since_ms.get_or_insert(now_ms);
         }
@@ -172,7 +172,7 @@ impl AddressClaim {
     }
 
     fn begin(&mut self, now_ms: u32) {
-        self.state = State::Waiting { since_ms: None };
+        self.state = ClaimState::Waiting { since_ms: None };
         self.due_ms = Some(now_ms);
     }
 
@@ -188,7 +188,7 @@ impl AddressClaim {
                 self.begin(now_ms);
             }
             _ => {
-                self.state = State::CannotClaim;
+                self.state = ClaimState::CannotClaim;
                 self.due_ms = Some(now_ms.wrapping_add(self.own_delay_ms()));
             }
         }

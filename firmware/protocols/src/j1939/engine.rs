@@ -1,7 +1,8 @@
 //! Engine speed, as the engine's control unit broadcasts it (EEC1, SAE J1939-71, SPN 190).
 //!
-//! The message is heard from any address: engines have 0 or 1, and on some tractors another unit forwards it. Of several
-//! senders the first one counts until it has been silent for the time-out, so that two engines don't take turns.
+//! The message is heard from any address: engines have 0 or 1, and on some tractors another unit forwards it. Of
+//! several senders the first one counts until it has been silent for the time-out, so that two engines don't take
+//! turns.
 
 use hitch_quantities::units::RevolutionPerMinute;
 
@@ -9,14 +10,15 @@ use super::time::since_ms;
 
 /// The speed is unknown after this much silence, ms. EEC1 comes every 10 to 100 ms.
 pub const TIMEOUT_MS: u32 = 300;
-/// Largest raw value of a two-byte quantity that is data: above are reserved values, errors (FExx) and "not available" (FFxx).
+/// Largest raw value of a two-byte quantity that is data: above are reserved values, errors (FExx) and "not available"
+/// (FFxx).
 const LARGEST: u16 = 0xFAFF;
 /// Raw counts of 1/min.
 const COUNTS_PER_RPM: u16 = 8;
 
 /// The last message.
 #[derive(Clone, Copy, Debug)]
-struct Heard {
+struct LastSpeed {
     from: u8,
     speed: Option<RevolutionPerMinute>,
     at_ms: u32,
@@ -25,15 +27,15 @@ struct Heard {
 /// The receiver.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EngineSpeed {
-    last: Option<Heard>,
+    last: Option<LastSpeed>,
 }
 
 impl EngineSpeed {
     /// A message was heard.
-    pub fn hear(&mut self, bytes: &[u8; 8], from: u8, now_ms: u32) {
+    pub fn receive(&mut self, bytes: &[u8; 8], from: u8, now_ms: u32) {
         let other = self.fresh(now_ms).is_some_and(|last| last.from != from);
         if !other {
-            self.last = Some(Heard {
+            self.last = Some(LastSpeed {
                 from,
                 speed: speed(bytes),
                 at_ms: now_ms,
@@ -52,7 +54,7 @@ impl EngineSpeed {
         self.last = self.fresh(now_ms);
     }
 
-    fn fresh(&self, now_ms: u32) -> Option<Heard> {
+    fn fresh(&self, now_ms: u32) -> Option<LastSpeed> {
         self.last
             .filter(|last| since_ms(last.at_ms, now_ms) <= TIMEOUT_MS)
     }

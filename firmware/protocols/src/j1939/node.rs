@@ -12,7 +12,7 @@ use super::id::{GLOBAL, Id, NULL, Pgn};
 use super::name::Name;
 use super::reception::Reception;
 use super::remote::{Remote, RemoteControl};
-use super::request::{Control, Request, Requests, acknowledgement};
+use super::request::{Acknowledgement, GroupRequest, RequestQueue, acknowledgement};
 use super::time::since_ms;
 use super::transport::Transport;
 use crate::can::Frame;
@@ -58,7 +58,7 @@ pub struct Node {
     remote_permitted: bool,
     diagnostics: Diagnostics,
     software: &'static [u8],
-    requests: Requests,
+    requests: RequestQueue,
     transport: Transport,
     reception: Reception,
     engine: EngineSpeed,
@@ -82,7 +82,7 @@ impl Node {
             remote_permitted: false,
             diagnostics: Diagnostics::new(settings.variant, &settings.occurrences),
             software: settings.software,
-            requests: Requests::default(),
+            requests: RequestQueue::default(),
             transport: Transport::default(),
             reception: Reception::default(),
             engine: EngineSpeed::default(),
@@ -124,7 +124,7 @@ impl Node {
             return;
         };
         if id.pgn == Pgn::REQUEST {
-            if let Some(request) = Request::from_message(&id, frame.data()) {
+            if let Some(request) = GroupRequest::from_message(&id, frame.data()) {
                 self.requested(request, id.destination, now_ms);
             }
         } else if let (Pgn::HEARTBEAT, &[number]) = (id.pgn, frame.data()) {
@@ -151,7 +151,7 @@ impl Node {
             Pgn::HITCH_COMMANDS => {
                 self.commanded(HitchCommand::from_bytes(bytes), id.source, now_ms);
             }
-            Pgn::ENGINE => self.engine.hear(bytes, id.source, now_ms),
+            Pgn::ENGINE => self.engine.receive(bytes, id.source, now_ms),
             Pgn::TRANSPORT_CONNECTION if for_us || for_all => {
                 self.reception.manage(bytes, id.source, for_all, now_ms);
                 if for_us {
@@ -174,11 +174,13 @@ impl Node {
                     self.heartbeat.asked();
                 }
             }
-            Pgn::REQUIRED_FACILITIES if self.address().is_some() => self.requests.push(Request {
-                group: Pgn::TRACTOR_FACILITIES,
-                from: id.source,
-                global: true,
-            }),
+            Pgn::REQUIRED_FACILITIES if self.address().is_some() => {
+                self.requests.push(GroupRequest {
+                    group: Pgn::TRACTOR_FACILITIES,
+                    from: id.source,
+                    global: true,
+                })
+            }
             _ => {}
         }
     }
@@ -202,7 +204,7 @@ impl Node {
             .is_some_and(|monitor| monitor.condemns(node, now_ms))
     }
 
-    fn requested(&mut self, request: Request, destination: u8, now_ms: u32) {
+    fn requested(&mut self, request: GroupRequest, destination: u8, now_ms: u32) {
         if !request.global && Some(destination) != self.claim.claimed_or_claiming() {
         } else if request.group == Pgn::ADDRESS_CLAIMED {
             self.claim.asked(now_ms);
@@ -311,9 +313,9 @@ impl Node {
             Pgn::SOFTWARE_IDENTIFICATION => identification(self.software),
             Pgn::DM3 => {
                 self.diagnostics.clear_previous();
-                return acknowledged(Control::Positive, &request, source);
+                return acknowledged(Acknowledgement::Positive, &request, source);
             }
-            _ => return acknowledged(Control::Negative, &request, source),
+            _ => return acknowledged(Acknowledgement::Negative, &request, source),
         };
         let destination = if request.global { GLOBAL } else { request.from };
         if self.transport.has_room(destination) {
@@ -323,7 +325,7 @@ impl Node {
             self.requests.push(request);
             None
         } else {
-            acknowledged(Control::CannotRespond, &request, source)
+            acknowledged(Acknowledgement::CannotRespond, &request, source)
         }
     }
 
@@ -364,7 +366,7 @@ fn differs(status: &[u8; 8], last: &[u8; 8]) -> bool {
 }
 
 /// An acknowledgement; requests to everybody aren't acknowledged.
-fn acknowledged(control: Control, request: &Request, source: u8) -> Option<Frame> {
+fn acknowledged(control: Acknowledgement, request: &GroupRequest, source: u8) -> Option<Frame> {
     (!request.global).then(|| acknowledgement(control, request, source))
 }
 

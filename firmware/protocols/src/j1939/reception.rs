@@ -1,7 +1,8 @@
 //! Receiving more than eight bytes: broadcasts, and what is for this node alone (SAE J1939-21, ISO 11783-3).
 //!
 //! ```text
-//!          BAM, or RTS: say CTS        packets 1, 2, ... in order          the last one; after RTS: say "end of message"
+//!          BAM, or RTS: say CTS        packets 1, 2, ... in order          the last one; after RTS: say "end of
+//!   message"
 //!  +------+ -----------------> +-----------+ --+   +-----------+ ----------> the message
 //!  | Idle |                    | Receiving | <-+   | Receiving |
 //!  +------+ <----------------- +-----------+       +-----------+
@@ -16,7 +17,7 @@ use heapless::Vec;
 use super::id::Pgn;
 use super::time::since_ms;
 use super::transport::{
-    ABORT, BAM, CTS, END_OF_MESSAGE, PACKET, RTS, Reason, abort, connection_frame,
+    ABORT, AbortReason, BAM, CTS, END_OF_MESSAGE, PACKET, RTS, abort, connection_frame,
 };
 use crate::can::Frame;
 
@@ -93,7 +94,7 @@ impl Reception {
                 self.session = session;
                 [CTS, packets, 1, 0xFF, 0xFF, a, b, c]
             }
-            None => abort(Reason::Resources, group),
+            None => abort(AbortReason::Resources, group),
         };
         self.reply = Some((reply, from));
     }
@@ -112,7 +113,7 @@ impl Reception {
         let session = self.session.as_mut()?;
         let [number, data @ ..] = *bytes;
         if number != session.next {
-            self.give_up(Reason::BadSequence);
+            self.give_up(AbortReason::BadSequence);
             return None;
         }
         session.next = number.saturating_add(1);
@@ -138,7 +139,7 @@ impl Reception {
     pub fn poll(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
         let silent = |session: &Session| since_ms(session.heard_ms, now_ms) > SILENCE_MS;
         if self.session.as_ref().is_some_and(silent) {
-            self.give_up(Reason::Timeout);
+            self.give_up(AbortReason::Timeout);
         }
         let (bytes, destination) = self.reply.take()?;
         Some(connection_frame(bytes, destination, source))
@@ -150,7 +151,7 @@ impl Reception {
     }
 
     /// Ends what is under way; a sender who waits for us is told why.
-    fn give_up(&mut self, reason: Reason) {
+    fn give_up(&mut self, reason: AbortReason) {
         if let Some(session) = self.session.take()
             && !session.is_broadcast
         {

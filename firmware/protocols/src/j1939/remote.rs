@@ -40,7 +40,7 @@ pub enum Remote {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
+enum RemoteState {
     Idle {
         reason: ExitCode,
         since_ms: u32,
@@ -55,7 +55,7 @@ enum State {
 /// The machine.
 #[derive(Clone, Debug)]
 pub struct RemoteControl {
-    state: State,
+    state: RemoteState,
     /// The last one that was reported, raw.
     reported: u8,
 }
@@ -63,7 +63,7 @@ pub struct RemoteControl {
 impl Default for RemoteControl {
     fn default() -> Self {
         Self {
-            state: State::Idle {
+            state: RemoteState::Idle {
                 reason: ExitCode::Clear,
                 since_ms: 0,
             },
@@ -76,9 +76,9 @@ impl RemoteControl {
     /// A command was heard.
     pub fn command(&mut self, command: HitchCommand, source: u8, permitted: bool, now_ms: u32) {
         self.state = match self.state {
-            State::Active { source: owner, .. } if owner != source => self.state,
-            State::Active { .. } => match command {
-                HitchCommand::Position(set_point) => State::Active {
+            RemoteState::Active { source: owner, .. } if owner != source => self.state,
+            RemoteState::Active { .. } => match command {
+                HitchCommand::Position(set_point) => RemoteState::Active {
                     source,
                     set_point,
                     heard_ms: now_ms,
@@ -86,9 +86,9 @@ impl RemoteControl {
                 HitchCommand::None => idle(ExitCode::Released, now_ms),
                 HitchCommand::OutOfRange => idle(ExitCode::OutOfRange, now_ms),
             },
-            State::Idle { .. } => match command {
+            RemoteState::Idle { .. } => match command {
                 HitchCommand::Position(set_point) if permitted && self.is_reported(set_point) => {
-                    State::Active {
+                    RemoteState::Active {
                         source,
                         set_point,
                         heard_ms: now_ms,
@@ -103,7 +103,7 @@ impl RemoteControl {
     /// Lets time pass and takes in what the controller says of the hitch. `condemned`: the heartbeat of who has the
     /// hitch says that it doesn't think any more.
     pub fn update(&mut self, status: &HitchStatus, condemned: bool, now_ms: u32) {
-        let State::Active { heard_ms, .. } = self.state else {
+        let RemoteState::Active { heard_ms, .. } = self.state else {
             return;
         };
         if !status.remote_permitted {
@@ -121,8 +121,8 @@ impl RemoteControl {
     #[must_use]
     pub const fn owner(&self) -> Option<u8> {
         match self.state {
-            State::Active { source, .. } => Some(source),
-            State::Idle { .. } => None,
+            RemoteState::Active { source, .. } => Some(source),
+            RemoteState::Idle { .. } => None,
         }
     }
 
@@ -135,8 +135,8 @@ impl RemoteControl {
     #[must_use]
     pub fn remote(&self) -> Remote {
         match self.state {
-            State::Idle { .. } => Remote::Idle,
-            State::Active { set_point, .. } => Remote::Position(hitch::position(set_point)),
+            RemoteState::Idle { .. } => Remote::Idle,
+            RemoteState::Active { set_point, .. } => Remote::Position(hitch::position(set_point)),
         }
     }
 
@@ -145,17 +145,17 @@ impl RemoteControl {
     pub fn limit_status(&self, status: &HitchStatus) -> LimitStatus {
         match (status.limit, self.state) {
             (Limit::NonRecoverable, _) => LimitStatus::NonRecoverable,
-            (_, State::Idle { .. }) => LimitStatus::OperatorLimited,
-            (Limit::None, State::Active { .. }) => LimitStatus::NotLimited,
-            (Limit::High, State::Active { .. }) => LimitStatus::LimitedHigh,
-            (Limit::Low, State::Active { .. }) => LimitStatus::LimitedLow,
+            (_, RemoteState::Idle { .. }) => LimitStatus::OperatorLimited,
+            (Limit::None, RemoteState::Active { .. }) => LimitStatus::NotLimited,
+            (Limit::High, RemoteState::Active { .. }) => LimitStatus::LimitedHigh,
+            (Limit::Low, RemoteState::Active { .. }) => LimitStatus::LimitedLow,
         }
     }
 
     /// Reason as it is to be reported.
     #[must_use]
     pub fn exit_code(&self, status: &HitchStatus, now_ms: u32) -> ExitCode {
-        let State::Idle {
+        let RemoteState::Idle {
             reason,
             since_ms: since,
         } = self.state
@@ -176,8 +176,8 @@ impl RemoteControl {
     }
 }
 
-const fn idle(reason: ExitCode, now_ms: u32) -> State {
-    State::Idle {
+const fn idle(reason: ExitCode, now_ms: u32) -> RemoteState {
+    RemoteState::Idle {
         reason,
         since_ms: now_ms,
     }

@@ -1,4 +1,4 @@
-//! Requests for a group, and what they are answered with (SAE J1939-21, ISO 11783-3).
+//! Requests for a parameter group, and their answers (SAE J1939-21, ISO 11783-3).
 
 use heapless::Deque;
 
@@ -6,7 +6,7 @@ use super::id::{GLOBAL, Id, NULL, Pgn};
 use super::time::since_ms;
 use crate::can::Frame;
 
-/// Requests that wait for their answer; more are dropped, their senders ask again.
+/// Requests that wait for their answer. more are dropped, their senders ask again.
 const QUEUE: usize = 8;
 /// Time between answers, ms: whoever asks all the time gets a bounded share of the bus in return. Eight answers are
 /// still far within the 200 ms that a requester waits.
@@ -16,7 +16,7 @@ const PRIORITY: u8 = 6;
 
 /// A request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Request {
+pub struct GroupRequest {
     /// The group that is asked for.
     pub group: Pgn,
     /// Who asks.
@@ -25,7 +25,7 @@ pub struct Request {
     pub global: bool,
 }
 
-impl Request {
+impl GroupRequest {
     /// The request in the data of a request message.
     #[must_use]
     pub fn from_message(id: &Id, data: &[u8]) -> Option<Self> {
@@ -43,7 +43,7 @@ impl Request {
 /// How a request is acknowledged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub enum Control {
+pub enum Acknowledgement {
     /// Done.
     Positive = 0,
     /// The group isn't supported.
@@ -54,7 +54,7 @@ pub enum Control {
 
 /// The acknowledgement of a request, to everybody, naming who asked.
 #[must_use]
-pub fn acknowledgement(control: Control, request: &Request, source: u8) -> Frame {
+pub fn acknowledgement(control: Acknowledgement, request: &GroupRequest, source: u8) -> Frame {
     let [a, b, c] = request.group.to_bytes();
     let id = Id {
         priority: PRIORITY,
@@ -67,21 +67,21 @@ pub fn acknowledgement(control: Control, request: &Request, source: u8) -> Frame
 
 /// Requests that wait for their answer.
 #[derive(Clone, Debug, Default)]
-pub struct Requests {
-    waiting: Deque<Request, QUEUE>,
+pub struct RequestQueue {
+    waiting: Deque<GroupRequest, QUEUE>,
     answered_ms: Option<u32>,
 }
 
-impl Requests {
+impl RequestQueue {
     /// A request was heard. One that waits already isn't put down twice.
-    pub fn push(&mut self, request: Request) {
+    pub fn push(&mut self, request: GroupRequest) {
         if self.waiting.iter().all(|other| *other != request) {
             let _ = self.waiting.push_back(request);
         }
     }
 
     /// The next one that is to be answered now.
-    pub fn next(&mut self, now_ms: u32) -> Option<Request> {
+    pub fn next(&mut self, now_ms: u32) -> Option<GroupRequest> {
         let spaced = self
             .answered_ms
             .is_none_or(|last| since_ms(last, now_ms) >= SPACING_MS);

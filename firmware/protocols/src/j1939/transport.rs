@@ -37,7 +37,7 @@ pub(super) const ABORT: u8 = 255;
 /// Why a connection is given up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub enum Reason {
+pub enum AbortReason {
     /// No room for another connection.
     Resources = 2,
     /// The other end didn't answer in time.
@@ -225,9 +225,9 @@ impl Transport {
                 since_ms: since,
                 limit_ms,
             } if since_ms(since, now_ms) > limit_ms => {
-                Some(self.give_up(Reason::Timeout, partner, source))
+                Some(self.give_up(AbortReason::Timeout, partner, source))
             }
-            Stage::Refused => Some(self.give_up(Reason::BadSequence, partner, source)),
+            Stage::Refused => Some(self.give_up(AbortReason::BadSequence, partner, source)),
             Stage::Waiting { .. } | Stage::Sending { .. } => None,
         }
     }
@@ -235,7 +235,7 @@ impl Transport {
 
 impl Transport {
     /// Ends the connection and says why.
-    fn give_up(&mut self, reason: Reason, partner: u8, source: u8) -> Frame {
+    fn give_up(&mut self, reason: AbortReason, partner: u8, source: u8) -> Frame {
         let group = self
             .connection
             .take()
@@ -274,7 +274,7 @@ impl Connection {
 }
 
 /// A connection is given up, or not even begun.
-pub(super) const fn abort(reason: Reason, group: Pgn) -> [u8; 8] {
+pub(super) const fn abort(reason: AbortReason, group: Pgn) -> [u8; 8] {
     let [a, b, c] = group.to_bytes();
     [ABORT, reason as u8, 0xFF, 0xFF, 0xFF, a, b, c]
 }

@@ -13,7 +13,7 @@ use hitch_quantities::calibration::{CALIBRATION_BYTES, calibration_words};
 use super::error::Refusal;
 use super::measurements;
 use super::measurements::Measurements;
-use super::memory::{Memory, Page, Place, Text};
+use super::memory::{Memory, MemoryRange, Page, Text};
 use super::pages::CalibrationPages;
 use super::slave::Event;
 
@@ -134,7 +134,7 @@ impl Memory for EcuMemory<'_> {
         (CALIBRATION_BASE, CALIBRATION_BYTES as u32)
     }
 
-    fn text(&self, text: Text) -> Place {
+    fn text(&self, text: Text) -> MemoryRange {
         let (offset, length) = match text {
             Text::Identity => (0, IDENTITY_BYTES as u8),
             Text::DescriptionFile => (0, FILE_NAME_BYTES),
@@ -142,7 +142,7 @@ impl Memory for EcuMemory<'_> {
             Text::Event(Event::Every10Ms) => (IDENTITY_BYTES as u8 + 4, 5),
             Text::Event(Event::Every100Ms) => (IDENTITY_BYTES as u8 + 9, 6),
         };
-        Place {
+        MemoryRange {
             address: IDENTITY_BASE | u32::from(offset),
             length,
         }

@@ -3,7 +3,7 @@
 use super::command::{code, identifier};
 use super::daq::Daq;
 use super::error::Refusal;
-use super::memory::{Memory, Place, Text};
+use super::memory::{Memory, MemoryRange, Text};
 use super::packet::{Answer, Packet, done, packet, response};
 use super::slave::Event;
 
@@ -19,8 +19,8 @@ const ANY_NUMBER: u8 = 0xFF;
 /// A bit offset that says that a value is no single bit.
 const NO_BIT: u8 = 0xFF;
 
-/// Obeys a command.
-pub(super) fn obey(
+/// Dispatches a command.
+pub(super) fn dispatch(
     daq: &mut Daq,
     command: u8,
     rest: &[u8],
@@ -90,7 +90,10 @@ fn with_arguments(daq: &mut Daq, command: u8, rest: &[u8], memory: &impl Memory)
 }
 
 /// GET_DAQ_EVENT_INFO: what an event is, and where its name stands.
-pub(super) fn event_info(rest: &[u8], memory: &impl Memory) -> Result<(Place, Packet), Refusal> {
+pub(super) fn event_info(
+    rest: &[u8],
+    memory: &impl Memory,
+) -> Result<(MemoryRange, Packet), Refusal> {
     let [_, a, b, ..] = *rest else {
         return Err(Refusal::Syntax);
     };

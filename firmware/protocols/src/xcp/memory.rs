@@ -37,9 +37,9 @@ pub enum Text {
     Event(Event),
 }
 
-/// Where something is.
+/// A range of memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Place {
+pub struct MemoryRange {
     /// Its first byte.
     pub address: u32,
     /// Number of bytes.
@@ -64,7 +64,7 @@ pub trait Memory {
     fn segment(&self) -> (u32, u32);
 
     /// Where a text can be read.
-    fn text(&self, text: Text) -> Place;
+    fn text(&self, text: Text) -> MemoryRange;
 
     /// True if writing is permitted at all just now: somebody at the machine has enabled tuning.
     fn may_calibrate(&self) -> bool;

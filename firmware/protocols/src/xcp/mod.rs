@@ -23,6 +23,6 @@ mod slave;
 pub use error::Refusal;
 pub use map::{Access, EcuMemory};
 pub use measurements::Measurements;
-pub use memory::{Memory, Page, Place, Text};
+pub use memory::{Memory, MemoryRange, Page, Text};
 pub use pages::CalibrationPages;
 pub use slave::{Event, Slave, TOOL_ADDRESS};

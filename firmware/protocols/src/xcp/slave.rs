@@ -6,7 +6,7 @@ use super::checksum::Checksum;
 use super::command::{code, event, identifier};
 use super::daq::Daq;
 use super::error::Refusal;
-use super::memory::{Memory, Place, Text};
+use super::memory::{Memory, MemoryRange, Text};
 use super::packet::{Answer, MOST_BYTES, Packet, done, packet, response};
 use super::{checksum, measuring, paging};
 use crate::can::Frame;
@@ -126,10 +126,10 @@ impl Slave {
         if !self.connected && command != code::CONNECT {
             return;
         }
-        match self.obey(command, rest, memory, now_us) {
-            Ok(Some(answer)) => self.say(answer),
+        match self.dispatch(command, rest, memory, now_us) {
+            Ok(Some(answer)) => self.send(answer),
             Ok(None) => {}
-            Err(refusal) => self.say(packet(identifier::ERROR, &[refusal as u8])),
+            Err(refusal) => self.send(packet(identifier::ERROR, &[refusal as u8])),
         }
     }
 
@@ -141,7 +141,7 @@ impl Slave {
         }
         self.daq.sample(event, memory, now_us);
         if self.daq.take_overload() {
-            self.say(packet(identifier::EVENT, &[event::OVERLOAD]));
+            self.send(packet(identifier::EVENT, &[event::OVERLOAD]));
         }
     }
 
@@ -180,12 +180,12 @@ impl Slave {
             event::NOT_STORED
         };
         if self.connected {
-            self.say(packet(identifier::EVENT, &[event]));
+            self.send(packet(identifier::EVENT, &[event]));
         }
     }
 
     /// Tools wait for an answer before the next command, so there is room unless they don't.
-    fn say(&mut self, packet: Packet) {
+    fn send(&mut self, packet: Packet) {
         let _ = self.queue.push_back(packet);
     }
 
@@ -196,11 +196,17 @@ impl Slave {
             .and_then(|checksum| checksum.advance(memory));
         if let Some(answer) = answer {
             self.checksum = None;
-            self.say(answer);
+            self.send(answer);
         }
     }
 
-    fn obey(&mut self, command: u8, rest: &[u8], memory: &mut impl Memory, now_us: u32) -> Answer {
+    fn dispatch(
+        &mut self,
+        command: u8,
+        rest: &[u8],
+        memory: &mut impl Memory,
+        now_us: u32,
+    ) -> Answer {
         match command {
             code::CONNECT => Ok(Some(self.connect())),
             code::DISCONNECT => {
@@ -231,7 +237,7 @@ impl Slave {
                 self.transfer_address = name.address;
                 Ok(Some(answer))
             }
-            _ => measuring::obey(&mut self.daq, command, rest, memory, now_us),
+            _ => measuring::dispatch(&mut self.daq, command, rest, memory, now_us),
         }
     }
 
@@ -284,7 +290,7 @@ impl Slave {
         let text = match kind {
             0 => memory.text(Text::Identity),
             1 => memory.text(Text::DescriptionFile),
-            _ => Place::default(),
+            _ => MemoryRange::default(),
         };
         self.transfer_address = text.address;
         response(&[0, 0, 0, text.length, 0, 0, 0])

@@ -91,7 +91,7 @@ impl Bus {
     }
 
     /// Another node sends.
-    pub fn hear(&mut self, pgn: Pgn, destination: u8, source: u8, data: &[u8]) {
+    pub fn receive(&mut self, pgn: Pgn, destination: u8, source: u8, data: &[u8]) {
         let id = Id {
             priority: 6,
             pgn,
@@ -104,12 +104,12 @@ impl Bus {
 
     /// Another node claims an address.
     pub fn hear_claim(&mut self, address: u8, name: Name) {
-        self.hear(Pgn::ADDRESS_CLAIMED, 0xFF, address, &name.to_bytes());
+        self.receive(Pgn::ADDRESS_CLAIMED, 0xFF, address, &name.to_bytes());
     }
 
     /// Another node asks for a group.
     pub fn ask(&mut self, group: Pgn, destination: u8) {
-        self.hear(Pgn::REQUEST, destination, OTHER, &group.to_bytes());
+        self.receive(Pgn::REQUEST, destination, OTHER, &group.to_bytes());
     }
 
     /// What was sent of a group, and forgets everything that was sent.

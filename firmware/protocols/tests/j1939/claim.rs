@@ -82,7 +82,7 @@ fn requests_for_the_claim_are_answered_even_while_waiting() {
     bus.run(200);
     bus.sent.clear();
     // Asked by a node that hasn't claimed yet, and at our own address.
-    bus.hear(Pgn::REQUEST, OURS, 0xFE, &Pgn::ADDRESS_CLAIMED.to_bytes());
+    bus.receive(Pgn::REQUEST, OURS, 0xFE, &Pgn::ADDRESS_CLAIMED.to_bytes());
     bus.run(10);
     let answers = bus.take(Pgn::ADDRESS_CLAIMED);
     assert_eq!(answers.len(), 1, "claimed, not acknowledged");
@@ -177,7 +177,7 @@ fn who_uses_our_address_is_reminded_once_in_five_seconds() {
     bus.run(6_000);
     bus.sent.clear();
     for _ in 0..10_000 {
-        bus.hear(Pgn(0xFEF1), 0xFF, OURS, &[0; 8]);
+        bus.receive(Pgn(0xFEF1), 0xFF, OURS, &[0; 8]);
         bus.step();
     }
     assert_eq!(bus.take(Pgn::ADDRESS_CLAIMED).len(), 2);

@@ -239,7 +239,7 @@ fn which_coil_it_was_is_still_known_when_both_are_off() {
 fn requests_that_are_too_short_are_none() {
     let mut bus = Bus::claimed(Variant::Iso11783);
     for length in 0..3 {
-        bus.hear(Pgn::REQUEST, OURS, OTHER, &[0xCA, 0xFE, 0][..length]);
+        bus.receive(Pgn::REQUEST, OURS, OTHER, &[0xCA, 0xFE, 0][..length]);
     }
     let id = bus.sent.len();
     bus.run(20);

@@ -10,7 +10,7 @@ fn message(raw: u16) -> [u8; 8] {
 }
 
 fn heard(bus: &mut Bus, source: u8, raw: u16) -> Option<i32> {
-    bus.hear(Pgn::ENGINE, 0xFF, source, &message(raw));
+    bus.receive(Pgn::ENGINE, 0xFF, source, &message(raw));
     known(bus)
 }
 
@@ -81,7 +81,7 @@ fn any_address_tells_it_and_of_two_the_first_one_counts() {
 fn a_message_of_another_length_is_none() {
     let mut bus = Bus::new(Variant::J1939);
     for length in 0..8 {
-        bus.hear(Pgn::ENGINE, 0xFF, 0, &message(8_000)[..length]);
+        bus.receive(Pgn::ENGINE, 0xFF, 0, &message(8_000)[..length]);
         assert_eq!(known(&bus), None, "{length}");
     }
 }

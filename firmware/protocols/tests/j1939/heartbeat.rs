@@ -10,7 +10,7 @@ const HERE: u8 = 155;
 const ACTIVE: Remote = Remote::Position(PerMille(620));
 
 fn beat(bus: &mut Bus, number: u8) {
-    bus.hear(Pgn::HEARTBEAT, 0xFF, OTHER, &[number]);
+    bus.receive(Pgn::HEARTBEAT, 0xFF, OTHER, &[number]);
 }
 
 /// Commands every 100 ms, with these heartbeats.
@@ -24,7 +24,7 @@ fn commanded(bus: &mut Bus, beats: impl IntoIterator<Item = u8>) {
 fn command(bus: &mut Bus, times: u32) {
     for _ in 0..times {
         let bytes = HitchCommand::Position(HERE).to_bytes();
-        bus.hear(Pgn::HITCH_COMMANDS, 0xFF, OTHER, &bytes);
+        bus.receive(Pgn::HITCH_COMMANDS, 0xFF, OTHER, &bytes);
         bus.run(100);
     }
 }
@@ -50,7 +50,7 @@ fn who_asks_gets_it_every_100_ms() {
     bus.run(500);
     assert!(bus.take(Pgn::HEARTBEAT).is_empty());
     let request = [0xE4, 0xF0, 0, 100, 0, 0xFF, 0xFF, 0xFF];
-    bus.hear(Pgn::REPETITION_RATE, OURS, OTHER, &request);
+    bus.receive(Pgn::REPETITION_RATE, OURS, OTHER, &request);
     bus.run(26_000);
     let beats = bus.take(Pgn::HEARTBEAT);
     let gaps = beats
@@ -62,7 +62,7 @@ fn who_asks_gets_it_every_100_ms() {
     assert_eq!(numbers, expected.collect::<Vec<u8>>());
     // A group that isn't repeated.
     let mut bus = Bus::claimed(Variant::Iso11783);
-    bus.hear(
+    bus.receive(
         Pgn::REPETITION_RATE,
         OURS,
         OTHER,
@@ -146,7 +146,7 @@ fn facilities_are_told_who_asks_or_says_what_it_needs() {
     // Position in byte 2; commands and their limit status in byte 4.
     let expected = [0, 0x80, 0, 0x88, 0, 0, 0, 0];
     assert_eq!(bus.take(Pgn::TRACTOR_FACILITIES)[0].data(), expected);
-    bus.hear(Pgn::REQUIRED_FACILITIES, 0xFF, OTHER, &[0xFF; 8]);
+    bus.receive(Pgn::REQUIRED_FACILITIES, 0xFF, OTHER, &[0xFF; 8]);
     bus.run(10);
     assert_eq!(bus.take(Pgn::TRACTOR_FACILITIES)[0].data(), expected);
 }

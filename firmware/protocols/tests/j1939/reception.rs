@@ -22,12 +22,12 @@ fn announcement(control: u8) -> [u8; 8] {
 }
 
 fn manage(bus: &mut Bus, destination: u8, bytes: [u8; 8]) {
-    bus.hear(Pgn::TRANSPORT_CONNECTION, destination, OTHER, &bytes);
+    bus.receive(Pgn::TRANSPORT_CONNECTION, destination, OTHER, &bytes);
 }
 
 fn send(bus: &mut Bus, destination: u8, packets: &[[u8; 8]]) {
     for packet in packets {
-        bus.hear(Pgn::TRANSPORT_DATA, destination, OTHER, packet);
+        bus.receive(Pgn::TRANSPORT_DATA, destination, OTHER, packet);
     }
 }
 
@@ -63,7 +63,7 @@ fn an_address_is_commanded_to_this_node_alone() {
     let [first, last] = packets(1, WANTED);
     send(&mut bus, OURS, &[first]);
     assert!(said(&mut bus).is_empty());
-    bus.hear(Pgn::TRANSPORT_DATA, OURS, OTHER, &last);
+    bus.receive(Pgn::TRANSPORT_DATA, OURS, OTHER, &last);
     // Its end is said from the new address only once that is claimed, so not at all.
     bus.run(300);
     assert_eq!(bus.node.address(), Some(WANTED));
@@ -112,7 +112,7 @@ fn one_message_at_a_time() {
     let mut bus = Bus::claimed(Variant::Iso11783);
     manage(&mut bus, OURS, announcement(16));
     bus.run(5);
-    bus.hear(Pgn::TRANSPORT_CONNECTION, OURS, 0x30, &announcement(16));
+    bus.receive(Pgn::TRANSPORT_CONNECTION, OURS, 0x30, &announcement(16));
     bus.run(5);
     let sent = bus.take(Pgn::TRANSPORT_CONNECTION);
     let refusal = sent
@@ -122,7 +122,7 @@ fn one_message_at_a_time() {
     assert_eq!(refusal.data()[..2], [255, 2]);
     // Packets from the wrong node don't count; who asks again begins again.
     let [first, last] = packets(1, WANTED);
-    bus.hear(Pgn::TRANSPORT_DATA, OURS, 0x30, &first);
+    bus.receive(Pgn::TRANSPORT_DATA, OURS, 0x30, &first);
     send(&mut bus, OURS, &[first]);
     manage(&mut bus, OURS, announcement(16));
     send(&mut bus, OURS, &[first, last]);

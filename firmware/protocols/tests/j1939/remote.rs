@@ -9,7 +9,7 @@ use hitch_quantities::units::PerMille;
 const HERE: u8 = 155;
 
 fn command(bus: &mut Bus, command: HitchCommand) {
-    bus.hear(Pgn::HITCH_COMMANDS, 0xFF, OTHER, &command.to_bytes());
+    bus.receive(Pgn::HITCH_COMMANDS, 0xFF, OTHER, &command.to_bytes());
 }
 
 /// Commands every 100 ms, as an implement does.
@@ -134,7 +134,7 @@ fn a_hitch_whose_position_isnt_known_cant_be_commanded() {
     bus.status.position = None;
     bus.run(100);
     for raw in 0..=255 {
-        bus.hear(
+        bus.receive(
             Pgn::HITCH_COMMANDS,
             0xFF,
             OTHER,
@@ -251,19 +251,19 @@ fn limits_are_reported_and_the_command_stays() {
 fn only_the_node_that_took_control_is_heard() {
     let mut bus = remote_bus();
     for _ in 0..20 {
-        bus.hear(
+        bus.receive(
             Pgn::HITCH_COMMANDS,
             0xFF,
             0x27,
             &HitchCommand::Position(10).to_bytes(),
         );
-        bus.hear(
+        bus.receive(
             Pgn::HITCH_COMMANDS,
             0xFF,
             0x27,
             &HitchCommand::None.to_bytes(),
         );
-        bus.hear(
+        bus.receive(
             Pgn::HITCH_COMMANDS,
             0xFF,
             0xFE,
@@ -287,7 +287,7 @@ fn duplicated_and_malformed_commands_change_nothing() {
         command(&mut bus, HitchCommand::Position(HERE));
     }
     for length in 0..8 {
-        bus.hear(Pgn::HITCH_COMMANDS, 0xFF, OTHER, &vec![0; length]);
+        bus.receive(Pgn::HITCH_COMMANDS, 0xFF, OTHER, &vec![0; length]);
     }
     assert_eq!(bus.node.remote(), Remote::Position(PerMille(620)));
 }
@@ -298,7 +298,7 @@ fn a_node_without_an_address_commands_nothing() {
     bus.run(100);
     for source in [0xFE, 0xFF] {
         let command = HitchCommand::Position(HERE).to_bytes();
-        bus.hear(Pgn::HITCH_COMMANDS, 0xFF, source, &command);
+        bus.receive(Pgn::HITCH_COMMANDS, 0xFF, source, &command);
         assert_eq!(bus.node.remote(), Remote::Idle, "{source:X}");
     }
 }

@@ -66,7 +66,7 @@ fn management(bus: &mut Bus, data: [u8; 5]) {
     let [a, b, c] = Pgn::DM2.to_bytes();
     let [control, first, second, third, fourth] = data;
     let bytes = [control, first, second, third, fourth, a, b, c];
-    bus.hear(Pgn::TRANSPORT_CONNECTION, OURS, OTHER, &bytes);
+    bus.receive(Pgn::TRANSPORT_CONNECTION, OURS, OTHER, &bytes);
 }
 
 fn packets(bus: &mut Bus) -> Vec<u8> {
@@ -152,7 +152,7 @@ fn a_second_long_message_has_to_wait_and_is_told_so() {
     let mut bus = bus_with_history();
     bus.ask(Pgn::DM2, OURS);
     bus.run(5);
-    bus.hear(Pgn::REQUEST, OURS, 0x30, &Pgn::DM2.to_bytes());
+    bus.receive(Pgn::REQUEST, OURS, 0x30, &Pgn::DM2.to_bytes());
     bus.run(5);
     let refusal = bus.take(Pgn::ACKNOWLEDGEMENT);
     assert_eq!(
@@ -171,7 +171,7 @@ fn others_have_no_say_in_a_connection() {
     for control in [[17, 3, 1], [255, 1, 0xFF], [19, 0, 0]] {
         let [first, second, third] = control;
         let bytes = [first, second, third, 0xFF, 0xFF, a, b, c];
-        bus.hear(Pgn::TRANSPORT_CONNECTION, OURS, 0x30, &bytes);
+        bus.receive(Pgn::TRANSPORT_CONNECTION, OURS, 0x30, &bytes);
     }
     bus.run(50);
     assert_eq!(packets(&mut bus), [0; 0]);

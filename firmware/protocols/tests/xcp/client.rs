@@ -51,7 +51,7 @@ impl Desk {
         desk
     }
 
-    pub fn hear(&mut self, frame: &Frame) {
+    pub fn receive(&mut self, frame: &Frame) {
         let mut memory = EcuMemory {
             pages: &mut self.pages,
             measurements: &self.measurements,
@@ -62,7 +62,7 @@ impl Desk {
 
     /// The tool sends a command.
     pub fn send(&mut self, command: &[u8]) {
-        self.hear(&frame(command, ECU, TOOL_ADDRESS));
+        self.receive(&frame(command, ECU, TOOL_ADDRESS));
     }
 
     /// A step of the ECU with this event.

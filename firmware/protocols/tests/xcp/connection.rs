@@ -39,16 +39,16 @@ fn before_connect_and_after_disconnect_nothing_is_answered() {
 #[test]
 fn only_the_tool_is_heard_and_only_at_our_address() {
     let mut desk = Desk::new();
-    desk.hear(&frame(&[0xFF, 0], ECU, 0x26));
-    desk.hear(&frame(&[0xFF, 0], 0x81, TOOL_ADDRESS));
-    desk.hear(&frame(&[0xFF, 0], 0xFF, TOOL_ADDRESS));
+    desk.receive(&frame(&[0xFF, 0], ECU, 0x26));
+    desk.receive(&frame(&[0xFF, 0], 0x81, TOOL_ADDRESS));
+    desk.receive(&frame(&[0xFF, 0], 0xFF, TOOL_ADDRESS));
     let id = Id {
         priority: 6,
         pgn: Pgn(0xEA00),
         destination: ECU,
         source: TOOL_ADDRESS,
     };
-    desk.hear(&Frame::data_frame(id.pack().into(), &[0xFF, 0]).unwrap());
+    desk.receive(&Frame::data_frame(id.pack().into(), &[0xFF, 0]).unwrap());
     assert!(!desk.slave.is_connected());
     // An ECU that has no address, or has moved, isn't spoken to there.
     desk.slave.set_address(None);
@@ -57,7 +57,7 @@ fn only_the_tool_is_heard_and_only_at_our_address() {
     desk.slave.set_address(Some(0x81));
     desk.send(&[0xFF, 0]);
     assert!(!desk.slave.is_connected());
-    desk.hear(&frame(&[0xFF, 0], 0x81, TOOL_ADDRESS));
+    desk.receive(&frame(&[0xFF, 0], 0x81, TOOL_ADDRESS));
     assert!(desk.slave.is_connected());
     let answer = desk.slave.poll().unwrap();
     assert_eq!(answer.extended_data_id().unwrap().as_raw(), 0x18EF_F981);

@@ -95,7 +95,7 @@ fn a_lowered_hitch_that_bounces_off_the_ground_is_cut_off_without_a_fault() {
             assert_ne!(at(Order::Lower(1_100), angle), CoilCurrents::OFF, "{angle}");
         }
         assert_eq!(at(Order::Lower(1_100), lowest + 4_001), CoilCurrents::OFF);
-        assert_eq!(rig.envelope.has_landed(), bounced, "{way_down}");
+        assert_eq!(rig.envelope.has_ground_contact(), bounced, "{way_down}");
         let trip = (!bounced).then_some(Trip::Against);
         assert_eq!(rig.envelope.tripped(), trip, "{way_down}");
     }

@@ -6,14 +6,14 @@ mod angle;
 mod any_inputs;
 mod bounds;
 mod coils;
-mod debt;
 mod measuring;
+mod noise_detector;
 mod onset;
 mod recovery;
 mod release;
 mod signals;
 mod standstill;
-mod tremble;
+mod travel_deficit;
 
 use std::sync::LazyLock;
 
@@ -22,7 +22,7 @@ use hitch_quantities::units::{
     Microsecond, MilliAmp, MilliDegree, MilliDegreePerSecond, MilliVolt,
 };
 use hitch_quantities::{Calibration, CoilCurrents, Fault, Inputs, Trip};
-use hitch_safety::{Command, Envelope, Limits, Machine, Step};
+use hitch_safety::{Command, Envelope, Limits, MachineModel, Step};
 
 const SAFETY: SafetyParameters = SafetyParameters::NOMINAL;
 const SENSORS: SensorParameters = SensorParameters::NOMINAL;
@@ -34,7 +34,7 @@ fn limits() -> Limits<'static> {
         sensors: &SENSORS,
         damaged: false,
         slow_start: false,
-        machine: Machine::of(&NOMINAL),
+        machine: MachineModel::of(&NOMINAL),
     }
 }
 

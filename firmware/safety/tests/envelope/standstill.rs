@@ -358,12 +358,12 @@ fn without_a_pressure_a_hitch_that_may_have_landed_is_cut_off_without_a_fault() 
     rig.speed = 0;
     let cut = rig.cut_after_landing(LOWER);
     assert!(cut.is_some_and(|cut| cut <= IN_MOTION_MS), "{cut:?}");
-    assert!(rig.envelope.has_landed());
+    assert!(rig.envelope.has_ground_contact());
     assert_eq!(rig.run(LOWER, 5_000), CoilCurrents::OFF, "stays off");
     assert_eq!(rig.envelope.tripped(), None);
-    assert!(rig.envelope.has_landed());
+    assert!(rig.envelope.has_ground_contact());
     rig.run(Order::Rest, 1);
-    assert!(!rig.envelope.has_landed());
+    assert!(!rig.envelope.has_ground_contact());
     assert_ne!(rig.run(LOWER, 1), CoilCurrents::OFF, "the command was off");
 }
 
@@ -387,7 +387,7 @@ fn a_hitch_whose_pressure_has_fallen_by_half_may_have_landed() {
         });
         let case = (order, bar_1000);
         assert!(cut.is_some_and(|cut| cut <= 2 * IN_MOTION_MS), "{case:?}");
-        assert_eq!(rig.envelope.has_landed(), lands, "{case:?}");
+        assert_eq!(rig.envelope.has_ground_contact(), lands, "{case:?}");
         let fault = (!lands).then_some(Trip::NotFollowing);
         assert_eq!(rig.envelope.tripped(), fault, "{case:?}");
     }

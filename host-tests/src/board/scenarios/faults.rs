@@ -15,7 +15,8 @@ pub struct Fault {
     pub name: &'static str,
     /// Longest reaction at the pin, ms: the row's time, a millisecond until it is sampled, and one to react.
     pub most_ms: f64,
-    /// Whether it shows in any state: a coil's faults only show while it is driven, a jump is over once it has happened.
+    /// Whether it shows in any state: a coil's faults only show while it is driven, a jump is over once it has
+    /// happened.
     pub always_shows: bool,
     /// Whether only a restart clears it.
     pub until_restart: bool,
@@ -253,7 +254,7 @@ pub fn enable_line(setup: &Setup) -> Result<String> {
             .levels
             .insert(ENABLE_READ_BACK, stuck);
         rig.pick_up()?;
-        rig.bench.operator.obey(Order::Lever(110.0));
+        rig.bench.operator.apply(Order::Lever(110.0));
         for step in 0..1_000 {
             rig.tick_with(|_| {})?;
             ensure!(

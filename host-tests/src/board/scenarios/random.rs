@@ -1,4 +1,5 @@
-//! Random operation with faults: an operator who moves the hitch most of the time, wires that break and mend, a busy bus.
+//! Random operation with faults: an operator who moves the hitch most of the time, wires that break and mend, a busy
+//! bus.
 
 use anyhow::{Result, ensure};
 use hitch_ecu::Contact;
@@ -117,14 +118,14 @@ impl Shift<'_> {
     /// The lever goes through the hitch, to one side of it and to the other.
     fn pick_up(&mut self) -> Result<()> {
         let operator = &mut self.rig.bench.operator;
-        operator.obey(Order::ReleaseButtons);
-        operator.obey(Order::Contact(Contact::FieldMode, true));
+        operator.apply(Order::ReleaseButtons);
+        operator.apply(Order::Contact(Contact::FieldMode, true));
         let angle_deg = self.rig.bench.angle_deg();
         for aside_deg in [-ASIDE_DEG, ASIDE_DEG] {
             let operator = &mut self.rig.bench.operator;
             let to_deg = (angle_deg + aside_deg).clamp(45.0, 135.0);
             let way_deg = (to_deg - operator.lever_deg).abs();
-            operator.obey(Order::Lever(to_deg));
+            operator.apply(Order::Lever(to_deg));
             self.healthy((way_deg / HAND_DEG_PER_MS) as u32 + 50)?;
         }
         Ok(())
@@ -149,14 +150,14 @@ impl Shift<'_> {
         let angle_deg = self.rig.bench.angle_deg();
         let random = &mut self.random;
         let operator = &mut self.rig.bench.operator;
-        operator.obey(Order::ReleaseButtons);
-        operator.obey(Order::Contact(Contact::FieldMode, true));
+        operator.apply(Order::ReleaseButtons);
+        operator.apply(Order::Contact(Contact::FieldMode, true));
         match random.u32(0..20) {
-            0 => operator.obey(Order::Contact(Contact::Up, true)),
-            1 => operator.obey(Order::Contact(Contact::Down, true)),
-            2 => operator.obey(Order::Contact(Contact::FieldMode, false)),
-            3 | 4 => operator.obey(Order::Lever(angle_deg)),
-            _ => operator.obey(Order::Lever(50.0 + 80.0 * random.f64())),
+            0 => operator.apply(Order::Contact(Contact::Up, true)),
+            1 => operator.apply(Order::Contact(Contact::Down, true)),
+            2 => operator.apply(Order::Contact(Contact::FieldMode, false)),
+            3 | 4 => operator.apply(Order::Lever(angle_deg)),
+            _ => operator.apply(Order::Lever(50.0 + 80.0 * random.f64())),
         }
     }
 }

@@ -76,13 +76,13 @@ impl<'m> Rig<'m> {
     pub fn pick_up(&mut self) -> Result<()> {
         self.run(READY_MS)?;
         let angle_deg = self.bench.angle_deg();
-        self.bench.operator.obey(Order::Lever(angle_deg + 3.0));
+        self.bench.operator.apply(Order::Lever(angle_deg + 3.0));
         self.run(600)
     }
 
     /// Moves the lever, and lets the hitch follow for some milliseconds.
     pub fn lever(&mut self, angle_deg: f64, milliseconds: usize) -> Result<()> {
-        self.bench.operator.obey(Order::Lever(angle_deg));
+        self.bench.operator.apply(Order::Lever(angle_deg));
         self.run(milliseconds)
     }
 

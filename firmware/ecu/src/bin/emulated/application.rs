@@ -3,7 +3,7 @@
 use hitch_ecu::link::{
     FRAME_BYTES, MOST_FRAMES, REQUEST_BYTES, Reply, Request, frame_from_bytes, frame_to_bytes,
 };
-use hitch_ecu::{BoardScaling, Contacts, FlashRegions, Machine, Probe};
+use hitch_ecu::{BoardScaling, Contacts, FlashRegions, HostedEcu, Probe};
 use hitch_protocols::can::Frame;
 
 use crate::flash_file::FlashFile;
@@ -60,15 +60,15 @@ fn power_up(
     stopwatch: &Stopwatch,
     done: &mut Done,
 ) -> Result<End, Failure> {
-    let mut machine: Machine<FlashFile, Control> =
-        Machine::start(flash, SERIAL_NUMBER, BoardScaling::NOMINAL);
+    let mut machine: HostedEcu<FlashFile, Control> =
+        HostedEcu::start(flash, SERIAL_NUMBER, BoardScaling::NOMINAL);
     let mut was_storing = false;
     while let Some(record) = link.read::<REQUEST_BYTES>()? {
         let Request::Tick { contacts, frames } = Request::from_bytes(&record) else {
             return Ok(End::PowerCut);
         };
-        let heard = hear(link, frames)?;
-        let (reply, ticks) = stopwatch.ticks_of(|| tick(&mut machine, &contacts, &heard));
+        let received = receive(link, frames)?;
+        let (reply, ticks) = stopwatch.ticks_of(|| tick(&mut machine, &contacts, &received));
         done.longest_control = done.longest_control.max(machine.probe().ticks());
         done.ticks += 1;
         let storing = was_storing || machine.ecu().is_storing();
@@ -79,7 +79,7 @@ fn power_up(
             (false, true) => done.longest_storing = done.longest_storing.max(ticks),
         }
         link.write(&reply.to_bytes())?;
-        for frame in machine.said() {
+        for frame in machine.sent() {
             link.write(&frame_to_bytes(frame))?;
         }
     }
@@ -88,19 +88,23 @@ fn power_up(
 
 /// The millisecond as the ECU's loop calls it: not merged into the loop around it.
 #[inline(never)]
-fn tick(machine: &mut Machine<FlashFile, Control>, contacts: &Contacts, heard: &[Frame]) -> Reply {
-    machine.tick(contacts, heard)
+fn tick(
+    machine: &mut HostedEcu<FlashFile, Control>,
+    contacts: &Contacts,
+    received: &[Frame],
+) -> Reply {
+    machine.tick(contacts, received)
 }
 
 /// The frames that follow a request; what makes no frame is left out.
-fn hear(link: &mut Link, frames: usize) -> Result<heapless::Vec<Frame, MOST_FRAMES>, Failure> {
-    let mut heard = heapless::Vec::new();
+fn receive(link: &mut Link, frames: usize) -> Result<heapless::Vec<Frame, MOST_FRAMES>, Failure> {
+    let mut received = heapless::Vec::new();
     for _ in 0..frames {
         let bytes = link.read::<FRAME_BYTES>()?;
         if let Some(frame) = bytes.as_ref().and_then(frame_from_bytes) {
             // A request has no more frames than this holds.
-            let _ = heard.push(frame);
+            let _ = received.push(frame);
         }
     }
-    Ok(heard)
+    Ok(received)
 }

@@ -17,7 +17,7 @@ pub enum Word<'a> {
 }
 
 /// Says it, as far as the console takes it: nobody is left to tell if that fails.
-pub fn say(words: &[Word<'_>]) {
+pub fn print(words: &[Word<'_>]) {
     if let Ok(mut console) = HostFile::console() {
         let _ = words.iter().try_for_each(|word| write(&mut console, word));
     }

@@ -1,6 +1,6 @@
 //! Records from the host and back.
 //!
-//! What has come is read in one go and what was said is written in one go, just before there is nothing more to read:
+//! What has come is read in one go and what was sent is written in one go, just before there is nothing more to read:
 //! a host that asks record by record gets every answer at once, and one that sends a file isn't slowed down by
 //! a call to it for each record.
 
@@ -12,11 +12,11 @@ const BUFFER_BYTES: usize = 1_024;
 pub struct Link {
     input: HostFile,
     output: HostFile,
-    heard: [u8; BUFFER_BYTES],
+    received: [u8; BUFFER_BYTES],
     /// Where in `heard` the next record begins, and where what has come ends.
     next: usize,
     end: usize,
-    said: heapless::Vec<u8, BUFFER_BYTES>,
+    sent: heapless::Vec<u8, BUFFER_BYTES>,
 }
 
 impl Link {
@@ -25,17 +25,17 @@ impl Link {
         Ok(Self {
             input: HostFile::input()?,
             output: HostFile::output()?,
-            heard: [0; BUFFER_BYTES],
+            received: [0; BUFFER_BYTES],
             next: 0,
             end: 0,
-            said: heapless::Vec::new(),
+            sent: heapless::Vec::new(),
         })
     }
 
     /// The next record; `None` at the end.
     pub fn read<const N: usize>(&mut self) -> Result<Option<[u8; N]>, HostFileError> {
         loop {
-            let waiting = self.heard.get(self.next..self.end).unwrap_or_default();
+            let waiting = self.received.get(self.next..self.end).unwrap_or_default();
             if let Some(record) = waiting.first_chunk().copied() {
                 self.next += N;
                 return Ok(Some(record));
@@ -43,10 +43,10 @@ impl Link {
             let begun = waiting.len();
             self.flush()?;
             if begun > 0 {
-                self.heard.rotate_left(self.next.min(BUFFER_BYTES));
+                self.received.rotate_left(self.next.min(BUFFER_BYTES));
             }
             (self.next, self.end) = (0, begun);
-            let room = self.heard.get_mut(begun..).unwrap_or_default();
+            let room = self.received.get_mut(begun..).unwrap_or_default();
             match self.input.read(room) {
                 0 if begun == 0 => return Ok(None),
                 0 => return Err(HostFileError::Truncated),
@@ -57,7 +57,7 @@ impl Link {
 
     /// Says `bytes`, now or before the next wait for the host.
     pub fn write(&mut self, bytes: &[u8]) -> Result<(), HostFileError> {
-        if self.said.extend_from_slice(bytes).is_err() {
+        if self.sent.extend_from_slice(bytes).is_err() {
             self.flush()?;
             return self.output.write_all(bytes);
         }
@@ -65,9 +65,9 @@ impl Link {
     }
 
     fn flush(&mut self) -> Result<(), HostFileError> {
-        if !self.said.is_empty() {
-            self.output.write_all(&self.said)?;
-            self.said.clear();
+        if !self.sent.is_empty() {
+            self.output.write_all(&self.sent)?;
+            self.sent.clear();
         }
         Ok(())
     }

@@ -27,7 +27,7 @@ use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 
 use hitch_quantities::CalibrationError;
 
-use console::{Word, say};
+use console::{Word, print};
 use host_file::HostFileError;
 use link::Link;
 use stopwatch::Stopwatch;
@@ -54,7 +54,7 @@ impl From<HostFileError> for Failure {
 fn main() -> ! {
     match run() {
         Ok(done) => {
-            say(&[
+            print(&[
                 Word::Text("steps="),
                 Word::Number(done.ticks),
                 Word::Text("\nlongest_ticks="),
@@ -105,7 +105,7 @@ struct Done {
 }
 
 fn fail(words: &[Word<'_>]) {
-    say(words);
+    print(words);
     debug::exit(EXIT_FAILURE);
 }
 

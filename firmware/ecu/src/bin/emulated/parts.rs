@@ -1,5 +1,5 @@
-//! What the parts of a step take: the valve maps, the proportional and integral part of a coil's current, and all of the
-//! currents' regulation.
+//! What the parts of a step take: the valve maps, the proportional and integral part of a coil's current, and all of
+//! the currents' regulation.
 //!
 //! A part is called by address, and so is a function that does nothing; the difference is the part's own.
 
@@ -12,7 +12,7 @@ use hitch_quantities::units::{MicroLitrePerSecond, MilliAmp, MilliBar, MilliVolt
 use hitch_quantities::{Calibration, CoilCurrents, Inputs, ValidCalibration};
 
 use crate::Failure;
-use crate::console::{Word, say};
+use crate::console::{Word, print};
 use crate::stopwatch::Stopwatch;
 
 /// From no flow to beyond saturation, ul/s.
@@ -53,7 +53,8 @@ fn most_ticks<T>(stopwatch: &Stopwatch, part: Part<T>, on: &T) -> u32 {
     most
 }
 
-/// The ticks of one call. There is one copy of this code, so that all parts, and the one that does nothing, are called alike.
+/// The ticks of one call. There is one copy of this code, so that all parts, and the one that does nothing, are called
+/// alike.
 #[inline(never)]
 fn ticks_of_call<T>(
     stopwatch: &Stopwatch,
@@ -172,5 +173,5 @@ fn time_regulation(stopwatch: &Stopwatch, calibration: &ValidCalibration) {
 }
 
 fn report(name: &str, ticks: u32) {
-    say(&[Word::Text(name), Word::Number(ticks), Word::Text("\n")]);
+    print(&[Word::Text(name), Word::Number(ticks), Word::Text("\n")]);
 }

@@ -15,7 +15,7 @@ const MAGIC: [u32; 2] = [0x4B43_4548, 0xA5C3_1E7D];
 /// What erased flash holds: no checksum.
 const UNSEALED: u32 = u32::MAX;
 
-/// Place of the checksum, behind [`MAGIC`]. It counts as erased while the checksum is worked out.
+/// MemoryRange of the checksum, behind [`MAGIC`]. It counts as erased while the checksum is worked out.
 #[used]
 #[unsafe(no_mangle)]
 static IMAGE_SEAL: [u32; 3] = [MAGIC[0], MAGIC[1], UNSEALED];

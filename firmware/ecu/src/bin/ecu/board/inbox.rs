@@ -1,4 +1,4 @@
-//! Frames that were heard and wait for their millisecond.
+//! Frames that were received and wait for their millisecond.
 
 use heapless::Deque;
 use hitch_protocols::can::Frame;

@@ -63,12 +63,12 @@ impl Can {
         }
     }
 
-    /// The oldest frame that was heard.
+    /// The oldest frame that was received.
     pub fn next_heard(&mut self) -> Option<Frame> {
         self.inbox.take()
     }
 
-    /// Frames that were heard and for which there was no room.
+    /// Frames that were received and for which there was no room.
     pub const fn dropped(&self) -> u16 {
         self.inbox.dropped()
     }

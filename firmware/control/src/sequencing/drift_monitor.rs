@@ -1,24 +1,24 @@
-//! Sink watch: a hitch that leaves its place by itself is brought back, but not for ever.
+//! Drift monitor: limits the corrections of a hitch that drifts from its set point.
 //!
-//! A move that no lever asked for is a correction: the lowering spool or the check valve leaks. A few of them are
-//! carried out, over a few degrees, the next is a fault. A correction is forgotten after a while, and all of them when
-//! the lever moves.
+//! A move that the lever did not demand is a correction: the lowering spool or the check valve leaks. A limited number
+//! of corrections over a limited travel is allowed; the next one is a fault. The count of corrections decays with time
+//! and is reset when the lever moves.
 
 use hitch_quantities::Fault;
 use hitch_quantities::calibration::design_parameters::HoldParameters;
 use hitch_quantities::units::{Count, MicrometrePerSecond, Millisecond};
 
-/// Counts corrections.
+/// Counts corrections and their travel.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct SinkWatch {
+pub struct DriftMonitor {
     corrections: Count,
-    /// What all of them together have moved the hitch, in nanometres.
+    /// Total travel of the corrections, nm.
     travel_nm: i32,
     age: Millisecond,
 }
 
-impl SinkWatch {
-    /// Time passes.
+impl DriftMonitor {
+    /// One step of time.
     pub fn tick(&mut self, parameters: &HoldParameters) {
         if self.corrections == Count::ZERO {
             return;
@@ -31,16 +31,16 @@ impl SinkWatch {
         }
     }
 
-    /// The lever was moved.
-    pub fn new_set_point(&mut self) {
+    /// The lever was moved: resets the monitor.
+    pub fn reset(&mut self) {
         *self = Self::default();
     }
 
-    /// A correction goes on, for a millisecond at the speed that the valves give.
+    /// Adds the travel of one millisecond of a correction.
     ///
     /// # Errors
-    /// All corrections together go too far: a leak that fast is a burst pipe, or the sensor drifts.
-    pub fn correcting(
+    /// The total travel is too large: the leak is a burst pipe, or the sensor drifts.
+    pub fn add_travel(
         &mut self,
         speed: MicrometrePerSecond,
         parameters: &HoldParameters,
@@ -53,11 +53,11 @@ impl SinkWatch {
         }
     }
 
-    /// A correction is about to start.
+    /// A correction starts.
     ///
     /// # Errors
-    /// There were too many.
-    pub fn correct(&mut self, parameters: &HoldParameters) -> Result<(), Fault> {
+    /// There were too many corrections.
+    pub fn start_correction(&mut self, parameters: &HoldParameters) -> Result<(), Fault> {
         if self.corrections >= parameters.corrections {
             return Err(Fault::Sinking);
         }

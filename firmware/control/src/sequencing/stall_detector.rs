@@ -1,62 +1,62 @@
-//! Compensator logic: flow that is demanded and doesn't arrive.
+//! Stall detector: flow is demanded and the hitch does not move.
 //!
-//! While lifting, flow is what the map says only as long as the compensator has margin. At the relief
-//! pressure, at the end of the stroke or against an obstacle the pump's flow goes over the relief valve at 154 bar
-//! instead. Seen in the pump pressure if there is a sensor, and in any case by comparing demanded with
-//! measured travel. The coil is then cut, and after a rest there are a few more attempts. At the end of its stroke, and on
-//! the ground, a hitch stays where it is until the lever is moved: that is no fault.
+//! During a lift the flow equals the map only while the compensator has margin. At the relief pressure, at the end of
+//! the stroke or against an obstacle, the pump flow passes the relief valve at 154 bar instead. The detector uses the
+//! pump pressure, if there is a sensor, and always the comparison of demanded and measured travel. After a stall the
+//! coil is cut, and there are a few more attempts, each after a delay. At the end of the stroke and on the ground the
+//! hitch stays where it is until the lever is moved; this is no fault.
 
 use hitch_quantities::calibration::design_parameters::{HydraulicParameters, SaturationParameters};
 use hitch_quantities::units::{Count, Micrometre, MilliBar, MilliDegree, Millisecond};
 use hitch_quantities::{Calibration, Fault};
 
-use crate::estimation::motion::Motion;
+use crate::estimation::motion_observer::MotionObserver;
 use crate::sensing::sensors::Sensed;
 use crate::valve::phase::{Direction, Phase};
 
-/// A hitch that stalls this close to a limit of its travel has arrived: an end stop, or a misplaced limit.
+/// A stall this close to a limit of the travel is at the end of travel: an end stop, or a wrong limit.
 const END_ZONE: MilliDegree = MilliDegree(2_000);
 
-/// True if a hitch that has stalled has come as far as it can: to an end of its stroke, or down to the ground.
+/// True if a stalled hitch is at an end of its stroke or on the ground.
 ///
-/// What lies on the ground leaves no pressure behind an open valve. Without a sensor a lowering valve that doesn't open
-/// looks the same; then nothing sinks, and nothing is unsafe.
+/// On the ground there is no pressure at an open lowering valve. Without a pressure sensor a lowering valve that does
+/// not open cannot be told from that; the hitch then does not sink, which is safe.
 #[must_use]
-pub fn goes_no_further(lifts: bool, sensed: &Sensed, calibration: &Calibration) -> bool {
+pub fn is_at_end_of_travel(lifts: bool, sensed: &Sensed, calibration: &Calibration) -> bool {
     let (position, hydraulics) = (&calibration.position, &calibration.hydraulics);
-    let lies = || {
+    let is_unloaded = || {
         let empty = |pressure| pressure <= hydraulics.smallest_drop;
         sensed.cylinder_pressure.is_none_or(empty)
     };
     match lifts {
         true => sensed.angle >= position.upper_limit - END_ZONE,
-        false => sensed.angle <= position.lower_limit + END_ZONE || lies(),
+        false => sensed.angle <= position.lower_limit + END_ZONE || is_unloaded(),
     }
 }
 
-/// Watches whether flow arrives.
+/// Detects a stall.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct SaturationWatch {
-    window: Option<Window>,
+pub struct StallDetector {
+    window: Option<TravelWindow>,
     near_relief: Millisecond,
     attempts: Count,
-    resting: Option<Millisecond>,
+    retry_delay: Option<Millisecond>,
 }
 
 /// One comparison of demanded and measured travel.
 #[derive(Clone, Copy, Debug)]
-struct Window {
+struct TravelWindow {
     start: Micrometre,
     demanded_nm: i32,
     age: Millisecond,
 }
 
-impl SaturationWatch {
+impl StallDetector {
     /// One step; true when flow is demanded and nothing moves.
-    pub fn stalled(
+    pub fn is_stalled(
         &mut self,
         phase: Phase,
-        motion: &Motion,
+        motion: &MotionObserver,
         pump_pressure: Option<MilliBar>,
         parameters: &SaturationParameters,
         hydraulics: &HydraulicParameters,
@@ -77,36 +77,36 @@ impl SaturationWatch {
         self.compare(direction, motion, parameters) || self.near_relief >= parameters.relief_time
     }
 
-    /// The hitch stalled short of an end: rests before the next attempt.
+    /// The hitch stalled before the end of travel: starts the delay before the next attempt.
     ///
     /// # Errors
     /// There were too many attempts.
-    pub fn rest(&mut self, parameters: &SaturationParameters) -> Result<(), Fault> {
+    pub fn start_retry_delay(&mut self, parameters: &SaturationParameters) -> Result<(), Fault> {
         self.attempts = self.attempts + Count(1);
         if self.attempts >= parameters.attempts {
             return Err(Fault::NotMoving);
         }
-        self.resting = Some(Millisecond::ZERO);
+        self.retry_delay = Some(Millisecond::ZERO);
         Ok(())
     }
 
-    /// True while a stalled hitch rests; time passes.
-    pub fn is_resting(&mut self, parameters: &SaturationParameters) -> bool {
-        self.resting = self
-            .resting
+    /// One step of the retry delay; true while it lasts.
+    pub fn tick_retry_delay(&mut self, parameters: &SaturationParameters) -> bool {
+        self.retry_delay = self
+            .retry_delay
             .map(Millisecond::next)
-            .filter(|&rested| rested <= parameters.retry_time);
-        self.resting.is_some()
+            .filter(|&waited| waited <= parameters.retry_time);
+        self.retry_delay.is_some()
     }
 
-    /// True while a stalled hitch rests.
+    /// True during the retry delay.
     #[must_use]
-    pub const fn rests(&self) -> bool {
-        self.resting.is_some()
+    pub const fn is_waiting(&self) -> bool {
+        self.retry_delay.is_some()
     }
 
-    /// The lever was moved, or a fault was dealt with: all attempts are forgotten.
-    pub fn forget(&mut self) {
+    /// The lever was moved or a fault has ended: resets the attempts.
+    pub fn reset(&mut self) {
         *self = Self::default();
     }
 
@@ -114,10 +114,10 @@ impl SaturationWatch {
     fn compare(
         &mut self,
         direction: Direction,
-        motion: &Motion,
+        motion: &MotionObserver,
         parameters: &SaturationParameters,
     ) -> bool {
-        let mut window = self.window.unwrap_or(Window {
+        let mut window = self.window.unwrap_or(TravelWindow {
             start: motion.position(),
             demanded_nm: 0,
             age: Millisecond::ZERO,
@@ -132,10 +132,10 @@ impl SaturationWatch {
         self.window = None;
         let demanded = Micrometre(window.demanded_nm.saturating_abs() / 1000);
         let moved = Micrometre(direction.sign((motion.position() - window.start).0));
-        let stuck = demanded >= parameters.demanded_travel && moved < Micrometre(demanded.0 / 8);
-        if !stuck && demanded >= parameters.demanded_travel {
+        let stalled = demanded >= parameters.demanded_travel && moved < Micrometre(demanded.0 / 8);
+        if !stalled && demanded >= parameters.demanded_travel {
             self.attempts = Count::ZERO;
         }
-        stuck
+        stalled
     }
 }

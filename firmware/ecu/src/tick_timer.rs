@@ -1,16 +1,16 @@
-//! Time: milliseconds by the number of ticks, and how long the last one took by another clock.
+//! Tick timer: counts milliseconds and measures the interval of ticks with a second clock.
 
 use hitch_quantities::units::Microsecond;
 
-/// Both clocks.
+/// Tick counter and interval measurement.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Pace {
+pub struct TickTimer {
     now_ms: u32,
     last_us: Option<u32>,
     longest_us: u16,
 }
 
-impl Pace {
+impl TickTimer {
     /// A tick begins; the time since the last one began.
     pub fn begin(&mut self, clock_us: u32) -> Option<Microsecond> {
         self.now_ms = self.now_ms.wrapping_add(1);
@@ -22,8 +22,8 @@ impl Pace {
         Some(Microsecond(i32::try_from(step_us).unwrap_or(i32::MAX)))
     }
 
-    /// This tick was made to wait on purpose, with both coils off: the next one isn't late.
-    pub const fn forgive(&mut self) {
+    /// Skips the next interval: this tick is delayed intentionally, with both coils off.
+    pub const fn skip_interval(&mut self) {
         self.last_us = None;
     }
 
@@ -46,18 +46,18 @@ mod tests {
 
     #[test]
     fn a_clock_that_wraps_is_no_overrun() {
-        let mut pace = Pace::default();
-        assert_eq!(pace.begin(u32::MAX - 300), None);
-        assert_eq!(pace.begin(699), Some(Microsecond(1_000)));
-        assert_eq!((pace.now_ms(), pace.longest_us()), (2, 1_000));
+        let mut timer = TickTimer::default();
+        assert_eq!(timer.begin(u32::MAX - 300), None);
+        assert_eq!(timer.begin(699), Some(Microsecond(1_000)));
+        assert_eq!((timer.now_ms(), timer.longest_us()), (2, 1_000));
     }
 
     #[test]
-    fn a_wait_on_purpose_is_forgiven_once() {
-        let mut pace = Pace::default();
-        pace.begin(0);
-        pace.forgive();
-        assert_eq!(pace.begin(1_000_000), None);
-        assert_eq!(pace.begin(1_900_000), Some(Microsecond(900_000)));
+    fn an_intentional_delay_is_skipped_once() {
+        let mut timer = TickTimer::default();
+        timer.begin(0);
+        timer.skip_interval();
+        assert_eq!(timer.begin(1_000_000), None);
+        assert_eq!(timer.begin(1_900_000), Some(Microsecond(900_000)));
     }
 }

@@ -1,50 +1,50 @@
-//! How far a whole move went, from rest to rest, and how far the valve's curve says that it should have gone.
+//! Distance of a whole move, from rest to rest: measured, and expected by the valve curve.
 //!
-//! A curve that lies `d` further right gives less flow all the way; a spool that is slower delays the flow, but loses
-//! none of it. So at rest the hitch is behind by what the curve is off, whatever the lag:
+//! A valve curve that is shifted by `d` gives less flow during the whole move. A slower spool delays the flow, but does
+//! not reduce its volume. The position error at rest therefore depends on the shift only, not on the lag:
 //!
 //! ```text
-//! expected way - measured way = d * sensitivity        sensitivity = integral of dv/dI over the move
+//! expected distance - measured distance = d * sensitivity        sensitivity = integral of dv/dI over the move
 //! ```
 
 use hitch_quantities::fixed::Divisor;
 use hitch_quantities::units::{MicroLitrePerSecond, Micrometre, Millisecond, SquareMillimetre};
 
-use super::motion::Motion;
+use super::motion_observer::MotionObserver;
 use crate::valve::drop_scale::DropScale;
 use crate::valve::phase::{Direction, Phase};
 
-/// How long a hitch has to hold until its place is read: its load has swung out, and a leak hasn't carried it far.
-const REST: Millisecond = Millisecond(500);
+/// Time at rest before the final position is read: oscillations of the load have decayed, and leakage is still small.
+const SETTLING_TIME: Millisecond = Millisecond(500);
 
-/// A move under way, or just over.
+/// Records a move that is in progress or has just ended.
 #[derive(Clone, Copy, Debug)]
-pub struct Course {
+pub struct MoveRecorder {
     direction: Direction,
     from: Micrometre,
     expected_nm: i32,
-    /// The sensitivity as a volume at the drop of the valve's table, nl for each ampere.
+    /// Sensitivity as a volume at the reference drop of the valve table, nl/A.
     sensitivity_nl: i32,
     held: Millisecond,
 }
 
-/// What a move told.
+/// The result of a move.
 #[derive(Clone, Copy, Debug)]
-pub struct Told {
-    /// Which valve made it.
+pub struct MoveRecord {
+    /// Direction of the move.
     pub direction: Direction,
-    /// Way that the valve's curve says, along the move.
+    /// Distance that the valve curve predicts, positive in the direction of the move.
     pub expected: Micrometre,
-    /// ... and what is missing from it.
+    /// Expected less measured distance.
     pub missing: Micrometre,
-    /// What would be missing for each ampere that the curve is off.
+    /// Position error for each ampere of shift of the curve.
     pub sensitivity: Micrometre,
-    /// The same as a volume at the drop of the valve's table, nl for each ampere.
+    /// The same as a volume at the reference drop of the valve table, nl/A.
     pub sensitivity_nl: i32,
 }
 
-impl Course {
-    /// A move begins at `from`, where the hitch rested.
+impl MoveRecorder {
+    /// Starts a record at the rest position `from`.
     #[must_use]
     pub fn begin(direction: Direction, from: Micrometre) -> Self {
         Self {
@@ -56,39 +56,39 @@ impl Course {
         }
     }
 
-    /// Way of the move.
+    /// Direction of the move.
     #[must_use]
     pub const fn direction(&self) -> Direction {
         self.direction
     }
 
-    /// One step; true once the hitch has rested for long enough.
-    pub fn step(&mut self, phase: Phase, motion: &Motion) -> bool {
+    /// One step. True once the hitch has been at rest for the settling time.
+    pub fn step(&mut self, phase: Phase, motion: &MotionObserver) -> bool {
         self.expected_nm = self.expected_nm.saturating_add(motion.model_speed().0);
         self.sensitivity_nl = self.sensitivity_nl.saturating_add(motion.slope().0);
         if phase == Phase::Holding {
             self.held = self.held.next();
         }
-        self.held >= REST
+        self.held >= SETTLING_TIME
     }
 
-    /// The hitch has rested for long enough.
-    pub fn end(&mut self) {
-        self.held = REST;
+    /// Ends the record without waiting for the settling time.
+    pub fn finish(&mut self) {
+        self.held = SETTLING_TIME;
     }
 
-    /// What a move told that ended at `rest`, through a valve with this `scale` and into a cylinder of this `area`.
+    /// The result of a move that ended at `rest`. `scale`: flow scale of the lowering valve; `area`: piston area.
     #[must_use]
-    pub fn told(&self, rest: Micrometre, scale: DropScale, area: SquareMillimetre) -> Told {
-        let along = |way: i32| Micrometre(self.direction.sign(way));
-        // nl over mm2 are um: a scale takes ways, where it would cut the volume short.
+    pub fn result(&self, rest: Micrometre, scale: DropScale, area: SquareMillimetre) -> MoveRecord {
+        let along = |distance: i32| Micrometre(self.direction.sign(distance));
+        // nl / mm2 = um. The distance is scaled, because the volume would saturate.
         let sensitivity = Divisor::at_least_one(area.0).divide(self.sensitivity_nl);
         let sensitivity = match self.direction {
             Direction::Lift => sensitivity,
             Direction::Lower => scale.to_present(MicroLitrePerSecond(sensitivity)).0,
         };
         let expected = along(Divisor::THOUSAND.divide(self.expected_nm));
-        Told {
+        MoveRecord {
             direction: self.direction,
             expected,
             missing: expected - along((rest - self.from).0),
@@ -106,20 +106,20 @@ mod tests {
     use crate::valve::drop_scale::DropReference;
 
     #[test]
-    fn a_lowering_valve_that_opens_fully_makes_its_offset_felt_at_any_drop() {
+    fn the_sensitivity_of_the_lowering_valve_scales_with_the_drop() {
         // A third of a second on the rig's steep part, 616 ml/s for each ampere: 45 mm on 4537 mm2.
-        let course = Course {
+        let recorder = MoveRecorder {
             sensitivity_nl: 333 * 616_000,
-            ..Course::begin(Direction::Lower, Micrometre(100_000))
+            ..MoveRecorder::begin(Direction::Lower, Micrometre(100_000))
         };
         for drop in [5_000, 15_000, 25_000] {
             let scale = DropScale::new(&DropReference::new(MilliBar(15_000)), MilliBar(drop));
-            let told = course.told(Micrometre(80_000), scale, SquareMillimetre(4_537));
+            let record = recorder.result(Micrometre(80_000), scale, SquareMillimetre(4_537));
             let exact = 333.0 * 616_000.0 / 4_537.0 * (f64::from(drop) / 15_000.0).sqrt();
             assert!(
-                (f64::from(told.sensitivity.0) - exact).abs() < 10.0,
+                (f64::from(record.sensitivity.0) - exact).abs() < 10.0,
                 "{drop} mbar: {:?}, not {exact} um/A",
-                told.sensitivity
+                record.sensitivity
             );
         }
     }

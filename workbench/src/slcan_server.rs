@@ -1,4 +1,4 @@
-//! A CAN bus behind a TCP port: every connection is an adapter that speaks slcan, as python-can, slcand and others
+//! SLCAN server: a CAN bus on a TCP port. Every connection is an SLCAN adapter, as python-can, slcand and others
 //! expect of one (`slcan` on `socket://HOST:PORT`).
 //!
 //! It is one bus: what a connection sends reaches the ECU and all other connections. Nothing here waits.
@@ -19,7 +19,7 @@ const MOST_WAITING: usize = 1 << 18;
 
 /// The port and who is connected to it.
 #[derive(Debug)]
-pub struct CanDoor {
+pub struct SlcanServer {
     listener: TcpListener,
     connections: Vec<Connection>,
 }
@@ -33,7 +33,7 @@ struct Connection {
     open: bool,
 }
 
-impl CanDoor {
+impl SlcanServer {
     /// Opens the port; 0 takes any that is free.
     ///
     /// # Errors
@@ -177,15 +177,15 @@ mod tests {
         Frame::of_eight(ExtendedId::new(0x0CFE_4580).unwrap(), [byte; 8])
     }
 
-    /// Serves the door until something comes of it.
+    /// Serves the server until something comes of it.
     fn served<T>(
-        door: &mut CanDoor,
-        mut done: impl FnMut(&mut CanDoor, Vec<Frame>) -> Option<T>,
+        server: &mut SlcanServer,
+        mut done: impl FnMut(&mut SlcanServer, Vec<Frame>) -> Option<T>,
     ) -> T {
         let begun = Instant::now();
         loop {
-            let frames = door.receive();
-            if let Some(result) = done(door, frames) {
+            let frames = server.receive();
+            if let Some(result) = done(server, frames) {
                 return result;
             }
             assert!(begun.elapsed() < Duration::from_secs(10), "nothing comes");
@@ -193,13 +193,15 @@ mod tests {
         }
     }
 
-    fn connected(door: &mut CanDoor) -> TcpStream {
-        let before = door.connected();
-        let mut stream = TcpStream::connect(door.address().unwrap()).unwrap();
+    fn connected(server: &mut SlcanServer) -> TcpStream {
+        let before = server.connected();
+        let mut stream = TcpStream::connect(server.address().unwrap()).unwrap();
         stream.write_all(b"C\rS5\rO\r").unwrap();
-        served(door, |door, _| (door.connected() > before).then_some(()));
+        served(server, |server, _| {
+            (server.connected() > before).then_some(())
+        });
         let mut replies = [0; 3];
-        served(door, |_, _| Some(()));
+        served(server, |_, _| Some(()));
         stream.read_exact(&mut replies).unwrap();
         assert_eq!(&replies, b"\r\r\r");
         stream
@@ -207,15 +209,15 @@ mod tests {
 
     #[test]
     fn what_one_sends_reaches_the_ecu_and_the_others() {
-        let mut door = CanDoor::open("127.0.0.1:0").unwrap();
-        let (mut one, mut other) = (connected(&mut door), connected(&mut door));
+        let mut server = SlcanServer::open("127.0.0.1:0").unwrap();
+        let (mut one, mut other) = (connected(&mut server), connected(&mut server));
         one.write_all(&encode(&frame(7))).unwrap();
-        let heard = served(&mut door, |_, frames| frames.first().copied());
+        let heard = served(&mut server, |_, frames| frames.first().copied());
         assert_eq!(heard, frame(7));
         let mut line = encode(&frame(7)).to_vec();
         other.read_exact(&mut line).unwrap();
         assert_eq!(line[..], encode(&frame(7))[..]);
-        door.send(&frame(9));
+        server.send(&frame(9));
         one.read_exact(&mut line[..2]).unwrap();
         assert_eq!(&line[..2], b"Z\r", "its own isn't echoed, but acknowledged");
         one.read_exact(&mut line).unwrap();
@@ -224,13 +226,15 @@ mod tests {
 
     #[test]
     fn who_goes_away_or_never_reads_is_let_go() {
-        let mut door = CanDoor::open("127.0.0.1:0").unwrap();
-        drop(connected(&mut door));
-        served(&mut door, |door, _| (door.connected() == 0).then_some(()));
-        let _deaf = connected(&mut door);
-        served(&mut door, |door, _| {
-            (0..1_000).for_each(|_| door.send(&frame(1)));
-            (door.connected() == 0).then_some(())
+        let mut server = SlcanServer::open("127.0.0.1:0").unwrap();
+        drop(connected(&mut server));
+        served(&mut server, |server, _| {
+            (server.connected() == 0).then_some(())
+        });
+        let _deaf = connected(&mut server);
+        served(&mut server, |server, _| {
+            (0..1_000).for_each(|_| server.send(&frame(1)));
+            (server.connected() == 0).then_some(())
         });
     }
 }

@@ -26,7 +26,7 @@ impl Probe for () {
 
 /// The ECU with wires that end in requests and replies.
 #[derive(Debug)]
-pub struct Machine<F, P = ()> {
+pub struct HostedEcu<F, P = ()> {
     ecu: Ecu<F>,
     wires: Wires<P>,
 }
@@ -35,8 +35,8 @@ pub struct Machine<F, P = ()> {
 struct Wires<P> {
     probe: P,
     drive: Drive,
-    heard: Deque<Frame, MOST_FRAMES>,
-    said: Vec<Frame, MOST_FRAMES>,
+    received: Deque<Frame, MOST_FRAMES>,
+    sent: Vec<Frame, MOST_FRAMES>,
 }
 
 impl<P: Probe> Hardware for Wires<P> {
@@ -46,11 +46,11 @@ impl<P: Probe> Hardware for Wires<P> {
     }
 
     fn receive(&mut self) -> Option<Frame> {
-        self.heard.pop_front()
+        self.received.pop_front()
     }
 
     fn send(&mut self, frame: &Frame) -> bool {
-        self.said.push(*frame).is_ok()
+        self.sent.push(*frame).is_ok()
     }
 
     fn frames_dropped(&self) -> u16 {
@@ -58,7 +58,7 @@ impl<P: Probe> Hardware for Wires<P> {
     }
 }
 
-impl<F: NorFlash, P: Probe + Default> Machine<F, P> {
+impl<F: NorFlash, P: Probe + Default> HostedEcu<F, P> {
     /// The ECU as it is after power-up. Not inlined, as [`Ecu::start`].
     #[must_use]
     #[inline(never)]
@@ -69,12 +69,12 @@ impl<F: NorFlash, P: Probe + Default> Machine<F, P> {
         }
     }
 
-    /// One millisecond; what it says on the bus is in [`Self::said`].
-    pub fn tick(&mut self, contacts: &Contacts, heard: &[Frame]) -> Reply {
-        self.wires.said.clear();
-        for frame in heard.iter().take(MOST_FRAMES) {
+    /// One millisecond; what it sends on the bus is in [`Self::sent`].
+    pub fn tick(&mut self, contacts: &Contacts, received: &[Frame]) -> Reply {
+        self.wires.sent.clear();
+        for frame in received.iter().take(MOST_FRAMES) {
             // The last tick has emptied the queue, so there is room.
-            let _ = self.wires.heard.push_back(*frame);
+            let _ = self.wires.received.push_back(*frame);
         }
         self.wires.probe.sampled();
         let kicked = self.ecu.tick(contacts, &mut self.wires).is_some();
@@ -88,17 +88,17 @@ impl<F: NorFlash, P: Probe + Default> Machine<F, P> {
             state: outputs.state as u8,
             fault: outputs.fault.map_or(0, |fault| fault as u8),
             trip: outputs.trip.map_or(0, |trip| trip as u8),
-            frames: u8::try_from(self.wires.said.len()).unwrap_or(u8::MAX),
+            frames: u8::try_from(self.wires.sent.len()).unwrap_or(u8::MAX),
             target_mdeg: outputs.target.0,
             lift_ma: milliampere(outputs.lift_current.0),
             lower_ma: milliampere(outputs.lower_current.0),
         }
     }
 
-    /// What the last tick said on the bus.
+    /// What the last tick sent on the bus.
     #[must_use]
-    pub fn said(&self) -> &[Frame] {
-        &self.wires.said
+    pub fn sent(&self) -> &[Frame] {
+        &self.wires.sent
     }
 
     /// Who watches.

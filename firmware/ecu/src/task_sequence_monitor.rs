@@ -1,7 +1,7 @@
-//! Flow monitor: did every task of the millisecond run, once and in order?
+//! Task sequence monitor: checks that every task of a millisecond runs once and in order.
 //!
-//! The watchdog may only be kicked with a [`Kick`], and only a whole millisecond gives one. A task that was left out,
-//! ran twice or out of order spoils the millisecond, and all that follow: the watchdog then resets the ECU.
+//! The watchdog is kicked with a [`Kick`], which only a complete millisecond gives. A task that is missing, runs twice
+//! or out of order violates the sequence. A violation is permanent, so the watchdog resets the ECU.
 
 /// A task of the millisecond.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,28 +26,28 @@ impl Task {
 #[derive(Debug, PartialEq, Eq)]
 pub struct Kick(());
 
-/// Watches the order of tasks.
+/// Monitors the sequence of tasks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FlowMonitor {
-    /// Tasks of this millisecond so far.
+pub struct TaskSequenceMonitor {
+    /// Last task of this millisecond.
     done: u8,
-    spoilt: bool,
+    violated: bool,
 }
 
-impl FlowMonitor {
+impl TaskSequenceMonitor {
     /// `task` has run.
     pub fn passed(&mut self, task: Task) {
         match task as u8 == self.done.saturating_add(1) {
             true => self.done = task as u8,
-            false => self.spoilt = true,
+            false => self.violated = true,
         }
     }
 
-    /// The end of the millisecond; permission if it was whole and no earlier one was spoilt.
+    /// End of the millisecond. Permission if the sequence was complete and has never been violated.
     pub fn end(&mut self) -> Option<Kick> {
-        self.spoilt |= self.done != Task::Bus as u8;
+        self.violated |= self.done != Task::Bus as u8;
         self.done = 0;
-        (!self.spoilt).then_some(Kick(()))
+        (!self.violated).then_some(Kick(()))
     }
 }
 
@@ -55,33 +55,39 @@ impl FlowMonitor {
 mod tests {
     use super::*;
 
-    fn kicked(monitor: &mut FlowMonitor, tasks: &[Task]) -> bool {
+    fn kicked(monitor: &mut TaskSequenceMonitor, tasks: &[Task]) -> bool {
         tasks.iter().for_each(|&task| monitor.passed(task));
         monitor.end().is_some()
     }
 
     #[test]
     fn only_all_tasks_in_order_kick_the_watchdog() {
-        let mut monitor = FlowMonitor::default();
+        let mut monitor = TaskSequenceMonitor::default();
         assert!((0..1_000).all(|_| kicked(&mut monitor, &Task::ALL)));
         for left_out in 0..Task::ALL.len() {
             let mut tasks = Task::ALL.to_vec();
             tasks.remove(left_out);
-            assert!(!kicked(&mut FlowMonitor::default(), &tasks), "{tasks:?}");
+            assert!(
+                !kicked(&mut TaskSequenceMonitor::default(), &tasks),
+                "{tasks:?}"
+            );
             let mut twice = Task::ALL.to_vec();
             twice.insert(left_out, Task::ALL[left_out]);
-            assert!(!kicked(&mut FlowMonitor::default(), &twice), "{twice:?}");
+            assert!(
+                !kicked(&mut TaskSequenceMonitor::default(), &twice),
+                "{twice:?}"
+            );
         }
         for (first, second) in [(0, 1), (1, 2), (2, 3), (0, 3)] {
             let mut swapped = Task::ALL;
             swapped.swap(first, second);
-            assert!(!kicked(&mut FlowMonitor::default(), &swapped));
+            assert!(!kicked(&mut TaskSequenceMonitor::default(), &swapped));
         }
     }
 
     #[test]
-    fn a_spoilt_millisecond_is_never_forgiven() {
-        let mut monitor = FlowMonitor::default();
+    fn a_violation_is_permanent() {
+        let mut monitor = TaskSequenceMonitor::default();
         assert!(!kicked(&mut monitor, &Task::ALL[..3]));
         assert!((0..1_000).all(|_| !kicked(&mut monitor, &Task::ALL)));
     }

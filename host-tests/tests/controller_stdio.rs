@@ -1,4 +1,4 @@
-//! `hitch controller` as anyone's plant meets it: a process, a line in, a line out.
+//! `hitch controller` with an external plant: a process with a line in and a line out for each step.
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
@@ -9,13 +9,13 @@ use host_tests::program::hitch;
 const HEADER: &str = "time_s,lever_deg,rocker_angle_deg";
 
 /// The program with both ends of its pipes.
-struct Door {
+struct ControllerProcess {
     child: Child,
     input: Option<ChildStdin>,
     output: BufReader<ChildStdout>,
 }
 
-impl Door {
+impl ControllerProcess {
     fn open(header: &str) -> Self {
         Self::open_with(header, &[])
     }
@@ -31,14 +31,14 @@ impl Door {
         let mut child = command.spawn().unwrap();
         let input = child.stdin.take();
         let output = BufReader::new(child.stdout.take().unwrap());
-        let mut door = Self {
+        let mut controller = Self {
             child,
             input,
             output,
         };
-        door.send(header);
-        assert_eq!(door.answer(), "lift_current_a,lower_current_a,state");
-        door
+        controller.send(header);
+        assert_eq!(controller.answer(), "lift_current_a,lower_current_a,state");
+        controller
     }
 
     fn send(&mut self, line: &str) {
@@ -67,7 +67,7 @@ impl Door {
 
 /// Somebody else's hitch: valves linear from other thresholds, a lag of 60 ms, angle straight from flow.
 struct Toy {
-    door: Door,
+    controller: ControllerProcess,
     step: u32,
     lift_a: f64,
     lower_a: f64,
@@ -77,7 +77,7 @@ struct Toy {
 impl Toy {
     fn new(angle_deg: f64) -> Self {
         Self {
-            door: Door::open(HEADER),
+            controller: ControllerProcess::open(HEADER),
             step: 0,
             lift_a: 0.0,
             lower_a: 0.0,
@@ -92,8 +92,8 @@ impl Toy {
             f64::from(self.step) * 1e-3,
             self.angle_deg
         );
-        self.door.send(&line);
-        let answer = self.door.answer();
+        self.controller.send(&line);
+        let answer = self.controller.answer();
         let cells: Vec<&str> = answer.split(',').collect();
         let [lift, lower, state] = cells[..] else {
             panic!("{answer:?}")
@@ -133,13 +133,13 @@ fn another_plant_is_moved_through_the_door() {
             "hunts at {target_deg}"
         );
     }
-    assert_eq!(toy.door.close(), (Some(0), String::new()));
+    assert_eq!(toy.controller.close(), (Some(0), String::new()));
 }
 
-/// A hitch whose valves open at 1.2 A and 1.1 A and whose ends are a degree higher than the linkage says, with a sensor's
-/// noise; the mechanic's hand is on button and switch or isn't.
+/// A hitch whose valves open at 1.2 A and 1.1 A and whose ends are a degree higher than the linkage says, with a
+/// sensor's noise; the mechanic's hand is on button and switch or isn't.
 fn step_taught(
-    door: &mut Door,
+    controller: &mut ControllerProcess,
     toy: &mut (u32, [f64; 2], f64),
     lever_deg: f64,
     hand: bool,
@@ -147,12 +147,12 @@ fn step_taught(
     let (step, [lift_a, lower_a], angle_deg) = toy;
     let noise_deg = f64::from(*step * 7919 % 41) * 1e-3 - 0.02;
     let hand = if hand { "5,1" } else { ",0" };
-    door.send(&format!(
+    controller.send(&format!(
         "{:.3},{lever_deg},{:.4},{hand}",
         f64::from(*step) * 1e-3,
         *angle_deg + noise_deg
     ));
-    let answer = door.answer();
+    let answer = controller.answer();
     let cells: Vec<&str> = answer.split(',').collect();
     *lift_a += (cells[0].parse::<f64>().unwrap() - *lift_a) / 45.0;
     *lower_a += (cells[1].parse::<f64>().unwrap() - *lower_a) / 45.0;
@@ -166,18 +166,24 @@ fn step_taught(
 fn a_machine_is_taught_through_the_door_and_what_was_found_is_kept() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("taught.toml");
-    let mut door = Door::open_with(
+    let mut controller = ControllerProcess::open_with(
         &format!("{HEADER},jog_deg_per_s,teach"),
         &["--out", file.to_str().unwrap()],
     );
     let mut toy = (0, [0.0; 2], 90.0);
-    assert_eq!(step_taught(&mut door, &mut toy, 60.0, false), "locked");
+    assert_eq!(
+        step_taught(&mut controller, &mut toy, 60.0, false),
+        "locked"
+    );
     let state = (0..60_000)
-        .map(|_| step_taught(&mut door, &mut toy, 60.0, true))
+        .map(|_| step_taught(&mut controller, &mut toy, 60.0, true))
         .find(|state| state != "teaching");
     assert_eq!(state.as_deref(), Some("taught"));
     assert!(!file.exists(), "nobody has let go yet");
-    assert_eq!(step_taught(&mut door, &mut toy, 60.0, false), "locked");
+    assert_eq!(
+        step_taught(&mut controller, &mut toy, 60.0, false),
+        "locked"
+    );
     let found = calibration_file::read(&file).unwrap();
     for (table, opens_ma) in [(&found.lift, 1_200), (&found.lower, 1_100)] {
         let error_ma = (table.threshold().0 - opens_ma).abs();
@@ -188,48 +194,54 @@ fn a_machine_is_taught_through_the_door_and_what_was_found_is_kept() {
     // It goes on with what was found: the lever at its bottom stop brings the hitch to the new limit.
     for lever_deg in [60.0, 40.0, 90.0, 40.0] {
         (0..3_000).for_each(|_| {
-            step_taught(&mut door, &mut toy, lever_deg, false);
+            step_taught(&mut controller, &mut toy, lever_deg, false);
         });
     }
     assert!((toy.2 - 45.6).abs() <= 0.4, "{}", toy.2);
-    assert_eq!(door.close(), (Some(0), String::new()));
+    assert_eq!(controller.close(), (Some(0), String::new()));
 }
 
 #[test]
 fn who_lets_go_too_soon_has_taught_nothing() {
-    let mut door = Door::open(&format!("{HEADER},jog_deg_per_s,teach"));
+    let mut controller = ControllerProcess::open(&format!("{HEADER},jog_deg_per_s,teach"));
     let mut toy = (0, [0.0; 2], 90.0);
-    step_taught(&mut door, &mut toy, 60.0, false);
+    step_taught(&mut controller, &mut toy, 60.0, false);
     for _ in 0..2_000 {
-        assert_eq!(step_taught(&mut door, &mut toy, 60.0, true), "teaching");
+        assert_eq!(
+            step_taught(&mut controller, &mut toy, 60.0, true),
+            "teaching"
+        );
     }
-    assert_eq!(step_taught(&mut door, &mut toy, 60.0, false), "locked");
-    assert_eq!(door.close(), (Some(0), String::new()));
+    assert_eq!(
+        step_taught(&mut controller, &mut toy, 60.0, false),
+        "locked"
+    );
+    assert_eq!(controller.close(), (Some(0), String::new()));
 }
 
 #[test]
 fn a_missing_angle_is_a_fault_and_not_an_error() {
-    let mut door = Door::open(HEADER);
+    let mut controller = ControllerProcess::open(HEADER);
     let answers: Vec<String> = (0..10)
         .map(|step| {
-            door.send(&format!("{:.3},90,", f64::from(step) * 1e-3));
-            door.answer()
+            controller.send(&format!("{:.3},90,", f64::from(step) * 1e-3));
+            controller.answer()
         })
         .collect();
     assert_eq!(
         answers.last().map(String::as_str),
         Some("0.000,0.000,fault:angle")
     );
-    assert_eq!(door.close().0, Some(0));
+    assert_eq!(controller.close().0, Some(0));
 }
 
 #[test]
 fn a_bad_line_ends_it_with_its_place() {
-    let mut door = Door::open(HEADER);
-    door.send("0.000,90,90");
-    assert_eq!(door.answer(), "0.000,0.000,locked");
-    door.send("0.001,90,nought");
-    let (code, said) = door.close();
+    let mut controller = ControllerProcess::open(HEADER);
+    controller.send("0.000,90,90");
+    assert_eq!(controller.answer(), "0.000,0.000,locked");
+    controller.send("0.001,90,nought");
+    let (code, said) = controller.close();
     assert_eq!(code, Some(2));
     assert!(
         said.starts_with("hitch: standard input:3:10: \"nought\" is not a finite number; "),

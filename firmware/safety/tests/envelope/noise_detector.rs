@@ -77,9 +77,9 @@ fn steps_of_up_to_a_digit_and_a_half_are_no_tremble() {
     assert!(is_watched(61));
 }
 
-/// White noise and a converter's digit of 0.047 degree, while the hitch sinks by three digits a minute: near a step of the
-/// converter the reading trembles, half a digit on it stands still. Nobody may take that for a fault; a sensor whose noise
-/// spans more than a digit never stands still for 20 ms, and is known to be frozen when it does.
+/// White noise and a converter's digit of 0.047 degree, while the hitch sinks by three digits a minute: near a step of
+/// the converter the reading trembles, half a digit on it stands still. Nobody may take that for a fault; a sensor
+/// whose noise spans more than a digit never stands still for 20 ms, and is known to be frozen when it does.
 #[test]
 fn a_healthy_sensor_is_not_frozen_whatever_its_digit() {
     const DIGIT: f64 = 47.0;

@@ -1,0 +1,109 @@
+//! Adaptation of the valve model to this machine. The result is kept between moves and lost with the supply.
+//!
+//! ```text
+//! position error during a move     spool lag           adapted during the move, kept at rest
+//! distance error of a move         threshold offset    adapted half a second later, or before a correction
+//! ```
+//!
+//! The spool lag is part of [`crate::estimation::motion_observer`], because it needs the observer in every step.
+
+use hitch_quantities::units::Micrometre;
+
+use super::threshold_offset::ThresholdOffsets;
+use crate::estimation::motion_observer::MotionObserver;
+use crate::estimation::move_record::{MoveRecord, MoveRecorder};
+use crate::valve::phase::{Direction, Phase};
+
+/// A lift that overshoots by more than this has an oscillating load: 0.6 degree.
+const OVERSHOOT_LIMIT: Micrometre = Micrometre(1_000);
+
+/// Recorder of the present move, and the offsets that earlier moves identified.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ValveAdaptation {
+    recorder: Option<MoveRecorder>,
+    offsets: ThresholdOffsets,
+}
+
+impl ValveAdaptation {
+    /// Threshold offsets of the valves.
+    #[must_use]
+    pub const fn offsets(&self) -> &ThresholdOffsets {
+        &self.offsets
+    }
+
+    /// A move to a set point begins at the rest position `from`.
+    pub fn begin(&mut self, direction: Direction, from: Micrometre) {
+        self.recorder = Some(MoveRecorder::begin(direction, from));
+    }
+
+    /// The move is disturbed: discards its record.
+    pub fn discard_move(&mut self) {
+        self.recorder = None;
+    }
+
+    /// A correction is due: finishes the record of the move that ended with this `overshoot`. A large overshoot of a
+    /// lift is caused by an oscillation, so it does not identify the offset. True until the move has been evaluated.
+    pub fn finish_before_correction(
+        &mut self,
+        overshoot: Micrometre,
+        motion: &mut MotionObserver,
+    ) -> bool {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.finish();
+            if recorder.direction() == Direction::Lift && overshoot > OVERSHOOT_LIMIT {
+                motion.confirm_oscillation();
+                self.recorder = None;
+            }
+        }
+        self.recorder.is_some()
+    }
+
+    /// The valve curves have changed: resets the adaptation.
+    pub fn reset_for_new_curves(&mut self) {
+        self.recorder = None;
+        self.offsets = ThresholdOffsets::default();
+    }
+
+    /// One step of a move; the recorder once the move is finished.
+    pub fn follow(&mut self, phase: Phase, motion: &MotionObserver) -> Option<MoveRecorder> {
+        match self.recorder.as_mut()?.step(phase, motion) {
+            true => self.recorder.take(),
+            false => None,
+        }
+    }
+
+    /// Takes in the record of a move.
+    pub fn learn(&mut self, record: &MoveRecord) {
+        self.offsets.learn(record);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_move_is_evaluated_before_its_correction_and_an_oscillating_lift_is_discarded() {
+        for (direction, overshoot, swings) in [
+            (Direction::Lift, OVERSHOOT_LIMIT, false),
+            (Direction::Lift, OVERSHOOT_LIMIT + Micrometre(1), true),
+            (Direction::Lower, OVERSHOOT_LIMIT + Micrometre(1), false),
+        ] {
+            let (mut adaptation, mut motion) =
+                (ValveAdaptation::default(), MotionObserver::default());
+            assert!(
+                !adaptation.finish_before_correction(overshoot, &mut motion),
+                "nothing under way"
+            );
+            adaptation.begin(direction, Micrometre::ZERO);
+            assert_eq!(
+                adaptation.finish_before_correction(overshoot, &mut motion),
+                !swings
+            );
+            assert_eq!(motion.has_compensator_oscillation(), swings);
+            let record = adaptation.follow(Phase::Holding, &motion);
+            assert_eq!(record.is_some(), !swings, "{direction:?}");
+            assert!(!adaptation.finish_before_correction(overshoot, &mut motion));
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! The feedback law of one step.
+//!
+//! ```text
+//! reference -> position or rate law -> speed ramp -> speed law -> flow -> valve map -> current
+//! ```
+
+use hitch_quantities::piston::{flow, piston_speed};
+use hitch_quantities::units::{
+    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliAmp, MilliDegreePerSecond,
+};
+use hitch_quantities::{CoilCurrents, Fault, Inputs};
+
+use super::Control;
+use crate::motion::position::MoveReason;
+use crate::operator::mode::Mode;
+use crate::operator::{lowering_limit, upper_limit};
+use crate::sensing::sensors::Sensed;
+use crate::valve::phase::{Demand, Direction, Phase};
+
+/// Reference of the law that is active in the present mode.
+#[derive(Clone, Copy, Debug)]
+enum Reference {
+    /// Piston travel, of the position law.
+    Position(Micrometre),
+    /// Rate of the rocker, of the rate law.
+    Rate(MilliDegreePerSecond),
+}
+
+impl Control {
+    /// The feedback law. `jog`: the requested rate while a button is held.
+    pub(super) fn feedback_law(
+        &mut self,
+        sensed: &Sensed,
+        inputs: &Inputs,
+        jog: Option<MilliDegreePerSecond>,
+        held_back: bool,
+    ) -> Result<CoilCurrents, Fault> {
+        let reference = self.reference(sensed, inputs, jog);
+        let demand = reference.map(|reference| match reference {
+            Reference::Position(target) => self.position_law(target, inputs),
+            Reference::Rate(rate) => self.rate_law(rate, sensed, inputs),
+        });
+        self.speed_ramp(demand, held_back)?;
+        self.check_stall(sensed)?;
+        let speed = self.speed_law();
+        let flow = flow(speed, self.calibration.hydraulics.piston_area);
+        self.demanded_flow = flow;
+        let current = self.valve_map(flow);
+        Ok(self.coil_currents(current))
+    }
+
+    /// The reference of the present mode. `None`: no motion is demanded.
+    fn reference(
+        &mut self,
+        sensed: &Sensed,
+        inputs: &Inputs,
+        jog: Option<MilliDegreePerSecond>,
+    ) -> Option<Reference> {
+        match &mut self.mode {
+            Mode::Locked(lock) => {
+                if lock.picked_up(sensed.set_point, sensed.angle, &self.calibration.lock) {
+                    self.mode = Mode::Position;
+                }
+                None
+            }
+            Mode::Position => self
+                .position_reference(sensed, inputs)
+                .map(Reference::Position),
+            // After release of the button there is no reference: the abort ramp, which is steeper, stops the hitch.
+            Mode::Jog => jog.map(Reference::Rate),
+            Mode::Hold | Mode::Teach | Mode::TransportLock | Mode::Fault { .. } => None,
+        }
+    }
+
+    /// Position mode: the target that follows from lever, quick lift and dials. `None` at the target, while the hitch
+    /// floats, and until the valves are closed.
+    fn position_reference(&mut self, sensed: &Sensed, inputs: &Inputs) -> Option<Micrometre> {
+        let moving = self.phase.is_moving();
+        let calibration = &self.calibration;
+        let noise_band = calibration.position.lever_deadband;
+        let lever = self.lever.follow(sensed.set_point, noise_band + noise_band);
+        let lever = self.quick_lift.set_point(lever, &calibration.operator);
+        let highest = upper_limit(inputs.upper_limit, &calibration.position);
+        let changed = self
+            .position
+            .follow(lever, highest, moving, &calibration.position);
+        if changed && !moving {
+            self.drift.reset();
+            self.stall.reset();
+        }
+        let set_point = self.position.set_point(sensed.angle);
+        if set_point != self.target.0 {
+            self.target = (set_point, calibration.linkage.travel(set_point));
+        }
+        let target = self.target.1;
+        // The hitch may pass the set point while the valves close: only a hitch at rest has arrived.
+        let rest = self.rest.position();
+        let resting = matches!(self.phase, Phase::Holding)
+            && match self
+                .position
+                .reason_to_move(target, rest, &calibration.position)
+            {
+                Some(MoveReason::SetPoint) => false,
+                Some(MoveReason::Drift) => self
+                    .adaptation
+                    .finish_before_correction(rest - target, &mut self.motion),
+                None => true,
+            };
+        let floats = self
+            .float
+            .update(lever, sensed.angle, resting, &calibration.operator);
+        if floats || resting || matches!(self.phase, Phase::Settling { .. }) {
+            return None;
+        }
+        Some(target)
+    }
+
+    /// Position law: from the distance to the target to the demanded speed.
+    fn position_law(&mut self, target: Micrometre, inputs: &Inputs) -> Demand {
+        let calibration = &self.calibration;
+        let parameters = &calibration.position;
+        let lower_speed = lowering_limit(inputs.lowering_dial, &calibration.operator, parameters);
+        let demand = self.position.demand(
+            target,
+            self.phase,
+            &self.motion,
+            &self.closing,
+            self.scale,
+            calibration,
+        );
+        self.position
+            .limit_approach(demand, lower_speed, parameters)
+    }
+
+    /// Rate law: from the rate of the button to the demanded speed. The dials limit it as in position mode.
+    fn rate_law(&mut self, rate: MilliDegreePerSecond, sensed: &Sensed, inputs: &Inputs) -> Demand {
+        let calibration = &self.calibration;
+        let highest = upper_limit(inputs.upper_limit, &calibration.position);
+        let demand = self
+            .rate
+            .demand(rate, sensed.angle, highest, &self.motion, calibration);
+        if demand.direction == Direction::Lift {
+            return demand;
+        }
+        let limit = lowering_limit(
+            inputs.lowering_dial,
+            &calibration.operator,
+            &calibration.position,
+        );
+        Demand {
+            speed: demand.speed.min(limit),
+            ..demand
+        }
+    }
+
+    /// Speed ramp and check-valve sequence: the next phase. A move that begins or ends is reported to the observer and
+    /// the monitors.
+    fn speed_ramp(&mut self, demand: Option<Demand>, held_back: bool) -> Result<(), Fault> {
+        let calibration = &self.calibration;
+        if self.mode.is_still() {
+            self.phase = self.phase.cut();
+        }
+        let waiting = self.stall.tick_retry_delay(&calibration.saturation);
+        let demand = demand.filter(|_| !waiting);
+        // A cancelled move ends on its own valve.
+        let direction = match self.phase {
+            Phase::Moving { direction, .. } => Some(direction),
+            _ => demand.map(|demand| demand.direction),
+        };
+        self.available = direction.map_or(MicrometrePerSecond::ZERO, |direction| {
+            self.saturation_speed(direction)
+        });
+        let still = self.motion.model_speed() == MicrometrePerSecond::ZERO;
+        let next = self.phase.step(
+            demand,
+            self.available,
+            still,
+            &calibration.position,
+            &calibration.hold,
+        );
+        let next = match held_back {
+            true => next.limited_to_speed_of(self.phase),
+            false => next,
+        };
+        if next.is_moving() && !self.phase.is_moving() {
+            self.motion.begin_move();
+            self.begin_move(next)?;
+        }
+        if self.phase.is_moving() && !next.is_moving() {
+            self.motion.record_cut(&self.closing, &self.calibration);
+        }
+        self.phase = next;
+        self.check_drift()
+    }
+
+    /// Speed law: the ramped speed less the bias of the valve map, with damping (position mode) or integral trim (jog
+    /// mode). Signed: positive lifts.
+    fn speed_law(&self) -> MicrometrePerSecond {
+        let Phase::Moving { direction, speed } = self.phase else {
+            return MicrometrePerSecond::ZERO;
+        };
+        let bias = MicrometrePerSecond(direction.sign(self.motion.bias().0));
+        let correction = match self.mode {
+            Mode::Jog => -self.rate.trim(),
+            _ => self.motion.damping(direction),
+        };
+        // At full demand the valve is fully open, whatever the bias. Below it the bias is limited to the margin.
+        let bias = match bias > MicrometrePerSecond::ZERO {
+            true => bias.min((self.available - speed).max(MicrometrePerSecond::ZERO)),
+            false => bias,
+        };
+        let speed = (speed - bias + correction).limited(MicrometrePerSecond(1), self.available);
+        MicrometrePerSecond(direction.sign(speed.0))
+    }
+
+    /// Inverse valve map: the valve of the flow's direction and its current. `None` without flow.
+    fn valve_map(&self, flow: MicroLitrePerSecond) -> Option<(Direction, MilliAmp)> {
+        let map = self.curves.at(self.scale);
+        match flow.0 {
+            0 => None,
+            1.. => Some((Direction::Lift, map.lift_current(flow))),
+            _ => Some((Direction::Lower, map.lower_current(-flow))),
+        }
+    }
+
+    /// Coil currents: the mapped current with hysteresis compensation and threshold offset.
+    fn coil_currents(&mut self, mapped: Option<(Direction, MilliAmp)>) -> CoilCurrents {
+        let compensation = self.hysteresis.step(
+            self.phase.speed().magnitude(),
+            self.calibration.hydraulics.hysteresis,
+        );
+        let offsets = self.adaptation.offsets();
+        let corrected =
+            |current: MilliAmp, offset| (current - compensation + offset).max(MilliAmp::ZERO);
+        let mut currents = CoilCurrents::OFF;
+        match mapped {
+            Some((Direction::Lift, current)) => {
+                currents.lift = corrected(current, offsets.lift());
+            }
+            Some((Direction::Lower, current)) => {
+                currents.lower = corrected(current, offsets.lower());
+            }
+            None => {}
+        }
+        currents
+    }
+
+    /// Piston speed of the fully open valve of a direction.
+    fn saturation_speed(&self, direction: Direction) -> MicrometrePerSecond {
+        let map = self.curves.at(self.scale);
+        let flow = match direction {
+            Direction::Lift => map.lift_saturation(),
+            Direction::Lower => map.lower_saturation(),
+        };
+        piston_speed(flow, self.calibration.hydraulics.piston_area)
+    }
+}

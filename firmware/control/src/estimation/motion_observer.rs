@@ -1,0 +1,421 @@
+//! Motion observer: estimates position and speed of the piston, and predicts where it will stop.
+//!
+//! The valve map and the spool lag convert the coil currents to a model speed. The angle sensor measures the position.
+//! The observer integrates the model speed and corrects it with the measured position:
+//!
+//! ```text
+//! x' = v_model + b + e / T        e = x_measured - x
+//! b' = e / (4 T^2)                both poles at 1 / (2 T)
+//! ```
+//!
+//! `b` is the speed error of the valve map (a shifted threshold, an unknown load). It is adapted only while a move is
+//! demanded. The model of a sinking load is [`super::free_fall`]. The spool lags are identified from the position error
+//! ([`super::spool_lag`]) and kept for later moves. The position is in nanometres: a speed in um/s is then the distance
+//! of one millisecond.
+
+use hitch_quantities::calibration::design_parameters::{HydraulicParameters, MotionParameters};
+use hitch_quantities::fixed::Divisor;
+use hitch_quantities::piston::piston_speed;
+use hitch_quantities::units::{
+    MicroLitrePerSecond, Micrometre, MicrometrePerSecond, MilliAmp, Millisecond,
+};
+use hitch_quantities::{Calibration, CoilCurrents};
+
+use super::compensator_oscillation::CompensatorOscillation;
+use super::damping::Damping;
+use super::free_fall::{free_fall_stopping_distance, next_speed};
+use super::move_record::MoveRecord;
+use super::peak_velocity_ratio::PeakVelocityRatio;
+use super::spool_lag::{LagRegression, MillisecondQ3, SpoolLagEstimator, nominal_lags};
+use super::valve_closing_delay::ValveClosingDelay;
+use crate::valve::closing::ClosingCurves;
+use crate::valve::drop_scale::DropScale;
+use crate::valve::phase::{Direction, Phase};
+
+/// Estimates the motion of the piston.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MotionObserver {
+    started: bool,
+    position_nm: i32,
+    position: Micrometre,
+    bias_sum_nm: i32,
+    bias: MicrometrePerSecond,
+    /// Speed of the valve model.
+    model_speed: MicrometrePerSecond,
+    /// Its lowering part, positive downwards.
+    sinking: MicrometrePerSecond,
+    /// Steady-state speed of the present valve openings.
+    opening_speed: MicrometrePerSecond,
+    lag_regression: LagRegression,
+    velocity_ratio: PeakVelocityRatio,
+    /// Lag estimates of lift and lowering valve.
+    lags: [SpoolLagEstimator; 2],
+    /// Correction of the lag of the active valve by the present move.
+    lag_correction: MillisecondQ3,
+    oscillation: CompensatorOscillation,
+    damping: Damping,
+    /// Closing delays of lift and lowering valve.
+    closing_delays: [ValveClosingDelay; 2],
+    /// True on a move to a set point. The closing delay is not used for a correction: it is so slow that most of its
+    /// distance follows after the predicted end.
+    uses_closing_delay: bool,
+    /// Predicted stop and speed at the last cut of the coil.
+    cut: (Micrometre, MicrometrePerSecond),
+    lift_spool: Spool,
+    lower_spool: Spool,
+    /// Slope dQ/dI of the open valve at its reference drop, for each ampere.
+    slope: MicroLitrePerSecond,
+    /// Spool positions of lift and lowering valve, as equivalent currents.
+    spools: [MilliAmp; 2],
+}
+
+impl MotionObserver {
+    /// Takes in one measurement. The speed bias is adapted only while a move is demanded.
+    pub fn update(&mut self, measured: Micrometre, phase: Phase, parameters: &MotionParameters) {
+        let measured_nm = measured.0.saturating_mul(1000);
+        if !self.started {
+            self.started = true;
+            self.position_nm = measured_nm;
+        }
+        self.damping.step(measured_nm);
+        let (time, bias_time) = match self.sinking > MicrometrePerSecond::ZERO {
+            true => (parameters.lowering_time, parameters.lowering_time),
+            false => (
+                parameters.position_time,
+                self.oscillation
+                    .bias_time(parameters.position_time, self.model_speed),
+            ),
+        };
+        let position_time = time.divisor();
+        self.position_nm = self.position_nm.saturating_add(self.speed().0);
+        let error = measured_nm.saturating_sub(self.position_nm);
+        self.position_nm = self.position_nm.saturating_add(position_time.divide(error));
+        self.position = Micrometre(Divisor::THOUSAND.divide(self.position_nm));
+        let bias_time = bias_divisor(bias_time);
+        if phase.is_moving() {
+            let limit = parameters.bias_limit.0.saturating_mul(bias_time.1);
+            self.bias_sum_nm = self
+                .bias_sum_nm
+                .saturating_add(error)
+                .max(limit.saturating_neg())
+                .min(limit);
+        } else {
+            self.bias_sum_nm = self
+                .bias_sum_nm
+                .saturating_sub(position_time.divide(self.bias_sum_nm));
+        }
+        self.bias = MicrometrePerSecond(bias_time.0.divide(self.bias_sum_nm));
+    }
+
+    /// Updates the lag estimate of the active spool, in each step of a move.
+    pub fn update_spool_lag(
+        &mut self,
+        measured: Micrometre,
+        phase: Phase,
+        parameters: &MotionParameters,
+    ) {
+        // Without flow there is no position error, and the active valve is not known.
+        let flows = self.model_speed != MicrometrePerSecond::ZERO;
+        if phase == Phase::Holding || !flows {
+            return;
+        }
+        let [lift, lower] = self.lags;
+        let sinks = self.sinking > MicrometrePerSecond::ZERO;
+        let (usual, lag) = match sinks {
+            true => (parameters.lowering_trail, lower),
+            false => (parameters.lift_trail, lift),
+        };
+        let measured_nm = measured.0.saturating_mul(1000);
+        self.lag_regression
+            .step(measured_nm, self.model_speed, self.slope, usual.into());
+        self.lag_correction = self
+            .lag_regression
+            .additional_lag(lag, parameters.lag_limit.into());
+        if !sinks {
+            self.velocity_ratio.step(measured_nm, self.model_speed);
+            let excess_lag = lift.additional_lag() + self.lag_correction - lower.identified();
+            self.oscillation
+                .suspect(excess_lag, parameters.swing_lag.into());
+        }
+    }
+
+    /// Uses the closing delay in this move: it is a move to a set point.
+    pub fn enable_closing_delay(&mut self) {
+        self.uses_closing_delay = true;
+    }
+
+    /// Records the predicted stop and the speed at the moment the coil is cut.
+    pub fn record_cut(&mut self, closing: &ClosingCurves, calibration: &Calibration) {
+        let place = self
+            .stop_prediction(&calibration.hydraulics)
+            .predicted_stop_after_cut(self.closing_share(closing));
+        self.cut = (place, self.opening_speed + self.bias);
+    }
+
+    /// Identifies lag and closing delay from an undisturbed move that ended at `rest`. `of_offset`: part of the
+    /// distance error that the threshold offset causes. True if the move may also be used to identify the offset.
+    pub fn learn_from_move(
+        &mut self,
+        record: &MoveRecord,
+        of_offset: Micrometre,
+        rest: Micrometre,
+        parameters: &MotionParameters,
+    ) -> bool {
+        self.lag_regression.correct(record, of_offset);
+        let limit = parameters.lag_limit.into();
+        let [lift, lower] = &mut self.lags;
+        if record.direction == Direction::Lift {
+            let excess_lag = lift.additional_lag() - lower.identified();
+            let residual_lag = excess_lag + self.lag_regression.additional_lag(*lift, limit);
+            let oscillation_limit = parameters.swing_lag.into();
+            self.oscillation
+                .rule_out(self.velocity_ratio.shows_oscillation(record));
+            if !self.oscillation.evaluate_move(
+                excess_lag + self.lag_correction,
+                residual_lag,
+                oscillation_limit,
+            ) {
+                return false;
+            }
+        }
+        let [lift_delay, lower_delay] = &mut self.closing_delays;
+        let (lag, other, delay, other_delay) = match record.direction {
+            Direction::Lift => (lift, lower, lift_delay, lower_delay),
+            Direction::Lower => (lower, lift, lower_delay, lift_delay),
+        };
+        let (place, speed) = self.cut;
+        delay.learn(rest - place, speed);
+        other_delay.initialize_from(*delay);
+        lag.learn(&self.lag_regression, limit);
+        if record.direction == Direction::Lift {
+            self.oscillation
+                .revoke(lag.additional_lag() - other.identified());
+        }
+        other.initialize_from(*lag);
+        self.lag_correction = MillisecondQ3::default();
+        true
+    }
+
+    /// A lift overshot its set point by far.
+    pub fn confirm_oscillation(&mut self) {
+        self.oscillation.confirm();
+    }
+
+    /// The present move is obstructed or cancelled: it is no evidence of an oscillation.
+    pub fn discard_move(&mut self) {
+        self.oscillation.discard_move();
+    }
+
+    /// True if the load oscillates on its compensator: ramps have to be gentle.
+    #[must_use]
+    pub fn has_compensator_oscillation(&self) -> bool {
+        self.oscillation.is_detected()
+    }
+
+    /// Speed correction that damps the oscillation of the load on its oil.
+    #[must_use]
+    pub fn damping(&self, direction: Direction) -> MicrometrePerSecond {
+        match direction {
+            Direction::Lift if !self.has_compensator_oscillation() => {
+                self.damping.demand(self.speed())
+            }
+            _ => MicrometrePerSecond::ZERO,
+        }
+    }
+
+    /// Total lags of lift and lowering spool: nominal plus identified.
+    fn lags(&self, hydraulics: &HydraulicParameters) -> [MillisecondQ3; 2] {
+        let [nominal_lift, nominal_lower] = nominal_lags(hydraulics).map(MillisecondQ3::from);
+        let [lift, lower] = self.lags.map(|lag| lag.additional_lag());
+        [nominal_lift + lift, nominal_lower + lower]
+    }
+
+    /// Takes in the regulated currents and updates the valve model. `slowing`: the move decelerates.
+    pub fn apply_currents(
+        &mut self,
+        currents: CoilCurrents,
+        slowing: bool,
+        scale: DropScale,
+        calibration: &Calibration,
+    ) {
+        let hydraulics = &calibration.hydraulics;
+        let [lift_lag, lower_lag] = self.lags(hydraulics).map(MillisecondQ3::divisor);
+        let lift = self
+            .lift_spool
+            .follow(currents.lift, hydraulics.hysteresis, lift_lag);
+        let lower = self
+            .lower_spool
+            .follow(currents.lower, hydraulics.hysteresis, lower_lag);
+        let (up, lift_slope) = calibration.lift.flow_and_slope(lift);
+        let (down, lower_slope) = calibration.lower.flow_and_slope(lower);
+        let down = scale.to_present(down);
+        let before = self.model_speed;
+        let area = hydraulics.piston_area;
+        let settled = piston_speed(down, area);
+        self.sinking = next_speed(self.sinking, settled);
+        self.opening_speed = piston_speed(up, area) - settled;
+        self.model_speed = piston_speed(up, area) - self.sinking;
+        if slowing {
+            self.scale_bias_with_flow(before);
+        }
+        self.spools = [lift, lower];
+        self.slope = match down > MicroLitrePerSecond::ZERO {
+            true => lower_slope,
+            false => lift_slope,
+        };
+    }
+
+    /// Scales the bias with the flow. The map error is mostly proportional to the flow (load, viscosity), and the
+    /// measured position would correct it too late for stopping.
+    fn scale_bias_with_flow(&mut self, before: MicrometrePerSecond) {
+        let fall = before.magnitude() - self.model_speed.magnitude();
+        if fall > MicrometrePerSecond::ZERO {
+            let share = Divisor::at_least_one(before.magnitude().0).divide(self.bias_sum_nm);
+            self.bias_sum_nm = self
+                .bias_sum_nm
+                .saturating_sub(share.saturating_mul(fall.0));
+        }
+    }
+
+    /// A move begins: resets the bias, because the direction may change, and starts the identification.
+    pub fn begin_move(&mut self) {
+        self.lag_regression = LagRegression::from(self.position_nm);
+        self.velocity_ratio = PeakVelocityRatio::from(self.position_nm);
+        self.uses_closing_delay = false;
+        self.oscillation.begin_move();
+        self.lag_correction = MillisecondQ3::default();
+        self.bias_sum_nm = 0;
+        self.bias = MicrometrePerSecond::ZERO;
+    }
+
+    /// Piston travel.
+    #[must_use]
+    pub fn position(&self) -> Micrometre {
+        self.position
+    }
+
+    /// Piston speed.
+    #[must_use]
+    pub fn speed(&self) -> MicrometrePerSecond {
+        self.model_speed + self.bias
+    }
+
+    /// Piston speed of the valve model.
+    #[must_use]
+    pub fn model_speed(&self) -> MicrometrePerSecond {
+        self.model_speed
+    }
+
+    /// Slope dQ/dI of the open valve at its reference drop, for each ampere.
+    #[must_use]
+    pub fn slope(&self) -> MicroLitrePerSecond {
+        self.slope
+    }
+
+    /// Present speed error of the valve map.
+    #[must_use]
+    pub fn bias(&self) -> MicrometrePerSecond {
+        self.bias
+    }
+
+    /// Predicts where the piston stops.
+    #[must_use]
+    pub fn stop_prediction(&self, hydraulics: &HydraulicParameters) -> StopPrediction {
+        let speed = self.opening_speed + self.bias;
+        let [lift, lower] = self.lags(hydraulics);
+        let [lift_delay, lower_delay] = self.closing_delays;
+        let (lag, delay) = match self.opening_speed < MicrometrePerSecond::ZERO {
+            true => (lower, lower_delay),
+            false => (lift, lift_delay),
+        };
+        let delay = match self.uses_closing_delay {
+            true => delay.delay(),
+            false => MillisecondQ3(0),
+        };
+        let lag = (lag + self.lag_correction).max(MillisecondQ3(0));
+        let within = |time| distance_in(time, speed);
+        StopPrediction {
+            without_lag: self.position() - free_fall_stopping_distance(self.sinking)
+                + within(delay),
+            lag_distance: within(lag),
+        }
+    }
+
+    /// Share of the spool lag distance that remains if the coil is cut now, in thousandths.
+    ///
+    /// The spool then moves towards zero current instead of its threshold, and closes earlier; see
+    /// [`crate::valve::closing`].
+    #[must_use]
+    pub fn closing_share(&self, closing: &ClosingCurves) -> i32 {
+        let [lift, lower] = self.spools;
+        match self.model_speed < MicrometrePerSecond::ZERO {
+            true => closing.lower.share(lower),
+            false => closing.lift.share(lift),
+        }
+    }
+}
+
+/// Predicted stop of the piston.
+#[derive(Clone, Copy, Debug)]
+pub struct StopPrediction {
+    /// Stop without spool lag. It contains the stopping distance of a sinking load ([`free_fall_stopping_distance`])
+    /// and the closing delay ([`ValveClosingDelay`]).
+    without_lag: Micrometre,
+    /// Distance that the spool lag adds.
+    lag_distance: Micrometre,
+}
+
+impl StopPrediction {
+    /// Stop position if the demanded speed is zero from now on.
+    ///
+    /// With a first-order spool, `v' = (u - v) / T`, the point `P = x + T v` moves with exactly the
+    /// demanded speed: `P' = v + T v' = u`. A control law for `P` needs no lag compensation.
+    #[must_use]
+    pub fn predicted_stop(&self) -> Micrometre {
+        self.without_lag + self.lag_distance
+    }
+
+    /// Stop position if the coil is cut now; `share` is [`MotionObserver::closing_share`].
+    #[must_use]
+    pub fn predicted_stop_after_cut(&self, share: i32) -> Micrometre {
+        self.without_lag + self.lag_distance.scaled(share, Divisor::THOUSAND)
+    }
+}
+
+/// Distance at this speed in a lag or delay. The product fits a word: the speed is limited, and the largest lag
+/// (calibration plus identified) is 0.7 s.
+fn distance_in(time: MillisecondQ3, speed: MicrometrePerSecond) -> Micrometre {
+    const MAX_SPEED: MicrometrePerSecond = MicrometrePerSecond(380_000);
+    let speed = speed.limited(-MAX_SPEED, MAX_SPEED);
+    Micrometre(MillisecondQ3::IN_SECOND.divide(speed.0.wrapping_mul(time.0)))
+}
+
+/// `4 T^2` as divisor and as number: converts the sum of position errors to the bias.
+fn bias_divisor(time: Millisecond) -> (Divisor, i32) {
+    let time = time.0.max(1);
+    // Half a second at most.
+    let product = time.wrapping_mul(time).wrapping_mul(4);
+    (Divisor::at_least_one(product), product)
+}
+
+/// Model of solenoid and spool: hysteresis (play) and first-order lag, as current on the rising branch.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spool {
+    play: MilliAmp,
+    microampere: i32,
+}
+
+impl Spool {
+    fn follow(&mut self, coil: MilliAmp, hysteresis: MilliAmp, lag: Divisor) -> MilliAmp {
+        /// Below this current a spool with its coil off is closed: half of the smallest threshold.
+        const CLOSED_MICROAMPERE: i32 = 300_000;
+        if coil == MilliAmp::ZERO && self.microampere < CLOSED_MICROAMPERE {
+            return MilliAmp::ZERO;
+        }
+        self.play = self.play.limited(coil, coil + hysteresis);
+        let goal = self.play.0.saturating_mul(1000);
+        let error = goal.saturating_sub(self.microampere);
+        self.microampere = self.microampere.saturating_add(lag.divide(error));
+        MilliAmp(Divisor::THOUSAND.divide(self.microampere))
+    }
+}
