@@ -133,7 +133,7 @@ fn shown(effect: &LeaveOneOut) -> String {
         effect.without.error()
     );
     if candidate.likelihood_ratio < SIGNIFICANT {
-        return line + " (the campaign does not ask for it)";
+        return line + " (no significant improvement; not needed)";
     }
     line
 }

@@ -22,7 +22,7 @@ pub struct Args {
     campaign: PathBuf,
     #[command(flatten)]
     model: ModelArg,
-    /// Write the model with what was added to this file; the best model so far while the search goes on
+    /// Write the model with the added effects to this file; it holds the best model so far while the search runs
     #[arg(long, value_name = "MODEL.toml")]
     out: Option<PathBuf>,
     /// Write a report to this file: self-contained HTML

@@ -20,7 +20,7 @@ impl fmt::Display for Explanation {
         if let Some(error) = self.error_refitted {
             writeln!(
                 f,
-                "  error {error:.2} sigma with the model's own effects fitted anew\n"
+                "  error {error:.2} sigma with the effects of the model refitted\n"
             )?;
         }
         for (i, step) in self.steps.iter().enumerate() {
@@ -89,7 +89,7 @@ impl fmt::Display for Alternative {
 impl Explanation {
     /// What the list of effects that are not visible means, a sentence without its colon.
     pub fn blind_spots(&self) -> &'static str {
-        "Of these the campaign says nothing, it would not show them at their typical size"
+        "Effects that this campaign would not show at their typical size"
     }
 
     /// What the verdict means, in a sentence.
@@ -99,16 +99,16 @@ impl Explanation {
                 "The model explains the measurements to within the noise of the instruments."
             }
             ("explained", _) => {
-                "With what was added the model explains the measurements to within the noise."
+                "With the added effects the model explains the measurements to within the noise."
             }
             ("ambiguous", _) => {
-                "The model is adequate now, but an effect could as well be another."
+                "The model is adequate with the added effects, but an effect is indistinguishable from another one."
             }
             ("unexplained", true) => {
-                "The model is not adequate, and nothing in the catalogue makes it better."
+                "The model is not adequate, and no effect of the catalogue improves it."
             }
             ("unexplained", false) => {
-                "What was added helps, but what is left is not in the catalogue."
+                "The added effects improve the model, but the remaining error has no cause in the catalogue."
             }
             _ => "The campaign cannot decide.",
         }
@@ -148,7 +148,7 @@ impl fmt::Display for Diagnosis {
             let others = candidate.indistinguishable.join(", ");
             writeln!(
                 f,
-                "On these data {} cannot be told from {others}.",
+                "With these data {} is indistinguishable from {others}.",
                 candidate.name()
             )?;
         }
@@ -158,8 +158,8 @@ impl fmt::Display for Diagnosis {
             self.head.verdict
         )?;
         if self.head.verdict == Verdict::Unexplained.name() {
-            let hint = "No single effect explains this campaign, so several differences are likely, and the confidences, \
-                        which compare single effects, say little: use hitch explain, which looks for a set of effects.";
+            let hint = "No single effect explains this campaign: several differences are likely, and the confidences, which \
+                        compare single effects, do not apply. Use hitch explain, which searches sets of effects.";
             writeln!(f, "{}", wrapped(hint, WIDTH))?;
         }
         write!(f, "{}", self.next)
@@ -178,7 +178,7 @@ impl fmt::Display for Head {
             "  error {before:.2} -> {after:.2} sigma (noise of the instruments: {:.2})\n",
             self.noise_floor
         )?;
-        let mut table = Table::new(["channel", "before", "after", "noise", "late, ms"]);
+        let mut table = Table::new(["channel", "before", "after", "noise", "offset, ms"]);
         for (channel, values) in &self.channels {
             let number = |key: &str| {
                 values[key]
@@ -298,7 +298,7 @@ impl fmt::Display for Step {
         }
         if !self.alternatives.is_empty() {
             let others: Vec<String> = self.alternatives.iter().map(ToString::to_string).collect();
-            writeln!(f, "     cannot be told from: {}", others.join(", "))?;
+            writeln!(f, "     indistinguishable from: {}", others.join(", "))?;
         }
         Ok(())
     }
@@ -335,11 +335,11 @@ impl fmt::Display for Unexplained {
         }
         write!(
             f,
-            "  {:.1} % of the squared error above the noise stays",
+            "  {:.1} % of the squared error above the noise remains",
             100.0 * self.share
         )?;
         if !self.depends_on.is_empty() {
-            write!(f, "; it goes with {}", self.depends_on.join(", "))?;
+            write!(f, "; it correlates with {}", self.depends_on.join(", "))?;
         }
         writeln!(f)?;
         if let Some(place) = &self.whereabouts {

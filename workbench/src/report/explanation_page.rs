@@ -73,7 +73,7 @@ fn verdict(shown: &Explanation) -> Markup {
             " sigma; a perfect model has 1.00, the noise of the instruments."
         }
         @if !shown.unexplained.depends_on.is_empty() {
-            p { (format!("{:.1} % of the squared error above the noise stays; it goes with ", 100.0 * shown.unexplained.share))
+            p { (format!("{:.1} % of the squared error above the noise remains; it correlates with ", 100.0 * shown.unexplained.share))
                 (shown.unexplained.depends_on.join(", ")) "." }
         }
         @if let Some(next) = &shown.next.next_experiment {
@@ -127,7 +127,7 @@ fn steps(steps: &[Step]) -> Markup {
         "held-out error",
         "confidence",
         "detectability",
-        "could be",
+        "indistinguishable from",
     ];
     let rows: Vec<Vec<String>> = steps.iter().map(row).collect();
     html! {
@@ -158,7 +158,7 @@ fn channels(shown: &Explanation) -> Markup {
             "error before",
             "error after",
             "noise of the instrument",
-            "clock late, ms",
+            "clock offset, ms",
         ],
         &rows,
     )

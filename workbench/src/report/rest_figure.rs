@@ -36,7 +36,7 @@ pub fn picture(profile: &ErrorProfile) -> Markup {
         ],
     };
     html! {
-        h2 { "What stays" }
+        h2 { "Remaining error" }
         p { "It is largest at " strong { (profile.to_string()) } "." }
         (chart.figure())
     }

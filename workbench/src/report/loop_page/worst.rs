@@ -45,9 +45,9 @@ const FIGURES: [Figure; 4] = [
 /// The section.
 pub fn section(results: &[MoveResult]) -> Markup {
     html! {
-        h2 { "Where it is worst" }
-        p { "White is as good as can be, yellow is what moves are held to, orange is as far beyond. \
-             Rows are moves, in degrees; columns are load and oil temperature. A dash: it never arrives, \
+        h2 { "Worst moves" }
+        p { "White: ideal. Yellow: at the limit. Orange: as far over the limit as the limit is over the ideal. \
+             Rows: moves, in degrees. Columns: load and oil temperature. A dash: the move never arrives, \
              or no manoeuvre does." }
         @for figure in &FIGURES {
             h3 { (figure.name) }
