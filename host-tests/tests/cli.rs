@@ -43,12 +43,16 @@ fn json(dir: &TempDir, arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).expect("one JSON document")
 }
 
-/// Whether a line says what has been done for so many seconds: where standard error is no terminal a slow command writes
-/// one every ten seconds.
+/// Whether a line reports progress with the elapsed time: where standard error is no terminal, a search writes one for
+/// each better account, and a slow command one every ten seconds.
 fn is_progress(line: &str) -> bool {
+    let is_account = line.starts_with("best so far: ");
     let after = line.rsplit_once(" (").map(|(_, after)| after);
     let seconds = after.and_then(|after| after.strip_suffix(" s)"));
-    seconds.is_some_and(|seconds| seconds.parse::<u32>().is_ok_and(|seconds| seconds >= 10))
+    seconds.is_some_and(|seconds| {
+        let seconds = seconds.parse::<u32>();
+        seconds.is_ok_and(|seconds| is_account || seconds >= 10)
+    })
 }
 
 fn assert_keys(value: &Value, keys: &[&str]) {
@@ -442,7 +446,7 @@ fn the_report_of_the_loop_shows_the_worst_cases_steps_and_what_was_set() {
     assert_self_contained(&html);
     for part in [
         "position.approach_gain=40",
-        "Where it is worst",
+        "Worst moves",
         "250 kg 40 °C",
         "Steps over load",
         "Steps over oil temperature",
