@@ -113,7 +113,7 @@ const CRATES: [Layers; 7] = [
                 "comparison",
                 "explanation",
                 "import",
-                "can_door",
+                "slcan_server",
                 "xcp_tool",
             ],
             &["ecu", "paper", "rebuild", "tuning"],

@@ -2,9 +2,9 @@
 //!
 //! 1. Dictionary: candidate changes of the model are simulated at a few sizes around the present fit.
 //! 2. Best subset: in the linear span of those columns, with nuisance parameters projected out, the best subsets of
-//! each size are found without a simulation.
+//!    each size are found without a simulation.
 //! 3. Refit: the most promising subsets are fitted with the full model and compared by their penalised cost. A new
-//! dictionary is built around the best of them, until the set no longer changes.
+//!    dictionary is built around the best of them, until the set no longer changes.
 //! 4. Posterior: the weights of all refitted sets give the probability of each effect.
 //!
 //! A forward search would take the best single effect first, which may stand in for two others, and would need rules to
