@@ -123,6 +123,11 @@ impl Effect for TermEffect {
         self.id
     }
 
+    /// Behind the effects of the catalogue.
+    fn rank(&self) -> usize {
+        usize::MAX
+    }
+
     fn title(&self) -> &'static str {
         self.title
     }

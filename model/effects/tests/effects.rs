@@ -70,6 +70,25 @@ fn starting_points() -> [Model; 2] {
     [hitch_model_file::nominal(), hitch_model_file::dynamic()]
 }
 
+/// Whichever was added first, effects act in the order of the machine: a threshold lies behind the hysteresis of its solenoid.
+#[test]
+fn effects_act_in_the_order_of_the_catalogue() {
+    let model = hitch_model_file::nominal();
+    let by_id = |id: &str| {
+        let mut added = AddedEffect::typical(hitch_effects::find(id).unwrap());
+        added.values[0] = 0.1;
+        added
+    };
+    let pair = ["lower-threshold-shift", "solenoid-hysteresis"].map(by_id);
+    let [one, other] = [[0, 1], [1, 0]].map(|order| {
+        let effects = order.map(|index: usize| pair[index].clone());
+        runs(&model.with_effects(effects.to_vec()))
+    });
+    assert_eq!(one, other);
+    let ranks: Vec<usize> = CATALOGUE.iter().map(|effect| effect.rank()).collect();
+    assert!(ranks.is_sorted() && ranks.iter().all(|&rank| rank < CATALOGUE.len()));
+}
+
 #[test]
 fn a_null_value_gives_the_model_without_the_effect_bit_for_bit() {
     let bits = |traces: &[Trace]| -> Vec<u64> {

@@ -221,6 +221,10 @@ impl Effect for Lawless {
         "lawless"
     }
 
+    fn rank(&self) -> usize {
+        usize::MAX
+    }
+
     fn title(&self) -> &'static str {
         ""
     }

@@ -53,6 +53,10 @@ impl Effect for ThresholdShift {
         self.id
     }
 
+    fn rank(&self) -> usize {
+        super::rank(self.id())
+    }
+
     fn title(&self) -> &'static str {
         self.title
     }

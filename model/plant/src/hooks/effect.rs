@@ -144,9 +144,7 @@ pub trait Effect: Any + Sync {
         false
     }
     /// Rank in the order of effects at the same hook, from the coil to the instruments.
-    fn rank(&self) -> usize {
-        usize::MAX
-    }
+    fn rank(&self) -> usize;
     /// Attaches it to a plant, with a value for each parameter.
     fn attach(&self, values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks);
 }
