@@ -84,7 +84,15 @@ fn effects_act_in_the_order_of_the_catalogue() {
         let effects = order.map(|index: usize| pair[index].clone());
         runs(&model.with_effects(effects.to_vec()))
     });
-    assert_eq!(one, other);
+    for (one, other) in one.iter().zip(&other) {
+        for channel in Channel::ALL {
+            let bits = |trace: &Trace| -> Vec<u64> {
+                let values = trace.channel(channel).iter();
+                values.map(|value| value.to_bits()).collect()
+            };
+            assert_eq!(bits(one), bits(other), "{channel:?}");
+        }
+    }
     let ranks: Vec<usize> = CATALOGUE.iter().map(|effect| effect.rank()).collect();
     assert!(ranks.is_sorted() && ranks.iter().all(|&rank| rank < CATALOGUE.len()));
 }
