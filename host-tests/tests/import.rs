@@ -7,8 +7,7 @@ use std::process::{Command, Output};
 use hitch_campaign::{Campaign, Run};
 use hitch_plant::{Channel, Linkage};
 use host_tests::program::run;
-use host_tests::python;
-use host_tests::python::{installed, scripts};
+use host_tests::python::{self, installed, scripts};
 use host_tests::refusal::refused;
 use tempfile::TempDir;
 

@@ -4,8 +4,7 @@ use hitch_plant::Model;
 use hitch_quantities::{Calibration, ValidCalibration};
 
 use crate::calibrate::calibrate;
-use crate::closed_loop;
-use crate::closed_loop::{LoopRun, MoveResult, Scenario, Summary};
+use crate::closed_loop::{self, LoopRun, MoveResult, Scenario, Summary};
 use crate::error::Error;
 use crate::explanation::Found;
 use crate::text::{Table, known};

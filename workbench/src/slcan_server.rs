@@ -3,8 +3,7 @@
 //!
 //! It is one bus: what a connection sends reaches the ECU and all other connections. Nothing here waits.
 
-use std::io;
-use std::io::{ErrorKind, Read, Write};
+use std::io::{self, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream, ToSocketAddrs};
 
 use hitch_protocols::can::Frame;

@@ -1,7 +1,6 @@
 //! The ECU's state, live: a line that is rewritten on a terminal, a table where there is none.
 
-use std::io;
-use std::io::{IsTerminal, Write};
+use std::io::{self, IsTerminal, Write};
 use std::time::Duration;
 
 use hitch_quantities::{Fault, State};

@@ -5,7 +5,7 @@
 //! same folder or to one further down. Only tests may look upwards.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 
@@ -131,7 +131,11 @@ pub fn check() -> Result<()> {
     let mut wrong = Vec::new();
     for layers in &CRATES {
         let root = workspace::root().join(layers.sources);
-        for file in sources(&root)? {
+        let files = workspace::files(&root)?;
+        for file in files
+            .into_iter()
+            .filter(|file| file.extension().is_some_and(|end| end == "rs"))
+        {
             let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
             let place = file.strip_prefix(&root)?;
             wrong.extend(
@@ -181,21 +185,6 @@ impl Layers {
             })
             .collect()
     }
-}
-
-/// All sources below a folder.
-fn sources(folder: &Path) -> Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
-        let path = entry?.path();
-        if path.is_dir() {
-            files.extend(sources(&path)?);
-        } else if path.extension().is_some_and(|name| name == "rs") {
-            files.push(path);
-        }
-    }
-    files.sort();
-    Ok(files)
 }
 
 /// The module that a file is; the crate's root is none.

@@ -1,4 +1,4 @@
-//! A step in two parts: control asks for currents, protection decides what the coils get.
+//! A step in two parts: control requests currents; protection limits them and sets the pulse widths of the coils.
 
 use hitch_control::Control;
 use hitch_control::commissioning::teach::{Taught, TeachError};
@@ -17,7 +17,7 @@ mod damage;
 pub struct Controller {
     envelope: Envelope,
     memory: MemoryCheck,
-    /// What control asked for last.
+    /// The last command of control.
     command: Command,
     regulation: Regulation,
     // The largest comes last, so that the others are close to the controller's address.
@@ -31,8 +31,8 @@ impl Controller {
         Self::with(calibration, EngineWatch::default())
     }
 
-    /// The same, with what the engine has told so far. Not inlined: a copy of the controller would take its place on
-    /// the stack of the caller for good.
+    /// The same, with the received engine speed. Not inlined: inlining would keep a copy of the controller on the
+    /// stack of the caller.
     #[inline(never)]
     fn with(calibration: ValidCalibration, engine: EngineWatch) -> Self {
         Self {

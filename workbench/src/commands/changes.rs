@@ -8,8 +8,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::explanation::{Explanation, Found};
 use crate::model_arg::ModelArg;
-use crate::output;
-use crate::output::JsonArg;
+use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
 use crate::search_args::SearchArgs;
 

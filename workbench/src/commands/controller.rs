@@ -1,7 +1,6 @@
 //! `hitch controller`: the firmware's controller on standard input and output, for anyone's own plant.
 
-use std::io;
-use std::io::{BufRead, Write};
+use std::io::{self, BufRead, Write};
 use std::path::{Path, PathBuf};
 
 use hitch_controller::Controller;

@@ -109,7 +109,7 @@ pub fn parameters(effect: &dyn Effect, values: &[f64], intervals: &[(f64, f64)])
 /// Errors by channel before and after, in the channel's unit, beside the instrument's noise, and how late its clock is
 /// against that of the currents, s.
 ///
-/// LeaveOneOut that stand the parts of the channel's whole delay behind the currents, s.
+/// It is followed by the parts of the channel's whole delay behind the currents, s.
 ///
 /// They are the errors in sigma times sigma, so that they add up to the error of the whole; what the noise of the
 /// logged currents does to the simulation is no error of the model and not in them.

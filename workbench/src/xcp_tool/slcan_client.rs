@@ -1,7 +1,6 @@
 //! A client of an slcan adapter on a TCP port.
 
-use std::io;
-use std::io::{ErrorKind, Read, Write};
+use std::io::{self, ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 

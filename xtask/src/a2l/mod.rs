@@ -14,8 +14,7 @@ use anyhow::{Context, Result};
 use hitch_protocols::xcp::map::{
     CALIBRATION_BASE, IDENTITY, IDENTITY_BASE, MEASUREMENT_BASE, SLOT_BYTES,
 };
-use hitch_protocols::xcp::measurements;
-use hitch_protocols::xcp::measurements::{MeasurementInfo, Width};
+use hitch_protocols::xcp::measurements::{self, MeasurementInfo, Width};
 use hitch_quantities::calibration::CALIBRATION_BYTES;
 use hitch_quantities::calibration::calibration_words::{
     GROUPS, LIFT_WORD, LINKAGE_WORD, LONGEST_TRAVEL, LOWER_WORD, SCALARS_WORD,

@@ -248,7 +248,7 @@ mod tests {
     }
 
     impl Lift {
-        /// How much slower the first move tells that the spool is, at rest and 20 ms into its fall, and the second.
+        /// Additional lag by the first move, at rest and 20 ms into the fall of the current, and by the second move.
         fn identified_ms(&self) -> [f64; 3] {
             let mut lag = SpoolLagEstimator::default();
             let mut record = [0.0; 3];

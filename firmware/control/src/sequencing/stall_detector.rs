@@ -20,7 +20,7 @@ const END_ZONE: MilliDegree = MilliDegree(2_000);
 /// True if a stalled hitch is at an end of its stroke or on the ground.
 ///
 /// On the ground there is no pressure at an open lowering valve. Without a pressure sensor a lowering valve that does
-/// not open cannot be told from that; the hitch then does not sink, which is safe.
+/// not open is indistinguishable from that; the hitch then does not sink, which is safe.
 #[must_use]
 pub fn is_at_end_of_travel(lifts: bool, sensed: &Sensed, calibration: &Calibration) -> bool {
     let (position, hydraulics) = (&calibration.position, &calibration.hydraulics);

@@ -81,7 +81,7 @@ struct Piece {
 type CurvePoint = (i32, u64);
 
 impl Piece {
-    /// The first one with flow, raised by half a milliampere: the smallest flow asks for just more than the threshold,
+    /// The first one with flow, raised by half a milliampere: the current of the smallest flow is just above the threshold,
     /// and the end for no more than what is there.
     fn first(threshold: u64, to: CurvePoint) -> Self {
         let from = (1, threshold.wrapping_add(HALF));

@@ -3,7 +3,7 @@
 //! The curve itself is a table of the calibration ([`hitch_quantities::calibration::valve_table`]).
 //!
 //! * No flow is no current, and no current is no flow.
-//! * The smallest flow asks for just more than the threshold, any flow beyond saturation for the
+//! * The current of the smallest flow is just above the threshold; that of any flow beyond saturation is the
 //!   saturation current.
 //! * Lifting is compensated: flow depends on the current alone. Lowering goes with the root of the
 //!   pressure drop (turbulent orifice, `Q = Cd A sqrt(2 dp / rho)`), so a flow is brought to the

@@ -9,8 +9,7 @@ use hitch_identification::data::experiment::Experiment;
 use crate::base_fit::ShownBaseFit;
 use crate::error::Error;
 use crate::model_arg::ModelArg;
-use crate::output;
-use crate::output::JsonArg;
+use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
 

@@ -8,8 +8,7 @@ use hitch_identification::selection::candidate;
 use hitch_plant::{Effect, full_name};
 use serde_json::{Value, json};
 
-use crate::explanation;
-use crate::explanation::{Candidate, explained as share_explained, parameters};
+use crate::explanation::{self, Candidate, explained as share_explained, parameters};
 use crate::serve::session::{Explained, Ranking, Session};
 
 /// Texts of an effect.
