@@ -7,9 +7,9 @@ use std::fs;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail, ensure};
+use arm_build::workspace;
 
 use crate::size::Size;
-use crate::workspace;
 
 /// Flash that an image may take.
 const FLASH_BYTES: u64 = 192 * 1024;

@@ -1,9 +1,10 @@
 //! Formatting, the order of folders, lints and documentation, with warnings denied.
 
 use anyhow::Result;
+use arm_build::toolchain::Way;
+use arm_build::{process, setup, workspace};
 
-use crate::toolchain::Way;
-use crate::{documents, image, layers, process, setup, workspace};
+use crate::{ablation, documents, image, layers};
 
 /// Runs all checks; the first that fails ends it.
 pub fn run(way: Option<Way>) -> Result<()> {
@@ -12,6 +13,7 @@ pub fn run(way: Option<Way>) -> Result<()> {
     cargo(&["fmt", "--all", "--check"])?;
     layers::check()?;
     documents::check()?;
+    ablation::check()?;
     cargo(&[
         "clippy",
         "--locked",

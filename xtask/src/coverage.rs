@@ -10,9 +10,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
 use anyhow::{Context, Result, bail, ensure};
+use arm_build::{process, workspace};
 use llvm_profparser::{CoverageMapping, merge_profiles};
-
-use crate::{process, workspace};
 
 /// What has to be covered, from the workspace's root: the envelope, and the rows of its table.
 const COVERED: [&str; 2] = [

@@ -4,8 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
 use anyhow::{Context, Result, ensure};
-
-use crate::workspace;
+use arm_build::workspace;
 
 /// The list of requirements, from the workspace's root.
 const REQUIREMENTS: &str = "docs/requirements.md";

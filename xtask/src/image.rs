@@ -4,14 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use arm_build::images::{build, build_emulated, folder};
+use arm_build::toolchain::Way;
+use image_stack::Bound;
 
 use crate::budget::{self, Entry};
-use crate::stack::{self, Bound};
-use crate::toolchain::{TARGET, Way};
-use crate::{process, programming, seal, size};
-
-/// The profile that images are built with: optimised, and arithmetic that overflows is caught.
-const PROFILE: &str = "firmware";
+use crate::{programming, seal, size};
 
 /// Parts that there is a board for, by the features that choose them.
 pub const PARTS: [&str; 2] = ["stm32f405", "stm32g474"];
@@ -65,7 +63,7 @@ struct Image {
 
 impl Image {
     fn measured(name: String, path: &Path) -> Result<Self> {
-        let (size, stack) = (size::of(path)?, stack::of(path)?);
+        let (size, stack) = (size::of(path)?, image_stack::of(path)?);
         println!(
             "{} takes {size}, and at most {} B of stack",
             path.display(),
@@ -96,24 +94,4 @@ fn build_images(way: Way) -> Result<(Vec<Image>, Emulated)> {
     let stack = image.stack.clone();
     images.push(image);
     Ok((images, Emulated { path, stack }))
-}
-
-/// Builds the image for the emulator; its path.
-pub fn build_emulated(way: Way) -> Result<PathBuf> {
-    build(way, &["--bin", "emulated", "--features", "emulated"])?;
-    Ok(folder(way).join("emulated"))
-}
-
-/// Where the images are.
-pub fn folder(way: Way) -> PathBuf {
-    way.target_dir().join(TARGET).join(PROFILE)
-}
-
-fn build(way: Way, what: &[&str]) -> Result<()> {
-    let mut command = way.cargo("build")?;
-    process::run(
-        command
-            .args(["--package", "hitch-ecu", "--profile", PROFILE])
-            .args(what),
-    )
 }

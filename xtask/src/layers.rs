@@ -8,8 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
-
-use crate::workspace;
+use arm_build::workspace;
 
 /// The folders of a crate in their order.
 struct Layers {

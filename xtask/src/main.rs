@@ -1,6 +1,7 @@
 //! Project tasks that need more than cargo.
 
 mod a2l;
+mod ablation;
 mod budget;
 mod check;
 mod coverage;
@@ -8,21 +9,16 @@ mod documents;
 mod image;
 mod layers;
 mod mutants;
-mod process;
 mod programming;
 mod seal;
-mod setup;
 mod size;
-mod stack;
 mod test;
-mod toolchain;
-mod workspace;
 
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-
-use toolchain::Way;
+use arm_build::setup;
+use arm_build::toolchain::Way;
 
 const USAGE: &str = "\
 usage: cargo xtask <task> [--arm rustup|debian]
@@ -33,12 +29,13 @@ usage: cargo xtask <task> [--arm rustup|debian]
   arm     build the ARM images, say how large they are, and hold them to their budgets
   sizes   write down how large the images are and how deep their stacks get, in firmware/sizes.txt
   stack   show the calls that make the images' stacks deepest
-  image   build the image for the emulator alone; the last line is its path
   coverage run the safety envelope's tests; each piece of its code has to be reached
   mutants [--again]
           change the safety envelope, position control, storage and remote control in every way that cargo-mutants
           knows; their tests have to notice. Only if their code is not the one for which firmware/mutants.txt says
           that they do, or with --again
+  ablations identification|control [NAME...]
+          remove one heuristic of xtask/ablations.toml at a time and print what the benchmark loses
   a2l     write firmware/hitch.a2l, the description of parameters and measurements for tuning tools
   setup   find or install the ARM toolchain and the emulator
 
@@ -61,6 +58,9 @@ fn main() -> ExitCode {
 
 fn run(arguments: &[String]) -> Result<()> {
     let (task, options) = arguments.split_first().context(USAGE)?;
+    if task == "ablations" {
+        return ablation::run(options);
+    }
     let again = task == "mutants" && options == ["--again"];
     let way = match options {
         [] => None,
@@ -77,11 +77,6 @@ fn run(arguments: &[String]) -> Result<()> {
             .and_then(|()| test::run(way)),
         "arm" => image::build_all(setup::toolchain(way)?).map(drop),
         "sizes" => budget::write(&image::sizes(setup::toolchain(way)?)?),
-        "image" => {
-            let image = image::build_emulated(setup::toolchain(way)?)?;
-            println!("{}", image.display());
-            Ok(())
-        }
         "stack" => image::show_stacks(setup::toolchain(way)?),
         "coverage" => coverage::run(),
         "mutants" => mutants::run(again),

@@ -8,12 +8,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
+use arm_build::{process, workspace};
 use crc::{CRC_64_XZ, Crc};
 use hitch_quantities::calibration::design_parameters::{
     PositionParameters, SafetyParameters, SensorParameters,
 };
-
-use crate::{process, workspace};
 
 /// A part of the firmware, and the tests that have to notice every change to it.
 #[derive(Debug)]

@@ -5,9 +5,11 @@ use std::io::{BufRead, BufReader, Write, stdout};
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
+use arm_build::images;
+use arm_build::toolchain::Way;
+use arm_build::{process, setup, workspace};
 
-use crate::toolchain::Way;
-use crate::{image, process, setup, workspace};
+use crate::image;
 
 /// Names the image for the tests that run it.
 const IMAGE_VARIABLE: &str = "HITCH_EMULATED_IMAGE";
@@ -18,13 +20,13 @@ const STACK_VARIABLE: &str = "HITCH_STACK_BOUND";
 /// Names the folder with the images for the parts.
 const IMAGES_VARIABLE: &str = "HITCH_BOARD_IMAGES";
 
-/// Tests that need images, or a browser.
+/// Modules of the test program `live` with tests that need images or a browser. Each runs alone: some are in real time.
 const ON_TARGET: [&str; 5] = [
-    "board_bench",
-    "emulated",
-    "emulated_ecu",
-    "page_in_browser",
-    "python_clients",
+    "board_bench::",
+    "emulated::",
+    "emulated_ecu::",
+    "page_in_browser::",
+    "python_clients::",
 ];
 
 /// How many tests ended how.
@@ -55,14 +57,23 @@ pub fn run(way: Option<Way>) -> Result<()> {
     let image = image::build_all(way)?;
 
     let host = run_group(&mut cargo_test(&["--workspace"]))?;
-    let mut on_target = cargo_test(&["--package", "host-tests"]);
-    on_target
-        .args(ON_TARGET.into_iter().flat_map(|name| ["--test", name]))
-        .args(["--", "--ignored", "--nocapture"])
-        .env(IMAGE_VARIABLE, &image.path)
-        .env(IMAGES_VARIABLE, image::folder(way))
-        .env(STACK_VARIABLE, image.stack.bytes().to_string());
-    let target = run_group(&mut on_target)?;
+    let mut target = Outcome {
+        counts: Counts::default(),
+        success: true,
+    };
+    for module in ON_TARGET {
+        // With the features of the whole workspace, so that nothing is built again.
+        let mut on_target = cargo_test(&["--workspace", "--test", "live"]);
+        on_target
+            .args(["--", "--ignored", "--nocapture", module])
+            .env(IMAGE_VARIABLE, &image.path)
+            .env(IMAGES_VARIABLE, images::folder(way))
+            .env(STACK_VARIABLE, image.stack.bytes().to_string());
+        let outcome = run_group(&mut on_target)?;
+        target.counts.passed += outcome.counts.passed;
+        target.counts.failed += outcome.counts.failed;
+        target.success &= outcome.success && outcome.counts.passed > 0;
+    }
 
     summarise(&host, &target)
 }

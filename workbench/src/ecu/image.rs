@@ -62,7 +62,7 @@ fn build() -> Result<PathBuf, Error> {
     let patience = patience();
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let built = Command::new(cargo)
-        .args(["xtask", "image"])
+        .args(["run", "--quiet", "--locked", "--package", "arm-build"])
         .current_dir(&sources)
         .stdin(Stdio::null())
         .output()
@@ -79,7 +79,7 @@ fn build() -> Result<PathBuf, Error> {
                 .last()
                 .unwrap_or("it says nothing");
             Err(Error::Usage(format!(
-                "`cargo xtask image` failed ({reason}): {MEND}"
+                "`cargo run --package arm-build` failed ({reason}): {MEND}"
             )))
         }
     }

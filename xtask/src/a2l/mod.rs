@@ -11,6 +11,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use anyhow::{Context, Result};
+use arm_build::workspace;
 use hitch_protocols::xcp::map::{
     CALIBRATION_BASE, IDENTITY, IDENTITY_BASE, MEASUREMENT_BASE, SLOT_BYTES,
 };
@@ -23,7 +24,6 @@ use hitch_quantities::calibration::linkage::LINKAGE_POINTS;
 use hitch_quantities::calibration::parameter::ParameterInfo;
 use hitch_quantities::calibration::valve_table::VALVE_POINTS;
 
-use crate::workspace;
 use conversion::Conversion;
 
 /// Where the file is kept.

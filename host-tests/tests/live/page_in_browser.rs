@@ -1,7 +1,7 @@
 //! The page of `hitch serve` in a real browser, at the widths of a desktop and of a phone, light and dark.
 //!
 //! `cargo xtask test` installs the browser. The pictures of each view are kept in the target folder. With
-//! `UPDATE_PICTURE=1 cargo test -p host-tests --test page_in_browser -- --ignored`, one of them becomes `docs/page.png`.
+//! `UPDATE_PICTURE=1 cargo test -p host-tests --test live -- --ignored page_in_browser`, one of them becomes `docs/page.png`.
 use std::fs;
 use std::path::Path;
 use std::process::Command;

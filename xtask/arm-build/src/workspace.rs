@@ -7,13 +7,16 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-/// The workspace's root.
+/// The workspace's root: the nearest folder above the running crate that holds the lock file.
 pub fn root() -> PathBuf {
-    // As cargo says now; a target folder that several clones share may hold an xtask that another one built.
-    let xtask =
+    // Cargo names the crate at run time. A target folder that several clones share may hold a program that another
+    // clone built.
+    let of_crate =
         env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
-    PathBuf::from(xtask)
-        .parent()
+    let of_crate = PathBuf::from(of_crate);
+    let mut folders = of_crate.ancestors();
+    folders
+        .find(|folder| folder.join("Cargo.lock").is_file())
         .map(Path::to_path_buf)
         .unwrap_or_default()
 }

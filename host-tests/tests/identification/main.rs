@@ -1,0 +1,18 @@
+//! Tests of the plant, the effects and the identification.
+
+mod base_fit;
+mod changes;
+mod coarse_simulation;
+mod convergence;
+mod coverage;
+mod declared_constants;
+mod estimation;
+mod hidden_effects;
+mod independent_plant;
+mod known_campaigns;
+mod next_experiment;
+mod odd_campaigns;
+mod own_terms;
+mod paper;
+mod parameters;
+mod synchronous_clocks;

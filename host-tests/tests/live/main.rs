@@ -1,0 +1,10 @@
+//! Tests with running ECUs, emulators, servers and browsers, some of them in real time. `cargo xtask test` provides the
+//! images, the emulator and the browser that the ignored ones need.
+
+mod board_bench;
+mod ecu_tools;
+mod emulated;
+mod emulated_ecu;
+mod page_in_browser;
+mod python_clients;
+mod serve;

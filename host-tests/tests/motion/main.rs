@@ -1,0 +1,17 @@
+//! Tests of the controller in closed loop with a plant.
+
+mod closed_loop;
+mod current;
+mod drawn_hitches;
+mod drifting_reference;
+mod extra_travel;
+mod flooded_bus;
+mod from_measurement_to_motion;
+mod frozen_angle;
+mod position;
+mod power_cut;
+mod rate;
+mod start_up;
+mod teach;
+mod traces;
+mod wide_hysteresis;

@@ -1,0 +1,9 @@
+//! Tests of the program and of its interfaces to other tools.
+
+mod bad_input;
+mod bad_output;
+mod cli;
+mod controller_stdio;
+mod from_bus_to_model;
+mod import;
+mod tune;

@@ -1,0 +1,83 @@
+//! Ablations: what a benchmark loses if one heuristic is removed.
+//!
+//! `xtask/ablations.toml` lists the heuristics. Each entry replaces a piece of source text by a version without the
+//! heuristic. All entries are compiled into one copy of the workspace, each behind a switch that an environment
+//! variable sets, so that the benchmark is built once and run once per heuristic.
+
+mod battery;
+mod list;
+
+use std::fs;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail};
+use arm_build::{process, workspace};
+
+use battery::{Battery, Outcome};
+use list::Ablation;
+
+/// Environment variable that names the heuristic to remove.
+const SWITCH: &str = "HITCH_ABLATION";
+
+/// Checks that each entry of the list still matches the source.
+pub fn check() -> Result<()> {
+    let root = workspace::root();
+    for ablation in list::read()? {
+        ablation.check(&root)?;
+    }
+    Ok(())
+}
+
+/// Runs the benchmark of a part without its heuristics, one at a time; `names` selects some of them.
+pub fn run(arguments: &[String]) -> Result<()> {
+    let Some((part, names)) = arguments.split_first() else {
+        bail!("which part: identification or control?");
+    };
+    let battery: Battery = part.parse()?;
+    let mut ablations = list::read()?;
+    ablations.retain(|ablation| ablation.part == battery);
+    if let Some(unknown) = names
+        .iter()
+        .find(|name| ablations.iter().all(|ablation| ablation.name != **name))
+    {
+        bail!("xtask/ablations.toml has no heuristic {unknown} of {part}");
+    }
+    let folder = copied(&ablations)?;
+    let program = battery.build(&folder)?;
+    let whole = battery.run(&program, None)?;
+    println!("{}", battery.header());
+    println!("{}", battery.row("(none)", &whole, &whole));
+    for ablation in ablations {
+        if names.is_empty() || names.contains(&ablation.name) {
+            let without: Outcome = battery.run(&program, Some(&ablation.name))?;
+            println!("{}", battery.row(&ablation.removes, &whole, &without));
+        }
+    }
+    Ok(())
+}
+
+/// A copy of the workspace with every entry behind its switch.
+fn copied(ablations: &[Ablation]) -> Result<PathBuf> {
+    let root = workspace::root();
+    let folder = workspace::target().join("ablation/source");
+    let listed = process::output(&mut process::command("git", &["ls-files"]));
+    let files = listed.context("git can't list the files of the workspace")?;
+    for file in files.lines() {
+        let (from, to) = (root.join(file), folder.join(file));
+        if !from.is_file() {
+            continue;
+        }
+        let mut bytes = fs::read(&from).with_context(|| from.display().to_string())?;
+        let own = ablations.iter().filter(|ablation| ablation.file == file);
+        for ablation in own {
+            let text = String::from_utf8(bytes).with_context(|| file.to_owned())?;
+            bytes = ablation.applied_to(&text)?.into_bytes();
+        }
+        // Unchanged files keep their time stamps, so that cargo does not build them again.
+        if fs::read(&to).ok().as_deref() != Some(&bytes) {
+            fs::create_dir_all(to.parent().context("a file has a folder")?)?;
+            fs::write(&to, bytes).with_context(|| to.display().to_string())?;
+        }
+    }
+    Ok(folder)
+}
