@@ -144,7 +144,7 @@ def own_term(page: Page, pictures: Path) -> None:
     page.screenshot(path=pictures / "own_term_wrong.png")
     assert_accessible(page)
     page.fill("#term-formula", "c")
-    expect(page.locator("#term-fault")).to_have_text("The term is right.")
+    expect(page.locator("#term-fault")).to_have_text("The term is valid.")
     page.click("#term-add")
     page.wait_for_selector("#effects .effect")
     settled(page)

@@ -34,7 +34,7 @@ pub fn image() -> Result<PathBuf> {
     })?;
     ensure!(
         path.is_file(),
-        "{IMAGE_VARIABLE}: there is no file {}; build it with `cargo xtask arm`",
+        "{IMAGE_VARIABLE}: file {} does not exist; build it with `cargo xtask arm`",
         path.display()
     );
     Ok(path)

@@ -1,4 +1,4 @@
-//! What `hitch model fit` found, as scripts read it (JSON) and as people do (text).
+//! Result of `hitch model fit`, as JSON and as text.
 
 use std::fmt;
 
@@ -27,9 +27,9 @@ pub struct ShownBaseFit {
     pub constants: Vec<ShownConstant>,
     /// The flow curves, point by point.
     pub curves: Vec<ShownPoint>,
-    /// What the campaign does not determine.
+    /// Constants that the campaign does not determine.
     pub not_determined: Vec<String>,
-    /// Constants that went as far from the declared value as is believed.
+    /// Constants at the end of their allowed deviation from the declared value.
     pub at_an_end: Vec<String>,
     /// The next command.
     pub next: String,
@@ -74,7 +74,7 @@ pub struct ShownPoint {
 }
 
 impl ShownBaseFit {
-    /// What is shown of a fit.
+    /// The result for display.
     #[must_use]
     pub fn new(experiment: &Experiment, declared: &Model, fit: &BaseFit, next: String) -> Self {
         let constants: Vec<ShownConstant> = fit.constants.iter().map(constant).collect();
@@ -161,7 +161,7 @@ impl fmt::Display for ShownBaseFit {
                 format!("{} to {}", digits(point.low_lpm), digits(point.high_lpm)),
                 match point.determined {
                     true => String::new(),
-                    false => "follows its neighbours".to_owned(),
+                    false => "interpolated from neighbours".to_owned(),
                 },
             ]);
         }
@@ -173,14 +173,14 @@ impl fmt::Display for ShownBaseFit {
         let unknown: Vec<&str> = unknown.map(|constant| constant.name.as_str()).collect();
         if !unknown.is_empty() {
             let line = format!(
-                "Not determined by this campaign, left as declared: {}.",
+                "Not determined by this campaign, declared value kept: {}.",
                 unknown.join(", ")
             );
             writeln!(f, "{}", wrapped(&line, WIDTH))?;
         }
         if !self.at_an_end.is_empty() {
             let line = format!(
-                "At the end of what is believed of the declared value, check the data sheet: {}.",
+                "At the limit of the allowed deviation from the declared value, check the data sheet: {}.",
                 self.at_an_end.join(", ")
             );
             writeln!(f, "{}", wrapped(&line, WIDTH))?;

@@ -1,4 +1,4 @@
-//! From an identified model to the firmware's calibration.
+//! Converts an identified model into the firmware's calibration.
 
 use hitch_controller::Controller;
 use hitch_plant::units::{bar_from_pa, lpm_from_m3_s, m3_s_from_lpm};
@@ -12,16 +12,16 @@ use hitch_quantities::{Calibration, CalibrationError, ValidCalibration};
 
 use crate::valve_survey::{CurvePoint, LOWERING_PORT_BAR, survey};
 
-/// How far, in A, a straight piece of a valve table may be from the surveyed curve before it is split.
+/// Tolerance of a valve table relative to the surveyed curve, A.
 const TOLERANCE_A: f64 = 0.5e-3;
 
-/// How far the limits of travel stay from the mechanical ends.
+/// Distance of the travel limits from the mechanical ends.
 const END_DISTANCE: MilliDegree = MilliDegree(500);
 
-/// Ends that differ by less are the same: a calibration is rounded.
+/// Tolerance for equal ends of travel: a calibration is rounded.
 const SAME_END: MilliDegree = MilliDegree(20);
 
-/// Why a model gives no calibration.
+/// The reason why a model cannot be converted.
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrateError {
     /// A valve of the model never opens.
@@ -32,12 +32,12 @@ pub enum CalibrateError {
         /// `lift` or `lower`.
         valve: &'static str,
     },
-    /// The firmware refuses what came out.
+    /// The firmware rejects the result.
     #[error("the firmware refuses the calibration of this model: {0:?}")]
     Refused(CalibrationError),
 }
 
-/// The calibration of a machine that behaves like `model`: `base` with the model's valves, linkage and circuit.
+/// The calibration for a machine like `model`: `base` with the model's valves, linkage and circuit.
 ///
 /// # Errors
 /// See [`CalibrateError`].
@@ -53,12 +53,12 @@ pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, 
     let relief_bar = bar_from_pa(constants.relief_valve.set_pressure_pa);
     hydraulics.relief_pressure = MilliBar((relief_bar * 1e3).round() as i32);
     if constants.dynamics == Dynamics::Dynamic {
-        // A quasi-static model knows nothing of the lag; then the default stays.
+        // A quasi-static model has no lag; the default is kept.
         let lag = Millisecond((constants.spool_time_constant_s * 1e3).round() as i32);
         hydraulics.spool_lag = lag;
         hydraulics.lower_spool_lag = lag;
     }
-    // What was identified of coil and spool; a model without it says nothing about it.
+    // Identified properties of coil and spool; kept from the base if the model lacks them.
     if let Some(lag_s) = found(model, "spool-lag") {
         let further = Millisecond((lag_s * 1e3).round() as i32);
         hydraulics.spool_lag = hydraulics.spool_lag + further;
@@ -73,13 +73,13 @@ pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, 
         .map_err(CalibrateError::Refused)
 }
 
-/// First value of an effect that the model has.
+/// First parameter of an effect of the model.
 fn found(model: &Model, id: &str) -> Option<f64> {
     let added = model.effects.iter().find(|added| added.effect.id() == id)?;
     added.values.first().copied()
 }
 
-/// A controller for `model`, straight from power-up.
+/// A controller for `model`, in the state after power-up.
 ///
 /// # Errors
 /// See [`CalibrateError`].
@@ -87,13 +87,13 @@ pub fn controller_for(model: &Model) -> Result<Controller, CalibrateError> {
     calibrate(model, &Calibration::nominal()).map(Controller::new)
 }
 
-/// The linkage table over the model's swing, and the limits of travel inside it.
+/// The linkage table over the model's range, and the travel limits inside it.
 fn linkage(model: &Model, calibration: &mut Calibration) {
     let (low_rad, high_rad) = model.linkage().swing_rad();
     let milli = |degree: f64| MilliDegree((degree * 1e3).round() as i32);
     let (low, high) = (milli(low_rad.to_degrees()), milli(high_rad.to_degrees()));
     let pieces = LINKAGE_POINTS as i32 - 1;
-    // Rounded up, so that the table covers the whole swing.
+    // Rounded up, so that the table covers the whole range.
     let step = MilliDegree(((high - low).0 + pieces - 1) / pieces);
     let table = &mut calibration.linkage;
     (table.first_angle, table.angle_step) = (low, step);
@@ -111,7 +111,7 @@ fn linkage(model: &Model, calibration: &mut Calibration) {
     calibration.teach.stroke = Micrometre((stroke_m * 1e6).round() as i32);
 }
 
-/// How far a limit of travel has moved.
+/// Displacement of a travel limit.
 fn moved_by(before: MilliDegree, after: MilliDegree) -> MilliDegree {
     let by = after - before;
     if by.magnitude() < SAME_END {
@@ -121,8 +121,7 @@ fn moved_by(before: MilliDegree, after: MilliDegree) -> MilliDegree {
     }
 }
 
-/// Takes what lies near a limit of travel along with it: where the hitch floats, how high it is lifted at a push of the
-/// button, what sensors can say.
+/// Shifts values that refer to a travel limit together with it: float range, height of a lift by button, sensor ranges.
 fn follow(calibration: &mut Calibration, before: [MilliDegree; 2], after: [MilliDegree; 2]) {
     let (operator, sensors) = (&mut calibration.operator, &mut calibration.sensors);
     let lower = moved_by(before[0], after[0]);
@@ -137,7 +136,7 @@ fn follow(calibration: &mut Calibration, before: [MilliDegree; 2], after: [Milli
     ] {
         *angle = *angle + by;
     }
-    // These are shares of the range.
+    // Fractions of the range.
     let range = f64::from((before[1] - before[0]).0);
     let stretch = f64::from((upper - lower).0) / range;
     for angle in [&mut operator.float_angle, &mut operator.quick_lift_angle] {
@@ -146,7 +145,7 @@ fn follow(calibration: &mut Calibration, before: [MilliDegree; 2], after: [Milli
     }
 }
 
-/// The table of a surveyed curve with as few points as its tolerance needs and as fit.
+/// The table of a surveyed curve with the minimum number of points within its tolerance, limited by the table size.
 fn valve_table(valve: &'static str, curve: &[CurvePoint]) -> Result<ValveTable, CalibrateError> {
     let gap_lpm = least_gap_lpm(curve);
     let mut tolerance_a = TOLERANCE_A;
@@ -171,20 +170,20 @@ fn valve_table(valve: &'static str, curve: &[CurvePoint]) -> Result<ValveTable, 
     Ok(table)
 }
 
-/// Flow of a surveyed point, rounded to what a table holds.
+/// Flow of a surveyed point, rounded to the resolution of the table.
 fn flow(point: &CurvePoint) -> MicroLitrePerSecond {
     MicroLitrePerSecond((m3_s_from_lpm(point.flow_lpm) * 1e9).round() as i32)
 }
 
-/// How far apart in flow the points of a table for this curve have to be, with what rounding takes of it.
+/// Minimum distance in flow between the points of the table, with a margin for rounding.
 fn least_gap_lpm(curve: &[CurvePoint]) -> f64 {
     let saturation = curve.last().map_or(MicroLitrePerSecond::ZERO, flow);
     let gap = ValveTable::least_gap_of(saturation) + MicroLitrePerSecond(1);
     lpm_from_m3_s(f64::from(gap.0) * 1e-9)
 }
 
-/// Douglas and Peucker: the curve's ends, and where the straight line between two kept points is furthest off, until it
-/// is within the tolerance everywhere, or no place is left that is `gap_lpm` from both.
+/// Douglas-Peucker: starts with the ends of the curve and adds the point with the largest deviation, until the
+/// deviation is within the tolerance, or no further point is `gap_lpm` from its neighbours.
 fn thinned(curve: &[CurvePoint], tolerance_a: f64, gap_lpm: f64) -> Vec<CurvePoint> {
     let (Some(first), Some(last)) = (curve.first(), curve.last()) else {
         return Vec::new();
@@ -214,7 +213,7 @@ fn thinned(curve: &[CurvePoint], tolerance_a: f64, gap_lpm: f64) -> Vec<CurvePoi
 mod tests {
     use super::*;
 
-    /// A curve 1 mA apart that bends every 7 mA, and is flat at first: its bends are closer than a table may have points.
+    /// A curve in steps of 1 mA with a kink every 7 mA and a flat start: its kinks are closer than table points may be.
     fn bent() -> Vec<CurvePoint> {
         let mut flow_lpm = 0.0;
         let point = |step: u32| {
@@ -233,7 +232,7 @@ mod tests {
         std::iter::once(threshold).chain(rising).collect()
     }
 
-    /// The nominal model with another stroke, calibrated.
+    /// The nominal model with a different stroke, calibrated.
     fn with_stroke(stroke_mm: f64) -> ValidCalibration {
         let source = hitch_input::source_file::SourceFile {
             path: "m.toml".into(),

@@ -14,11 +14,11 @@
 //! restart_band_mm = 0.6
 //! ```
 //!
-//! Flows of a valve are at least 0.25 % of the largest one apart: the firmware's inverse map takes one kink in each cell of
-//! its grid.
+//! Flows of a valve differ by at least 0.25 % of the largest one: each cell of the firmware's inverse map can represent
+//! one kink.
 //!
-//! Sections and keys that are missing keep the values of the nominal calibration, so a file may hold just what differs.
-//! The scalars' names, units, ranges and reasons come from the firmware itself.
+//! Missing sections and keys have the values of the nominal calibration, so a file may contain only the differences.
+//! Names, units, ranges and reasons of the scalars come from the firmware.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -62,7 +62,7 @@ macro_rules! with_groups {
     };
 }
 
-// Below the macro, which it uses.
+// Defined below the macro that it uses.
 mod scalars;
 mod setting;
 use scalars::write_scalars;
@@ -104,13 +104,13 @@ pub fn parse(source: &SourceFile) -> Result<ValidCalibration, InputError> {
         .map_err(|error| refused(&file, error))
 }
 
-/// The text of a calibration file with everything in it, each scalar with its reason.
+/// The text of a complete calibration file, each scalar with its reason.
 #[must_use]
 pub fn write(calibration: &Calibration) -> String {
     written(calibration, None)
 }
 
-/// The same of a calibration that was tuned from another one: what was is marked.
+/// The same for a tuned calibration: previous values are noted.
 #[must_use]
 pub fn write_tuned(calibration: &Calibration, before: &Calibration) -> String {
     written(calibration, Some(before))
@@ -148,12 +148,12 @@ fn written(calibration: &Calibration, before: Option<&Calibration>) -> String {
     text
 }
 
-/// Whether a scalar may have a value: what is counted is whole; what is measured is rounded.
+/// Checks the value of a scalar: counts are integers, physical quantities are rounded.
 fn is_exact(info: &ParameterInfo, value: f64) -> bool {
     info.suffix != "count" || value.fract() == 0.0
 }
 
-/// Key of a scalar in a file: its name with the engineering unit.
+/// Key of a scalar in a file: its name with the engineering unit as suffix.
 #[must_use]
 pub fn key(info: &ParameterInfo) -> String {
     format!("{}_{}", info.name, info.suffix)
@@ -179,7 +179,7 @@ fn read_group<G: ParameterGroup>(group: &mut G, file: &TomlTable<'_>) -> Result<
         let range = f64::from(info.min) / counts..=f64::from(info.max) / counts;
         if let Some(value) = section.number(key, range)? {
             if !is_exact(info, value) {
-                let what = format!("{key} = {value} is no whole number");
+                let what = format!("{key} = {value} is not an integer");
                 return Err(section.error_at(
                     key,
                     what,
@@ -221,7 +221,11 @@ fn read_valve(file: &TomlTable<'_>, valve: &str, table: &mut ValveTable) -> Resu
             "currents {} and {} of [{valve}] are the same to 1 mA",
             pair[0], pair[1]
         );
-        return Err(section.error_at("current_a", what, "let them be 1 mA apart, or delete one"));
+        return Err(section.error_at(
+            "current_a",
+            what,
+            "write them at least 1 mA apart, or delete one",
+        ));
     }
     *table = ValveTable {
         count: currents_a.len() as u32,
@@ -240,7 +244,7 @@ fn read_valve(file: &TomlTable<'_>, valve: &str, table: &mut ValveTable) -> Resu
     Ok(())
 }
 
-/// Thousandths, which tables are kept in.
+/// Thousandths, the resolution of tables.
 fn milli(value: f64) -> i32 {
     (value * 1e3).round() as i32
 }
@@ -249,7 +253,7 @@ fn write_valve(text: &mut String, valve: &str, what: &str, table: &ValveTable) {
     let column =
         |value: fn(&ValvePoint) -> f64| table.used().iter().map(value).collect::<Vec<f64>>();
     let currents_a = column(|point| f64::from(point.current.0) / 1e3);
-    // Four decimals of l/min are finer than a microlitre a second.
+    // Four decimals of l/min are finer than a microlitre per second.
     let flows_lpm = column(|point| (f64::from(point.flow.0) / UL_S_PER_LPM * 1e4).round() / 1e4);
     let _ = write!(
         text,
@@ -282,28 +286,28 @@ fn read_linkage(file: &TomlTable<'_>, calibration: &mut Calibration) -> Result<(
     Ok(())
 }
 
-/// What the firmware has against a calibration, at the place in the file that it is about.
+/// The firmware's objection to a calibration, at its position in the file.
 fn refused(file: &TomlTable<'_>, error: CalibrationError) -> InputError {
     let (section, what, mend) = objection(error);
     file.error_at(section, what, mend)
 }
 
-/// What the firmware has against a calibration: the section that it is about, what is wrong, and how to mend it.
+/// The firmware's objection to a calibration: section, fault, and suggested correction.
 fn objection(error: CalibrationError) -> (&'static str, String, &'static str) {
     use CalibrationError as E;
     match error {
         E::ValvePoint { valve, index } => (
             valve,
             format!("point {} of [{valve}] is out of order", index + 1),
-            "start at no flow, and let currents and flows rise strictly",
+            "start at zero flow; currents and flows have to rise strictly",
         ),
         E::ValveGap { valve, index } => (
             valve,
             format!(
-                "point {} of [{valve}] is too close to the one before it",
+                "point {} of [{valve}] is too close to the previous one",
                 index + 1
             ),
-            "let flows be at least 0.25 % of the largest one apart, and 0.0003 l/min",
+            "flows have to differ by at least 0.25 % of the largest one, and by 0.0003 l/min",
         ),
         E::ValveSize { valve } => (
             valve,
@@ -313,7 +317,7 @@ fn objection(error: CalibrationError) -> (&'static str, String, &'static str) {
         E::Linkage { index } => (
             "linkage",
             format!("travel {} of [linkage] does not rise", index + 1),
-            "let the travel rise strictly with the angle",
+            "the travel has to rise strictly with the angle",
         ),
         E::Crossed { group, low, high } => (
             group,
@@ -323,7 +327,7 @@ fn objection(error: CalibrationError) -> (&'static str, String, &'static str) {
         E::Parameter { group, what } => (
             group,
             format!("{} of [{group}] is out of range", key(what.parameter)),
-            "see the reasons in a file that `hitch calibrate` writes",
+            "see the reasons in a file written by `hitch calibrate`",
         ),
         E::Version { .. } | E::Checksum { .. } => {
             ("format", "the block is damaged".to_owned(), "write it anew")
@@ -365,7 +369,9 @@ mod tests {
         assert!(fault("[lift]\n").starts_with("c.toml:1:1: the top level has no format"));
         let unit = fault("format = 1\n[position]\nrestart_band_in = 1\n");
         assert!(
-            unit.starts_with("c.toml:3:1: unit in is not known, this key is restart_band_mm"),
+            unit.starts_with(
+                "c.toml:3:1: unit in is not known, this key has to be restart_band_mm"
+            ),
             "{unit}"
         );
         let range = fault("format = 1\n[safety]\nlift_current_limit_a = 50\n");
@@ -382,7 +388,7 @@ mod tests {
             "format = 1\n[lift]\ncurrent_a = [1.0, 1.1, 1.2, 3.0]\nflow_lpm = [0, 1, 1.09, 40]\n",
         );
         assert!(
-            close.starts_with("c.toml:2:1: point 3 of [lift] is too close to the one before it"),
+            close.starts_with("c.toml:2:1: point 3 of [lift] is too close to the previous one"),
             "{close}"
         );
         let same =
@@ -395,7 +401,7 @@ mod tests {
         );
         let half = fault("format = 1\n[hold]\ncorrections_count = 5.5\n");
         assert!(
-            half.starts_with("c.toml:3:21: corrections_count = 5.5 is no whole number"),
+            half.starts_with("c.toml:3:21: corrections_count = 5.5 is not an integer"),
             "{half}"
         );
         let crossed = fault("format = 1\n[position]\nlower_limit_deg = 140\n");

@@ -19,52 +19,52 @@ use crate::output;
 )]
 #[command(after_help = "Examples:\n  hitch\n  hitch explain lab-a --report lab-a.html")]
 pub struct Cli {
-    /// What to do; without it, the main job on the campaign that comes with the program
+    /// Command; without one, the demonstration campaign is processed from measurement to motion
     #[command(subcommand)]
     pub command: Option<Command>,
-    /// Options of the main job.
+    /// Options without a command.
     #[command(flatten)]
     pub main_job: main_job::Args,
 }
 
-/// Every command of the program.
+/// All commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Model against measurements: where, when and in which channel it fails
+    /// Compare a model with measurements: error by condition, time and channel
     Compare(compare::Args),
-    /// Which physical effect is missing, ranked, and what cannot be told apart on these data
+    /// Rank missing physical effects, and list those that are indistinguishable on these data
     Diagnose(diagnose::Args),
-    /// Adds effects to a model and estimates their parameters
+    /// Add effects to a model and estimate their parameters
     Add(add::Args),
-    /// Finds what the model lacks and adds it, until nothing more is worth adding
+    /// Find and add missing effects until no further one is significant
     Explain(explain::Args),
-    /// What differs between two campaigns of a machine, or of two machines of a series
+    /// Compare two campaigns of a machine, or of two machines of a series
     Changes(changes::Args),
-    /// Campaign and model in the browser, on this machine alone: compare, rank effects, add them
+    /// Show campaign and model in the browser (local only): compare, rank and add effects
     Serve(serve::Args),
-    /// The catalogue of physical effects: equation, parameters, units, source, where it shows
+    /// List the catalogue of physical effects: equation, parameters, units, source, visibility
     Effects(effects::Args),
-    /// A model file of one's own hitch: a template from data sheets, and its constants from a campaign
+    /// Create a model file from data sheets, or fit its constants to a campaign
     Model(model::Args),
-    /// The plant alone, driven by a log's currents
+    /// Simulate the plant with the currents of a log
     Simulate(simulate::Args),
-    /// The paper's tables and figures from this model, side by side
+    /// Compare the paper's tables and figures with this model
     Paper(paper::Args),
-    /// The firmware's controller in closed loop with the plant
+    /// Run the firmware's controller in closed loop with the plant
     Loop(loop_::Args),
-    /// The firmware's controller on stdin/stdout, for anyone's own plant
+    /// Run the firmware's controller on stdin/stdout, for an external plant
     Controller(controller::Args),
-    /// The real firmware image on an emulated Cortex-M4, plant attached, CAN on a TCP port
+    /// Run the firmware image on an emulated Cortex-M4 with plant, and CAN on a TCP port
     Ecu(ecu::Args),
-    /// A calibration into a running ECU, stored and read back
+    /// Write a calibration to a running ECU, with verification
     FlashCalibration(flash_calibration::Args),
-    /// A campaign from a running ECU
+    /// Record a campaign from a running ECU
     Record(record::Args),
-    /// A campaign from anybody's logs: tables, MDF, a bus; read where they are
+    /// Import a campaign from existing logs (tables, MDF, CAN), which are read in place
     Import(import::Args),
-    /// Tunes position and rate control against the plant over loads and valve spread
+    /// Tune position and rate control against the plant, over loads and valve spread
     Tune(tune::Args),
-    /// Turns an identified model into the firmware's calibration: valve map, thresholds, limits
+    /// Convert an identified model into the firmware's calibration: valve map, thresholds, limits
     Calibrate(calibrate::Args),
 }
 
@@ -72,7 +72,7 @@ impl Command {
     /// Runs the command.
     ///
     /// # Errors
-    /// Whatever the command reports.
+    /// The error of the command.
     pub fn run(&self) -> Result<(), Error> {
         match self {
             Self::Compare(args) => compare::run(args),
@@ -97,10 +97,10 @@ impl Command {
     }
 }
 
-/// Parses the program's arguments and does what they ask for.
+/// Parses the program's arguments and runs the command.
 ///
 /// # Errors
-/// If they are wrong, or what they ask for fails.
+/// If the arguments are invalid, or the command fails.
 pub fn run<I: IntoIterator<Item = std::ffi::OsString>>(arguments: I) -> Result<(), Error> {
     match Cli::try_parse_from(arguments) {
         Ok(Cli {
@@ -113,7 +113,7 @@ pub fn run<I: IntoIterator<Item = std::ffi::OsString>>(arguments: I) -> Result<(
     }
 }
 
-/// Joins what clap says into one line: the fault and its tips, without the usage.
+/// Joins clap's message into one line: the fault and its tips, without the usage.
 fn one_line(message: &str) -> String {
     let is_told =
         |line: &&str| !line.starts_with("Usage:") && !line.starts_with("For more information");
@@ -153,7 +153,7 @@ mod tests {
         ]);
         assert_eq!(
             value,
-            "invalid value '-5' for '--load <KG>': it may be 0 to 2000; see --help"
+            "invalid value '-5' for '--load <KG>': the range is 0 to 2000; see --help"
         );
         assert!(fault(&["papr"]).starts_with("unrecognized subcommand 'papr'; "));
     }

@@ -1,4 +1,4 @@
-//! The campaign that comes with the program, built into it: the main job works wherever the program is.
+//! The demonstration campaign, compiled into the program, so that it needs no files.
 
 use hitch_campaign::Campaign;
 use include_dir::{Dir, include_dir};
@@ -10,7 +10,7 @@ static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/data/demonstration");
 /// Reads the shipped campaign.
 ///
 /// # Errors
-/// If the temporary folder that it is unpacked into cannot be written.
+/// If the temporary folder for the unpacked campaign cannot be written.
 pub fn campaign() -> Result<Campaign, Error> {
     let unpacked = |error: std::io::Error| {
         Error::Failed(format!("the shipped campaign cannot be unpacked: {error}"))

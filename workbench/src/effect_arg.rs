@@ -1,14 +1,14 @@
-//! An effect as a user names it.
+//! Resolves the name of an effect.
 
 use hitch_input::naming::offer_names;
 use hitch_plant::{Effect, Model, full_name};
 
 use crate::error::Error;
 
-/// Looks up an effect that a user named: of the catalogue, or a term of the model's file.
+/// Looks up an effect by name: in the catalogue, or among the terms of the model file.
 ///
 /// # Errors
-/// If there is none; the nearest name is offered.
+/// If the name is unknown; the message suggests the most similar name.
 pub fn find(model: &Model, id: &str) -> Result<&'static dyn Effect, Error> {
     let catalogue = hitch_effects::available(model);
     let found = catalogue

@@ -1,4 +1,4 @@
-//! What can go wrong while the program runs, and the exit code that says so.
+//! Errors of the program, and their exit codes.
 
 use std::io;
 use std::path::PathBuf;
@@ -6,35 +6,35 @@ use std::process::ExitCode;
 
 use hitch_input::input_error::InputError;
 
-/// Why a command stopped. Every message is one line: what, where, how to mend it.
+/// The reason why a command stopped. Every message is one line: what, where, suggested correction.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// A file that somebody wrote is wrong.
+    /// An input file is invalid.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// The command line is wrong.
+    /// The command line is invalid.
     #[error("{0}")]
     Usage(String),
     /// A file could not be written.
-    #[error("{}: cannot be written: {source}; name a file in a folder that exists and is yours", path.display())]
+    #[error("{}: cannot be written: {source}; give a file in an existing, writable folder", path.display())]
     Write {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Cause.
         source: io::Error,
     },
     /// Standard output could not be written.
     #[error("standard output cannot be written: {0}")]
     Stdout(#[source] io::Error),
-    /// Something that is nobody's input went wrong.
+    /// Any failure that is not caused by an input.
     #[error("{0}")]
     Failed(String),
 }
 
 impl Error {
-    /// 2 for wrong usage or bad input, 1 for anything else.
+    /// 2 for invalid usage or input, 1 for other errors.
     ///
-    /// A reader that has seen enough (`hitch effects | head -1`) is no fault: 0.
+    /// A closed pipe (`hitch effects | head -1`) is not an error: 0.
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::Stdout(error) if error.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
@@ -43,7 +43,7 @@ impl Error {
         }
     }
 
-    /// True if there is nothing to say about it.
+    /// Whether there is no message to print.
     pub fn is_silent(&self) -> bool {
         matches!(self, Self::Stdout(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }

@@ -1,17 +1,17 @@
-//! A table of figures coloured by size: one looks for the dark cells.
+//! A table of figures, coloured by size.
 use maud::{Markup, html};
 
-/// How a figure is coloured.
+/// Colour scale of a table.
 #[derive(Debug, Clone, Copy, Default)]
 pub enum Shade {
-    /// An error in sigma: white at one (noise), orange at ten and beyond.
+    /// An error in sigma: white at one (noise), orange at ten and above.
     #[default]
     Sigmas,
-    /// A figure that is held to a bar: white at its best, yellow at the bar, orange as far beyond.
+    /// A figure with a limit: white at the ideal value, yellow at the limit, orange as far above it.
     Bar {
-        /// As good as it can be.
+        /// Ideal value.
         best: f64,
-        /// What it is held to.
+        /// Limit.
         bar: f64,
     },
 }
@@ -34,14 +34,14 @@ pub struct HeatTable {
     pub corner: String,
     /// Names of the columns.
     pub columns: Vec<String>,
-    /// Name of each row and its cells; `None` where nothing was measured.
+    /// Name and cells of each row; `None` where nothing was measured.
     pub rows: Vec<(String, Vec<Option<f64>>)>,
-    /// How they are coloured.
+    /// Colour scale.
     pub shade: Shade,
 }
 
 impl HeatTable {
-    /// The table as HTML. The value stands in every cell: the colour only guides the eye.
+    /// The table as HTML. Every cell has its value as text; the colour is redundant.
     pub fn table(&self) -> Markup {
         html! { div.scroll { table {
             thead { tr {
@@ -65,7 +65,7 @@ fn heat_cell(value: Option<f64>, shade: Shade) -> Markup {
     }
 }
 
-/// Light enough for dark text throughout.
+/// Colours are light enough for dark text.
 fn colour(heat: f64) -> String {
     const WHITE: [f64; 3] = [255.0, 255.0, 255.0];
     const YELLOW: [f64; 3] = [255.0, 236.0, 170.0];

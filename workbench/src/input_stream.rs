@@ -1,4 +1,4 @@
-//! Lines of CSV from a running plant, turned into the controller's inputs.
+//! Converts CSV lines from a running plant into the controller's inputs.
 
 use hitch_input::input_error::quote;
 use hitch_input::naming::{offer_names, unknown_name};
@@ -8,7 +8,7 @@ use hitch_quantities::units::{
 };
 use hitch_quantities::{Inputs, Switches};
 
-/// Columns that have to be there.
+/// Required columns.
 const NEEDED: [&str; 3] = ["time_s", "lever_deg", "rocker_angle_deg"];
 /// All columns.
 const KNOWN: [&str; 17] = [
@@ -30,17 +30,17 @@ const KNOWN: [&str; 17] = [
     "quick_lift",
     "teach",
 ];
-/// Time from line to line, s: the controller's step, with room for rounded clocks.
+/// Time step between lines, s: the controller's step, with tolerance for rounded time stamps.
 const STEP_S: std::ops::RangeInclusive<f64> = 0.000_45..=0.001_55;
 
-/// What is wrong with a line, and where in it.
+/// A fault of a line, with its position.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LineError {
-    /// Character, the first is 1.
+    /// Character position, from 1.
     pub column: usize,
-    /// What is wrong.
+    /// Description.
     pub what: String,
-    /// How to mend it.
+    /// Suggested correction.
     pub mend: String,
 }
 
@@ -53,13 +53,13 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// How to mend a missing column.
-    pub const MEND: &str = "begin with a line time_s,lever_deg,rocker_angle_deg";
+    /// Suggested correction for a missing column.
+    pub const MEND: &str = "start with a line time_s,lever_deg,rocker_angle_deg";
 
     /// Reads a header.
     ///
     /// # Errors
-    /// If a column is unknown, there twice or missing.
+    /// If a column is unknown, duplicated or missing.
     pub fn parse(header: &str) -> Result<Self, LineError> {
         let mut order: Vec<usize> = Vec::new();
         for (column, cell) in cells(header.strip_prefix('\u{feff}').unwrap_or(header)) {
@@ -72,11 +72,11 @@ impl Columns {
                 });
             };
             if order.contains(&index) {
-                let what = format!("column {cell} is there twice");
+                let what = format!("column {cell} is duplicated");
                 return Err(LineError {
                     column,
                     what,
-                    mend: "leave one of them out".to_owned(),
+                    mend: "delete one of the two".to_owned(),
                 });
             }
             order.push(index);
@@ -100,10 +100,10 @@ impl Columns {
         }
     }
 
-    /// The inputs of one line; an empty cell is a sample that is missing.
+    /// The inputs of one line; an empty cell is a missing sample.
     ///
     /// # Errors
-    /// If a cell isn't a finite number, there are too few or too many, or the time doesn't go on by a millisecond.
+    /// If a cell is not a finite number, the number of cells is wrong, or the time does not advance by one millisecond.
     pub fn inputs(&mut self, line: &str) -> Result<Inputs, LineError> {
         let mut values = [None; KNOWN.len()];
         let mut time_column = 1;
@@ -114,7 +114,7 @@ impl Columns {
                 return Err(LineError {
                     column,
                     what,
-                    mend: "give one cell a column of the header".to_owned(),
+                    mend: "give one cell for each column of the header".to_owned(),
                 });
             };
             if index == 0 {
@@ -124,7 +124,7 @@ impl Columns {
         }
         if let Some(&index) = order.next() {
             let what = format!("the line has no cell for {}", KNOWN[index]);
-            let mend = "give one cell a column of the header; it may be empty".to_owned();
+            let mend = "give one cell for each column of the header; it may be empty".to_owned();
             return Err(LineError {
                 column: line.trim_end().chars().count() + 1,
                 what,
@@ -136,7 +136,7 @@ impl Columns {
     }
 
     fn check_time(&mut self, column: usize, time_s: Option<f64>) -> Result<(), LineError> {
-        let mend = "give one line a millisecond".to_owned();
+        let mend = "give one line for each millisecond".to_owned();
         let Some(time_s) = time_s else {
             return Err(LineError {
                 column,
@@ -147,7 +147,7 @@ impl Columns {
         if let Some(last_s) = self.time_s.replace(time_s) {
             let step_s = time_s - last_s;
             if !STEP_S.contains(&step_s) {
-                let what = format!("time_s goes on by {:.6} s instead of 0.001 s", step_s);
+                let what = format!("time_s advances by {:.6} s instead of 0.001 s", step_s);
                 return Err(LineError { column, what, mend });
             }
         }
@@ -155,7 +155,7 @@ impl Columns {
     }
 }
 
-/// The inputs that the values of [`KNOWN`] make; a switch is on if its value isn't zero.
+/// The inputs for values in the order of [`KNOWN`]; a switch is on if its value is not zero.
 fn inputs_of(values: &[Option<f64>; KNOWN.len()]) -> Inputs {
     let scaled =
         |index: usize, counts: f64| values[index].map(|value: f64| (value * counts).round() as i32);
@@ -174,7 +174,7 @@ fn inputs_of(values: &[Option<f64>; KNOWN.len()]) -> Inputs {
         engine_speed: scaled(10, 1.0).map(RevolutionPerMinute),
         lift_current: milli(11).map(MilliAmp),
         lower_current: milli(12).map(MilliAmp),
-        // The lines are the clock, and values don't come from converters.
+        // The lines are the time base, and the values do not come from converters.
         step_time: None,
         second_angle: None,
         sensor_supply: None,
@@ -191,7 +191,7 @@ fn inputs_of(values: &[Option<f64>; KNOWN.len()]) -> Inputs {
     }
 }
 
-/// The cells of a line with the character at which each begins.
+/// The cells of a line, each with the character position of its start.
 fn cells(line: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut column = 1;
     line.trim_end_matches(['\r', '\n'])
@@ -214,7 +214,7 @@ fn number(column: usize, cell: &str) -> Result<Option<f64>, LineError> {
             Err(LineError {
                 column,
                 what,
-                mend: "write numbers like 90.25; leave the cell empty if there is none".to_owned(),
+                mend: "write a number like 90.25, or leave the cell empty".to_owned(),
             })
         }
     }
@@ -276,7 +276,7 @@ mod tests {
         );
         assert_eq!(
             fault(&["time_s,lever_rad,rocker_angle_deg"]),
-            "1:8: unit rad is not known, this column is lever_deg"
+            "1:8: unit rad is not known, this column has to be lever_deg"
         );
         assert_eq!(
             fault(&["time_s,lever_deg\n"]),
@@ -284,7 +284,7 @@ mod tests {
         );
         assert_eq!(
             fault(&["time_s,lever_deg,lever_deg"]),
-            "1:18: column lever_deg is there twice"
+            "1:18: column lever_deg is duplicated"
         );
         assert_eq!(
             fault(&[HEADER, "0,90,x1,12\n"]),
@@ -304,7 +304,7 @@ mod tests {
         );
         assert_eq!(
             fault(&[HEADER, "0,90,90,\n", "0.01,90,90,\n"]),
-            "3:1: time_s goes on by 0.010000 s instead of 0.001 s"
+            "3:1: time_s advances by 0.010000 s instead of 0.001 s"
         );
         assert_eq!(fault(&[HEADER, ",90,90,\n"]), "2:1: time_s is empty");
         assert_eq!(

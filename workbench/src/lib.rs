@@ -1,4 +1,4 @@
-//! The workbench: everything behind the program `hitch`.
+//! Library of the program `hitch`.
 #![forbid(unsafe_code)]
 
 pub mod base_fit;

@@ -6,7 +6,7 @@ use hitch_plant::Model;
 
 use crate::error::Error;
 
-/// Which model a command starts from.
+/// Selects the model of a command.
 #[derive(Debug, Clone, clap::Args)]
 pub struct ModelArg {
     /// Model: nominal, dynamic, or the name of a model file
@@ -15,13 +15,13 @@ pub struct ModelArg {
 }
 
 impl ModelArg {
-    /// The file that it would be read from.
+    /// The model file, if a file is named.
     #[must_use]
     pub fn file(&self) -> PathBuf {
         PathBuf::from(&self.name)
     }
 
-    /// As it is written behind a command: nothing for the model that a command takes anyway.
+    /// The option as written on a command line; empty for the default model.
     #[must_use]
     pub fn written(&self) -> String {
         match self.name.as_str() {
@@ -33,7 +33,7 @@ impl ModelArg {
     /// Reads the model.
     ///
     /// # Errors
-    /// If there is no such model, or its file is wrong.
+    /// If the model does not exist or its file is invalid.
     pub fn load(&self) -> Result<Model, Error> {
         Ok(hitch_model_file::named(&self.name)?)
     }

@@ -1,4 +1,4 @@
-//! Everything that leaves the program: standard output, JSON documents, and files that are written whole or not at all.
+//! Output of the program: standard output, JSON documents, and files that are written atomically.
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ fn print_bytes(bytes: &[u8]) -> Result<(), Error> {
         .map_err(Error::Stdout)
 }
 
-/// Where the JSON of a command goes.
+/// Target of a command's JSON document.
 #[derive(Debug, Clone, clap::Args)]
 pub struct JsonArg {
     /// Print the result as one JSON document: `-` on standard output (and nothing else there), or to a file
@@ -31,13 +31,13 @@ pub struct JsonArg {
 }
 
 impl JsonArg {
-    /// Where it goes, if it was asked for.
+    /// The target, if given.
     #[must_use]
     pub fn target(&self) -> Option<&Path> {
         self.target.as_deref()
     }
 
-    /// Writes a result as JSON if that is asked for.
+    /// Writes a result as JSON if a target is given.
     ///
     /// # Errors
     /// If the target cannot be written.
@@ -59,21 +59,21 @@ pub fn is_stdout(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// Refuses standard output for what cannot go there.
+/// Rejects `-` (standard output) for an option that cannot use it.
 ///
 /// # Errors
-/// If it is named; `why` says what is there instead.
+/// If the name is `-`; `why` is the reason in the message.
 pub fn no_stdout(option: &str, path: Option<&Path>, why: &str) -> Result<(), Error> {
     match path.is_some_and(is_stdout) {
-        true => Err(Error::Usage(format!("{option} -: {why}; name a file"))),
+        true => Err(Error::Usage(format!("{option} -: {why}; give a file"))),
         false => Ok(()),
     }
 }
 
-/// Checks that a file can be written, so that nobody waits for a result that then has nowhere to go.
+/// Checks that a file can be written, before a long computation starts.
 ///
 /// # Errors
-/// If its folder does not exist or takes no file, or the name is a folder's.
+/// If the folder does not exist or is not writable, or the name is that of a folder.
 pub fn check_writable(path: &Path) -> Result<(), Error> {
     let fault = |source: io::Error| Error::Write {
         path: path.to_path_buf(),
@@ -83,14 +83,14 @@ pub fn check_writable(path: &Path) -> Result<(), Error> {
         return Ok(());
     }
     check_name(path).map_err(fault)?;
-    // What is made here goes away at once.
+    // The temporary file is deleted at once.
     temporary_file(folder_of(path)).map(drop).map_err(fault)
 }
 
-/// Checks that a folder takes files, or can be made.
+/// Checks that a folder is writable, or can be created.
 ///
 /// # Errors
-/// If the nearest folder of that name that is there takes none.
+/// If the nearest existing folder of that path is not writable.
 pub fn check_folder(path: &Path) -> Result<(), Error> {
     let there = path.ancestors().find(|folder| folder.exists());
     let folder = there.unwrap_or(Path::new("."));
@@ -102,7 +102,7 @@ pub fn check_folder(path: &Path) -> Result<(), Error> {
         })
 }
 
-/// Whether a file may have this name.
+/// Checks a name for a file.
 fn check_name(path: &Path) -> io::Result<()> {
     if path.is_dir() {
         return Err(io::Error::other("it is a folder"));
@@ -113,10 +113,10 @@ fn check_name(path: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes a file whole or not at all: beside it first, then in its place; `-` is standard output.
+/// Writes a file atomically: as a temporary file beside it, then renamed; `-` is standard output.
 ///
 /// # Errors
-/// If the file cannot be written; what was there before is then still there.
+/// If the file cannot be written; the old file is then unchanged.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     if is_stdout(path) {
         return print_bytes(bytes);
@@ -127,7 +127,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     };
     check_name(path).map_err(fault)?;
     if path.exists() && !path.is_file() {
-        // A device or a pipe: to put a file in its place would destroy it.
+        // A device or a pipe is written in place: a rename would replace it.
         return fs::write(path, bytes).map_err(fault);
     }
     let mut beside = temporary_file(folder_of(path)).map_err(fault)?;
@@ -139,7 +139,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     Ok(())
 }
 
-/// A file's name without its extension: what it holds is called so.
+/// The name of a file without its extension, as name of its contents.
 pub fn stem(path: &Path) -> String {
     let named = Some(path).filter(|path| !is_stdout(path));
     named.and_then(Path::file_stem).map_or_else(
@@ -187,7 +187,7 @@ mod tests {
         assert!(check_writable(dir.path()).is_err());
         assert!(check_writable(&dir.path().join("out.json")).is_ok());
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
-        // A folder that takes no files, even of root.
+        // A folder that is not writable even for root.
         let full = Path::new("/proc");
         assert!(!full.is_dir() || check_writable(&full.join("out.json")).is_err());
     }

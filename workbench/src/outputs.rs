@@ -1,5 +1,5 @@
-//! What a command writes: checked before it works, so that nobody waits for a result that has nowhere to go, or finds
-//! that it took the place of a measurement.
+//! Output documents of a command, checked before its computation: each target has to be writable, and must not
+//! overwrite an input.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,20 +10,20 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::output::{JsonArg, check_writable, is_stdout, print};
 
-/// Ends of the names of files that a campaign is read from beside its manifest.
+/// Extensions of files that a campaign is read from, beside its manifest.
 const CAMPAIGN_FILES: [&str; 6] = ["csv", "log", "asc", "dbc", "mf4", "mdf"];
 
-/// Every document that a command writes.
+/// All documents of a command.
 #[derive(Debug)]
 pub struct Outputs<'a> {
     paths: Vec<&'a Path>,
 }
 
 impl<'a> Outputs<'a> {
-    /// The documents that were asked for of those that a command can write, beside what it reads.
+    /// The requested documents of those that a command can write; `read` are its inputs.
     ///
     /// # Errors
-    /// If one cannot be written, or would take the place of another or of something that is read.
+    /// If a target cannot be written, or would overwrite another target or an input.
     pub fn check(
         wanted: impl IntoIterator<Item = Option<&'a Path>>,
         inputs: &[PathBuf],
@@ -34,19 +34,19 @@ impl<'a> Outputs<'a> {
             let name = path.display();
             if paths[..index].iter().any(|other| is_same(path, other)) {
                 return Err(Error::Usage(format!(
-                    "{name}: is named for two results; give each a name of its own"
+                    "{name}: is the target of two results; give each its own file"
                 )));
             }
             if inputs.iter().any(|input| is_same(path, input)) {
                 return Err(Error::Usage(format!(
-                    "{name}: is read by this command and would be overwritten; name another file"
+                    "{name}: is an input of this command and would be overwritten; give another file"
                 )));
             }
         }
         Ok(Self { paths })
     }
 
-    /// Prints a text on standard output, unless a document goes there: then nothing else does.
+    /// Prints a text on standard output, unless a document is written there.
     ///
     /// # Errors
     /// If standard output is closed or full.
@@ -57,7 +57,7 @@ impl<'a> Outputs<'a> {
         print(&text())
     }
 
-    /// Writes a result as a JSON document if that was asked for, and says it as text.
+    /// Writes a result as JSON if requested, and prints it as text.
     ///
     /// # Errors
     /// If either cannot be written.
@@ -72,7 +72,7 @@ impl<'a> Outputs<'a> {
     }
 }
 
-/// The files that a campaign is read from: by what is in its folder, and those elsewhere that its manifest names.
+/// The input files of a campaign: those in its folder, and those elsewhere that its manifest names.
 pub fn campaign_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let paths = entries.map(|entry| entry.path());
@@ -81,12 +81,12 @@ pub fn campaign_files(folder: &Path) -> Vec<PathBuf> {
         Some(end) => CAMPAIGN_FILES.contains(&end.to_lowercase().as_str()),
         None => false,
     };
-    // What is wrong with the manifest is said when the campaign is read.
+    // A fault of the manifest is reported when the campaign is read.
     let named = Campaign::files(folder).unwrap_or_default();
     paths.filter(is_read).chain(named).collect()
 }
 
-/// Whether two names are of one file. Of devices and pipes any number of results may go into one.
+/// Whether two names refer to the same file. A device or a pipe may be the target of several results.
 fn is_same(a: &Path, b: &Path) -> bool {
     if is_stdout(a) || is_stdout(b) {
         return is_stdout(a) && is_stdout(b);
@@ -95,7 +95,7 @@ fn is_same(a: &Path, b: &Path) -> bool {
     is_file(a) && is_file(b) && whole(a) == whole(b)
 }
 
-/// A name without links and detours, of a file that may not be there yet.
+/// A path without links and `..`; the file need not exist.
 fn whole(path: &Path) -> PathBuf {
     let in_folder = || {
         let folder = path
@@ -125,12 +125,12 @@ mod tests {
         let [a, b] = ["a.toml", "b.toml"].map(|name| dir.path().join(name));
         let detour = dir.path().join(".").join("a.toml");
         assert_eq!(fault(&[&a, &b], &[]), "");
-        assert!(fault(&[&a, &detour], &[]).contains("is named for two results"));
+        assert!(fault(&[&a, &detour], &[]).contains("is the target of two results"));
         fs::write(&a, "").unwrap();
         assert!(fault(&[&detour], std::slice::from_ref(&a)).contains("would be overwritten"));
         assert_eq!(fault(&[&b], &[a]), "");
         let stdout = Path::new("-");
-        assert!(fault(&[stdout, stdout], &[]).contains("is named for two results"));
+        assert!(fault(&[stdout, stdout], &[]).contains("is the target of two results"));
         let sink = Path::new("/dev/null");
         assert!(!sink.exists() || fault(&[sink, sink], &[]).is_empty());
         assert_eq!(

@@ -1,14 +1,14 @@
-//! Reports on standard error what takes long: as one line that changes on a terminal, elsewhere as a line now and then.
+//! Progress reports on standard error: one line that changes on a terminal, otherwise a line at intervals.
 use std::io::{IsTerminal, Write};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Time between two lines where standard error is no terminal.
+/// Interval between two lines if standard error is not a terminal.
 const LINE_PERIOD: Duration = Duration::from_secs(10);
 
-/// A line that shows what is being done and for how long; it goes away when dropped.
+/// A line with the current work and its duration; it is erased on drop.
 #[derive(Debug)]
 pub struct Progress {
     bar: ProgressBar,
@@ -53,7 +53,7 @@ impl Progress {
         Self { bar, lines }
     }
 
-    /// Says how many steps of a bar are done, and what to say of them.
+    /// Sets the completed steps of a bar, with a message.
     pub fn reach(&self, steps: usize, message: impl Into<String>) {
         self.bar.set_position(steps as u64);
         let message = message.into();
@@ -69,7 +69,7 @@ impl Progress {
         self.bar.set_message(message);
     }
 
-    /// Shows a result at once: a log has a line for each.
+    /// Reports a result without delay: a log gets a line for each.
     pub fn result(&self, message: impl Into<String>) {
         let message = message.into();
         if let Some(lines) = &self.lines {
@@ -78,7 +78,7 @@ impl Progress {
         self.bar.set_message(message);
     }
 
-    /// Writes a line where standard error is no terminal, if the last one was long ago.
+    /// Writes a line if standard error is not a terminal and the interval has passed.
     fn line(&self, message: &str) {
         let Some(lines) = &self.lines else { return };
         let Ok(mut last) = lines.last.lock() else {
@@ -94,7 +94,7 @@ impl Progress {
 impl Lines {
     fn write(&self, message: &str) {
         let elapsed_s = self.start.elapsed().as_secs();
-        // A log that cannot be written is no reason to stop the work.
+        // A failure to write progress does not stop the work.
         let _ = writeln!(std::io::stderr(), "{message} ({elapsed_s} s)");
     }
 }

@@ -1,4 +1,4 @@
-//! The valve map rebuilt from an identified model, and what the closed loop gains by it.
+//! Rebuilds the valve map from an identified model, and measures its effect in closed loop.
 
 use hitch_plant::Model;
 use hitch_quantities::{Calibration, ValidCalibration};
@@ -12,7 +12,7 @@ use crate::text::{Table, known};
 /// The same moves of the same rig under the nominal and under the rebuilt valve map.
 #[derive(Debug, Clone)]
 pub struct Rebuild {
-    /// The rig: the dynamic model with what was found in the measurements.
+    /// The rig: the dynamic model with the identified effects.
     pub rig: Model,
     /// The nominal calibration.
     pub nominal: ValidCalibration,
@@ -24,7 +24,7 @@ pub struct Rebuild {
     pub after: LoopRun,
 }
 
-/// One way of moving, summed up.
+/// Summary of the moves of one kind.
 #[derive(Debug, Clone, Copy)]
 struct Way {
     name: &'static str,
@@ -33,10 +33,10 @@ struct Way {
 }
 
 impl Rebuild {
-    /// Rebuilds the map from what was found, and drives the moves of `scenario` with either map.
+    /// Rebuilds the map from the identified effects, and drives the moves of `scenario` with both maps.
     ///
     /// # Errors
-    /// If the firmware refuses the map of this model.
+    /// If the firmware rejects the map of this model.
     pub fn new(found: &Found, scenario: Scenario) -> Result<Self, Error> {
         let rig = hitch_model_file::dynamic()
             .with_effects(found.explanation.after.estimate.effects.clone());
@@ -64,7 +64,7 @@ impl Rebuild {
         })
     }
 
-    /// What the rebuilt map changes, as text.
+    /// The effect of the rebuilt map, as text.
     pub fn text(&self) -> String {
         let thresholds = [&self.nominal, &self.rebuilt]
             .map(|calibration| f64::from(calibration.lower.threshold().0) * 1e-3);
@@ -75,28 +75,20 @@ impl Rebuild {
                     [figure(&way.before), figure(&way.after)].map(|number| known(number, digits));
                 table.row([format!("{}: {name}", way.name)].into_iter().chain(numbers));
             };
-            row(
-                "time over shortest, median",
-                |summary| summary.ratio_median,
-                2,
-            );
-            row(
-                "time over shortest, 95 % below",
-                |summary| summary.ratio_p95,
-                2,
-            );
+            row("time ratio, median", |summary| summary.ratio_median, 2);
+            row("time ratio, 95 % quantile", |summary| summary.ratio_p95, 2);
             row(
                 "tracking error, median, deg",
                 |summary| summary.tracking_error_median_deg,
                 2,
             );
             row(
-                "overshoot at most, deg",
+                "largest overshoot, deg",
                 |summary| summary.overshoot_max_deg,
                 2,
             );
             row(
-                "final error at most, deg",
+                "largest final error, deg",
                 |summary| summary.final_error_max_deg,
                 2,
             );
@@ -139,7 +131,7 @@ impl Rebuild {
             self.before.results[*index].took_s() - self.after.results[*index].took_s()
         };
         (0..self.before.results.len().min(self.after.results.len()))
-            // One that never arrives with either map is not shortened.
+            // A move that arrives with neither map has no time to compare.
             .filter(|index| !gain_s(index).is_nan())
             .max_by(|a, b| gain_s(a).total_cmp(&gain_s(b)))
     }

@@ -1,4 +1,4 @@
-//! What a search for missing effects may do, as commands take it.
+//! Options of a search for missing effects.
 
 use std::time::{Duration, Instant};
 
@@ -16,7 +16,7 @@ pub struct SearchArgs {
 }
 
 impl SearchArgs {
-    /// The options of a search that begins now.
+    /// The options of a search that starts now.
     pub fn options(&self) -> Options<'static> {
         let budget = self.budget.map(Duration::from_secs_f64);
         Options {

@@ -1,7 +1,8 @@
-//! SLCAN server: a CAN bus on a TCP port. Every connection is an SLCAN adapter, as python-can, slcand and others
-//! expect of one (`slcan` on `socket://HOST:PORT`).
+//! SLCAN server: a CAN bus on a TCP port. Every connection behaves like an SLCAN adapter, compatible with python-can,
+//! slcand and others (`slcan` on `socket://HOST:PORT`).
 //!
-//! It is one bus: what a connection sends reaches the ECU and all other connections. Nothing here waits.
+//! All connections share one bus: a frame from a connection is sent to the ECU and to all other connections. No call
+//! blocks.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream, ToSocketAddrs};
@@ -9,14 +10,15 @@ use std::net::{SocketAddr, TcpListener, TcpStream, ToSocketAddrs};
 use hitch_protocols::can::Frame;
 use hitch_protocols::can::slcan::{Adapter, encode};
 
-/// Connections at a time; more have to wait.
+/// Maximum number of connections; further ones wait.
 const MOST_CONNECTIONS: usize = 8;
-/// Bytes taken from a connection at a time: what a full bus carries in some milliseconds.
+/// Maximum number of bytes read from a connection at once: some milliseconds of a fully loaded bus.
 const MOST_READ: usize = 512;
-/// Bytes that may wait for a connection that doesn't read, some seconds of a full bus; then it is closed.
+/// Size of the send buffer of a connection, bytes: some seconds of a fully loaded bus. When it is full, the connection
+/// is closed.
 const MOST_WAITING: usize = 1 << 18;
 
-/// The port and who is connected to it.
+/// The port and its connections.
 #[derive(Debug)]
 pub struct SlcanServer {
     listener: TcpListener,
@@ -27,16 +29,16 @@ pub struct SlcanServer {
 struct Connection {
     stream: TcpStream,
     adapter: Adapter,
-    /// What the other end hasn't taken yet.
+    /// Bytes that are not yet sent.
     waiting: Vec<u8>,
     open: bool,
 }
 
 impl SlcanServer {
-    /// Opens the port; 0 takes any that is free.
+    /// Opens the port; 0 selects a free one.
     ///
     /// # Errors
-    /// If the address can't be had.
+    /// If the address is not available.
     pub fn open(address: impl ToSocketAddrs) -> io::Result<Self> {
         let listener = TcpListener::bind(address)?;
         listener.set_nonblocking(true)?;
@@ -46,21 +48,21 @@ impl SlcanServer {
         })
     }
 
-    /// Where it is.
+    /// The local address.
     ///
     /// # Errors
-    /// If the system doesn't say.
+    /// If the system does not return it.
     pub fn address(&self) -> io::Result<SocketAddr> {
         self.listener.local_addr()
     }
 
-    /// How many are connected.
+    /// Number of connections.
     #[must_use]
     pub fn connected(&self) -> usize {
         self.connections.len()
     }
 
-    /// The frames that were sent since the last time.
+    /// The frames received since the last call.
     pub fn receive(&mut self) -> Vec<Frame> {
         self.accept();
         let mut heard = Vec::new();
@@ -92,7 +94,7 @@ impl SlcanServer {
             let Ok((stream, _)) = self.listener.accept() else {
                 return;
             };
-            // A connection that can't be set up so would hold up the bus.
+            // A connection that cannot be set to non-blocking would block the bus.
             if stream.set_nonblocking(true).is_ok() && stream.set_nodelay(true).is_ok() {
                 self.connections.push(Connection {
                     stream,
@@ -111,7 +113,7 @@ impl SlcanServer {
 }
 
 impl Connection {
-    /// The frames that the other end has sent; its other commands are answered.
+    /// The received frames; other commands are answered.
     fn read(&mut self) -> Vec<Frame> {
         let mut bytes = [0; MOST_READ];
         let read = match self.stream.read(&mut bytes) {
@@ -156,7 +158,7 @@ impl Connection {
     }
 }
 
-/// True if it only says that there is nothing to be had just now.
+/// Whether the operation would block.
 fn is_harmless(error: &io::Error) -> bool {
     matches!(
         error.kind(),
@@ -176,7 +178,7 @@ mod tests {
         Frame::of_eight(ExtendedId::new(0x0CFE_4580).unwrap(), [byte; 8])
     }
 
-    /// Serves the server until something comes of it.
+    /// Polls the server until a result arrives.
     fn served<T>(
         server: &mut SlcanServer,
         mut done: impl FnMut(&mut SlcanServer, Vec<Frame>) -> Option<T>,

@@ -1,4 +1,4 @@
-//! The ECU's state, live: a line that is rewritten on a terminal, a table where there is none.
+//! Live state of the ECU: a rewritten line on a terminal, otherwise a table.
 
 use std::io::{self, IsTerminal, Write};
 use std::time::Duration;
@@ -8,9 +8,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::ecu::Moment;
 
-/// Rewritten this often, ms.
+/// Interval between updates of the line, ms.
 const LIVE_MS: u64 = 100;
-/// A row of the table this often, ms, and whenever state or fault change.
+/// Interval between rows of the table, ms; a row is also added when state or fault change.
 const ROW_MS: u64 = 1_000;
 
 /// Where the state is shown.
@@ -21,7 +21,7 @@ pub struct StatusLine {
 }
 
 impl StatusLine {
-    /// Chooses by what standard output is.
+    /// Selects the form by the type of standard output.
     pub fn start() -> Self {
         let bar = (io::stdout().is_terminal() && io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::new_spinner();
@@ -34,10 +34,10 @@ impl StatusLine {
         Self { bar, last: None }
     }
 
-    /// Shows a millisecond, if it is time or something has changed.
+    /// Shows a millisecond if the interval has passed or the state has changed.
     ///
     /// # Errors
-    /// If standard output can't be written.
+    /// If standard output cannot be written.
     pub fn show(&mut self, moment: &Moment, clients: Option<usize>) -> io::Result<()> {
         let now = (moment.reply.state, moment.reply.fault);
         let changed = self.last.replace(now) != Some(now);
@@ -60,7 +60,7 @@ impl StatusLine {
         Ok(())
     }
 
-    /// Says something beside it.
+    /// Prints a message beside the state.
     pub fn say(&self, what: &str) {
         match &self.bar {
             Some(bar) => bar.println(what),

@@ -1,4 +1,4 @@
-//! What teaching finds on a machine behind `hitch controller`: taken up once the button is let go, and kept in a file.
+//! Teaching of a machine behind `hitch controller`: the result is applied when the button is released, and saved.
 
 use std::path::PathBuf;
 
@@ -9,17 +9,17 @@ use hitch_quantities::State;
 use crate::error::Error;
 use crate::{calibration_file, output};
 
-/// Watches whether the machine has been taught.
+/// Monitors the teaching state.
 #[derive(Debug, Default)]
 pub struct Teaching {
-    /// Where the calibration goes.
+    /// Output file of the calibration.
     out: Option<PathBuf>,
-    /// Whether it is being taught.
+    /// Whether teaching is active.
     under_way: bool,
 }
 
 impl Teaching {
-    /// With a file for what is found.
+    /// With an output file for the result.
     #[must_use]
     pub fn new(out: Option<PathBuf>) -> Self {
         Self {
@@ -28,10 +28,10 @@ impl Teaching {
         }
     }
 
-    /// After a step that ended in `state`: the controller takes up what was found once both coils are off for good.
+    /// After a step that ended in `state`: the controller applies the result once both coils are off permanently.
     ///
     /// # Errors
-    /// If the file can't be written.
+    /// If the file cannot be written.
     pub fn follow(&mut self, controller: &mut Controller, state: State) -> Result<(), Error> {
         let teaches = state == State::Teaching;
         if !std::mem::replace(&mut self.under_way, teaches) || teaches {
@@ -40,7 +40,7 @@ impl Teaching {
         let Some(Ok(found)) = controller.taught() else {
             return Ok(());
         };
-        // Found within limits that a calibration may have anyway.
+        // Teaching yields only values within the limits of a calibration.
         let Ok(calibration) = found.applied_to(controller.calibration()).validate() else {
             return Ok(());
         };
@@ -52,7 +52,7 @@ impl Teaching {
     }
 }
 
-/// What a machine says of itself as long as the button is held that teaches it.
+/// The machine's answers while the teach button is held.
 #[must_use]
 pub fn state(result: Option<Result<Taught, TeachError>>) -> String {
     let reason = match result {

@@ -1,4 +1,4 @@
-//! Tables for a terminal: columns aligned, numbers to the right.
+//! Tables for a terminal, with aligned columns; numbers to the right.
 
 /// A table of text cells.
 #[derive(Debug, Clone, Default)]
@@ -21,7 +21,7 @@ impl Table {
 }
 
 impl std::fmt::Display for Table {
-    /// Each row on a line of its own, indented by two spaces; the first column to the left, the others to the right.
+    /// Each row on a line, indented by two spaces; the first column left-aligned, the others right-aligned.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         let cell = |row: &Vec<String>, column: usize| {
@@ -53,7 +53,7 @@ impl std::fmt::Display for Table {
     }
 }
 
-/// A number with so many decimals; a dash if it is none.
+/// A number with a fixed number of decimals; a dash for NaN.
 #[must_use]
 pub fn known(value: f64, decimals: usize) -> String {
     if value.is_finite() {
@@ -63,7 +63,7 @@ pub fn known(value: f64, decimals: usize) -> String {
     }
 }
 
-/// Breaks a text into lines of at most `width` characters, where a word allows it; all but the first are indented.
+/// Breaks a text at spaces into lines of at most `width` characters; all but the first are indented.
 pub fn wrapped(text: &str, width: usize) -> String {
     let mut lines: Vec<String> = vec![String::new()];
     for word in text.split_whitespace() {

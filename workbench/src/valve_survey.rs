@@ -1,7 +1,7 @@
-//! What the valves of a model really do: flow over current with everything that acts on it.
+//! Survey of a model's valves: static flow over current with all effects.
 //!
-//! The plant is put on a flow bench with the current at rest, so thresholds, scales, hysteresis (from below) and
-//! return line are all in the curve, and the curve is what a calibration has to invert.
+//! The plant is on a flow bench at constant currents, so thresholds, scales, hysteresis (rising branch) and return line
+//! are part of the curve. A calibration has to invert this curve.
 
 use hitch_plant::units::{lpm_from_m3_s, pa_from_bar};
 use hitch_plant::{Currents, Model, Plant, Rig, Valve};
@@ -10,16 +10,16 @@ use hitch_plant::{Currents, Model, Plant, Rig, Valve};
 pub const LARGEST_CURRENT_A: f64 = 3.5;
 /// Steps of the survey: 1 mA each.
 const STEPS: u32 = 3500;
-/// Port pressure at which the lift valve is surveyed, bar: any between the cracking pressure and the relief valve will
-/// do.
+/// Port pressure for the survey of the lift valve, bar: between cracking pressure and relief pressure the flow does not
+/// depend on it.
 const LIFT_PORT_BAR: f64 = 20.0;
-/// Port pressure at which the lowering valve is surveyed, bar: the reference drop of its table.
+/// Port pressure for the survey of the lowering valve, bar: the reference drop of its table.
 pub const LOWERING_PORT_BAR: f64 = 15.0;
 /// Oil temperature of the survey, C.
 const OIL_TEMPERATURE_C: f64 = 40.0;
-/// Flow that counts as none, l/min: far below what moves the hitch (2 um/s).
+/// Flow that counts as zero, l/min: the hitch would move at 2 um/s.
 const NO_FLOW_LPM: f64 = 5e-4;
-/// A valve is saturated when it lacks less than this share of its largest flow.
+/// A valve is saturated when its flow is less than this share below its maximum.
 const SATURATED_SHARE: f64 = 1e-4;
 
 /// A point of a valve's static curve.
@@ -60,10 +60,10 @@ pub fn static_flow_lpm(model: &Model, valve: Valve, current_a: f64) -> f64 {
     })
 }
 
-/// The part of a valve's curve between its threshold and its saturation, 1 mA apart.
+/// The section of a valve's curve between threshold and saturation, in steps of 1 mA.
 ///
-/// The first point is the last without flow (its flow is zero), the last the first with all of it. Fewer than two
-/// points: the valve never opens.
+/// The first point is the last one without flow (set to zero), the last point the first one with full flow. Fewer than
+/// two points: the valve never opens.
 #[must_use]
 pub fn survey(model: &Model, valve: Valve) -> Vec<CurvePoint> {
     let point = |step: u32| {
@@ -103,13 +103,13 @@ pub struct ValveEnds {
 }
 
 impl ValveEnds {
-    /// Those of the lift valve.
+    /// Currents of the lift valve.
     #[must_use]
     pub fn of_lift(model: &Model) -> Self {
         Self::of(model, Valve::Lift)
     }
 
-    /// Those of the lowering valve.
+    /// Currents of the lowering valve.
     #[must_use]
     pub fn of_lowering(model: &Model) -> Self {
         Self::of(model, Valve::Lowering)

@@ -36,7 +36,7 @@ pub const FIGURES: [Figure; 6] = [
         bar: 1.5,
     },
     Figure {
-        name: "switched on after arrival",
+        name: "coil activations after arrival",
         of: |figures| f64::from(figures.switched_on_after),
         bar: 0.0,
     },
@@ -47,7 +47,7 @@ pub const FIGURES: [Figure; 6] = [
     },
 ];
 
-/// Median, 95 % below, and largest of one figure.
+/// Median, 95 % quantile, and largest of one figure.
 #[must_use]
 pub fn spread(moves: &[&MoveFigures], of: fn(&MoveFigures) -> f64) -> [f64; 3] {
     let mut values: Vec<f64> = moves.iter().map(|figures| of(figures)).collect();

@@ -142,7 +142,10 @@ fn a_line_that_is_no_text_is_reported_and_the_next_one_is_obeyed() {
         reported.contains("`\u{FFFD}80` has to be a number"),
         "{reported}"
     );
-    assert!(reported.contains("`\u{FFFD}` is none of"), "{reported}");
+    assert!(
+        reported.contains("unknown command `\u{FFFD}`"),
+        "{reported}"
+    );
     let shown = String::from_utf8(output.stdout).unwrap();
     let last = shown.lines().last().unwrap();
     assert!(last.ends_with("transport-lock"), "{last}");

@@ -14,7 +14,7 @@ const MOVES: usize = 4;
 
 /// What is asked of a kind of machine; final errors, pressure swings and faults have the same bars everywhere.
 struct Bars {
-    /// Median of time over shortest, and 95 % below.
+    /// Median of time over shortest, and 95 % quantile.
     ratio: [f64; 2],
     /// Share of the moves that overshoot by more than 0.3 degree.
     overshooting: f64,
@@ -94,7 +94,7 @@ fn drive_all(title: &str, structured: bool, bars: &Bars) {
         median <= bars.ratio[0],
         "median of time over shortest {median}"
     );
-    assert!(high <= bars.ratio[1], "95 % below {high}");
+    assert!(high <= bars.ratio[1], "95 % quantile {high}");
     assert!(beyond(&all, overshoot) <= bars.overshooting);
     assert!(spread(&all, overshoot.of)[2] <= bars.overshoot_deg);
     assert!(beyond(&all, error) <= bars.off);

@@ -79,7 +79,7 @@ fn a_taught_hitch_moves_well_on_valves_with_wide_hysteresis() {
     let [ratio, overshoot, error, swing, restarts, fault] = &FIGURES;
     let [median, high, _] = spread(&all, ratio.of);
     assert!(median <= 1.15, "median of time over shortest {median}");
-    assert!(high <= 1.4, "95 % below {high}");
+    assert!(high <= 1.4, "95 % quantile {high}");
     assert!(beyond(&all, overshoot) <= 0.02);
     assert!(spread(&all, overshoot.of)[2] <= 0.5);
     for figure in [error, swing, restarts, fault] {

@@ -44,7 +44,7 @@ fn every_reader_of_campaigns_refuses_a_bad_log_of_a_bus() {
     );
     write(&dir, "c/bus.asc", " 0.5 1 18FF4580x Rx d 2 0A\n");
     for arguments in READERS {
-        let cut = "c/bus.asc:1:27: the line ends before its last byte; delete the line";
+        let cut = "c/bus.asc:1:27: the line ends before its last byte; delete the truncated line";
         refused(dir.path(), arguments, cut);
     }
 }
@@ -72,11 +72,11 @@ fn bad_logs_are_refused_by_line_and_column() {
         ),
         (
             log.replacen("rocker_angle_deg", "rocker_angle_rad", 1),
-            "unit rad is not known, this column is rocker_angle_deg",
+            "unit rad is not known, this column has to be rocker_angle_deg",
         ),
         (
             log.replacen("lower_current_a", "flow_lpm", 1),
-            "c/lift.csv:1:72: column flow_lpm is there twice",
+            "c/lift.csv:1:72: column flow_lpm is duplicated",
         ),
         (
             log.replacen(",lower_current_a", "", 1)
@@ -89,7 +89,7 @@ fn bad_logs_are_refused_by_line_and_column() {
         ),
         (
             log.lines().next().unwrap().to_owned(),
-            "holds a header but no samples",
+            "contains a header but no samples",
         ),
         (String::new(), "c/lift.csv: is empty"),
         (
@@ -116,11 +116,11 @@ fn bad_manifests_are_refused_by_line_and_column() {
     let cases = [
         (
             MANIFEST.replace("lift.csv", "left.csv"),
-            "c/campaign.toml:6:8: the folder holds no file \"left.csv\"",
+            "c/campaign.toml:6:8: the folder contains no file \"left.csv\"",
         ),
         (
             MANIFEST.replace("load_kg", "load_lb"),
-            "c/campaign.toml:8:1: unit lb is not known, this key is load_kg",
+            "c/campaign.toml:8:1: unit lb is not known, this key has to be load_kg",
         ),
         (
             MANIFEST.replace("load_kg = 150", "load_kg = -150"),
@@ -137,7 +137,7 @@ fn bad_manifests_are_refused_by_line_and_column() {
         (MANIFEST.replace("[[run]]", "[[run]"), "c/campaign.toml:5:"),
         (
             MANIFEST.split("[[run]]").next().unwrap().to_owned(),
-            "there is no run",
+            "the campaign has no runs",
         ),
     ];
     for (text, expected) in cases {
@@ -157,7 +157,7 @@ fn missing_campaigns_are_refused() {
     refused(
         dir.path(),
         &["compare", "empty"],
-        "empty: holds no campaign.toml",
+        "empty: contains no campaign.toml",
     );
     refused(
         dir.path(),
@@ -173,7 +173,7 @@ fn missing_campaigns_are_refused() {
     refused(
         dir.path(),
         &["explain", "c", "--out", "out.toml"],
-        "the folder holds no file \"lift.csv\"",
+        "the folder contains no file \"lift.csv\"",
     );
 }
 
@@ -184,7 +184,7 @@ fn bad_models_are_refused_by_line_and_column() {
     let cases = [
         (
             format!("{base}[relief_valve]\nset_pressure_psi = 2200\n"),
-            "m.toml:4:1: unit psi is not known, this key is set_pressure_bar",
+            "m.toml:4:1: unit psi is not known, this key has to be set_pressure_bar",
         ),
         (
             format!("{base}[relief_valve]\nset_presure_bar = 154\n"),
@@ -204,7 +204,7 @@ fn bad_models_are_refused_by_line_and_column() {
         ),
         (
             format!("{base}[[effect]]\nid = \"lower-threshold-shift\"\nshift_ma = 200\n"),
-            "m.toml:5:1: unit ma is not known, this key is shift_a",
+            "m.toml:5:1: unit ma is not known, this key has to be shift_a",
         ),
         (
             format!("{base}[linkage]\nlift_rod_m = 0.01\n"),
@@ -259,7 +259,7 @@ fn bad_calibrations_are_refused_by_line_and_column() {
     let cases = [
         (
             "format = 1\n[lift]\ncurrent_ma = [1100]\n",
-            "c.toml:3:1: unit ma is not known, this key is current_a",
+            "c.toml:3:1: unit ma is not known, this key has to be current_a",
         ),
         (
             "format = 1\n[lifting]\n",
@@ -350,7 +350,7 @@ fn bad_command_lines_are_refused() {
             &[
                 "simulate", "--inputs", "log.csv", "--load", "-5", "--out", "out.csv",
             ],
-            "it may be 0 to 2000",
+            "the range is 0 to 2000",
         ),
         (
             &["simulate", "--inputs", "gone.csv", "--out", "out.csv"],
@@ -376,7 +376,11 @@ fn an_ecu_without_what_it_needs() {
     refused(folder, &["ecu", "--load", "-5"], "0 to 2000");
     refused(folder, &["ecu", "--model", "no.toml"], "no.toml");
     refused(folder, &["ecu", "--can", "nowhere"], "127.0.0.1:7701");
-    refused(folder, &["ecu", "--flash", "log.csv"], "no flash of an ECU");
+    refused(
+        folder,
+        &["ecu", "--flash", "log.csv"],
+        "not the flash of an ECU",
+    );
     refused(folder, &["ecu", "--image", "no-image"], "--host");
 }
 

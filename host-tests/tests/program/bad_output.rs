@@ -12,7 +12,7 @@ fn outputs_that_would_destroy_something_are_refused() {
     refused(
         dir.path(),
         &same,
-        "is read by this command and would be overwritten",
+        "is an input of this command and would be overwritten",
     );
     assert_eq!(
         fs::read_to_string(dir.path().join("log.csv")).unwrap(),
@@ -22,17 +22,21 @@ fn outputs_that_would_destroy_something_are_refused() {
     refused(
         dir.path(),
         &manifest,
-        "c/campaign.toml: is read by this command",
+        "c/campaign.toml: is an input of this command",
     );
     let measured = ["compare", "c", "--report", "c/lift.csv"];
-    refused(dir.path(), &measured, "c/lift.csv: is read by this command");
+    refused(
+        dir.path(),
+        &measured,
+        "c/lift.csv: is an input of this command",
+    );
     write(&dir, "m.toml", "format = 1\nbase = \"nominal\"\n");
     let model = ["calibrate", "m.toml", "--out", "m.toml"];
-    refused(dir.path(), &model, "m.toml: is read by this command");
+    refused(dir.path(), &model, "m.toml: is an input of this command");
     let twice = ["explain", "c", "--out", "x", "--report", "x", "--json", "x"];
-    refused(dir.path(), &twice, "x: is named for two results");
+    refused(dir.path(), &twice, "x: is the target of two results");
     let both = ["explain", "c", "--out", "-", "--json", "-"];
-    refused(dir.path(), &both, "-: is named for two results");
+    refused(dir.path(), &both, "-: is the target of two results");
 }
 
 #[test]
@@ -52,11 +56,11 @@ fn outputs_that_cannot_be_written_are_noticed_before_the_work() {
     refused(
         dir.path(),
         &["ecu", "--host", "--flash", "-"],
-        "--flash -: it has to be read again",
+        "--flash -: the file is read at the next start",
     );
     refused(
         dir.path(),
         &["controller", "--out", "-"],
-        "--out -: the answers go there",
+        "--out -: standard output has the answers",
     );
 }

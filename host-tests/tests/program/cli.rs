@@ -346,7 +346,7 @@ fn the_main_job_goes_from_measurements_to_motion() {
             .map(|number| number.parse().unwrap())
             .collect()
     };
-    let [rebuilt, nominal] = pair("lowering: time over shortest, 95 % below")[..] else {
+    let [rebuilt, nominal] = pair("lowering: time ratio, 95 % quantile")[..] else {
         panic!("two numbers")
     };
     assert!(
@@ -356,8 +356,8 @@ fn the_main_job_goes_from_measurements_to_motion() {
     let html = fs::read_to_string(dir.path().join("r.html")).unwrap();
     assert_self_contained(&html);
     assert!(
-        html.contains("closed loop"),
-        "the report tells of the closed loop too"
+        html.contains("Closed loop"),
+        "the report has the closed loop"
     );
 }
 
@@ -448,8 +448,8 @@ fn the_report_of_the_loop_shows_the_worst_cases_steps_and_what_was_set() {
         "position.approach_gain=40",
         "Worst moves",
         "250 kg 40 °C",
-        "Steps over load",
-        "Steps over oil temperature",
+        "Step responses over load",
+        "Step responses over oil temperature",
         "Pressures of pump and cylinder",
     ] {
         assert!(html.contains(part), "no {part:?}");

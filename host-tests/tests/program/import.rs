@@ -176,7 +176,7 @@ fn signals_of_a_bus_are_told_by_names_comments_and_units() {
         "Valves.Y1",
         "by its comment",
         "Hitch.Winkel",
-        "4001 frames of messages that it doesn't have",
+        "4001 frames of messages that it does not define",
     ] {
         assert!(text.contains(said), "{said}\n{text}");
     }
@@ -191,7 +191,7 @@ fn signals_of_a_bus_are_told_by_names_comments_and_units() {
         &[
             "import", "own.csv", "rig.dbc", "--out", "d", "--load", "150",
         ],
-        "describes a bus, and no log of one",
+        "describes a bus, but no log of a bus",
     );
 }
 
@@ -269,7 +269,7 @@ fn what_cannot_be_told_is_asked_for() {
     for (arguments, expected) in [
         (
             "import odd.csv --out c --load 150",
-            "no column could be told to be lift_current_a",
+            "no column was recognised as lift_current_a",
         ),
         ("import own.csv --out c", "give it with --load KG"),
         (
@@ -290,11 +290,11 @@ fn what_cannot_be_told_is_asked_for() {
         ),
         (
             "import log.trc --out c --load 150",
-            "log.trc: is a trace of a CAN bus by PCAN (TRC)",
+            "log.trc: is a PCAN trace of a CAN bus (TRC)",
         ),
         (
             "import text.csv --out c --load 150",
-            "text.csv: is no table",
+            "text.csv: is not a table",
         ),
         ("import own.csv --out c --bench flow", "--port-pressure BAR"),
     ] {
@@ -307,10 +307,10 @@ fn what_cannot_be_told_is_asked_for() {
     let maps =
         "import odd.csv --out c --load 150 --map lift_current_a=A1:A --map lower_current_a=A2:A";
     let (text, runs) = imported(dir.path(), maps);
-    assert!(text.contains("as you said") && runs.len() == 2, "{text}");
+    assert!(text.contains("given by --map") && runs.len() == 2, "{text}");
     refused(
         dir.path(),
         &maps.split(' ').collect::<Vec<_>>(),
-        "is there already",
+        "exists already",
     );
 }

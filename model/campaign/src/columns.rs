@@ -84,13 +84,13 @@ impl Source {
     fn check(&self) -> Result<(), (String, String)> {
         let key = self.column.name;
         if self.name.is_empty() {
-            let what = format!("{key} has no name of a column");
+            let what = format!("{key} has no column name");
             return Err((what, format!("write {key} = \"Name in the log:unit\"")));
         }
         match (&self.unit, self.points) {
             (_, Some(points)) if Scale::through(points.from, points.to).is_none() => Err((
-                format!("the two points of {key} are no line"),
-                "give two different values and what they are".to_owned(),
+                format!("the two points of {key} do not define a line"),
+                "give two different values and their calibrated values".to_owned(),
             )),
             (Some(unit), None) => match Scale::of(unit, self.column) {
                 Ok(_) => Ok(()),
@@ -112,7 +112,7 @@ impl Source {
         let Some(unit) = self.unit.as_deref().or(logged) else {
             let what = format!("{} of {key} has no unit", quote(&self.name));
             let mend = format!(
-                "write {key} = \"{}:{}\" under [columns], with the unit that it has",
+                "write {key} = \"{}:{}\" under [columns], with its unit",
                 self.name, self.column.unit
             );
             return Err((what, mend));
@@ -249,7 +249,7 @@ fn two(table: &TomlTable<'_>, key: &str) -> Result<Option<[f64; 2]>, CampaignErr
     };
     <[f64; 2]>::try_from(numbers).map(Some).map_err(|numbers| {
         let what = format!("{key} has {} numbers", numbers.len());
-        table.error_at(key, what, "a line goes through two points")
+        table.error_at(key, what, "a line is defined by two points")
     })
 }
 
@@ -277,9 +277,13 @@ mod tests {
     fn what_is_no_source_is_refused() {
         for (key, text, expected) in [
             ("lift_current", "I", "did you mean lift_current_a"),
-            ("lift_current_a", ":mA", "has no name"),
+            ("lift_current_a", ":mA", "has no column name"),
             ("cylinder_pressure_bar", "U1:V", "two points"),
-            ("cylinder_pressure_bar", "U1:V 1=2 1=3", "no line"),
+            (
+                "cylinder_pressure_bar",
+                "U1:V 1=2 1=3",
+                "do not define a line",
+            ),
         ] {
             let (what, mend) = Source::parse(key, text).unwrap_err();
             assert!(

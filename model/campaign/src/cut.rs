@@ -35,7 +35,7 @@ impl Cut {
         let from_s = run.number(from, TIME_S)?.unwrap_or(Self::NONE.from_s);
         let to_s = run.number(to, TIME_S)?.unwrap_or(Self::NONE.to_s);
         if from_s >= to_s {
-            let what = format!("the run would end at {to_s} s, and begins at {from_s} s");
+            let what = format!("the run ends at {to_s} s, before its start at {from_s} s");
             let mend = "both are seconds after the log's first sample";
             return Err(run.error_at(to, what, mend));
         }

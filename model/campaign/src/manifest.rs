@@ -82,7 +82,7 @@ fn synchronous(top: &TomlTable) -> Result<bool, CampaignError> {
         Some("synchronous") => Ok(true),
         Some(other) => {
             let what = format!("clocks {} are not known", quote(other));
-            let mend = "they are \"synchronous\" or \"independent\"";
+            let mend = "use \"synchronous\" or \"independent\"";
             Err(top.error_at("clocks", what, mend))
         }
     }
@@ -98,7 +98,7 @@ fn manifest_path(dir: &Path) -> Result<PathBuf, CampaignError> {
     }
     let path = dir.join("campaign.toml");
     if !path.exists() {
-        return Err(InputError::of_file(dir, "holds no campaign.toml", mend));
+        return Err(InputError::of_file(dir, "contains no campaign.toml", mend));
     }
     Ok(path)
 }
@@ -148,7 +148,7 @@ fn runs(
     if tables.is_empty() {
         return Err(top.error_at(
             "run",
-            "there is no run",
+            "the campaign has no runs",
             "add a [[run]] block for every log",
         ));
     }
@@ -213,8 +213,8 @@ pub fn file_in(dir: &Path, table: &TomlTable<'_>, key: &str) -> Result<PathBuf, 
         return Ok(path);
     }
     let what = match Path::new(file).is_absolute() {
-        true => format!("there is no file {}", quote(file)),
-        false => format!("the folder holds no file {}", quote(file)),
+        true => format!("file {} does not exist", quote(file)),
+        false => format!("the folder contains no file {}", quote(file)),
     };
     let mend = match key {
         "file" => "correct the name, or delete this [[run]] block",
@@ -230,7 +230,7 @@ fn file_name<'t>(table: &'t TomlTable<'_>, key: &str) -> Result<&'t str, Campaig
         return Ok(file);
     }
     let what = format!("{} is not the name of a file", quote(file));
-    let mend = "give its name from the campaign's folder on, or from the root";
+    let mend = "give a path relative to the campaign's folder, or an absolute path";
     Err(table.error_at(key, what, mend))
 }
 
@@ -259,7 +259,7 @@ fn conditions(table: &TomlTable<'_>) -> Result<(Bench, f64), CampaignError> {
         }
         other => {
             let what = format!("bench {} is not known", quote(other));
-            return Err(table.error_at("bench", what, "it is \"hitch\" or \"flow\""));
+            return Err(table.error_at("bench", what, "use \"hitch\" or \"flow\""));
         }
     };
     let oil_temperature_c = table.number("oil_temperature_c", OIL_TEMPERATURE_C)?;
@@ -273,7 +273,7 @@ fn belongs_elsewhere(table: &TomlTable<'_>, key: &str, bench: &str) -> Result<()
     if !table.has(key) {
         return Ok(());
     }
-    let what = format!("{key} belongs to a run on the {bench} bench");
+    let what = format!("{key} is valid only for a run on the {bench} bench");
     Err(table.error_at(
         key,
         what,

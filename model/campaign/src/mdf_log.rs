@@ -137,8 +137,8 @@ impl MdfFile {
             }
         };
         if times_s.len() != values.len() {
-            let what = format!("channel {} has no times", quote(&channel.name));
-            let mend = "export it with the time channel of its group";
+            let what = format!("channel {} has no time stamps", quote(&channel.name));
+            let mend = "export it together with the time channel of its group";
             return Err(self.source.error(what, mend));
         }
         let bytes = vec![0; values.len()];
@@ -166,7 +166,7 @@ impl MdfFile {
                     .map(|channel| channel.name.as_str())
                     .collect();
                 let what = format!(
-                    "there is no channel {}, which [columns] names for {}",
+                    "channel {} does not exist; [columns] assigns it to {}",
                     quote(&wanted.name),
                     wanted.column.name
                 );
@@ -195,7 +195,7 @@ impl MdfFile {
                     wanted.column.name
                 );
                 let (low, high) = (wanted.column.range.start(), wanted.column.range.end());
-                let mend = format!("it may be {low} to {high}: check the unit under [columns]");
+                let mend = format!("the range is {low} to {high}: check the unit under [columns]");
                 self.source.error(what, mend)
             })?;
         }
@@ -237,8 +237,8 @@ pub fn read(
     }
     let rows = taken.iter().find(|(name, _)| *name == LIFT);
     let Some((_, rows)) = rows else {
-        let what = format!("{LIFT} is taken from no channel");
-        let mend = format!("say which it is under [columns]: {LIFT} = \"Name:A\"");
+        let what = format!("no channel is assigned to {LIFT}");
+        let mend = format!("assign it under [columns]: {LIFT} = \"Name:A\"");
         return Err(file.source.error(what, mend));
     };
     let (times_s, within_s) = (rows.times_s.clone(), rows.median_step_s() / 2.0);
@@ -323,5 +323,5 @@ fn unreadable(source: &SourceFile, channel: &str, error: &falcon_mdf::Mf4Error) 
         name => format!("channel {} of it: ", quote(name)),
     };
     let mend = "export it again, as MDF 4.1 without encryption, or as CSV";
-    source.error(format!("can't be read as MDF: {which}{error}"), mend)
+    source.error(format!("cannot be read as MDF: {which}{error}"), mend)
 }

@@ -122,7 +122,7 @@ impl Scale {
                 "{} is a voltage, and two points of its sensor are not given",
                 column.name
             )),
-            _ => Err(format!("{} is no unit of {}", quote(unit), column.name)),
+            _ => Err(format!("{} is not a unit of {}", quote(unit), column.name)),
         }
     }
 

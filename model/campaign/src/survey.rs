@@ -73,7 +73,7 @@ pub fn bus_signals(path: &Path, dbc: &Path) -> Result<Signals, CampaignError> {
     let description = SourceFile::read_any(dbc)?;
     match Format::of(path) {
         Some(format) => bus_log::signals(&source, format, &description),
-        None => Err(source.error("is no log of a bus", "its name ends in .log or .asc")),
+        None => Err(source.error("is not a log of a bus", "its name ends in .log or .asc")),
     }
 }
 

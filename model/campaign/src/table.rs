@@ -103,9 +103,9 @@ impl Table {
         cells: Cells,
     ) -> Result<Self, CampaignError> {
         match rows.len() {
-            0 => Err(source.error("holds no samples", "log the run again")),
+            0 => Err(source.error("contains no samples", "log the run again")),
             n if n < Run::FEWEST_SAMPLES => {
-                let what = format!("holds {n} samples only");
+                let what = format!("contains only {n} samples");
                 let mend = format!("a run needs at least {}", Run::FEWEST_SAMPLES);
                 Err(source.error(what, mend))
             }
@@ -134,7 +134,7 @@ impl Table {
         }
         let kept = stays.iter().filter(|stays| **stays).count();
         if kept < Run::FEWEST_SAMPLES {
-            let what = format!("holds {kept} samples in the time of the run");
+            let what = format!("contains only {kept} samples within the run");
             let mend = format!(
                 "a run needs at least {}; from_s and to_s are seconds after the first sample",
                 Run::FEWEST_SAMPLES
@@ -198,8 +198,7 @@ impl Table {
                 } else {
                     format!("{name} has no values")
                 };
-                let mend =
-                    "the currents drive the model: log the run again, or cut it before the gap";
+                let mend = "the currents are inputs of the model: log the run again, or cut it before the gap";
                 Err(self.error_in(gap.sample, name, what, mend))
             }
         }
@@ -222,7 +221,9 @@ impl Table {
                 continue;
             };
             let what = format!("time {fault}: {now_s} s after {before_s} s");
-            let mend = format!("{TIME} has to rise from row to row, by {LONGEST_STEP_S} s at most");
+            let mend = format!(
+                "{TIME} has to rise from row to row, in steps of at most {LONGEST_STEP_S} s"
+            );
             return Err(self.error_in(sample + 1, TIME, what, mend));
         }
         Ok(())

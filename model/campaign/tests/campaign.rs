@@ -166,12 +166,12 @@ fn parts_of_a_log_that_make_no_runs_are_refused() {
         (
             "from_s = 2\nto_s = 1",
             "",
-            "campaign.toml:5:8: the run would end at 1 s",
+            "campaign.toml:5:8: the run ends at 1 s",
         ),
         (
             "to_s = 0.1",
             "from_s = 5.4",
-            "lift.csv: holds 6 samples in the time of the run",
+            "lift.csv: contains only 6 samples within the run",
         ),
         ("to_s = 5.5", "from_s = 5.58", "lift.csv:22:1: time jumps"),
     ] {
@@ -204,11 +204,11 @@ fn faults_of_logs_have_a_line_and_a_column() {
         ),
         (
             cell("5.00", "5e9"),
-            "lift.csv:7:17: 5000000000 in column flow_lpm cannot be",
+            "lift.csv:7:17: 5000000000 in column flow_lpm is out of range",
         ),
         (
             cell("0.10,1.50", "0.10,1500"),
-            "lift.csv:7:6: 1500 in column lift_current_a cannot be",
+            "lift.csv:7:6: 1500 in column lift_current_a is out of range",
         ),
         (
             cell("0.10,", ","),
@@ -230,11 +230,11 @@ fn faults_of_logs_have_a_line_and_a_column() {
         ),
         (
             cell("rocker_angle_deg", "rocker_angle_rad"),
-            "lift.csv:1:48: unit rad is not known, this column is rocker_angle_deg",
+            "lift.csv:1:48: unit rad is not known, this column has to be rocker_angle_deg",
         ),
         (
             cell("flow_lpm", "flow_gpm"),
-            "lift.csv:1:39: unit gpm is not known, this column is flow_lpm",
+            "lift.csv:1:39: unit gpm is not known, this column has to be flow_lpm",
         ),
         (
             cell("flow_lpm", "speed"),
@@ -243,7 +243,7 @@ fn faults_of_logs_have_a_line_and_a_column() {
         (cell("flow_lpm", ""), "lift.csv:1:39: column 4 has no name"),
         (
             cell("flow_lpm", "time_s"),
-            "lift.csv:1:39: column time_s is there twice",
+            "lift.csv:1:39: column time_s is duplicated",
         ),
         (
             cell("lower_current_a", "oil_temperature_c"),
@@ -251,13 +251,13 @@ fn faults_of_logs_have_a_line_and_a_column() {
         ),
         (
             fault(MANIFEST, &log[log.find('\n').unwrap() + 1..]),
-            "lift.csv:1:1: \"0.00\" stands where a column's name",
+            "lift.csv:1:1: \"0.00\" is not a column name",
         ),
         (fault(MANIFEST, ""), "lift.csv: is empty"),
         (fault(MANIFEST, "\n\n"), "lift.csv: is empty"),
         (
             fault(MANIFEST, &log[..=log.find('\n').unwrap()]),
-            "lift.csv: holds a header but no samples",
+            "lift.csv: contains a header but no samples",
         ),
         (fault(MANIFEST, &log[..200]), "lift.csv:7:1: the row has"),
         (
@@ -289,7 +289,7 @@ fn faults_of_the_manifest_have_a_line_and_a_column() {
         ),
         (
             toml("sample_rate_hz", "sample_rate_khz"),
-            "campaign.toml:3:1: unit khz is not known, this key is sample_rate_hz",
+            "campaign.toml:3:1: unit khz is not known, this key has to be sample_rate_hz",
         ),
         (
             toml("sample_rate_hz = 50", "sample_rate_hz = -50"),
@@ -321,7 +321,7 @@ fn faults_of_the_manifest_have_a_line_and_a_column() {
         ),
         (
             toml("load_kg = 50", "load_lb = 50"),
-            "campaign.toml:11:1: unit lb is not known, this key is load_kg",
+            "campaign.toml:11:1: unit lb is not known, this key has to be load_kg",
         ),
         (
             toml("load_kg = 50", "load_kg = nan"),
@@ -329,7 +329,7 @@ fn faults_of_the_manifest_have_a_line_and_a_column() {
         ),
         (
             toml("port_pressure_bar = 20", "load_kg = 20"),
-            "campaign.toml:16:11: load_kg belongs to a run on the hitch bench",
+            "campaign.toml:16:11: load_kg is valid only for a run on the hitch bench",
         ),
         (
             toml("\"hitch\"", "\"pitch\""),
@@ -341,15 +341,15 @@ fn faults_of_the_manifest_have_a_line_and_a_column() {
         ),
         (
             toml("\"flow.csv\"", "\"flaw.csv\""),
-            "campaign.toml:14:8: the folder holds no file \"flaw.csv\"",
+            "campaign.toml:14:8: the folder contains no file \"flaw.csv\"",
         ),
         (
             toml("\"flow.csv\"", "\"../flow.csv\""),
-            "campaign.toml:14:8: the folder holds no file \"../flow.csv\"",
+            "campaign.toml:14:8: the folder contains no file \"../flow.csv\"",
         ),
         (
             toml("\"flow.csv\"", "\"/no/flow.csv\""),
-            "campaign.toml:14:8: there is no file \"/no/flow.csv\"",
+            "campaign.toml:14:8: file \"/no/flow.csv\" does not exist",
         ),
         (
             toml("\"flow.csv\"", "\"\""),
@@ -362,7 +362,7 @@ fn faults_of_the_manifest_have_a_line_and_a_column() {
         (toml("[[run]]", "[[run"), "campaign.toml:8:"),
         (
             fault("format = 1\n", &log()),
-            "campaign.toml:1:1: there is no run",
+            "campaign.toml:1:1: the campaign has no runs",
         ),
         (
             fault("", &log()),
@@ -385,7 +385,7 @@ fn check(cases: &[(String, &str)]) {
 #[test]
 fn faults_of_the_folder() {
     let dir = TempDir::new().unwrap();
-    assert!(fault_of(dir.path()).contains("holds no campaign.toml"));
+    assert!(fault_of(dir.path()).contains("contains no campaign.toml"));
     assert!(fault_of(&dir.path().join("nowhere")).contains("no such folder"));
     fs::write(dir.path().join("file"), "").unwrap();
     assert!(fault_of(&dir.path().join("file")).contains("is not a folder"));
@@ -414,7 +414,7 @@ fn a_log_that_is_no_text_is_called_by_its_kind() {
         ),
         (
             b"PK\x03\x04\x14\0",
-            "lift.csv: is a ZIP archive or a workbook of Excel, not text",
+            "lift.csv: is a ZIP archive or an Excel workbook, not text",
         ),
         (
             b"\x01\x02\0\x07\x08",

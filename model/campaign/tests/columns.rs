@@ -258,7 +258,7 @@ fn faults_have_a_place_and_a_way_out() {
     let cases = [
         (
             fault(&text, &ENGLISH.replace("I lift", "I lfit")),
-            "bench.csv:1:1: there is no column \"I lfit\", which [columns] names for lift_current_a; did you mean I lift?",
+            "bench.csv:1:1: column \"I lfit\" does not exist; [columns] assigns it to lift_current_a; did you mean I lift?",
         ),
         (
             fault(&text, &ENGLISH.replace("\"p cyl:psi\"", "\"p cyl\"")),
@@ -266,7 +266,7 @@ fn faults_have_a_place_and_a_way_out() {
         ),
         (
             fault(&text, &ENGLISH.replace("time_s", "#")),
-            "bench.csv:1:1: time_s is taken from no column",
+            "bench.csv:1:1: no column is assigned to time_s",
         ),
         (
             fault(
@@ -278,19 +278,19 @@ fn faults_have_a_place_and_a_way_out() {
         ),
         (
             fault(text.replacen("0.002", "1000", 1), ENGLISH),
-            "bench.csv:2:5: \"1000\" in column \"I lower\" would be lower_current_a = 1000; it may be -10 to 10",
+            "bench.csv:2:5: \"1000\" in column \"I lower\" would be lower_current_a = 1000; the range is -10 to 10",
         ),
         (
             fault(text.replacen("\n0.02,", "\nlater,", 1), ENGLISH),
-            "bench.csv:4:1: \"later\" is no time",
+            "bench.csv:4:1: \"later\" is not a time",
         ),
         (
             fault(text.replace("phi", "p cyl"), ENGLISH),
-            "bench.csv:1:36: column \"p cyl\" is there twice",
+            "bench.csv:1:36: column \"p cyl\" is duplicated",
         ),
         (
             fault(&text, &ENGLISH.replace("\"phi\"", "\"phi:bar\"")),
-            "bench.csv:1:1: there is no column \"phi:bar\"",
+            "bench.csv:1:1: column \"phi:bar\" does not exist",
         ),
         (
             fault(&text, &ENGLISH.replace("rocker_angle_deg", "angle")),
@@ -305,7 +305,7 @@ fn faults_have_a_place_and_a_way_out() {
         ),
         (
             fault("a b c\n", ENGLISH),
-            "bench.csv: no row holds any of the names",
+            "bench.csv: no row contains any of the names",
         ),
     ];
     for (got, expected) in cases {
@@ -377,12 +377,12 @@ fn mdf_is_refused_with_the_true_reason() {
     let whole = mdf(Some(WriteCodec::Deflate));
     let said = of_mdf("log.mf4", &whole, &OF_MDF.replace("I_lift", "I_left"));
     assert!(
-        said.contains("no channel \"I_left\"") && said.contains("did you mean I_lift"),
+        said.contains("channel \"I_left\" does not exist") && said.contains("did you mean I_lift"),
         "{said}"
     );
     let said = of_mdf("log.mf4", &whole, "");
     assert!(
-        said.contains("lift_current_a is taken from no channel"),
+        said.contains("no channel is assigned to lift_current_a"),
         "{said}"
     );
     let said = of_mdf("log.mf4", b"time_s,lift_current_a\n\0", "");

@@ -201,25 +201,25 @@ fn syntax_faults_have_a_column_and_a_way_out() {
         ("k * x)", "17: this parenthesis was not opened; delete it"),
         (
             "k * 0,5",
-            "17: a comma stands outside of a function's arguments; a decimal number is written 0.5",
+            "17: a comma is allowed only between the arguments of a function; a decimal number is written 0.5",
         ),
         (
             "k x",
-            "14: there is no operator before `x`; a product is written a * b",
+            "14: an operator is missing before `x`; a product is written a * b",
         ),
         ("k * 2x", "16: `2x` is not a number; write it like 0.5"),
         (
             "k[mm]",
-            "13: the unit `[mm]` does not stand behind a number; only numbers take one",
+            "13: the unit `[mm]` does not follow a number; only numbers take a unit",
         ),
         (
             "k * / x",
-            "16: `/` stands where a number, a name or a parenthesis has to be; ",
+            "16: found `/`, expected a number, a name or a parenthesis; ",
         ),
         ("k ** 2", "14: `**` is not known; a power is written x^2"),
         (
             "k * (v > 0)",
-            "19: `>` does not belong in a formula; there are no comparisons: write step(a - b)",
+            "19: `>` does not belong in a formula; comparisons are not supported: write step(a - b)",
         ),
         (
             "k × x",
@@ -342,8 +342,8 @@ fn a_definition_that_cannot_be_fitted_is_refused_where_it_stands() {
     type Change = fn(&mut TermDefinition);
     let cases: [(&str, &str, Change); 17] = [
         (
-            "4:6: `End Cushion` cannot be the name of a term",
-            "small letters",
+            "4:6: `End Cushion` is not a valid name of a term",
+            "lower-case letters",
             |d| d.id = "End Cushion".into(),
         ),
         (
@@ -356,11 +356,11 @@ fn a_definition_that_cannot_be_fitted_is_refused_where_it_stands() {
             "add a [[term.parameter]]",
             |d| d.parameters.clear(),
         ),
-        ("3:1: the term has 9 parameters", "it may have 8", |d| {
+        ("3:1: the term has 9 parameters", "the maximum is 8", |d| {
             d.parameters = vec![parameter("a", ""); 9]
         }),
         (
-            "8:8: `2k` cannot be the name of a parameter",
+            "8:8: `2k` is not a valid name of a parameter",
             "letters",
             |d| d.parameters[0].name = "2k".into(),
         ),
@@ -397,13 +397,13 @@ fn a_definition_that_cannot_be_fitted_is_refused_where_it_stands() {
             d.parameters[0].start = 0.0
         }),
         (
-            "8:8: the formula does not hold the parameter `k`",
+            "8:8: the formula does not contain the parameter `k`",
             "delete",
             |d| d.formula = "1[N] * tanh(v / w)".into(),
         ),
         (
-            "6:12: the null value does not turn the term off: it is not zero at k = 0 N, w = 1 mm/s, v = -0.3 m/s",
-            "let k multiply the whole formula",
+            "6:12: the term is not zero at the null value of its size at k = 0 N, w = 1 mm/s, v = -0.3 m/s",
+            "multiply the whole formula by k",
             |d| d.formula = "(k + 3[N]) * tanh(v / w)".into(),
         ),
         (

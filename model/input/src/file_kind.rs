@@ -22,7 +22,7 @@ const fn kind(magic: &'static [u8], name: &'static str, mend: &'static str) -> K
 
 static KINDS: [Kind; 14] = [
     kind(b"MDF     ", "an MDF file", AS_MDF),
-    kind(b"UnFinMF ", "an MDF file that was not finished", AS_MDF),
+    kind(b"UnFinMF ", "an unfinalised MDF file", AS_MDF),
     kind(b"LOGG", "a binary log of a CAN bus (BLF)", AS_ASC),
     kind(b"MATLAB 5.0", "a MAT file of MATLAB", AS_CSV),
     kind(b"\x89HDF\r\n\x1a\n", "an HDF5 file", AS_CSV),
@@ -30,19 +30,19 @@ static KINDS: [Kind; 14] = [
     kind(b"TDSm", "a TDMS file of LabVIEW", AS_CSV),
     kind(
         b"PK\x03\x04",
-        "a ZIP archive or a workbook of Excel",
+        "a ZIP archive or an Excel workbook",
         "unpack it, or save the sheet as CSV",
     ),
     kind(
         b"\xD0\xCF\x11\xE0",
-        "a document of Office",
+        "an Office document",
         "save the sheet as CSV",
     ),
     kind(b"\x1F\x8B", "compressed with gzip", UNPACK),
     kind(b"\x28\xB5\x2F\xFD", "compressed with zstd", UNPACK),
     kind(b"7z\xBC\xAF\x27\x1C", "a 7z archive", UNPACK),
     kind(b"%PDF", "a PDF document", AS_CSV),
-    kind(b"SQLite format 3", "a database of SQLite", AS_CSV),
+    kind(b"SQLite format 3", "an SQLite database", AS_CSV),
 ];
 
 /// The kind of a file that begins with `bytes`, and how to convert it to text; `None` if it may be text.

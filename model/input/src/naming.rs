@@ -11,7 +11,10 @@ const SMALLEST_SIMILARITY: f64 = 0.84;
 /// Fault of the name `given` of a `kind` ("column", "key", "effect") that is not in `known`.
 pub fn unknown_name(kind: &str, given: &str, known: &[&str]) -> String {
     if let Some((unit, right)) = wrong_unit(given, known) {
-        return format!("unit {} is not known, this {kind} is {right}", plain(unit));
+        return format!(
+            "unit {} is not known, this {kind} has to be {right}",
+            plain(unit)
+        );
     }
     format!("{kind} {} is not known", quote(given))
 }
@@ -19,7 +22,7 @@ pub fn unknown_name(kind: &str, given: &str, known: &[&str]) -> String {
 /// Suggests the most similar known name, or lists all if none is similar.
 pub fn offer_names(given: &str, known: &[&str]) -> String {
     if let Some((_, right)) = wrong_unit(given, known) {
-        return format!("convert the values and name it {right}");
+        return format!("convert the values and rename it to {right}");
     }
     match nearest(given, known) {
         Some(name) => format!("did you mean {name}?"),
@@ -69,7 +72,7 @@ mod tests {
         let what = unknown_name("column", "rocker_angle_rad", &KNOWN);
         assert_eq!(
             what,
-            "unit rad is not known, this column is rocker_angle_deg"
+            "unit rad is not known, this column has to be rocker_angle_deg"
         );
         assert_eq!(
             unknown_name("column", "speed", &KNOWN),

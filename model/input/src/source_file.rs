@@ -152,11 +152,7 @@ fn unreadable(path: &Path, error: &std::io::Error) -> InputError {
     use std::io::ErrorKind::{NotFound, PermissionDenied};
     match error.kind() {
         NotFound => InputError::of_file(path, "no such file", "check the name"),
-        PermissionDenied => InputError::of_file(
-            path,
-            "may not be read",
-            "give yourself the permission to read it",
-        ),
+        PermissionDenied => InputError::of_file(path, "permission denied", "grant read permission"),
         _ => InputError::of_file(path, format!("cannot be read: {error}"), ""),
     }
 }

@@ -145,7 +145,7 @@ impl<'a> TomlTable<'a> {
             return Ok(Some(number));
         }
         let what = format!("{key} = {number} is out of range");
-        let mend = format!("it may be {} to {}", range.start(), range.end());
+        let mend = format!("the range is {} to {}", range.start(), range.end());
         Err(self.error_at(key, what, mend))
     }
 
@@ -188,8 +188,9 @@ impl<'a> TomlTable<'a> {
             as_number(item.get_ref())
                 .filter(|number| range.contains(number))
                 .ok_or_else(|| {
-                    let what = format!("{key} holds a value that is not a number of its range");
-                    let mend = format!("they may be {} to {}", range.start(), range.end());
+                    let what =
+                        format!("{key} contains a value that is not a number within its range");
+                    let mend = format!("the range is {} to {}", range.start(), range.end());
                     self.source.error_at(item.span().start, what, mend)
                 })
         };
@@ -260,7 +261,7 @@ impl<'a> TomlTable<'a> {
             DeValue::Table(entries) => Ok(self.inner(name.clone(), item.span(), entries)),
             other => {
                 let what = format!(
-                    "{key} has to be a list of tables, but holds {}",
+                    "{key} has to be a list of tables, but contains {}",
                     kind(other)
                 );
                 Err(self.source.error_at(item.span().start, what, mend.clone()))
@@ -302,9 +303,9 @@ fn mend_of(message: &str) -> &'static str {
     if message.contains("duplicate key") {
         "delete one of the two, or give it another name"
     } else if message.contains("recurs") {
-        "take brackets and dots out; nothing here nests deeper than lists in tables"
+        "remove brackets and dots; the deepest allowed nesting is a list in a table"
     } else if message.contains("carriage return") {
-        "save it with line ends of Unix (LF) or Windows (CR LF)"
+        "save it with Unix (LF) or Windows (CR LF) line ends"
     } else {
         "write it as key = value"
     }
@@ -367,7 +368,7 @@ mod tests {
     fn faults_have_a_place() {
         let unknown = fault("relief_psi = 1\n", |table| table.only(&["relief_bar"]));
         assert!(
-            unknown.starts_with("m.toml:1:1: unit psi is not known, this key is relief_bar"),
+            unknown.starts_with("m.toml:1:1: unit psi is not known, this key has to be relief_bar"),
             "{unknown}"
         );
         let range = fault("\na = 7\n", |table| table.number("a", 0.0..=5.0).map(drop));
@@ -394,7 +395,7 @@ mod tests {
             ("a = \"1\"", "write for example a = 1"),
             ("a = nan", "write for example a = 1"),
             ("a = 1\na = 2", "delete one of the two"),
-            ("a = 1\rb = 2", "save it with line ends"),
+            ("a = 1\rb = 2", "save it with Unix (LF)"),
             ("a = = 1", "write it as key = value"),
         ] {
             let said = mend(text);
@@ -405,7 +406,7 @@ mod tests {
             format!("[{}]", ["a"; 5_000].join(".")),
         ] {
             assert!(
-                mend(&deep).contains("take brackets and dots out"),
+                mend(&deep).contains("remove brackets and dots"),
                 "{}",
                 mend(&deep)
             );

@@ -224,8 +224,13 @@ impl<'t> Reader<'t> {
     }
 
     fn beyond(&self, at: usize) -> Fault {
-        let what = "the unit has a power that no quantity has";
-        Fault::at(self.text, at, what, "write powers in twelfths, up to 60")
+        let what = "the exponent of the unit is out of range";
+        Fault::at(
+            self.text,
+            at,
+            what,
+            "use exponents that are multiples of 1/12, up to 60",
+        )
     }
 }
 
@@ -299,11 +304,11 @@ mod tests {
             ("m^", "column 3: the unit ends too early; "),
             (
                 "m99",
-                "column 1: the unit has a power that no quantity has; ",
+                "column 1: the exponent of the unit is out of range; ",
             ),
             (
                 "m^(1/0)",
-                "column 1: the unit has a power that no quantity has; ",
+                "column 1: the exponent of the unit is out of range; ",
             ),
             ("µm", "column 1: unit `µm` is not known; "),
         ];

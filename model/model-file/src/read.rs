@@ -59,7 +59,7 @@ fn base(top: &TomlTable<'_>) -> Result<Option<Model>, InputError> {
         top.error_at(
             "base",
             format!("base {} is not known", quote(name)),
-            "it is \"nominal\" or \"dynamic\"",
+            "use \"nominal\" or \"dynamic\"",
         )
     };
     starting_point(name).map(Some).ok_or_else(unknown)
@@ -73,7 +73,7 @@ fn dynamics(top: &TomlTable<'_>, inherited: Option<Dynamics>) -> Result<Dynamics
         (None, None) => Err(top.missing("dynamics")),
         (Some(other), _) => {
             let what = format!("dynamics {} is not known", quote(other));
-            Err(top.error_at("dynamics", what, "it is \"steady\" or \"dynamic\""))
+            Err(top.error_at("dynamics", what, "use \"steady\" or \"dynamic\""))
         }
     }
 }
@@ -104,10 +104,10 @@ fn read_table(
 
 fn missing_table(top: &TomlTable<'_>, name: &str) -> InputError {
     let mend = format!(
-        "add it, or a line base = \"nominal\" to take what is missing from there: {}",
+        "add it, or a line base = \"nominal\" to use the nominal values for missing keys: {}",
         keys(name).join(", ")
     );
-    top.error(format!("there is no table [{name}]"), mend)
+    top.error(format!("table [{name}] is missing"), mend)
 }
 
 fn read_constant(
@@ -156,7 +156,7 @@ fn added_effects(
     for table in &top.tables("effect")? {
         let effect = effect_of(table, catalogue)?;
         if added.iter().any(|other| other.effect.id() == effect.id()) {
-            let what = format!("{} is there twice", effect.id());
+            let what = format!("{} is duplicated", effect.id());
             return Err(table.error_at("id", what, "delete one of the two [[effect]] blocks"));
         }
         let parameters = effect.parameters();
@@ -200,9 +200,9 @@ fn effect_of(
         let known: Vec<&str> = forms.iter().filter_map(|effect| effect.form()).collect();
         let what = format!("{id} has no form {}", quote(form.unwrap_or_default()));
         let help = if known.is_empty() {
-            "leave the line out".to_owned()
+            "omit the line".to_owned()
         } else {
-            format!("leave the line out, or write one of: {}", known.join(", "))
+            format!("omit the line, or write one of: {}", known.join(", "))
         };
         table.error_at("form", what, help)
     })

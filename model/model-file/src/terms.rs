@@ -18,7 +18,7 @@ pub fn read(top: &TomlTable<'_>) -> Result<Vec<&'static dyn Effect>, InputError>
     for table in &top.tables("term")? {
         let definition = definition(table)?;
         if terms.iter().any(|other| other.id() == definition.id) {
-            let what = format!("{} is there twice", definition.id);
+            let what = format!("{} is duplicated", definition.id);
             return Err(table.error_at("id", what, "delete one of the two [[term]] blocks"));
         }
         terms.push(TermEffect::define(definition).map_err(|error| placed(table, error))?);

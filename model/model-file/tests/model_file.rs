@@ -104,7 +104,7 @@ fn faults_have_a_line_and_a_column() {
     let cases = [
         (
             with("set_pressure_bar", "set_pressure_psi"),
-            "m.toml:10:1: unit psi is not known, this key is set_pressure_bar",
+            "m.toml:10:1: unit psi is not known, this key has to be set_pressure_bar",
         ),
         (
             with("set_pressure_bar = 154", "set_pressure_bar = \"154\""),
@@ -159,7 +159,7 @@ fn faults_have_a_line_and_a_column() {
         ),
         (
             fault("format = 1\ndynamics = \"steady\""),
-            "m.toml:1:1: there is no table [pump]; add it, or a line base",
+            "m.toml:1:1: table [pump] is missing; add it, or a line base",
         ),
         (
             effect("id = \"lower-treshold-shift\"\nshift_a = 0.2"),
@@ -167,7 +167,7 @@ fn faults_have_a_line_and_a_column() {
         ),
         (
             effect("id = \"lower-threshold-shift\"\nshift_ma = 200"),
-            "m.toml:5:1: unit ma is not known, this key is shift_a",
+            "m.toml:5:1: unit ma is not known, this key has to be shift_a",
         ),
         (
             effect("id = \"lower-threshold-shift\""),
@@ -181,16 +181,16 @@ fn faults_have_a_line_and_a_column() {
             effect(
                 "id = \"lower-threshold-shift\"\nshift_a = 0.2\n[[effect]]\nid = \"lower-threshold-shift\"\nshift_a = 0.2",
             ),
-            "m.toml:7:6: lower-threshold-shift is there twice",
+            "m.toml:7:6: lower-threshold-shift is duplicated",
         ),
         (effect("shift_a = 0.2"), "m.toml:3:1: [[effect]] has no id"),
         (
             effect("id = \"oil-viscosity\"\nform = \"tanh\"\ncritical_flow_number = 100.0"),
-            "m.toml:5:8: oil-viscosity has no form \"tanh\"; leave the line out, or write one of: flow-number",
+            "m.toml:5:8: oil-viscosity has no form \"tanh\"; omit the line, or write one of: flow-number",
         ),
         (
             effect("id = \"lower-threshold-shift\"\nform = \"best\"\nshift_a = 0.2"),
-            "m.toml:5:8: lower-threshold-shift has no form \"best\"; leave the line out",
+            "m.toml:5:8: lower-threshold-shift has no form \"best\"; omit the line",
         ),
     ];
     for (fault, expected) in cases {
@@ -345,11 +345,11 @@ fn faults_of_a_term_in_a_model_file_have_a_place() {
         ),
         (
             with("creeping-leak", "end-cushion"),
-            "m.toml:26:6: end-cushion is there twice; delete one of the two [[term]]",
+            "m.toml:26:6: end-cushion is duplicated; delete one of the two [[term]]",
         ),
         (
             with("c = 0.41", "c = 2"),
-            "m.toml:44:5: c = 2 is out of range; it may be 0 to 1",
+            "m.toml:44:5: c = 2 is out of range; the range is 0 to 1",
         ),
         (
             with("depth_mm = 22", ""),

@@ -1,4 +1,4 @@
-//! The scalars of a calibration as they are written into a file, each with the reason of its value.
+//! The scalars of a calibration as written to a file, each with the reason for its value.
 
 use std::fmt::Write as _;
 
@@ -8,7 +8,7 @@ use hitch_quantities::calibration::parameter::ParameterInfo;
 use super::key;
 use super::setting::visit_scalars;
 
-/// Writes all of them; what differs from `before` was tuned. (Writing to a string cannot fail.)
+/// Writes all scalars; those that differ from `before` are marked as tuned. (Writing to a string cannot fail.)
 pub fn write_scalars(calibration: &Calibration, before: Option<&Calibration>, text: &mut String) {
     let mut counts_before = Vec::new();
     let before = before.unwrap_or(calibration);
@@ -29,7 +29,7 @@ pub fn write_scalars(calibration: &Calibration, before: Option<&Calibration>, te
     });
 }
 
-/// Why a scalar is what it is: the reason is that of the default, and would be none for another value.
+/// The reason for the value of a scalar; it applies to the default value only.
 fn reason(info: &ParameterInfo, counts: i32, was_tuned: bool) -> String {
     if counts == info.nominal {
         return info.reason.to_owned();

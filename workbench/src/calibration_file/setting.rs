@@ -1,4 +1,4 @@
-//! Single scalars of a calibration by name, as on a command line: `position.approach_gain=30`.
+//! Single scalars of a calibration, set by name on the command line: `position.approach_gain=30`.
 
 use hitch_input::input_error::{InputError, quote};
 use hitch_input::naming::offer_names;
@@ -32,13 +32,13 @@ impl Scalar {
     }
 }
 
-/// What others call a scalar: group, their name, ours.
+/// Common alternative names of scalars: group, alternative, name.
 const ALSO_CALLED: [(&str, &str, &str); 1] = [("position", "kp", "approach_gain")];
 
 /// The calibration with settings from the command line, validated again.
 ///
 /// # Errors
-/// What is wrong with the first bad one, or with what they make together.
+/// The fault of the first invalid setting, or of their combination.
 pub fn with_settings(
     calibration: &Calibration,
     settings: &[String],
@@ -53,10 +53,10 @@ pub fn with_settings(
     })
 }
 
-/// Sets one scalar, named with or without its unit, or as others call it; its name without.
+/// Sets one scalar, named with or without its unit or by an alternative name; returns its name without unit.
 ///
 /// # Errors
-/// What is wrong with the setting.
+/// The fault of the setting.
 pub fn set(calibration: &mut Calibration, setting: &str) -> Result<String, String> {
     let parsed = setting.split_once('=').and_then(|(path, value)| {
         let (group, name) = path.trim().split_once('.')?;
@@ -64,7 +64,9 @@ pub fn set(calibration: &mut Calibration, setting: &str) -> Result<String, Strin
     });
     let Some((group, name, value)) = parsed else {
         let what = quote(setting);
-        return Err(format!("{what} is not like position.approach_gain=30"));
+        return Err(format!(
+            "{what} does not have the form position.approach_gain=30"
+        ));
     };
     let ours = ALSO_CALLED
         .iter()
@@ -72,7 +74,7 @@ pub fn set(calibration: &mut Calibration, setting: &str) -> Result<String, Strin
     let name = ours.map_or(name, |&(_, _, ours)| ours);
     let Ok(value) = value.parse::<f64>() else {
         let what = quote(value);
-        return Err(format!("{what} is not a number; {group}.{name} needs one"));
+        return Err(format!("{what} is not a number; {group}.{name} is numeric"));
     };
     let mut found = None;
     visit_scalars(calibration, &mut |of, info, counts| {
@@ -87,7 +89,7 @@ pub fn set(calibration: &mut Calibration, setting: &str) -> Result<String, Strin
     });
     match found {
         Some((info, true)) if !is_exact(&info, value) => Err(format!(
-            "{group}.{} = {value} is no whole number; write for example {value:.0}",
+            "{group}.{} = {value} is not an integer; write for example {value:.0}",
             key(&info)
         )),
         Some((info, true)) => Ok(format!("{group}.{}", info.name)),
@@ -95,14 +97,14 @@ pub fn set(calibration: &mut Calibration, setting: &str) -> Result<String, Strin
             let Scalar { low, high, .. } = Scalar::of(&info, info.nominal);
             let key = key(&info);
             Err(format!(
-                "{group}.{key} = {value:?} is out of range; it may be {low} to {high}"
+                "{group}.{key} = {value:?} is out of range; the range is {low} to {high}"
             ))
         }
         None => Err(unknown(calibration, group, name)),
     }
 }
 
-/// What to say of a name that there isn't: what comes near it.
+/// The message for an unknown name, with the most similar names.
 fn unknown(calibration: &mut Calibration, group: &str, name: &str) -> String {
     let (mut groups, mut names) = (Vec::new(), Vec::new());
     visit_scalars(calibration, &mut |of, info, _| {
@@ -121,7 +123,7 @@ fn unknown(calibration: &mut Calibration, group: &str, name: &str) -> String {
     format!("there is no {what}; {offer}")
 }
 
-/// The scalar `group.name`, if there is one.
+/// The scalar `group.name`, if it exists.
 #[must_use]
 pub fn scalar(calibration: &Calibration, path: &str) -> Option<Scalar> {
     let (group, name) = path.split_once('.')?;
@@ -134,7 +136,7 @@ pub fn scalar(calibration: &Calibration, path: &str) -> Option<Scalar> {
     found
 }
 
-/// What [`visit_scalars`] calls: name of the group, the scalar, and its counts to read or change.
+/// Callback of [`visit_scalars`]: group name, scalar, and its counts.
 pub(super) type Visit<'v> = &'v mut dyn FnMut(&'static str, &ParameterInfo, &mut i32);
 
 /// Visits every scalar.
@@ -177,7 +179,7 @@ mod tests {
         assert_eq!(name, "position.approach_gain", "what others call it");
         assert_eq!(calibration.position.approach_gain.0, 32);
         for (bad, said) in [
-            ("kp=3", "is not like"),
+            ("kp=3", "does not have the form"),
             (
                 "position.ki=3",
                 "there is no \"position.ki\"; known: lower_limit, ",
@@ -188,11 +190,11 @@ mod tests {
             ("position.approach_gain=x", "is not a number"),
             (
                 "position.approach_gain=1e9",
-                "position.approach_gain_per_s = 1000000000.0 is out of range; it may be 1 to 200",
+                "position.approach_gain_per_s = 1000000000.0 is out of range; the range is 1 to 200",
             ),
             (
                 "hold.corrections=5.5",
-                "hold.corrections_count = 5.5 is no whole number",
+                "hold.corrections_count = 5.5 is not an integer",
             ),
             ("position.approach_gain=NaN", "is out of range"),
             ("position.approach_gain=1e300", "= 1e300 is out of range"),

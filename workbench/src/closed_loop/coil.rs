@@ -1,13 +1,13 @@
-//! A solenoid and its driver: from the share of the supply that the controller asks for to a current.
+//! A solenoid with its driver: from duty cycle to current.
 //!
 //! ```text
 //! L i' = d V - (1 - d) Vf - R i      i >= 0
 //! ```
 //!
-//! The driver switches at 16 kHz, and the current freewheels through a diode when it is off: what is left of the
-//! switching is a ripple of 20 mA that sampling in the middle of a pulse doesn't see, so the mean over a pulse will do.
+//! The driver switches at 16 kHz, and the current freewheels through a diode in the off time. The remaining ripple is
+//! 20 mA. It is not visible to samples in the middle of a pulse, so the model computes the mean over a pulse.
 
-/// Supply and what is the same for every coil.
+/// A coil at the common supply.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coil {
     /// Resistance with wiring and driver, ohm.
@@ -18,15 +18,15 @@ pub struct Coil {
     pub current_a: f64,
 }
 
-/// Drop over the freewheeling diode, V.
+/// Voltage drop of the freewheeling diode, V.
 const DIODE_V: f64 = 0.7;
 /// Steps of the timer in one pulse: 84 MHz at 16 kHz.
 const PWM_STEPS: f64 = 5_250.0;
-/// Pieces into which a millisecond is cut.
+/// Integration steps in a millisecond.
 const PIECES: u32 = 8;
 
 impl Coil {
-    /// A cold coil of the rig without current.
+    /// A cold, currentless coil of the rig.
     #[must_use]
     pub fn of_the_rig() -> Self {
         Self {
@@ -36,7 +36,7 @@ impl Coil {
         }
     }
 
-    /// One millisecond with a share `duty` of `supply_v`; the mean current, A.
+    /// One millisecond at duty cycle `duty` of `supply_v`; returns the mean current, A.
     pub fn step(&mut self, duty: f64, supply_v: f64) -> f64 {
         let duty = (duty.clamp(0.0, 1.0) * PWM_STEPS).round() / PWM_STEPS;
         let rest_a = (duty * supply_v - (1.0 - duty) * DIODE_V) / self.resistance_ohm;

@@ -1,4 +1,4 @@
-//! A plant behind its two coils: what a driver's duty does to a hitch.
+//! A plant driven through its two coils by duty cycles.
 
 use hitch_plant::{Currents, HitchRig, Model, Plant, Reading, Rig};
 
@@ -14,7 +14,7 @@ struct CoilPair {
 }
 
 impl CoilPair {
-    /// Both cold and without current.
+    /// Cold and currentless.
     fn of_the_rig() -> Self {
         Self {
             lift: Coil::of_the_rig(),
@@ -22,7 +22,7 @@ impl CoilPair {
         }
     }
 
-    /// One millisecond with these shares of the supply; the mean currents.
+    /// One millisecond at these duty cycles; returns the mean currents.
     fn step(&mut self, [lift, lower]: [f64; 2]) -> Currents {
         Currents {
             lift_a: self.lift.step(lift, SUPPLY_V),
@@ -39,7 +39,7 @@ pub struct DrivenPlant<'m> {
 }
 
 impl<'m> DrivenPlant<'m> {
-    /// A hitch at rest at `start_angle_deg` without current.
+    /// A hitch at rest at `start_angle_deg`, without current.
     #[must_use]
     pub fn at_rest(
         model: &'m Model,
@@ -58,7 +58,8 @@ impl<'m> DrivenPlant<'m> {
         }
     }
 
-    /// One millisecond with shares of the supply on lift and lowering coil; `wire` changes what the coils get.
+    /// One millisecond at these duty cycles of lift and lowering coil; `wire` can modify the coil voltages (wiring
+    /// faults).
     pub fn step(&mut self, shares: [f64; 2], wire: impl FnOnce(&mut Currents)) {
         self.currents = self.coils.step(shares);
         wire(&mut self.currents);
@@ -71,7 +72,7 @@ impl<'m> DrivenPlant<'m> {
         self.currents
     }
 
-    /// What there is to be measured.
+    /// The measurable quantities.
     #[must_use]
     pub fn reading(&self) -> Reading {
         self.plant.reading()

@@ -1,11 +1,10 @@
-//! The yardstick: the shortest manoeuvre that the plant allows between edges of 100 ms.
+//! The reference for move times: the shortest manoeuvre of the plant with edges of 100 ms.
 //!
-//! The valve goes from its threshold to saturation in an edge of 100 ms, the shortest of a normal manoeuvre (a step
-//! swings the pressure of a loaded cylinder by 18 to 40 bar), stays open, and closes with the same edge. How long it
-//! stays on is found so that the hitch comes to rest on the set point; short moves don't open fully. It is driven
-//! open loop with perfect knowledge: no controller can be much faster without harder edges. One that opens or closes
-//! its valve more steeply than that can be a little faster, at the price of a larger pressure swing: then its time over
-//! the shortest is below one.
+//! The valve opens from its threshold to saturation in an edge of 100 ms, stays open, and closes with the same edge. (A
+//! step would swing the pressure of a loaded cylinder by 18 to 40 bar.) The open time is determined so that the hitch
+//! comes to rest at the set point; in a short move the valve does not open fully. The manoeuvre is open loop with
+//! perfect knowledge of the plant: a controller can be faster only with steeper edges, at the cost of a larger pressure
+//! swing. Its time ratio is then below one.
 
 use hitch_plant::{Currents, HitchRig, Model, Plant, Rig};
 
@@ -16,26 +15,26 @@ use crate::valve_survey::ValveEnds;
 
 /// Edge of the ideal manoeuvre, s.
 pub const EDGE_S: f64 = 0.1;
-/// How long the hitch may swing after the coil is off, s.
+/// Time for which the hitch may oscillate after the coil is off, s.
 const SWING_S: f64 = 1.0;
-/// Longest manoeuvre that is tried, s.
+/// Longest manoeuvre that is simulated, s.
 const LONGEST_S: f64 = 20.0;
 
 /// Figures of the ideal manoeuvre for one move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IdealRamp {
-    /// Until the angle first comes within half a degree of the set point, s; not a number if it never does, as where
-    /// the relief valve forbids it. How the hitch swings afterwards is not counted: a gentler manoeuvre may rest
-    /// sooner, but none between such edges arrives sooner.
+    /// Time until the angle first comes within half a degree of the set point, s; NaN if it never does, for example
+    /// because the relief valve opens. Later oscillation does not count: a gentler manoeuvre may settle sooner, but
+    /// none with such edges arrives sooner.
     pub time_s: f64,
-    /// Peak-to-peak cylinder pressure, bar; not a number if it never arrives.
+    /// Peak-to-peak cylinder pressure, bar; NaN if it never arrives.
     pub pressure_swing_bar: f64,
-    /// Angle of each step until then, degree; of all that were tried if it never arrives.
+    /// Angle in each step until arrival, degree; of the whole simulation if it never arrives.
     pub angles_deg: Vec<f64>,
 }
 
 impl IdealRamp {
-    /// The ideal manoeuvre for `order`; `ends` are threshold and saturation of the valve that does it.
+    /// The ideal manoeuvre for `order`; `ends` are threshold and saturation of the valve that is used.
     #[must_use]
     pub fn find(model: &Model, order: &Move, ends: ValveEnds) -> Self {
         let drive = |on_s: f64| {
@@ -48,7 +47,7 @@ impl IdealRamp {
             .run()
         };
         let (mut short_s, mut long_s) = (0.0, LONGEST_S);
-        // 20 s halved 15 times is below a millisecond.
+        // 20 s bisected 15 times is below a millisecond.
         for _ in 0..15 {
             let middle_s = 0.5 * (short_s + long_s);
             if drive(middle_s).is_short_of(order) {
@@ -69,7 +68,7 @@ struct Drive<'a> {
     on_s: f64,
 }
 
-/// Angle and cylinder pressure of each millisecond.
+/// Angle and cylinder pressure in each millisecond.
 struct Track(Vec<(f64, f64)>);
 
 impl Drive<'_> {
@@ -124,7 +123,7 @@ impl Drive<'_> {
 }
 
 impl Track {
-    /// True if the hitch ends short of the set point.
+    /// Whether the hitch stops short of the set point.
     fn is_short_of(&self, order: &Move) -> bool {
         self.0
             .last()
@@ -144,7 +143,7 @@ impl Track {
     }
 }
 
-/// True if `angle_deg` is beyond the set point by more than `by_deg`.
+/// Whether `angle_deg` is beyond the set point by more than `by_deg`.
 fn is_past(order: &Move, angle_deg: f64, by_deg: f64) -> bool {
     let way = (order.to_deg - order.from_deg).signum();
     (angle_deg - order.to_deg) * way > by_deg

@@ -1,4 +1,4 @@
-//! Sensors and current driver as a tractor has them: noisy, quantised, the same for the same seed.
+//! Typical sensors and current measurement of a tractor: noisy, quantised, reproducible by seed.
 
 use hitch_plant::{Currents, Reading};
 use hitch_quantities::Inputs;
@@ -13,18 +13,18 @@ pub const ANGLE_NOISE_DEG: f64 = 0.05;
 pub const CYLINDER_NOISE_BAR: f64 = 0.10;
 /// One sigma of the pump pressure sensor, bar.
 pub const PUMP_NOISE_BAR: f64 = 0.15;
-/// Step of a 12-bit converter over the 0.5 to 4.5 V (of 5 V) that are 110 degrees, degree.
+/// Resolution of a 12-bit converter for an angle sensor with 0.5 to 4.5 V of 5 V over 110 degrees, degree.
 const ANGLE_STEP_DEG: f64 = 110.0 / (0.8 * 4096.0);
-/// Step of the same converter over 250 bar, bar.
+/// Resolution of the same converter over 250 bar, bar.
 const PRESSURE_STEP_BAR: f64 = 250.0 / (0.8 * 4096.0);
 /// One sigma of a measured coil current, A.
 pub const CURRENT_NOISE_A: f64 = 0.003;
-/// Step of the same converter over 5 A, A.
+/// Resolution of the same converter over 5 A, A.
 const CURRENT_STEP_A: f64 = 5.0 / 4096.0;
-/// Supply of a running tractor, V.
+/// Supply with the engine running, V.
 pub const SUPPLY_V: f64 = 13.8;
 
-/// A set of instruments with a random stream of its own.
+/// A set of instruments with its own random stream.
 pub struct Instruments {
     random: Pcg64Mcg,
     angle: Normal<f64>,
@@ -35,7 +35,7 @@ pub struct Instruments {
 }
 
 impl Instruments {
-    /// Instruments whose noise is settled by `seed`.
+    /// Instruments with noise from `seed`.
     #[must_use]
     pub fn new(seed: u64, oil_temperature_c: f64) -> Self {
         let normal = |sigma| Normal::new(0.0, sigma).expect("a positive constant");
@@ -49,7 +49,7 @@ impl Instruments {
         }
     }
 
-    /// What the controller is told of `truth` and of the `currents` in the coils, with the lever at `lever_deg`.
+    /// The controller's inputs for the state `truth` and the coil `currents`, with the lever at `lever_deg`.
     pub fn read(&mut self, truth: &Reading, currents: Currents, lever_deg: f64) -> Inputs {
         let mut ampere = |true_a: f64| {
             let read_a = quantised(

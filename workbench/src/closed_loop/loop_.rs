@@ -1,4 +1,4 @@
-//! One hitch with its controller, a millisecond at a time.
+//! One hitch with its controller, in steps of a millisecond.
 
 use hitch_controller::Controller;
 use hitch_plant::{Currents, Model};
@@ -11,7 +11,7 @@ use super::instruments::Instruments;
 /// The controller's step, s.
 pub const STEP_S: f64 = 1e-3;
 
-/// One millisecond, as it truly was.
+/// True state and signals of one millisecond.
 #[derive(Debug, Clone, Copy)]
 pub struct Sample {
     /// Time since the loop was closed, s.
@@ -24,9 +24,9 @@ pub struct Sample {
     pub cylinder_pressure_bar: f64,
     /// Pump pressure without noise, bar.
     pub pump_pressure_bar: f64,
-    /// What the controller was told.
+    /// The controller's inputs.
     pub inputs: Inputs,
-    /// What the controller asked for.
+    /// The controller's outputs.
     pub outputs: Outputs,
 }
 
@@ -39,7 +39,7 @@ pub struct ClosedLoop<'m> {
 }
 
 impl<'m> ClosedLoop<'m> {
-    /// A hitch at rest at `start_angle_deg`, its controller just powered up.
+    /// A hitch at rest at `start_angle_deg`; its controller is in the state after power-up.
     #[must_use]
     pub fn new(
         model: &'m Model,
@@ -62,8 +62,8 @@ impl<'m> ClosedLoop<'m> {
         self.step_with(lever_deg, |_| {}, |_, _| {})
     }
 
-    /// One millisecond in which `tell` changes what the controller is told (operators' switches, faults of
-    /// sensors) and `wire` what the coils get of what it asks for (faults of coils and drivers).
+    /// One millisecond in which `tell` can modify the controller's inputs (operator switches, sensor faults) and `wire`
+    /// the coil voltages (faults of coils and drivers).
     pub fn step_with(
         &mut self,
         lever_deg: f64,
@@ -97,7 +97,8 @@ impl<'m> ClosedLoop<'m> {
         &self.controller
     }
 
-    /// Picks the hitch up with the lever, as an operator does after power-up, and leaves both at rest.
+    /// Moves the lever to the hitch position after power-up (lever capture), as an operator does, and leaves both at
+    /// rest.
     pub fn pick_up(&mut self) {
         const AWAY_DEG: f64 = 2.0;
         let here_deg = self.plant.angle_deg();

@@ -1,4 +1,4 @@
-//! How good a move was. Everything is judged on the true angle, not on what the sensor said.
+//! Figures of merit of a move, evaluated on the true angle, not on the measured one.
 
 use serde::Serialize;
 
@@ -6,13 +6,13 @@ use super::ideal_ramp::IdealRamp;
 use super::loop_::{STEP_S, Sample};
 use super::scenario::Move;
 
-/// A move has arrived when the angle stays within this of the set point, degree.
+/// A move has arrived when the angle stays within this distance of the set point, degree.
 pub const ARRIVED_DEG: f64 = 0.5;
 
-/// Figures of one move; in a document what is not a number is `null`.
+/// Figures of one move; NaN is `null` in a document.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MoveResult {
-    /// Where the hitch rested first, degree.
+    /// Start angle, degree.
     pub from_deg: f64,
     /// Set point, degree.
     pub to_deg: f64,
@@ -20,59 +20,59 @@ pub struct MoveResult {
     pub load_kg: f64,
     /// Oil temperature, C.
     pub oil_temperature_c: f64,
-    /// Whether the angle stays within 0.5 degree of the set point in the end.
+    /// Whether the angle finally stays within 0.5 degree of the set point.
     pub arrived: bool,
-    /// From the step of the set point until the angle stays within 0.5 degree, s; not a number if it never does.
+    /// Time from the step of the set point until the angle stays within 0.5 degree, s; NaN if it never does.
     pub time_s: f64,
-    /// Shortest time that the plant allows between edges of a normal manoeuvre, s: see [`IdealRamp`]. Not a number if
-    /// it does not allow the move at all.
+    /// Shortest time of the plant with edges of a normal manoeuvre, s: see [`IdealRamp`]. NaN if the plant cannot do
+    /// the move.
     pub shortest_s: f64,
-    /// `time_s / shortest_s`; not a number if either is none. Below one if the valve opened or closed more steeply than
-    /// a normal manoeuvre does.
+    /// `time_s / shortest_s`; NaN if either is NaN. Below one if the valve opened or closed more steeply than in a
+    /// normal manoeuvre.
     pub ratio: f64,
-    /// Root mean square of the distance from the angle that the shortest manoeuvre has at the same time, until both
-    /// have arrived, degree.
+    /// Root mean square of the difference from the angle of the ideal manoeuvre at the same time, until both have
+    /// arrived, degree.
     pub tracking_error_deg: f64,
-    /// Furthest beyond the set point, degree.
+    /// Largest overshoot of the set point, degree.
     pub overshoot_deg: f64,
     /// Distance from the set point at the end of the run, degree.
     pub final_error_deg: f64,
-    /// How long a coil was on in the minute after `time_s`, s: the tail of the approach is in it. None if it never
+    /// On time of the coils in the minute after `time_s`, s, including the tail of the approach. Zero if it never
     /// arrives.
     pub active_after_s: f64,
-    /// How often a coil was switched on in the minute after `time_s`; never if it never arrives.
+    /// Number of coil activations in the minute after `time_s`; zero if it never arrives.
     pub switched_on_after: u32,
-    /// Peak-to-peak cylinder pressure during the move over that of the ideal ramp; not a number if there is none.
+    /// Peak-to-peak cylinder pressure during the move relative to the ideal ramp; NaN if there is none.
     pub pressure_swing_ratio: f64,
 }
 
 /// Figures of a set of moves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Summary {
-    /// How many moves there are.
+    /// Number of moves.
     pub moves: usize,
-    /// How many of them arrived.
+    /// Number of moves that arrived.
     pub arrived: usize,
-    /// Median time ratio of those that arrived; not a number if none did.
+    /// Median time ratio of the moves that arrived; NaN if none did.
     pub ratio_median: f64,
-    /// Time ratio that 95 % of those that arrived stay below; not a number if none did.
+    /// 95 % quantile of the time ratio of the moves that arrived; NaN if none did.
     pub ratio_p95: f64,
-    /// Median of the tracking errors, degree.
+    /// Median tracking error, degree.
     pub tracking_error_median_deg: f64,
     /// Largest overshoot, degree.
     pub overshoot_max_deg: f64,
     /// Largest final error, degree.
     pub final_error_max_deg: f64,
-    /// Longest activity after arrival, s.
+    /// Longest on time after arrival, s.
     pub active_after_max_s: f64,
-    /// Coils switched on after arrival, all moves together.
+    /// Number of coil activations after arrival, of all moves.
     pub switched_on_after: u32,
     /// Largest pressure swing ratio.
     pub pressure_swing_ratio_max: f64,
 }
 
 impl MoveResult {
-    /// How long it took, s: for ever if it never arrived.
+    /// Duration, s; infinite if it never arrived.
     #[must_use]
     pub fn took_s(&self) -> f64 {
         if self.arrived {
@@ -83,7 +83,7 @@ impl MoveResult {
     }
 }
 
-/// Judges a move: `samples` begin with the step of the set point.
+/// Figures of a move; `samples` start at the step of the set point.
 #[must_use]
 pub fn judge(order: &Move, samples: &[Sample], ideal: &IdealRamp) -> MoveResult {
     let way = (order.to_deg - order.from_deg).signum();
@@ -122,7 +122,7 @@ pub fn judge(order: &Move, samples: &[Sample], ideal: &IdealRamp) -> MoveResult 
     }
 }
 
-/// Root mean square of the distance from the ideal manoeuvre, which stays on the set point once it is there.
+/// Root mean square of the difference from the ideal manoeuvre, which stays at the set point after arrival.
 fn tracking_error_deg(order: &Move, samples: &[Sample], ideal: &IdealRamp) -> f64 {
     let wanted_deg = ideal
         .angles_deg
@@ -152,7 +152,7 @@ fn is_on(sample: &Sample) -> bool {
 }
 
 impl Summary {
-    /// Sums up; `None` without moves.
+    /// Summarises moves; `None` if there are none.
     #[must_use]
     pub fn of(moves: &[MoveResult]) -> Option<Self> {
         let sorted = |figure: fn(&MoveResult) -> f64| {
@@ -160,7 +160,7 @@ impl Summary {
             figures.sort_by(f64::total_cmp);
             figures
         };
-        // A lift that no plant can do has no ratio though a hitch that was there already has arrived.
+        // A lift that the plant cannot do has no ratio, although a hitch that started there counts as arrived.
         let mut ratios = sorted(|result| result.ratio);
         ratios.retain(|ratio| ratio.is_finite());
         let largest = |figure: fn(&MoveResult) -> f64| moves.iter().map(figure).fold(0.0, f64::max);
@@ -179,7 +179,7 @@ impl Summary {
     }
 }
 
-/// Quantile of a sorted list, linear between its values.
+/// Quantile of a sorted list, with linear interpolation.
 fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let at = share * (sorted.len().checked_sub(1)?) as f64;
     let (below, above) = (at.floor() as usize, at.ceil() as usize);

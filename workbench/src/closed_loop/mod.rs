@@ -1,4 +1,4 @@
-//! The firmware's controller in closed loop with a plant: what a hitch with this calibration would do.
+//! The firmware's controller in closed loop with a plant.
 
 mod coil;
 mod driven_plant;

@@ -1,4 +1,4 @@
-//! Drives moves and judges them, on all cores.
+//! Drives and evaluates moves, on all cores.
 
 use hitch_plant::Model;
 use hitch_quantities::ValidCalibration;
@@ -10,11 +10,11 @@ use super::metrics::{MoveResult, Summary, judge};
 use super::scenario::Move;
 use crate::valve_survey::ValveEnds;
 
-/// From the step of the set point to the end: the longest move and the minute after it, steps.
+/// Duration from the step of the set point: the longest move plus one minute, steps.
 const RUN_STEPS: usize = 64_000;
-/// What is kept of a move for plots, from the step of the set point, steps.
+/// Recorded duration of a move for plots, from the step of the set point, steps.
 const KEPT_STEPS: usize = 3_000;
-/// Seed of the first move's instruments.
+/// Seed of the noise in the first move.
 const SEED: u64 = 0x5eed_0001;
 
 /// The first seconds of a move, for plots.
@@ -22,7 +22,7 @@ const SEED: u64 = 0x5eed_0001;
 pub struct MoveTrace {
     /// The move.
     pub order: Move,
-    /// Samples from the step of the set point, time zero there.
+    /// Samples from the step of the set point, at time zero.
     pub samples: Vec<Sample>,
 }
 
@@ -33,11 +33,11 @@ pub struct LoopRun {
     pub results: Vec<MoveResult>,
     /// Figures of all.
     pub summary: Summary,
-    /// Traces of each move.
+    /// Trace of each move.
     pub traces: Vec<MoveTrace>,
 }
 
-/// A move, and the shortest manoeuvre that does it.
+/// A move with its ideal manoeuvre.
 #[derive(Debug, Clone)]
 pub struct Course {
     order: Move,
@@ -45,7 +45,7 @@ pub struct Course {
     seed: u64,
 }
 
-/// Finds the shortest manoeuvre of each move.
+/// Finds the ideal manoeuvre of each move.
 #[must_use]
 pub fn courses(model: &Model, moves: &[Move]) -> Vec<Course> {
     let ends = [ValveEnds::of_lift(model), ValveEnds::of_lowering(model)];
@@ -64,7 +64,7 @@ pub fn courses(model: &Model, moves: &[Move]) -> Vec<Course> {
         .collect()
 }
 
-/// Drives `moves` and the minute after each; `None` if there are none.
+/// Drives `moves`, each with the minute after it; `None` if there are none.
 #[must_use]
 pub fn run(model: &Model, calibration: &ValidCalibration, moves: &[Move]) -> Option<LoopRun> {
     let driven: Vec<(MoveResult, MoveTrace)> = courses(model, moves)
@@ -79,7 +79,7 @@ pub fn run(model: &Model, calibration: &ValidCalibration, moves: &[Move]) -> Opt
     })
 }
 
-/// Figures of `courses` that are watched for `after_s` beyond three times their shortest time.
+/// Figures of `courses`, observed for `after_s` beyond three times their shortest time.
 #[must_use]
 pub fn figures(
     model: &Model,
@@ -109,7 +109,7 @@ fn drive(
     (result, MoveTrace { order, samples })
 }
 
-/// What happens from the step of the set point on, time zero there.
+/// The samples from the step of the set point, at time zero.
 fn samples(
     model: &Model,
     calibration: &ValidCalibration,

@@ -1,9 +1,9 @@
-//! What is driven: sets of moves.
+//! Scenarios: sets of moves.
 
 /// A move of the lever from one rest to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Move {
-    /// Where the hitch rests first, degree.
+    /// Start angle, degree.
     pub from_deg: f64,
     /// Set point, degree.
     pub to_deg: f64,
@@ -18,15 +18,15 @@ pub struct Move {
 pub enum Scenario {
     /// Moves of 5 to 60 degrees about the middle, both ways, at 50, 150 and 250 kg
     Moves,
-    /// A few of them, for a quick look
+    /// A subset of them, for a quick check
     Quick,
     /// Small corrections of 1 to 3 degrees, where thresholds matter most
     Fine,
     /// Moves that start or end within a degree of the limits of travel
     Ends,
-    /// Moves of 2 to 80 degrees with cold, warm and hot oil, few of them: for tuning
+    /// A small set of moves of 2 to 80 degrees with cold, warm and hot oil, for tuning
     Tuning,
-    /// Moves of 2 to 80 degrees with oil at 10, 40 and 70 C: what the bars of motion are about
+    /// Moves of 2 to 80 degrees with oil at 10, 40 and 70 C: the moves of the motion limits
     Limits,
 }
 
@@ -36,11 +36,11 @@ const LOADS_KG: [f64; 3] = [50.0, 150.0, 250.0];
 const OIL_TEMPERATURE_C: f64 = 40.0;
 /// Oil from a cold morning to a hot afternoon, C.
 const COLD_TO_HOT_C: [f64; 3] = [10.0, OIL_TEMPERATURE_C, 70.0];
-/// Rocker straight down, degree: the middle of the travel.
+/// Angle at which the rocker points straight down, degree: the middle of the travel.
 const MIDDLE_DEG: f64 = 90.0;
 
 impl Scenario {
-    /// Its moves, at `load_kg` alone if one is given.
+    /// The moves of the scenario, restricted to `load_kg` if given.
     #[must_use]
     pub fn moves(self, load_kg: Option<f64>) -> Vec<Move> {
         let about_middle =

@@ -16,13 +16,13 @@ pub const HEADER: [&str; 9] = [
     "pressure swing",
 ];
 
-/// What a move is called.
+/// Name of a move.
 #[must_use]
 pub fn name(result: &MoveResult) -> String {
     format!("{:.1} to {:.1}", result.from_deg, result.to_deg)
 }
 
-/// A move's row under [`HEADER`].
+/// Row of a move under [`HEADER`].
 #[must_use]
 pub fn row(result: &MoveResult) -> [String; 9] {
     [
@@ -56,20 +56,20 @@ pub fn text(moves: &[MoveResult], summary: &Summary) -> String {
     format!("{table}\n{}", summed_up(summary))
 }
 
-/// The summary in two lines, and one more if not every move arrived.
+/// The summary in two lines, and a third one if a move did not arrive.
 #[must_use]
 pub fn summed_up(summary: &Summary) -> String {
     let arrived = match summary.moves - summary.arrived {
         0 => String::new(),
         never => format!(
-            "{never} of {} moves never arrived; times are those of the others.\n",
+            "{never} of {} moves never arrived; the time ratios exclude them.\n",
             summary.moves
         ),
     };
     format!(
-        "{arrived}Time over shortest: median {}, 95 % below {}; overshoot at most {:.2} deg, \
-         final error at most {:.2} deg.\n\
-         Coils switched on in the minute after arrival: {}; the approach's last {:.3} s at most are in it.\n",
+        "{arrived}Time ratio: median {}, 95 % quantile {}; largest overshoot {:.2} deg, \
+         largest final error {:.2} deg.\n\
+         Coil activations in the minute after arrival: {}; longest on time in that minute: {:.3} s.\n",
         known(summary.ratio_median, 2),
         known(summary.ratio_p95, 2),
         summary.overshoot_max_deg,

@@ -27,10 +27,10 @@ use crate::progress::Progress;
     after_help = "Example: hitch add lower-threshold-shift --campaign lab-a --out lab-a.toml"
 )]
 pub struct Args {
-    /// Effects to add, in this order; hitch effects lists them
+    /// Effects to add, in this order; `hitch effects` lists them
     #[arg(required = true, value_name = "EFFECT")]
     effects: Vec<String>,
-    /// Folder of the campaign that their parameters are estimated from
+    /// Folder of the campaign for the estimation of their parameters
     #[arg(long, value_name = "CAMPAIGN")]
     campaign: PathBuf,
     #[command(flatten)]
@@ -43,7 +43,7 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// If an effect is not known or there already, the campaign or the model file is wrong, or the model cannot be written.
+/// If an effect is unknown or present already, an input is invalid, or the model cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let mut inputs = campaign_files(&args.campaign);
     inputs.push(args.model.file());
@@ -55,7 +55,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let experiment = Experiment::new(&campaign, &model);
     let base = fit_freely(&experiment, &model);
     let fit = fit_with(&experiment, &model, base.clone(), &effects, &progress);
-    progress.say("weighing each beside the others");
+    progress.say("evaluating each effect with the others present");
     let weighed = leave_one_out(&experiment, &model, &fit, model.effects.len());
     drop(progress);
     let rebuilt = rebuilt(&model, &fit.estimate.effects, output::stem(&args.out));
@@ -75,11 +75,11 @@ pub fn run(args: &Args) -> Result<(), Error> {
     for effect in &weighed {
         let _ = writeln!(text, "{}", shown(effect));
     }
-    let _ = writeln!(text, "With all of them: error {:.2} sigma", fit.error());
+    let _ = writeln!(text, "With all effects: error {:.2} sigma", fit.error());
     outputs.say(|| text)
 }
 
-/// The model with the effects, all of them fitted together.
+/// The model with the effects, fitted jointly.
 fn fit_with(
     experiment: &Experiment,
     model: &Model,
@@ -95,11 +95,11 @@ fn fit_with(
             fit = candidate.fit;
         }
     }
-    // What hardly helps is only sketched when it is tried.
+    // Insignificant effects are fitted only coarsely in the trial.
     refine(experiment, model, fit.estimate)
 }
 
-/// The effects of these names, none of which the model may have already.
+/// The effects of these names; none of them may be in the model.
 fn effects(ids: &[String], model: &Model) -> Result<Vec<&'static dyn Effect>, Error> {
     let mut effects: Vec<&'static dyn Effect> = Vec::new();
     for id in ids {
@@ -114,7 +114,7 @@ fn effects(ids: &[String], model: &Model) -> Result<Vec<&'static dyn Effect>, Er
             .any(|present| present.id() == effect.id())
         {
             return Err(Error::Usage(format!(
-                "effect {id} is in the model already; leave it out"
+                "effect {id} is in the model already; omit it"
             )));
         }
         effects.push(effect);
@@ -133,7 +133,7 @@ fn shown(effect: &LeaveOneOut) -> String {
         effect.without.error()
     );
     if candidate.likelihood_ratio < SIGNIFICANT {
-        return line + " (no significant improvement; not needed)";
+        return line + " (no significant improvement)";
     }
     line
 }

@@ -1,4 +1,4 @@
-//! `hitch calibrate`: an identified model turned into the firmware's calibration.
+//! `hitch calibrate`: converts an identified model into the firmware's calibration.
 
 use std::path::PathBuf;
 
@@ -18,10 +18,10 @@ pub struct Args {
     /// The identified model: a model file, nominal or dynamic
     #[arg(value_name = "MODEL")]
     model: String,
-    /// Where the calibration goes
+    /// Write the calibration to this file
     #[arg(long, value_name = "C.toml")]
     out: PathBuf,
-    /// Calibration whose other values are kept (gains, ramps, limits); without it, the nominal one
+    /// Calibration with the remaining values (gains, ramps, limits); without this option, the nominal one
     #[arg(long, value_name = "C.toml")]
     calibration: Option<PathBuf>,
 }
@@ -29,7 +29,7 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// If the model or the calibration is wrong, or the result cannot be written.
+/// If the model or the calibration is invalid, or the result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let inputs = read_files(&args.model, args.calibration.as_ref());
     let outputs = Outputs::check([Some(args.out.as_path())], &inputs)?;

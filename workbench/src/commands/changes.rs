@@ -1,4 +1,4 @@
-//! `hitch changes`: what differs between two campaigns of one machine, or of two machines of a series.
+//! `hitch changes`: compares two campaigns of one machine, or of two machines of a series.
 
 use std::path::PathBuf;
 
@@ -18,9 +18,9 @@ use crate::search_args::SearchArgs;
     after_help = "Example: hitch changes may november --model tractor.toml --out november.toml"
 )]
 pub struct Args {
-    /// Folder of the campaign that is compared with
+    /// Folder of the reference campaign
     baseline: PathBuf,
-    /// Folder of the campaign that may differ
+    /// Folder of the campaign that is compared with it
     new: PathBuf,
     #[command(flatten)]
     model: ModelArg,
@@ -33,19 +33,19 @@ pub struct Args {
     json: JsonArg,
 }
 
-/// Both accounts.
+/// Both explanations.
 #[derive(Debug, Serialize)]
 struct Changes {
-    /// What the model lacks on the campaign that is compared with.
+    /// Effects that the model lacks on the reference campaign.
     baseline: Explanation,
-    /// What has changed since: the steps from the model of that campaign to one of the new campaign.
+    /// Changes since: the steps from the model of the reference campaign to a model of the new campaign.
     new: Explanation,
 }
 
 /// Runs the command.
 ///
 /// # Errors
-/// If a campaign or the model file is wrong, or a result cannot be written.
+/// If a campaign or the model file is invalid, or a result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let mut inputs = campaign_files(&args.baseline);
     inputs.extend(campaign_files(&args.new));
@@ -90,9 +90,9 @@ impl std::fmt::Display for Changes {
             new.head.campaign, new.head.error_before, new.head.error_after
         )?;
         if new.steps.is_empty() {
-            return writeln!(f, "\nNothing has changed that the two campaigns show.");
+            return writeln!(f, "\nNo change is detectable with these campaigns.");
         }
-        writeln!(f, "\nWhat has changed:")?;
+        writeln!(f, "\nChanges:")?;
         let mut steps = new.steps.iter().enumerate();
         steps.try_for_each(|(index, step)| write!(f, "  {}. {step}", index + 1))
     }

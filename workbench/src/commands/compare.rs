@@ -1,4 +1,4 @@
-//! `hitch compare`: model against measurements.
+//! `hitch compare`: compares a model with measurements.
 
 use std::path::PathBuf;
 
@@ -30,7 +30,7 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// If the campaign or the model file is wrong, or a result cannot be written.
+/// If the campaign or the model file is invalid, or a result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let mut inputs = campaign_files(&args.campaign);
     inputs.push(args.model.file());

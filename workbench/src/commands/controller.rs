@@ -1,4 +1,4 @@
-//! `hitch controller`: the firmware's controller on standard input and output, for anyone's own plant.
+//! `hitch controller`: the firmware's controller on standard input and output, for an external plant.
 
 use std::io::{self, BufRead, Write};
 use std::path::{Path, PathBuf};
@@ -13,29 +13,29 @@ use crate::input_stream::{Columns, LineError};
 use crate::teaching::Teaching;
 use crate::{output, outputs, teaching};
 
-/// Header of what the command prints.
+/// Header of the output.
 const HEADER: &str = "lift_current_a,lower_current_a,state";
 
 /// Arguments of `hitch controller`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Example: my-plant | hitch controller --calibration calibration.toml\n\n\
-    Standard input is CSV: a header, then a line a millisecond. Columns: time_s, lever_deg, rocker_angle_deg and, where the \
-    plant has them, cylinder_pressure_bar, pump_pressure_bar, oil_temperature_c, supply_v; and, where there are such things, \
+    Standard input is CSV: a header, then one line for each millisecond. Required columns: time_s, lever_deg, \
+    rocker_angle_deg. Optional columns: cylinder_pressure_bar, pump_pressure_bar, oil_temperature_c, supply_v, \
     jog_deg_per_s, upper_limit_deg, lowering_dial_percent, engine_speed_rpm, measured_lift_current_a, \
-    measured_lower_current_a and the switches transport_lock, hold, quick_lift, teach (0 is off). An empty cell is a sample that \
-    is missing. Each line is answered at once by one line of currents and state. Nothing moves until the lever has been moved \
-    through the present angle.\n\n\
-    A machine may be taught first. Still locked and away from the ends, with teach at 1 and any jog_deg_per_s, as if the \
-    button were held, the controller finds where the valves open, how slowly, and where the ends are, within a minute. Its \
-    state is teaching meanwhile, then taught, or not-taught with the reason. Once teach is 0 again and jog_deg_per_s empty, what was \
-    found counts, and --out has it for the next time."
+    measured_lower_current_a, and the switches transport_lock, hold, quick_lift, teach (0 is off). An empty cell is a \
+    missing sample. Each line is answered by one line with currents and state. The coils stay off until the lever has \
+    been moved through the present angle.\n\n\
+    Teaching is optional. Before the lever capture and away from the ends of travel, set teach to 1 and jog_deg_per_s to any \
+    value (button held): within a minute the controller identifies the opening currents, the valve delays and the ends \
+    of travel. The state is teaching, then taught, or not-taught with the reason. The result takes effect when teach \
+    is 0 and jog_deg_per_s is empty again; --out saves it."
 )]
 pub struct Args {
-    /// The controller's calibration; without it, the nominal one
+    /// Calibration of the controller; without this option, the nominal one
     #[arg(long, value_name = "C.toml")]
     calibration: Option<PathBuf>,
-    /// Where the calibration goes once the machine has been taught
+    /// Write the calibration to this file after teaching
     #[arg(long, value_name = "C.toml")]
     out: Option<PathBuf>,
 }
@@ -43,9 +43,13 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// If the calibration or a line is wrong, or standard output is closed.
+/// If the calibration or a line is invalid, or standard output is closed.
 pub fn run(args: &Args) -> Result<(), Error> {
-    output::no_stdout("--out", args.out.as_deref(), "the answers go there")?;
+    output::no_stdout(
+        "--out",
+        args.out.as_deref(),
+        "standard output has the answers",
+    )?;
     let inputs: Vec<PathBuf> = args.calibration.iter().cloned().collect();
     outputs::Outputs::check([args.out.as_deref()], &inputs)?;
     let controller = Controller::new(calibration(args.calibration.as_ref())?);
@@ -61,7 +65,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
 /// Answers every line of `input` on `output`, flushed line by line.
 ///
 /// # Errors
-/// If a line is wrong (with its line and column), `output` is closed, or what was taught can't be written.
+/// If a line is invalid (with line and column), `output` is closed, or the taught calibration cannot be written.
 pub fn serve(
     mut controller: Controller,
     mut teaching: Teaching,

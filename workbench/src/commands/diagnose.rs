@@ -1,4 +1,4 @@
-//! `hitch diagnose`: which physical effect is missing, ranked.
+//! `hitch diagnose`: ranks missing physical effects.
 
 use std::path::PathBuf;
 
@@ -28,7 +28,7 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// If the campaign or the model file is wrong, or the result cannot be written.
+/// If the campaign or the model file is invalid, or the result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let mut inputs = campaign_files(&args.campaign);
     inputs.push(args.model.file());

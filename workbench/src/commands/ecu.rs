@@ -1,4 +1,4 @@
-//! `hitch ecu`: the ECU on the bench, live.
+//! `hitch ecu`: runs the ECU on the bench, live.
 
 use std::io::BufRead;
 use std::net::SocketAddr;
@@ -21,11 +21,11 @@ use crate::output::{check_writable, no_stdout, write_file};
 use crate::slcan_server::SlcanServer;
 use crate::status_line::StatusLine;
 
-/// Where the hitch is at the start, degree.
+/// Angle of the hitch at the start, degree.
 const START_DEG: f64 = 90.0;
-/// When the operator picks the hitch up, ms: after the first claim of an address.
+/// Time of the lever capture by the operator, ms: after the first address claim.
 const PICK_UP_MS: u64 = 500;
-/// Behind by more than this, time is given up: the machine is too slow, or was asleep.
+/// Maximum lag behind real time; beyond it the schedule restarts (slow host, or suspend).
 const MOST_BEHIND: Duration = Duration::from_millis(200);
 const MILLISECOND: Duration = Duration::from_millis(1);
 
@@ -33,10 +33,10 @@ const MILLISECOND: Duration = Duration::from_millis(1);
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: hitch ecu --can 127.0.0.1:7701 --load 200\n\n\
     The real firmware image runs on an emulated Cortex-M4 with the plant attached, in lock step and in real time. The \
-    operator picks the hitch up after half a second; afterwards standard input is the operator, a line an order: \
-    lever DEG, up, down, stop, quick on|off, hold on|off, lock on|off, service on|off, limit DEG, dial PERCENT, power, quit. \
-    With --can, the bus is open to slcan clients: python-can with interface slcan and channel socket://HOST:PORT. \
-    Writing to the calibration by XCP needs `service on`.")]
+    operator moves the lever through the hitch position (lever capture) after half a second. Standard input then takes \
+    operator commands, one in each line: lever DEG, up, down, stop, quick on|off, hold on|off, lock on|off, \
+    service on|off, limit DEG, dial PERCENT, power, quit. With --can, the bus accepts slcan clients: python-can with \
+    interface slcan and channel socket://HOST:PORT. Writing the calibration over XCP requires `service on`.")]
 pub struct Args {
     /// Offer the CAN bus as slcan on this TCP port
     #[arg(long, value_name = "HOST:PORT")]
@@ -47,19 +47,19 @@ pub struct Args {
     /// Load at the hitch, kg
     #[arg(long, value_name = "KG", default_value = "150", allow_negative_numbers = true, value_parser = load_kg)]
     load: f64,
-    /// The calibration that the ECU was delivered with; without it, the nominal one
+    /// Calibration of the ECU as delivered; without this option, the nominal one
     #[arg(long, value_name = "C.toml")]
     calibration: Option<PathBuf>,
-    /// Keep the ECU's flash in this file, with whatever is taught and tuned
+    /// Keep the ECU's flash in this file, with taught and tuned values
     #[arg(long, value_name = "FILE")]
     flash: Option<PathBuf>,
     /// End after this many seconds
     #[arg(long, value_name = "S", value_parser = seconds)]
     seconds: Option<f64>,
-    /// The emulated ECU's image; without it, the one that the sources make
+    /// Image of the emulated ECU; without this option, it is built from the sources
     #[arg(long, value_name = "FILE", conflicts_with = "host")]
     image: Option<PathBuf>,
-    /// Run the same application here instead of on the emulated processor
+    /// Run the application on the host instead of the emulated processor
     #[arg(long)]
     host: bool,
 }
@@ -67,10 +67,14 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// If something that it needs is wrong or missing, or the emulator ends.
+/// If an input is invalid or missing, or the emulator ends.
 pub fn run(args: &Args) -> Result<(), Error> {
-    // What is read of it is what it keeps.
-    no_stdout("--flash", args.flash.as_deref(), "it has to be read again")?;
+    // The file is both read and written.
+    no_stdout(
+        "--flash",
+        args.flash.as_deref(),
+        "the file is read at the next start",
+    )?;
     args.flash.as_deref().map_or(Ok(()), check_writable)?;
     let model = hitch_model_file::named(&args.model)?;
     let flash = flash(args)?;
@@ -101,7 +105,7 @@ fn failed(error: impl std::fmt::Display) -> Error {
     Error::Failed(error.to_string())
 }
 
-/// What the ECU's flash holds at the start.
+/// Initial contents of the ECU's flash.
 fn flash(args: &Args) -> Result<Vec<u8>, Error> {
     let delivered = delivered(&calibration(args.calibration.as_ref())?);
     let Some(path) = args.flash.as_deref().filter(|path| path.exists()) else {
@@ -110,12 +114,12 @@ fn flash(args: &Args) -> Result<Vec<u8>, Error> {
     match std::fs::read(path) {
         Ok(bytes) if bytes.len() == FLASH_BYTES => Ok(bytes),
         Ok(bytes) => Err(Error::Usage(format!(
-            "{}: is no flash of an ECU ({} bytes instead of {FLASH_BYTES}); name one that `hitch ecu --flash` has written, or a new file",
+            "{}: is not the flash of an ECU ({} bytes instead of {FLASH_BYTES}); give a file written by `hitch ecu --flash`, or a new file",
             path.display(),
             bytes.len()
         ))),
         Err(error) => Err(Error::Usage(format!(
-            "{}: cannot be read: {error}; name a file of its own",
+            "{}: cannot be read: {error}; give a file used only for the flash",
             path.display()
         ))),
     }
@@ -128,12 +132,12 @@ fn keep(path: Option<&Path>, flash: &[u8]) -> Result<(), Error> {
 fn open_slcan_server(address: &str) -> Result<SlcanServer, Error> {
     SlcanServer::open(address).map_err(|error| {
         Error::Usage(format!(
-            "--can {address}: can't be opened: {error}; name an address of this machine and a free port, as in 127.0.0.1:7701"
+            "--can {address}: cannot be opened: {error}; give an address of this machine and a free port, as in 127.0.0.1:7701"
         ))
     })
 }
 
-/// Says what to do if there is no emulator.
+/// Adds a suggested correction if there is no emulator.
 fn require_emulator() -> Result<(), Error> {
     let found = Command::new(QEMU)
         .arg("--version")
@@ -157,13 +161,13 @@ fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Orders from standard input, as they come.
+/// Commands from standard input, as they arrive.
 fn orders() -> Receiver<String> {
     let (sender, receiver) = mpsc::channel();
     thread::spawn(move || {
         for line in io::stdin().lock().split(b'\n').map_while(Result::ok) {
-            // Bytes that are no text become U+FFFD, which is in no order: the line is reported, and the next one
-            // obeyed.
+            // Bytes that are not UTF-8 become U+FFFD, which no command contains: the line is rejected, and reading
+            // continues.
             let line = String::from_utf8_lossy(&line).into_owned();
             if sender.send(line).is_err() {
                 return;
@@ -173,10 +177,10 @@ fn orders() -> Receiver<String> {
     receiver
 }
 
-/// The bench, who is at it, and for how long.
+/// The bench, its operator, and the duration.
 struct Session<'m> {
     bench: Bench<'m>,
-    /// Where clients find the bus.
+    /// Address of the bus for clients.
     address: Option<SocketAddr>,
     bus: Option<Bus>,
     status: StatusLine,
@@ -199,9 +203,9 @@ impl<'m> Session<'m> {
         }
     }
 
-    /// Runs in real time until the time is over or the operator has had enough.
+    /// Runs in real time until the duration has passed or the operator quits.
     fn run(&mut self, machine: &mut impl EcuMachine) -> Result<(), Error> {
-        // Only now that the ECU answers: its image may have had to be made first, and a client would have given up.
+        // The bus opens when the ECU answers: a build of the image before that would exceed the timeout of clients.
         if let Some(address) = self.address {
             eprintln!("CAN is open: slcan on {address}");
         }
@@ -229,7 +233,7 @@ impl<'m> Session<'m> {
         Ok(())
     }
 
-    /// Does what the operator was asked to; false if that is to end it.
+    /// Executes the operator's command; false if it ends the program.
     fn take_orders(
         &mut self,
         orders: &Receiver<String>,
@@ -245,14 +249,14 @@ impl<'m> Session<'m> {
                 Ok(Order::Quit) => return Ok(false),
                 Ok(Order::Power) => machine.power_cycle().map_err(failed)?,
                 Ok(order) => self.bench.operator.apply(order),
-                // A slip of the tongue is no reason to end.
+                // An invalid command does not end the program.
                 Err(what) => self.status.say(&what),
             }
         }
     }
 }
 
-/// Waits until `due`; the time from which the next wait counts.
+/// Waits until `due`; returns the reference time of the next wait.
 fn wait_until(due: Instant) -> Instant {
     let now = Instant::now();
     match due.checked_duration_since(now) {

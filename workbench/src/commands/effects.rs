@@ -1,4 +1,4 @@
-//! `hitch effects`: the catalogue of physical effects, and what formulas of one's own are made of.
+//! `hitch effects`: the catalogue of physical effects, and the elements of formulas.
 mod formulas;
 
 use std::fmt::Write as _;
@@ -17,9 +17,9 @@ use crate::text::{Table, wrapped};
     after_help = "Examples:\n  hitch effects\n  hitch effects lower-threshold-shift\n  hitch effects --formulas"
 )]
 pub struct Args {
-    /// Show this effect only, with all that is known of it
+    /// Show only this effect, in full detail
     effect: Option<String>,
-    /// List the places, signals and functions of formulas in a model file instead
+    /// List the places, signals and functions for formulas in a model file instead
     #[arg(long, conflicts_with = "effect")]
     formulas: bool,
     #[command(flatten)]
@@ -57,7 +57,7 @@ fn list(model: &Model) -> String {
             in a model file are made of.\n"
 }
 
-/// All that is known of an effect. (Writing to a string cannot fail, so the results are dropped.)
+/// Full description of an effect. (Writing to a string cannot fail.)
 fn card(effect: &dyn Effect) -> String {
     let mut text = format!(
         "{}: {}\n\n  {}\n\n",

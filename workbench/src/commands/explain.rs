@@ -1,4 +1,4 @@
-//! `hitch explain`: what the model lacks, found and added until nothing more is worth adding.
+//! `hitch explain`: finds and adds missing effects until no further one is significant.
 
 use std::path::PathBuf;
 
@@ -21,7 +21,7 @@ pub struct Args {
     campaign: PathBuf,
     #[command(flatten)]
     model: ModelArg,
-    /// Write the model with the added effects to this file; it holds the best model so far while the search runs
+    /// Write the model with the added effects to this file, updated during the search with the best model so far
     #[arg(long, value_name = "MODEL.toml")]
     out: Option<PathBuf>,
     /// Write a report to this file: self-contained HTML
@@ -36,7 +36,7 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// If the campaign or the model file is wrong, or a result cannot be written.
+/// If the campaign or the model file is invalid, or a result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let mut inputs = campaign_files(&args.campaign);
     inputs.push(args.model.file());
@@ -48,13 +48,13 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let outputs = Outputs::check(wanted, &inputs)?;
     let model = args.model.load()?;
     let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
-    // What is found so far is on disk when the search is interrupted.
+    // The best result so far is on disk if the search is interrupted.
     let out = args.out.as_deref().filter(|path| !output::is_stdout(path));
     let base = model.clone();
     let improved = |effects: &[AddedEffect]| {
         if let Some(path) = out {
             let partial = rebuilt(&base, effects, output::stem(path));
-            // The last write reports a fault.
+            // A fault is reported by the last write.
             let _ = output::write_file(path, hitch_model_file::to_toml(&partial).as_bytes());
         }
     };

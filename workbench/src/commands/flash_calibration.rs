@@ -1,4 +1,4 @@
-//! `hitch flash-calibration`: a calibration into a running ECU, over XCP.
+//! `hitch flash-calibration`: writes a calibration to a running ECU, over XCP.
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
@@ -12,11 +12,11 @@ use crate::xcp_tool::{Session, SlcanClient, ToolError, write_calibration};
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Example: hitch flash-calibration calibration.toml --can 127.0.0.1:7701\n\n\
-    The hitch has to be locked (`lock on`) and the service switch closed (`service on`). Only what differs is written; then the \
-    ECU stores it, and everything is read back from what is stored."
+    The hitch has to be locked (`lock on`) and the service switch closed (`service on`). Only changed values are \
+    written. The ECU then stores the calibration, and all values are verified from flash."
 )]
 pub struct Args {
-    /// The calibration, as `hitch calibrate` and `hitch tune` write it
+    /// Calibration file, as written by `hitch calibrate` and `hitch tune`
     #[arg(value_name = "C.toml")]
     calibration: PathBuf,
     /// The ECU's bus: an slcan adapter on TCP, such as `hitch ecu --can`
@@ -27,7 +27,7 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// If the calibration is wrong, or the ECU can't be reached or refuses.
+/// If the calibration is invalid, the ECU cannot be reached, or it refuses.
 pub fn run(args: &Args) -> Result<(), Error> {
     let calibration = calibration_file::read(&args.calibration)?;
     let progress = Progress::start("writing the calibration");
@@ -36,30 +36,30 @@ pub fn run(args: &Args) -> Result<(), Error> {
     session.close().map_err(tool_error)?;
     drop(progress);
     output::print(&format!(
-        "{} of {} numbers changed; stored and read back.\n",
+        "{} of {} values changed; stored and verified.\n",
         written.changed, written.words
     ))
 }
 
-/// A session with the ECU behind an address.
+/// Connects to the ECU at an address.
 ///
 /// # Errors
-/// If there is none.
+/// If there is no ECU.
 pub fn connect(address: &str) -> Result<Session, Error> {
     let client = SlcanClient::connect(address).map_err(|error| {
         Error::Usage(match error.kind() {
             ErrorKind::InvalidInput => {
-                format!("--can {address}: {error}; name a host and a port, as in 127.0.0.1:7701")
+                format!("--can {address}: {error}; give a host and a port, as in 127.0.0.1:7701")
             }
             _ => format!(
-                "--can {address}: nobody is there: {error}; start `hitch ecu --can {address}` or name an slcan adapter"
+                "--can {address}: no answer: {error}; start `hitch ecu --can {address}` or give the address of an slcan adapter"
             ),
         })
     })?;
     Session::open(client).map_err(tool_error)
 }
 
-/// What the user has to mend is bad input; the rest is a failure.
+/// A fault that the user can correct is an input error; others are failures.
 pub fn tool_error(error: ToolError) -> Error {
     match error {
         ToolError::Locked

@@ -1,4 +1,4 @@
-//! `hitch import`: a campaign from the files of any logger, which stay where they are.
+//! `hitch import`: creates a campaign from the files of any logger, which are read in place.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,27 +18,27 @@ use crate::output;
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Example: hitch import monday.csv --out monday --load 150 --map lift_current_a=\"Ventil Heben Strom:mA\"\n\n\
-    Logs are tables (CSV of any kind), MDF (.mf4, .mdf) and a CAN bus (.log, .asc). They are read where they are: the \
-    campaign's folder gets campaign.toml alone, which says under [columns] what each column is. Of a bus with a DBC, \
-    which is named beside the logs, --map gives signals: lift_current_a=Message.Signal. An angle in mm is the travel of \
-    the cylinder: the linkage of --model makes it an angle. A log of more than a minute is \
-    cut into runs where the hitch rests. Loads that differ are corrected in campaign.toml, or stand in the files' names \
-    (lift_150kg.csv)."
+    Logs are tables (CSV of any dialect), MDF (.mf4, .mdf) or recordings of a CAN bus (.log, .asc). They are read in \
+    place: only campaign.toml is written to the campaign's folder, with the assignment of columns in [columns]. For a \
+    bus, give its DBC file together with the logs, and assign signals with --map lift_current_a=Message.Signal. An \
+    angle in mm is the travel of the cylinder; the linkage of --model converts it into an angle. A log of more than a \
+    minute is split into runs where the hitch is at rest. Different loads are entered in campaign.toml, or taken from \
+    the file names (lift_150kg.csv)."
 )]
 pub struct Args {
-    /// Logs, and the DBC of a bus
+    /// Logs, and the DBC file of a bus
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The campaign's folder
+    /// Folder of the campaign
     #[arg(long, value_name = "CAMPAIGN")]
     out: PathBuf,
-    /// What a column is, as in lift_current_a="Ventil Heben Strom:mA"; may be given several times
+    /// Assign a column, as in lift_current_a="Ventil Heben Strom:mA"; may be given several times
     #[arg(long = "map", value_name = "CHANNEL=NAME:UNIT")]
     maps: Vec<String>,
     /// Load at the hitch, kg
     #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = load_kg)]
     load: Option<f64>,
-    /// What the valve block is bolted to
+    /// Bench that the valve block is connected to
     #[arg(long, value_name = "BENCH", default_value = "hitch", value_parser = ["hitch", "flow"])]
     bench: String,
     /// Pressure at the cylinder port of a flow bench, bar
@@ -46,7 +46,7 @@ pub struct Args {
     port_pressure: Option<f64>,
     #[command(flatten)]
     model: ModelArg,
-    /// Take what is proposed without asking
+    /// Accept the proposal without asking
     #[arg(long)]
     yes: bool,
 }
@@ -54,7 +54,7 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// If a file can't be read, a column that is needed can't be told, or the campaign can't be written.
+/// If a file cannot be read, a required column cannot be determined, or the campaign cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     output::no_stdout("--out", Some(&args.out), "a campaign is a folder")?;
     output::check_folder(&args.out)?;
@@ -62,7 +62,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     if manifest.exists() {
         let name = manifest.display();
         return Err(Error::Usage(format!(
-            "{name}: is there already; name a folder that holds no campaign"
+            "{name}: exists already; give a folder without a campaign"
         )));
     }
     let is_dbc = |file: &&PathBuf| {
@@ -107,7 +107,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     output::print(&told(args, &campaign.runs))
 }
 
-/// `[can]` of the manifest, if a DBC is named.
+/// `[can]` of the manifest, if a DBC file is given.
 fn can(
     args: &Args,
     dbcs: &[&PathBuf],
@@ -120,7 +120,7 @@ fn can(
         [_, second, ..] => {
             let name = second.display();
             return Err(Error::Usage(format!(
-                "{name}: is a second DBC; a campaign has one"
+                "{name}: is a second DBC file; a campaign has one"
             )));
         }
     };
@@ -137,13 +137,13 @@ fn can(
     if columns.is_empty() {
         let name = dbc.display();
         return Err(Error::Usage(format!(
-            "{name}: describes a bus, and no log of one (.log, .asc) is named"
+            "{name}: describes a bus, but no log of a bus (.log, .asc) is given"
         )));
     }
     let heading = match unknown_frames {
         0 => dbc.display().to_string(),
         frames => format!(
-            "{} ({frames} frames of messages that it doesn't have are passed over)",
+            "{} ({frames} frames of messages that it does not define are ignored)",
             dbc.display()
         ),
     };
@@ -155,7 +155,7 @@ fn can(
     )))
 }
 
-/// What is taken of a log; `None` of one that needs no telling.
+/// The column assignment of a log; `None` if the default applies.
 fn mapping(args: &Args, file: &Path, named: &[(String, String)]) -> Result<Option<Mapping>, Error> {
     let (columns, kind) = match Survey::of(file)? {
         Survey::Own | Survey::Bus => return Ok(None),
@@ -166,12 +166,12 @@ fn mapping(args: &Args, file: &Path, named: &[(String, String)]) -> Result<Optio
     dialogue::agreed(&heading, &columns, kind, named, !args.yes).map(Some)
 }
 
-/// The lines of a run that say what the valve block was bolted to.
+/// The lines of a run that describe its bench.
 fn bench(args: &Args, file: &Path) -> Result<String, Error> {
     if args.bench == "flow" {
         let pressure = args.port_pressure.ok_or_else(|| {
             Error::Usage(
-                "a flow bench has a pressure at its port; give it with --port-pressure BAR"
+                "the port pressure of the flow bench is missing; give it with --port-pressure BAR"
                     .to_owned(),
             )
         })?;
@@ -183,13 +183,13 @@ fn bench(args: &Args, file: &Path) -> Result<String, Error> {
     let load = args.load.or_else(named).ok_or_else(|| {
         let name = file.display();
         Error::Usage(format!(
-            "{name}: the load at the hitch isn't known; give it with --load KG"
+            "{name}: the load at the hitch is missing; give it with --load KG"
         ))
     })?;
     Ok(format!("bench = \"hitch\"\nload_kg = {load}\n"))
 }
 
-/// `lift_150kg` is with 150 kg.
+/// The load in a file name: 150 kg in `lift_150kg`.
 fn load_in_name(name: &str) -> Option<f64> {
     let lower = name.to_ascii_lowercase();
     let before = lower.split_once("kg")?.0.trim_end_matches([' ', '_']);

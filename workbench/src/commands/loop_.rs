@@ -1,4 +1,4 @@
-//! `hitch loop`: the firmware's controller in closed loop with the plant.
+//! `hitch loop`: runs the firmware's controller in closed loop with the plant.
 
 use std::path::PathBuf;
 
@@ -19,22 +19,22 @@ use crate::{calibration_file, closed_loop, output};
 #[command(
     after_help = "Example: hitch loop --model explained.toml --calibration calibration.toml --report loop.html\n\n\
     The shortest time is that of an ideal manoeuvre: the valve opens fully in an edge of 100 ms, stays open, and \
-    closes in such an edge, so that the hitch comes to rest on the set point; until it is within half a degree. A \
-    controller that opens or closes its valve more steeply takes less, for a larger pressure swing: a ratio below 1. A \
-    move that never stays within half a degree has not arrived: it has no time and no ratio (JSON: arrived false, \
-    null), and the summary is of the others. What the relief valve forbids has no shortest time either."
+    closes with the same edge, so that the hitch comes to rest at the set point. Times end within half a degree of it. \
+    A controller with steeper edges can be faster, at the cost of a larger pressure swing; its time ratio is below 1. \
+    A move that does not stay within half a degree has not arrived: it has neither time nor ratio (JSON: arrived \
+    false, null), and the summary excludes it. A move that the relief valve prevents has no shortest time."
 )]
 pub struct Args {
     /// The plant: nominal, dynamic, or the name of a model file
     #[arg(long, value_name = "MODEL", default_value = "dynamic")]
     model: String,
-    /// The controller's calibration; without it, the nominal one
+    /// Calibration of the controller; without this option, the nominal one
     #[arg(long, value_name = "C.toml")]
     calibration: Option<PathBuf>,
-    /// Changes a value of the calibration, as in position.approach_gain=30; may be given several times
+    /// Change a value of the calibration, as in position.approach_gain=30; may be given several times
     #[arg(long, value_name = "GROUP.KEY=VALUE")]
     set: Vec<String>,
-    /// Which moves are driven
+    /// Moves to drive
     #[arg(long, value_enum, default_value_t = Scenario::Moves)]
     scenario: Scenario,
     /// Only this load at the hitch, kg
@@ -42,7 +42,7 @@ pub struct Args {
     load: Option<f64>,
     #[command(flatten)]
     json: JsonArg,
-    /// Write a report to this file: worst cases, step responses over load and oil temperature, courses of moves
+    /// Write a report to this file: worst cases, step responses over load and oil temperature, traces of moves
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
 }
@@ -57,7 +57,7 @@ struct Document<'a> {
 /// Runs the command.
 ///
 /// # Errors
-/// If the model or the calibration is wrong, or a result cannot be written.
+/// If the model or the calibration is invalid, or a result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let inputs = read_files(&args.model, args.calibration.as_ref());
     let outputs = Outputs::check([args.report.as_deref(), args.json.target()], &inputs)?;
@@ -90,7 +90,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     })
 }
 
-/// The files of a model and a calibration, as the command line names them.
+/// Names of the model and calibration files, as given on the command line.
 #[must_use]
 pub fn read_files(model: &str, calibration: Option<&PathBuf>) -> Vec<PathBuf> {
     let model = PathBuf::from(model);
@@ -100,7 +100,7 @@ pub fn read_files(model: &str, calibration: Option<&PathBuf>) -> Vec<PathBuf> {
 /// The calibration with settings from the command line.
 ///
 /// # Errors
-/// If a setting is wrong.
+/// If a setting is invalid.
 pub fn changed(
     calibration: &ValidCalibration,
     settings: &[String],
@@ -112,22 +112,22 @@ pub fn changed(
 /// The calibration of a file, or the nominal one.
 ///
 /// # Errors
-/// If the file is wrong.
+/// If the file is invalid.
 pub fn calibration(path: Option<&PathBuf>) -> Result<ValidCalibration, Error> {
     match path {
         Some(path) => Ok(calibration_file::read(path)?),
         None => hitch_quantities::Calibration::nominal()
             .validate()
             .map_err(|error| {
-                Error::Failed(format!("the nominal calibration is refused: {error:?}"))
+                Error::Failed(format!("the nominal calibration is invalid: {error:?}"))
             }),
     }
 }
 
-/// A load from the command line.
+/// Parses a load from the command line.
 ///
 /// # Errors
-/// If it is none.
+/// If it is not a valid load.
 pub fn load_kg(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(load_kg) if (0.0..=2000.0).contains(&load_kg) => Ok(load_kg),

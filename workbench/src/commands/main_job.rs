@@ -1,4 +1,4 @@
-//! `hitch` without a command: the whole way on the campaign that comes with the program.
+//! `hitch` without a command: from measurement to motion on the demonstration campaign.
 
 use std::path::PathBuf;
 
@@ -16,7 +16,7 @@ use crate::rebuild::Rebuild;
 use crate::report::main_page;
 use crate::{demonstration, output};
 
-/// So many of the worst cells are named.
+/// Number of worst cells that are listed.
 const NAMED_CELLS: usize = 3;
 
 /// Arguments of `hitch` without a command.
@@ -38,21 +38,21 @@ pub fn run(args: &Args) -> Result<(), Error> {
     outputs.say(|| compared(&campaign, &model))?;
     let found = Found::new(&campaign, model, Options::default(), &|_| {});
     outputs.say(|| explained(&found))?;
-    let progress = Progress::start("closing the loop with either valve map");
+    let progress = Progress::start("running the closed loop with both valve maps");
     let rebuild = Rebuild::new(&found, Scenario::Moves)?;
     drop(progress);
     outputs.say(|| format!("\n{}", rebuild.text()))?;
     output::write_file(&args.report, main_page::page(&found, &rebuild).as_bytes())?;
     outputs.say(|| {
         let report = args.report.display();
-        format!("\nReport: {report}\nThe same in a browser: hitch serve\n")
+        format!("\nReport: {report}\nInteractive page: hitch serve\n")
     })
 }
 
 fn compared(campaign: &Campaign, model: &Model) -> String {
     let (comparison, _) = Comparison::new(campaign, model);
     let mut text = format!(
-        "Measured: {}, {} runs. The model {} fails most at\n",
+        "Measured: {}, {} runs. Largest errors of the model {}:\n",
         campaign.name,
         campaign.runs.len(),
         model.name
@@ -77,7 +77,7 @@ fn explained(found: &Found) -> String {
     let held_out = shown.steps.last().map(|step| step.held_out_after);
     let held_out = held_out
         .filter(|error| !error.is_nan())
-        .map(|error| format!(" ({error:.2} on runs that were not used to fit)"));
+        .map(|error| format!(" ({error:.2} on held-out runs)"));
     text += &format!(
         "  the error falls from {:.2} to {:.2} sigma{}: {}\n",
         head.error_before,

@@ -1,4 +1,4 @@
-//! One file a command: its arguments, and what it does.
+//! The commands, one module each: arguments and execution.
 pub mod add;
 pub mod calibrate;
 pub mod changes;

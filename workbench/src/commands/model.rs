@@ -1,4 +1,4 @@
-//! `hitch model`: a model file from data sheets, and its constants from a campaign.
+//! `hitch model`: creates a model file from data sheets, and fits its constants to a campaign.
 pub mod fit;
 pub mod new;
 
@@ -18,16 +18,16 @@ pub struct Args {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// A commented model file, filled in from data sheets; asks on a terminal
+    /// Create a commented model file from data sheets; asks on a terminal
     New(new::Args),
-    /// The constants of a model from a campaign, each with its interval
+    /// Fit the constants of a model to a campaign, with confidence intervals
     Fit(fit::Args),
 }
 
 /// Runs the command.
 ///
 /// # Errors
-/// Whatever the subcommand reports.
+/// The error of the subcommand.
 pub fn run(args: &Args) -> Result<(), Error> {
     match &args.command {
         Command::New(args) => new::run(args),

@@ -1,4 +1,4 @@
-//! `hitch paper`: the paper's tables and figures from this model, side by side.
+//! `hitch paper`: compares the paper's tables and figures with this model.
 use crate::error::Error;
 use crate::model_arg::ModelArg;
 use crate::output::JsonArg;
@@ -19,11 +19,11 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// If the model file is wrong or the output cannot be written.
+/// If the model file is invalid or the output cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let outputs = Outputs::check([args.json.target()], &[args.model.file()])?;
     let model = args.model.load()?;
-    let progress = Progress::start("the paper's tables and figures");
+    let progress = Progress::start("computing the paper's tables and figures");
     let paper = Paper::of(&model, &progress);
     drop(progress);
     outputs.tell(&args.json, &paper, || paper.to_string())

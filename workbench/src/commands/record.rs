@@ -1,4 +1,4 @@
-//! `hitch record`: a campaign from a running ECU, over XCP.
+//! `hitch record`: records a campaign from a running ECU, over XCP.
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,14 +14,14 @@ use crate::xcp_tool::{CHANNELS, PERIOD_MS, Row, record};
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Example: hitch record --can 127.0.0.1:7701 --load 150 --temperature 40 --seconds 30 --out campaign\n\n\
-    Records currents, pressures and rocker angle at 100 Hz. The hitch has to be at rest at the beginning. A campaign that exists \
-    gets one more run, so that several loads make one; `hitch explain` reads it."
+    Records currents, pressures and rocker angle at 100 Hz. The hitch has to be at rest at the start. A run is added to an \
+    existing campaign, so that it can cover several loads. `hitch explain` reads the campaign."
 )]
 pub struct Args {
     /// The ECU's bus: an slcan adapter on TCP, such as `hitch ecu --can`
     #[arg(long, value_name = "HOST:PORT")]
     can: String,
-    /// The campaign's folder
+    /// Folder of the campaign
     #[arg(long, value_name = "CAMPAIGN")]
     out: PathBuf,
     /// Load at the hitch, kg
@@ -30,7 +30,7 @@ pub struct Args {
     /// Oil temperature, C
     #[arg(long, value_name = "C", allow_negative_numbers = true, value_parser = temperature_c)]
     temperature: f64,
-    /// How long, s
+    /// Duration, s
     #[arg(long, value_name = "S", default_value = "30", value_parser = seconds)]
     seconds: f64,
 }
@@ -38,7 +38,7 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// If the ECU can't be reached, or the campaign can't be written.
+/// If the ECU cannot be reached, or the campaign cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let manifest = args.out.join("campaign.toml");
     output::no_stdout("--out", Some(&args.out), "a campaign is a folder")?;
@@ -70,7 +70,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     ))
 }
 
-/// The campaign's manifest as it is, or the head of a new one.
+/// The existing manifest of the campaign, or the head of a new one.
 fn so_far(args: &Args, manifest: &Path) -> Result<String, Error> {
     if manifest.exists() {
         return fs::read_to_string(manifest).map_err(|error| {

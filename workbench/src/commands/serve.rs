@@ -1,4 +1,4 @@
-//! `hitch serve`: the interactive page, on this machine alone.
+//! `hitch serve`: the interactive page, local only.
 use std::path::PathBuf;
 
 use crate::error::Error;
@@ -11,14 +11,14 @@ use crate::serve::{self, Source};
     after_help = "Examples:\n  hitch serve\n  hitch serve lab-a --model dynamic --port 8080 --no-browser"
 )]
 pub struct Args {
-    /// Folder of the campaign; without it, the campaign that comes with the program
+    /// Folder of the campaign; without this option, the demonstration campaign
     campaign: Option<PathBuf>,
     #[command(flatten)]
     model: ModelArg,
-    /// Port on 127.0.0.1; 0 takes a free one
+    /// Port on 127.0.0.1; 0 selects a free one
     #[arg(long, value_name = "PORT", default_value_t = 0)]
     port: u16,
-    /// Print the address of the page, but do not open a browser
+    /// Print the address of the page without opening a browser
     #[arg(long)]
     no_browser: bool,
 }
@@ -26,7 +26,7 @@ pub struct Args {
 /// Runs the command until it is stopped with Ctrl-C.
 ///
 /// # Errors
-/// If the model file is wrong, or the port cannot be used. A wrong campaign is shown on the page.
+/// If the model file is invalid, or the port is not available. A fault of the campaign is shown on the page.
 pub fn run(args: &Args) -> Result<(), Error> {
     let source = Source {
         campaign: args.campaign.clone(),

@@ -1,4 +1,4 @@
-//! `hitch simulate`: the plant alone, driven by a log's currents.
+//! `hitch simulate`: simulates the plant with the currents of a log.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -13,7 +13,7 @@ use crate::output;
 use crate::outputs::Outputs;
 use crate::progress::Progress;
 
-/// Samples whose mean is the angle at the start.
+/// Number of samples that are averaged for the start angle.
 const START_SAMPLES: usize = 5;
 
 /// Arguments of `hitch simulate`.
@@ -24,10 +24,10 @@ const START_SAMPLES: usize = 5;
 pub struct Args {
     #[command(flatten)]
     model: ModelArg,
-    /// Log with the columns time_s, lift_current_a and lower_current_a; others are not needed
+    /// Log with the columns time_s, lift_current_a and lower_current_a; others are optional
     #[arg(long, value_name = "RUN.csv")]
     inputs: PathBuf,
-    /// Where the result goes, in the format of a log; `-` is standard output
+    /// Write the result to this file, in the format of a log; `-` is standard output
     #[arg(long, value_name = "OUT.csv")]
     out: PathBuf,
     /// Load at the hitch, kg
@@ -36,7 +36,7 @@ pub struct Args {
     /// Flow bench instead of the hitch: pressure at the cylinder port, bar
     #[arg(long, value_name = "BAR", allow_negative_numbers = true, conflicts_with_all = ["load", "start_angle"], value_parser = within::<0, 400>)]
     port_pressure: Option<f64>,
-    /// Rocker angle at the start, degrees; without it, where the log's first samples show it, else fully down
+    /// Rocker angle at the start, degrees; without this option, from the log's first samples, else fully down
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = within::<0, 180>)]
     start_angle: Option<f64>,
     /// Oil temperature, degrees Celsius
@@ -46,7 +46,7 @@ pub struct Args {
 
 /// Runs the command.
 ///
-/// # Errors
+/// If the model or the log is invalid, or the result cannot be written.
 /// If the model or the log is wrong, or the result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     Outputs::check(
@@ -82,9 +82,9 @@ impl Args {
         })
     }
 
-    /// Where the hitch begins. A log's first samples may be beyond the ends by the noise of its sensor.
+    /// The start angle. A log's first samples may exceed the ends of travel by sensor noise.
     fn start_angle_rad(&self, model: &Model, log: &Run) -> Result<f64, Error> {
-        /// What the ends are rounded by where they are said, degrees.
+        /// Rounding of the ends of travel in the message, degrees.
         const ROUNDED_DEG: f64 = 0.05;
         let (low_rad, high_rad) = model.linkage().swing_rad();
         let (low_deg, high_deg) = (low_rad.to_degrees(), high_rad.to_degrees());
@@ -110,7 +110,7 @@ fn logged_start_deg(log: &Run) -> Option<f64> {
     (!first.is_empty()).then(|| first.iter().sum::<f64>() / first.len() as f64)
 }
 
-/// The log with simulated channels in place of measured ones. (Writing to a string cannot fail.)
+/// The log with simulated instead of measured channels. (Writing to a string cannot fail.)
 fn simulated(model: &Model, rig: Rig, log: &Run) -> String {
     let channels: Vec<Channel> = Channel::ALL
         .into_iter()
@@ -145,11 +145,11 @@ fn can_show(rig: Rig, channel: Channel) -> bool {
     channel != Channel::RockerAngle || matches!(rig, Rig::Hitch(_))
 }
 
-/// Parses an option's number and checks its range.
+/// Parses the number of an option and checks its range.
 fn within<const LOW: i32, const HIGH: i32>(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| "it is not a number".to_owned())?;
     if (f64::from(LOW)..=f64::from(HIGH)).contains(&number) {
         return Ok(number);
     }
-    Err(format!("it may be {LOW} to {HIGH}"))
+    Err(format!("the range is {LOW} to {HIGH}"))
 }

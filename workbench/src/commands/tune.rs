@@ -1,4 +1,4 @@
-//! `hitch tune`: gains, ramps and limits for a plant.
+//! `hitch tune`: tunes gains, ramps and limits for a plant.
 
 use std::path::PathBuf;
 
@@ -18,32 +18,31 @@ use crate::{calibration_file, output};
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Example: hitch tune --model explained.toml --out tuned.toml\n\n\
-    The valve map is the model's. What is searched are ramps (position.lift_acceleration, lift_deceleration, \
+    The valve map is that of the model. The search varies ramps (position.lift_acceleration, lift_deceleration, \
     lower_acceleration, lower_deceleration), approach and cut-off (position.approach_gain, creep_speed, stop_band), \
-    filters (motion.position_time, hydraulics.pressure_filter) and how late valves are believed to close \
-    (hydraulics.hysteresis: no less than the model's, or else than the 0.12 A that valves have). Each candidate drives \
-    moves both ways at three loads and temperatures, on the model and on two neighbours: thresholds 0.02 A off, and \
-    the usual hysteresis, friction, air and thick oil where the model has none. A value that is given with --set \
-    stays. By hand: hitch loop --set position.approach_gain=30"
+    filters (motion.position_time, hydraulics.pressure_filter) and hydraulics.hysteresis (at least that of the model, \
+    or 0.12 A without one). Each candidate drives moves in both directions at three loads and temperatures, on the \
+    model and on two neighbours with thresholds shifted by 0.02 A, and with typical hysteresis, friction, air and \
+    cold oil where the model has none. Values given with --set are not changed. For manual tuning: hitch loop --set \
+    position.approach_gain=30"
 )]
 pub struct Args {
     /// The plant: nominal, dynamic, or the name of a model file
     #[arg(long, value_name = "MODEL", default_value = "dynamic")]
     model: String,
-    /// Where the calibration goes
+    /// Write the calibration to this file
     #[arg(long, value_name = "C.toml")]
     out: PathBuf,
-    /// Calibration to start from; without it, the nominal one with the model's valve map
+    /// Initial calibration; without this option, the nominal one with the model's valve map
     #[arg(long, value_name = "C.toml")]
     calibration: Option<PathBuf>,
-    /// Sets a value of the calibration, as in position.approach_gain=30, and leaves it there; may be given several
-    /// times
+    /// Set a value of the calibration, as in position.approach_gain=30, and keep it fixed; may be given several times
     #[arg(long, value_name = "GROUP.KEY=VALUE")]
     set: Vec<String>,
-    /// How many candidates are tried
+    /// Number of candidates
     #[arg(long, value_name = "COUNT", default_value_t = 400, value_parser = clap::value_parser!(u32).range(10..=100_000))]
     trials: u32,
-    /// Which moves are driven
+    /// Moves to drive
     #[arg(long, value_enum, default_value_t = Scenario::Tuning)]
     scenario: Scenario,
 }
@@ -51,7 +50,7 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// If the model or the calibration is wrong, or the result cannot be written.
+/// If the model or the calibration is invalid, or the result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let inputs = read_files(&args.model, args.calibration.as_ref());
     let outputs = Outputs::check([Some(args.out.as_path())], &inputs)?;
@@ -67,7 +66,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         .iter()
         .filter_map(|setting| calibration_file::set(&mut (*base).clone(), setting).ok())
         .collect();
-    let progress = Progress::start("finding the shortest manoeuvres");
+    let progress = Progress::start("computing the ideal manoeuvres");
     let trial = Trial::new(&model, &args.scenario.moves(None));
     let failed = || Error::Failed("the search found no valid calibration".to_owned());
     let before = trial.judge(&base).ok_or_else(failed)?;
@@ -84,7 +83,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     outputs.say(|| told(&before, &after))
 }
 
-/// Before and after: the values, and what they do.
+/// Values and figures before and after.
 fn told(before: &Judged, after: &Judged) -> String {
     let mut values = Table::new(["value", "before", "after"]);
     for change in changes(&before.calibration, &after.calibration) {
@@ -94,7 +93,7 @@ fn told(before: &Judged, after: &Judged) -> String {
             format!("{:.3}", change.after),
         ]);
     }
-    let mut figures = Table::new(["figure", "bar", "before", "after"]);
+    let mut figures = Table::new(["figure", "limit", "before", "after"]);
     let (old, new) = (&before.summary, &after.summary);
     let mut figure = |name: &str, bar: Option<f64>, old: f64, new: f64| {
         let bar = bar.map_or_else(String::new, |bar| format!("{bar:.2}"));
@@ -108,7 +107,7 @@ fn told(before: &Judged, after: &Judged) -> String {
     of("overshoot, deg", 0.3, |all| all.overshoot_max_deg);
     of("final error, deg", 0.3, |all| all.final_error_max_deg);
     of("pressure swing", 1.5, |all| all.pressure_swing_ratio_max);
-    of("switched on after arrival", 0.0, |all| {
+    of("coil activations after arrival", 0.0, |all| {
         f64::from(all.switched_on_after)
     });
     figure("cost", None, before.cost, after.cost);

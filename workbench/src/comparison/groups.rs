@@ -1,24 +1,24 @@
-//! Ways to part the samples of a campaign, so that one sees where a model fails.
+//! Groupings of the samples of a campaign.
 
 use hitch_campaign::Bench;
 use hitch_identification::data::experiment::ReadyRun;
 use hitch_identification::data::regime::Regime;
 use serde::{Deserialize, Serialize};
 
-/// Currents below are off, A.
+/// Current below which a valve counts as off, A.
 const OFF_BELOW_A: f64 = 0.2;
-/// Edges between the parts of the current, A: below the thresholds, the foot of the curves, the middle, wide open.
+/// Limits between the current groups, A: below the thresholds, small opening, partly open, fully open.
 const EDGES_A: [f64; 4] = [1.0, 1.6, 2.2, 2.8];
-/// Width of the parts of the oil temperature, degrees Celsius.
+/// Width of the oil temperature groups, degrees Celsius.
 const TEMPERATURE_STEP_C: f64 = 10.0;
 
-/// How the samples are parted.
+/// Grouping of the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Grouping {
-    /// By what the plant does.
+    /// By regime.
     Regime,
-    /// By the current of the valve that is on.
+    /// By the current of the energised valve.
     Current,
     /// By load, or by the port pressure of a flow bench.
     Load,
@@ -28,11 +28,11 @@ pub enum Grouping {
     Run,
 }
 
-/// One part; parts are ordered by their place.
+/// A group; groups are ordered by position.
 #[derive(Debug, Clone, PartialEq, PartialOrd)]
 pub struct Part {
     place: f64,
-    /// Name for people.
+    /// Displayed name.
     pub name: String,
 }
 
@@ -46,7 +46,7 @@ impl Grouping {
         Self::Run,
     ];
 
-    /// Heading for people.
+    /// Displayed heading.
     pub const fn title(self) -> &'static str {
         match self {
             Self::Regime => "by regime",
@@ -57,7 +57,7 @@ impl Grouping {
         }
     }
 
-    /// The part that a sample belongs to.
+    /// The group of a sample.
     pub fn part(self, run: &ReadyRun, sample: usize) -> Option<Part> {
         match self {
             Self::Regime => regime(run, sample),

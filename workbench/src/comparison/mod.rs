@@ -1,4 +1,4 @@
-//! Model against measurements: where, when and in which channel it fails, with the instruments' noise as yardstick.
+//! Comparison of a model with measurements by condition, time and channel, in units of the instruments' noise.
 mod groups;
 mod show;
 mod tally;
@@ -17,7 +17,7 @@ use tally::Tally;
 
 pub use groups::Grouping;
 
-/// Length of the stretch of a run that is shown as its worst, s.
+/// Length of the worst stretch of a run, s.
 const WORST_STRETCH_S: f64 = 1.0;
 
 /// Result of `hitch compare`.
@@ -31,7 +31,7 @@ pub struct Comparison {
     pub error: f64,
     /// Error of a perfect model.
     pub noise_floor: f64,
-    /// One entry a measured channel.
+    /// One entry for each measured channel.
     pub channels: Vec<ChannelError>,
     /// Every cell of every grouping that has samples.
     pub cells: Vec<Cell>,
@@ -59,30 +59,30 @@ pub struct ChannelError {
 /// Error of one channel in one part of the data.
 #[derive(Debug, Clone, Serialize)]
 pub struct Cell {
-    /// How the data are parted.
+    /// Grouping of the samples.
     pub by: Grouping,
-    /// Name of the part.
+    /// Name of the group.
     pub part: String,
     /// Key of the channel.
     pub channel: &'static str,
     /// Root mean square in sigma.
     pub error: f64,
-    /// Mean in sigma: positive where the rig shows more than the model.
+    /// Mean in sigma; positive where the measurement exceeds the model.
     pub bias: f64,
     /// Compared samples.
     pub samples: usize,
 }
 
-/// Where in time a channel fails most.
+/// The stretch of time in which a channel has its largest error.
 #[derive(Debug, Clone, Serialize)]
 pub struct WorstStretch {
     /// Key of the channel.
     pub channel: &'static str,
     /// File of the run.
     pub run: String,
-    /// From here, s.
+    /// Start, s.
     pub from_s: f64,
-    /// To here, s.
+    /// End, s.
     pub to_s: f64,
     /// Root mean square in sigma.
     pub error: f64,
@@ -91,15 +91,15 @@ pub struct WorstStretch {
 /// A model evaluated on a campaign.
 #[derive(Debug, Clone)]
 pub struct Evaluated {
-    /// The campaign, ready.
+    /// The prepared campaign.
     pub experiment: Arc<Experiment>,
     /// The model's simulation and residuals, each run's weighed load corrected within its tolerance.
     pub fit: Fit,
 }
 
 impl Evaluated {
-    /// Evaluates a model. Nothing of it is changed; only each run's load is taken to be what the run shows, within what
-    /// weighing leaves open.
+    /// Evaluates a model without changing it, except that each run's load is estimated within the tolerance of its
+    /// weighing.
     pub fn new(campaign: &Campaign, model: &Model) -> Self {
         let experiment = Experiment::new(campaign, model);
         let start = Estimate::new(&experiment, model.effects.clone());
@@ -112,7 +112,7 @@ impl Evaluated {
         }
     }
 
-    /// Whitened residuals of a channel of a run, NaN where nothing is compared.
+    /// Whitened residuals of a channel of a run, NaN where not compared.
     pub fn residuals(&self, run: usize, channel: Channel) -> Vec<f64> {
         let samples = self.experiment.runs[run].len();
         let part = channel.index() * samples..(channel.index() + 1) * samples;
@@ -126,7 +126,7 @@ impl Evaluated {
             .collect()
     }
 
-    /// Measured less simulated samples of a channel of a run, in the channel's unit, NaN where nothing is compared.
+    /// Measured minus simulated samples of a channel of a run, in the channel's unit, NaN where not compared.
     pub fn differences(&self, run: usize, channel: Channel, trace: &Trace) -> Vec<f64> {
         let Some(measured) = &self.experiment.runs[run].measured[channel.index()] else {
             return Vec::new();
@@ -168,7 +168,7 @@ impl Comparison {
         (Self::of(&evaluated, model), evaluated)
     }
 
-    /// The comparison of a model that is evaluated already.
+    /// The comparison of an evaluated model.
     pub fn of(evaluated: &Evaluated, model: &Model) -> Self {
         let sums = ErrorSums::of(&evaluated.fit);
         Self {
@@ -256,7 +256,7 @@ fn tally(
     }
 }
 
-/// Where in time a part of the data fails most in a channel: the index of the run, and the stretch of it.
+/// The stretch in which a group of samples has its largest error in a channel: index of the run, and the stretch.
 pub fn worst_in_part(
     evaluated: &Evaluated,
     by: Grouping,

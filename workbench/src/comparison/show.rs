@@ -1,4 +1,4 @@
-//! A comparison as text and as tables of a report.
+//! A comparison as text and as report tables.
 
 use std::fmt;
 
@@ -8,11 +8,11 @@ use super::{Cell, Comparison, Grouping};
 use crate::heat_table::{HeatTable, Shade};
 use crate::text::Table;
 
-/// So many of the worst cells are named.
+/// Number of worst cells that are listed.
 const NAMED_CELLS: usize = 5;
-/// A cell with fewer samples is not named: its error is chance.
+/// Minimum number of samples of a listed cell.
 const FEWEST_SAMPLES: usize = 20;
-/// Error in sigma below which a cell is not named: it is noise.
+/// Smallest error of a listed cell, in sigma; below it is noise.
 const NAMED_ABOVE: f64 = 1.2;
 
 impl fmt::Display for Comparison {
@@ -47,7 +47,7 @@ impl fmt::Display for Comparison {
 }
 
 impl Comparison {
-    /// Errors of a grouping: a row a part, a column a channel.
+    /// Errors of a grouping: a row for each group, a column for each channel.
     pub fn grid(&self, by: Grouping) -> HeatTable {
         let measured = |channel: &Channel| {
             self.channels
@@ -83,7 +83,7 @@ impl Comparison {
         }
     }
 
-    /// The cells with the greatest errors, by regime and by current, if any are beyond noise.
+    /// The cells with the largest errors, by regime and by current, above the noise.
     pub fn worst_cells(&self) -> Vec<&Cell> {
         let telling = |cell: &&Cell| {
             matches!(cell.by, Grouping::Regime | Grouping::Current)
@@ -99,17 +99,17 @@ impl Comparison {
     fn where_it_fails(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let worst = self.worst_cells();
         if worst.is_empty() {
-            return writeln!(f, "Nowhere does the error stand out of the noise.");
+            return writeln!(f, "The error is within the noise everywhere.");
         }
-        writeln!(f, "Where it fails")?;
+        writeln!(f, "Largest errors by condition")?;
         for cell in worst {
             writeln!(
                 f,
-                "  {}, {}: {:.1} sigma, on average {:+.1}",
+                "  {}, {}: {:.1} sigma, mean {:+.1}",
                 cell.channel, cell.part, cell.error, cell.bias
             )?;
         }
-        writeln!(f, "When it fails")?;
+        writeln!(f, "Largest errors in time")?;
         for stretch in self
             .worst
             .iter()
@@ -127,7 +127,7 @@ impl Comparison {
 }
 
 impl HeatTable {
-    /// The same table for a terminal.
+    /// The table for a terminal.
     pub fn text(&self) -> Table {
         let header = [self.corner.as_str()]
             .into_iter()

@@ -1,4 +1,4 @@
-//! Mean and root mean square of what is added.
+//! Accumulates mean and root mean square.
 
 /// Sums of values; NaN is skipped.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -1,4 +1,4 @@
-//! The hitch that the ECU sits on: plant, coils, drivers, sensors and operator.
+//! The bench of the ECU: plant, coils, drivers, sensors and operator.
 
 use hitch_ecu::link::Reply;
 use hitch_ecu::{BoardScaling, Contacts};
@@ -14,16 +14,16 @@ use crate::closed_loop::{DrivenPlant, SUPPLY_V};
 /// Supply of the sensors, V.
 const SENSOR_SUPPLY_V: f64 = 5.0;
 
-/// A millisecond as it truly was.
+/// True state and signals of one millisecond.
 #[derive(Debug, Clone, Copy)]
 pub struct Moment {
-    /// Time since the plant was set up, ms.
+    /// Time since the start of the plant, ms.
     pub time_ms: u64,
-    /// What there was to be measured.
+    /// The measured quantities.
     pub signals: Signals,
-    /// What the ECU was told.
+    /// The ECU's inputs.
     pub contacts: Contacts,
-    /// What it answered.
+    /// The ECU's outputs.
     pub reply: Reply,
 }
 
@@ -34,12 +34,12 @@ pub struct Bench<'m> {
     time_ms: u64,
     /// Level of the enable line.
     enabled: bool,
-    /// The operator, who may be told what to do between milliseconds.
+    /// The operator, who takes commands between milliseconds.
     pub operator: Operator,
 }
 
 impl<'m> Bench<'m> {
-    /// A hitch at rest at `start_angle_deg`, the lever a little below it; `seed` settles the noise.
+    /// A hitch at rest at `start_angle_deg`, with the lever slightly below; `seed` determines the noise.
     pub fn new(
         model: &'m Model,
         load_kg: f64,
@@ -64,7 +64,7 @@ impl<'m> Bench<'m> {
     /// One millisecond of hitch and ECU.
     ///
     /// # Errors
-    /// If the machine is gone.
+    /// If the machine has ended.
     pub fn tick(
         &mut self,
         machine: &mut impl EcuMachine,
@@ -74,10 +74,10 @@ impl<'m> Bench<'m> {
         self.tick_with(machine, heard, said, |_| {})
     }
 
-    /// One millisecond in which `tamper` changes what the ECU is told: faults of wires and sensors.
+    /// One millisecond in which `tamper` can modify the ECU's inputs: faults of wiring and sensors.
     ///
     /// # Errors
-    /// If the machine is gone.
+    /// If the machine has ended.
     pub fn tick_with(
         &mut self,
         machine: &mut impl EcuMachine,
@@ -105,7 +105,7 @@ impl<'m> Bench<'m> {
         })
     }
 
-    /// One millisecond without an ECU: the coils have no current.
+    /// One millisecond without ECU: the coils are currentless.
     pub fn tick_without_power(&mut self) {
         self.move_on(&Reply::default());
     }
@@ -128,7 +128,7 @@ impl<'m> Bench<'m> {
     }
 
     fn move_on(&mut self, reply: &Reply) {
-        // Without the enable line the drivers pass nothing.
+        // The drivers are off without the enable signal.
         let share = |compare: u16| match reply.enable {
             true => f64::from(compare) / f64::from(BoardScaling::NOMINAL.pwm_steps),
             false => 0.0,

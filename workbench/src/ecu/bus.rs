@@ -1,4 +1,4 @@
-//! The bus between the ECU and whoever is connected: it carries no more than a real one.
+//! CAN bus between the ECU and connected tools, with the bandwidth of a real bus.
 
 use std::collections::VecDeque;
 
@@ -6,9 +6,9 @@ use hitch_protocols::can::Frame;
 
 use crate::slcan_server::SlcanServer;
 
-/// Frames of eight bytes that 250 kbit/s carry in a millisecond, at most.
+/// Maximum number of eight-byte frames in a millisecond at 250 kbit/s.
 const MOST_FRAMES: usize = 2;
-/// Frames that may wait to be carried; then the sender has to.
+/// Capacity of the transmit queue, frames; a sender has to wait when it is full.
 const MOST_WAITING: usize = 1_000;
 
 /// The bus.
@@ -19,7 +19,7 @@ pub struct Bus {
 }
 
 impl Bus {
-    /// The bus served by an SLCAN server.
+    /// A bus behind an SLCAN server.
     pub fn served_by(server: SlcanServer) -> Self {
         Self {
             server,
@@ -27,12 +27,12 @@ impl Bus {
         }
     }
 
-    /// How many are connected.
+    /// Number of connections.
     pub fn connected(&self) -> usize {
         self.server.connected()
     }
 
-    /// Frames that the ECU receives in this millisecond.
+    /// Frames for the ECU in this millisecond.
     pub fn receive(&mut self) -> Vec<Frame> {
         if self.waiting.len() < MOST_WAITING {
             self.waiting.extend(self.server.receive());
@@ -41,7 +41,7 @@ impl Bus {
         self.waiting.drain(..count).collect()
     }
 
-    /// Passes on what the ECU has sent.
+    /// Sends the ECU's frames.
     pub fn send(&mut self, frames: &[Frame]) {
         frames.iter().for_each(|frame| self.server.send(frame));
     }

@@ -1,4 +1,4 @@
-//! From quantities to the converters' codes, with the noise that sensors and wires add.
+//! Converts quantities into converter codes, with the noise of sensors and wiring.
 
 use hitch_ecu::{AdcCode, BoardScaling, Samples};
 use rand::SeedableRng;
@@ -7,12 +7,12 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::closed_loop::{ANGLE_NOISE_DEG, CURRENT_NOISE_A, CYLINDER_NOISE_BAR, PUMP_NOISE_BAR};
 
-/// Codes of twelve bits.
+/// Number of codes of 12 bits.
 const CODES: f64 = 4096.0;
-/// One sigma of the lever's and the dials' noise: a code.
+/// One sigma of the noise of lever and dials: one code.
 const POTENTIOMETER_NOISE: f64 = 1.0 / CODES;
 
-/// What there is to be measured.
+/// The measured quantities.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Signals {
     /// Rocker angle, degree.
@@ -39,21 +39,21 @@ pub struct Signals {
     pub reference: f64,
 }
 
-/// Sensors, wires and converters; the same noise for the same seed.
+/// Sensors, wiring and converters; the noise is reproducible by seed.
 #[derive(Debug)]
 pub struct Converters {
     random: Pcg64Mcg,
 }
 
 impl Converters {
-    /// Converters whose noise is settled by `seed`.
+    /// Converters with noise from `seed`.
     pub fn new(seed: u64) -> Self {
         Self {
             random: Pcg64Mcg::seed_from_u64(seed),
         }
     }
 
-    /// The codes of a millisecond.
+    /// The codes for one millisecond.
     pub fn convert(&mut self, signals: &Signals) -> Samples {
         let mut noisy = |value: f64, sigma: f64| {
             let noise: f64 = StandardNormal.sample(&mut self.random);
@@ -62,7 +62,7 @@ impl Converters {
         let code = |of_full_scale: f64| code(of_full_scale / signals.reference);
         let full_scale = |millivolts: i32| f64::from(millivolts) * 1e-3;
         let full_scale_a = f64::from(BoardScaling::NOMINAL.current.0) * 1e-3;
-        // A tenth to nine tenths of the sensor supply: 35 to 145 degrees, nothing to 250 bar, shut to open.
+        // 10 % to 90 % of the sensor supply: 35 to 145 degrees, 0 to 250 bar, closed to open.
         let signal = signals.sensor_supply_v / full_scale(BoardScaling::NOMINAL.signal.0);
         let ratiometric = |share: f64| code((0.1 + 0.8 * share) * signal);
         let angle_deg = |angle_deg: f64| ratiometric((angle_deg - 35.0) / 110.0);
@@ -87,7 +87,7 @@ impl Converters {
     }
 }
 
-/// The code of a share of full scale.
+/// The code for a fraction of full scale.
 fn code(share: f64) -> AdcCode {
     AdcCode::new((share * CODES).round().clamp(0.0, CODES - 1.0) as u16)
 }

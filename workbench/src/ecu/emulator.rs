@@ -14,21 +14,21 @@ use hitch_protocols::can::Frame;
 
 use super::machine::{EcuMachine, MachineError};
 
-/// The emulator's program.
+/// The emulator executable.
 pub const QEMU: &str = "qemu-system-arm";
 
-/// What the image is to do.
+/// Operating mode of the image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// Step the controller alone.
+    /// Steps the controller only.
     Steps,
-    /// Be the ECU; its flash is the file `flash` in the emulator's folder.
+    /// Runs as ECU; its flash is the file `flash` in the emulator's folder.
     Ecu,
-    /// Measure what the parts of a step take.
+    /// Measures the execution times of the parts of a step.
     Parts,
 }
 
-/// The command that boots `image` in `folder`; what it reads and writes is the caller's to choose.
+/// The command that boots `image` in `folder`; the caller sets the standard streams.
 pub fn command(image: &Path, folder: &Path, mode: Mode) -> Command {
     let told = match mode {
         Mode::Steps => "enable=on,target=native,arg=steps",
@@ -39,21 +39,21 @@ pub fn command(image: &Path, folder: &Path, mode: Mode) -> Command {
     command
         .args(["-machine", "mps2-an386", "-display", "none"])
         .args(["-monitor", "none", "-serial", "none"])
-        // An instruction takes 64 ns of emulated time whatever the host does: counts repeat exactly.
+        // An instruction takes 64 ns of emulated time independent of the host: counts are reproducible.
         .args(["-icount", "shift=6", "-semihosting-config", told, "-kernel"])
         .arg(image)
         .current_dir(folder);
     command
 }
 
-/// The running emulator; it ends when this is dropped.
+/// The running emulator; it is ended on drop.
 #[derive(Debug)]
 pub struct Emulator {
     child: Child,
     requests: ChildStdin,
     replies: BufReader<ChildStdout>,
     complaints: ChildStderr,
-    /// A request with its frames, written at once.
+    /// Request buffer with frames, written at once.
     request: Vec<u8>,
 }
 
@@ -61,7 +61,7 @@ impl Emulator {
     /// Boots `image`, with its flash in the file `flash` in `folder`.
     ///
     /// # Errors
-    /// If the emulator can't be started.
+    /// If the emulator cannot be started.
     pub fn start(image: &Path, folder: &Path) -> Result<Self, MachineError> {
         let image = image.canonicalize()?;
         let mut child = command(&image, folder, Mode::Ecu)
@@ -79,10 +79,10 @@ impl Emulator {
         })
     }
 
-    /// Cuts the power this long after the beginning of a millisecond: the emulator is killed wherever it is then.
+    /// Cuts the power at this time after the start of a millisecond: the emulator is killed.
     ///
     /// # Errors
-    /// If the machine is gone already.
+    /// If the machine has ended already.
     pub fn cut_power(mut self, contacts: &Contacts, after: Duration) -> Result<(), MachineError> {
         self.ask(contacts, &[]);
         self.requests.write_all(&self.request)?;
@@ -114,7 +114,7 @@ impl Emulator {
         Ok(reply)
     }
 
-    /// What the emulator said before it ended.
+    /// The emulator's last message.
     fn last_words(&mut self) -> MachineError {
         let _ = self.child.kill();
         let mut words = String::new();
@@ -141,7 +141,7 @@ impl EcuMachine for Emulator {
 
 impl Drop for Emulator {
     fn drop(&mut self) {
-        // It may have ended by itself; then there is nothing to end.
+        // It may have ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -1,4 +1,4 @@
-//! Flash for the ECU on this machine, and what is in it when the ECU is delivered.
+//! Flash of the ECU on the host, and its initial contents.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -11,15 +11,15 @@ use hitch_ecu::FlashRegions;
 use hitch_protocols::storage::CalibrationStore;
 use hitch_quantities::ValidCalibration;
 
-/// Size of the emulated ECU's flash: two copies of the calibration, then two pages of the log of faults.
+/// Size of the emulated ECU's flash: two copies of the calibration, then two pages of the fault log.
 pub const FLASH_BYTES: usize = CALIBRATION_BYTES + 2 * PAGE_BYTES;
-/// What the two copies of the calibration take of it, from its begin.
+/// Size of the two copies of the calibration, which are at its start.
 pub const CALIBRATION_BYTES: usize = 8_192;
 const PAGE_BYTES: usize = 2_048;
 const WORD_BYTES: usize = 8;
 
-/// Flash in memory, whose power can be cut at any word. Clones share what they hold. What is read and written is the
-/// calibration's region, unless it is another of [`Self::regions`].
+/// Flash in memory, with a simulated power cut at any word. Clones share their contents. Access is to the calibration's
+/// region, unless another of [`Self::regions`] is selected.
 #[derive(Debug, Clone)]
 pub struct CutFlash {
     cells: Rc<RefCell<Cells>>,
@@ -29,11 +29,11 @@ pub struct CutFlash {
 #[derive(Debug)]
 struct Cells {
     bytes: Vec<u8>,
-    /// Words that can still be erased or programmed before the power is gone; for ever if there is no number.
+    /// Remaining words until the power cut; `None` without one.
     words_left: Option<u64>,
 }
 
-/// The power is gone, or nothing like that can be done.
+/// Power is off, or the access is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CutFlashError;
 
@@ -72,17 +72,17 @@ impl CutFlash {
         }
     }
 
-    /// What all of it holds.
+    /// The whole contents.
     pub fn bytes(&self) -> Vec<u8> {
         self.cells.borrow().bytes.clone()
     }
 
-    /// Cuts the power after this many more words; `None`: not at all, or no longer.
+    /// Cuts the power after this many words; `None` disables the cut.
     pub fn cut_after(&self, words: Option<u64>) {
         self.cells.borrow_mut().words_left = words;
     }
 
-    /// True if the power is gone.
+    /// Whether the power is off.
     pub fn is_cut(&self) -> bool {
         self.cells.borrow().words_left == Some(0)
     }
@@ -137,7 +137,7 @@ impl NorFlash for CutFlash {
         self.each_word(from as usize, to as usize, |_, word| word.fill(u8::MAX))
     }
 
-    /// Bits only fall.
+    /// Programming clears bits only.
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), CutFlashError> {
         let first = offset as usize;
         self.each_word(first, first + bytes.len(), |place, word| {
@@ -147,7 +147,7 @@ impl NorFlash for CutFlash {
     }
 }
 
-/// The flash of an ECU that was delivered with `calibration`.
+/// The flash of an ECU as delivered with `calibration`.
 pub fn delivered(calibration: &ValidCalibration) -> Vec<u8> {
     let flash = CutFlash::blank();
     let mut store = CalibrationStore::new(flash.clone());

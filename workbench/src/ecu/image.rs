@@ -1,4 +1,4 @@
-//! The emulated ECU's image: where it is, or how it comes about.
+//! Finds or builds the emulated ECU's image.
 
 use std::env;
 use std::io::{self, IsTerminal};
@@ -11,31 +11,30 @@ use std::time::Duration;
 use crate::error::Error;
 use crate::progress::Progress;
 
-/// Environment variable that names the image.
+/// Environment variable with the path of the image.
 pub const IMAGE_VARIABLE: &str = "HITCH_EMULATED_IMAGE";
 
-/// What helps if there is no image.
+/// Suggested correction if there is no image.
 const MEND: &str = "run hitch from a clone of its sources, which builds the image; or name one with --image; \
     or take --host, which runs the same application without an emulator";
 
-/// The image: `given`, or the one that the environment names, or the one that the sources make.
+/// The image: `given`, else the one named by the environment, else built from the sources.
 ///
 /// # Errors
-/// If there is none, with what helps.
+/// If there is none, with a suggested correction.
 pub fn find(given: Option<&Path>) -> Result<PathBuf, Error> {
     let named = env::var_os(IMAGE_VARIABLE).map(PathBuf::from);
     match given.map(Path::to_path_buf).or(named) {
         Some(image) if image.is_file() => Ok(image),
         Some(image) => Err(Error::Usage(format!(
-            "there is no image {}; leave it out and it is built, or take --host",
+            "image {} does not exist; omit --image to build it, or use --host",
             image.display()
         ))),
         None => build(),
     }
 }
 
-/// Says what takes so long where no line moves that would show it; nothing if what is returned is dropped within a
-/// moment.
+/// Announces a long build where no progress line is visible; silent if the returned value is dropped within a moment.
 fn patience() -> Option<Sender<()>> {
     const MOMENT: Duration = Duration::from_secs(2);
     if io::stderr().is_terminal() {
@@ -44,13 +43,13 @@ fn patience() -> Option<Sender<()>> {
     let (waiting, over) = mpsc::channel();
     thread::spawn(move || {
         if over.recv_timeout(MOMENT) == Err(RecvTimeoutError::Timeout) {
-            eprintln!("building the ECU's image: the first time takes minutes");
+            eprintln!("building the ECU's image; the first build takes minutes");
         }
     });
     Some(waiting)
 }
 
-/// Has the sources that this program was built from build the image.
+/// Builds the image from the sources of this program.
 fn build() -> Result<PathBuf, Error> {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     if !sources.join("xtask").is_dir() {
@@ -73,11 +72,7 @@ fn build() -> Result<PathBuf, Error> {
         (true, Some(path)) => Ok(PathBuf::from(path)),
         _ => {
             let reason = String::from_utf8_lossy(&built.stderr);
-            let reason = reason
-                .trim_end()
-                .lines()
-                .last()
-                .unwrap_or("it says nothing");
+            let reason = reason.trim_end().lines().last().unwrap_or("no message");
             Err(Error::Usage(format!(
                 "`cargo run --package arm-build` failed ({reason}): {MEND}"
             )))

@@ -1,4 +1,4 @@
-//! What runs the application: the emulator, or this machine.
+//! Runs the ECU's application: in the emulator, or on the host.
 
 use std::io;
 
@@ -8,23 +8,23 @@ use hitch_protocols::can::Frame;
 
 use super::flash::CutFlash;
 
-/// Why a machine gives no answer.
+/// The reason why a machine does not answer.
 #[derive(Debug, thiserror::Error)]
 pub enum MachineError {
-    /// The emulator has ended, and said why.
+    /// The emulator has ended, with its message.
     #[error("the emulated ECU has ended: {0}")]
     Ended(String),
-    /// The emulator can't be reached.
+    /// The connection to the emulator failed.
     #[error("the emulated ECU doesn't answer: {0}")]
     Link(#[from] io::Error),
 }
 
-/// Something that runs the ECU's application, a millisecond at a time.
+/// Runs the ECU's application in steps of a millisecond.
 pub trait EcuMachine {
-    /// One millisecond with the frames that were on the bus; what the ECU said is appended to `said`.
+    /// One millisecond with the received frames; the ECU's frames are appended to `said`.
     ///
     /// # Errors
-    /// If the machine is gone.
+    /// If the machine has ended.
     fn tick(
         &mut self,
         contacts: &Contacts,
@@ -35,14 +35,14 @@ pub trait EcuMachine {
     /// Switches the power off and on.
     ///
     /// # Errors
-    /// If the machine is gone.
+    /// If the machine has ended.
     fn power_cycle(&mut self) -> Result<(), MachineError>;
 }
 
-/// Serial number of the ECU, as the emulated one has it.
+/// Serial number of the ECU, equal to that of the emulated one.
 const SERIAL_NUMBER: u32 = 1;
 
-/// The application compiled for this machine.
+/// The application, compiled for the host.
 #[derive(Debug)]
 pub struct OnHost {
     flash: CutFlash,

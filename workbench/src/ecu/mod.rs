@@ -1,4 +1,4 @@
-//! The ECU on the bench: the firmware's application, emulated or here, with a plant, an operator and a bus around it.
+//! ECU bench: the firmware's application, emulated or on the host, with plant, operator and bus.
 
 mod bench;
 mod bus;

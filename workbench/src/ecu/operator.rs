@@ -1,33 +1,33 @@
-//! The operator: lever, dials and switches, and the words by which they are moved.
+//! The operator: lever, dials and switches, and the commands that move them.
 
 use std::str::FromStr;
 
 use hitch_ecu::{Contact, Panel};
 
-/// A hand moves the lever this fast, degree a second.
+/// Speed of a lever moved by hand, degrees per second.
 const HAND_DEG_PER_S: f64 = 60.0;
 
-/// Something that an operator is asked to do.
+/// A command to the operator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Order {
-    /// Moves the lever there, at a hand's speed.
+    /// Moves the lever to an angle, at hand speed.
     Lever(f64),
     /// Closes or opens a contact.
     Contact(Contact, bool),
-    /// Lets go of both buttons outside.
+    /// Releases both external buttons.
     ReleaseButtons,
-    /// Turns the upper-limit dial there.
+    /// Sets the upper-limit dial.
     UpperLimit(f64),
-    /// Turns the lowering-rate dial there, 0 to 1.
+    /// Sets the lowering-rate dial, 0 to 1.
     LoweringDial(f64),
     /// Switches the power off and on.
     Power,
-    /// Ends it.
+    /// Ends the program.
     Quit,
 }
 
 impl Order {
-    /// The words that are understood.
+    /// The accepted commands.
     pub const WORDS: &'static str = "lever DEG, up, down, stop, quick on|off, hold on|off, lock on|off, \
         service on|off, limit DEG, dial PERCENT, power, quit";
 }
@@ -36,7 +36,13 @@ impl FromStr for Order {
     type Err = String;
 
     fn from_str(line: &str) -> Result<Self, String> {
-        let unknown = || format!("`{}` is none of: {}", line.trim(), Self::WORDS);
+        let unknown = || {
+            format!(
+                "unknown command `{}`; commands: {}",
+                line.trim(),
+                Self::WORDS
+            )
+        };
         let words: Vec<&str> = line.split_whitespace().collect();
         let number = |text: &str, low: f64, high: f64| {
             text.parse()
@@ -67,12 +73,12 @@ impl FromStr for Order {
     }
 }
 
-/// Where everything that an operator can move is.
+/// Positions of all controls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Operator {
     /// Lever, degree on the scale of the rocker angle.
     pub lever_deg: f64,
-    /// Where the lever is going, degree.
+    /// Target of the lever, degree.
     pub lever_target_deg: f64,
     /// Upper-limit dial, degree.
     pub upper_limit_deg: f64,
@@ -83,7 +89,7 @@ pub struct Operator {
 }
 
 impl Operator {
-    /// An operator in the field with the lever at `lever_deg`, who lets the hitch do what it can.
+    /// An operator in the field with the lever at `lever_deg`, and no limits set.
     pub const fn with_lever_at(lever_deg: f64) -> Self {
         Self {
             lever_deg,
@@ -94,7 +100,7 @@ impl Operator {
         }
     }
 
-    /// Does what can be done with hands; power isn't among it.
+    /// Executes a command that concerns controls; power is handled elsewhere.
     pub fn apply(&mut self, order: Order) {
         match order {
             Order::Lever(angle_deg) => self.lever_target_deg = angle_deg,
@@ -109,7 +115,7 @@ impl Operator {
         }
     }
 
-    /// A millisecond: the lever gets closer to where it is going.
+    /// One millisecond: moves the lever towards its target.
     pub fn tick(&mut self) {
         let most_deg = HAND_DEG_PER_S * 1e-3;
         let missing_deg = self.lever_target_deg - self.lever_deg;

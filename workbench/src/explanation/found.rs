@@ -1,4 +1,4 @@
-//! An explanation together with what it was found from.
+//! An explanation with its model and campaign.
 
 use hitch_campaign::Campaign;
 use hitch_identification::adequacy::localization::ErrorProfile;
@@ -13,25 +13,25 @@ use super::show::significant;
 use super::{Explanation, rebuilt};
 use crate::progress::Progress;
 
-/// An explanation with everything that belongs to it.
+/// An explanation with its inputs and display form.
 #[derive(Debug, Clone)]
 pub struct Found {
-    /// The model it began with.
+    /// The initial model.
     pub model: Model,
-    /// The campaign, ready.
+    /// The prepared campaign.
     pub experiment: Experiment,
-    /// The explanation as the identification gives it.
+    /// The explanation as returned by the identification.
     pub explanation: explain::Explanation,
-    /// Where what stays unexplained is largest, along the first signal that it goes with.
+    /// Where the remaining error is largest, along the first signal that it correlates with.
     pub rest: Option<ErrorProfile>,
-    /// A term for it.
+    /// A term for the remaining error.
     pub suggestion: Option<Suggestion>,
-    /// The explanation as it is shown.
+    /// The display form.
     pub shown: Explanation,
 }
 
 impl Found {
-    /// Explains a campaign. Reports on a terminal what is tried, and gives each better account to `improved`.
+    /// Explains a campaign. Reports progress on a terminal, and passes each better result to `improved`.
     pub fn new(
         campaign: &Campaign,
         model: Model,
@@ -72,7 +72,7 @@ impl Found {
         }
     }
 
-    /// The model with the effects that were found; a suggested term is defined in it, but not added.
+    /// The model with the identified effects; a suggested term is defined in it, but not added.
     pub fn rebuilt(&self, name: String) -> Model {
         let mut model = rebuilt(&self.model, &self.explanation.after.estimate.effects, name);
         let defined: Vec<&str> = model.terms.iter().map(|term| term.id()).collect();
@@ -85,19 +85,19 @@ impl Found {
     }
 }
 
-/// An explanation with a term for what it leaves, as found and as shown.
+/// An explanation with a term for the remaining error, as returned by the identification and for display.
 #[derive(Debug, Clone)]
 pub struct Explained {
-    /// As the identification gives it.
+    /// As returned by the identification.
     pub explanation: explain::Explanation,
-    /// A term for what stays unexplained.
+    /// A term for the remaining error.
     pub suggestion: Option<Suggestion>,
-    /// As it is shown.
+    /// The display form.
     pub shown: Explanation,
 }
 
 impl Explained {
-    /// Explains an experiment; no term is looked for once the time of the search is over.
+    /// Explains an experiment; a term is searched for only within the time limit.
     pub fn new(
         experiment: &Experiment,
         model: &Model,
@@ -123,7 +123,7 @@ impl Explained {
     }
 }
 
-/// A fit in one line: what it has beyond a model, and its error.
+/// A fit in one line: its effects beyond those of the model, and its error.
 fn account(model: &Model, fit: &Fit) -> String {
     let unchanged = |added: &AddedEffect| {
         let mut own = model.effects.iter();

@@ -1,28 +1,28 @@
-//! What to measure next, as scripts read it: a sentence, and its parts.
+//! The proposed next experiment: as a sentence, and in parts.
 
 use hitch_identification::design::NextExperiment;
 use serde::Serialize;
 
-/// What to measure next, if anything.
+/// The proposed next experiment, if any.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Next {
-    /// In one sentence.
+    /// As one sentence.
     pub next_experiment: Option<String>,
-    /// In its parts.
+    /// In parts.
     pub next_experiment_detail: Option<Detail>,
 }
 
 /// The parts of a proposed experiment.
 #[derive(Debug, Clone, Serialize)]
 pub struct Detail {
-    /// What to do.
+    /// The manoeuvre.
     pub manoeuvre: String,
-    /// What it is good for.
+    /// Its purpose.
     pub why: String,
-    /// Ids of the pairs of effects that it would tell apart.
+    /// Pairs of effect ids that it separates.
     pub separates: Vec<[&'static str; 2]>,
-    /// Smallest likelihood ratio to expect for these; of all manoeuvres the largest if none would tell any apart;
-    /// `None` if nothing was simulated.
+    /// Smallest expected likelihood ratio of these pairs; the largest of all manoeuvres if none separates any; `None`
+    /// if nothing was simulated.
     pub expected_likelihood_ratio: Option<f64>,
     /// Rig time, minutes; `None` if no manoeuvre is proposed.
     pub minutes: Option<f64>,

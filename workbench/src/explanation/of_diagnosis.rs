@@ -1,4 +1,4 @@
-//! From the identification's diagnosis to what is shown of it.
+//! Converts the identification's diagnosis into its display form.
 
 use std::cmp::Ordering;
 
@@ -16,7 +16,7 @@ use super::of_explanation::{channels, parameters};
 use super::{Candidate, Diagnosis, Head};
 
 impl Diagnosis {
-    /// What is shown of a diagnosis of a campaign with a model.
+    /// The display form of a diagnosis.
     pub fn new(experiment: &Experiment, model: &Model, found: &explain::Diagnosis) -> Self {
         let believed = found
             .candidates
@@ -27,7 +27,7 @@ impl Diagnosis {
         let mut candidates: Vec<Candidate> = candidates
             .map(|(candidate, share)| shown(found, candidate, *share))
             .collect();
-        // The one that is believed is what head and verdict are about.
+        // Head and verdict refer to the accepted candidate.
         let settled = usize::from(believed.is_some());
         candidates[settled..].sort_by(as_shown);
         Self {
@@ -47,9 +47,9 @@ impl Diagnosis {
     }
 }
 
-/// The order that a reader sees a reason for: by confidence where there is any, else by what is left.
+/// Order of display: by confidence, then by remaining error.
 fn as_shown(a: &Candidate, b: &Candidate) -> Ordering {
-    /// Less is shown as none.
+    /// Confidence below which a candidate is displayed as 0 %.
     const SHOWN: f64 = 0.005;
     let confidence = |candidate: &Candidate| match candidate.confidence {
         confidence if confidence >= SHOWN => confidence,
@@ -59,7 +59,7 @@ fn as_shown(a: &Candidate, b: &Candidate) -> Ordering {
     confidence(b).total_cmp(&confidence(a)).then(by_error)
 }
 
-/// What one more effect comes to.
+/// Result with one more effect.
 fn verdict(
     experiment: &Experiment,
     found: &explain::Diagnosis,
@@ -78,7 +78,7 @@ fn verdict(
     }
 }
 
-/// What would tell the best candidate from the next best of those that fit as well.
+/// The experiment that separates the best candidate from the next best of those that fit equally well.
 fn next(
     experiment: &Experiment,
     model: &Model,
@@ -115,7 +115,7 @@ fn shown(
     }
 }
 
-/// Share of the squared error above the noise that a fit takes away.
+/// Share of the squared error above the noise that a fit explains.
 pub fn explained(base: &Fit, with: &Fit) -> f64 {
     let excess = |fit: &Fit| (fit.error().powi(2) - 1.0).max(0.0);
     if excess(base) > 0.0 {
@@ -125,7 +125,7 @@ pub fn explained(base: &Fit, with: &Fit) -> f64 {
     }
 }
 
-/// Other effects that fit these data as well as a candidate that is believed.
+/// Other effects that fit these data as well as an accepted candidate.
 fn twins<'a>(
     found: &'a explain::Diagnosis,
     candidate: &candidate::Candidate,

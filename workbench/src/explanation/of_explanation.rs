@@ -1,4 +1,4 @@
-//! From the identification's explanation to what is shown of it.
+//! Converts the identification's explanation into its display form.
 
 use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 use hitch_identification::data::experiment::Experiment;
@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 use super::{Alternative, Explanation, Head, NotVisible, Parameter, Step, Unexplained};
 
 impl Explanation {
-    /// What is shown of an explanation of a campaign that began with a model.
+    /// The display form of an explanation of a campaign, with the initial model.
     pub fn new(experiment: &Experiment, model: &Model, found: &explain::Explanation) -> Self {
         Self {
             head: Head {
@@ -106,13 +106,12 @@ pub fn parameters(effect: &dyn Effect, values: &[f64], intervals: &[(f64, f64)])
         .collect()
 }
 
-/// Errors by channel before and after, in the channel's unit, beside the instrument's noise, and how late its clock is
-/// against that of the currents, s.
+/// Errors by channel before and after, in the channel's unit, with the noise of the instrument and the offset of the
+/// channel's clock relative to the currents, s, followed by the contributions to the channel's delay behind the
+/// currents, s.
 ///
-/// It is followed by the parts of the channel's whole delay behind the currents, s.
-///
-/// They are the errors in sigma times sigma, so that they add up to the error of the whole; what the noise of the
-/// logged currents does to the simulation is no error of the model and not in them.
+/// The errors are those in sigma times sigma, so that they add up to the total error. The effect of current noise on
+/// the simulation is not a model error and is excluded.
 pub fn channels(
     experiment: &Experiment,
     model: &Model,
@@ -142,8 +141,8 @@ pub fn channels(
         .collect()
 }
 
-/// The parts of a channel's delay behind the currents, s: its clock, the spools' lag that the model declares, and the
-/// effects whose size is a time and that the channel shows; and their sum.
+/// Contributions to a channel's delay behind the currents, s: its clock offset, the declared spool lag, and effects
+/// whose size is a time and that the channel shows; and their sum.
 fn delays(fit: &Fit, spool_lag_s: f64, channel: Channel) -> Map<String, Value> {
     let shown = fit.estimate.effects.iter().filter(|added| {
         added.effect.parameters()[0].unit == "s" && added.effect.channels().contains(&channel)

@@ -1,4 +1,4 @@
-//! From a suggested term to what is shown of it.
+//! Converts a suggested term into its display form.
 
 use hitch_identification::suggestion::Suggestion;
 use hitch_model_file::term_text;
@@ -22,7 +22,7 @@ impl Suggested {
 }
 
 impl Unexplained {
-    /// Puts in a suggestion.
+    /// Adds a suggestion.
     pub fn suggest(&mut self, found: &Suggestion) {
         let suggested = Suggested::new(found);
         self.suggested_term = Some(format!("{} = {}", suggested.place, suggested.formula));

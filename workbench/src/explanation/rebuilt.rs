@@ -1,11 +1,11 @@
-//! A model with the effects that were estimated, as it is written to a file.
+//! A model with the estimated effects, as written to a file.
 
 use hitch_plant::{AddedEffect, Model};
 
-/// Significant digits of an estimate in a model file; an estimate never has more.
+/// Significant digits of an estimate in a model file; estimates are never more accurate.
 const DIGITS: usize = 6;
 
-/// The model with other effects and another name, its estimates rounded to what a reader can take in.
+/// The model with other effects and another name, its estimates rounded to significant digits.
 pub fn rebuilt(model: &Model, effects: &[AddedEffect], name: String) -> Model {
     let effects = effects.iter().cloned().map(|mut added| {
         added

@@ -1,4 +1,4 @@
-//! The same results as text.
+//! Text form of the results.
 
 use std::fmt;
 
@@ -87,12 +87,12 @@ impl fmt::Display for Alternative {
 }
 
 impl Explanation {
-    /// What the list of effects that are not visible means, a sentence without its colon.
+    /// Title of the list of effects that are not detectable, without colon.
     pub fn blind_spots(&self) -> &'static str {
-        "Effects that this campaign would not show at their typical size"
+        "Effects that are not detectable in this campaign at their typical size"
     }
 
-    /// What the verdict means, in a sentence.
+    /// The verdict as a sentence.
     pub fn meaning(&self) -> &'static str {
         match (self.head.verdict, self.steps.is_empty()) {
             ("nothing-missing", _) => {
@@ -110,7 +110,7 @@ impl Explanation {
             ("unexplained", false) => {
                 "The added effects improve the model, but the remaining error has no cause in the catalogue."
             }
-            _ => "The campaign cannot decide.",
+            _ => "The campaign does not allow a decision.",
         }
     }
 }
@@ -203,7 +203,8 @@ impl fmt::Display for Head {
     }
 }
 
-/// A channel's delay behind the currents with its parts, ms, as text; `None` if a clock is all of it.
+/// A channel's delay behind the currents with its contributions, ms, as text; `None` if the clock offset is the only
+/// one.
 fn delay_ms(channel: &serde_json::Value) -> Option<String> {
     let parts = channel["delay_s"].as_object()?;
     let ms = |part: &serde_json::Value| 1e3 * part.as_f64().unwrap_or(f64::NAN);
@@ -217,16 +218,16 @@ fn delay_ms(channel: &serde_json::Value) -> Option<String> {
     Some(format!("{sum:.0} ms ({})", terms.join(" + ")))
 }
 
-/// How late a channel's clock is against that of the currents, ms, as text.
+/// Offset of a channel's clock relative to the currents, ms, as text.
 pub fn late_ms(channel: &serde_json::Value) -> String {
     let late_s = channel["late_s"].as_f64();
-    // Less than half a millisecond is none, on either side.
+    // Less than half a millisecond is displayed as none.
     let late_ms = late_s.map(|late_s| (1e3 * late_s).round() + 0.0);
     late_ms.map_or("-".to_owned(), |late_ms| format!("{late_ms:.0}"))
 }
 
 impl Step {
-    /// What it does to runs that were not used to fit.
+    /// Its effect on held-out runs.
     fn on_held_out(&self) -> String {
         let (before, after) = (self.held_out_before, self.held_out_after);
         if before.is_nan() && after.is_nan() {
@@ -240,7 +241,7 @@ impl Step {
         )
     }
 
-    /// What an effect that the model had before has changed from.
+    /// The previous size of a changed effect.
     fn change(&self) -> String {
         let Some((from, parameter)) = self.changed_from.zip(self.parameters.first()) else {
             return String::new();
@@ -253,12 +254,12 @@ impl Step {
         )
     }
 
-    /// Why it was added although the error on held-out runs is no smaller: a few samples make all of that while the next
-    /// effect is missing.
+    /// The reason for adding it although the error on held-out runs did not decrease: a few outliers dominate that
+    /// error while the next effect is missing.
     fn without_outliers(&self) -> String {
         if self.held_out_after >= self.held_out_before {
             format!(
-                " ({:.2} -> {:.2} with outliers by their distance)",
+                " ({:.2} -> {:.2} with the robust loss of the fit)",
                 self.held_out_loss_before, self.held_out_loss_after
             )
         } else {
@@ -289,10 +290,10 @@ impl fmt::Display for Step {
         }
         if self.form_undetermined {
             let forms = self.other_forms.iter();
-            let forms: Vec<&str> = forms.map(|form| form.unwrap_or("usual")).collect();
+            let forms: Vec<&str> = forms.map(|form| form.unwrap_or("default")).collect();
             writeln!(
                 f,
-                "     form undetermined: {} explains as well",
+                "     form undetermined: {} explains the campaign equally well",
                 forms.join(", ")
             )?;
         }
@@ -356,7 +357,7 @@ impl fmt::Display for Suggested {
         let parameters: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
         write!(
             f,
-            "\n  A term that would bring the error on held-out runs from {} to {}",
+            "\n  Suggested term: it reduces the error on held-out runs from {} to {}",
             known(self.held_out_before, 2),
             known(self.held_out_after, 2)
         )?;
@@ -365,7 +366,7 @@ impl fmt::Display for Suggested {
         }
         writeln!(
             f,
-            ":\n\n    {} = {}\n    {}\n\n  To be judged by you, and put into a model file like this:",
+            ":\n\n    {} = {}\n    {}\n\n  It describes the error; it is not an identified cause. For a model file:",
             self.place,
             self.formula,
             parameters.join(", ")
@@ -378,7 +379,7 @@ impl fmt::Display for Suggested {
     }
 }
 
-/// A number with so many significant digits.
+/// A number with a fixed number of significant digits.
 pub fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");

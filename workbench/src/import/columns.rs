@@ -1,69 +1,69 @@
-//! Which column of a log is which column of a run: by what somebody says, else by names, units and values.
+//! Assigns a log's columns to a run's columns: by the user's mapping, else by names, units and values.
 
 use hitch_campaign::survey::{LogColumn, TIMES, check_source, fits, run_columns};
 
 use super::words::{CHANNELS, Words, is_time};
 
-/// Larger angles in radians are more than a hitch turns.
+/// Largest plausible angle in radians.
 const MOST_RAD: f64 = 3.2;
-/// Angles within this are rather in radians: a hitch at work stands higher than so many degrees.
+/// Angles within this limit are probably in radians: a working hitch exceeds so many degrees.
 const SURELY_RAD: f64 = MOST_RAD;
-/// Larger currents are in milliampere.
+/// Larger values of a current are in milliampere.
 const MOST_A: f64 = 20.0;
-/// Larger pressures are not in bar.
+/// Larger values of a pressure are not in bar.
 const MOST_BAR: f64 = 400.0;
 
-/// What a log is.
+/// Kind of a log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A table: one of its columns has the times.
+    /// A table with a column of times.
     Table,
-    /// Channels that know their times.
+    /// Channels with their own times.
     Channels,
-    /// Signals of a bus, whose units are those of its description.
+    /// Signals of a bus, with units from its description.
     Signals,
 }
 
-/// A column of a run, where it comes from, and why.
+/// A column of a run, its source, and the reason for the choice.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Taken {
     /// The run's column.
     pub channel: &'static str,
-    /// As `[columns]` has it: name, and unit.
+    /// Name and unit, as in `[columns]`.
     pub source: String,
-    /// Why.
+    /// Reason.
     pub reason: String,
 }
 
-/// What is taken of a log.
+/// Assignment for a log.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Mapping {
     /// In the order of a run's columns.
     pub taken: Vec<Taken>,
 }
 
-/// What can't be told.
+/// A column that could not be determined.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Untold {
-    /// What it is.
+    /// Description.
     pub what: String,
-    /// How to say it.
+    /// Suggested correction.
     pub mend: String,
 }
 
-/// A column that could be meant, and its points.
+/// A candidate column with its score.
 struct Candidate<'c> {
     column: &'c LogColumn,
     score: i32,
-    /// What told.
+    /// Evidence.
     by: &'static str,
 }
 
 impl Mapping {
-    /// Proposes one. `named` holds what somebody said: the run's column, and its source.
+    /// Proposes an assignment. `named` contains the user's mapping: the run's column, and its source.
     ///
     /// # Errors
-    /// What is missing, and how to say it.
+    /// If a required column is missing; with a suggested correction.
     pub fn propose(
         columns: &[LogColumn],
         kind: Kind,
@@ -79,12 +79,12 @@ impl Mapping {
             let known = run_columns().find(|(known, _)| known == channel);
             if let Some((channel, _)) = known {
                 used.push(name);
-                mapping.take(channel, source.clone(), "as you said".to_owned());
+                mapping.take(channel, source.clone(), "given by --map".to_owned());
             }
         }
         if kind == Kind::Table && !mapping.has(TIMES) {
             let (column, source, reason) = time(columns)
-                .ok_or_else(|| missing(TIMES, "its times rise from row to row", columns))?;
+                .ok_or_else(|| missing(TIMES, "times have to rise from row to row", columns))?;
             used.push(column.name.clone());
             mapping.take(TIMES, source, reason);
         }
@@ -124,7 +124,7 @@ impl Mapping {
     fn check(&self, columns: &[LogColumn]) -> Result<(), Untold> {
         for channel in ["lift_current_a", "lower_current_a"] {
             if !self.has(channel) {
-                return Err(missing(channel, "it drives the model", columns));
+                return Err(missing(channel, "it is an input of the model", columns));
             }
         }
         let measured = [
@@ -149,15 +149,15 @@ fn missing(channel: &str, why: &str, columns: &[LogColumn]) -> Untold {
         .collect();
     let more = if columns.len() > MOST { ", ..." } else { "" };
     Untold {
-        what: format!("no column could be told to be {channel}, and {why}"),
+        what: format!("no column was recognised as {channel}; {why}"),
         mend: format!(
-            "say which it is, as in --map {channel}=\"NAME:UNIT\", of {}{more}",
+            "assign it with --map {channel}=\"NAME:UNIT\"; columns: {}{more}",
             names.join(", ")
         ),
     }
 }
 
-/// The column of the times, as `[columns]` has it.
+/// The column of the times, as in `[columns]`.
 fn time(columns: &[LogColumn]) -> Option<(&LogColumn, String, String)> {
     let rises = |column: &&LogColumn| {
         let known: Vec<f64> = column
@@ -182,7 +182,7 @@ fn time(columns: &[LogColumn]) -> Option<(&LogColumn, String, String)> {
     if let Some(column) = named.or_else(seconds) {
         let source = match unit_of_time(column) {
             Some(unit) => format!("{}:{unit}", column.name),
-            // Without a unit it is in seconds, or of an epoch that the reader tells by its size.
+            // Without a unit it is in seconds, or since an epoch that the reader determines by magnitude.
             None => column.name.clone(),
         };
         return Some((column, source, "rises from row to row".to_owned()));
@@ -203,7 +203,7 @@ fn unit_of_time(column: &LogColumn) -> Option<&str> {
         .filter(|unit| *unit != "V" && fits(unit, TIMES))
 }
 
-/// What a log's column is taken as: column, source, reason.
+/// Assignment of a log's column: column, source, reason.
 type Proposal<'c> = Option<(&'c LogColumn, String, String)>;
 
 fn proposal<'c>(
@@ -225,7 +225,7 @@ fn proposal<'c>(
                         words.channel, first.column.name, second.column.name
                     ),
                     mend: format!(
-                        "say which, as in --map {}=\"{}\"",
+                        "assign it, as in --map {}=\"{}\"",
                         words.channel, first.column.name
                     ),
                 }),
@@ -252,7 +252,7 @@ fn candidate<'c>(words: &Words, column: &'c LogColumn) -> Option<Candidate<'c>> 
         Some(_) => 2,
         None => 0,
     };
-    // Of a quantity that a hitch has once, the unit or the name will do; of others the name has to say which.
+    // For a quantity with a single channel, unit or name suffices; for others the name has to identify the channel.
     let least = if words.is_only_one() { 1 } else { 2 };
     let (by_name, by_comment) = (words.score(&column.name), words.score(&column.comment));
     let (by_words, by) = match by_name {
@@ -268,7 +268,7 @@ fn candidate<'c>(words: &Words, column: &'c LogColumn) -> Option<Candidate<'c>> 
     })
 }
 
-/// The unit of a column as what it most likely is, and why; `None` if nothing tells.
+/// The most likely unit of a column, and the reason; `None` without evidence.
 fn unit(channel: &str, column: &LogColumn) -> Option<(String, String)> {
     let known = column.values.iter().filter(|value| value.is_finite());
     let largest = known.fold(0.0_f64, |largest, value| largest.max(value.abs()));
@@ -277,7 +277,7 @@ fn unit(channel: &str, column: &LogColumn) -> Option<(String, String)> {
         let claimed = said.as_deref().unwrap_or("no unit");
         Some((
             unit.to_owned(),
-            format!("values up to {largest:.4} are {what}, though the log says {claimed}"),
+            format!("values up to {largest:.4} are {what}, although the log states {claimed}"),
         ))
     };
     match (channel, said.as_deref()) {
@@ -291,13 +291,13 @@ fn unit(channel: &str, column: &LogColumn) -> Option<(String, String)> {
         ("lift_current_a" | "lower_current_a", Some("mA")) if largest > 0.0 && largest <= 5.0 => {
             odd("A", "ampere")
         }
-        (_, Some(unit)) => Some((unit.to_owned(), format!("in {unit}, as the log says"))),
+        (_, Some(unit)) => Some((unit.to_owned(), format!("in {unit}, as stated in the log"))),
         ("pump_pressure_bar" | "cylinder_pressure_bar", None) if largest > MOST_BAR => None,
         (_, None) => {
             let (_, unit) = run_columns().find(|(name, _)| *name == channel)?;
             Some((
                 unit.to_owned(),
-                format!("values up to {largest:.4}, taken as {unit}: the log says no unit"),
+                format!("values up to {largest:.4}, assumed {unit}: the log states no unit"),
             ))
         }
     }

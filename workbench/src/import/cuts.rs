@@ -1,26 +1,26 @@
-//! Where the runs are in a long log: they begin and end where the hitch rests.
+//! Splits a long log into runs, which start and end where the hitch is at rest.
 
 use hitch_campaign::Run;
 use hitch_plant::Channel;
 
-/// Currents below this open no valve, A.
+/// Current below which no valve opens, A.
 const RESTS_BELOW_A: f64 = 0.3;
-/// A hitch that turns by less within [`CALM_S`] rests, degrees.
+/// Largest change of angle within [`CALM_S`] at rest, degrees.
 const CALM_DEG: f64 = 0.5;
-/// A pressure that changes by less within [`CALM_S`] is steady, bar.
+/// Largest change of pressure within [`CALM_S`] at rest, bar.
 const CALM_BAR: f64 = 5.0;
-/// How long it is looked at, s.
+/// Time window of these changes, s.
 const CALM_S: f64 = 0.5;
-/// A rest that is shorter parts no runs, s.
+/// Shortest rest between two runs, s.
 const SHORTEST_REST_S: f64 = 4.0;
-/// What of a rest belongs to the runs on either side, s.
+/// Part of a rest that is kept in the adjacent runs, s.
 const OF_REST_S: f64 = 1.5;
-/// Runs are joined until they are as long, s.
+/// Minimum length of a run, s; shorter ones are joined.
 const SHORTEST_RUN_S: f64 = 15.0;
-/// A log that is shorter is one run, s.
+/// Minimum length of a log that is split, s.
 const LONG_LOG_S: f64 = 60.0;
 
-/// The times of the runs after the log's first sample, s; none if it is one run.
+/// The times of the runs after the log's first sample, s; empty for a single run.
 #[must_use]
 pub fn cuts(run: &Run) -> Vec<(f64, f64)> {
     if run.duration_s() < LONG_LOG_S {
@@ -46,7 +46,7 @@ pub fn cuts(run: &Run) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// First and last sample of everything between two rests.
+/// First and last sample of each section between two rests.
 fn moves(run: &Run) -> Vec<(usize, usize)> {
     let mut moves: Vec<(usize, usize)> = Vec::new();
     for sample in (0..run.time_s.len()).filter(|&sample| !rests(run, sample)) {
@@ -58,7 +58,7 @@ fn moves(run: &Run) -> Vec<(usize, usize)> {
     moves
 }
 
-/// Whether both valves are closed, and nothing moves.
+/// Whether both valves are closed and the hitch does not move.
 fn rests(run: &Run, sample: usize) -> bool {
     let is_closed = run.lift_current_a[sample]
         .abs()
@@ -74,7 +74,7 @@ fn rests(run: &Run, sample: usize) -> bool {
 fn is_calm(run: &Run, values: &[f64], sample: usize, within: f64) -> bool {
     let before =
         run.time_s[..sample].partition_point(|time_s| *time_s < run.time_s[sample] - CALM_S);
-    // What was not measured shows no motion.
+    // A quantity that was not measured cannot show motion.
     let change = (values[sample] - values[before]).abs();
     change.is_nan() || change < within
 }

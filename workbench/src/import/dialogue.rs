@@ -1,4 +1,4 @@
-//! Agrees with somebody at a terminal which column is which.
+//! Assigns columns interactively.
 
 use std::io;
 use std::io::IsTerminal as _;
@@ -9,10 +9,10 @@ use super::{Kind, Mapping, Untold};
 use crate::error::Error;
 use crate::output;
 
-/// What is taken of the columns below a heading. Asks if it may, and standard input and output are a terminal.
+/// Assigns the columns below a heading. Asks if allowed, and if standard input and output are a terminal.
 ///
 /// # Errors
-/// If nobody says what can't be told, or somebody stops.
+/// If a required column cannot be determined without an answer, or the user stops.
 pub fn agreed(
     heading: &str,
     columns: &[LogColumn],
@@ -45,13 +45,15 @@ pub fn agreed(
                 named.push((channel, source));
             }
             (Answer::Stop, _) => {
-                return Err(Error::Usage("stopped; nothing was written".to_owned()));
+                return Err(Error::Usage(
+                    "stopped by the user; no file was written".to_owned(),
+                ));
             }
         }
     }
 }
 
-/// Splits what was given with `--map`.
+/// Parses the `--map` options.
 ///
 /// # Errors
 /// If a channel or a name is missing.
@@ -79,12 +81,12 @@ enum Answer {
     Change(String, String),
 }
 
-/// What somebody says; asks again until it is understood.
+/// The user's answer; asks again until it is valid.
 fn answer(columns: &[LogColumn], is_complete: bool) -> Result<Answer, Error> {
     loop {
         output::print(match is_complete {
-            true => "Enter takes this, CHANNEL=NAME:UNIT changes a line, q stops: ",
-            false => "CHANNEL=NAME:UNIT says what a column is, q stops: ",
+            true => "Enter accepts, CHANNEL=NAME:UNIT changes a line, q stops: ",
+            false => "CHANNEL=NAME:UNIT assigns a column, q stops: ",
         })?;
         let mut line = String::new();
         let read = io::stdin().read_line(&mut line);
@@ -100,7 +102,7 @@ fn answer(columns: &[LogColumn], is_complete: bool) -> Result<Answer, Error> {
 }
 
 /// # Errors
-/// Why the answer is none.
+/// The fault of the answer.
 fn understood(line: &str, columns: &[LogColumn]) -> Result<Answer, String> {
     let line = line.strip_prefix("--map").map_or(line, str::trim_start);
     if line.is_empty() {
@@ -135,12 +137,12 @@ fn shown(heading: &str, columns: &[LogColumn], mapping: &Mapping) -> String {
     }
     match columns.len().saturating_sub(mapping.taken.len()) {
         0 => text,
-        1 => text + "  1 other column is passed over\n",
-        others => text + &format!("  {others} other columns are passed over\n"),
+        1 => text + "  1 other column is ignored\n",
+        others => text + &format!("  {others} other columns are ignored\n"),
     }
 }
 
-/// The columns that there are, each with its unit.
+/// The columns of the log, each with its unit.
 fn listed(columns: &[LogColumn]) -> String {
     const MOST: usize = 60;
     let mut text = String::new();

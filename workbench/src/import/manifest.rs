@@ -1,4 +1,4 @@
-//! `campaign.toml` of an import.
+//! Writes `campaign.toml` of an import.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -10,13 +10,13 @@ use super::columns::Mapping;
 /// A log of a campaign.
 #[derive(Debug, Clone)]
 pub struct Log {
-    /// Its path, as the manifest names it.
+    /// Path, as in the manifest.
     pub file: String,
-    /// What is taken of it; `None` if it needs no telling.
+    /// Column assignment; `None` if the default applies.
     pub mapping: Option<Mapping>,
-    /// What the valve block was bolted to, and the load or the pressure.
+    /// Bench, with load or pressure.
     pub bench: String,
-    /// Times of its runs, s; none if it is one.
+    /// Times of its runs, s; empty for a single run.
     pub cuts: Vec<(f64, f64)>,
 }
 
@@ -64,14 +64,14 @@ fn is_same(own: &Mapping, common: Option<&Mapping>) -> bool {
     common.is_some_and(|common| lines(common) == lines(own))
 }
 
-/// What of a run is taken from where, a line each.
+/// Column assignment, one line for each column.
 #[must_use]
 pub fn lines(mapping: &Mapping) -> String {
     let line = |taken: &super::Taken| format!("{} = {}\n", taken.channel, quoted(&taken.source));
     mapping.taken.iter().map(line).collect()
 }
 
-/// The path of a log as a manifest in `folder` names it: from the folder on if it is in it, else from the root.
+/// The path of a log in a manifest in `folder`: relative if the log is inside the folder, else absolute.
 #[must_use]
 pub fn path_from(folder: &Path, log: &Path) -> String {
     let full = log.canonicalize().unwrap_or_else(|_| log.to_path_buf());

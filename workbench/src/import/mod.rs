@@ -1,4 +1,4 @@
-//! A campaign from anybody's logs: which of their columns is which, and where the runs are in them.
+//! Imports a campaign from arbitrary logs: assigns their columns, and finds the runs in them.
 pub mod columns;
 pub mod cuts;
 pub mod dialogue;

@@ -1,15 +1,15 @@
-//! How columns are called, in German and English.
+//! Column names in German and English.
 
-/// What speaks for a column of a run, and against it, in the name of a log's column.
+/// Words in the name of a log's column that support or exclude a run's column.
 #[derive(Debug)]
 pub struct Words {
     /// The run's column.
     pub channel: &'static str,
-    /// Its quantity.
+    /// Words of its quantity.
     quantity: &'static [&'static str],
-    /// Which one of that quantity; empty if there is only one.
+    /// Words that identify its channel; empty if the quantity has only one.
     which: &'static [&'static str],
-    /// What it is not.
+    /// Words that exclude it.
     not: &'static [&'static str],
 }
 
@@ -29,7 +29,7 @@ const NO_MEASUREMENT: [&str; 9] = [
     "demand",
 ];
 
-/// Those of every column but the times.
+/// Words of every column except the times.
 pub static CHANNELS: [Words; 7] = [
     Words {
         channel: "lift_current_a",
@@ -137,7 +137,7 @@ pub static CHANNELS: [Words; 7] = [
     },
 ];
 
-/// Those of the times.
+/// Words of the times.
 const TIMES: [&str; 9] = [
     "zeit",
     "time",
@@ -151,7 +151,7 @@ const TIMES: [&str; 9] = [
 ];
 
 impl Words {
-    /// How much of the name speaks for the column: the quantity 1, which one of it 2.
+    /// Score of a name: quantity 1, channel 2.
     #[must_use]
     pub fn score(&self, name: &str) -> i32 {
         let words = words(name);
@@ -163,21 +163,21 @@ impl Words {
         score - 4 * i32::from(has(&NO_MEASUREMENT))
     }
 
-    /// Whether there is only one of that quantity.
+    /// Whether the quantity has only one channel.
     #[must_use]
     pub fn is_only_one(&self) -> bool {
         self.which.is_empty()
     }
 }
 
-/// Whether a name is that of times.
+/// Whether a name denotes times.
 #[must_use]
 pub fn is_time(name: &str) -> bool {
     let words = words(name);
     TIMES.iter().any(|known| is_in(known, &words))
 }
 
-/// The words of a name in small letters; `LiftCurrent` has two.
+/// The words of a name in lower case; `LiftCurrent` has two.
 fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut was_small = false;
@@ -195,9 +195,9 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// Whether a known word is one of the name's; longer ones may be a part of one, for German joins them.
+/// Whether a known word is a word of the name; a long one may also be part of a word (German compounds).
 fn is_in(known: &str, words: &[String]) -> bool {
-    /// Shorter words are parts of many others.
+    /// Minimum length of a partial match; shorter words occur in many others.
     const LONG: usize = 5;
     let is_part = |word: &String| known.len() >= LONG && word.contains(known);
     words.iter().any(|word| word == known || is_part(word))

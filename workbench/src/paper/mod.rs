@@ -1,4 +1,4 @@
-//! The paper beside this model: everything that `hitch paper` shows.
+//! Comparison of the paper with the model: the data of `hitch paper`.
 mod show;
 mod table_5;
 
@@ -12,9 +12,9 @@ use crate::progress::Progress;
 
 pub use table_5::Table5;
 
-/// Ports for which the spring of equation 7 is shown, m; chosen, the paper gives none.
+/// Port diameters for which the spring of equation 7 is computed, m; assumed, as the paper states none.
 const PORT_DIAMETERS_M: [f64; 3] = [0.008, 0.010, 0.012];
-/// Compression of that spring, m; chosen.
+/// Compression of that spring, m; assumed.
 const COMPRESSION_M: f64 = 0.005;
 
 /// The paper's results and the model's.
@@ -24,9 +24,9 @@ pub struct Paper {
     pub model: String,
     /// Tables 2A and 2B with the areas estimated from them.
     pub table_2: [FlowTable; 2],
-    /// The estimated orifice areas' maximum (section 4.1).
+    /// Largest estimated orifice area (section 4.1).
     pub orifice_area: LargestArea,
-    /// Table 5, found from the paper's flow test by the identification.
+    /// Table 5, identified from the paper's flow test.
     pub table_5: Table5,
     /// Equation 7.
     pub check_valve: CheckValve,
@@ -60,29 +60,29 @@ pub struct FlowRow {
     pub area_mm2: f64,
 }
 
-/// The greatest estimated area.
+/// The largest estimated area.
 #[derive(Debug, Clone, Serialize)]
 pub struct LargestArea {
-    /// The paper's, mm2.
+    /// Value of the paper, mm2.
     pub paper_mm2: f64,
-    /// Ours, mm2.
+    /// Value of this model, mm2.
     pub model_mm2: f64,
-    /// Their difference, relative.
+    /// Relative difference.
     pub relative_difference: f64,
 }
 
 /// The check valve's cracking pressure.
 #[derive(Debug, Clone, Serialize)]
 pub struct CheckValve {
-    /// The paper's, bar.
+    /// Value of the paper, bar.
     pub paper_bar: f64,
-    /// The model's, bar.
+    /// Value of the model, bar.
     pub model_bar: f64,
-    /// Springs that equation 7 asks for.
+    /// Springs that satisfy equation 7.
     pub springs: Vec<SpringRow>,
 }
 
-/// A spring that fits the cracking pressure.
+/// A spring that satisfies the cracking pressure.
 #[derive(Debug, Clone, Serialize)]
 pub struct SpringRow {
     /// Diameter of the port, mm.
@@ -91,11 +91,11 @@ pub struct SpringRow {
     pub compression_mm: f64,
     /// Stiffness, N/mm.
     pub stiffness_n_mm: f64,
-    /// Equation 7 of these, bar.
+    /// Equation 7 with these values, bar.
     pub cracking_pressure_bar: f64,
 }
 
-/// Figure 12: times of travel, with what the paper says of them.
+/// Figure 12: times of travel, with the paper's statements on them.
 #[derive(Debug, Clone, Serialize)]
 pub struct Figure12 {
     /// Figure 12A.
@@ -117,12 +117,12 @@ pub struct Travel {
     pub times_s: [[Option<f64>; 5]; 5],
 }
 
-/// Something that the paper says in words.
+/// A statement of the paper.
 #[derive(Debug, Clone, Serialize)]
 pub struct Statement {
-    /// What the paper says, and where.
+    /// The statement, with its section.
     pub paper: &'static str,
-    /// What the model says.
+    /// The result of the model.
     pub model: String,
     /// Whether they agree.
     pub holds: bool,
@@ -216,18 +216,11 @@ fn figure_12(model: &Model) -> Figure12 {
 
 fn statements(lifting: &Panel, lowering: &Panel) -> Vec<Statement> {
     let spread = lifting.spread_over_load();
-    let yes_or_no = |holds: bool| {
-        if holds {
-            "it does, at every one"
-        } else {
-            "it does not"
-        }
-        .to_owned()
-    };
+    let yes_or_no = |holds: bool| if holds { "true at every one" } else { "false" }.to_owned();
     vec![
         Statement {
             paper: "lifting time does not depend on load (4.3)",
-            model: spread.map_or("some lift never ends".to_owned(), |share| {
+            model: spread.map_or("a lift never ends".to_owned(), |share| {
                 format!("spread {:.3} %", 100.0 * share)
             }),
             holds: spread.is_some_and(|share| share < 0.01),

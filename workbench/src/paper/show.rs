@@ -1,4 +1,4 @@
-//! The paper beside this model, as text.
+//! Text form of the comparison with the paper.
 use std::fmt;
 
 use super::{CheckValve, Figure12, FlowTable, Paper, Table5, Travel};
@@ -6,18 +6,18 @@ use crate::text::Table;
 
 impl fmt::Display for Paper {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "The paper beside the model {}\n", self.model)?;
+        writeln!(f, "Comparison of the paper with the model {}\n", self.model)?;
         for table in &self.table_2 {
             writeln!(f, "{table}")?;
         }
         let area = &self.orifice_area;
         writeln!(
             f,
-            "Greatest estimated orifice area (4.1; equations 5 and 6, least squares on Table 2)"
+            "Largest estimated orifice area (4.1; equations 5 and 6, least squares on Table 2)"
         )?;
         writeln!(
             f,
-            "  paper {:.3} mm2, here {:.3} mm2: {:+.4} %\n",
+            "  paper {:.3} mm2, model {:.3} mm2: {:+.4} %\n",
             area.paper_mm2,
             area.model_mm2,
             100.0 * area.relative_difference
@@ -50,7 +50,7 @@ impl fmt::Display for FlowTable {
         write!(f, "{table}")?;
         writeln!(
             f,
-            "  greatest difference {:.4} l/min",
+            "  largest difference {:.4} l/min",
             self.largest_difference_lpm
         )
     }
@@ -60,9 +60,9 @@ impl fmt::Display for Table5 {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "Table 5: what the identification finds in the paper's flow test (Table 2 made to start and end as"
+            "Table 5: effects identified in the paper's flow test (Table 2, adjusted to the thresholds and saturations"
         )?;
-        writeln!(f, "Table 5 says, with the noise of a flow meter)")?;
+        writeln!(f, "of Table 5, with the noise of a flow meter)")?;
         let [before, after] = self.error;
         writeln!(
             f,
@@ -97,7 +97,7 @@ impl fmt::Display for Table5 {
         write!(f, "{table}")?;
         writeln!(
             f,
-            "  A shift moves the whole curve: no shift gives Table 5 both its lowering currents, 1.25 and 3.1 A."
+            "  A shift moves the whole curve: no single shift yields both lowering currents of Table 5, 1.25 and 3.1 A."
         )?;
         writeln!(
             f,
@@ -105,7 +105,9 @@ impl fmt::Display for Table5 {
             self.slowest_lift.current_a
         )?;
         let time = |time_s: Option<f64>| {
-            time_s.map_or("no end".to_owned(), |time_s| format!("{time_s:.1} s"))
+            time_s.map_or("infinite time".to_owned(), |time_s| {
+                format!("{time_s:.1} s")
+            })
         };
         let (table_2, table_5) = (
             time(self.slowest_lift.table_2_s),
@@ -113,7 +115,7 @@ impl fmt::Display for Table5 {
         );
         writeln!(
             f,
-            "  lift takes {table_2} with the one and {table_5} with the other. Figure 12A's axis ends at 30 s."
+            "  lift takes {table_2} with 1.126 A and {table_5} with 1.1 A. The axis of Figure 12A ends at 30 s."
         )
     }
 }
@@ -131,7 +133,7 @@ impl fmt::Display for CheckValve {
         )?;
         writeln!(
             f,
-            "  The paper prints neither spring nor port. Springs that make it so, compressed by {} mm:",
+            "  The paper states neither spring nor port. Springs with this cracking pressure, compressed by {} mm:",
             {
                 self.springs
                     .first()
@@ -164,7 +166,7 @@ impl fmt::Display for Figure12 {
         )?;
         writeln!(
             f,
-            "The paper prints Figure 12 as a plot only. What it says of it, and the model:"
+            "The paper has Figure 12 as a plot only. Its statements on the figure, compared with the model:"
         )?;
         for statement in &self.statements {
             let verdict = if statement.holds { "holds" } else { "FAILS" };

@@ -1,4 +1,4 @@
-//! Table 5: what the paper measured of the valves, found again by the identification.
+//! Table 5: the paper's measurement of the valves, reproduced by the identification.
 
 use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
@@ -15,23 +15,23 @@ use crate::progress::Progress;
 
 /// Highest current of the flow test, A.
 const HIGHEST_A: f64 = 3.5;
-/// A flow that a flow meter cannot tell from none, or from the full flow, l/min.
+/// Flow below the resolution of a flow meter, l/min.
 const HARDLY_LPM: f64 = 1e-3;
-/// Steps that a threshold is closed in on by; each halves the current left.
+/// Bisection steps for a threshold.
 const HALVINGS: usize = 40;
 
-/// Table 5 beside Table 2 and the rebuilt model.
+/// Table 5 compared with Table 2 and with the rebuilt model.
 #[derive(Debug, Clone, Serialize)]
 pub struct Table5 {
     /// One entry a valve: lift, lower.
     pub valves: [ValveCheck; 2],
-    /// The effects that the identification found in the flow test, in its order.
+    /// The effects identified in the flow test, in the order of the identification.
     pub effects: Vec<EffectCheck>,
-    /// What the identification came to.
+    /// Verdict of the identification.
     pub verdict: &'static str,
     /// Error of the model before and after, in sigma of the flow meter.
     pub error: [f64; 2],
-    /// Lifting at the lowest current of Figure 12, where the time hangs on the threshold.
+    /// Lift at the lowest current of Figure 12, where the time depends strongly on the threshold.
     pub slowest_lift: SlowestLift,
 }
 
@@ -55,18 +55,18 @@ pub struct Triple {
     pub table_2: f64,
     /// Table 5, the paper's measurement.
     pub table_5: f64,
-    /// The model with the effects that were found.
+    /// The model with the identified effects.
     pub model: f64,
 }
 
-/// An effect that was found, beside what the two tables say.
+/// An identified effect, compared with the difference of the two tables.
 #[derive(Debug, Clone, Serialize)]
 pub struct EffectCheck {
     /// Id of the effect.
     pub effect: &'static str,
-    /// Value that takes Table 2 to Table 5; `null` for an effect that they do not ask for.
+    /// Value that converts Table 2 into Table 5; `null` for an effect that the tables do not imply.
     pub expected: Option<f64>,
-    /// The parameter found.
+    /// The identified parameter.
     pub found: Parameter,
 }
 
@@ -82,7 +82,7 @@ pub struct SlowestLift {
 }
 
 impl Table5 {
-    /// Lets the identification find out from the flow test how the measured valves differ from the model's.
+    /// Identifies from the flow test how the measured valves differ from those of the model.
     pub fn of(model: &Model, progress: &Progress) -> Self {
         let model = &quasi_static(model);
         let experiment = Experiment::new(&test_bench::campaign(), model);
@@ -100,13 +100,13 @@ impl Table5 {
     }
 }
 
-/// The model without its dynamics: the flow test holds every current until nothing changes.
+/// The model without its dynamics: the flow test is a steady-state test.
 fn quasi_static(model: &Model) -> Model {
     let constants = Constants {
         dynamics: Dynamics::Steady,
         ..model.constants().clone()
     };
-    // The linkage closed with these dimensions before, so it does again.
+    // The linkage is unchanged, so its geometry remains valid.
     let steady = Model::new(model.name.clone(), constants);
     steady.map_or_else(
         |_| model.clone(),
@@ -167,7 +167,7 @@ fn valve_check(rebuilt: &Model, valve: Valve) -> ValveCheck {
     }
 }
 
-/// Current above which something holds that does not hold below.
+/// Smallest current above which a condition holds, by bisection.
 fn boundary_a(holds: impl Fn(f64) -> bool) -> f64 {
     let (mut below_a, mut above_a) = (0.0, HIGHEST_A);
     for _ in 0..HALVINGS {

@@ -13,17 +13,17 @@ const TOP_PX: f64 = 10.0;
 const BOTTOM_PX: f64 = 38.0;
 const X_TICKS: usize = 6;
 const Y_TICKS: usize = 4;
-/// Columns that a long log is thinned to; each keeps its least and greatest value, so no peak is lost.
+/// Number of columns to which a long log is reduced; each keeps its minimum and maximum, so no peak is lost.
 const BUCKETS: usize = 250;
 
-/// How a line looks. Colours differ in lightness too, so that they can be told apart in grey print.
+/// Style of a line. Colours also differ in lightness, for grey print.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stroke {
-    /// What was measured.
+    /// Measured.
     Measured,
-    /// The model as it was.
+    /// Simulated by the initial model.
     Before,
-    /// The model as it became.
+    /// Simulated by the final model.
     After,
     /// A further line.
     Other,
@@ -59,31 +59,31 @@ impl Stroke {
 /// One line of a chart.
 #[derive(Debug, Clone)]
 pub struct Line<'a> {
-    /// Name, for readers who cannot see the chart.
+    /// Name, for screen readers.
     pub name: &'a str,
-    /// Look.
+    /// Style.
     pub stroke: Stroke,
     /// Values along the axis.
     pub x: &'a [f64],
-    /// Values; NaN where there are none.
+    /// Values; NaN where missing.
     pub y: &'a [f64],
 }
 
 /// A chart of lines over a common axis.
 #[derive(Debug, Clone)]
 pub struct Chart<'a> {
-    /// What it shows; stands below it.
+    /// Caption, below the chart.
     pub caption: String,
     /// Axis titles with unit.
     pub x_title: &'a str,
     /// Axis titles with unit.
     pub y_title: &'a str,
-    /// The lines, drawn in this order.
+    /// The lines, in drawing order.
     pub lines: Vec<Line<'a>>,
 }
 
 impl Chart<'_> {
-    /// The chart as a figure; an empty one if no line has a value.
+    /// The chart as a figure; empty if no line has a value.
     pub fn figure(&self) -> Markup {
         let xs = extent(self.lines.iter().flat_map(|line| line.x.iter().copied()));
         let ys = extent(self.lines.iter().flat_map(|line| line.y.iter().copied()));
@@ -126,7 +126,7 @@ impl Chart<'_> {
     }
 }
 
-/// What the lines of the charts below mean.
+/// Legend of the charts below.
 pub fn legend(entries: &[(Stroke, &str)]) -> Markup {
     html! { div.legend { @for (stroke, name) in entries { span {
         svg viewBox="0 0 28 10" aria-hidden="true" {
@@ -144,7 +144,7 @@ fn draw(line: &Line<'_>, x: &Scale, y: &Scale) -> Markup {
     }
 }
 
-/// The line as SVG path data; it breaks at dropouts.
+/// The line as SVG path data; interrupted at dropouts.
 fn path(line: &Line<'_>, x: &Scale, y: &Scale) -> String {
     let mut data = String::new();
     let mut pen_down = false;
@@ -169,8 +169,8 @@ fn path(line: &Line<'_>, x: &Scale, y: &Scale) -> String {
     data
 }
 
-/// The samples that are drawn: all of a short log; of a long one, the least and the greatest of each bucket, and the
-/// dropouts' first.
+/// The drawn samples: all of a short log; of a long one, the minimum and the maximum of each bucket and the first
+/// sample of each dropout.
 fn thinned(values: &[f64]) -> Vec<usize> {
     if values.len() <= 2 * BUCKETS {
         return (0..values.len()).collect();
@@ -192,7 +192,7 @@ fn thinned(values: &[f64]) -> Vec<usize> {
     kept
 }
 
-/// A pixel position, to a tenth.
+/// A pixel position, rounded to a tenth.
 fn px(value: f64) -> f64 {
     (value * 10.0).round() / 10.0
 }

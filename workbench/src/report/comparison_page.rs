@@ -24,7 +24,7 @@ pub fn page(comparison: &Comparison, evaluated: &Evaluated, model: &Model) -> St
     page::page(&title, &content)
 }
 
-/// Tables of the error in sigma, one a grouping.
+/// Tables of the error in sigma, one for each grouping.
 pub fn grids(comparison: &Comparison) -> Markup {
     html! { @for by in Grouping::ALL {
         h2 { "Error in sigma " (by.title()) }

@@ -14,7 +14,7 @@ use crate::comparison::{Comparison, Evaluated, Grouping};
 use crate::explanation::{Explanation, Found, Step, late_ms};
 use crate::text::known;
 
-/// Groupings that are shown before and after.
+/// Groupings shown before and after.
 const GROUPINGS: [Grouping; 4] = [
     Grouping::Regime,
     Grouping::Current,
@@ -32,7 +32,7 @@ pub fn page(found: &Found) -> String {
     )
 }
 
-/// What was found: verdict, fall of the error, effects.
+/// The result: verdict, error after each step, effects.
 pub fn findings(found: &Found) -> Markup {
     html! {
         (verdict(&found.shown))
@@ -44,7 +44,7 @@ pub fn findings(found: &Found) -> Markup {
     }
 }
 
-/// What it rests on: errors by channel and regime, and every run.
+/// The evidence: errors by channel and regime, and all runs.
 pub fn details(found: &Found) -> Markup {
     let evaluated = |fit: &Fit| Evaluated {
         experiment: Arc::new(found.experiment.clone()),
@@ -132,7 +132,8 @@ fn steps(steps: &[Step]) -> Markup {
     let rows: Vec<Vec<String>> = steps.iter().map(row).collect();
     html! {
         (page::table(&header, &rows))
-        p.note { "Held-out: on runs that were not used to fit. Detectability: root mean square, in sigma, of what only this effect can do." }
+        p.note { "Held-out: error on runs not used for the fit. Detectability: root mean square, in sigma, of the signature, \
+                 all other effects projected out." }
     }
 }
 

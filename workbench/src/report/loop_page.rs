@@ -1,4 +1,4 @@
-//! The report of `hitch loop`: what was driven, where it is worst, how steps look, and the course of moves.
+//! The report of `hitch loop`: settings, worst cases, step responses, and traces of moves.
 mod course;
 mod steps;
 mod worst;
@@ -10,14 +10,14 @@ use super::page;
 use crate::closed_loop::show::{HEADER, row, summed_up};
 use crate::closed_loop::{LoopRun, MoveResult};
 
-/// A run with what it was driven with.
+/// A closed-loop run with its settings.
 #[derive(Debug, Clone, Copy)]
 pub struct Shown<'a> {
     /// The plant.
     pub model: &'a Model,
-    /// Where the calibration came from.
+    /// Source of the calibration.
     pub calibration: &'a str,
-    /// What the command line changed in it, as `group.key=value`.
+    /// Settings from the command line, as `group.key=value`.
     pub settings: &'a [String],
     /// The moves.
     pub run: &'a LoopRun,
@@ -56,7 +56,7 @@ fn sections(shown: &Shown) -> Markup {
     }
 }
 
-/// Values of a quantity in the order in which they first occur.
+/// Values of a quantity in order of first occurrence.
 fn occurring<T: PartialEq>(results: &[MoveResult], of: impl Fn(&MoveResult) -> T) -> Vec<T> {
     let mut values = Vec::new();
     for value in results.iter().map(of) {

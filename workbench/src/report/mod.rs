@@ -1,4 +1,4 @@
-//! Reports: one HTML file each, with everything in it, that opens without a network and prints well.
+//! Reports: self-contained HTML files that need no network and are printable.
 pub mod chart;
 pub mod comparison_page;
 pub mod explanation_page;

@@ -1,10 +1,10 @@
-//! The page around a report.
+//! Page frame of a report.
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-/// Style of every report: dark on white, wide tables scroll, sections are not torn apart in print.
+/// Style of every report: dark on white; wide tables scroll; sections are not split in print.
 const STYLE: &str = include_str!("page.css");
 
-/// A whole HTML document.
+/// A complete HTML document.
 pub fn page(title: &str, content: &Markup) -> String {
     let document = html! {
         (DOCTYPE)
@@ -21,7 +21,7 @@ pub fn page(title: &str, content: &Markup) -> String {
     document.into_string()
 }
 
-/// A table of text cells with a header row; the first column is the rows' name.
+/// A table of text cells with a header row; the first column has the names of the rows.
 pub fn table(header: &[&str], rows: &[Vec<String>]) -> Markup {
     html! {
         div.scroll { table {

@@ -1,4 +1,4 @@
-//! The rebuilt valve map and the closed loop with it, as sections of a report.
+//! Report sections: the rebuilt valve map, and the closed loop with it.
 
 use hitch_quantities::calibration::valve_table::ValveTable;
 use maud::{Markup, html};
@@ -9,23 +9,23 @@ use crate::closed_loop::{LoopRun, Sample};
 use crate::rebuild::Rebuild;
 use crate::text::known;
 
-/// What is shown after the slower map has arrived, s.
+/// Time shown after the later arrival, s.
 const AFTER_S: f64 = 0.5;
-/// Litres a minute in a microlitre a second.
+/// Conversion from microlitres per second to litres per minute.
 const LPM_PER_UL_S: f64 = 60e-6;
 
 /// The sections.
 pub fn sections(rebuild: &Rebuild) -> Markup {
     html! {
-        h2 { "The valve map, rebuilt" }
-        p { "Which current the controller sends for a flow: from the data sheet, and from the identified model." }
+        h2 { "Rebuilt valve map" }
+        p { "Coil current over flow: from the data sheet (nominal), and from the identified model (rebuilt)." }
         (legend(&[(Stroke::Before, "nominal"), (Stroke::After, "rebuilt")]))
         div.grid {
             (map("Lift valve", &rebuild.nominal.lift, &rebuild.rebuilt.lift))
             (map("Lowering valve", &rebuild.nominal.lower, &rebuild.rebuilt.lower))
         }
-        h2 { "The closed loop with either map" }
-        p { "The firmware's controller on the dynamic plant with what was found in the measurements." }
+        h2 { "Closed loop with both maps" }
+        p { "The firmware's controller on the dynamic plant with the identified effects." }
         @if let Some(index) = rebuild.most_shortened() { (course(rebuild, index)) }
         (moves(rebuild))
     }
@@ -72,7 +72,7 @@ fn chart(caption: String, [x_title, y_title]: [&str; 2], lines: &[Drawn]) -> Mar
     .figure()
 }
 
-/// Angle and lowering current of one move under both maps.
+/// Angle and lowering current of one move with both maps.
 fn course(rebuild: &Rebuild, index: usize) -> Markup {
     let order = &rebuild.before.results[index];
     let end_s = order.took_s().max(rebuild.after.results[index].took_s()) + AFTER_S;

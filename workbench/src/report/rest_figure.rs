@@ -1,4 +1,4 @@
-//! What the catalogue leaves unexplained: residuals along the signal that they go with, and a term that would help.
+//! The remaining error: residuals over the signal that they correlate with, and a suggested term.
 
 use hitch_identification::adequacy::localization::{Bin, ErrorProfile};
 use maud::{Markup, html};
@@ -7,7 +7,7 @@ use super::chart::{Chart, Line, Stroke};
 use crate::explanation::Suggested;
 use crate::text::known;
 
-/// Residuals of the worst channel along a signal: mean and scatter of every bin.
+/// Residuals of the worst channel over a signal: mean and scatter of every bin.
 pub fn picture(profile: &ErrorProfile) -> Markup {
     let column = |value: fn(&Bin) -> f64| profile.bins.iter().map(value).collect::<Vec<f64>>();
     let x = column(|bin| bin.centre);
@@ -24,7 +24,7 @@ pub fn picture(profile: &ErrorProfile) -> Markup {
     };
     let chart = Chart {
         caption: format!(
-            "What the model leaves of the {}: mean and scatter",
+            "Remaining error of the {}: mean and scatter",
             profile.channel.title().to_lowercase()
         ),
         x_title: &profile.signal,
@@ -42,18 +42,18 @@ pub fn picture(profile: &ErrorProfile) -> Markup {
     }
 }
 
-/// A suggested term, ready to be put into a model file.
+/// A suggested term, as text for a model file.
 pub fn suggestion(term: &Suggested) -> Markup {
     let parameters: Vec<String> = term.parameters.iter().map(ToString::to_string).collect();
     html! {
-        h3 { "A term that would help" }
+        h3 { "Suggested term" }
         p { code { (term.place) " = " (term.formula) } ", " (parameters.join(", ")) }
         p {
-            "It would bring the error on held-out runs from "
+            "It reduces the error on held-out runs from "
             strong { (known(term.held_out_before, 2)) } " to "
             strong { (known(term.held_out_after, 2)) } " sigma"
             @if !term.replaces.is_empty() { ", in place of " (term.replaces.join(", ")) }
-            ". It is a formula that fits, not a cause that was identified. In a model file:"
+            ". It describes the error; it is not an identified cause. For a model file:"
         }
         pre { (term.model_file) }
     }

@@ -1,4 +1,4 @@
-//! From evaluated models to the runs that a report draws.
+//! Converts evaluated models into the runs of a report.
 
 use hitch_campaign::Bench;
 use hitch_plant::{Channel, Model};
@@ -6,7 +6,7 @@ use hitch_plant::{Channel, Model};
 use super::runs::{ChannelView, RunView};
 use crate::comparison::Evaluated;
 
-/// The runs of a campaign: measured, simulated by the model, and simulated by what it became.
+/// The runs of a campaign: measured, simulated by the initial model, and simulated by the final model.
 pub fn run_views(model: &Model, before: &Evaluated, after: Option<&Evaluated>) -> Vec<RunView> {
     let view = |index: usize| {
         let run = &before.experiment.runs[index];
@@ -43,7 +43,7 @@ fn channel_views(
     Channel::ALL.into_iter().filter_map(view).collect()
 }
 
-/// Load or port pressure, and oil temperature, for people.
+/// Load or port pressure, and oil temperature, as text.
 pub fn conditions(bench: Bench, oil_temperature_c: f64) -> String {
     let bench = match bench {
         Bench::Hitch { load_kg } => format!("{load_kg:.0} kg"),

@@ -1,11 +1,11 @@
-//! Measured against simulated, run by run.
+//! Charts of measured and simulated channels, run by run.
 
 use hitch_plant::Channel;
 use maud::{Markup, html};
 
 use super::chart::{Chart, Line, Stroke, legend};
 
-/// So many runs are unfolded.
+/// Number of runs that are initially unfolded.
 const OPEN_RUNS: usize = 2;
 
 /// One run as the report draws it.
@@ -13,24 +13,24 @@ const OPEN_RUNS: usize = 2;
 pub struct RunView {
     /// File of the log.
     pub file: String,
-    /// Load or port pressure, and oil temperature, for people.
+    /// Load or port pressure, and oil temperature, as text.
     pub conditions: String,
     /// Time stamps, s.
     pub time_s: Vec<f64>,
-    /// The channels that were measured.
+    /// The measured channels.
     pub channels: Vec<ChannelView>,
 }
 
 /// One channel of a run.
 #[derive(Debug, Clone)]
 pub struct ChannelView {
-    /// Which.
+    /// The channel.
     pub channel: Channel,
     /// Measured, in the channel's unit.
     pub measured: Vec<f64>,
-    /// The model as it was.
+    /// Simulated by the initial model.
     pub before: Vec<f64>,
-    /// The model as it became, if it changed.
+    /// Simulated by the final model, if it differs.
     pub after: Option<Vec<f64>>,
     /// Error before, in sigma.
     pub error_before: f64,
@@ -38,7 +38,7 @@ pub struct ChannelView {
     pub error_after: Option<f64>,
 }
 
-/// All runs, those with the greatest errors first and unfolded, the others folded.
+/// All runs, in descending order of error; the first ones unfolded.
 pub fn runs(views: &[RunView]) -> Markup {
     let changed = views
         .iter()

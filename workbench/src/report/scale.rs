@@ -1,4 +1,4 @@
-//! Maps values to places in a drawing, and finds round numbers for its axes.
+//! Maps values to positions in a drawing, and finds round numbers for its axes.
 
 /// A linear scale from values to pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -10,7 +10,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Spans `low..high` (widened if that is empty) over `start_px..end_px`.
+    /// Maps `low..high` (widened if empty) to `start_px..end_px`.
     pub fn new((low, high): (f64, f64), (start_px, end_px): (f64, f64)) -> Self {
         let (from, to) = if high - low > 1e-9 * low.abs().max(1.0) {
             (low, high)
@@ -25,7 +25,7 @@ impl Scale {
         }
     }
 
-    /// Place of a value, pixels.
+    /// Position of a value, pixels.
     pub fn px(&self, value: f64) -> f64 {
         self.start_px + (value - self.from) / (self.to - self.from) * (self.end_px - self.start_px)
     }
@@ -40,7 +40,7 @@ impl Scale {
             .collect()
     }
 
-    /// Writes a tick with as many digits as its neighbours need.
+    /// Formats a tick with as many digits as the spacing needs.
     pub fn label(&self, tick: f64, count: usize) -> String {
         let step = round_step((self.to - self.from) / count.max(1) as f64);
         let digits = (-step.log10().floor()).clamp(0.0, 6.0) as usize;

@@ -1,4 +1,4 @@
-//! The fall of the error, step by step, as a bar chart with the noise as floor.
+//! Bar chart of the error after each step, with the noise as lower limit.
 use maud::{Markup, html};
 
 use super::scale::Scale;
@@ -9,16 +9,17 @@ const NAME_PX: f64 = 210.0;
 const VALUE_PX: f64 = 60.0;
 const FLOOR_COLOUR: &str = "#00795b";
 
-/// One bar: what was done, and the error after it, in sigma.
+/// One bar: a step, and the error after it, in sigma.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// What was done.
+    /// Title of the step.
     pub name: String,
     /// Root mean square of the error in sigma.
     pub error: f64,
 }
 
-/// The bars, with a line at one sigma. The scale is logarithmic: a fall from 10 to 1 counts as much as 100 to 10.
+/// The bars, with a line at one sigma. The scale is logarithmic, so that a factor in the error has the same length
+/// everywhere.
 pub fn staircase(steps: &[Step]) -> Markup {
     let greatest = steps.iter().map(|step| step.error).fold(2.0, f64::max);
     let scale = Scale::new(

@@ -1,17 +1,17 @@
-//! The files of the page, built into the program.
+//! The files of the page, compiled into the program.
 use std::sync::OnceLock;
 
 use axum::body::Bytes;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 
-/// The tag in front of each script of the plotting library.
+/// The tag that precedes each script of the plotting library.
 const TAG: &str = "<script type=\"text/javascript\">";
 const END_TAG: &str = "</script>";
 
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 
-/// Name, type and text of every file but the plotting library.
+/// Name, media type and text of every file except the plotting library.
 const FILES: &[(&str, &str, &str)] = &[
     (
         "",
@@ -37,7 +37,7 @@ const FILES: &[(&str, &str, &str)] = &[
     ("run_plot.js", SCRIPT, include_str!("assets/run_plot.js")),
 ];
 
-/// A file of the page by its name; the page itself has none.
+/// A file of the page by its name; the name of the page itself is empty.
 pub fn file(name: &str) -> Option<Response> {
     let answer = |kind: &'static str, text: Bytes| ([(header::CONTENT_TYPE, kind)], text);
     if name == "plotly.js" {
@@ -47,7 +47,7 @@ pub fn file(name: &str) -> Option<Response> {
     Some(answer(kind, Bytes::from_static(text.as_bytes())).into_response())
 }
 
-/// The plotting library without the formula renderer that its crate sends along.
+/// The plotting library without the formula renderer that its crate includes.
 fn plotly() -> Bytes {
     static PLOTLY: OnceLock<Bytes> = OnceLock::new();
     let script = || {

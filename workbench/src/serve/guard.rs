@@ -1,4 +1,4 @@
-//! Who may ask: requests that name this server, come from its own page and know its token.
+//! Access control: a request has to address this server, come from its own page, and carry its token.
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::Next;
@@ -8,17 +8,17 @@ use rand::Rng;
 /// Letters of a token: 32 of 62 are 190 bits.
 const TOKEN_LENGTH: usize = 32;
 
-/// Scripts and data come from this server only. Plotly sets styles, and makes pictures from blobs.
+/// Scripts and data are loaded from this server only. Plotly sets styles, and creates pictures from blobs.
 const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; \
      frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 
-/// A random name that nobody guesses.
+/// A random token.
 pub fn random_token() -> String {
     let letters = rand::rng().sample_iter(rand::distr::Alphanumeric);
     letters.take(TOKEN_LENGTH).map(char::from).collect()
 }
 
-/// What a request has to say.
+/// Credentials of a request.
 #[derive(Debug, Clone)]
 pub struct Guard {
     token: String,
@@ -32,24 +32,28 @@ impl Guard {
         Self { token, hosts }
     }
 
-    /// Why a request is refused; `None` if it is not.
+    /// The reason for a refusal; `None` if the request is accepted.
     fn refusal(&self, path: &str, headers: &HeaderMap) -> Option<&'static str> {
         let text = |name| headers.get(name).map(HeaderValue::as_bytes);
         let is_own = |host: &[u8]| self.hosts.iter().any(|own| own.as_bytes() == host);
         let from_here = |origin: &[u8]| origin.strip_prefix(b"http://").is_some_and(is_own);
         if !text(header::HOST).is_some_and(is_own) {
-            Some("the Host header names another server; open the address that hitch serve prints")
+            Some(
+                "the Host header is that of another server; open the address printed by hitch serve",
+            )
         } else if !text(header::ORIGIN).is_none_or(from_here) {
-            Some("the request comes from another page; open the address that hitch serve prints")
+            Some("the request comes from another page; open the address printed by hitch serve")
         } else if path.split('/').nth(1) != Some(self.token.as_str()) {
-            Some("the address lacks the right token; open the address that hitch serve prints")
+            Some(
+                "the token in the address is wrong or missing; open the address printed by hitch serve",
+            )
         } else {
             None
         }
     }
 }
 
-/// Lets a request through or answers 403, and tells the browser what the page may load.
+/// Passes a request on or answers 403; sets the content security policy of the answer.
 pub async fn check(State(guard): State<Guard>, request: Request, next: Next) -> Response {
     let mut response = match guard.refusal(request.uri().path(), request.headers()) {
         Some(reason) => (StatusCode::FORBIDDEN, reason).into_response(),

@@ -1,4 +1,4 @@
-//! Computations that take longer than a request: they run on a thread of their own and tell how far they are.
+//! Long computations: each runs in its own thread and reports its progress.
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,34 +11,34 @@ use super::session::Job;
 use super::sessions::Shared;
 use super::tasks::{Outcome, Ready, Task};
 
-/// What unwinds a computation whose result is no longer wanted.
+/// Panic payload that unwinds a cancelled computation.
 struct Cancelled;
 
-/// How a computation tells its tab how far it is.
+/// Reports the progress of a computation to its tab.
 pub struct Reporter {
     cancelled: Arc<AtomicBool>,
     messages: broadcast::Sender<Value>,
 }
 
 impl Reporter {
-    /// Says what is being done, how much of all is done (0 to 1, `None` if that is not known), and what the error is.
+    /// Reports the current stage, the completed fraction (0 to 1, `None` if unknown) and the error.
     pub fn progress(&self, text: &str, fraction: Option<f64>, error: Option<f64>) {
         self.tell(
             json!({ "kind": "progress", "text": text, "fraction": fraction, "error": error }),
         );
     }
 
-    /// Tells of an effect that was tried.
+    /// Reports an evaluated effect.
     pub fn candidate(&self, candidate: &Value, fraction: f64) {
         self.tell(json!({ "kind": "candidate", "candidate": candidate, "fraction": fraction }));
     }
 
     fn tell(&self, message: Value) {
         if self.cancelled.load(Ordering::Relaxed) {
-            // Unwinds to the start of the computation without the message of a panic.
+            // Unwinds to the start of the computation without a panic message.
             resume_unwind(Box::new(Cancelled));
         }
-        // Nobody may be listening.
+        // There may be no receiver.
         let _ = self.messages.send(message);
     }
 }
@@ -46,7 +46,7 @@ impl Reporter {
 /// Starts a computation for a session.
 ///
 /// # Errors
-/// If one is running, or the task does not fit the session.
+/// If a computation is running, or the task does not fit the session.
 pub fn start(session: &Shared, task: Task) -> Result<(), Refusal> {
     let mut open = lock(session);
     if open.job.is_some() {
@@ -71,7 +71,7 @@ pub fn start(session: &Shared, task: Task) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Takes over a result, if it is still wanted, and says that the computation is over.
+/// Stores the result unless the computation was cancelled, and reports its end.
 fn finish(session: &Shared, reporter: &Reporter, outcome: std::thread::Result<Outcome>) {
     let mut open = lock(session);
     if reporter.cancelled.load(Ordering::Relaxed) {
@@ -85,7 +85,7 @@ fn finish(session: &Shared, reporter: &Reporter, outcome: std::thread::Result<Ou
         }
         Err(_) => json!({
             "kind": "failed",
-            "text": "The computation failed. The model is as it was before; try another effect.",
+            "text": "The computation failed. The model is unchanged; try another effect.",
         }),
     };
     let _ = open.messages.send(message);

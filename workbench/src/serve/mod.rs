@@ -1,7 +1,7 @@
 //! The interactive page of `hitch serve`: a web server on 127.0.0.1 and what it shows.
 //!
-//! The browser draws and asks; every number is computed here. A tab has a `session::Session` of its own. What takes
-//! longer than a request runs as a job, whose progress the tab follows as Server-Sent Events.
+//! The browser draws; every number is computed here. Each tab has its own `session::Session`. Long computations run as
+//! jobs, and the tab follows their progress through Server-Sent Events.
 mod assets;
 mod guard;
 mod jobs;

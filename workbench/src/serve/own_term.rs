@@ -1,4 +1,4 @@
-//! A term of the user's own, as the form of the page sends it.
+//! A user-defined term, as sent by the form of the page.
 
 use hitch_effects::TermEffect;
 use hitch_effects::expression::operation::FUNCTIONS;
@@ -8,7 +8,7 @@ use hitch_plant::hooks::signals::SIGNALS;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-/// What the form holds.
+/// Content of the form.
 #[derive(Debug, Clone, Deserialize)]
 pub struct TermForm {
     id: String,
@@ -17,7 +17,7 @@ pub struct TermForm {
     parameters: Vec<ParameterForm>,
 }
 
-/// A row of the form; an empty field is no number.
+/// A row of the form; an empty field is not a number.
 #[derive(Debug, Clone, Deserialize)]
 struct ParameterForm {
     name: String,
@@ -29,7 +29,7 @@ struct ParameterForm {
 }
 
 impl TermForm {
-    /// What is wrong with it; nothing is defined.
+    /// Checks the definition; returns its fault.
     pub fn check(self) -> Option<Value> {
         let formula = self.formula.clone();
         let checked = self.definition();
@@ -40,17 +40,17 @@ impl TermForm {
         }
     }
 
-    /// The effect that it defines.
+    /// The effect of the definition.
     ///
     /// # Errors
-    /// What is wrong with it, as the page shows it.
+    /// The fault of the definition, as JSON for the page.
     pub fn define(self) -> Result<&'static TermEffect, Value> {
         let formula = self.formula.clone();
         TermEffect::define(self.definition()?).map_err(|error| fault(&formula, &error))
     }
 
     fn definition(self) -> Result<TermDefinition, Value> {
-        let unknown = || json!({ "what": format!("there is no place {:?}", self.place) });
+        let unknown = || json!({ "what": format!("unknown place {:?}", self.place) });
         let place = Place::named(&self.place).ok_or_else(unknown)?;
         let parameters = self.parameters.into_iter().enumerate();
         Ok(TermDefinition {
@@ -89,7 +89,7 @@ impl ParameterForm {
     }
 }
 
-/// What is wrong with a definition; a fault of the formula has its column, counted from 1 in characters.
+/// The fault of a definition; for a formula with its column, in characters from 1.
 fn fault(formula: &str, error: &TermError) -> Value {
     let column = match error.part {
         Part::Formula(byte) => {
@@ -101,7 +101,7 @@ fn fault(formula: &str, error: &TermError) -> Value {
     json!({ "what": error.what, "mend": error.mend, "column": column })
 }
 
-/// What formulas are made of: the places, signals and functions.
+/// The elements of formulas: places, signals and functions.
 pub fn offered() -> Value {
     let places = Place::all().map(
         |place| json!({ "name": place.id(), "unit": place.unit(), "meaning": place.meaning() }),

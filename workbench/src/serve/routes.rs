@@ -1,4 +1,4 @@
-//! What the page can ask for.
+//! HTTP routes of the page.
 
 use std::sync::{Arc, MutexGuard, PoisonError};
 
@@ -25,7 +25,7 @@ use crate::error::Error;
 type Known = State<Arc<Sessions>>;
 type Answer = Result<Json<Value>, Refusal>;
 
-/// Every path, behind the token.
+/// All routes, protected by the token.
 pub fn routes() -> Router<Arc<Sessions>> {
     Router::new()
         .route("/{token}/", get(page))
@@ -45,14 +45,14 @@ pub fn routes() -> Router<Arc<Sessions>> {
         .route("/{token}/api/model", get(model))
 }
 
-/// Why a request cannot be answered, as the page shows it.
+/// Refusal of a request, with the fault that the page shows.
 pub(super) struct Refusal {
     status: StatusCode,
     fault: Value,
 }
 
 impl Refusal {
-    /// A request that does not fit what there is.
+    /// A request for something that does not exist.
     pub(super) fn of(status: StatusCode, what: &str) -> Self {
         Self {
             status,
@@ -60,7 +60,7 @@ impl Refusal {
         }
     }
 
-    /// A request whose content is wrong.
+    /// A request with invalid content.
     pub(super) fn wrong(fault: Value) -> Self {
         Self {
             status: StatusCode::UNPROCESSABLE_ENTITY,
@@ -68,7 +68,7 @@ impl Refusal {
         }
     }
 
-    /// A request that does not fit what the session has come to.
+    /// A request that conflicts with the state of the session.
     pub(super) fn conflict(what: &str) -> Self {
         Self::of(StatusCode::CONFLICT, what)
     }
@@ -89,7 +89,7 @@ impl IntoResponse for Refusal {
     }
 }
 
-/// Which session a request is about.
+/// The session of a request.
 #[derive(Debug, Deserialize)]
 struct Of {
     session: String,
@@ -130,7 +130,7 @@ async fn run(State(sessions): Known, Query(of): Query<OfRun>) -> Answer {
         let session = lock(&session);
         views::run(&session, of.run)
     });
-    let no_run = || Refusal::of(StatusCode::NOT_FOUND, "the campaign has no such run");
+    let no_run = || Refusal::of(StatusCode::NOT_FOUND, "the run is not in the campaign");
     Ok(Json(view.await?.ok_or_else(no_run)?))
 }
 
@@ -149,7 +149,7 @@ async fn worst(State(sessions): Known, Query(of): Query<OfCell>) -> Answer {
     let mut channels = Channel::ALL.into_iter();
     let channel = channels.find(|channel| channel.key() == of.channel);
     let worst = blocking(move || worst_in_part(&evaluated, of.by, &of.part, channel?)).await?;
-    let nothing = || Refusal::of(StatusCode::NOT_FOUND, "nothing was compared there");
+    let nothing = || Refusal::of(StatusCode::NOT_FOUND, "this cell has no data");
     let (run, stretch) = worst.ok_or_else(nothing)?;
     Ok(Json(json!({ "run": run, "stretch": stretch })))
 }
@@ -172,10 +172,10 @@ async fn signature(State(sessions): Known, Query(of): Query<OfCandidate>) -> Ans
             session.present_ranking().cloned(),
         )
     };
-    let unranked = || Refusal::conflict("the model has changed since; rank the effects again");
+    let unranked = || Refusal::conflict("the model has changed; rank the effects again");
     let ranking = ranking.ok_or_else(unranked)?;
     let view = blocking(move || views::signature(&subject, &step, &ranking, &of.effect, of.run));
-    let none = || Refusal::of(StatusCode::NOT_FOUND, "there is no such run or candidate");
+    let none = || Refusal::of(StatusCode::NOT_FOUND, "the run or candidate does not exist");
     Ok(Json(view.await?.ok_or_else(none)?))
 }
 
@@ -201,7 +201,7 @@ async fn preview(State(sessions): Known, Json(trial): Json<Trial>) -> Answer {
         views::preview(&subject, &step, &estimate, trial.run)
     });
     let none =
-        || Refusal::conflict("the model has no such parameter any more, or there is no such run");
+        || Refusal::conflict("the parameter is no longer in the model, or the run does not exist");
     Ok(Json(view.await?.ok_or_else(none)?))
 }
 
@@ -256,7 +256,7 @@ async fn go(State(sessions): Known, Json(to): Json<Go>) -> Answer {
     }
     match open.go(to.at) {
         true => Ok(Json(json!({}))),
-        false => Err(Refusal::conflict("there is no such step any more")),
+        false => Err(Refusal::conflict("the step no longer exists")),
     }
 }
 
@@ -287,12 +287,7 @@ async fn model(State(sessions): Known, Query(of): Query<Of>) -> Result<Response,
 
 /// The session of a tab.
 pub(super) fn find(sessions: &Sessions, id: &str) -> Result<Shared, Refusal> {
-    let unknown = || {
-        Refusal::of(
-            StatusCode::GONE,
-            "this session is over; load the page again",
-        )
-    };
+    let unknown = || Refusal::of(StatusCode::GONE, "the session has expired; reload the page");
     sessions.get(id).ok_or_else(unknown)
 }
 
@@ -306,7 +301,7 @@ pub(super) async fn blocking<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Result<T, Refusal> {
     let failed = |_| {
-        let what = "the computation failed; undo the last step, or load the page again";
+        let what = "the computation failed; undo the last step, or reload the page";
         Refusal::of(StatusCode::INTERNAL_SERVER_ERROR, what)
     };
     tokio::task::spawn_blocking(work).await.map_err(failed)

@@ -15,7 +15,7 @@ use super::source::Source;
 use crate::error::Error;
 use crate::output;
 
-/// Largest request, bytes: no request of the page is longer than a few values.
+/// Maximum size of a request, bytes; the requests of the page are short.
 const LARGEST_REQUEST: usize = 64 * 1024;
 
 /// Serves the page until Ctrl-C.
@@ -28,28 +28,28 @@ pub fn run(source: Source, port: u16, open_browser: bool) -> Result<(), Error> {
     let page = runtime.block_on(start(Arc::clone(&sessions), port))?;
     output::print(&format!("{page}\nStop it with Ctrl-C.\n"))?;
     if open_browser && let Err(error) = open::that_detached(&page) {
-        eprintln!("hitch: no browser opens ({error}); open the address above");
+        eprintln!("hitch: the browser could not be opened ({error}); open the address above");
     }
-    // The first page has less to wait for.
+    // Reads the campaign in advance, so that the first page loads faster.
     runtime.spawn_blocking(move || match sessions.subject() {
         Ok(_) => {}
         Err(error) => eprintln!("hitch: {error}"),
     });
     let stopped = runtime.block_on(tokio::signal::ctrl_c());
-    // Computations and pages that are still open do not hold the program up.
+    // Running computations and open pages do not delay the exit.
     runtime.shutdown_background();
     stopped.map_err(cannot_start)
 }
 
-/// Listens and answers in the background, as long as the runtime that this is called in lives; the page's address.
+/// Starts the server in the background of the current runtime; returns the address of the page.
 ///
 /// # Errors
-/// If the port cannot be used.
+/// If the port is not available.
 async fn start(sessions: Arc<Sessions>, port: u16) -> Result<String, Error> {
     let wanted = SocketAddr::from((Ipv4Addr::LOCALHOST, port));
     let cannot_listen = |error| {
         Error::Usage(format!(
-            "port {port} cannot be used: {error}; name another one, or leave out --port"
+            "port {port} is not available: {error}; give another one, or omit --port"
         ))
     };
     let listener = TcpListener::bind(wanted).await.map_err(cannot_listen)?;

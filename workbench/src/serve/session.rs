@@ -1,4 +1,4 @@
-//! What one tab of a browser has done: the steps from the first model, with undo and redo, and what runs for it.
+//! State of one browser tab: the steps from the initial model, with undo and redo, and the running computation.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,38 +16,38 @@ use super::source::Subject;
 use crate::comparison::Evaluated;
 use crate::explanation;
 
-/// Messages that a tab may be behind by; one that is further behind asks for the state anew.
+/// Capacity of the message queue; a tab that is further behind requests the state again.
 const KEPT_MESSAGES: usize = 256;
 
-/// A model on the way, evaluated on the campaign.
+/// A step: a model evaluated on the campaign.
 #[derive(Debug, Clone)]
 pub struct Step {
-    /// What was done, for people.
+    /// Title of the step.
     pub title: String,
-    /// The model evaluated.
+    /// The evaluated model.
     pub evaluated: Arc<Evaluated>,
-    /// Error on runs that were not used to fit; `None` where nothing was fitted.
+    /// Error on held-out runs; `None` without a fit.
     pub held_out: Option<f64>,
-    /// Terms that were defined up to here, those of the model's file first.
+    /// Terms defined up to this step, those of the model file first.
     pub terms: Vec<&'static dyn Effect>,
 }
 
 impl Step {
-    /// Defines a term; an older one of the same name is gone.
+    /// Defines a term; replaces an older one of the same name.
     pub fn define(&mut self, term: &'static TermEffect) {
         self.terms.retain(|known| known.id() != term.id());
         self.terms.push(term);
     }
 }
 
-/// Effects that the model of a step could lack, ranked.
+/// Ranking of the effects that the model of a step may lack.
 #[derive(Debug)]
 pub struct Ranking {
-    /// The model that they were tried on.
+    /// The model of the ranking.
     pub of: Arc<Evaluated>,
-    /// What was found.
+    /// The result.
     pub diagnosis: explain::Diagnosis,
-    /// The same for people.
+    /// The result in its display form.
     pub shown: explanation::Diagnosis,
 }
 
@@ -59,29 +59,29 @@ impl Ranking {
     }
 }
 
-/// What explains the campaign from the model of a step.
+/// Explanation of the campaign from the model of a step.
 #[derive(Debug)]
 pub struct Explained {
-    /// The model that it begins with.
+    /// The model that it starts from.
     pub of: Arc<Evaluated>,
-    /// What was found.
+    /// The result.
     pub explanation: explain::Explanation,
-    /// A term for what stays unexplained.
+    /// A term for the remaining error.
     pub suggestion: Option<Suggestion>,
-    /// The same for people.
+    /// The result in its display form.
     pub shown: explanation::Explanation,
 }
 
-/// A computation that runs.
+/// A running computation.
 #[derive(Debug, Clone)]
 pub struct Job {
-    /// What it does, for people.
+    /// Its description.
     pub title: String,
-    /// Set when its result is no longer wanted.
+    /// Set to cancel it.
     pub cancelled: Arc<AtomicBool>,
 }
 
-/// The steps of a tab; undone ones are kept until something else is done.
+/// The steps of a tab; undone steps are kept until the next new step.
 #[derive(Debug)]
 pub struct Session {
     subject: Arc<Subject>,
@@ -91,9 +91,9 @@ pub struct Session {
     pub ranking: Option<Arc<Ranking>>,
     /// The latest explanation.
     pub explained: Option<Arc<Explained>>,
-    /// What runs now.
+    /// The running computation.
     pub job: Option<Job>,
-    /// Tells the tab how that goes.
+    /// Sends messages to the tab.
     pub messages: broadcast::Sender<Value>,
 }
 
@@ -117,12 +117,12 @@ impl Session {
         }
     }
 
-    /// What it is about.
+    /// The campaign and the initial model.
     pub fn subject(&self) -> &Arc<Subject> {
         &self.subject
     }
 
-    /// All steps, undone ones too.
+    /// All steps, including undone ones.
     pub fn steps(&self) -> &[Step] {
         &self.steps
     }
@@ -137,7 +137,7 @@ impl Session {
         &self.steps[self.at]
     }
 
-    /// The model to begin with, with the terms that were defined since.
+    /// The initial model, with all terms defined since.
     pub fn model(&self) -> Model {
         self.subject.model.with_terms(self.present().terms.clone())
     }
@@ -147,21 +147,21 @@ impl Session {
         &self.present().evaluated.fit
     }
 
-    /// The ranking, if it is of the present model.
+    /// The ranking, if it belongs to the present model.
     pub fn present_ranking(&self) -> Option<&Arc<Ranking>> {
         let present = &self.present().evaluated;
         let ranking = self.ranking.as_ref();
         ranking.filter(|ranking| Arc::ptr_eq(&ranking.of, present))
     }
 
-    /// Adds a step after the present one; what was undone is gone.
+    /// Adds a step after the present one; discards undone steps.
     pub fn push(&mut self, step: Step) {
         self.steps.truncate(self.at + 1);
         self.steps.push(step);
         self.at += 1;
     }
 
-    /// Goes to a step, back or forth; whether there is such a step.
+    /// Goes to a step, back or forward; false if it does not exist.
     pub fn go(&mut self, at: usize) -> bool {
         let exists = at < self.steps.len();
         if exists {
@@ -170,7 +170,7 @@ impl Session {
         exists
     }
 
-    /// Ends what runs: its result is no longer wanted.
+    /// Cancels the running computation.
     pub fn cancel(&mut self) {
         if let Some(job) = self.job.take() {
             job.cancelled.store(true, Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! The sessions of all tabs.
+//! The sessions of all browser tabs.
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -7,18 +7,18 @@ use super::session::Session;
 use super::source::{Source, Subject};
 use crate::error::Error;
 
-/// Most sessions that are kept; a tab whose session was dropped begins anew.
+/// Maximum number of sessions; the oldest is dropped, and its tab starts a new one.
 const MOST_SESSIONS: usize = 32;
 
-/// A session that several requests of its tab may ask for at once.
+/// A session, shared by concurrent requests of its tab.
 pub type Shared = Arc<Mutex<Session>>;
 
-/// Everything that the server knows.
+/// State of the server.
 #[derive(Debug)]
 pub struct Sessions {
     source: Source,
     subject: Mutex<Option<Arc<Subject>>>,
-    /// The latest last.
+    /// Sessions, the newest last.
     known: Mutex<VecDeque<(String, Shared)>>,
 }
 
@@ -32,10 +32,10 @@ impl Sessions {
         }
     }
 
-    /// Reads the campaign if that has not been done; one that was wrong is read again, it may have been mended.
+    /// Reads the campaign on first use; after a fault it is read again, as the files may have been corrected.
     ///
     /// # Errors
-    /// If the campaign is wrong.
+    /// If the campaign is invalid.
     pub fn subject(&self) -> Result<Arc<Subject>, Error> {
         let mut subject = self.subject.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = &*subject {
@@ -46,10 +46,10 @@ impl Sessions {
         Ok(read)
     }
 
-    /// Begins a session; its id.
+    /// Starts a session; returns its id.
     ///
     /// # Errors
-    /// If the campaign is wrong.
+    /// If the campaign is invalid.
     pub fn begin(&self) -> Result<String, Error> {
         let session = Session::new(self.subject()?);
         let id = random_token();

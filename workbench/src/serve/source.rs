@@ -1,4 +1,4 @@
-//! What the page is about: a campaign and the model to begin with.
+//! The campaign and the initial model of the page.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,23 +11,23 @@ use crate::comparison::Evaluated;
 use crate::demonstration;
 use crate::error::Error;
 
-/// Where campaign and model come from.
+/// Sources of campaign and model.
 #[derive(Debug, Clone)]
 pub struct Source {
-    /// Folder of the campaign; `None` is the campaign that comes with the program.
+    /// Folder of the campaign; `None` is the demonstration campaign.
     pub campaign: Option<PathBuf>,
-    /// The model to begin with.
+    /// The initial model.
     pub model: Model,
 }
 
-/// A campaign that was read, and the model evaluated on it.
+/// A campaign, and the model evaluated on it.
 #[derive(Debug)]
 pub struct Subject {
-    /// One sentence about the campaign; empty if it has none.
+    /// Description of the campaign; empty if it has none.
     pub description: String,
-    /// The model to begin with.
+    /// The initial model.
     pub model: Model,
-    /// The model before any change.
+    /// The evaluation of the initial model.
     pub start: Arc<Evaluated>,
 }
 
@@ -35,7 +35,7 @@ impl Source {
     /// Reads the campaign and evaluates the model.
     ///
     /// # Errors
-    /// If the campaign is wrong.
+    /// If the campaign is invalid.
     pub fn read(&self) -> Result<Subject, Error> {
         let campaign = match &self.campaign {
             Some(folder) => Campaign::load_with(folder, self.model.linkage())?,
@@ -50,7 +50,7 @@ impl Source {
 }
 
 impl Subject {
-    /// The campaign, ready.
+    /// The prepared campaign.
     pub fn experiment(&self) -> &Experiment {
         &self.start.experiment
     }

@@ -1,4 +1,4 @@
-//! What can be computed for a session: rank effects, fit a model with or without one, explain the campaign.
+//! Computations of a session: rank effects, fit a model, explain the campaign.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -25,32 +25,32 @@ use crate::comparison::Evaluated;
 use crate::effect_arg::find;
 use crate::explanation;
 
-/// Most rounds of a fit before its last one, and the relative fall of the cost that is worth another.
+/// Maximum number of rounds of a fit before the final one, and the relative decrease of the cost that continues it.
 const ROUNDS: usize = 6;
 const WORTHWHILE: f64 = 1e-3;
 
-/// What a tab wants to have computed.
+/// A computation as requested by a tab.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(tag = "task", rename_all = "lowercase")]
 pub enum Task {
-    /// Try every effect that the model lacks.
+    /// Evaluate every effect that the model lacks.
     Rank,
     /// Add an effect and fit.
     Add {
         /// Its name, with its form.
         effect: String,
     },
-    /// Add a term of the user's own and fit.
+    /// Add a user-defined term and fit.
     Term {
         /// Its definition.
         term: TermForm,
     },
-    /// Take an effect away and fit.
+    /// Remove an effect and fit.
     Remove {
         /// Index of the effect.
         effect: usize,
     },
-    /// Set a parameter of an effect by hand.
+    /// Set a parameter of an effect manually.
     Set {
         /// Index of the effect.
         effect: usize,
@@ -59,20 +59,20 @@ pub enum Task {
         /// Its value, in its unit.
         value: f64,
     },
-    /// Fit all effects from where they are.
+    /// Fit all effects from their present values.
     Fit,
-    /// Find everything that is missing.
+    /// Find all missing effects.
     Explain,
-    /// Take over steps of the explanation.
+    /// Accept steps of the explanation.
     Adopt {
-        /// Indices of the steps that are accepted.
+        /// Indices of the accepted steps.
         steps: Vec<usize>,
     },
-    /// Take over the explanation with the term that it suggests.
+    /// Accept the explanation together with its suggested term.
     Suggested,
 }
 
-/// A task with all that it needs.
+/// A task with its inputs.
 pub struct Ready {
     subject: Arc<Subject>,
     model: Model,
@@ -93,7 +93,7 @@ enum What {
     Suggested(Suggestion),
 }
 
-/// What a task came to.
+/// Result of a task.
 pub enum Outcome {
     /// A ranking.
     Ranking(Arc<Ranking>),
@@ -104,7 +104,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Takes it over.
+    /// Stores the result in the session.
     pub fn apply(self, session: &mut Session) {
         match self {
             Self::Ranking(ranking) => session.ranking = Some(ranking),
@@ -118,12 +118,12 @@ impl Ready {
     /// Checks a task against a session.
     ///
     /// # Errors
-    /// If the session has nothing that the task could be about.
+    /// If the session does not have what the task refers to.
     pub fn new(session: &Session, task: Task) -> Result<Self, Refusal> {
         let effects = &session.fit().estimate.effects;
         let there = |effect: usize| {
             let added = effects.get(effect);
-            added.ok_or_else(|| Refusal::conflict("the model has no such effect any more"))
+            added.ok_or_else(|| Refusal::conflict("the effect is no longer in the model"))
         };
         let mut present = session.present().clone();
         let what = match task {
@@ -144,7 +144,7 @@ impl Ready {
             } => {
                 let title = format!("{} set by hand", full_name(there(effect)?.effect));
                 let estimate = moved(&session.fit().estimate, effect, parameter, value);
-                let no_parameter = || Refusal::conflict("the effect has no such parameter");
+                let no_parameter = || Refusal::conflict("the effect does not have this parameter");
                 What::Set(estimate.ok_or_else(no_parameter)?, title)
             }
             Task::Adopt { steps } => What::Adopt(present_explanation(session)?, steps),
@@ -165,21 +165,21 @@ impl Ready {
         })
     }
 
-    /// What is being done, for people.
+    /// Description of the computation, for the page.
     pub fn title(&self) -> String {
         match &self.what {
-            What::Rank => "Trying every effect".to_owned(),
+            What::Rank => "Evaluating every effect".to_owned(),
             What::Explain => "Explaining".to_owned(),
             What::Add(effect) => format!("Adding {}", full_name(*effect)),
             What::Remove(effect) => format!("Taking {} away", self.name(*effect)),
             What::Set(_, _) => "Evaluating all runs".to_owned(),
             What::Fit => "Fitting all effects".to_owned(),
-            What::Adopt(..) => "Taking the steps over".to_owned(),
+            What::Adopt(..) => "Accepting the steps".to_owned(),
             What::Suggested(found) => format!("Adding {}", found.term.id()),
         }
     }
 
-    /// Does it.
+    /// Runs the task.
     pub fn run(&self, reporter: &Reporter) -> Outcome {
         let before = &self.present.evaluated.fit;
         match &self.what {
@@ -212,7 +212,7 @@ impl Ready {
                 Outcome::Steps(vec![self.fitted("Fitted".to_owned(), start, reporter)])
             }
             What::Suggested(found) => {
-                let title = format!("Took the explanation over with {}", found.term.id());
+                let title = format!("Accepted the explanation with {}", found.term.id());
                 let start = found.fit.estimate.clone();
                 Outcome::Steps(vec![self.fitted(title, start, reporter)])
             }
@@ -238,7 +238,7 @@ impl Ready {
                 reporter.candidate(&views::tried(&base, candidate), share);
             },
         );
-        reporter.progress("comparing the best", None, None);
+        reporter.progress("comparing the best candidates", None, None);
         let shown = explanation::Diagnosis::new(self.experiment(), self.model(), &diagnosis);
         Ranking {
             of: Arc::clone(&self.present.evaluated),
@@ -268,10 +268,10 @@ impl Ready {
         }
     }
 
-    /// Where the fit with one more effect begins.
+    /// Initial estimate for the fit with one more effect.
     fn with(&self, effect: &'static dyn Effect, reporter: &Reporter) -> Estimate {
         reporter.progress(
-            "looking for its size",
+            "estimating its size",
             None,
             Some(self.present.evaluated.fit.error()),
         );
@@ -283,7 +283,7 @@ impl Ready {
         let (experiment, model) = (self.experiment(), self.model());
         let base = &self.present.evaluated.fit;
         let tried = try_effects(experiment, model, base, &[effect], &|_| {
-            reporter.progress("looking for its size", None, None);
+            reporter.progress("estimating its size", None, None);
         });
         let tried = tried.into_iter().next();
         tried.map_or_else(
@@ -296,7 +296,7 @@ impl Ready {
         )
     }
 
-    /// Fits all effects from a start, telling the error after each round.
+    /// Fits all effects from an initial estimate; reports the error after each round.
     fn fitted(&self, title: String, mut estimate: Estimate, reporter: &Reporter) -> Step {
         let (experiment, model) = (self.experiment(), self.model());
         estimate.adopted.clear();
@@ -315,13 +315,13 @@ impl Ready {
             }
         }
         let fit = refine(experiment, model, fit.estimate);
-        told(ROUNDS + 1, "testing on runs that are held out", &fit);
+        told(ROUNDS + 1, "evaluating held-out runs", &fit);
         let error = held_out(experiment, model, &fit).error;
         reporter.progress("done", Some(1.0), None);
         self.step(title, fit, Some(error))
     }
 
-    /// The accepted steps of an explanation: one by one if all are, else fitted together.
+    /// The accepted steps of an explanation: step by step if all are accepted, else fitted together.
     fn adopted(&self, explained: &Explained, accepted: &[usize], reporter: &Reporter) -> Vec<Step> {
         let found = &explained.explanation;
         if (0..found.steps.len()).all(|step| accepted.contains(&step)) {
@@ -339,7 +339,7 @@ impl Ready {
                 start = start.without(place);
             }
         }
-        vec![self.fitted("Took steps over".to_owned(), start, reporter)]
+        vec![self.fitted("Accepted steps".to_owned(), start, reporter)]
     }
 
     fn step(&self, title: String, fit: Fit, held_out: Option<f64>) -> Step {
@@ -366,21 +366,21 @@ impl Ready {
     }
 }
 
-/// The explanation, if it begins with the present model.
+/// The explanation, if it starts from the present model.
 fn present_explanation(session: &Session) -> Result<Arc<Explained>, Refusal> {
     let present = &session.present().evaluated;
     let explained = session.explained.as_ref();
     let explained = explained.filter(|known| Arc::ptr_eq(&known.of, present));
-    let stale = || Refusal::conflict("the model has changed since; explain it again");
+    let stale = || Refusal::conflict("the model has changed; run the explanation again");
     explained.cloned().ok_or_else(stale)
 }
 
-/// An effect by its name that the model of a session can have and does not.
+/// The effect of this name, if it fits the session's model and is not yet in it.
 fn new_effect(session: &Session, name: &str) -> Result<&'static dyn Effect, Refusal> {
     lacking(session, find(&session.model(), name)?)
 }
 
-/// The same effect, if the model of the session does not have it.
+/// The effect, if the session's model does not have it.
 fn lacking(session: &Session, effect: &'static dyn Effect) -> Result<&'static dyn Effect, Refusal> {
     let mut present = session.fit().estimate.effects.iter();
     match present.any(|added| added.effect.id() == effect.id()) {
@@ -389,7 +389,7 @@ fn lacking(session: &Session, effect: &'static dyn Effect) -> Result<&'static dy
     }
 }
 
-/// An estimate with one parameter set by hand, within its range; `None` if there is no such parameter.
+/// An estimate with one parameter set manually, limited to its range; `None` if the parameter does not exist.
 pub fn moved(estimate: &Estimate, effect: usize, parameter: usize, value: f64) -> Option<Estimate> {
     let mut moved = estimate.clone();
     let added = moved.effects.get_mut(effect)?;

@@ -1,4 +1,4 @@
-//! What the page shows, as JSON.
+//! JSON views of a session.
 mod effects;
 
 use hitch_identification::data::experiment::{Experiment, ReadyRun};
@@ -16,7 +16,7 @@ use crate::report::run_views::conditions;
 
 pub use effects::tried;
 
-/// What went wrong, with file and place where it is a file's fault.
+/// A fault, with file and position if a file is its cause.
 pub fn fault(error: &Error) -> Value {
     match error {
         Error::Input(input) => json!({
@@ -30,7 +30,7 @@ pub fn fault(error: &Error) -> Value {
     }
 }
 
-/// Campaign, model, steps and the map of the error.
+/// Campaign, model, steps and error map.
 pub fn state(session: &Session) -> Value {
     let subject = session.subject();
     let evaluated = &session.present().evaluated;
@@ -88,7 +88,7 @@ fn step(step: &Step) -> Value {
     })
 }
 
-/// The effects of the present model with what each parameter can be set to.
+/// The effects of the present model, with the range of each parameter.
 fn added(session: &Session) -> Vec<Value> {
     let effect = |added: &AddedEffect| {
         let parameters = added.effect.parameters().iter().zip(&added.values);
@@ -113,7 +113,7 @@ fn added(session: &Session) -> Vec<Value> {
     estimate.effects.iter().map(effect).collect()
 }
 
-/// A run under an estimate that was set by hand; `None` if there is no such run.
+/// A run simulated with manually set parameters; `None` if there is no such run.
 pub fn preview(subject: &Subject, step: &Step, estimate: &Estimate, run: usize) -> Option<Value> {
     let ready = subject.experiment().runs.get(run)?;
     let weights = &step.evaluated.fit.weights.runs[run];
@@ -139,8 +139,8 @@ pub fn preview(subject: &Subject, step: &Step, estimate: &Estimate, run: usize) 
     Some(json!({ "run": run, "channels": channels.collect::<Vec<_>>() }))
 }
 
-/// What a candidate at its fitted size takes from the residuals of a run: residual without it less residual with it.
-/// `None` if there is no such run or candidate.
+/// The part of a run's residuals that a candidate explains at its fitted size: residual without it minus residual with
+/// it. `None` if the run or candidate does not exist.
 pub fn signature(
     subject: &Subject,
     step: &Step,

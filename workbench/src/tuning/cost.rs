@@ -1,16 +1,16 @@
-//! One number for a set of moves: time, and what the bars of motion forbid.
+//! Cost of a set of moves: mean time, with penalties for violated motion limits.
 
 use crate::closed_loop::MoveResult;
 
-/// Bars, a little inside those that are promised.
+/// Limits, slightly stricter than the promised ones.
 const OVERSHOOT_DEG: f64 = 0.25;
 const FINAL_ERROR_DEG: f64 = 0.25;
 const SWING: f64 = 1.4;
 
-/// Time ratio of what takes longer, or does not arrive at all.
+/// Upper bound of the time ratio; also the ratio of a move that never arrives.
 const SLOWEST: f64 = 5.0;
 
-/// Mean time ratio, plus ten times what the slowest twentieth loses, plus penalties for what lies beyond the bars.
+/// Mean time ratio, plus ten times the excess of the slowest 5 %, plus penalties for violated limits.
 #[must_use]
 pub fn cost(results: &[MoveResult]) -> f64 {
     let count = results.len().max(1) as f64;

@@ -1,11 +1,11 @@
-//! What may be turned, and by how much.
+//! The values that are tuned, and their ranges.
 
 use hitch_quantities::{Calibration, ValidCalibration};
 
 use super::Change;
 use crate::calibration_file::{scalar, set};
 
-/// `group.name` of the values that are searched.
+/// `group.name` of the tuned values.
 pub const KNOBS: [&str; 10] = [
     "position.lift_acceleration",
     "position.lift_deceleration",
@@ -19,27 +19,27 @@ pub const KNOBS: [&str; 10] = [
     "hydraulics.pressure_filter",
 ];
 
-/// No value gets more than so many times larger or smaller: beyond that its reason no longer holds.
+/// Largest factor by which a value may change: beyond it the stated reason of the value does not hold.
 const MOST_DOUBLINGS: f64 = 2.0;
 
-/// The values that are searched, without those of `fixed`.
+/// The tuned values, without those of `fixed`.
 #[must_use]
 pub fn without(fixed: &[String]) -> Vec<&'static str> {
     let is_fixed = |knob: &str| fixed.iter().any(|name| name == knob);
     KNOBS.into_iter().filter(|knob| !is_fixed(knob)).collect()
 }
 
-/// A value below which a knob is not turned.
+/// Lower bound of a tuned value.
 #[derive(Debug, Clone, Copy)]
 pub struct Least {
-    /// The knob.
+    /// The value.
     pub knob: &'static str,
-    /// In its unit.
+    /// Bound, in its unit.
     pub value: f64,
 }
 
-/// `base` with the value of each knob times two to the power of its coordinate, and not below its `least` one; `None`
-/// if that isn't a valid calibration.
+/// `base` with each value multiplied by two to the power of its coordinate, limited below by `least`; `None` if the
+/// result is not a valid calibration.
 pub fn with_values(
     base: &Calibration,
     knobs: &[&str],

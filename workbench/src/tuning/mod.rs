@@ -1,9 +1,8 @@
-//! Searches gains, ramps and limits for the bars of motion: CMA-ES over a set of moves.
+//! Tunes gains, ramps and limits with CMA-ES over a set of moves.
 //!
-//! What a model says nothing of is there all the same: each candidate is driven on the model itself and on two
-//! neighbours whose thresholds are shifted up and down by what teaching leaves, and which have the hysteresis,
-//! friction, air and thick oil of valves and cylinders of this class where the model has none. Gains for a valve
-//! without hysteresis are useless on any other.
+//! Each candidate is driven on the model and on two neighbours. Their thresholds are shifted up and down by the
+//! residual error of teaching, and they have typical hysteresis, friction, entrained air and cold-oil viscosity where
+//! the model has none: gains that are tuned without hysteresis do not suit a real valve.
 
 mod cost;
 mod knobs;
@@ -19,40 +18,40 @@ use crate::closed_loop::{Course, Move, MoveResult, Summary, courses, figures};
 pub use cost::cost;
 pub use knobs::KNOBS;
 
-/// What teaching leaves of a threshold's error, A.
+/// Residual error of a threshold after teaching, A.
 const SPREAD_A: f64 = 0.02;
-/// The effect that `hydraulics.hysteresis` is about.
+/// The effect behind `hydraulics.hysteresis`.
 const HYSTERESIS: &str = "solenoid-hysteresis";
-/// Width of it on valves of this class, A.
+/// Typical width of the hysteresis of such valves, A.
 const USUAL_HYSTERESIS_A: f64 = 0.12;
-/// Effects that every machine has, with usual values.
+/// Effects of every machine, with typical values.
 const USUAL: [(&str, &[f64]); 4] = [
     (HYSTERESIS, &[USUAL_HYSTERESIS_A]),
     ("coulomb-friction", &[400.0]),
     ("entrained-air", &[0.01, 1.2]),
     ("oil-viscosity", &[0.2, 0.042]),
 ];
-/// How long a candidate is watched after a move, s: long enough for every correction that follows at once.
+/// Time for which a candidate is observed after a move, s; it covers all corrections that follow directly.
 const AFTER_S: f64 = 1.5;
-/// Where the search starts, in halvings and doublings of each value: 0.3 is a fifth up or down.
+/// Initial standard deviation in octaves of each value: 0.3 is about 20 %.
 const START_SIGMA: f64 = 0.3;
 
 /// Plants with the moves that are driven on them.
 pub struct Trial {
-    /// The hysteresis that valves have is believed at least: dither hides it in these plants, where the search would
-    /// give it away for speed, and a hitch whose valves close later than that goes beyond its set point.
+    /// Lower bound for the hysteresis of the calibration. Dither hides hysteresis in these plants, so the search would
+    /// reduce it for speed; on a real valve, which closes later, the hitch would then overshoot.
     least: Least,
     plants: Vec<(Model, Vec<Course>)>,
 }
 
-/// A calibration and what it does.
+/// A calibration with its figures.
 #[derive(Debug, Clone)]
 pub struct Judged {
     /// The calibration.
     pub calibration: ValidCalibration,
     /// Figures of all moves on all plants.
     pub summary: Summary,
-    /// What the search makes small.
+    /// Cost, the objective of the search.
     pub cost: f64,
 }
 
@@ -61,9 +60,9 @@ pub struct Judged {
 pub struct Change {
     /// `group.key`
     pub key: String,
-    /// Before, engineering units.
+    /// Value before, engineering units.
     pub before: f64,
-    /// After, engineering units.
+    /// Value after, engineering units.
     pub after: f64,
 }
 
@@ -94,7 +93,7 @@ impl Trial {
         }
     }
 
-    /// Drives everything.
+    /// Drives all moves.
     #[must_use]
     pub fn judge(&self, calibration: &ValidCalibration) -> Option<Judged> {
         let results: Vec<MoveResult> = self
@@ -109,8 +108,8 @@ impl Trial {
         })
     }
 
-    /// Searches from `base` with about `trials` candidates, leaving the values in `fixed` (as in
-    /// `position.creep_speed`) as they are there; `tell` hears of each: how many so far, and the best cost.
+    /// Searches from `base` with about `trials` candidates. Values named in `fixed` (as in `position.creep_speed`) are
+    /// not changed. `tell` is called after each candidate with their number so far and the best cost.
     #[must_use]
     pub fn search(
         &self,
@@ -125,7 +124,7 @@ impl Trial {
             let judged = with_values(base, &knobs, self.least, point.as_slice())
                 .and_then(|calibration| self.judge(&calibration));
             let cost = judged.as_ref().map_or(f64::MAX, |judged| judged.cost);
-            // Nothing panics while the lock is held.
+            // No code panics while it holds the lock.
             if let Ok(mut state) = state.lock() {
                 state.0 += 1;
                 if state.1.as_ref().is_none_or(|best| cost < best.cost) {
@@ -135,7 +134,7 @@ impl Trial {
             }
             cost
         };
-        // The start is a candidate as well, with the hysteresis that valves have: nothing worse is ever returned.
+        // The start is a candidate too, with typical hysteresis: the result is never worse.
         objective(&DVector::zeros(knobs.len()));
         let mut search = CMAESOptions::new(vec![0.0; knobs.len()], START_SIGMA)
             .max_function_evals(trials)
@@ -148,13 +147,13 @@ impl Trial {
     }
 }
 
-/// What a search changed.
+/// The values that a search changed.
 #[must_use]
 pub fn changes(before: &Calibration, after: &Calibration) -> Vec<Change> {
     knobs::changes(before, after)
 }
 
-/// The model with both thresholds shifted, and with the usual effects that it doesn't have.
+/// The model with both thresholds shifted, and with the typical effects that it lacks.
 fn neighbour(model: &Model, shift_a: f64) -> Model {
     let mut effects = model.effects.clone();
     for id in ["lift-threshold-shift", "lower-threshold-shift"] {

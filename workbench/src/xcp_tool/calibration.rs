@@ -1,4 +1,4 @@
-//! Writing a calibration into the ECU, and reading back what it has stored.
+//! Writes a calibration to the ECU, and verifies the stored one.
 
 use std::time::{Duration, Instant};
 
@@ -11,22 +11,22 @@ use super::session::{Session, ToolError};
 const WORD_BYTES: usize = 4;
 /// Events: stored, and not stored.
 const STORED: u8 = 0x03;
-/// Erasing flash takes seconds on some parts.
+/// Timeout; erasing flash takes seconds on some parts.
 const STORES_WITHIN: Duration = Duration::from_secs(15);
 
-/// What was done.
+/// Summary of a write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Written {
-    /// Numbers that a calibration has.
+    /// Number of values of a calibration.
     pub words: usize,
-    /// Numbers that differed.
+    /// Number of changed values.
     pub changed: usize,
 }
 
-/// Writes what differs, has it stored, and reads everything back from what is stored.
+/// Writes changed values, requests storage, and verifies all values from flash.
 ///
 /// # Errors
-/// If the ECU refuses, or holds something else afterwards.
+/// If the ECU refuses, or the stored values differ.
 pub fn write_calibration(
     session: &mut Session,
     calibration: &ValidCalibration,
@@ -35,7 +35,7 @@ pub fn write_calibration(
         .to_words()
         .into_iter()
         .enumerate()
-        // Version and checksum belong to the block.
+        // Version and checksum are part of the block.
         .filter(|(index, _)| word_range(*index).is_some())
         .collect();
     let present = words(session)?;
@@ -52,7 +52,7 @@ pub fn write_calibration(
         Some(STORED) => {}
         _ => return Err(ToolError::NotStored),
     }
-    // The reference page is what is in flash.
+    // The reference page reflects the flash.
     session.command(&[0xEB, 0x02, 0, 1])?;
     let stored = words(session)?;
     session.command(&[0xEB, 0x02, 0, 0])?;
@@ -77,7 +77,7 @@ fn write_word(session: &mut Session, index: usize, value: i32) -> Result<(), Too
     }
 }
 
-/// The words of the page that tools see.
+/// The words of the page that XCP accesses.
 fn words(session: &mut Session) -> Result<Vec<i32>, ToolError> {
     let bytes = session.read(
         CALIBRATION_BASE,

@@ -1,4 +1,4 @@
-//! The other end of the ECU's bus: a tool that measures and calibrates over XCP.
+//! Client of the ECU's bus: measurement and calibration over XCP.
 
 mod calibration;
 mod recording;

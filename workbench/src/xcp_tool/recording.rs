@@ -1,4 +1,4 @@
-//! Recording what the ECU measures, as a run of a campaign has it.
+//! Records the measurements of the ECU as a run of a campaign.
 
 use std::time::{Duration, Instant};
 
@@ -19,32 +19,32 @@ pub const CHANNELS: [(&str, Reading); 5] = [
 pub const PERIOD_MS: u64 = 10;
 const EVENT_EVERY_10_MS: u8 = 1;
 const PRESCALER: u8 = 1;
-/// Bytes of a packet behind its number, and of the time in a sample's first one.
+/// Bytes of a packet after its number, and bytes of the time in the first packet of a sample.
 const PAYLOAD_BYTES: u8 = 7;
 const TIME_BYTES: u8 = 4;
-/// A tick of the ECU's clock, s.
+/// Resolution of the ECU's clock, s.
 const TICK_S: f64 = 1e-6;
 const SILENT_AFTER: Duration = Duration::from_secs(1);
 
-/// Longest time between two samples of a charge, ticks: its low word may have gone round in more.
+/// Longest time between two samples of a charge, ticks: in a longer time its low word may wrap.
 const LONGEST_TICKS: u32 = 15_000;
-/// Least that the low word of a charge is taken to have grown by: noise takes a little away where there is no current.
+/// Lower limit for the increase of a charge's low word: noise may decrease the charge slightly at zero current.
 const LEAST_GROWTH: u16 = 10_000;
 
-/// What a column has of a measurement.
+/// Conversion of a measurement into a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reading {
-    /// Its value.
+    /// The value.
     Value(&'static str),
-    /// How fast it has grown since the last sample: of a charge the current, without its dither, and with it when it
-    /// was cut between two samples.
+    /// Increase per time since the last sample: for a charge, the mean current without dither, or with it if the coil
+    /// was switched off between two samples.
     MeanOf(&'static str),
 }
 
 /// A row of a log: time, s, then the values of [`CHANNELS`].
 pub type Row = (f64, [f64; CHANNELS.len()]);
 
-/// One measurement: where it is, how long, and what a count of it is worth.
+/// One measurement: address, length, and scale of a count.
 #[derive(Clone, Copy)]
 struct Source {
     reading: Reading,
@@ -53,10 +53,10 @@ struct Source {
     units_per_count: f64,
 }
 
-/// Records for `duration_s` of the ECU's time.
+/// Records for `duration_s` of ECU time.
 ///
 /// # Errors
-/// If the ECU refuses or falls silent.
+/// If the ECU refuses a command or does not answer.
 pub fn record(
     session: &mut Session,
     duration_s: f64,
@@ -97,7 +97,7 @@ fn source(reading: Reading) -> Source {
     }
 }
 
-/// The sources in as many tables, a packet each, as they need; the first one has the time as well.
+/// Distributes the sources over as many tables (one packet each) as needed; the first one also has the time.
 fn tables(sources: &[Source]) -> Vec<Vec<Source>> {
     let mut tables: Vec<Vec<Source>> = Vec::new();
     let mut room = 0;
@@ -137,14 +137,14 @@ fn set_up(session: &mut Session, tables: &[Vec<Source>]) -> Result<(), ToolError
     Ok(())
 }
 
-/// A sample as it comes, packet by packet.
+/// A sample under assembly from packets.
 #[derive(Default)]
 struct Sample {
     /// Time of this sample by the ECU's clock, which wraps.
     ticks: u32,
-    /// When the last whole one was, and its counts.
+    /// Time and counts of the last complete sample.
     last: Option<(u32, Vec<i32>)>,
-    /// Since the first whole one, s.
+    /// Time since the first complete sample, s.
     time_s: f64,
     counts: Vec<i32>,
     next: usize,
@@ -161,7 +161,7 @@ impl Sample {
             self.next = 0;
             rest = values;
         }
-        // A table that was lost spoils its sample.
+        // A lost table invalidates its sample.
         if number != self.next {
             self.next = usize::MAX;
             return None;
@@ -178,7 +178,7 @@ impl Sample {
         self.finish(tables)
     }
 
-    /// The row of a whole sample; none of the first one, nor of one that comes so late that no mean is sure.
+    /// The row of a complete sample; none for the first sample and after a gap too long for a valid mean.
     fn finish(&mut self, tables: &[Vec<Source>]) -> Option<Row> {
         let counts = std::mem::take(&mut self.counts);
         let (then, earlier) = self.last.replace((self.ticks, counts.clone()))?;
@@ -200,14 +200,14 @@ impl Sample {
     }
 }
 
-/// By how much the low word of a charge has grown.
+/// Increase of the low word of a charge.
 fn growth(then: i32, now: i32) -> i32 {
     let [then, now] = [then, now].map(|count| count as u16);
     let grown = now.wrapping_sub(then).wrapping_add(LEAST_GROWTH);
     i32::from(grown) - i32::from(LEAST_GROWTH)
 }
 
-/// A signed number, little-endian; all that is recorded is signed.
+/// A signed number, little-endian; all recorded values are signed.
 fn counts(bytes: &[u8]) -> i32 {
     match *bytes {
         [a, b] => i16::from_le_bytes([a, b]).into(),

@@ -1,4 +1,4 @@
-//! A session with the ECU: commands and their answers.
+//! XCP session with the ECU: commands and answers.
 
 use std::io;
 use std::time::{Duration, Instant};
@@ -12,46 +12,46 @@ use super::slcan_client::SlcanClient;
 /// The address of an off-board tool.
 const TOOL_ADDRESS: u8 = 249;
 const PRIORITY: u8 = 6;
-/// An ECU reports its hitch ten times a second, once it has its address.
+/// An ECU sends its hitch status ten times a second after its address claim.
 const APPEARS_WITHIN: Duration = Duration::from_secs(2);
 const ANSWERS_WITHIN: Duration = Duration::from_millis(500);
 
-/// First bytes of what the ECU says.
+/// First bytes of the ECU's packets.
 const RESPONSE: u8 = 0xFF;
 const ERROR: u8 = 0xFE;
 const EVENT: u8 = 0xFD;
 
-/// What went wrong, and how to mend it.
+/// Faults of a session, with suggested correction.
 #[derive(Debug, thiserror::Error)]
 pub enum ToolError {
-    /// The adapter is gone, or was never there.
-    #[error("the bus can't be reached: {0}; is `hitch ecu --can` or an slcan adapter there?")]
+    /// The adapter cannot be reached.
+    #[error("the bus cannot be reached: {0}; is `hitch ecu --can` or an slcan adapter running?")]
     Bus(#[from] io::Error),
     /// No hitch on the bus.
-    #[error("no hitch reports itself on the bus within 2 s; is the ECU running?")]
+    #[error("no hitch sent its status on the bus within 2 s; is the ECU running?")]
     NoHitch,
-    /// The ECU has other tables than this program.
+    /// The ECU has different tables.
     #[error(
-        "the ECU is `{0}`, and this program knows another one; build both from the same sources"
+        "the ECU is `{0}`, which does not match this program; build both from the same sources"
     )]
     OtherEcu(String),
     /// No answer.
-    #[error("the ECU doesn't answer; is another tool connected?")]
+    #[error("the ECU does not answer; is another tool connected?")]
     Silent,
     /// Tuning isn't enabled.
-    #[error("the ECU lets nobody change it; close the service switch (`service on`)")]
+    #[error("write access is disabled; close the service switch (`service on`)")]
     Locked,
-    /// The hitch isn't at rest.
-    #[error("that can't be changed just now; lock the hitch first (`lock on`)")]
+    /// The hitch is not at rest.
+    #[error("the hitch is not at rest; lock it first (`lock on`)")]
     NotAtRest,
     /// A number is out of its range.
-    #[error("the ECU refuses word {0} of the calibration: it is out of its range")]
+    #[error("the ECU refuses word {0} of the calibration: its value is out of range")]
     OutOfRange(usize),
     /// Anything else.
     #[error("the ECU refuses a command with code {0:#04x}")]
     Refused(u8),
-    /// It wasn't stored, or not what was written.
-    #[error("the ECU could not store the calibration; what it had before still counts")]
+    /// The calibration was not stored, or differs.
+    #[error("the ECU could not store the calibration; the previous one remains valid")]
     NotStored,
 }
 
@@ -63,10 +63,10 @@ pub struct Session {
 }
 
 impl Session {
-    /// Waits for a hitch on the bus, connects, and makes sure that it is one this program knows.
+    /// Waits for a hitch on the bus, connects, and checks that its tables match those of this program.
     ///
     /// # Errors
-    /// If there is none, or another one.
+    /// If there is no hitch, or its tables differ.
     pub fn open(mut client: SlcanClient) -> Result<Self, ToolError> {
         let ecu = find(&mut client)?;
         let mut session = Self { client, ecu };
@@ -83,7 +83,7 @@ impl Session {
     /// Sends a command and waits for its answer, without the first byte.
     ///
     /// # Errors
-    /// If it is refused or not answered.
+    /// If the command is refused or not answered.
     pub fn command(&mut self, command: &[u8]) -> Result<Vec<u8>, ToolError> {
         let id = Id {
             priority: PRIORITY,
@@ -99,16 +99,16 @@ impl Session {
             match packet.split_first() {
                 Some((&RESPONSE, answer)) => return Ok(answer.to_vec()),
                 Some((&ERROR, code)) => return Err(refusal(code.first().copied().unwrap_or(0))),
-                // Samples and events aren't what is waited for.
+                // Samples and events are not answers.
                 _ => {}
             }
         }
     }
 
-    /// The next event's number; `None` if none has come by `deadline`.
+    /// The next event's number; `None` if none arrives before `deadline`.
     ///
     /// # Errors
-    /// If the bus is gone.
+    /// If the connection is closed.
     pub fn event(&mut self, deadline: Instant) -> Result<Option<u8>, ToolError> {
         while let Some(packet) = self.packet(deadline)? {
             if let [EVENT, number, ..] = packet[..] {
@@ -118,10 +118,10 @@ impl Session {
         Ok(None)
     }
 
-    /// The next packet from the ECU; `None` if none has come by `deadline`.
+    /// The next packet from the ECU; `None` if none arrives before `deadline`.
     ///
     /// # Errors
-    /// If the bus is gone.
+    /// If the connection is closed.
     pub fn packet(&mut self, deadline: Instant) -> Result<Option<Vec<u8>>, ToolError> {
         while let Some(frame) = self.client.receive(deadline)? {
             let id = frame.extended_data_id().map(Id::unpack);
@@ -140,7 +140,7 @@ impl Session {
     /// Reads `count` bytes.
     ///
     /// # Errors
-    /// If there are none.
+    /// If the ECU does not return them.
     pub fn read(&mut self, address: u32, count: usize) -> Result<Vec<u8>, ToolError> {
         const MOST: usize = 7;
         let mut bytes = Vec::new();
@@ -153,7 +153,7 @@ impl Session {
         Ok(bytes)
     }
 
-    /// Sets the address from which on is written.
+    /// Sets the address for subsequent writes.
     ///
     /// # Errors
     /// If the ECU refuses.
@@ -179,7 +179,7 @@ fn refusal(code: u8) -> ToolError {
     }
 }
 
-/// The address of the hitch that reports itself.
+/// The address of the hitch that sends its status.
 fn find(client: &mut SlcanClient) -> Result<u8, ToolError> {
     let deadline = Instant::now() + APPEARS_WITHIN;
     while let Some(frame) = client.receive(deadline)? {

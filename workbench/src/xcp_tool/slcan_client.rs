@@ -6,14 +6,14 @@ use std::time::{Duration, Instant};
 
 use hitch_protocols::can::{Frame, slcan};
 
-/// How long a read waits before the deadline is looked at again.
+/// Timeout of one read, after which the deadline is checked.
 const PATIENCE: Duration = Duration::from_millis(20);
 
 /// The client.
 #[derive(Debug)]
 pub struct SlcanClient {
     stream: TcpStream,
-    /// Read and not yet a whole line.
+    /// Received bytes of an incomplete line.
     text: Vec<u8>,
 }
 
@@ -21,12 +21,12 @@ impl SlcanClient {
     /// Connects and opens the channel.
     ///
     /// # Errors
-    /// If nobody is there.
+    /// If the connection fails.
     pub fn connect(address: &str) -> io::Result<Self> {
         let mut stream = TcpStream::connect(address)?;
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(PATIENCE))?;
-        // 250 kbit/s, if the adapter has a real bus.
+        // 250 kbit/s, for an adapter with a physical bus.
         stream.write_all(b"\rC\rS5\rO\r")?;
         Ok(Self {
             stream,
@@ -34,23 +34,23 @@ impl SlcanClient {
         })
     }
 
-    /// Puts a frame on the bus.
+    /// Sends a frame.
     ///
     /// # Errors
-    /// If the connection is gone.
+    /// If the connection is closed.
     pub fn send(&mut self, frame: &Frame) -> io::Result<()> {
         self.stream.write_all(&slcan::encode(frame))
     }
 
-    /// The next frame; `None` if none has come by `deadline`.
+    /// The next frame; `None` if none arrives before `deadline`.
     ///
     /// # Errors
-    /// If the connection is gone.
+    /// If the connection is closed.
     pub fn receive(&mut self, deadline: Instant) -> io::Result<Option<Frame>> {
         loop {
             while let Some(end) = self.text.iter().position(|&byte| byte == b'\r') {
                 let line: Vec<u8> = self.text.drain(..=end).collect();
-                // Replies to what was sent make no frame.
+                // Replies to commands are not frames.
                 if let Some(frame) = slcan::decode(&line[..end]) {
                     return Ok(Some(frame));
                 }

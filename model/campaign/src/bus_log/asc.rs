@@ -87,7 +87,7 @@ fn of_heading(line: &Line<'_>) -> Result<Notation, CampaignError> {
     let radix = match base.text {
         "hex" => 16,
         "dec" => 10,
-        _ => return Err(line.fault(base, 0, "is no base", mend)),
+        _ => return Err(line.fault(base, 0, "is not a base", mend)),
     };
     let relative = match line.get(3) {
         None => false,
@@ -97,7 +97,7 @@ fn of_heading(line: &Line<'_>) -> Result<Notation, CampaignError> {
         Some(Word {
             text: "relative", ..
         }) => true,
-        Some(other) => return Err(line.fault(other, 0, "is no kind of time stamps", mend)),
+        Some(other) => return Err(line.fault(other, 0, "is not a kind of time stamp", mend)),
     };
     Ok(Notation { radix, relative })
 }
@@ -122,7 +122,7 @@ fn classical<'a>(
     match kind.text {
         "d" if was_sent => {}
         "d" | "r" => return Ok(None),
-        _ => return Err(line.fault(kind, 0, "is no kind of frame", "it is d or r")),
+        _ => return Err(line.fault(kind, 0, "is not a kind of frame", "use d or r")),
     }
     if !sink.wants(line.text(1), id) {
         return Ok(None);
@@ -169,23 +169,23 @@ fn direction(line: &Line<'_>, word: Word<'_>) -> Result<bool, CampaignError> {
     match word.text {
         "Rx" | "Tx" => Ok(true),
         "TxRq" => Ok(false),
-        _ => Err(line.fault(word, 0, "is no direction", "it is Rx or Tx")),
+        _ => Err(line.fault(word, 0, "is not a direction", "use Rx or Tx")),
     }
 }
 
 fn identifier(line: &Line<'_>, word: Word<'_>, radix: u32) -> Result<Id, CampaignError> {
-    let mend = "log identifiers as numbers, those of 29 bits with an x behind";
+    let mend = "log identifiers as numbers; those of 29 bits have the suffix x";
     let digits = word.text.strip_suffix('x');
     let raw = digits_of(digits.unwrap_or(word.text), radix);
     raw.and_then(|raw| Id::new(raw, digits.is_some()))
-        .ok_or_else(|| line.fault(word, 0, "is no identifier", mend))
+        .ok_or_else(|| line.fault(word, 0, "is not an identifier", mend))
 }
 
 fn number(line: &Line<'_>, word: Word<'_>, radix: u32, largest: u32) -> Result<u32, CampaignError> {
     let value = digits_of(word.text, radix).filter(|&value| value <= largest);
     value.ok_or_else(|| {
-        let mend = format!("it may be 0 to {largest}, in base {radix}");
-        line.fault(word, 0, "is no such number", &mend)
+        let mend = format!("the range is 0 to {largest}, in base {radix}");
+        line.fault(word, 0, "is not a number of the required range", &mend)
     })
 }
 

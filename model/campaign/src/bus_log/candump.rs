@@ -46,15 +46,15 @@ fn frame<'f>(
         .strip_prefix('(')
         .and_then(|text| text.strip_suffix(')'));
     let Some(inside) = inside else {
-        let mend = "a line is (SECONDS) BUS ID#DATA, as `candump -l` writes it";
-        return Err(line.fault(time, 0, "is no time in parentheses", mend));
+        let mend = "a line has the form (SECONDS) BUS ID#DATA, as written by `candump -l`";
+        return Err(line.fault(time, 0, "is not a time in parentheses", mend));
     };
     let time_s = line.time_s(time, inside)?;
     let channel = line.word(1, "bus")?.text;
     let word = line.word(2, "frame")?;
     let Some((id, data)) = word.text.split_once('#') else {
-        let mend = "a frame is ID#DATA, as `candump -l` writes it";
-        return Err(line.fault(word, 0, "is no frame", mend));
+        let mend = "a frame has the form ID#DATA, as written by `candump -l`";
+        return Err(line.fault(word, 0, "is not a frame", mend));
     };
     let Some(id) = identifier(line, word, id)? else {
         return Ok(None);
@@ -65,7 +65,7 @@ fn frame<'f>(
     if let Some(more) = line.get(3)
         && (!matches!(more.text, "R" | "T") || line.len() > 4)
     {
-        return Err(line.fault(more, 0, "stands behind the frame", "delete it"));
+        return Err(line.fault(more, 0, "follows the frame", "delete it"));
     }
     let (data, most, begins) = match data.strip_prefix('#') {
         Some(flexible) => match flexible.chars().next() {
@@ -87,7 +87,7 @@ fn frame<'f>(
 
 /// The identifier; `None` for an error frame.
 fn identifier(line: &Line<'_>, word: Word<'_>, text: &str) -> Result<Option<Id>, CampaignError> {
-    let mend = "an identifier has three hexadecimal digits or eight";
+    let mend = "an identifier has three or eight hexadecimal digits";
     let is_hex = text.bytes().all(|byte| byte.is_ascii_hexdigit());
     let raw = u32::from_str_radix(text, 16).ok().filter(|_| is_hex);
     match (raw, text.len()) {
@@ -108,7 +108,7 @@ fn decoded(
     data: &str,
     bytes: &mut [u8],
 ) -> Result<usize, CampaignError> {
-    let mend = "data are two hexadecimal digits a byte; delete the line if it was cut short";
+    let mend = "each data byte has two hexadecimal digits; delete the line if it is truncated";
     let mut length = 0;
     for (index, pair) in data.as_bytes().chunks(2).enumerate() {
         let digits = std::str::from_utf8(pair).unwrap_or_default();
@@ -118,7 +118,7 @@ fn decoded(
             (Some(value), Some(byte)) => *byte = value,
             (None, _) => return Err(line.fault(word, begins + 2 * index, "has bad data", mend)),
             (_, None) => {
-                return Err(line.fault(word, begins + 2 * index, "has too much data", mend));
+                return Err(line.fault(word, begins + 2 * index, "has too many data bytes", mend));
             }
         }
         length = index + 1;

@@ -131,7 +131,10 @@ impl Description {
             Kind::Unsigned | Kind::Signed => true,
         };
         if !is_whole {
-            return Err(wrong(&name, "is a floating-point number of another size"));
+            return Err(wrong(
+                &name,
+                "is a floating-point number of an unsupported size",
+            ));
         }
         Ok(Signal {
             bits: bits(&name, signal)?,
@@ -160,10 +163,10 @@ impl Description {
             true => Ok(Some((signal, period_s))),
             false => Err((
                 format!(
-                    "signal {} goes round within {SHORTEST_ROUND_S} s",
+                    "signal {} wraps around within {SHORTEST_ROUND_S} s",
                     signal.name
                 ),
-                "give it its range in the dbc, or name another clock".to_owned(),
+                "set its range in the dbc, or use another clock".to_owned(),
             )),
         }
     }
@@ -196,7 +199,7 @@ impl Description {
         };
         match self.dbc.message_multiplexor_switch(message.id) {
             Ok(Some(switch)) => Ok(Some((bits(name, switch)?, value))),
-            Ok(None) => Err(wrong(name, "is multiplexed, and nothing says by what")),
+            Ok(None) => Err(wrong(name, "is multiplexed without a multiplexor")),
             Err(_) => Err(wrong(name, "is multiplexed in more than one step")),
         }
     }
@@ -224,7 +227,7 @@ fn number(value: NumericValue) -> f64 {
 fn bits(name: &str, signal: &can_dbc::Signal) -> Result<Bits, Fault> {
     let fits = (1..=64).contains(&signal.size) && signal.start_bit < 8 * MOST_BYTES as u64;
     if !fits {
-        return Err(wrong(name, "has bits that no frame has"));
+        return Err(wrong(name, "has bits beyond the length of a frame"));
     }
     Ok(Bits {
         start: signal.start_bit as usize,
@@ -241,7 +244,7 @@ fn conversion(name: &str, unit: &str, column: &Column) -> Result<(f64, f64), Fau
         _ => format!("is in {}", quote(unit)),
     };
     let mend = format!(
-        "it has to be a unit like {}: mend it in the DBC",
+        "a unit like {} is required: correct it in the DBC",
         column.unit
     );
     Err((format!("signal {name} {what}"), mend))
@@ -250,13 +253,13 @@ fn conversion(name: &str, unit: &str, column: &Column) -> Result<(f64, f64), Fau
 fn wrong(name: &str, what: &str) -> Fault {
     (
         format!("signal {name} {what}"),
-        "such signals are not read: choose another one".to_owned(),
+        "such signals are not supported: choose another one".to_owned(),
     )
 }
 
 fn not_dbc(source: &SourceFile, error: &DbcError) -> InputError {
     let said = error.to_string();
-    let mend = "export it as a DBC from the tool that it comes from";
+    let mend = "export it again as DBC";
     // Position of the syntax error: `--> LINE:COLUMN`, and a last line with the expected tokens.
     let place = said.lines().find_map(|line| {
         let (line, column) = line.trim().strip_prefix("--> ")?.split_once(':')?;

@@ -70,7 +70,7 @@ impl<'a> Line<'a> {
     pub fn word(&self, index: usize, what: &str) -> Result<Word<'a>, CampaignError> {
         self.get(index).ok_or_else(|| {
             let what = format!("the line ends before its {what}");
-            let mend = "delete the line: it was cut short";
+            let mend = "delete the truncated line";
             self.source.error_at(self.end, what, mend)
         })
     }
@@ -86,6 +86,6 @@ impl<'a> Line<'a> {
         let time_s = text.parse().ok();
         time_s
             .filter(|time_s| (0.0..=LATEST_S).contains(time_s))
-            .ok_or_else(|| self.fault(word, 0, "is no time in seconds", "write it as 12.345678"))
+            .ok_or_else(|| self.fault(word, 0, "is not a time in seconds", "write it as 12.345678"))
     }
 }

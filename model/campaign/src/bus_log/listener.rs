@@ -175,7 +175,10 @@ fn value(signal: &Signal, frame: &Frame<'_>) -> Result<Option<f64>, (String, Str
             frame.data.len(),
             signal.name
         );
-        (what, "this is another message: correct the dbc".to_owned())
+        (
+            what,
+            "the dbc describes a different message: correct it".to_owned(),
+        )
     })
 }
 
@@ -220,7 +223,7 @@ impl Received<'_> {
                     sampled.signal.name, column.name
                 );
                 let (low, high) = (column.range.start(), column.range.end());
-                let mend = format!("it may be {low} to {high}: check scale and unit in the dbc");
+                let mend = format!("the range is {low} to {high}: check scale and unit in the dbc");
                 return Err(fault((what, mend)));
             }
             series.push(time_s, value, frame.byte);

@@ -65,7 +65,7 @@ pub fn check_known(path: &Path) -> Result<(), CampaignError> {
     let mend = "convert it to .asc, for example with python-can: python -m can.logconvert FILE.trc FILE.asc";
     Err(InputError::of_file(
         path,
-        "is a trace of a CAN bus by PCAN (TRC)",
+        "is a PCAN trace of a CAN bus (TRC)",
         mend,
     ))
 }
@@ -122,8 +122,8 @@ fn required<'l>(
         .filter(|series| !series.times_s.is_empty())
         .ok_or_else(|| {
             let what = match settings.signal(name) {
-                Some(signal) => format!("holds no {signal}, which is {name}"),
-                None => format!("{name} is taken from no signal"),
+                Some(signal) => format!("contains no {signal}, which is assigned to {name}"),
+                None => format!("no signal is assigned to {name}"),
             };
             source.error(what, settings.how_to_get(name))
         })

@@ -89,8 +89,9 @@ impl BusSettings {
         };
         let signals = table.table("signals")?;
         if own.is_some() && signals.is_none() {
-            let mend = "say under [can.signals] what each column is, as in lift_current_a = \"Message.Signal\"";
-            return Err(table.error("[can] has a dbc and no signals", mend));
+            let mend =
+                "assign the columns under [can.signals], as in lift_current_a = \"Message.Signal\"";
+            return Err(table.error("[can] has a dbc but no signals", mend));
         }
         let description = own.as_ref().map(Description::read).transpose()?;
         let clock = table.text("clock")?;
@@ -107,7 +108,10 @@ impl BusSettings {
         if let Some(clock) = clock
             && messages.all(|message| message.clock.is_none())
         {
-            let what = format!("no message that is taken has a signal {}", quote(clock));
+            let what = format!(
+                "no message of an assigned signal has a signal {}",
+                quote(clock)
+            );
             return Err(table.error_at("clock", what, "correct the name, or delete the line"));
         }
         settings.channel = table.text("channel")?.map(str::to_owned);
@@ -156,7 +160,7 @@ impl BusSettings {
     ) -> Result<(), Fault> {
         let Some((name, signal)) = path.split_once('.') else {
             return Err((
-                format!("{} is no signal", quote(path)),
+                format!("{} is not a signal", quote(path)),
                 "write \"Message.Signal\", as the DBC names them".to_owned(),
             ));
         };

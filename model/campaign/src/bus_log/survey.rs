@@ -79,11 +79,11 @@ pub fn signals(
         let name = dbc.path.display();
         let (what, mend) = match is_heard {
             false => (
-                format!("holds no message of {name}"),
+                format!("contains no message of {name}"),
                 "name the DBC of this bus",
             ),
             true => (
-                format!("holds no signal of {name} in a unit that a run may have"),
+                format!("contains no signal of {name} in a unit of a run"),
                 "correct the units in the DBC: A, mA, bar, kPa, deg, l/min and the like",
             ),
         };

@@ -276,7 +276,7 @@ mod tests {
         assert_eq!(
             of(&["1.5", "2"]).number("1,234"),
             None,
-            "thousands are no decimals"
+            "thousands are not decimals"
         );
         assert_eq!(of(&["1,5"]).number("1.234"), None);
         assert_eq!(Decimals::ANY.number("1.234,5"), None);

@@ -29,8 +29,8 @@ const FLOW: [(&str, f64); 5] = [
 pub fn read(path: &Path) -> Result<ValveCurve, InputError> {
     let source = SourceFile::read_any(path)?;
     let header = Header::guessed(&source.text).ok_or_else(|| {
-        let mend = "write a header such as current_a,flow_lpm above the numbers, and a row a point";
-        source.error("is no table with a header", mend)
+        let mend = "write a header such as current_a,flow_lpm above the numbers, and one row for each point";
+        source.error("is not a table with a header", mend)
     })?;
     let (current, ampere) = column(&source, &header, &CURRENT, "current", "A or mA")?;
     let (flow, m3_s) = column(&source, &header, &FLOW, "flow", "l/min or m3/s")?;
@@ -49,8 +49,8 @@ pub fn read(path: &Path) -> Result<ValveCurve, InputError> {
     }
     let passes_at_rest = flows.first().is_some_and(|&flow| flow > 0.0);
     if passes_at_rest {
-        let mend = "add a row with the current at which the valve opens and flow 0 in front";
-        return Err(source.error_at(bytes[0], "the first point has flow already", mend));
+        let mend = "insert a first row with the opening current and flow 0";
+        return Err(source.error_at(bytes[0], "the flow of the first point is not zero", mend));
     }
     ValveCurve::new(currents, flows).map_err(|error| match error {
         ValveCurveError::Order { index } => {
@@ -58,7 +58,7 @@ pub fn read(path: &Path) -> Result<ValveCurve, InputError> {
             source.error_at(
                 bytes[index],
                 what,
-                "sort the rows by current, flows not falling",
+                "sort the rows by current; the flow must not fall",
             )
         }
         ValveCurveError::Length { .. } => source.error(error.to_string(), "add points"),
@@ -107,7 +107,7 @@ fn number(
 ) -> Result<f64, InputError> {
     let text = row.get(cell).unwrap_or_default();
     decimals.number(text).ok_or_else(|| {
-        let what = format!("{} is no number", quote(text));
+        let what = format!("{} is not a number", quote(text));
         source.error_at(byte, what, "write a number, or delete the row")
     })
 }
@@ -148,8 +148,8 @@ mod tests {
                 4,
                 "does not rise",
             ),
-            ("current_a,flow_lpm\n0,3\n2,20\n", 2, "has flow already"),
-            ("current_a,flow_lpm\n0,0\n1,x\n2,3\n", 3, "no number"),
+            ("current_a,flow_lpm\n0,3\n2,20\n", 2, "is not zero"),
+            ("current_a,flow_lpm\n0,0\n1,x\n2,3\n", 3, "not a number"),
             ("current_a,flow\n0,0\n1,2\n", 1, "no column is a flow"),
         ] {
             let error = read_text(text).expect_err("a fault");

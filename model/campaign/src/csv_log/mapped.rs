@@ -93,8 +93,8 @@ fn taken(
         });
     }
     let time = time.ok_or_else(|| {
-        let what = format!("{TIME} is taken from no column");
-        let mend = format!("say under [columns] which it is: {TIME} = \"Name:s\"");
+        let what = format!("no column is assigned to {TIME}");
+        let mend = format!("assign it under [columns]: {TIME} = \"Name:s\"");
         source.error_at(header.byte, what, mend)
     })?;
     Ok((time, taken))
@@ -110,15 +110,15 @@ fn cell_of(
     match (cells.next(), cells.next()) {
         (Some(cell), None) => Ok(Some(cell)),
         (Some(_), Some(second)) => {
-            let what = format!("column {} is there twice", quote(&wanted.name));
+            let what = format!("column {} is duplicated", quote(&wanted.name));
             let place = (second, header.mark.into());
-            let mend = "give one of the two another name";
+            let mend = "rename one of the two";
             Err(cell_error(source, header.byte, place, what, mend))
         }
         (None, _) if !wanted.is_required => Ok(None),
         (None, _) => {
             let what = format!(
-                "there is no column {}, which [columns] names for {}",
+                "column {} does not exist; [columns] assigns it to {}",
                 quote(&wanted.name),
                 wanted.column.name
             );
@@ -158,13 +158,16 @@ impl Reader<'_> {
                 row.len(),
                 self.header.cells.len()
             );
-            let mend = "keep the mark between cells where a cell is empty";
+            let mend = "write the separators of empty cells too";
             return Ok(Some(self.source.error_at(byte, what, mend)));
         }
         let cell = &row[self.time_cell];
         let Some(time_s) = self.times.read(cell) else {
-            let what = format!("{} is no time like those before it", quote(cell));
-            let mend = "every row needs its time: a number, a date with a time, or a time of day";
+            let what = format!(
+                "{} is not a time in the format of the previous ones",
+                quote(cell)
+            );
+            let mend = "every row needs a time: a number, a date with a time, or a time of day";
             return Ok(Some(self.fault(byte, self.time_cell, what, mend)));
         };
         for (index, taken) in self.taken.iter().enumerate() {
@@ -185,7 +188,7 @@ impl Reader<'_> {
         }
         let Some(number) = self.decimals.number(cell) else {
             let what = format!("{} in column {} is not a number", quote(cell), quote(name));
-            let mend = "leave the cell of a dropout empty; decimals have a point or a comma, thousands have none";
+            let mend = "leave the cell of a dropout empty; decimals have a point or a comma, thousands no separator";
             return Err((what, mend.to_owned()));
         };
         let value = taken.scale.apply(number, self.linkage);
@@ -200,7 +203,7 @@ impl Reader<'_> {
         );
         let (low, high) = (column.range.start(), column.range.end());
         let mend = format!(
-            "it may be {low} to {high}: check the unit under [columns], and leave the cell of a dropout empty"
+            "the range is {low} to {high}: check the unit under [columns], and leave the cell of a dropout empty"
         );
         Err((what, mend))
     }
@@ -218,7 +221,7 @@ impl Reader<'_> {
     fn table(self) -> Result<Table, CampaignError> {
         if self.bytes.is_empty() {
             let mend = "log the run again";
-            return Err(self.source.error("holds a header but no samples", mend));
+            return Err(self.source.error("contains a header but no samples", mend));
         }
         let mut columns = vec![Samples {
             name: TIME,
@@ -227,8 +230,8 @@ impl Reader<'_> {
         }];
         for (taken, values) in self.taken.iter().zip(self.values) {
             if values.iter().all(|value| value.is_nan()) {
-                let what = format!("column {} holds no number", quote(&taken.name));
-                let mend = "name another column, or delete its line under [columns]";
+                let what = format!("column {} contains no number", quote(&taken.name));
+                let mend = "assign another column, or delete its line under [columns]";
                 let place = (taken.cell, self.header.mark.into());
                 return Err(cell_error(self.source, self.header.byte, place, what, mend));
             }

@@ -42,13 +42,13 @@ pub fn read(
 }
 
 fn no_header(source: &SourceFile, wanted: &[&str]) -> CampaignError {
-    let what = "no row holds any of the names under [columns]";
+    let what = "no row contains any of the names under [columns]";
     match Header::guessed(&source.text) {
         Some(header) => {
             let first = wanted.first().copied().unwrap_or_default();
             source.error_at(header.byte, what, offer_columns(first, &header.names()))
         }
-        None => source.error(what, "a log has a header and a row a sample"),
+        None => source.error(what, "a log has a header, and one row for each sample"),
     }
 }
 
@@ -62,7 +62,7 @@ pub fn survey(source: &SourceFile) -> Result<Survey, CampaignError> {
         return Ok(Survey::Own);
     }
     let Some(header) = Header::guessed(&source.text) else {
-        let what = "is no table: no row of names stands in front of rows of numbers";
+        let what = "is not a table: there is no header above the rows of numbers";
         let mend = "export it with a header, and commas, semicolons or tabs between the columns";
         return Err(source.error(what, mend));
     };

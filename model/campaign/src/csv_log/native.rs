@@ -19,7 +19,10 @@ pub fn read(source: &Arc<SourceFile>) -> Result<Table, CampaignError> {
     let mark = mark(source);
     let mut records = rows(&source.text, 0, mark);
     let Some((byte, header)) = records.next() else {
-        return Err(source.error("is empty", "a log has a header and a row a sample"));
+        return Err(source.error(
+            "is empty",
+            "a log has a header, and one row for each sample",
+        ));
     };
     let names = column_names(source, &header, mark, byte)?;
     let mut rows = Rows {
@@ -33,7 +36,7 @@ pub fn read(source: &Arc<SourceFile>) -> Result<Table, CampaignError> {
         rows.push(&record, byte)?;
     }
     if rows.bytes.is_empty() {
-        return Err(source.error("holds a header but no samples", "log the run again"));
+        return Err(source.error("contains a header but no samples", "log the run again"));
     }
     let columns = rows.columns.into_iter().enumerate();
     let columns = columns.map(|(cell, (name, values))| Samples { name, cell, values });
@@ -123,7 +126,7 @@ fn column_names(
             return Err(cell_error(source, byte, (index, mark.into()), what, mend));
         };
         if names.contains(name) {
-            let what = format!("column {name} is there twice");
+            let what = format!("column {name} is duplicated");
             return Err(cell_error(
                 source,
                 byte,
@@ -146,14 +149,14 @@ fn unknown_column(given: &str, index: usize, known: &[&str]) -> (String, String)
     }
     if given.parse::<f64>().is_ok() {
         return (
-            format!("{} stands where a column's name should", quote(given)),
-            "begin with a header".to_owned(),
+            format!("{} is not a column name", quote(given)),
+            "start with a header".to_owned(),
         );
     }
     (
         unknown_name("column", given, known),
         format!(
-            "{}; or say which column is which under [columns], as `hitch import` does",
+            "{}; or assign the columns under [columns], as `hitch import` does",
             offer_names(given, known)
         ),
     )
@@ -169,7 +172,7 @@ fn number(
         return Ok(f64::NAN);
     }
     let mend = if name == TIME {
-        "every row needs its time"
+        "every row needs a time"
     } else {
         "leave the cell of a dropout empty"
     };
@@ -198,6 +201,6 @@ fn number(
             mend.to_owned(),
         ));
     }
-    let mend = format!("it may be {} to {}; {mend}", range.start(), range.end());
-    Err((format!("{value} in column {name} cannot be"), mend))
+    let mend = format!("the range is {} to {}; {mend}", range.start(), range.end());
+    Err((format!("{value} in column {name} is out of range"), mend))
 }

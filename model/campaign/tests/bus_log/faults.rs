@@ -9,11 +9,11 @@ fn what_is_wrong_with_a_line_is_said_with_its_place() {
     let cases = [
         (
             "1700000000.5 can0 123#00",
-            "a.log:25:1: \"1700000000.5\" is no time in parentheses",
+            "a.log:25:1: \"1700000000.5\" is not a time in parentheses",
         ),
         (
             "(noon) can0 123#00",
-            "a.log:25:1: \"(noon)\" is no time in seconds",
+            "a.log:25:1: \"(noon)\" is not a time in seconds",
         ),
         (
             "(1700000001.0)",
@@ -25,7 +25,7 @@ fn what_is_wrong_with_a_line_is_said_with_its_place() {
         ),
         (
             "(1700000001.0) can0 123 [2] 00 11",
-            "a.log:25:21: \"123\" is no frame",
+            "a.log:25:21: \"123\" is not a frame",
         ),
         (
             "(1700000001.0) can0 12#00",
@@ -45,7 +45,7 @@ fn what_is_wrong_with_a_line_is_said_with_its_place() {
         ),
         (
             "(1700000001.0) can0 18FF4580#001122334455667788",
-            "a.log:25:46: \"18FF4580#001122334455667788\" has too much data",
+            "a.log:25:46: \"18FF4580#001122334455667788\" has too many data bytes",
         ),
         (
             "(1700000001.0) can0 18FF4580##",
@@ -53,7 +53,7 @@ fn what_is_wrong_with_a_line_is_said_with_its_place() {
         ),
         (
             "(1700000001.0) can0 18FF4580#00 X",
-            "a.log:25:33: \"X\" stands behind the frame",
+            "a.log:25:33: \"X\" follows the frame",
         ),
         (
             "(1700000000.3) can0 18FF4580#00",
@@ -82,24 +82,27 @@ fn what_is_wrong_with_a_line_of_vector_s_is_said_with_its_place() {
         fault(&[("campaign.toml", &manifest), ("a.asc", &log)])
     };
     let cases = [
-        ("base oct", "a.asc:2:6: \"oct\" is no base"),
+        ("base oct", "a.asc:2:6: \"oct\" is not a base"),
         (
             "base hex timestamps some",
-            "a.asc:2:21: \"some\" is no kind of time stamps",
+            "a.asc:2:21: \"some\" is not a kind of time stamp",
         ),
-        ("soon 1 123 Rx d 1 00", "a.asc:2:1: \"soon\" is no time"),
+        ("soon 1 123 Rx d 1 00", "a.asc:2:1: \"soon\" is not a time"),
         (
             " 0.5 1 EngineData Rx d 1 00",
-            "a.asc:2:8: \"EngineData\" is no identifier",
+            "a.asc:2:8: \"EngineData\" is not an identifier",
         ),
         (
             " 0.5 1 800 Rx d 1 00",
-            "a.asc:2:8: \"800\" is no identifier",
+            "a.asc:2:8: \"800\" is not an identifier",
         ),
-        (" 0.5 1 123 Up d 1 00", "a.asc:2:12: \"Up\" is no direction"),
+        (
+            " 0.5 1 123 Up d 1 00",
+            "a.asc:2:12: \"Up\" is not a direction",
+        ),
         (
             " 0.5 1 123 Rx q 1 00",
-            "a.asc:2:15: \"q\" is no kind of frame",
+            "a.asc:2:15: \"q\" is not a kind of frame",
         ),
         (
             " 0.5 1 18FF4580x Rx d 2 00",
@@ -107,15 +110,15 @@ fn what_is_wrong_with_a_line_of_vector_s_is_said_with_its_place() {
         ),
         (
             " 0.5 1 18FF4580x Rx d 1 +1",
-            "a.asc:2:25: \"+1\" is no such number",
+            "a.asc:2:25: \"+1\" is not a number of the required range",
         ),
         (
             " 0.5 CANFD 1 Rx 18FF4580x 1 0 8 99 00",
-            "a.asc:2:33: \"99\" is no such number",
+            "a.asc:2:33: \"99\" is not a number of the required range",
         ),
         (
             "",
-            "a.asc: holds no HitchMotion.LiftCurrent, which is lift_current_a; the ECU sends it",
+            "a.asc: contains no HitchMotion.LiftCurrent, which is assigned to lift_current_a; the ECU sends it",
         ),
     ];
     for (line, expected) in cases {
@@ -144,12 +147,12 @@ fn what_is_wrong_with_the_settings_is_said_with_its_place() {
         (
             "[can]\ndbc = \"no.dbc\"\n",
             &good,
-            "campaign.toml:7:7: the folder holds no file \"no.dbc\"",
+            "campaign.toml:7:7: the folder contains no file \"no.dbc\"",
         ),
         (
             "[can]\ndbc = \"rig.dbc\"\n",
             &good,
-            "campaign.toml:6:1: [can] has a dbc and no signals",
+            "campaign.toml:6:1: [can] has a dbc but no signals",
         ),
         (
             "[can]\nsource = 300\n",
@@ -159,7 +162,7 @@ fn what_is_wrong_with_the_settings_is_said_with_its_place() {
         (
             "[can]\nclock = \"Noon\"\n[can.signals]\n",
             &good,
-            "campaign.toml:7:9: no message that is taken has a signal \"Noon\"",
+            "campaign.toml:7:9: no message of an assigned signal has a signal \"Noon\"",
         ),
         (
             "[can.signals]\nlift = \"M.S\"\n",
@@ -169,7 +172,7 @@ fn what_is_wrong_with_the_settings_is_said_with_its_place() {
         (
             "[can.signals]\nflow_lpm = \"Flow\"\n",
             &good,
-            "campaign.toml:7:12: \"Flow\" is no signal",
+            "campaign.toml:7:12: \"Flow\" is not a signal",
         ),
         (
             "[can.signals]\nflow_lpm = \"HitchMotio.X\"\n",
@@ -189,7 +192,7 @@ fn what_is_wrong_with_the_settings_is_said_with_its_place() {
         (
             signals,
             &dbc("0|0@1+ (1,0) [0|1] \"A\""),
-            "campaign.toml:9:18: signal M.S has bits that no frame has",
+            "campaign.toml:9:18: signal M.S has bits beyond the length of a frame",
         ),
         (
             signals,
@@ -199,7 +202,7 @@ fn what_is_wrong_with_the_settings_is_said_with_its_place() {
         (
             signals,
             &good,
-            "a.log: holds no M.S, which is lift_current_a; log the bus",
+            "a.log: contains no M.S, which is assigned to lift_current_a; log the bus",
         ),
     ];
     for (can, dbc, expected) in cases {

@@ -119,18 +119,18 @@ pub(crate) fn check_id(id: &str) -> Result<(), TermError> {
     if good && id.len() <= 60 {
         return Ok(());
     }
-    let what = format!("{} cannot be the name of a term", shown(id));
+    let what = format!("{} is not a valid name of a term", shown(id));
     Err(TermError::new(
         Part::Id,
         what,
-        "write words of small letters and digits joined by -, such as end-cushion",
+        "use lower-case letters and digits, with words joined by -, such as end-cushion",
     ))
 }
 
 pub(crate) fn check_parameters(parameters: &[ParameterDefinition]) -> Result<Vec<Unit>, TermError> {
     let count = parameters.len();
     if count == 0 {
-        let mend = "add a [[term.parameter]]: the first one is the size of the term, which a fit looks for";
+        let mend = "add a [[term.parameter]]: the first one is the size of the term, which a fit estimates";
         return Err(TermError::new(
             Part::Parameters,
             "the term has no parameter",
@@ -139,7 +139,7 @@ pub(crate) fn check_parameters(parameters: &[ParameterDefinition]) -> Result<Vec
     }
     if count > MOST_PARAMETERS {
         let what = format!("the term has {count} parameters");
-        let mend = format!("it may have {MOST_PARAMETERS}; write known values as numbers");
+        let mend = format!("the maximum is {MOST_PARAMETERS}; write known values as numbers");
         return Err(TermError::new(Part::Parameters, what, mend));
     }
     let check = |(index, parameter): (usize, &ParameterDefinition)| {
@@ -165,7 +165,7 @@ fn check_name(index: usize, parameters: &[ParameterDefinition]) -> Result<(), Te
     };
     if !is_whole_name(name) || name.len() > 40 {
         return fault(
-            "cannot be the name of a parameter",
+            "is not a valid name of a parameter",
             "write letters, digits and _, beginning with a letter",
         );
     }
@@ -221,7 +221,7 @@ fn check_range(index: usize, parameter: &ParameterDefinition) -> Result<(), Term
         );
     }
     if index == 0 && start == null {
-        let mend = "let it start at a size that is to be expected";
+        let mend = "use the expected size as start value";
         return fault(
             "start",
             format!("{name} starts at its null value, so the term is off"),

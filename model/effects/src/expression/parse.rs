@@ -133,9 +133,8 @@ impl<'t> Parser<'t> {
             }
             TokenKind::Sign(_) | TokenKind::Unit => {
                 let piece = shown(self.piece(&token.span));
-                let what =
-                    format!("{piece} stands where a number, a name or a parenthesis has to be");
-                let mend = "an operator stands between two operands, a unit behind a number";
+                let what = format!("found {piece}, expected a number, a name or a parenthesis");
+                let mend = "write an operator between two operands, and a unit after a number";
                 Err(self.fault(&token.span, what, mend))
             }
         }
@@ -237,19 +236,19 @@ impl<'t> Parser<'t> {
                 "delete it or add a (",
             ),
             TokenKind::Sign(',') => {
-                let what = "a comma stands outside of a function's arguments";
+                let what = "a comma is allowed only between the arguments of a function";
                 self.fault(span, what, "a decimal number is written 0.5")
             }
             TokenKind::Unit => {
-                let what = format!("the unit {piece} does not stand behind a number");
+                let what = format!("the unit {piece} does not follow a number");
                 self.fault(
                     span,
                     what,
-                    "only numbers take one: signals and parameters have theirs",
+                    "only numbers take a unit; signals and parameters have their own",
                 )
             }
             _ => {
-                let what = format!("there is no operator before {piece}");
+                let what = format!("an operator is missing before {piece}");
                 self.fault(span, what, "a product is written a * b")
             }
         }

@@ -64,16 +64,16 @@ pub(crate) fn check(term: &Term, tree: &Node) -> Result<(), TermError> {
 
 fn finite(term: &Term, tree: &Node, values: &[f64]) -> Result<(), TermError> {
     let what = "the term is not a finite number";
-    let mend = "keep what is divided by off zero, as in max(x, 1[mm]), and roots and logarithms positive; or narrow the \
+    let mend = "keep divisors away from zero, as in max(x, 1[mm]), and arguments of roots and logarithms positive; or narrow the \
                 ranges of the parameters";
     refuse_where(term, tree, values, |value| !value.is_finite(), what, mend)
 }
 
 fn off(term: &Term, tree: &Node, values: &[f64]) -> Result<(), TermError> {
-    let what = "the null value does not turn the term off: it is not zero";
+    let what = "the term is not zero at the null value of its size";
     let name = &term.definition().parameters[0].name;
     let mend =
-        format!("let {name} multiply the whole formula, or correct null, or put the size first");
+        format!("multiply the whole formula by {name}, or correct null, or list the size first");
     refuse_where(term, tree, values, |value| value != 0.0, what, &mend)
 }
 

@@ -103,7 +103,7 @@ fn check_use(tree: &Node, names: &[&str]) -> Result<(), TermError> {
         .find(|index| !tree.has(&|leaf| matches!(leaf, Kind::Parameter(used) if used == index)));
     unused.map_or(Ok(()), |index| {
         let what = format!(
-            "the formula does not hold the parameter {}",
+            "the formula does not contain the parameter {}",
             shown(names[index])
         );
         Err(TermError::new(

@@ -152,7 +152,7 @@ fn stray(text: &str, at: usize, c: char) -> Fault {
     );
     let mend = match c {
         '<' | '>' | '=' | '!' | '&' | '|' | '?' => {
-            "there are no comparisons: write step(a - b) for 1 where a > b"
+            "comparisons are not supported: write step(a - b) for 1 where a > b"
         }
         '×' | '·' => "a product is written with *",
         '−' | '–' => "minus is written -",

@@ -1,4 +1,4 @@
-//! What formulas of a user's own in a model file are made of.
+//! Lists the elements of formulas in a model file.
 
 use std::fmt::Write as _;
 
@@ -35,14 +35,14 @@ checked; a number takes a unit as in 3[mm/s]. Operators: + - * / ^ and parenthes
 terms of a file.
 ";
 
-/// Places, signals and functions. (Writing to a string cannot fail, so the results are dropped.)
+/// Places, signals and functions. (Writing to a string cannot fail.)
 pub fn text() -> String {
     let mut text = HEAD.to_owned();
-    let mut places = Table::new(["place", "unit", "what a term does there"]);
+    let mut places = Table::new(["place", "unit", "action of a term"]);
     for place in Place::all() {
         places.row([place.id(), place.unit(), place.meaning()].map(str::to_owned));
     }
-    let mut signals = Table::new(["signal", "unit", "what it is"]);
+    let mut signals = Table::new(["signal", "unit", "description"]);
     for signal in &SIGNALS {
         signals.row([signal.name, signal.unit, signal.meaning].map(str::to_owned));
     }

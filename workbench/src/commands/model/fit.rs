@@ -1,4 +1,4 @@
-//! `hitch model fit`: the constants of the base model from a campaign.
+//! `hitch model fit`: fits the constants of the base model to a campaign.
 
 use std::path::PathBuf;
 
@@ -35,7 +35,7 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// If the campaign or the model file is wrong, or a result cannot be written.
+/// If the campaign or the model file is invalid, or a result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let mut inputs = campaign_files(&args.campaign);
     inputs.push(args.model.file());

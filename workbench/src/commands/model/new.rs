@@ -1,4 +1,4 @@
-//! `hitch model new`: a commented model file.
+//! `hitch model new`: creates a commented model file.
 
 use std::io;
 use std::io::IsTerminal as _;
@@ -30,18 +30,18 @@ pub struct Args {
     /// A constant, in the unit of its key; may be given several times
     #[arg(long = "set", value_name = "TABLE.KEY=VALUE")]
     set: Vec<String>,
-    /// Where the defaults come from: nominal, dynamic, or the name of a model file
+    /// Source of the defaults: nominal, dynamic, or the name of a model file
     #[arg(long, value_name = "MODEL", default_value = "nominal")]
     from: String,
-    /// Write the model file here; without it, print it
+    /// Write the model file here; without this option, print it
     #[arg(long, value_name = "FILE.toml")]
     out: Option<PathBuf>,
-    /// Take the defaults without asking
+    /// Use the defaults without asking
     #[arg(long)]
     yes: bool,
 }
 
-/// What is asked on a terminal: constant and question.
+/// Questions on a terminal: constant and text.
 const QUESTIONS: [(&str, &str); 8] = [
     ("cylinder.bore_mm", "Cylinder bore, mm"),
     ("cylinder.stroke_mm", "Cylinder stroke, mm"),
@@ -68,7 +68,7 @@ const QUESTIONS: [(&str, &str); 8] = [
 /// Runs the command.
 ///
 /// # Errors
-/// If a curve or a value is wrong, or the file cannot be written.
+/// If a curve or a value is invalid, or the file cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let curves = [&args.lift_curve, &args.lower_curve];
     let mut inputs: Vec<PathBuf> = curves.into_iter().flatten().cloned().collect();
@@ -113,9 +113,9 @@ fn told(path: &Path) -> String {
     )
 }
 
-/// Asks for what was not given.
+/// Asks for values that were not given.
 fn ask_all(template: &mut Template, args: &Args) -> Result<(), Error> {
-    eprintln!("Values of the data sheets; Enter takes what stands in brackets.");
+    eprintln!("Data sheet values; Enter accepts the value in brackets.");
     let given = |name: &str| args.set.iter().any(|set| set.starts_with(name));
     for (name, question) in QUESTIONS.iter().filter(|(name, _)| !given(name)) {
         let default = template.get(name).map_err(Error::Usage)?;
@@ -133,7 +133,7 @@ fn ask_all(template: &mut Template, args: &Args) -> Result<(), Error> {
     Ok(())
 }
 
-/// A flow curve of the default's shape between the current at which the valve opens and the current limit.
+/// A flow curve with the shape of the default, between the opening current and the current limit.
 fn asked_curve(default: &ValveCurve, title: &str) -> Result<ValveCurve, Error> {
     let opens = default.threshold_a();
     let last = default.currents_a()[default.currents_a().len() - 1];
@@ -150,7 +150,7 @@ fn asked_curve(default: &ValveCurve, title: &str) -> Result<ValveCurve, Error> {
         })?;
         Ok::<f64, Error>(found)
     };
-    let opens_now = asked("current at which it opens, A", opens)?;
+    let opens_now = asked("opening current, A", opens)?;
     let last_now = asked("current limit, A", last)?;
     let full = hitch_plant::units::lpm_from_m3_s(default.saturation_m3_s());
     let full_now = asked("flow at the current limit, l/min", full)?;
@@ -164,12 +164,12 @@ fn asked_curve(default: &ValveCurve, title: &str) -> Result<ValveCurve, Error> {
     let flows = flows.map(|flow| flow * full_now / full).collect();
     ValveCurve::new(currents, flows).map_err(|_| {
         Error::Usage(format!(
-            "{title}: the current limit must be above the current at which it opens"
+            "{title}: the current limit has to be above the opening current"
         ))
     })
 }
 
-/// Asks until the answer is taken; an empty one leaves the default.
+/// Asks until the answer is valid; an empty one keeps the default.
 fn ask(
     question: &str,
     default: &str,
@@ -180,7 +180,9 @@ fn ask(
         let mut line = String::new();
         let read = io::stdin().read_line(&mut line);
         if !read.is_ok_and(|bytes| bytes > 0) {
-            return Err(Error::Usage("stopped; nothing was written".to_owned()));
+            return Err(Error::Usage(
+                "stopped by the user; no file was written".to_owned(),
+            ));
         }
         if line.trim().is_empty() {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Angle, currents and pressures of moves over time: of all if they are few, else of the worst.
+//! Traces of angle, currents and pressures: of all moves if they are few, else of the worst.
 use maud::{Markup, html};
 
 use crate::closed_loop::show::name;
@@ -6,11 +6,11 @@ use crate::closed_loop::{LoopRun, MoveResult, MoveTrace, Sample};
 use crate::report::chart::{Chart, Line, Stroke, legend};
 use crate::text::known;
 
-/// What is shown after arrival, s.
+/// Time shown after arrival, s.
 const AFTER_S: f64 = 0.6;
-/// So many moves are shown, whatever else there is.
+/// Maximum number of moves for which all are shown.
 const MOST: usize = 30;
-/// If there are more, so many of the worst by each figure.
+/// Number of worst moves by each figure, if there are more.
 const WORST: usize = 4;
 
 /// The section.

@@ -1,44 +1,44 @@
-//! Step responses laid over each other: the same move at every load, and at every oil temperature.
+//! Superimposed step responses: the same move at every load, and at every oil temperature.
 use maud::{Markup, html};
 
 use super::occurring;
 use crate::closed_loop::{LoopRun, MoveResult, MoveTrace};
 use crate::report::chart::{Chart, Line, Stroke, legend};
 
-/// What is shown after the slowest has arrived, s.
+/// Time shown after the slowest arrival, s.
 const AFTER_S: f64 = 0.4;
-/// A line each; more values than lines are not told apart.
+/// Line styles; further values would be indistinguishable.
 const STROKES: [Stroke; 3] = [Stroke::After, Stroke::Before, Stroke::Other];
 
 type Driven<'a> = (&'a MoveResult, &'a MoveTrace);
 
-/// What differs between the lines of a chart, and what stays.
+/// The varied and the constant quantities of a chart.
 struct Over {
     title: &'static str,
     unit: &'static str,
     varies: fn(&MoveResult) -> f64,
     stays: fn(&MoveResult) -> f64,
     stays_unit: &'static str,
-    /// How to have more than one, in words and on the command line.
+    /// How to get more values, as text and as option.
     more: (&'static str, &'static str),
 }
 
 const OVER: [Over; 2] = [
     Over {
-        title: "Steps over load",
+        title: "Step responses over load",
         unit: "kg",
         varies: |result| result.load_kg,
         stays: |result| result.oil_temperature_c,
         stays_unit: "°C",
-        more: ("others are driven without ", "--load"),
+        more: ("for other loads, omit ", "--load"),
     },
     Over {
-        title: "Steps over oil temperature",
+        title: "Step responses over oil temperature",
         unit: "°C",
         varies: |result| result.oil_temperature_c,
         stays: |result| result.load_kg,
         stays_unit: "kg",
-        more: ("others are driven with ", "--scenario limits"),
+        more: ("for other temperatures, use ", "--scenario limits"),
     },
 ];
 
@@ -50,7 +50,7 @@ pub fn section(run: &LoopRun) -> Markup {
 fn overlaid(run: &LoopRun, over: &Over) -> Markup {
     let values = occurring(&run.results, over.varies);
     let stays = occurring(&run.results, over.stays);
-    // The middle one of what stays: neither the easiest nor the hardest.
+    // The median of the constant quantity: an average case.
     let fixed = stays[stays.len() / 2];
     let names: Vec<String> = values
         .iter()
@@ -76,7 +76,7 @@ fn overlaid(run: &LoopRun, over: &Over) -> Markup {
     }
 }
 
-/// The moves of one chart, in the order of what varies.
+/// The moves of one chart, in the order of the varied quantity.
 fn lines_of<'a>(run: &'a LoopRun, over: &Over, fixed: f64, way: (f64, f64)) -> Vec<Driven<'a>> {
     let belongs = |(result, _): &Driven| {
         (result.from_deg, result.to_deg) == way && (over.stays)(result) == fixed

@@ -1,23 +1,23 @@
-//! A map of the worst cases: each figure over the move, and over load and oil temperature.
+//! Worst-case map: each figure over move, load and oil temperature.
 use maud::{Markup, html};
 
 use super::occurring;
 use crate::closed_loop::MoveResult;
 use crate::heat_table::{HeatTable, Shade};
 
-/// A figure of a move and how it is coloured.
+/// A figure of a move with its colour scale.
 struct Figure {
     name: &'static str,
     of: fn(&MoveResult) -> f64,
-    /// White: as good as can be.
+    /// White: ideal value.
     best: f64,
-    /// Yellow: what motion at the limit is held to; orange is as far beyond.
+    /// Yellow: limit for the motion. Orange: as far above it.
     bar: f64,
 }
 
 const FIGURES: [Figure; 4] = [
     Figure {
-        name: "Time over the shortest between edges of 100 ms",
+        name: "Time ratio: time over the shortest time with edges of 100 ms",
         of: |result| result.ratio,
         best: 1.0,
         bar: 1.4,
@@ -35,7 +35,7 @@ const FIGURES: [Figure; 4] = [
         bar: 0.3,
     },
     Figure {
-        name: "Pressure swing over that of the ideal manoeuvre",
+        name: "Pressure swing relative to the ideal manoeuvre",
         of: |result| result.pressure_swing_ratio,
         best: 0.5,
         bar: 1.5,
@@ -47,8 +47,8 @@ pub fn section(results: &[MoveResult]) -> Markup {
     html! {
         h2 { "Worst moves" }
         p { "White: ideal. Yellow: at the limit. Orange: as far over the limit as the limit is over the ideal. \
-             Rows: moves, in degrees. Columns: load and oil temperature. A dash: the move never arrives, \
-             or no manoeuvre does." }
+             Rows: moves, in degrees. Columns: load and oil temperature. A dash: the move never arrives \
+             or is impossible."  }
         @for figure in &FIGURES {
             h3 { (figure.name) }
             (table(results, figure).table())

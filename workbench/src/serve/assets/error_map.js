@@ -53,7 +53,7 @@ function table(state, visit) {
 function button(cell, channel, visit) {
   const share = Math.min(1, Math.max(0, Math.log(cell.error) / Math.log(DARKEST)));
   const style = `background: rgba(var(--heat), ${(0.5 * share).toFixed(2)})`;
-  const label = `${channel.title}, ${cell.part}: error ${sigmas(cell.error)} sigma; show the worst place`;
+  const label = `${channel.title}, ${cell.part}: error ${sigmas(cell.error)} sigma; show the largest error`;
   return element("button", { type: "button", style, "aria-label": label, title: `${cell.samples} samples`,
     onclick: () => visit(cell) }, sigmas(cell.error));
 }

@@ -18,7 +18,7 @@ let tried = [];
 /** The candidate whose signature is drawn.
  * @type {any} */
 let signed = null;
-/** Errors of a fit that runs.
+/** Errors of a running fit.
  * @type {{fraction: number, error: number}[]} */
 let live = [];
 
@@ -240,7 +240,7 @@ function showFault(error) {
   const fault = error instanceof Refused ? error.fault : { what: String(error) };
   const where = fault.file && [fault.file, fault.line, fault.column].filter((part) => part != null).join(":");
   const lines = [where && element("p", {}, element("code", {}, where)), element("p", {}, fault.what),
-    fault.mend && element("p", {}, `To mend it: ${fault.mend}.`)];
+    fault.mend && element("p", {}, `Suggested correction: ${fault.mend}.`)];
   byId("fault-text").replaceChildren(...lines.filter((line) => line instanceof Node));
   byId("fault").hidden = false;
 }

@@ -28,10 +28,10 @@ export function drawRanking(candidates, acts, next = null) {
   const seen = candidates.filter(shows);
   const unseen = candidates.filter((one) => !shows(one));
   const parts = [element("h3", {}, "Each effect alone"), ...seen.map((one) => candidate(one, acts))];
-  if (candidates.length > 0 && seen.length === 0) parts.push(element("p", {}, "No effect shows on these data."));
-  if (next) parts.push(element("p", {}, `To tell them apart: ${next}.`));
+  if (candidates.length > 0 && seen.length === 0) parts.push(element("p", {}, "No effect is detectable in these data."));
+  if (next) parts.push(element("p", {}, `Experiment that separates them: ${next}.`));
   if (unseen.length > 0) {
-    parts.push(element("details", {}, element("summary", {}, `${unseen.length} more, without a sign on these data`),
+    parts.push(element("details", {}, element("summary", {}, `${unseen.length} more, not detectable in these data`),
       ...unseen.map((one) => candidate(one, acts))));
   }
   byId("ranking").replaceChildren(...parts);
@@ -55,7 +55,7 @@ function candidate(one, acts) {
   // A ranking that is being made has no confidences yet, and the server no candidates to draw.
   const sign = one.confidence === undefined ? [] : [element("button", { type: "button", class: "sign",
     "aria-pressed": one.effect.name === acts.signed, "aria-label": `Signature of ${one.effect.title}`,
-    title: "Draws over the residuals of the run what this effect would explain of them",
+    title: "Shows the part of the run's residuals that this effect explains",
     onclick: () => acts.sign(one.effect) }, "Signature")];
   const confidence = one.confidence === undefined ? "being compared"
     : `${one.in_words}, ${(100 * one.confidence).toFixed(0)} %`;
@@ -82,12 +82,12 @@ function parameters(one) {
 /** @param {any} one */
 function twins(one) {
   if (!one.indistinguishable?.length) return [];
-  return [element("div", { class: "values" }, `These data do not tell it from ${one.indistinguishable.join(", ")}.`)];
+  return [element("div", { class: "values" }, `On these data, indistinguishable from ${one.indistinguishable.join(", ")}.`)];
 }
 
 /** @param {any} effect */
 function details(effect) {
-  return element("details", {}, element("summary", {}, "Equation, where it shows, source"),
+  return element("details", {}, element("summary", {}, "Equation, visibility, source"),
     element("code", { class: "equation" }, effect.equation), element("p", {}, `Shows: ${effect.shows}.`),
     element("p", {}, `Source: ${effect.source}.`));
 }
@@ -101,17 +101,17 @@ function explanation(found, keeps, run) {
   const take = element("button", { type: "button", class: "main", id: "adopt", onclick: () => {
     const steps = boxes.map((/** @type {any} */ box, /** @type {number} */ index) => (box.checked ? index : -1));
     run({ task: "adopt", steps: steps.filter((/** @type {number} */ index) => index >= 0) });
-  } }, "Take the accepted steps over");
+  } }, "Accept the selected steps");
   const parts = found.steps.map((/** @type {any} */ step, /** @type {number} */ index) => accepted(step, boxes[index]));
   return [element("h3", {}, "Explanation"),
     element("p", {}, element("strong", {}, `Verdict: ${found.verdict}. `), found.meaning), ...(keeps ? [element("p", {},
-      "Effects that the model has already are kept; only their sizes may change. Take one away if it may be wrong.")] : []),
+      "Effects of the model are kept; only their sizes may change. Remove an effect to have it re-examined.")] : []),
     ...parts,
     ...(found.steps.length ? [take] : []),
     ...(found.suggested ? [suggested(found.suggested, run)] : []),
     ...(found.next_experiment ? [element("p", {}, `Next experiment: ${found.next_experiment}.`)] : []),
     ...(found.not_visible.length ? [element("details", {},
-      element("summary", {}, `${found.not_visible.length} effects would not show in this campaign`),
+      element("summary", {}, `${found.not_visible.length} effects are not detectable in this campaign`),
       element("p", {}, found.not_visible.join(", ")))] : [])];
 }
 
@@ -126,7 +126,7 @@ function suggested(term, run) {
     element("p", {}, `Error on held-out runs: ${sigmas(term.held_out_before)} → ${sigmas(term.held_out_after)} σ. ` +
       "It describes the error; it is not an identified cause."), ...replaces,
     element("button", { type: "button", id: "take-suggested", onclick: () => run({ task: "suggested" }) },
-      "Take the explanation over with this term"));
+      "Accept the explanation with this term"));
 }
 
 /** @param {any} step

@@ -37,7 +37,7 @@ export function drawModel(state, acts) {
   drawCourse(state, []);
 }
 
-/** Draws the error over the steps, and that of a fit that runs.
+/** Draws the error over the steps, and that of a running fit.
  * @param {any} state
  * @param {{fraction: number, error: number}[]} live */
 export async function drawCourse(state, live) {
@@ -50,7 +50,7 @@ export async function drawCourse(state, live) {
     { type: "scatter", mode: "lines+markers", name: "all runs", x, y: done.map((/** @type {any} */ step) => step.error), line },
     { type: "scatter", mode: "markers", name: "held-out runs", x,
       y: done.map((/** @type {any} */ step) => step.held_out), marker: { color: colour("first"), size: 10, symbol: "diamond-open" } },
-    { type: "scatter", mode: "lines+markers", name: "fit that runs", x: [last, ...live.map((one) => last + one.fraction)],
+    { type: "scatter", mode: "lines+markers", name: "running fit", x: [last, ...live.map((one) => last + one.fraction)],
       y: [state.error, ...live.map((one) => one.error)], line: { ...line, color: colour("residual"), dash: "dot" },
       visible: live.length > 0 },
   ].map((trace) => ({ ...trace, hovertemplate: "%{y:.2f} σ" }));
@@ -74,7 +74,7 @@ export async function drawCourse(state, live) {
  * @param {Acts} acts */
 function effect(added, index, acts) {
   const remove = element("button", { type: "button", "aria-label": `Take ${added.effect.title} away`,
-    onclick: () => acts.run({ task: "remove", effect: index }) }, "Take away");
+    onclick: () => acts.run({ task: "remove", effect: index }) }, "Remove");
   const parameters = added.parameters.map((/** @type {any} */ parameter, /** @type {number} */ place) =>
     slider(added, parameter, { effect: index, parameter: place }, acts));
   return element("div", { class: "effect" },

@@ -1,4 +1,4 @@
-//! What the page shows of effects: the catalogue, a ranking, an explanation.
+//! JSON views of effects: catalogue, ranking, explanation.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ pub fn described(effect: &dyn Effect) -> Value {
     })
 }
 
-/// A candidate as soon as it was tried: its confidence is known when all were.
+/// A candidate directly after its evaluation; its confidence is known only when all are evaluated.
 pub fn tried(base: &Fit, candidate: &candidate::Candidate) -> Value {
     let values = parameters(candidate.effect, candidate.values(), &candidate.intervals);
     json!({
@@ -34,7 +34,7 @@ pub fn tried(base: &Fit, candidate: &candidate::Candidate) -> Value {
     })
 }
 
-/// The ranking, if it is of the present model.
+/// The ranking, if it belongs to the present model.
 pub fn ranking(session: &Session) -> Value {
     let ranking = session.present_ranking();
     ranking.map_or(Value::Null, |ranking| ranked(ranking))
@@ -63,7 +63,7 @@ fn ranked(ranking: &Ranking) -> Value {
     })
 }
 
-/// The explanation, if it begins with the present model.
+/// The explanation, if it starts from the present model.
 pub fn explained(session: &Session) -> Value {
     let present = &session.present().evaluated;
     let explained = session.explained.as_ref();
@@ -101,7 +101,7 @@ fn found(explained: &Explained) -> Value {
     })
 }
 
-/// A probability in a word or two.
+/// A probability in words.
 fn in_words(confidence: f64) -> &'static str {
     match confidence {
         share if share >= 0.95 => "nearly certain",
