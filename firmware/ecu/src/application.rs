@@ -1,4 +1,4 @@
-//! The application: its parts, and the order in which a millisecond goes through them.
+//! The application: its parts, and their order within a millisecond.
 
 use embedded_storage::nor_flash::NorFlash;
 use heapless::Deque;
@@ -30,13 +30,13 @@ use super::task_sequence_monitor::{Kick, Task, TaskSequenceMonitor};
 use super::tick_timer::TickTimer;
 use crate::service;
 
-/// Largest number of frames received in a millisecond: twice what a bus of 250 kbit/s carries at its fullest.
+/// Largest number of received frames in a millisecond: twice the capacity of a bus of 250 kbit/s.
 const MAX_RECEIVED: usize = 8;
 /// Largest number of frames created in a millisecond.
 const MAX_SENT: usize = 4;
-/// Frames that wait for the bus.
+/// Capacity of the transmit queue, frames.
 const OUTBOX: usize = 8;
-/// The address of a node that has none.
+/// The address of a node without address.
 const NO_ADDRESS: u8 = 254;
 
 /// The ECU.
@@ -103,8 +103,8 @@ impl<F: NorFlash> Ecu<F> {
         }
     }
 
-    /// One millisecond. The watchdog may be kicked with what it gives; it gives nothing unless every task has run.
-    /// Not inlined: the depth of its stack is counted apart from that of the start.
+    /// One millisecond. Returns the permission to reset the watchdog, if all tasks have run. Not inlined: the stack
+    /// depth is computed separately from that of the start.
     #[inline(never)]
     pub fn tick(&mut self, contacts: &Contacts, hardware: &mut impl Hardware) -> Option<Kick> {
         self.sample(contacts);
@@ -121,8 +121,8 @@ impl<F: NorFlash> Ecu<F> {
         self.task_sequence.end()
     }
 
-    /// Whether a calibration is being stored, with both coils off and locked: milliseconds take as long as flash does
-    /// then.
+    /// Whether a calibration is being stored, with both coils off and locked: a millisecond then takes as long as the
+    /// flash operation.
     #[must_use]
     pub const fn is_storing(&self) -> bool {
         self.service.is_storing()
@@ -164,16 +164,16 @@ impl<F: NorFlash> Ecu<F> {
             .service
             .update(&mut self.controller, &mut self.slave, at_rest);
         self.send(hardware);
-        // One change of the flash a millisecond.
+        // One flash operation per millisecond.
         let kept = stored == Storing::Idle && at_rest && self.keep_history();
         if stored == Storing::Busy || kept {
             self.tick_timer.skip_interval();
         }
     }
 
-    /// Brings the fault history in flash up to date and returns whether flash was programmed. Nothing is written while
-    /// the supply is out of its limits: power may be failing, which would tear the entry, and each power-off would be
-    /// counted as a low supply.
+    /// Updates the fault history in flash, and returns whether flash was programmed. Nothing is written while the
+    /// supply is out of its limits: failing power would tear the entry, and each power-off would be recorded as low
+    /// supply.
     fn keep_history(&mut self) -> bool {
         let limits = &self.controller.calibration().safety;
         let is_supplied = self
@@ -183,7 +183,7 @@ impl<F: NorFlash> Ecu<F> {
         is_supplied && !self.service.is_storing() && self.history.update(self.node.occurrences())
     }
 
-    /// What a tool may write: nothing unless somebody at the machine has switched service on.
+    /// Write permission of a tool: none unless the service switch is on.
     fn access(&self, contacts: &Contacts) -> Access {
         if self.service.is_storing() || !contacts.panel.is_closed(Contact::Service) {
             return Access::Locked;
@@ -258,7 +258,7 @@ impl<F: NorFlash> Ecu<F> {
             self.service.troubles().union(found),
             self.arbiter.is_overridden(),
         );
-        // The node is polled even if the bus is blocked: old frames are then replaced.
+        // The node is polled even if the bus is blocked: new frames then replace old ones.
         for _ in 0..MAX_SENT {
             let Some(frame) = self.node.poll(self.tick_timer.now_ms(), &status) else {
                 break;
@@ -298,12 +298,12 @@ impl<F: NorFlash> Ecu<F> {
         if self.outbox.is_full() {
             self.outbox.pop_front();
         }
-        // There is space now.
+        // There is room now.
         let _ = self.outbox.push_back(frame);
     }
 }
 
-/// Both coils are off and stay off until the operator picks the hitch up.
+/// Both coils are off until the lever capture.
 const fn is_at_rest(outputs: &Outputs) -> bool {
     matches!(
         outputs.state,

@@ -1,4 +1,4 @@
-//! Who has the hitch: the operator's lever, or an implement that commands it over the bus.
+//! Arbiter of the set point: the operator's lever, or an implement that commands the hitch over the bus.
 //!
 //! ```text
 //!             an implement takes control (see `j1939::remote`)
@@ -11,8 +11,8 @@
 //!                            +------+  implement gave it back or fell silent
 //! ```
 //!
-//! The lever isn't where an implement has left the hitch, so giving control back goes through a step of hold: the
-//! controller's start-up lock falls shut, and the hitch stays until the lever has been moved through it.
+//! After remote control the lever is usually not at the hitch position. The return of control therefore includes a step
+//! of hold: it activates the start-up lock of the controller, and the hitch stays until the lever capture.
 
 use hitch_protocols::j1939::Remote;
 use hitch_quantities::Inputs;
@@ -20,20 +20,20 @@ use hitch_quantities::calibration::design_parameters::PositionParameters;
 use hitch_quantities::fixed::Divisor;
 use hitch_quantities::units::{MilliDegree, PerMille};
 
-/// A lever that is moved by more than this takes the hitch back: 0.8 % of the range, as at the start-up lock.
+/// Lever motion that ends remote control: 0.8 % of the range, as for the start-up lock.
 const TAKEN: MilliDegree = MilliDegree(730);
 const WHOLE: Divisor = Divisor::THOUSAND;
 
 /// The arbiter.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Arbiter {
-    /// Where the lever was when the implement took control.
+    /// Position of the lever when the implement took control.
     lever: Option<MilliDegree>,
     overridden: bool,
 }
 
 impl Arbiter {
-    /// The inputs that the controller gets.
+    /// The inputs for the controller.
     #[must_use]
     pub fn decide(
         &mut self,
@@ -41,7 +41,7 @@ impl Arbiter {
         remote: Remote,
         limits: &PositionParameters,
     ) -> Inputs {
-        // A lever that is broken is the controller's to judge.
+        // A faulty lever is handled by the controller.
         let Some(lever) = inputs.lever else {
             return inputs;
         };
@@ -68,7 +68,7 @@ impl Arbiter {
         }
     }
 
-    /// True while the operator has taken the hitch back and the implement hasn't noticed yet.
+    /// Whether the operator has taken control and the implement has not yet acknowledged it.
     #[must_use]
     pub const fn is_overridden(&self) -> bool {
         self.overridden

@@ -1,18 +1,18 @@
-//! The coils' drivers on any part: two pulse-width outputs, the line that enables the drivers, and its read-back.
+//! Coil drivers on any part: two PWM outputs, the enable line of the drivers, and its read-back.
 //!
-//! The order of writes is part of it. To off, the line drops first: it acts on both coils, whatever the pulses do. To on,
-//! the pulses are set first: the line never enables a pulse width of an earlier millisecond.
+//! The order of writes matters. Switching off, the line goes low first: it acts on both coils, independent of the
+//! pulses. Switching on, the pulses are set first: the line never enables a pulse width of an earlier millisecond.
 
 use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_hal::pwm::SetDutyCycle;
 
 use super::drive::{Compare, Drive};
 
-/// An output did not take its value. Both coils have been cut, and stay off until a restart.
+/// An output did not accept its value. Both coils are off until a restart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CoilDriverError;
 
-/// The drivers. The largest duty of both pulse-width outputs has to be
+/// The drivers. The largest duty of both PWM outputs has to be
 /// [`BoardScaling::pwm_steps`](super::BoardScaling::pwm_steps).
 #[derive(Debug)]
 pub struct CoilDriver<Lift, Lower, Enable, Feedback> {
@@ -20,7 +20,7 @@ pub struct CoilDriver<Lift, Lower, Enable, Feedback> {
     lower: Lower,
     enable: Enable,
     feedback: Feedback,
-    /// Level of the line that was asked for last.
+    /// Last commanded level of the line.
     asked: bool,
     /// An output has failed.
     failed: bool,
@@ -33,7 +33,7 @@ where
     Enable: OutputPin,
     Feedback: InputPin,
 {
-    /// The drivers on outputs that are off.
+    /// The drivers, with outputs that are off.
     #[must_use]
     pub const fn new(lift: Lift, lower: Lower, enable: Enable, feedback: Feedback) -> Self {
         Self {
@@ -46,10 +46,10 @@ where
         }
     }
 
-    /// Hands the drivers their values.
+    /// Writes the values of the drivers.
     ///
     /// # Errors
-    /// If an output fails or has failed before; then both coils are cut.
+    /// If an output fails or has failed before; both coils are then off.
     pub fn drive(&mut self, drive: Drive) -> Result<(), CoilDriverError> {
         if self.failed {
             return self.cut().and(Err(CoilDriverError));
@@ -72,7 +72,7 @@ where
         }
     }
 
-    /// Cuts both coils: the line, then the pulses. Every output is written, even if one before it fails.
+    /// Switches both coils off: the line, then the pulses. Every output is written, even if a previous one fails.
     ///
     /// # Errors
     /// If an output fails; the drivers then stay off.
@@ -85,13 +85,13 @@ where
         cut
     }
 
-    /// Level of the enable line, read back at the drivers. A read-back that fails differs from the level asked for, so
+    /// Level of the enable line, read back at the drivers. A failed read-back differs from the commanded level, so
     /// the application treats the line as faulty.
     pub fn enable_feedback(&mut self) -> bool {
         self.feedback.is_high().unwrap_or(!self.asked)
     }
 
-    /// Gives the outputs back, in the order of [`Self::new`].
+    /// Returns the outputs, in the order of [`Self::new`].
     #[must_use]
     pub fn release(self) -> (Lift, Lower, Enable, Feedback) {
         (self.lift, self.lower, self.enable, self.feedback)

@@ -1,10 +1,10 @@
-//! From converter codes to quantities.
+//! Converts converter codes into quantities.
 //!
-//! The sensors are ratiometric: they give 10 to 90 % of the sensor supply, so that a broken wire and a short are outside.
-//! Their signals are divided by the measured sensor supply, so neither a drift of that supply nor of the converters'
-//! reference moves them. Currents and voltages are absolute. They are corrected by the internal band gap, whose code
-//! falls when the reference rises. Nothing here can be taught: the error of a machine's sensor is in the
-//! calibration's linkage.
+//! The sensors are ratiometric: their range is 10 to 90 % of the sensor supply, so that a broken or shorted wire is
+//! outside. Their signals are divided by the measured sensor supply and are independent of drifts of that supply and of
+//! the converters' reference. Currents and voltages are absolute. They are corrected by the internal band gap, whose
+//! code falls when the reference rises. There are no machine-specific corrections here: the error of an angle sensor is
+//! in the calibration's linkage.
 
 use hitch_quantities::Inputs;
 use hitch_quantities::units::{MilliAmp, MilliBar, MilliDegree, MilliVolt, PerMille};
@@ -43,7 +43,7 @@ struct Ratio(i32);
 impl Ratio {
     const ONE: i32 = 32_768;
 
-    /// The same share of the way from `low` to `high`, which may be 65 000 apart.
+    /// Linear interpolation between `low` and `high`, which may be 65 000 apart.
     const fn between(self, low: i32, high: i32) -> i32 {
         let part = (high - low).saturating_mul(self.0);
         low.saturating_add(part.saturating_add(Self::ONE / 2) / Self::ONE)
@@ -54,7 +54,7 @@ impl Ratio {
         MilliDegree(self.between(7_000, 29_000).saturating_mul(5))
     }
 
-    /// Angle of a track that falls while the angle rises.
+    /// Angle of an inverted track.
     const fn inverted_angle(self) -> MilliDegree {
         MilliDegree(self.between(29_000, 7_000).saturating_mul(5))
     }
@@ -64,13 +64,13 @@ impl Ratio {
         MilliBar(self.between(0, 50_000).saturating_mul(5))
     }
 
-    /// Dial: shut at 10 %, open at 90 %.
+    /// Dial: closed at 10 %, open at 90 %.
     fn dial(self) -> PerMille {
         PerMille(self.between(0, 1_000).clamp(0, 1_000))
     }
 }
 
-/// What a converter channel measures, in the order of [`Samples::codes`].
+/// Quantity of a converter channel, in the order of [`Samples::codes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Signal {
@@ -100,7 +100,7 @@ pub enum Signal {
     Reference,
 }
 
-/// What the converters give in a millisecond.
+/// Codes of all converters in a millisecond.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Samples {
     /// Rocker-arm angle.
@@ -186,20 +186,20 @@ impl Samples {
     }
 }
 
-/// A reading of 1 with the nominal reference, in the factor that corrects absolute readings.
+/// Unit of the correction factor of absolute readings.
 const UNCORRECTED: u32 = 1 << 16;
-/// Change of the sensor supply's code that counts. Its last digit flips in a healthy machine, and would make every
-/// ratiometric signal tremble.
+/// Hysteresis of the sensor supply's code. Its last digit flips in a healthy machine, and would add noise to every
+/// ratiometric signal.
 const SUPPLY_STEP: u16 = 2;
-/// Share by which a code may differ from its nominal one and still be used: beyond it the measurement itself is faulty,
-/// and its row of the safety envelope trips.
+/// Largest relative deviation of a code from its nominal value: beyond it the measurement itself is faulty, and its row
+/// of the safety envelope trips.
 const MOST_DEVIATION: u32 = 5;
 
-/// Turns the codes of each millisecond into the inputs of a step.
+/// Converts the codes of each millisecond into the inputs of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Conversion {
     scaling: BoardScaling,
-    /// Code of the sensor supply that the ratiometric signals are divided by.
+    /// Code of the sensor supply for the division of the ratiometric signals.
     sensor_supply: u16,
     /// Ratio of a signal's code to 40 960 times its share of the sensor supply, in 2^-16.
     signal_factor: u32,
@@ -216,8 +216,8 @@ impl Conversion {
         }
     }
 
-    /// The inputs of a step, as far as converters know them. A dial whose wire is broken counts as its safest
-    /// position: no lowering, and no limit beyond the calibration's, for a hitch that can't be raised is stuck.
+    /// The inputs of a step that come from converters. A dial with a broken wire counts as its safest position: no
+    /// lowering; but no upper limit besides the calibrated one, so that the hitch can still be raised.
     #[must_use]
     pub fn inputs(&mut self, samples: &Samples) -> Inputs {
         let correction = self.correction(samples.reference);
@@ -250,7 +250,7 @@ impl Conversion {
         }
     }
 
-    /// The converters' reference by the band gap, per mille of its nominal value; 0 if there is no band gap.
+    /// The converters' reference by the band gap, per mille of its nominal value; 0 without band gap.
     fn reference(&self, band_gap: AdcCode) -> PerMille {
         let nominal = u32::from(self.scaling.reference.get()) * 1_000;
         let share = nominal
@@ -259,7 +259,7 @@ impl Conversion {
         PerMille(share.cast_signed())
     }
 
-    /// The factor of absolute readings in 2^-16; 1 if the band gap's code is absurd.
+    /// The factor of absolute readings in 2^-16; 1 if the code of the band gap is implausible.
     fn correction(&self, band_gap: AdcCode) -> u32 {
         let nominal = u32::from(self.scaling.reference.get());
         let measured = u32::from(band_gap.get());
@@ -271,7 +271,7 @@ impl Conversion {
             .unwrap_or(UNCORRECTED)
     }
 
-    /// Takes a changed sensor supply for the ratiometric signals, unless it is absurd.
+    /// Updates the sensor supply for the ratiometric signals, unless it is implausible.
     fn follow_sensor_supply(&mut self, code: AdcCode, millivolts: i32) {
         let most = MilliVolt(NOMINAL_SENSOR_SUPPLY.0 / MOST_DEVIATION.cast_signed());
         let absurd = (MilliVolt(millivolts) - NOMINAL_SENSOR_SUPPLY).magnitude() > most;
@@ -286,7 +286,7 @@ impl Conversion {
         self.signal_factor = u32::try_from(factor).unwrap_or(u32::MAX);
     }
 
-    /// A ratiometric signal; none if its wire is broken or shorted.
+    /// A ratiometric signal; `None` if its wire is broken or shorted.
     fn ratio(&self, code: AdcCode) -> Option<Ratio> {
         let product = u64::from(code.get()) * u64::from(self.signal_factor);
         let share = i32::try_from(product >> 16).unwrap_or(i32::MAX);
@@ -301,7 +301,7 @@ impl Conversion {
 /// Nominal supply of the sensors.
 const NOMINAL_SENSOR_SUPPLY: MilliVolt = MilliVolt(5_000);
 
-/// An absolute quantity: the share of its full scale, corrected.
+/// An absolute quantity: the corrected fraction of its full scale.
 fn absolute(code: AdcCode, full_scale: i32, correction: u32) -> i32 {
     let share = (i64::from(code.wide()) * i64::from(full_scale) + 2_048) >> 12;
     let corrected = share.wrapping_mul(i64::from(correction)) >> 16;
@@ -314,7 +314,7 @@ mod tests {
 
     use super::*;
 
-    /// Samples with signals at `volts`, a sensor supply of `sensor_supply` volts and a reference that is `share` of its
+    /// Samples with signals at `volts`, a sensor supply of `sensor_supply` volts, and a reference at `share` of its
     /// nominal value.
     fn samples(volts: f64, sensor_supply: f64, share: f64) -> Samples {
         let code = |of_full_scale: f64| AdcCode((of_full_scale / share * 4096.0).round() as u16);
@@ -333,7 +333,7 @@ mod tests {
 
     #[test]
     fn a_ratiometric_angle_runs_from_a_tenth_of_the_sensor_supply_to_nine_tenths() {
-        // A code is 34 millidegrees.
+        // One code is 34 millidegrees.
         for (volts, millidegrees) in [(0.5, 35_000), (2.5, 90_000), (4.5, 145_000)] {
             let found = inputs(&samples(volts, 5.0, 1.0));
             let (first, second) = (found.rocker_angle.unwrap().0, found.second_angle.unwrap().0);

@@ -1,9 +1,9 @@
-//! What the drivers of the coils get.
+//! Values of the coil drivers.
 
 use hitch_quantities::Outputs;
 use hitch_quantities::units::Duty;
 
-/// A compare value of the pulse-width timer: 0 is off.
+/// Compare value of the PWM timer: 0 is off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Compare(u16);
 
@@ -30,14 +30,14 @@ impl Compare {
     }
 }
 
-/// Both coils and the line that enables their drivers.
+/// Both coils and the enable line of their drivers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Drive {
     /// Lift coil.
     pub lift: Compare,
     /// Lowering coil.
     pub lower: Compare,
-    /// The enable line: without it the drivers pass no current whatever the pulses say.
+    /// Enable line: without it the drivers pass no current, independent of the pulses.
     pub enable: bool,
 }
 
@@ -51,7 +51,8 @@ impl Drive {
 }
 
 impl Drive {
-    /// The values for a timer with `pwm_steps` steps. The line is only up while a coil is meant to have a current and nothing is tripped or faulty.
+    /// The values for a timer with `pwm_steps` steps. The line is high only while a coil current is requested, without
+    /// a trip or fault.
     #[must_use]
     pub fn new(outputs: &Outputs, pwm_steps: u16) -> Self {
         let lift = Compare::of(outputs.lift_duty, pwm_steps);

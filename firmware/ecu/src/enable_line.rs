@@ -1,4 +1,4 @@
-//! The line that enables the coils' drivers: tested before it is first used, and watched by its read-back from then on.
+//! The enable line of the coil drivers: tested before its first use, and monitored by its read-back afterwards.
 //!
 //! ```text
 //!  power-up   +-----+  low for SETTLING   +----------+  first drive   +--------+  high after SETTLING   +--------+
@@ -13,46 +13,46 @@
 //!                                          +--------+
 //! ```
 //!
-//! A line that is stuck low moves nothing. One that is stuck high takes the second way of cutting the coils away, which
-//! shows only while the line is meant to be low. So both levels have to be seen before the first current.
+//! A line that is stuck low is safe. One that is stuck high disables the second switch-off path, which is visible only
+//! while the line is commanded low. Both levels therefore have to be read back before the first current.
 
 use super::drive::{Compare, Drive};
 
-/// Time for which the read-back has to agree, or may disagree, ms: far longer than a driver's enable input and its
-/// filter take, and shorter than a spool needs to follow.
+/// Time for which the read-back has to agree, or may disagree, ms: much longer than the delay of a driver's enable
+/// input with its filter, and shorter than the response of a spool.
 const SETTLING_MS: u8 = 5;
 
-/// What is known of the line.
+/// State of the test.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum EnableLineState {
     /// Low since power-up.
     #[default]
     Low,
-    /// Has been low, and was read back as low.
+    /// Low, confirmed by read-back.
     Untested,
-    /// High for the first time, with both pulse widths at zero.
+    /// First time high, with both pulse widths at zero.
     Raised,
-    /// Has been both.
+    /// Both levels confirmed.
     Proven,
     /// Its read-back differs from its command.
     Faulty,
 }
 
-/// Tests and watches the line.
+/// Tests and monitors the line.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EnableLine {
     state: EnableLineState,
-    /// Level that was asked for in the last millisecond.
+    /// Commanded level of the last millisecond.
     asked: bool,
-    /// For how long the read-back has agreed in the present state, ms.
+    /// Time for which the read-back has agreed in the present state, ms.
     agreed_ms: u8,
-    /// For how long it has disagreed, ms.
+    /// Time for which it has disagreed, ms.
     differed_ms: u8,
 }
 
 impl EnableLine {
-    /// A millisecond begins: takes the read-back of the line; a board that has none is trusted. True if the line is
-    /// faulty.
+    /// Start of a millisecond: processes the read-back of the line; a board without read-back counts as healthy.
+    /// Returns whether the line is faulty.
     pub fn read(&mut self, feedback: Option<bool>) -> bool {
         let Some(level) = feedback else {
             return self.state == EnableLineState::Faulty;
@@ -78,7 +78,7 @@ impl EnableLine {
         self.state == EnableLineState::Faulty
     }
 
-    /// What the drivers get of what they are meant to get.
+    /// The drive that is output for the requested one.
     pub fn pass(&mut self, wanted: Drive, has_feedback: bool) -> Drive {
         let drive = match self.state {
             EnableLineState::Faulty => Drive::OFF,
@@ -91,7 +91,7 @@ impl EnableLine {
             }
             EnableLineState::Raised if wanted.enable => RAISED,
             EnableLineState::Raised => {
-                // Called off before the line was proven: tested anew with the next drive.
+                // Switched off before the line was proven: it is tested again with the next drive.
                 self.state = EnableLineState::Untested;
                 Drive::OFF
             }
@@ -123,7 +123,8 @@ mod tests {
         }
     }
 
-    /// Runs a line whose level is `level(asked)`; the drive of each millisecond and whether it was faulty at its start.
+    /// Simulates a line with level `level(asked)`; returns the drive of each millisecond and whether the line was
+    /// faulty at its start.
     fn run(
         line: &mut EnableLine,
         drives: &[Drive],

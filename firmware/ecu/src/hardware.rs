@@ -1,4 +1,4 @@
-//! What the application needs of whatever it runs on.
+//! Hardware interface of the application.
 
 use hitch_protocols::can::Frame;
 use hitch_quantities::units::PerMille;
@@ -7,41 +7,41 @@ use super::converter::Samples;
 use super::drive::Drive;
 use super::panel::Panel;
 
-/// What is read at the beginning of a millisecond.
+/// Inputs at the start of a millisecond.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Contacts {
     /// The converters' codes.
     pub samples: Samples,
     /// The operator's contacts.
     pub panel: Panel,
-    /// A free-running clock apart from the one that paces the milliseconds, us; it wraps.
+    /// A free-running clock, independent of the time base of the milliseconds, us; it wraps.
     pub clock_us: u32,
-    /// Read-back of the line that enables the coils' drivers; none if the board has no read-back.
+    /// Read-back of the enable line of the coil drivers; `None` if the board has none.
     pub enable_feedback: Option<bool>,
-    /// Main clock by an independent oscillator, per mille of its rate at the start; none if the board doesn't measure it.
+    /// Main clock by an independent oscillator, per mille of its rate at the start; `None` if not measured.
     pub clock_ratio: Option<PerMille>,
 }
 
-/// The flash that the application has.
+/// Flash regions of the application.
 #[derive(Clone, Debug)]
 pub struct FlashRegions<F> {
     /// Two copies of the calibration.
     pub calibration: F,
-    /// Two pages of the log of faults.
+    /// Two pages of the fault log.
     pub fault_log: F,
 }
 
-/// Drivers and bus. None of it waits.
+/// Drivers and bus. No call blocks.
 pub trait Hardware {
-    /// Hands the coils' drivers their values.
+    /// Writes the values of the coil drivers.
     fn drive(&mut self, drive: Drive);
 
-    /// The next frame that was received.
+    /// The next received frame.
     fn receive(&mut self) -> Option<Frame>;
 
-    /// Takes a frame for the bus; false if there is no room for it now.
+    /// Queues a frame for the bus; false if there is no room.
     fn send(&mut self, frame: &Frame) -> bool;
 
-    /// Frames that were received and dropped since the start.
+    /// Number of received frames that were dropped since the start.
     fn frames_dropped(&self) -> u16;
 }

@@ -1,4 +1,4 @@
-//! The ECU behind a link: a request in, a reply out, on whatever machine.
+//! The ECU behind a link: a request in, a reply out, on any machine.
 
 use embedded_storage::nor_flash::NorFlash;
 use heapless::{Deque, Vec};
@@ -10,21 +10,21 @@ use super::hardware::{Contacts, FlashRegions, Hardware};
 use super::link::{MOST_FRAMES, Reply};
 use super::scaling::BoardScaling;
 
-/// Watches a millisecond from inside.
+/// Observer of a millisecond.
 pub trait Probe {
-    /// The samples are there.
+    /// The samples are available.
     fn sampled(&mut self);
-    /// The controller's step is done, and its pulses go to the drivers.
+    /// The step of the controller has ended, and its pulses are passed to the drivers.
     fn driven(&mut self);
 }
 
-/// Nobody watches.
+/// Without observer.
 impl Probe for () {
     fn sampled(&mut self) {}
     fn driven(&mut self) {}
 }
 
-/// The ECU with wires that end in requests and replies.
+/// The ECU with inputs from requests and outputs to replies.
 #[derive(Debug)]
 pub struct HostedEcu<F, P = ()> {
     ecu: Ecu<F>,
@@ -59,7 +59,7 @@ impl<P: Probe> Hardware for Wires<P> {
 }
 
 impl<F: NorFlash, P: Probe + Default> HostedEcu<F, P> {
-    /// The ECU as it is after power-up. Not inlined, as [`Ecu::start`].
+    /// The ECU in the state after power-up. Not inlined, as [`Ecu::start`].
     #[must_use]
     #[inline(never)]
     pub fn start(flash: FlashRegions<F>, serial_number: u32, scaling: BoardScaling) -> Self {
@@ -69,11 +69,11 @@ impl<F: NorFlash, P: Probe + Default> HostedEcu<F, P> {
         }
     }
 
-    /// One millisecond; what it sends on the bus is in [`Self::sent`].
+    /// One millisecond; the sent frames are in [`Self::sent`].
     pub fn tick(&mut self, contacts: &Contacts, received: &[Frame]) -> Reply {
         self.wires.sent.clear();
         for frame in received.iter().take(MOST_FRAMES) {
-            // The last tick has emptied the queue, so there is room.
+            // The last tick emptied the queue, so there is room.
             let _ = self.wires.received.push_back(*frame);
         }
         self.wires.probe.sampled();
@@ -95,13 +95,13 @@ impl<F: NorFlash, P: Probe + Default> HostedEcu<F, P> {
         }
     }
 
-    /// What the last tick sent on the bus.
+    /// The frames sent in the last tick.
     #[must_use]
     pub fn sent(&self) -> &[Frame] {
         &self.wires.sent
     }
 
-    /// Who watches.
+    /// The observer.
     #[must_use]
     pub const fn probe(&self) -> &P {
         &self.wires.probe

@@ -1,4 +1,5 @@
-//! The ECU's application: from converter codes and frames to pulse widths and frames, one [`Ecu::tick`] a millisecond.
+//! The ECU's application: from converter codes and frames to pulse widths and frames, one [`Ecu::tick`] per
+//! millisecond.
 //!
 //! ```text
 //! Samples, Panel -> Inputs -> (an implement's set point) -> Controller -> Drive
@@ -6,13 +7,12 @@
 //!                    bus <-> Node, XCP slave <- measurements <-+-> calibration pages <-> flash
 //! ```
 //!
-//! It may depend on all other crates of the firmware, and none of them on it. Pure as they are: what it runs on is a
-//! [`Hardware`], which the board, the emulator and the tests each have one of. So the same code runs on all three, and
-//! does the same.
+//! It may depend on all other crates of the firmware, and none of them on it. It is pure code on a [`Hardware`]
+//! interface, which board, emulator and tests implement, so the same code has the same behaviour on all three.
 //!
 //! * `converter`, `scaling`, `panel`, `panel_inputs`: from codes and contacts to inputs,
 //! * `coil_driver`, `drive`, `enable_line`: from pulse widths to pins,
-//! * `arbiter`, `status`: what an implement asks for, and what it is told,
+//! * `arbiter`, `status`: commands of an implement, and status to it,
 //! * `service`, `hardware`, `flow`, `pace`: storage, and the order and the time of it all,
 //! * `application`, and [`link`] with `machine` for one that runs in lock step with a host.
 //!

@@ -1,4 +1,4 @@
-//! A millisecond of the ECU as bytes, for whoever runs it behind a pipe or a file.
+//! A millisecond of the ECU as bytes, for a host that runs it through a pipe or a file.
 //!
 //! ```text
 //! request  codes of twelve channels  panel  kind  frames  enable  clock ratio  0  clock   frames
@@ -9,8 +9,8 @@
 //!          4                                                1       3  8
 //! ```
 //!
-//! All of it little-endian. `enable` is the read-back of the enable line: 0 none, 1 low, 2 high. A clock ratio of -1 is
-//! none.
+//! All values are little-endian. `enable` is the read-back of the enable line: 0 none, 1 low, 2 high. A clock ratio of
+//! -1 means none.
 
 use embedded_can::{ExtendedId, Id, StandardId};
 use hitch_protocols::can::Frame;
@@ -26,27 +26,27 @@ pub const REQUEST_BYTES: usize = 2 * Samples::CHANNELS + 12;
 pub const REPLY_BYTES: usize = 18;
 /// Bytes of a frame.
 pub const FRAME_BYTES: usize = 16;
-/// Most frames that come with a request or a reply: more than a bus carries in a millisecond.
+/// Maximum number of frames of a request or a reply: more than the capacity of a bus in a millisecond.
 pub const MOST_FRAMES: usize = 8;
 
-/// A clock ratio that isn't there.
+/// Code of a missing clock ratio.
 const NO_RATIO: i16 = -1;
 
-/// What is asked for.
+/// A request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// A millisecond, with this many frames.
+    /// A millisecond with frames.
     Tick {
-        /// What is read.
+        /// The inputs.
         contacts: Contacts,
-        /// Frames that follow.
+        /// Number of frames that follow.
         frames: usize,
     },
-    /// Power off and on: all that is left is what is in flash.
+    /// Power off and on: only the flash contents are kept.
     PowerCycle,
 }
 
-/// What came of a millisecond.
+/// Result of a millisecond.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reply {
     /// Compare value of the lift coil.
@@ -55,21 +55,21 @@ pub struct Reply {
     pub lower: u16,
     /// The enable line.
     pub enable: bool,
-    /// The watchdog was kicked.
+    /// Whether the watchdog was reset.
     pub kicked: bool,
     /// Code of the state.
     pub state: u8,
     /// Code of the fault, 0 for none.
     pub fault: u8,
-    /// Code of what tripped the envelope, 0 for nothing.
+    /// Code of the trip of the envelope, 0 for none.
     pub trip: u8,
-    /// Frames that follow.
+    /// Number of frames that follow.
     pub frames: u8,
-    /// Set point that is being worked on, millidegrees.
+    /// Present set point, millidegrees.
     pub target_mdeg: i32,
-    /// Current asked of the lift coil, mA.
+    /// Requested current of the lift coil, mA.
     pub lift_ma: i16,
-    /// Current asked of the lowering coil, mA.
+    /// Requested current of the lowering coil, mA.
     pub lower_ma: i16,
 }
 
@@ -103,7 +103,7 @@ impl Request {
         bytes
     }
 
-    /// From bytes; more frames than there may be are as many as there may be.
+    /// From bytes; the number of frames is limited to its maximum.
     #[must_use]
     pub fn from_bytes(bytes: &[u8; REQUEST_BYTES]) -> Self {
         let (pairs, _) = bytes.as_chunks::<2>();
@@ -229,7 +229,7 @@ pub fn frame_to_bytes(frame: &Frame) -> [u8; FRAME_BYTES] {
     bytes
 }
 
-/// A frame from bytes, if they make one.
+/// A frame from bytes, if they are valid.
 #[must_use]
 pub fn frame_from_bytes(bytes: &[u8; FRAME_BYTES]) -> Option<Frame> {
     let [a, b, c, d, length, _, _, _, data @ ..] = bytes;

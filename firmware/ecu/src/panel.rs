@@ -3,7 +3,7 @@
 use hitch_quantities::units::MilliDegreePerSecond;
 use hitch_quantities::{Inputs, Switches};
 
-/// Contacts of buttons and switches. All of them close to ground, so that a broken wire reads as open.
+/// Contacts of buttons and switches. They close to ground, so that a broken wire reads as open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Panel(u8);
 
@@ -11,17 +11,17 @@ pub struct Panel(u8);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Contact {
-    /// Button outside: up.
+    /// External button: up.
     Up = 1 << 0,
-    /// Button outside: down.
+    /// External button: down.
     Down = 1 << 1,
-    /// Closed on the field. Open, by hand or by a broken wire, the hitch is locked for the road.
+    /// Field/road switch: closed in the field. Open, by hand or by a broken wire, the hitch is locked for the road.
     FieldMode = 1 << 2,
     /// Hold.
     Hold = 1 << 3,
     /// Quick lift.
     QuickLift = 1 << 4,
-    /// Service: the buttons outside teach.
+    /// Service: the external buttons start teaching.
     Service = 1 << 5,
 }
 
@@ -39,13 +39,13 @@ impl Panel {
     /// A tractor in the field with nothing pressed.
     pub const FIELD: Self = Self(Contact::FieldMode as u8);
 
-    /// The panel with these bits; those without a contact are dropped.
+    /// The panel with these bits; bits without a contact are ignored.
     #[must_use]
     pub const fn from_bits(bits: u8) -> Self {
         Self(bits & 0b11_1111)
     }
 
-    /// A bit a contact, set if it is closed.
+    /// One bit for each contact, set if it is closed.
     #[must_use]
     pub const fn bits(self) -> u8 {
         self.0
@@ -60,14 +60,13 @@ impl Panel {
         }
     }
 
-    /// True if the contact is closed.
+    /// Whether the contact is closed.
     #[must_use]
     pub const fn is_closed(self, contact: Contact) -> bool {
         self.0 & contact as u8 != 0
     }
 
-    /// What the operator asks for by the buttons outside: as fast as the calibration's rate limit lets it. Both at
-    /// once are none.
+    /// Request of the external buttons, at the rate limit of the calibration. Both pressed count as none.
     fn jog(self) -> Option<MilliDegreePerSecond> {
         match (self.is_closed(Contact::Up), self.is_closed(Contact::Down)) {
             (true, false) => Some(MilliDegreePerSecond(i32::MAX)),
@@ -76,7 +75,7 @@ impl Panel {
         }
     }
 
-    /// Adds what the panel says to the inputs of a step.
+    /// Adds the panel's state to the inputs of a step.
     #[must_use]
     pub fn added_to(self, inputs: Inputs) -> Inputs {
         Inputs {

@@ -1,4 +1,4 @@
-//! The operator's contacts on the pins of any part.
+//! The operator's contacts on microcontroller pins.
 
 use embedded_hal::digital::InputPin;
 
@@ -18,8 +18,8 @@ impl<Pin: InputPin> PanelInputs<Pin> {
         Self(pins)
     }
 
-    /// The contacts as they are now. Contacts that bounce do no harm: the controller guards or ramps what they start.
-    /// If a pin can't be read, all contacts count as open, which locks the hitch.
+    /// The present state of the contacts. Contact bounce is harmless: the controller guards or ramps the functions. If
+    /// a pin cannot be read, all contacts count as open, which locks the hitch.
     pub fn read(&mut self) -> Panel {
         let mut panel = Panel::default();
         for (pin, contact) in self.0.iter_mut().zip(Panel::CONTACTS) {
@@ -31,7 +31,7 @@ impl<Pin: InputPin> PanelInputs<Pin> {
         panel
     }
 
-    /// Gives the pins back.
+    /// Returns the pins.
     #[must_use]
     pub fn release(self) -> [Pin; CONTACTS] {
         self.0

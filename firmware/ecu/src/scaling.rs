@@ -1,4 +1,4 @@
-//! What belongs to a board: how its converters' codes and its pulse-width timer are scaled.
+//! Scaling of a board: converter codes and PWM timer.
 
 use hitch_quantities::units::{MilliAmp, MilliVolt, PerMille};
 
@@ -7,7 +7,7 @@ use super::converter::AdcCode;
 /// The scaling of a board. The full scales are quantities that give a code of 4096 with the nominal reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoardScaling {
-    /// Compare value at which a coil's driver is on throughout; at most 42 000.
+    /// Compare value for full duty; at most 42 000.
     pub pwm_steps: u16,
     /// Full scale of the coils' currents: shunt and amplifier.
     pub current: MilliAmp,
@@ -19,30 +19,30 @@ pub struct BoardScaling {
     pub sensor_supply: MilliVolt,
     /// Code of the internal band gap with the nominal reference.
     pub reference: AdcCode,
-    /// Smallest share of the sensor supply in a healthy ratiometric signal: below it a wire is broken or shorted.
+    /// Lowest fraction of the sensor supply in a healthy ratiometric signal: below it a wire is broken or shorted.
     pub wire_min: PerMille,
-    /// Largest share.
+    /// Highest fraction.
     pub wire_max: PerMille,
-    /// Whether the board's rocker-angle sensor has a second, inverted track: the factory's calibration then watches it.
+    /// Whether the rocker-angle sensor has a second, inverted track: the factory calibration then monitors it.
     pub second_track: bool,
 }
 
 impl BoardScaling {
     /// The board with a typical STM32F405 and one track of the rocker-angle sensor: twelve bits over a reference of 3.3 V.
     pub const NOMINAL: Self = Self {
-        // 168 MHz, counted up and down at 16 kHz.
+        // 168 MHz, centre-aligned at 16 kHz.
         pwm_steps: 5_250,
-        // A shunt and its amplifier bring 5 A to 3.3 V.
+        // Shunt and amplifier: 5 A at 3.3 V.
         current: MilliAmp(5_000),
-        // A divider of 7.448; 6 mV a code.
+        // Divider of 7.448; 6 mV per code.
         supply: MilliVolt(24_576),
-        // Dividers that bring 5 V to 3.3 V.
+        // Dividers: 5 V at 3.3 V.
         signal: MilliVolt(5_000),
         // A divider of 2.
         sensor_supply: MilliVolt(6_600),
         // A band gap of 1.21 V +-2.5 % (DS8626, VREFINT).
         reference: AdcCode::new(1_502),
-        // 0.25 to 4.75 V of 5 V: the sensors give 0.5 to 4.5 V.
+        // 0.25 to 4.75 V of 5 V: the sensor range is 0.5 to 4.5 V.
         wire_min: PerMille(50),
         wire_max: PerMille(950),
         second_track: false,

@@ -1,4 +1,4 @@
-//! What the bus is told of a step.
+//! Status of a step for the bus.
 
 use hitch_protocols::j1939::{ExitCode, HitchStatus, Limit, Troubles};
 use hitch_quantities::calibration::design_parameters::PositionParameters;
@@ -6,12 +6,12 @@ use hitch_quantities::{Fault, Inputs, Outputs, State};
 
 use crate::arbiter;
 
-/// As long as the hitch is further from its set point, valves and ramps decide how fast it moves: 2 degrees.
+/// Distance from the set point above which valves and ramps limit the speed: 2 degrees.
 const UNDER_WAY_MDEG: i32 = 2_000;
-/// A set point this close to a limit of the travel is at it: 0.1 degree.
+/// Distance from a travel limit within which a set point counts as at the limit: 0.1 degree.
 const AT_LIMIT_MDEG: i32 = 100;
 
-/// The hitch's status after a step. `taken_back`: the operator has moved the lever under an implement.
+/// The hitch's status after a step. `taken_back`: the operator has moved the lever during remote control.
 #[must_use]
 pub fn status(
     inputs: &Inputs,
@@ -42,7 +42,7 @@ fn limit(inputs: &Inputs, outputs: &Outputs, limits: &PositionParameters) -> Lim
     let above_bottom = (outputs.target - limits.lower_limit).0;
     match outputs.trip.is_some_and(|trip| trip.is_final()) {
         true => Limit::NonRecoverable,
-        // A set point further on makes a hitch that is under way no faster.
+        // A set point further away does not make a moving hitch faster.
         false if is_under_way && outputs.state == State::Lifting => Limit::High,
         false if is_under_way && outputs.state == State::Lowering => Limit::Low,
         false if below_top <= AT_LIMIT_MDEG => Limit::High,
@@ -51,7 +51,7 @@ fn limit(inputs: &Inputs, outputs: &Outputs, limits: &PositionParameters) -> Lim
     }
 }
 
-/// Why an implement can't have the hitch.
+/// Reason why an implement cannot command the hitch.
 fn exit_code(outputs: &Outputs) -> ExitCode {
     match outputs.state {
         State::Locked | State::TransportLock => ExitCode::LockedOut,

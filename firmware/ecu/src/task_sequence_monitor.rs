@@ -1,28 +1,28 @@
 //! Task sequence monitor: checks that every task of a millisecond runs once and in order.
 //!
-//! The watchdog is kicked with a [`Kick`], which only a complete millisecond gives. A task that is missing, runs twice
-//! or out of order violates the sequence. A violation is permanent, so the watchdog resets the ECU.
+//! The watchdog is reset with a [`Kick`], which only a complete millisecond yields. A task that is missing, runs twice
+//! or runs out of order violates the sequence. A violation is permanent, so the watchdog resets the ECU.
 
 /// A task of the millisecond.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Task {
-    /// The converters' samples and the panel's contacts were taken.
+    /// Samples of the converters and contacts of the panel.
     Sample = 1,
-    /// The controller has stepped.
+    /// Step of the controller.
     Control = 2,
-    /// The coils' drivers have their values.
+    /// Output to the coil drivers.
     Drive = 3,
-    /// The bus was served.
+    /// Service of the bus.
     Bus = 4,
 }
 
 impl Task {
-    /// All of them, in the order in which they have to run.
+    /// All tasks, in the required order.
     pub const ALL: [Self; 4] = [Self::Sample, Self::Control, Self::Drive, Self::Bus];
 }
 
-/// Permission to kick the watchdog once.
+/// Permission to reset the watchdog once.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Kick(());
 
@@ -43,7 +43,7 @@ impl TaskSequenceMonitor {
         }
     }
 
-    /// End of the millisecond. Permission if the sequence was complete and has never been violated.
+    /// End of the millisecond; returns the permission if the sequence was complete and was never violated.
     pub fn end(&mut self) -> Option<Kick> {
         self.violated |= self.done != Task::Bus as u8;
         self.done = 0;

@@ -1,14 +1,14 @@
-//! What the hitch speaks, and what it keeps: bus, tuning and storage. Pure: fed with frames, time and flash, it hands out
-//! frames, and does a bounded amount of work a call.
+//! Communication and storage of the hitch: bus, calibration tools and flash. All code is pure: it gets frames, time and
+//! flash, returns frames, and does a bounded amount of work in each call.
 //!
-//! It may depend on `hitch-quantities` alone: what it says of the controller is in inputs, outputs and the calibration.
+//! It may depend on `hitch-quantities` only: its interface to the controller are inputs, outputs and the calibration.
 //!
-//! Its folders from the bottom to the top; one may use those above it in this list (`cargo xtask check` holds them to it):
+//! Folders from the bottom to the top; each may use those above it in this list (checked by `cargo xtask check`):
 //!
 //! * [`can`]: frames and their text form,
 //! * [`j1939`]: the hitch on the tractor's bus,
 //! * [`storage`]: the calibration and the trouble codes in flash,
-//! * [`xcp`]: measuring and calibrating.
+//! * [`xcp`]: measurement and calibration.
 //!
 //! ```
 //! use hitch_protocols::j1939::hitch::{position, raw_position};

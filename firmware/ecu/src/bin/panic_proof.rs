@@ -1,9 +1,9 @@
 //! Proves at link time that neither the controller nor the application around it can panic.
 //!
-//! The panic handler calls a function that nobody defines. As long as the compiler, with overflow checks on, can show
-//! that no step of any controller on any inputs gets there, and no millisecond of the application with any codes,
-//! contacts, frames and flash, the handler is thrown away and this image links; otherwise the linker names
-//! `the_controller_can_panic`. The image is never run.
+//! The panic handler calls an undefined function. If the compiler, with overflow checks on, can show that no step of
+//! any controller on any inputs reaches it, and no millisecond of the application with any codes, contacts, frames and
+//! flash, the handler is removed and this image links; otherwise the linker reports `the_controller_can_panic`. The
+//! image is never run.
 
 #![no_std]
 #![no_main]
@@ -34,7 +34,7 @@ fn main() -> ! {
     if black_box(true) {
         application();
     }
-    // The compiler must not know what the calibration holds: any that validation lets through has to be safe.
+    // The calibration has to be opaque to the compiler: any calibration that passes validation has to be safe.
     let calibration = black_box(Calibration::nominal());
     if let Ok(calibration) = calibration.validate() {
         let mut controller = Controller::new(calibration);
@@ -48,7 +48,7 @@ fn main() -> ! {
     }
 }
 
-/// Whatever is on the wires, on the bus and in flash.
+/// Arbitrary inputs, frames and flash contents.
 fn application() {
     let scaling = black_box(BoardScaling {
         pwm_steps: 0,
@@ -104,7 +104,7 @@ impl Hardware for AnyHardware {
     }
 }
 
-/// A pin or a pulse-width output that works or doesn't.
+/// A pin or a PWM output that may fail.
 #[derive(Clone, Copy)]
 struct AnyPin;
 
@@ -154,7 +154,7 @@ impl ErrorType for AnyFlash {
     type Error = NorFlashErrorKind;
 }
 
-/// Works or doesn't.
+/// Succeeds or fails.
 fn perhaps() -> Result<(), NorFlashErrorKind> {
     if black_box(true) {
         Ok(())

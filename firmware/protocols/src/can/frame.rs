@@ -13,7 +13,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Most bytes that a frame carries.
+    /// Maximum number of data bytes.
     pub const MOST_BYTES: usize = 8;
 
     /// A data frame, if `data` fits into one.
@@ -40,7 +40,7 @@ impl Frame {
         }
     }
 
-    /// A remote frame that asks for `length` bytes, if a frame can have so many.
+    /// A remote frame that requests `length` bytes, if a frame can have so many.
     #[must_use]
     pub fn remote_frame(id: Id, length: usize) -> Option<Self> {
         Some(Self {
@@ -57,7 +57,7 @@ impl Frame {
         self.id
     }
 
-    /// The identifier, if it is one of 29 bits on a data frame: all that J1939 knows.
+    /// The identifier, if it is a data frame with 29 bits: J1939 uses no others.
     #[must_use]
     pub const fn extended_data_id(&self) -> Option<ExtendedId> {
         match self.id {
@@ -72,7 +72,7 @@ impl Frame {
         self.remote
     }
 
-    /// The length code: bytes of a data frame, bytes asked for by a remote frame.
+    /// The length code: bytes of a data frame, requested bytes of a remote frame.
     #[must_use]
     pub const fn length(&self) -> u8 {
         self.length

@@ -1,4 +1,4 @@
-//! CAN as ASCII lines (Lawicel's protocol, "slcan"), as an adapter speaks it on a serial line or a socket.
+//! CAN as ASCII lines (Lawicel's protocol, "slcan"), for a serial line or a socket.
 //!
 //! ```text
 //! tIIILDD..\r   data frame, 11 bits     TIIIIIIIILDD..\r   data frame, 29 bits
@@ -7,8 +7,8 @@
 //! V\r N\r F\r   version, serial, flags  \r alone           nothing, to flush the line
 //! ```
 //!
-//! A command is answered with `\r` (behind its result, if it has one) or, if it can't be done, with a bell.
-//! Hosts send an empty line or half a line first; both are harmless.
+//! A command is answered with `\r` (after its result, if any) or, if it fails, with a bell. Hosts start with an empty
+//! or partial line; both are harmless.
 
 use heapless::Vec;
 
@@ -19,31 +19,31 @@ use embedded_can::Id;
 /// Longest line: `T`, 8 digits of identifier, 1 of length, 16 of data and `\r`.
 pub const LONGEST_LINE: usize = 27;
 
-/// What a command is answered with when it can't be done.
+/// Answer to a command that failed.
 const BELL: &[u8] = b"\x07";
 
 /// A line of text.
 pub type Line = Vec<u8, LONGEST_LINE>;
 
-/// What a byte from the host completed.
+/// Result of a completed line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Completed {
     /// A frame for the bus.
     pub frame: Option<Frame>,
-    /// What the host has to be answered.
+    /// Answer to the host.
     pub reply: &'static [u8],
 }
 
-/// The adapter's end of the line.
+/// Device side of the line.
 #[derive(Clone, Debug, Default)]
 pub struct Adapter {
     line: Line,
-    /// The present line was longer than any command.
+    /// The current line is longer than any command.
     overlong: bool,
     open: Channel,
 }
 
-/// What the host has made of the channel.
+/// State of the channel, as set by the host.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Channel {
     #[default]
@@ -54,13 +54,13 @@ enum Channel {
 }
 
 impl Adapter {
-    /// True while the host wants to have frames: only then are they sent to it.
+    /// Whether the host has opened the channel: only then are frames sent to it.
     #[must_use]
     pub fn is_open(&self) -> bool {
         self.open != Channel::Closed
     }
 
-    /// Takes a byte from the host; `Some` at the end of a line.
+    /// Processes a byte from the host; `Some` at the end of a line.
     pub fn receive(&mut self, byte: u8) -> Option<Completed> {
         if byte == b'\n' {
             return None;
@@ -78,7 +78,7 @@ impl Adapter {
         }))
     }
 
-    /// Does what the line says; `None` if it can't be done.
+    /// Executes a line; `None` if it is invalid.
     fn dispatch(&mut self) -> Option<Completed> {
         let Some((command, rest)) = self.line.split_first() else {
             return Some(done(b"\r"));
@@ -87,7 +87,7 @@ impl Adapter {
             b'O' => self.open = Channel::Open,
             b'L' => self.open = Channel::Listening,
             b'C' => self.open = Channel::Closed,
-            // Bit rate, time stamps, filters: accepted, for a socket has none of them.
+            // Bit rate, time stamps, filters: accepted without effect, as a socket has none of them.
             b'S' | b's' | b'Z' | b'M' | b'm' => {}
             b'V' => return Some(done(b"V1013\r")),
             b'N' => return Some(done(b"NH1TC\r")),
@@ -114,7 +114,7 @@ const fn done(reply: &'static [u8]) -> Completed {
     Completed { frame: None, reply }
 }
 
-/// The frame of a line without its `\r`, if it is one.
+/// The frame of a line without its `\r`, if it is valid.
 #[must_use]
 pub fn decode(line: &[u8]) -> Option<Frame> {
     let (command, rest) = line.split_first()?;
@@ -150,7 +150,7 @@ fn decode_frame(command: u8, rest: &[u8]) -> Option<Frame> {
 #[must_use]
 pub fn encode(frame: &Frame) -> Line {
     let mut line = Line::new();
-    // What is pushed is at most as long as the longest line.
+    // The pushed text is at most as long as the longest line.
     let mut put = |byte: u8| {
         let _ = line.push(byte);
     };
@@ -173,7 +173,7 @@ pub fn encode(frame: &Frame) -> Line {
     line
 }
 
-/// The hexadecimal figure of the lowest four bits.
+/// The hexadecimal digit of the lowest four bits.
 fn figure(bits: u32) -> u8 {
     b"0123456789ABCDEF"
         .get(usize::try_from(bits & 0xF).unwrap_or(0))

@@ -13,52 +13,52 @@
 //!               +-------------+   of its own, so that two losers don't collide
 //! ```
 //!
-//! A claim on our address by a higher NAME is answered with our own; the NAME that is equal to ours is an echo.
+//! A claim of our address by a NAME of lower priority is answered with our claim; a NAME equal to ours is an echo.
 
 use super::id::{GLOBAL, Id, NULL, Pgn};
 use super::name::Name;
 use super::time::{reached, since_ms};
 use crate::can::Frame;
 
-/// Silence after a claim, ms.
+/// Waiting time after a claim, ms.
 pub const SILENCE_MS: u32 = 250;
-/// Answers to claims come no closer than this, ms: a node that babbles claims is not joined by another one.
+/// Minimum interval between answers to claims, ms; it bounds the response to a faulty node.
 const LEAST_SPACING_MS: u32 = 5;
-/// Who uses our address without a claim is reminded no more often than this, ms.
+/// Minimum interval between claims in response to a node that uses our address without a claim, ms.
 const REMINDER_MS: u32 = 5_000;
-/// Addresses that self-configurable nodes choose from.
+/// Address range of self-configurable nodes.
 const FREE_ADDRESSES: core::ops::RangeInclusive<u8> = 128..=247;
 /// Priority of a claim.
 const PRIORITY: u8 = 6;
 
-/// Where a node stands.
+/// State of the claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ClaimState {
-    /// Nothing was sent yet.
+    /// Nothing sent yet.
     Idle,
-    /// A claim is to be sent, or was sent at `since_ms`.
+    /// A claim has to be sent, or was sent at `since_ms`.
     Waiting { since_ms: Option<u32> },
-    /// The address is ours.
+    /// The address is claimed.
     Claimed,
-    /// There is none for us.
+    /// No address is available.
     CannotClaim,
 }
 
-/// The machine that claims.
+/// State machine of the claim.
 #[derive(Clone, Debug)]
 pub struct AddressClaim {
     name: Name,
     address: u8,
     state: ClaimState,
-    /// When a claim or "cannot claim" is due, if one is owed.
+    /// Time at which a claim or "cannot claim" is due, if any.
     due_ms: Option<u32>,
     last_sent_ms: Option<u32>,
-    /// A bit for each address that somebody has claimed.
+    /// One bit for each address claimed by another node.
     taken: [u32; 8],
 }
 
 impl AddressClaim {
-    /// A node that will claim `preferred` with the first [`Self::poll`].
+    /// A node that claims `preferred` at the first [`Self::poll`].
     #[must_use]
     pub const fn new(name: Name, preferred: u8) -> Self {
         Self {
@@ -71,7 +71,7 @@ impl AddressClaim {
         }
     }
 
-    /// Our address, once it may be used.
+    /// The address, once it may be used.
     #[must_use]
     pub const fn address(&self) -> Option<u8> {
         match self.state {
@@ -80,7 +80,7 @@ impl AddressClaim {
         }
     }
 
-    /// The address that is ours or that we are claiming.
+    /// The claimed address, or the one being claimed.
     #[must_use]
     pub const fn claimed_or_claiming(&self) -> Option<u8> {
         match self.state {
@@ -89,7 +89,7 @@ impl AddressClaim {
         }
     }
 
-    /// Somebody claims `address`.
+    /// Another node claims `address`.
     pub fn heard_claim(&mut self, address: u8, name: Name, now_ms: u32) {
         if address == NULL || address == GLOBAL || name == self.name {
             return;
@@ -105,7 +105,7 @@ impl AddressClaim {
         }
     }
 
-    /// Somebody asks who is there.
+    /// A node requests address claims.
     pub fn asked(&mut self, now_ms: u32) {
         match self.state {
             ClaimState::CannotClaim => self.owe(now_ms.wrapping_add(self.own_delay_ms())),
@@ -114,7 +114,7 @@ impl AddressClaim {
         }
     }
 
-    /// Somebody commands us to take an address. One that is taken, or none at all, is not worth losing ours.
+    /// A node commands an address. It is ignored if taken or invalid.
     pub fn commanded(&mut self, address: u8, now_ms: u32) {
         let is_new = address < NULL && self.claimed_or_claiming() != Some(address);
         if is_new && !self.is_taken(address) {
@@ -129,7 +129,7 @@ impl AddressClaim {
         self.name
     }
 
-    /// Somebody else sends from our address: our claim reminds them, now and then.
+    /// Another node sends from our address: the claim is repeated, at a limited rate.
     pub fn address_violated(&mut self, now_ms: u32) {
         let reminded = self
             .last_sent_ms
@@ -158,7 +158,7 @@ impl AddressClaim {
         self.due_ms = None;
         self.last_sent_ms = Some(now_ms);
         if let ClaimState::Waiting { since_ms } = &mut self.state {
-            // A contender was answered: the wait is for those who haven't heard us yet, so it goes on.
+            // A contender was answered; the waiting time for other nodes continues.
             since_ms.get_or_insert(now_ms);
         }
         let source = self.claimed_or_claiming().unwrap_or(NULL);
@@ -176,7 +176,7 @@ impl AddressClaim {
         self.due_ms = Some(now_ms);
     }
 
-    /// Puts a claim on the list, unless one is there that is due earlier.
+    /// Schedules a claim, unless an earlier one is scheduled.
     fn owe(&mut self, at_ms: u32) {
         self.due_ms.get_or_insert(at_ms);
     }
@@ -194,7 +194,7 @@ impl AddressClaim {
         }
     }
 
-    /// Milliseconds from 0 to 153, different for different NAMEs.
+    /// Pseudo-random delay from the NAME, 0 to 153 ms.
     fn own_delay_ms(&self) -> u32 {
         let sum: u32 = self.name.to_bytes().into_iter().map(u32::from).sum();
         (sum & 0xFF) * 3 / 5
@@ -212,7 +212,7 @@ impl AddressClaim {
             .is_none_or(|word| word >> (address & 31) & 1 == 1)
     }
 
-    /// The next address after ours that nobody has claimed, going round.
+    /// The next address after ours without a claim, cyclically.
     fn next_free(&self) -> Option<u8> {
         let after = FREE_ADDRESSES.filter(|&address| address > self.address);
         let before = FREE_ADDRESSES.filter(|&address| address < self.address);

@@ -12,32 +12,32 @@ use heapless::Vec;
 use super::time::since_ms;
 use super::trouble::{Trouble, Troubles};
 
-/// DM1 comes no more often than this, ms; while something is active it comes this often.
+/// Minimum interval of DM1, ms, and its interval while a code is active.
 pub const DM1_PERIOD_MS: u32 = 1_000;
-/// How many there can be.
+/// Number of trouble codes.
 pub const KINDS: usize = Trouble::ALL.len();
 /// Longest message: the lamps, and a code for each trouble.
 pub const LONGEST_MESSAGE: usize = 2 + 4 * KINDS;
-/// Occurrences are counted up to here; 127 says that there is no count.
+/// Maximum count of occurrences; 127 means that the count is not available.
 const MOST_OCCURRENCES: u8 = 126;
 
-/// How often each trouble has occurred, in the order of [`Trouble::ALL`]; 0: never, or cleared since.
+/// Occurrences of each trouble, in the order of [`Trouble::ALL`]; 0: never, or cleared.
 pub type Occurrences = [u8; KINDS];
 
 /// A message of trouble codes.
 pub type Message = Vec<u8, LONGEST_MESSAGE>;
 
-/// Which standard the bus follows.
+/// Standard of the bus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Variant {
-    /// ISO 11783: no lamps (FF FF), and DM1 stops when nothing is active.
+    /// ISO 11783: no lamps (FF FF), and DM1 stops when no code is active.
     #[default]
     Iso11783,
-    /// SAE J1939: the state of the lamps, and DM1 goes on, saying that nothing is active.
+    /// SAE J1939: lamp states, and DM1 continues without active codes.
     J1939,
 }
 
-/// What is wrong, what was, and how often.
+/// Active and previously active codes with their counts.
 #[derive(Clone, Debug)]
 pub struct Diagnostics {
     variant: Variant,
@@ -48,7 +48,7 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// Nothing is active yet; what has occurred before the start was active before.
+    /// Initially no code is active; codes from before the start are previously active.
     #[must_use]
     pub fn new(variant: Variant, before: &Occurrences) -> Self {
         let mut previous = Troubles::NONE;
@@ -66,13 +66,13 @@ impl Diagnostics {
         }
     }
 
-    /// How often each trouble has occurred.
+    /// Occurrences of each trouble.
     #[must_use]
     pub const fn occurrences(&self) -> &Occurrences {
         &self.occurrences
     }
 
-    /// Takes in what is wrong now.
+    /// Updates the active codes.
     pub fn update(&mut self, troubles: Troubles) {
         if troubles == self.active {
             return;
@@ -87,7 +87,7 @@ impl Diagnostics {
         self.active = troubles;
     }
 
-    /// Forgets what was wrong before and how often (DM3). What is active stays.
+    /// Clears previously active codes and counts (DM3). Active codes stay.
     pub fn clear_previous(&mut self) {
         for forgotten in self.previous.iter() {
             if let Some(count) = self.occurrences.get_mut(forgotten as usize) {
@@ -97,7 +97,7 @@ impl Diagnostics {
         self.previous = Troubles::NONE;
     }
 
-    /// True if DM1 is due. A change is reported at once, if the last message is old enough.
+    /// Whether DM1 is due. A change is reported at once, after the minimum interval.
     #[must_use]
     pub fn due(&self, now_ms: u32) -> bool {
         let waited = self
@@ -110,18 +110,18 @@ impl Diagnostics {
             }
     }
 
-    /// DM1 went out.
+    /// DM1 was sent.
     pub fn sent(&mut self, now_ms: u32) {
         self.sent_ms = Some(now_ms);
     }
 
-    /// DM1: what is active.
+    /// DM1: active codes.
     #[must_use]
     pub fn dm1(&self) -> Message {
         self.message(self.active)
     }
 
-    /// DM2: what was active before.
+    /// DM2: previously active codes.
     #[must_use]
     pub fn dm2(&self) -> Message {
         self.message(self.previous)
@@ -156,8 +156,8 @@ impl Diagnostics {
     }
 }
 
-/// The amber lamp for anything, the red one for what must be mended before the hitch is used again. The bits of the
-/// other two say "off".
+/// The amber lamp for any code, the red one for codes that prohibit further use of the hitch. The other two lamps are
+/// off.
 fn lamps(active: Troubles) -> u8 {
     const AMBER: u8 = 0b01 << 2;
     const RED: u8 = 0b01 << 4;

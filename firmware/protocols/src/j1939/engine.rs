@@ -1,17 +1,17 @@
-//! Engine speed, as the engine's control unit broadcasts it (EEC1, SAE J1939-71, SPN 190).
+//! Engine speed, as broadcast by the engine controller (EEC1, SAE J1939-71, SPN 190).
 //!
-//! The message is heard from any address: engines have 0 or 1, and on some tractors another unit forwards it. Of
-//! several senders the first one counts until it has been silent for the time-out, so that two engines don't take
-//! turns.
+//! The message is accepted from any address: engines have 0 or 1, and on some tractors another unit forwards it. Of
+//! several senders the first one is used until it has been silent for the time-out, so that two engines do not
+//! alternate.
 
 use hitch_quantities::units::RevolutionPerMinute;
 
 use super::time::since_ms;
 
-/// The speed is unknown after this much silence, ms. EEC1 comes every 10 to 100 ms.
+/// Time-out after which the speed is unknown, ms. EEC1 is sent every 10 to 100 ms.
 pub const TIMEOUT_MS: u32 = 300;
-/// Largest raw value of a two-byte quantity that is data: above are reserved values, errors (FExx) and "not available"
-/// (FFxx).
+/// Largest raw value of a two-byte quantity that is data; reserved values, errors (FExx) and "not available" (FFxx) are
+/// above.
 const LARGEST: u16 = 0xFAFF;
 /// Raw counts of 1/min.
 const COUNTS_PER_RPM: u16 = 8;
@@ -31,7 +31,7 @@ pub struct EngineSpeed {
 }
 
 impl EngineSpeed {
-    /// A message was heard.
+    /// A message was received.
     pub fn receive(&mut self, bytes: &[u8; 8], from: u8, now_ms: u32) {
         let other = self.fresh(now_ms).is_some_and(|last| last.from != from);
         if !other {
@@ -43,13 +43,13 @@ impl EngineSpeed {
         }
     }
 
-    /// The speed; none before the first message, while it says that the speed isn't known, and after the time-out.
+    /// The speed; `None` before the first message, while the message reports it as unknown, and after the time-out.
     #[must_use]
     pub fn speed(&self, now_ms: u32) -> Option<RevolutionPerMinute> {
         self.fresh(now_ms)?.speed
     }
 
-    /// Forgets a message that is too old. Called at least once a day, since the milliseconds wrap.
+    /// Discards a message that is too old. Called at least once a day, because the milliseconds wrap.
     pub fn update(&mut self, now_ms: u32) {
         self.last = self.fresh(now_ms);
     }

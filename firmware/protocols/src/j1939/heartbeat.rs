@@ -1,12 +1,12 @@
-//! The heartbeat by which a node shows that it still thinks, and hears whether its partner does (ISO 11783-7).
+//! Heartbeat: shows that a node is running, and monitors the partner (ISO 11783-7).
 //!
-//! One byte every 100 ms, for who has asked for it: 251 at first, then 0 to 250 round and round; 254 says that the
-//! sender is broken, 255 that it stops on purpose. A number that comes again, is further on than three or takes longer
-//! than 300 ms is a broken sender's; eight good ones in a row mend it.
+//! One byte every 100 ms on request: first 251, then 0 to 250 cyclically; 254 reports an error of the sender, 255 an
+//! orderly shutdown. A repeated number, a step of more than three or an interval of more than 300 ms makes the sender
+//! invalid, until eight consecutive numbers are valid.
 
 use super::time::since_ms;
 
-/// Time between two, ms.
+/// Interval, ms.
 pub const PERIOD_MS: u32 = 100;
 const SILENCE_MS: u32 = 300;
 const FIRST: u8 = 251;
@@ -15,16 +15,16 @@ const STOPS: u8 = 255;
 const FURTHEST: u8 = 3;
 const MENDED_BY: u8 = 8;
 
-/// Ours.
+/// Own heartbeat.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Heartbeat {
-    /// What was said last, and when it is said again; `None` if nobody has asked for it.
+    /// Last number and time of the next one; `None` if it was not requested.
     last: Option<(u8, u32)>,
     asked: bool,
 }
 
 impl Heartbeat {
-    /// Somebody asks for it.
+    /// A node requests it.
     pub fn asked(&mut self) {
         self.asked = true;
     }
@@ -42,7 +42,7 @@ impl Heartbeat {
     }
 }
 
-/// The number after another one.
+/// The successor of a number.
 const fn following(last: u8) -> u8 {
     if last >= LARGEST {
         0
@@ -51,18 +51,18 @@ const fn following(last: u8) -> u8 {
     }
 }
 
-/// That of an implement which has the hitch.
+/// Heartbeat of the implement that commands the hitch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Monitor {
     from: u8,
     last: u8,
     heard_ms: u32,
-    /// Good ones in a row, no further than is needed.
+    /// Consecutive valid numbers, limited to the required count.
     good: u8,
 }
 
 impl Monitor {
-    /// The first one was heard.
+    /// State after the first number.
     const fn new(from: u8, number: u8, now_ms: u32) -> Self {
         Self {
             from,
@@ -72,7 +72,7 @@ impl Monitor {
         }
     }
 
-    /// `monitor` after a number was heard. Another node's doesn't count while there is one to watch.
+    /// `monitor` after a received number. Numbers of other nodes are ignored while one is monitored.
     #[must_use]
     pub fn heard(monitor: Option<Self>, from: u8, number: u8, now_ms: u32) -> Option<Self> {
         match monitor {
@@ -107,13 +107,13 @@ impl Monitor {
         })
     }
 
-    /// True if its sender can be trusted just now.
+    /// Whether its sender is valid.
     #[must_use]
     pub const fn is_alive(self, now_ms: u32) -> bool {
         self.good >= MENDED_BY && since_ms(self.heard_ms, now_ms) <= SILENCE_MS
     }
 
-    /// True if it is that of `node`, which can't be trusted.
+    /// Whether it is that of `node`, and invalid.
     #[must_use]
     pub fn condemns(self, node: u8, now_ms: u32) -> bool {
         self.from == node && !self.is_alive(now_ms)

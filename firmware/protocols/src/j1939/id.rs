@@ -8,9 +8,9 @@
 
 use crate::can::{ExtendedId, Frame};
 
-/// Everybody on the bus.
+/// Global address: all nodes.
 pub const GLOBAL: u8 = 255;
-/// The source address of a node that has none.
+/// The source address of a node without address.
 pub const NULL: u8 = 254;
 
 /// Number of a parameter group.
@@ -40,9 +40,9 @@ impl Pgn {
     pub const REPETITION_RATE: Self = Self(0xCC00);
     /// Heartbeat.
     pub const HEARTBEAT: Self = Self(0xF0E4);
-    /// Which facilities of the tractor an implement needs.
+    /// Required tractor facilities of an implement.
     pub const REQUIRED_FACILITIES: Self = Self(0xFE08);
-    /// Which ones there are.
+    /// Available tractor facilities.
     pub const TRACTOR_FACILITIES: Self = Self(0xFE09);
     /// Proprietary B: currents and rocker angle.
     pub const HITCH_MOTION: Self = Self(0xFF45);
@@ -67,7 +67,7 @@ impl Pgn {
         (self.0 >> 8) & 0xFF < 240
     }
 
-    /// Number as it stands in a message: three bytes, little-endian.
+    /// The number as in a message: three bytes, little-endian.
     #[must_use]
     pub const fn to_bytes(self) -> [u8; 3] {
         let [low, middle, high, _] = self.0.to_le_bytes();
@@ -88,9 +88,9 @@ pub struct Id {
     pub priority: u8,
     /// Parameter group; without a destination in it.
     pub pgn: Pgn,
-    /// Who is meant; [`GLOBAL`] for groups that have no destination.
+    /// Destination; [`GLOBAL`] for groups without a destination.
     pub destination: u8,
-    /// Who sends.
+    /// Source.
     pub source: u8,
 }
 

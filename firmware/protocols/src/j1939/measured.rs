@@ -1,13 +1,13 @@
-//! What the controller measures, for loggers: two groups of the proprietary range, one after the other.
+//! Measured values for loggers: two consecutive groups of the proprietary range.
 //!
 //! | group | bytes 1, 2 | 3, 4 | 5, 6 | 7, 8 |
 //! |---|---|---|---|---|
 //! | 65349, hitch motion | lift current | lowering current | rocker angle | time of the sample |
 //! | 65350, hitch pressures | cylinder pressure | pump pressure | supply | time of the sample |
 //!
-//! The currents are their means since the last such group. Little-endian, with the scales of `hitch.dbc`; 0xFFFF: not
-//! measured. Both groups are of the same sample and carry its time, so whatever delays a frame on the bus or in a
-//! logger's adapter spoils no speed that is reckoned from it.
+//! The currents are means since the previous group. Little-endian, with the scales of `hitch.dbc`; 0xFFFF: not
+//! measured. Both groups are of the same sample and carry its time, so the delay of a frame on the bus or in an adapter
+//! does not affect computed speeds.
 
 use hitch_quantities::Inputs;
 use hitch_quantities::fixed::Divisor;
@@ -18,7 +18,7 @@ use super::id::{GLOBAL, Id, Pgn};
 use super::time::since_ms;
 use crate::can::Frame;
 
-/// The time of a sample goes round after this many milliseconds: below the values that J1939 reserves.
+/// Period of the sample time, milliseconds: below the values that J1939 reserves.
 pub const TIME_WRAPS_MS: u32 = 64_000;
 /// Largest raw value of a two-byte quantity that is data.
 const LARGEST: i32 = 0xFAFF;
@@ -26,7 +26,7 @@ const NOT_AVAILABLE: u16 = 0xFFFF;
 /// Priority of proprietary groups.
 const PRIORITY: u8 = 6;
 
-/// A two-byte quantity: the smallest value that fits, and what a bit is worth, in the counts of the controller.
+/// A two-byte quantity: its smallest value, and its resolution, in counts of the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Scale {
     offset: i32,
@@ -55,8 +55,7 @@ const VOLTAGE: Scale = Scale {
 };
 
 impl Scale {
-    /// The raw value of a measurement, which has at most 20 bits, rounded to nearest; what is beyond the ends is at the
-    /// end.
+    /// The raw value of a measurement of at most 20 bits, rounded to nearest and limited to the range.
     fn raw(self, counts: Option<i32>) -> u16 {
         let Some(counts) = counts else {
             return NOT_AVAILABLE;
@@ -75,7 +74,7 @@ pub struct MeasuredBroadcast {
 }
 
 impl MeasuredBroadcast {
-    /// The frames that are due; with a period of 0 there never are any.
+    /// The frames that are due; none with a period of 0.
     pub fn poll(
         &mut self,
         source: u8,

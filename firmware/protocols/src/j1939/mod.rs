@@ -1,12 +1,10 @@
 //! The hitch on the tractor's bus: J1939 and ISO 11783 (ISOBUS) over 250 kbit/s CAN.
 //!
-//! [`Node`] is all of it: it claims an address, reports the hitch ten times a second, takes its commands
-//! from an implement, reports what is wrong, and answers requests. The other modules are its parts, each
-//! a table or a state machine of its own.
+//! [`Node`] combines all of it: it claims an address, reports the hitch ten times a second, accepts commands from an
+//! implement, reports faults, and answers requests. The other modules are its parts, each a table or a state machine.
 //!
-//! Nothing here waits: [`Node::receive`] takes a frame, [`Node::poll`] gives the next one that is due.
-//! Both do a bounded amount of work, and what a node answers in a second is bounded too, whatever the
-//! others on the bus do.
+//! No call blocks: [`Node::receive`] takes a frame, [`Node::poll`] returns the next one that is due. Both do a bounded
+//! amount of work, and the number of answers per second is bounded for any bus traffic.
 
 pub mod claim;
 pub mod diagnostics;

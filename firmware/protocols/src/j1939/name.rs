@@ -1,4 +1,4 @@
-//! The NAME of a node: who it is, and who wins when two want one address (SAE J1939-81, ISO 11783-5).
+//! The NAME of a node: its identity and its priority in address claims (SAE J1939-81, ISO 11783-5).
 
 /// The 64 bits of a NAME. The smaller one has priority.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -11,26 +11,26 @@ pub struct NameFields {
     pub identity: u32,
     /// Code of the manufacturer, 11 bits, assigned by SAE.
     pub manufacturer: u16,
-    /// Which unit of those that do one function together, 3 bits.
+    /// Instance of a unit among those of one function, 3 bits.
     pub ecu_instance: u8,
-    /// Which one of several equal functions, 5 bits.
+    /// Instance of the function, 5 bits.
     pub function_instance: u8,
-    /// What the unit does; 130 is control of the rear hitch.
+    /// Function; 130 is control of the rear hitch.
     pub function: u8,
-    /// What it is mounted on, 7 bits; 1 is a tractor.
+    /// Device class, 7 bits; 1 is a tractor.
     pub device_class: u8,
-    /// Which of several equal devices, 4 bits.
+    /// Instance of the device, 4 bits.
     pub device_class_instance: u8,
-    /// 3 bits; 2 is agriculture and forestry.
+    /// Industry group, 3 bits; 2 is agriculture and forestry.
     pub industry_group: u8,
-    /// True if it takes another address when it loses its own.
+    /// Whether it claims another address when it loses its own.
     pub self_configurable: bool,
 }
 
 impl NameFields {
     /// The rear hitch of a tractor with this serial number.
     ///
-    /// The code of the manufacturer is 0, "reserved": who sells a unit puts their own there.
+    /// The manufacturer code is 0, "reserved"; a manufacturer sets its own.
     #[must_use]
     pub const fn rear_hitch(identity: u32) -> Self {
         Self {
@@ -65,7 +65,7 @@ impl From<NameFields> for Name {
 }
 
 impl Name {
-    /// True if the node may take another address.
+    /// Whether the node may claim another address.
     #[must_use]
     pub const fn is_self_configurable(self) -> bool {
         self.0 >> 63 == 1

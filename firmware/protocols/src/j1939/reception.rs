@@ -1,4 +1,4 @@
-//! Receiving more than eight bytes: broadcasts, and what is for this node alone (SAE J1939-21, ISO 11783-3).
+//! Reception of more than eight bytes: broadcasts, and messages to this node (SAE J1939-21, ISO 11783-3).
 //!
 //! ```text
 //!          BAM, or RTS: say CTS        packets 1, 2, ... in order          the last one; after RTS: say "end of
@@ -9,8 +9,8 @@
 //!             750 ms of silence, an abort, or another packet than the next; after RTS: say so
 //! ```
 //!
-//! One message at a time is received, and only groups that a hitch makes something of: a commanded address. Who asks to
-//! send another one is told that there is no room; other broadcasts are for others.
+//! One message at a time is received, and only the group that a hitch uses: a commanded address. Other connections are
+//! refused; other broadcasts are ignored.
 
 use heapless::Vec;
 
@@ -21,15 +21,15 @@ use super::transport::{
 };
 use crate::can::Frame;
 
-/// Bytes of the longest message that is received: a commanded address, which is the only one.
+/// Bytes of the longest received message, the commanded address.
 const LONGEST: usize = 9;
-/// How long the next packet may take (T1), ms.
+/// Time-out of the next packet (T1), ms.
 const SILENCE_MS: u32 = 750;
 
 /// A message that was received.
 pub type Received = Vec<u8, LONGEST>;
 
-/// A message under way.
+/// A message in progress.
 #[derive(Clone, Debug)]
 struct Session {
     from: u8,
@@ -43,7 +43,7 @@ struct Session {
 }
 
 impl Session {
-    /// The message that is announced, if it is one that is received.
+    /// The announced message, if its group is received.
     fn announced(bytes: &[u8; 8], from: u8, now_ms: u32) -> Option<Self> {
         let [control, low, high, packets, _, group @ ..] = *bytes;
         let length = usize::from(u16::from_le_bytes([low, high]));
@@ -65,12 +65,12 @@ impl Session {
 #[derive(Clone, Debug, Default)]
 pub struct Reception {
     session: Option<Session>,
-    /// What is to be said to whom.
+    /// Pending response and its destination.
     reply: Option<([u8; 8], u8)>,
 }
 
 impl Reception {
-    /// Takes a message of connection management, to everybody (`is_broadcast`) or to this node.
+    /// Processes a message of connection management, to all (`is_broadcast`) or to this node.
     pub fn manage(&mut self, bytes: &[u8; 8], from: u8, is_broadcast: bool, now_ms: u32) {
         let [control, .., a, b, c] = *bytes;
         let group = Pgn::from_bytes([a, b, c]);
@@ -84,7 +84,7 @@ impl Reception {
         }
     }
 
-    /// Somebody wants to send us a message. Who asks again begins again.
+    /// A node requests a connection. A repeated request restarts it.
     fn asked(&mut self, bytes: &[u8; 8], from: u8, group: Pgn, now_ms: u32) {
         let is_free = self.session.is_none() || self.is_of(from, false);
         let session = Session::announced(bytes, from, now_ms).filter(|_| is_free);
@@ -99,7 +99,7 @@ impl Reception {
         self.reply = Some((reply, from));
     }
 
-    /// Takes a packet; the message if it was the last one.
+    /// Processes a packet; returns the message after the last one.
     pub fn packet(
         &mut self,
         bytes: &[u8; 8],
@@ -120,7 +120,7 @@ impl Reception {
         session.heard_ms = now_ms;
         let missing = session.length.saturating_sub(session.bytes.len());
         for byte in data.into_iter().take(missing) {
-            // A length that does not fit was refused; `extend` would panic here, which the linker cannot know.
+            // A length that does not fit was refused; `extend` would panic here, which the linker cannot exclude.
             let _ = session.bytes.push(byte);
         }
         if session.bytes.len() < session.length {
@@ -135,7 +135,7 @@ impl Reception {
         Some(session.bytes)
     }
 
-    /// What is to be said; lets time pass.
+    /// The pending response; updates the time-outs.
     pub fn poll(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
         let silent = |session: &Session| since_ms(session.heard_ms, now_ms) > SILENCE_MS;
         if self.session.as_ref().is_some_and(silent) {
@@ -150,7 +150,7 @@ impl Reception {
         session.is_some_and(|session| session.from == from && session.is_broadcast == is_broadcast)
     }
 
-    /// Ends what is under way; a sender who waits for us is told why.
+    /// Ends the current message; the sender of a connection gets the reason.
     fn give_up(&mut self, reason: AbortReason) {
         if let Some(session) = self.session.take()
             && !session.is_broadcast

@@ -6,10 +6,10 @@ use super::id::{GLOBAL, Id, NULL, Pgn};
 use super::time::since_ms;
 use crate::can::Frame;
 
-/// Requests that wait for their answer. more are dropped, their senders ask again.
+/// Capacity of the queue of requests; more are dropped, and their senders repeat them.
 const QUEUE: usize = 8;
-/// Time between answers, ms: whoever asks all the time gets a bounded share of the bus in return. Eight answers are
-/// still far within the 200 ms that a requester waits.
+/// Interval between answers, ms; it bounds the bus load. Eight answers are well within the 200 ms time-out of a
+/// requester.
 const SPACING_MS: u32 = 5;
 /// Priority of an acknowledgement.
 const PRIORITY: u8 = 6;
@@ -17,11 +17,11 @@ const PRIORITY: u8 = 6;
 /// A request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GroupRequest {
-    /// The group that is asked for.
+    /// The requested group.
     pub group: Pgn,
-    /// Who asks.
+    /// Requesting node.
     pub from: u8,
-    /// True if everybody was asked.
+    /// Whether the request was global.
     pub global: bool,
 }
 
@@ -40,7 +40,7 @@ impl GroupRequest {
     }
 }
 
-/// How a request is acknowledged.
+/// Kind of acknowledgement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Acknowledgement {
@@ -48,11 +48,11 @@ pub enum Acknowledgement {
     Positive = 0,
     /// The group isn't supported.
     Negative = 1,
-    /// Not now: ask again.
+    /// Busy: repeat the request.
     CannotRespond = 3,
 }
 
-/// The acknowledgement of a request, to everybody, naming who asked.
+/// The acknowledgement of a request, to all, with the address of the requester.
 #[must_use]
 pub fn acknowledgement(control: Acknowledgement, request: &GroupRequest, source: u8) -> Frame {
     let [a, b, c] = request.group.to_bytes();
@@ -65,7 +65,7 @@ pub fn acknowledgement(control: Acknowledgement, request: &GroupRequest, source:
     id.frame([control as u8, 0xFF, 0xFF, 0xFF, request.from, a, b, c])
 }
 
-/// Requests that wait for their answer.
+/// Queue of requests.
 #[derive(Clone, Debug, Default)]
 pub struct RequestQueue {
     waiting: Deque<GroupRequest, QUEUE>,
@@ -73,14 +73,14 @@ pub struct RequestQueue {
 }
 
 impl RequestQueue {
-    /// A request was heard. One that waits already isn't put down twice.
+    /// A request was received. A queued one is not added twice.
     pub fn push(&mut self, request: GroupRequest) {
         if self.waiting.iter().all(|other| *other != request) {
             let _ = self.waiting.push_back(request);
         }
     }
 
-    /// The next one that is to be answered now.
+    /// The next request to be answered now.
     pub fn next(&mut self, now_ms: u32) -> Option<GroupRequest> {
         let spaced = self
             .answered_ms
@@ -91,7 +91,7 @@ impl RequestQueue {
         Some(request)
     }
 
-    /// Forgets all.
+    /// Clears the queue.
     pub fn clear(&mut self) {
         self.waiting.clear();
     }

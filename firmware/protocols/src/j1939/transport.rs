@@ -1,4 +1,4 @@
-//! Sending more than eight bytes: broadcast, and to one node with its consent (SAE J1939-21, ISO 11783-3).
+//! Transmission of more than eight bytes: by broadcast, or by connection to one node (SAE J1939-21, ISO 11783-3).
 //!
 //! ```text
 //! broadcast:   BAM, then a packet every 50 ms
@@ -6,7 +6,7 @@
 //!                     CTS (0): wait              no answer in time: abort
 //! ```
 //!
-//! One of each can be under way. What is received is [`super::reception`]'s.
+//! One of each can be in progress. Reception is in [`super::reception`].
 
 use heapless::Vec;
 
@@ -15,15 +15,15 @@ use super::id::{GLOBAL, Id, Pgn};
 use super::time::{reached, since_ms};
 use crate::can::Frame;
 
-/// Time between packets of a broadcast, ms: 50 to 200 by the standard.
+/// Interval between packets of a broadcast, ms; the standard allows 50 to 200.
 const BROADCAST_SPACING_MS: u32 = 50;
-/// Time between packets to one node, ms, of our own choice: a quarter of a slow bus at most.
+/// Interval between packets of a connection, ms; chosen for at most a quarter of a slow bus.
 const SPACING_MS: u32 = 2;
-/// How long the other end may take to answer (T3), ms.
+/// Time-out of an answer (T3), ms.
 const ANSWER_MS: u32 = 1_250;
-/// How long it may keep us waiting without saying so again (T4), ms.
+/// Time-out after a wait request (T4), ms.
 const HOLD_MS: u32 = 1_050;
-/// Priority of all of it.
+/// Priority of the transport protocol.
 const PRIORITY: u8 = 7;
 /// Bytes in a packet.
 pub(super) const PACKET: usize = 7;
@@ -34,19 +34,19 @@ pub(super) const END_OF_MESSAGE: u8 = 19;
 pub(super) const BAM: u8 = 32;
 pub(super) const ABORT: u8 = 255;
 
-/// Why a connection is given up.
+/// Reason for the abort of a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum AbortReason {
     /// No room for another connection.
     Resources = 2,
-    /// The other end didn't answer in time.
+    /// Time-out of an answer.
     Timeout = 3,
-    /// It asked for packets that the message doesn't have.
+    /// The receiver requested packets that do not exist.
     BadSequence = 7,
 }
 
-/// A message that is being sent.
+/// A message in transmission.
 #[derive(Clone, Debug)]
 struct Message {
     group: Pgn,
@@ -58,7 +58,7 @@ impl Message {
         u8::try_from(self.bytes.len().div_ceil(PACKET)).unwrap_or(u8::MAX)
     }
 
-    /// How it is announced.
+    /// Announcement.
     fn announcement(&self, control: u8, last: u8) -> [u8; 8] {
         let [low, high, ..] = self.bytes.len().to_le_bytes();
         let [a, b, c] = self.group.to_bytes();
@@ -79,7 +79,7 @@ impl Message {
     }
 }
 
-/// A broadcast under way.
+/// A broadcast in progress.
 #[derive(Clone, Debug)]
 struct Broadcast {
     message: Message,
@@ -88,16 +88,16 @@ struct Broadcast {
     due_ms: u32,
 }
 
-/// Where a connection stands.
+/// State of a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
-    /// RTS is to be sent.
+    /// RTS has to be sent.
     Begin,
-    /// It is the other end's turn, until then.
+    /// Waiting for the receiver until this time.
     Waiting { since_ms: u32, limit_ms: u32 },
-    /// Packets `next` to `last` are to be sent.
+    /// Packets `next` to `last` have to be sent.
     Sending { next: u8, last: u8, due_ms: u32 },
-    /// The other end asked for packets that there aren't.
+    /// The receiver requested packets that do not exist.
     Refused,
 }
 
@@ -109,7 +109,7 @@ struct Connection {
     stage: Stage,
 }
 
-/// What is being sent.
+/// Transmissions in progress.
 #[derive(Clone, Debug, Default)]
 pub struct Transport {
     broadcast: Option<Broadcast>,
@@ -117,12 +117,12 @@ pub struct Transport {
 }
 
 impl Transport {
-    /// Gives up everything, without a word: the address is lost.
+    /// Discards all transmissions silently, because the address is lost.
     pub fn reset(&mut self) {
         *self = Self::default();
     }
 
-    /// True if a message to `destination` can be begun.
+    /// Whether a message to `destination` can be started.
     #[must_use]
     pub const fn has_room(&self, destination: u8) -> bool {
         if destination == GLOBAL {
@@ -132,7 +132,7 @@ impl Transport {
         }
     }
 
-    /// Begins to send; the caller has made sure that there is room.
+    /// Starts a transmission; the caller has checked that it can be started.
     pub fn send(
         &mut self,
         group: Pgn,
@@ -156,7 +156,7 @@ impl Transport {
         }
     }
 
-    /// Takes a message of connection management to us.
+    /// Processes a message of connection management to this node.
     pub fn receive(&mut self, bytes: &[u8; 8], source: u8, now_ms: u32) {
         let [control, first, second, _, _, group @ ..] = *bytes;
         let group = Pgn::from_bytes(group);
@@ -234,7 +234,7 @@ impl Transport {
 }
 
 impl Transport {
-    /// Ends the connection and says why.
+    /// Aborts the connection with a reason.
     fn give_up(&mut self, reason: AbortReason, partner: u8, source: u8) -> Frame {
         let group = self
             .connection
@@ -252,7 +252,7 @@ impl Connection {
         };
     }
 
-    /// The other end wants `count` packets from `first` on. While packets are being sent it is a frame that came twice.
+    /// The receiver requests `count` packets from `first`. While packets are being sent it is a duplicate frame.
     fn clear_to_send(&mut self, count: u8, first: u8, now_ms: u32) {
         let Stage::Waiting { .. } = self.stage else {
             return;
@@ -273,7 +273,7 @@ impl Connection {
     }
 }
 
-/// A connection is given up, or not even begun.
+/// Abort of a connection, or refusal of one.
 pub(super) const fn abort(reason: AbortReason, group: Pgn) -> [u8; 8] {
     let [a, b, c] = group.to_bytes();
     [ABORT, reason as u8, 0xFF, 0xFF, 0xFF, a, b, c]

@@ -1,6 +1,6 @@
-//! What can be wrong, as trouble codes: a number of what is meant (SPN) and how it fails (FMI).
+//! Trouble codes: a suspect parameter number (SPN) and a failure mode (FMI).
 //!
-//! SPNs are those of J1939 where there is one, and else from the range for manufacturers (520 192 on).
+//! SPNs are those of J1939 where defined, otherwise from the manufacturer range (from 520 192).
 //! FMIs: 2 erratic, 3 voltage high, 4 voltage low, 5 current low or open, 6 current high or grounded,
 //! 7 mechanical system doesn't respond, 8 abnormal frequency, 9 abnormal update rate, 10 abnormal rate of change, 12 bad unit,
 //! 13 out of calibration, 31 condition exists.
@@ -21,7 +21,7 @@ pub struct Code {
 const SUPPLY: u32 = 168;
 /// Rear hitch position.
 const POSITION: u32 = 1873;
-/// First of our own numbers.
+/// First manufacturer-specific number.
 const OWN: u32 = 520_192;
 const LEVER: u32 = OWN;
 const LIFT_VALVE: u32 = OWN + 1;
@@ -40,7 +40,7 @@ const SENSOR_SUPPLY: u32 = 3509;
 
 macro_rules! troubles {
     ($($(#[$doc:meta])+ $name:ident = $spn:ident / $fmi:literal,)+) => {
-        /// Everything that this unit can report.
+        /// All faults that this unit can report.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
         pub enum Trouble {
@@ -51,7 +51,7 @@ macro_rules! troubles {
             /// All of them, in the order of their bits.
             pub const ALL: &'static [Self] = &[$(Self::$name,)+];
 
-            /// The code of it.
+            /// Its code.
             #[must_use]
             pub const fn code(self) -> Code {
                 match self {
@@ -81,11 +81,11 @@ troubles! {
     AngleLow = POSITION / 4,
     /// Angle: jumps.
     AngleJumps = POSITION / 10,
-    /// Angle: stands still although the hitch moves.
+    /// Angle: frozen although the hitch moves.
     AngleFrozen = POSITION / 9,
     /// Angle: noisy.
     AngleNoisy = POSITION / 2,
-    /// The hitch doesn't follow an open valve, or stops under it.
+    /// The hitch does not follow an open valve, or stalls.
     NotFollowing = HITCH / 7,
     /// The hitch sinks: lowering valve or check valve leaks.
     Sinking = HITCH / 31,
@@ -99,13 +99,13 @@ troubles! {
     LoweringCoilOpen = LOWERING_VALVE / 5,
     /// Lowering coil shorted, or its driver stuck.
     LoweringCoilShort = LOWERING_VALVE / 6,
-    /// A coil or driver; which one isn't known.
+    /// A coil or driver that is not identified.
     Coils = COILS / 31,
     /// The controller was late.
     Overrun = CONTROLLER / 9,
-    /// The controller asked for what must not be.
+    /// The controller made an invalid request.
     Controller = CONTROLLER / 12,
-    /// No valid calibration was found: the factory's is in use.
+    /// No valid calibration was found: the factory calibration is in use.
     CalibrationLost = CALIBRATION / 13,
     /// One of the two stored calibrations is damaged.
     CalibrationCopyLost = CALIBRATION / 31,
@@ -113,7 +113,7 @@ troubles! {
     CylinderPressure = CYLINDER_PRESSURE / 2,
     /// Pump pressure sensor out of range.
     PumpPressure = PUMP_PRESSURE / 2,
-    /// The converters' reference is off.
+    /// The converters' reference is out of tolerance.
     Reference = REFERENCE / 13,
     /// Supply of the sensors above its limit.
     SensorSupplyHigh = SENSOR_SUPPLY / 3,
@@ -121,7 +121,7 @@ troubles! {
     SensorSupplyLow = SENSOR_SUPPLY / 4,
     /// The tracks of the angle sensor disagree.
     AngleTracks = ANGLE_TRACKS / 2,
-    /// The main clock has another rate than at the start.
+    /// The rate of the main clock has changed since the start.
     Clock = CONTROLLER / 8,
     /// The enable line of the coils' drivers: its read-back differs from its command.
     EnableLine = ENABLE_LINE / 12,
@@ -139,36 +139,36 @@ impl Troubles {
     /// None.
     pub const NONE: Self = Self(0);
 
-    /// With one more.
+    /// The set with one more element.
     pub const fn insert(&mut self, trouble: Trouble) {
         self.0 |= 1 << trouble as u32;
     }
 
-    /// True if it is in the set.
+    /// Whether the set contains it.
     #[must_use]
     pub const fn contains(self, trouble: Trouble) -> bool {
         self.0 & (1 << trouble as u32) != 0
     }
 
-    /// True if nothing is in the set.
+    /// Whether the set is empty.
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// How many are in the set.
+    /// Number of elements.
     #[must_use]
     pub const fn count(self) -> u32 {
         self.0.count_ones()
     }
 
-    /// What is in either.
+    /// Union.
     #[must_use]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// What is in this one and not in the other.
+    /// Difference.
     #[must_use]
     pub const fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
@@ -191,15 +191,15 @@ impl From<Trouble> for Troubles {
     }
 }
 
-/// Coil that was asked for.
+/// Requested coil.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Coil {
     Lift,
     Lowering,
 }
 
-/// Turns what the controller finds into troubles. Which coil or which side of a limit is meant shows at the moment when
-/// something trips, and no longer when both coils are off; so it is settled then.
+/// Converts the controller's results into troubles. The affected coil or the violated side of a limit is visible only
+/// at the time of a trip, before both coils are off; it is latched then.
 #[derive(Clone, Debug, Default)]
 pub struct TroubleFinder {
     last_asked: Option<Coil>,
@@ -207,7 +207,7 @@ pub struct TroubleFinder {
 }
 
 impl TroubleFinder {
-    /// What a step of the controller found.
+    /// Processes the result of a step.
     pub fn update(&mut self, inputs: &Inputs, outputs: &Outputs) -> Troubles {
         if outputs.lift_current > MilliAmp::ZERO {
             self.last_asked = Some(Coil::Lift);
@@ -255,7 +255,7 @@ impl TroubleFinder {
     }
 }
 
-/// Above it a supply out of its limits is too high, else too low.
+/// Threshold between supply too low and too high.
 const MIDDLE_OF_SUPPLY: MilliVolt = MilliVolt(12_000);
 
 fn of_supply(inputs: &Inputs) -> Trouble {
@@ -265,7 +265,7 @@ fn of_supply(inputs: &Inputs) -> Trouble {
     }
 }
 
-/// Above it a supply of the sensors out of its limits is too high, else too low.
+/// Threshold between sensor supply too low and too high.
 const NOMINAL_SENSOR_SUPPLY: MilliVolt = MilliVolt(5_000);
 
 fn of_sensor_supply(inputs: &Inputs) -> Trouble {
@@ -275,7 +275,7 @@ fn of_sensor_supply(inputs: &Inputs) -> Trouble {
     }
 }
 
-/// The coil with too much current is the one with more.
+/// The coil with the larger excess of current.
 fn of_short(inputs: &Inputs) -> Trouble {
     match (inputs.lift_current, inputs.lower_current) {
         (Some(lift), Some(lower)) if lift > lower => Trouble::LiftCoilShort,

@@ -1,32 +1,32 @@
-//! How noisy the angle sensor is, for who looks at it with a tool: no coil depends on it.
+//! Noise of the angle sensor, for display in a tool only: no coil depends on it.
 //!
-//! The second difference of samples whose noise is white, of variance `s^2`, has the variance `(1 + 4 + 1) s^2`. A hitch
-//! that moves adds its acceleration, 0.0005 degree at 500 deg/s2. The mean square is kept in integers, and does not
-//! fall below that of 0.0004 degree once there was more. Its root alone is in floating point.
+//! The second difference of samples with white noise of variance `s^2` has the variance `(1 + 4 + 1) s^2`. The
+//! acceleration of a moving hitch adds 0.0005 degree at 500 deg/s2. The mean square is an integer, with a resolution of
+//! 0.0004 degree. Only its root is in floating point.
 
 use hitch_quantities::units::MilliDegree;
 use micromath::F32;
 
-/// Samples over which squares are averaged: the result is within 5 % of white noise's, one sigma.
+/// Averaging length, samples: the result has a standard deviation of 5 % for white noise.
 const SAMPLES: u32 = 1_024;
-/// A single jump is no noise: a second difference counts for no more than this, mdeg. The sum of squares then fits a word.
+/// Limit of a second difference, mdeg, because a single jump is not noise. The sum of squares then fits a word.
 const MOST: u32 = 2_000;
-/// Variance of the second difference over that of a sample.
+/// Ratio of the variances of the second difference and of a sample.
 const OF_BEND: f32 = 6.0;
-/// A degree has that many.
+/// Millidegrees in a degree.
 const MILLIDEGREES: f32 = 1_000.0;
 
-/// The watch.
+/// Noise estimator.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct AngleNoise {
     last: Option<MilliDegree>,
-    /// The step to the last sample.
+    /// Difference of the last two samples.
     step: Option<MilliDegree>,
     sum_of_squares: u32,
 }
 
 impl AngleNoise {
-    /// Takes in one sample; after one that is missing differences begin anew.
+    /// Adds one sample; after a missing one the differences restart.
     pub fn update(&mut self, angle: Option<MilliDegree>) {
         let step = angle.zip(self.last).map(|(angle, last)| angle - last);
         if let Some((step, before)) = step.zip(self.step) {
@@ -63,7 +63,7 @@ fn rms_deg(sum_of_squares: u32) -> f32 {
     }
     let variance = sum_of_squares as f32 / (SAMPLES as f32 * OF_BEND * MILLIDEGREES * MILLIDEGREES);
     let rough = F32(variance).sqrt().0;
-    // micromath's root is up to 6 % too large; a step of Newton's squares that.
+    // The root of micromath is up to 6 % too large; a Newton step squares this error.
     0.5 * (rough + variance / rough)
 }
 
@@ -109,7 +109,7 @@ mod tests {
                     }
                 }
                 let found = sum_deg / 10_000.0 * 1e3;
-                // Rounded to whole millidegrees, which has a variance of its own.
+                // Rounding to millidegrees adds variance.
                 let truth = f64::sqrt(sigma * sigma + 1.0 / 12.0);
                 assert!(
                     (found / truth - 1.0).abs() < 0.05,

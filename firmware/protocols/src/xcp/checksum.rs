@@ -1,5 +1,4 @@
-//! The checksum of a stretch of memory, a piece at a time: all of the calibration at once would take too long for one
-//! step.
+//! Checksum of a memory range, computed in pieces, because the whole calibration would take too long for one step.
 
 use hitch_quantities::crc32::Crc32;
 
@@ -8,14 +7,14 @@ use super::error::Refusal;
 use super::memory::Memory;
 use super::packet::{Packet, packet};
 
-/// Bytes that are read at a time.
+/// Bytes of a piece.
 const PIECE: usize = 64;
-/// Longest stretch: more than there is at one place.
+/// Longest range; larger than any memory region.
 pub(super) const LONGEST: u32 = 0x4000;
-/// XCP's number of the method, CRC-32.
+/// XCP's code of the method, CRC-32.
 const METHOD: u8 = 0x09;
 
-/// A checksum under way.
+/// A checksum in progress.
 #[derive(Clone, Debug)]
 pub(super) struct Checksum {
     address: u32,
@@ -24,7 +23,7 @@ pub(super) struct Checksum {
 }
 
 impl Checksum {
-    /// A checksum of `length` bytes from `address` on.
+    /// A checksum of `length` bytes from `address`.
     pub fn new(address: u32, length: u32) -> Self {
         Self {
             address,
@@ -33,7 +32,7 @@ impl Checksum {
         }
     }
 
-    /// Reads the next piece; the answer after the last one.
+    /// Processes the next piece; returns the answer after the last one.
     pub fn advance(&mut self, memory: &impl Memory) -> Option<Packet> {
         let mut bytes = [0; PIECE];
         let wanted = usize::try_from(self.left).unwrap_or(PIECE).min(PIECE);
@@ -53,7 +52,7 @@ impl Checksum {
     }
 }
 
-/// The refusal of a stretch that is too long: with how long it may be.
+/// The refusal of a range that is too long, with the maximum length.
 pub(super) fn too_long() -> Packet {
     let [a, b, c, d] = LONGEST.to_le_bytes();
     packet(

@@ -1,6 +1,6 @@
 //! Codes of commands, answers and events (ASAM MCD-1 XCP, protocol layer).
 
-/// Packet identifiers of what the slave sends; samples have the numbers below.
+/// Packet identifiers of the slave; samples have the numbers below.
 pub(super) mod identifier {
     pub const RESPONSE: u8 = 0xFF;
     pub const ERROR: u8 = 0xFE;
@@ -11,7 +11,7 @@ pub(super) mod identifier {
 pub(super) mod event {
     pub const STORED: u8 = 0x03;
     pub const OVERLOAD: u8 = 0x06;
-    /// Of our own: storing failed.
+    /// User-defined: storing failed.
     pub const NOT_STORED: u8 = 0xFE;
 }
 

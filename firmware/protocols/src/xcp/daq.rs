@@ -1,4 +1,4 @@
-//! Measuring: lists of what is sampled with an event, in tables (ODT) of what goes into one packet.
+//! Measurement lists: each is sampled with an event, and consists of tables (ODT), one for each packet.
 //!
 //! ```text
 //! list 0 -> ODT 0 -> entry, entry, entry      packet: number of the ODT, time (first one of a list only), values
@@ -6,8 +6,9 @@
 //! list 1 -> ODT 2 -> entry
 //! ```
 //!
-//! Lists, tables and entries are handed out in this order, so each is a stretch of the next. A sample is sent whole or
-//! not at all: if the queue hasn't room for all of its packets, it is dropped, and the tool is told once.
+//! Lists, tables and entries are allocated in this order, so each is a range of the next level. A sample is sent
+//! completely or not at all: if the queue has no room for all of its packets, it is dropped, and the tool gets one
+//! event.
 
 use heapless::{Deque, Vec};
 
@@ -16,29 +17,29 @@ use super::memory::Memory;
 use super::packet::{MOST_BYTES, Packet, packet};
 use super::slave::Event;
 
-/// Lists at most.
+/// Maximum number of lists.
 const LISTS: usize = 4;
-/// Tables of all lists together.
+/// Number of tables of all lists.
 const TABLES: usize = 16;
-/// Entries of all tables together.
+/// Number of entries of all tables.
 const ENTRIES: usize = 64;
-/// Packets that wait for the bus.
+/// Capacity of the packet queue.
 const QUEUE: usize = 32;
-/// Bytes of a packet for values; in the first one of a list with time, four fewer.
+/// Bytes of a packet for values; four fewer in the first one of a list with time.
 const ROOM: usize = MOST_BYTES - 1;
 const TIME_BYTES: usize = 4;
 /// Mode of a list: with time.
 const WITH_TIME: u8 = 0x10;
 
-/// Something to be sampled.
+/// An entry: a sampled memory range.
 #[derive(Clone, Copy, Debug, Default)]
 struct Entry {
     address: u32,
-    /// 0: nothing yet.
+    /// Size; 0: not defined.
     size: u8,
 }
 
-/// A stretch of the next level.
+/// A range of the next level.
 #[derive(Clone, Copy, Debug, Default)]
 struct Stretch {
     first: u8,
@@ -52,7 +53,7 @@ impl Stretch {
             .unwrap_or(&[])
     }
 
-    /// The place of its `index`th.
+    /// Index of its `index`th element.
     fn place(self, index: u8) -> Option<usize> {
         (index < self.count).then(|| usize::from(self.first).saturating_add(usize::from(index)))
     }
@@ -76,47 +77,47 @@ struct List {
     activity: Activity,
 }
 
-/// What is measured.
+/// All measurement lists.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Daq {
     lists: Vec<List, LISTS>,
     tables: Vec<Stretch, TABLES>,
     entries: Vec<Entry, ENTRIES>,
-    /// Where the next entry is written: list, table, entry.
+    /// Pointer to the next entry: list, table, entry.
     pointer: Option<(u8, u8, u8)>,
     queue: Deque<Packet, QUEUE>,
     overload: Overload,
 }
 
-/// Whether samples are being dropped.
+/// Overload state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Overload {
     #[default]
     None,
-    /// The tool is to be told.
+    /// The event has to be sent.
     New,
     Told,
 }
 
 impl Daq {
-    /// Forgets everything.
+    /// Deletes all lists.
     pub fn free(&mut self) {
         *self = Self::default();
     }
 
-    /// How many lists there are.
+    /// Number of lists.
     pub fn lists(&self) -> u8 {
         length(&self.lists)
     }
 
-    /// True while anything is measured.
+    /// Whether a list is running.
     pub fn is_running(&self) -> bool {
         self.lists
             .iter()
             .any(|list| list.activity == Activity::Running)
     }
 
-    /// Hands out lists.
+    /// Allocates lists.
     pub fn allocate_lists(&mut self, count: u16) -> Result<(), Refusal> {
         self.must_rest()?;
         if !self.tables.is_empty() {
@@ -136,7 +137,7 @@ impl Daq {
             .map_err(|_| Refusal::MemoryOverflow)
     }
 
-    /// Hands out tables of a list; lists in their order.
+    /// Allocates tables of a list, in the order of the lists.
     pub fn allocate_tables(&mut self, list: u16, count: u8) -> Result<(), Refusal> {
         self.must_rest()?;
         let in_order = self.entries.is_empty() && self.tables_follow(list)?;
@@ -154,7 +155,7 @@ impl Daq {
         Ok(())
     }
 
-    /// True if no list from this one on has tables.
+    /// Whether no list from this one on has tables.
     fn tables_follow(&self, list: u16) -> Result<bool, Refusal> {
         let rest = self.lists.get(usize::from(list)..);
         let rest = rest.filter(|rest| !rest.is_empty());
@@ -162,7 +163,7 @@ impl Daq {
         Ok(rest.iter().all(|list| list.tables.count == 0))
     }
 
-    /// Hands out entries of a table; tables in their order.
+    /// Allocates entries of a table, in the order of the tables.
     pub fn allocate_entries(&mut self, list: u16, table: u8, count: u8) -> Result<(), Refusal> {
         self.must_rest()?;
         let place = self.list(list)?.tables.place(table);
@@ -182,7 +183,7 @@ impl Daq {
         Ok(())
     }
 
-    /// Chooses the entry that is written or read next.
+    /// Sets the pointer to an entry.
     pub fn point_to(&mut self, list: u16, table: u8, entry: u8) -> Result<(), Refusal> {
         let number = u8::try_from(list).map_err(|_| Refusal::OutOfRange)?;
         self.pointer = Some((number, table, entry));
@@ -193,7 +194,7 @@ impl Daq {
         found
     }
 
-    /// The entry that is pointed at.
+    /// The entry at the pointer.
     fn pointed_at(&self) -> Result<usize, Refusal> {
         let (list, table, entry) = self.pointer.ok_or(Refusal::Sequence)?;
         let table = self.list(list.into())?.tables.place(table);
@@ -202,14 +203,14 @@ impl Daq {
         place.ok_or(Refusal::OutOfRange)
     }
 
-    /// The pointer goes on to the next entry.
+    /// Advances the pointer.
     fn advance(&mut self) {
         if let Some((_, _, entry)) = &mut self.pointer {
             *entry = entry.saturating_add(1);
         }
     }
 
-    /// Writes the entry that is pointed at.
+    /// Writes the entry at the pointer.
     pub fn write(&mut self, address: u32, size: u8, memory: &impl Memory) -> Result<(), Refusal> {
         let place = self.pointed_at()?;
         let (list, ..) = self.pointer.ok_or(Refusal::Sequence)?;
@@ -226,7 +227,7 @@ impl Daq {
         Ok(())
     }
 
-    /// Address and size of the entry that is pointed at.
+    /// Address and size of the entry at the pointer.
     pub fn read(&mut self) -> Result<(u32, u8), Refusal> {
         let place = self.pointed_at()?;
         self.advance();
@@ -234,7 +235,7 @@ impl Daq {
         Ok((entry.address, entry.size))
     }
 
-    /// Sets when and how a list is sampled.
+    /// Sets event and mode of a list.
     pub fn set_mode(
         &mut self,
         list: u16,
@@ -247,7 +248,7 @@ impl Daq {
         if list.activity == Activity::Running {
             return Err(Refusal::DaqActive);
         }
-        // Stimulation, packets without a number, and alternating displays there are none.
+        // Stimulation, packets without number, and alternating displays are not supported.
         if mode & !WITH_TIME != 0 {
             return Err(Refusal::ModeNotValid);
         }
@@ -257,7 +258,7 @@ impl Daq {
         Ok(())
     }
 
-    /// Mode (with what it does just now), event and prescaler of a list.
+    /// Mode (with its state), event and prescaler of a list.
     pub fn mode(&self, list: u16) -> Result<(u8, u8, u8), Refusal> {
         const RUNNING: u8 = 0x40;
         const SELECTED: u8 = 0x01;
@@ -270,7 +271,7 @@ impl Daq {
         Ok((list.mode | activity, list.event, list.prescaler))
     }
 
-    /// Stops, starts or selects a list; the number of its first packet.
+    /// Stops, starts or selects a list; returns the number of its first packet.
     pub fn start_stop(&mut self, list: u16, mode: u8) -> Result<u8, Refusal> {
         let activity = match mode {
             0 => Activity::Stopped,
@@ -334,7 +335,7 @@ impl Daq {
         }
     }
 
-    /// The next packet. An overload is over once all of them are sent.
+    /// The next packet. An overload ends when all are sent.
     pub fn next_packet(&mut self) -> Option<Packet> {
         let next = self.queue.pop_front();
         if next.is_none() && self.overload == Overload::Told {
@@ -343,7 +344,7 @@ impl Daq {
         next
     }
 
-    /// True once after samples began to be dropped.
+    /// True once after samples were first dropped.
     pub fn take_overload(&mut self) -> bool {
         let new = self.overload == Overload::New;
         if new {
@@ -395,7 +396,7 @@ impl Daq {
     }
 }
 
-/// Puts the value of an entry behind a packet. What can't be read any more is zero, so that the others stay in place.
+/// Appends the value of an entry to a packet. An unreadable value is zero, so that the positions of the others stay.
 fn append(sample: &mut Packet, entry: &Entry, memory: &impl Memory) {
     let mut value = [0; ROOM];
     if let Some(value) = value.get_mut(..usize::from(entry.size)) {
@@ -406,7 +407,7 @@ fn append(sample: &mut Packet, entry: &Entry, memory: &impl Memory) {
     }
 }
 
-/// How many there are; capacities are far below 256.
+/// Number of elements; capacities are far below 256.
 fn length<T>(all: &[T]) -> u8 {
     u8::try_from(all.len()).unwrap_or(u8::MAX)
 }

@@ -1,37 +1,37 @@
-//! Why a command is refused.
+//! Reasons for the refusal of a command.
 
-/// Error codes of XCP, as far as this slave uses them.
+/// Error codes of XCP that this slave uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Refusal {
-    /// Nothing was going on that could be synchronised: the answer to SYNCH.
+    /// Nothing to synchronise: the answer to SYNCH.
     Synchronised = 0x00,
-    /// Not while measuring.
+    /// Not permitted while measuring.
     DaqActive = 0x11,
-    /// The command isn't known.
+    /// Unknown command.
     UnknownCommand = 0x20,
-    /// The command is malformed.
+    /// Malformed command.
     Syntax = 0x21,
-    /// A parameter, or a value that is written, is outside its range. Nothing was changed.
+    /// A parameter or a written value is out of range. Nothing was changed.
     OutOfRange = 0x22,
-    /// The place is never written.
+    /// The address is read-only.
     WriteProtected = 0x23,
-    /// There is nothing at the address, or not just now.
+    /// The address is invalid, or not accessible now.
     AccessDenied = 0x24,
-    /// Tuning isn't enabled at the machine.
+    /// Tuning is not enabled on the machine.
     AccessLocked = 0x25,
-    /// There is no such page.
+    /// The page does not exist.
     PageNotValid = 0x26,
-    /// The page can't be used like this.
+    /// The page cannot be used in this mode.
     ModeNotValid = 0x27,
-    /// There is no such segment.
+    /// The segment does not exist.
     SegmentNotValid = 0x28,
-    /// Commands came in the wrong order.
+    /// Wrong order of commands.
     Sequence = 0x29,
-    /// The lists or entries don't make a measurement.
+    /// The lists or entries are not a valid measurement.
     DaqConfiguration = 0x2A,
     /// No room for more lists, tables or entries.
     MemoryOverflow = 0x30,
-    /// Something in the slave failed.
+    /// Failure of the slave.
     Generic = 0x31,
 }

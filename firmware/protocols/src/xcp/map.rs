@@ -1,4 +1,4 @@
-//! The ECU's addresses: a map of slots, no pointers.
+//! Address map of the ECU: slots, no pointers.
 //!
 //! | from | what | slot |
 //! |---|---|---|
@@ -6,7 +6,7 @@
 //! | [`MEASUREMENT_BASE`] | the measurements | four bytes each; the first ones count |
 //! | [`IDENTITY_BASE`] | what a description file has to agree with, and names | text |
 //!
-//! A word of the calibration is checked and changed as a whole; see [`CalibrationPages::write`].
+//! A word of the calibration is checked and changed as a unit; see [`CalibrationPages::write`].
 
 use hitch_quantities::calibration::{CALIBRATION_BYTES, calibration_words};
 
@@ -19,20 +19,20 @@ use super::slave::Event;
 
 /// Bytes of a slot.
 pub const SLOT_BYTES: u32 = 4;
-/// Where the calibration begins.
+/// Address of the calibration.
 pub const CALIBRATION_BASE: u32 = 0x1000_0000;
-/// Where the measurements begin.
+/// Address of the measurements.
 pub const MEASUREMENT_BASE: u32 = 0x2000_0000;
-/// Where the identity stands.
+/// Address of the identity.
 pub const IDENTITY_BASE: u32 = 0x3000_0000;
 
-/// Version of this map: what a description file has to agree with. Made from the names, units and places of everything
-/// in the calibration and the measurements.
+/// Version of this map, which a description file has to match: a hash of the names, units and places of all entries of
+/// calibration and measurements.
 pub static IDENTITY: [u8; IDENTITY_BYTES] = identity();
 const IDENTITY_BYTES: usize = 14;
-/// The beginning of the identity is the name of the description file.
+/// The identity starts with the name of the description file.
 const FILE_NAME_BYTES: u8 = 5;
-/// Names of the events, one after the other, behind the identity.
+/// Names of the events, consecutive, after the identity.
 static EVENT_NAMES: &[u8] = b"1 ms10 ms100 ms";
 
 const fn identity() -> [u8; IDENTITY_BYTES] {
@@ -46,31 +46,31 @@ const fn identity() -> [u8; IDENTITY_BYTES] {
     text
 }
 
-/// What may be written just now.
+/// Write permission.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Access {
-    /// Nothing: nobody at the machine has enabled tuning.
+    /// None: tuning is not enabled on the machine.
     #[default]
     Locked,
-    /// What is harmless while the hitch moves.
+    /// Values that are harmless while the hitch moves.
     Moving,
-    /// Everything, and the working page may be stored: both coils are off and stay off.
+    /// All values, and the working page may be stored: both coils are off and locked.
     AtRest,
 }
 
-/// What is behind the addresses of the ECU, for as long as a command takes.
+/// Memory of the ECU, for the duration of a command.
 #[derive(Debug)]
 pub struct EcuMemory<'a> {
     /// The calibration.
     pub pages: &'a mut CalibrationPages,
     /// The measurements.
     pub measurements: &'a Measurements,
-    /// What may be written just now.
+    /// Write permission.
     pub access: Access,
 }
 
 impl EcuMemory<'_> {
-    /// What changes everything at once is for a hitch at rest only.
+    /// Changes of the whole page are permitted only at rest.
     fn at_rest(&self) -> Result<(), Refusal> {
         match self.access {
             Access::Locked => Err(Refusal::AccessLocked),
@@ -107,7 +107,7 @@ impl EcuMemory<'_> {
     }
 }
 
-/// Offset of an address into the calibration, if it lies there.
+/// Offset of an address in the calibration, if it is inside.
 fn calibration_offset(address: u32) -> Option<usize> {
     let offset = usize::try_from(address.checked_sub(CALIBRATION_BASE)?).ok()?;
     (offset < CALIBRATION_BYTES).then_some(offset)

@@ -1,11 +1,11 @@
-//! What can be measured: one table, from which the ECU fills its slots and the description file is made.
+//! Table of the measurements, the common source of the ECU's slots and of the description file.
 
 use hitch_quantities::signals::charge::CoilCharge;
 use hitch_quantities::{Inputs, Outputs, fnv};
 
 use super::angle_noise::rms_deg_bits;
 
-/// How a measurement is stored in its slot, little-endian.
+/// Storage of a measurement in its slot, little-endian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
     /// Unsigned, 8 bits.
@@ -20,7 +20,7 @@ pub enum Width {
     I32,
 }
 
-/// What a tool needs to know of one measurement.
+/// Description of one measurement for a tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeasurementInfo {
     /// Name without unit.
@@ -31,17 +31,17 @@ pub struct MeasurementInfo {
     pub counts_per_unit: i32,
     /// Storage.
     pub width: Width,
-    /// The 32 bits are a number in single precision (IEEE 754), not an integer; the limits still are in raw counts.
+    /// Whether the 32 bits are an IEEE 754 single-precision number; the limits are in raw counts in any case.
     pub is_float: bool,
     /// Smallest value, raw counts.
     pub min: i32,
     /// Largest value, raw counts.
     pub max: i32,
-    /// What it is.
+    /// Description.
     pub description: &'static str,
 }
 
-/// How a measurement is stored, and whether that is a number in single precision: the words of the table below.
+/// Storage of a measurement, and whether it is a single-precision number: the keywords of the table below.
 mod form {
     use super::Width;
 
@@ -53,16 +53,16 @@ mod form {
     pub const F32: (Width, bool) = (Width::U32, true);
 }
 
-/// What the ECU knows besides a step's inputs and outputs.
+/// Values of the ECU besides the inputs and outputs of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EcuState {
     /// Set point of an implement, per mille of the travel; -1: none.
     pub remote_set_point: i32,
-    /// Our address on the bus; 254: none.
+    /// Own address on the bus; 254: none.
     pub address: u8,
     /// Charge through the coils.
     pub charge: CoilCharge,
-    /// Why the working page isn't in use: 0 it is, else see [`super::pages::Applied`].
+    /// Reason why the working page is not in use: 0 in use, else see [`super::pages::Applied`].
     pub calibration_state: u8,
     /// Longest step so far, us.
     pub longest_step_us: u16,
@@ -96,7 +96,7 @@ macro_rules! measurements {
         pub const COUNT: usize = INFO.len();
 
         impl Measurements {
-            /// What there is to measure after a step.
+            /// The measurements after a step.
             pub fn sample(&mut self, $inputs: &Inputs, $outputs: &Outputs, $ecu: &EcuState) {
                 self.slots = [$($value,)+];
             }
@@ -104,7 +104,7 @@ macro_rules! measurements {
     };
 }
 
-/// A hash of the table, going on from `hash`.
+/// A hash of the table, continued from `hash`.
 #[must_use]
 pub const fn hash(mut hash: u32) -> u32 {
     let mut index = 0;
@@ -120,7 +120,7 @@ pub const fn hash(mut hash: u32) -> u32 {
     hash
 }
 
-/// A slot of four bytes for each measurement. A signal that isn't there is 0; see `valid`.
+/// A slot of four bytes for each measurement. A missing signal is 0; see `valid`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Measurements {
     slots: [i32; COUNT],

@@ -7,16 +7,16 @@ use super::memory::{Memory, MemoryRange, Text};
 use super::packet::{Answer, Packet, done, packet, response};
 use super::slave::Event;
 
-/// Lists are made by the tool, have prescalers and times, and an overload is reported as an event.
+/// Lists are dynamic, with prescalers and time stamps; an overload is reported as an event.
 const PROPERTIES: u8 = 0x93;
 /// Times have four bytes and count microseconds.
 const TIME_MODE: u8 = 0x34;
 /// Unit of an event's cycle: a millisecond.
 const MILLISECONDS: u8 = 6;
-/// An event samples lists that go from here to the tool; any number of them.
+/// An event can sample any number of lists, in the direction to the tool.
 const EVENT_FOR_MEASURING: u8 = 0x04;
 const ANY_NUMBER: u8 = 0xFF;
-/// A bit offset that says that a value is no single bit.
+/// Bit offset of a value that is not a single bit.
 const NO_BIT: u8 = 0xFF;
 
 /// Dispatches a command.
@@ -78,7 +78,7 @@ fn with_arguments(daq: &mut Daq, command: u8, rest: &[u8], memory: &impl Memory)
             return response(&[daq.start_stop(u16::from_le_bytes([a, b]), mode)?]);
         }
         (code::START_STOP_SYNCH, &[mode, ..]) => daq.start_stop_selected(mode)?,
-        // Known, and too short.
+        // Known command, too short.
         (
             code::ALLOC_ODT_ENTRY..=code::GET_DAQ_EVENT_INFO
             | code::START_STOP_SYNCH..=code::SET_DAQ_PTR,
@@ -89,7 +89,7 @@ fn with_arguments(daq: &mut Daq, command: u8, rest: &[u8], memory: &impl Memory)
     done()
 }
 
-/// GET_DAQ_EVENT_INFO: what an event is, and where its name stands.
+/// GET_DAQ_EVENT_INFO: properties of an event, and address of its name.
 pub(super) fn event_info(
     rest: &[u8],
     memory: &impl Memory,

@@ -1,4 +1,4 @@
-//! What a slave reads and writes.
+//! Memory access of a slave.
 
 use super::error::Refusal;
 use super::slave::Event;
@@ -10,7 +10,7 @@ pub enum Page {
     /// In RAM; can be written.
     #[default]
     Working = 0,
-    /// What is stored in flash; can only be read.
+    /// As stored in flash; read-only.
     Reference = 1,
 }
 
@@ -26,12 +26,12 @@ impl Page {
     }
 }
 
-/// A text that tools ask for.
+/// A text that tools request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Text {
-    /// What the description file has to agree with.
+    /// Identity that the description file has to match.
     Identity,
-    /// Name of the description file, without its ending.
+    /// Name of the description file, without extension.
     DescriptionFile,
     /// Name of an event.
     Event(Event),
@@ -40,59 +40,59 @@ pub enum Text {
 /// A range of memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MemoryRange {
-    /// Its first byte.
+    /// First byte.
     pub address: u32,
     /// Number of bytes.
     pub length: u8,
 }
 
-/// Addresses, and what is behind them.
+/// Memory map.
 pub trait Memory {
-    /// Reads; all of `target` or nothing.
+    /// Reads `target` completely or fails.
     ///
     /// # Errors
-    /// If not all of it may be read.
+    /// If a part of it is not readable.
     fn read(&self, address: u32, target: &mut [u8]) -> Result<(), Refusal>;
 
-    /// Writes; all of `bytes` or nothing.
+    /// Writes `bytes` completely or fails.
     ///
     /// # Errors
-    /// If not all of it may be written, or a value is outside its range.
+    /// If a part of it is not writable, or a value is out of range.
     fn write(&mut self, address: u32, bytes: &[u8]) -> Result<(), Refusal>;
 
     /// The segment of the calibration: address and length.
     fn segment(&self) -> (u32, u32);
 
-    /// Where a text can be read.
+    /// Address range of a text.
     fn text(&self, text: Text) -> MemoryRange;
 
-    /// True if writing is permitted at all just now: somebody at the machine has enabled tuning.
+    /// Whether writing is permitted: tuning is enabled on the machine.
     fn may_calibrate(&self) -> bool;
 
-    /// The page that tools see.
+    /// The page of the tool.
     fn tool_page(&self) -> Page;
 
-    /// The page that the controller runs on.
+    /// The page of the controller.
     fn controller_page(&self) -> Page;
 
-    /// Chooses the page that tools see.
+    /// Selects the page of the tool.
     ///
     /// # Errors
-    /// If it can't be chosen now.
+    /// If it cannot be selected now.
     fn set_tool_page(&mut self, page: Page) -> Result<(), Refusal>;
 
-    /// Chooses the page that the controller runs on.
+    /// Selects the page of the controller.
     ///
     /// # Errors
-    /// If it can't be chosen now.
+    /// If it cannot be selected now.
     fn set_controller_page(&mut self, page: Page) -> Result<(), Refusal>;
 
     /// Copies the reference page over the working page.
     ///
     /// # Errors
-    /// If that can't be done now.
+    /// If it is not possible now.
     fn restore_working_page(&mut self) -> Result<(), Refusal>;
 
-    /// True if the working page may be stored in flash just now.
+    /// Whether the working page may be stored in flash now.
     fn may_store(&self) -> bool;
 }

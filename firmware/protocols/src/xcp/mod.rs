@@ -1,10 +1,9 @@
-//! Measuring and calibrating over CAN: an XCP slave (ASAM MCD-1 XCP 1.x), as free and commercial tools speak it.
+//! Measurement and calibration over CAN: an XCP slave (ASAM MCD-1 XCP 1.x), compatible with free and commercial tools.
 //!
-//! [`Slave`] answers commands and samples measurements; it knows addresses only. What is behind an address is a
-//! [`Memory`]'s business, and the ECU's is a map without pointers ([`map`]): a slot of four bytes for each word
-//! of the calibration ([`pages`]), and one for each measurement ([`measurements`]). So a description file (A2L)
-//! depends on the tables of this crate and not on where a linker put what, and nothing else can be read or
-//! written at all.
+//! [`Slave`] answers commands and samples measurements by address. [`Memory`] maps the addresses; that of the ECU is a
+//! map without pointers ([`map`]): a slot of four bytes for each word of the calibration ([`pages`]), and one for each
+//! measurement ([`measurements`]). A description file (A2L) therefore depends on the tables of this crate and not on
+//! the linker, and no other memory is accessible.
 
 pub mod angle_noise;
 mod checksum;

@@ -1,17 +1,17 @@
-//! What fits into one frame.
+//! XCP packets: the content of one frame.
 
 use heapless::Vec;
 
 use super::command::identifier;
 use super::error::Refusal;
 
-/// Bytes of a packet at most, both ways (MAX_CTO, MAX_DTO).
+/// Maximum size of a packet, bytes, in both directions (MAX_CTO, MAX_DTO).
 pub(super) const MOST_BYTES: usize = 8;
 
-/// A packet: its identifier, then what belongs to it.
+/// A packet: its identifier, then its content.
 pub(super) type Packet = Vec<u8, MOST_BYTES>;
 
-/// A packet; what doesn't fit is cut off.
+/// A packet; excess content is truncated.
 pub(super) fn packet(identifier: u8, rest: &[u8]) -> Packet {
     core::iter::once(identifier)
         .chain(rest.iter().copied())
@@ -19,15 +19,15 @@ pub(super) fn packet(identifier: u8, rest: &[u8]) -> Packet {
         .collect()
 }
 
-/// What a command is answered with; `None`: the answer comes later.
+/// Answer to a command; `None` if it is sent later.
 pub(super) type Answer = Result<Option<Packet>, Refusal>;
 
-/// The answer that a command was obeyed.
+/// Positive answer.
 pub(super) fn done() -> Answer {
     response(&[])
 }
 
-/// The answer with these bytes.
+/// Positive answer with these bytes.
 pub(super) fn response(bytes: &[u8]) -> Answer {
     Ok(Some(packet(identifier::RESPONSE, bytes)))
 }

@@ -1,7 +1,7 @@
-//! The two pages of the calibration: what a tool is working on, in RAM, and what is stored.
+//! The two pages of the calibration: working page in RAM, and reference page as stored.
 //!
-//! A tool writes word by word, so a page may be inconsistent for a while: a curve that doesn't rise, a lower limit
-//! above the upper. The controller gets a page only as a whole and only validated; until then it keeps what it had.
+//! A tool writes word by word, so a page may be temporarily inconsistent: a curve that does not rise, a lower limit
+//! above the upper one. The controller gets only complete and validated pages; until then it keeps the previous one.
 
 use hitch_quantities::calibration::calibration_words::{CALIBRATION_WORDS, WordRange, word_range};
 use hitch_quantities::{Calibration, CalibrationError, ValidCalibration};
@@ -9,25 +9,25 @@ use hitch_quantities::{Calibration, CalibrationError, ValidCalibration};
 use super::error::Refusal;
 use super::memory::Page;
 
-/// What became of the last change.
+/// State of the last change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Applied {
-    /// The controller has it.
+    /// In use by the controller.
     #[default]
     InUse = 0,
-    /// There is one that the controller hasn't been given yet.
+    /// Not yet passed to the controller.
     Pending = 1,
-    /// The page is inconsistent; the controller keeps what it had.
+    /// The page is inconsistent; the controller keeps the previous one.
     Inconsistent = 2,
 }
 
 /// Bytes of a word.
 const WORD_BYTES: usize = 4;
-/// Most bytes that one command writes.
+/// Maximum number of bytes of one write command.
 const LONGEST_PIECE: usize = 7;
 
-/// The beginning of a word whose end hasn't come yet.
+/// The first part of an incomplete word.
 #[derive(Clone, Copy, Debug, Default)]
 struct Fragment {
     word: usize,
@@ -48,14 +48,14 @@ impl Fragment {
         }
     }
 
-    /// Offset of the byte that is missing next.
+    /// Offset of the next missing byte.
     fn end(&self) -> usize {
         self.word
             .saturating_mul(WORD_BYTES)
             .saturating_add(self.length)
     }
 
-    /// What there is of the word, and `bytes` behind it, in `room`.
+    /// The stored part of the word, followed by `bytes`, in `room`.
     fn followed_by<'a>(&self, bytes: &[u8], room: &'a mut [u8]) -> Result<&'a [u8], Refusal> {
         let length = self.length.saturating_add(bytes.len());
         let room = room.get_mut(..length).ok_or(Refusal::OutOfRange)?;
@@ -79,7 +79,7 @@ pub struct CalibrationPages {
 }
 
 impl CalibrationPages {
-    /// Both pages hold what is stored.
+    /// Both pages with the stored calibration.
     #[must_use]
     pub fn new(stored: &ValidCalibration) -> Self {
         let words = stored.to_words();
@@ -93,10 +93,10 @@ impl CalibrationPages {
         }
     }
 
-    /// The calibration that the controller should have from now on, once after each change that makes one.
+    /// The new calibration for the controller, once after each change that results in a consistent page.
     ///
     /// # Errors
-    /// What is inconsistent, once: the controller keeps what it had.
+    /// The inconsistency, once: the controller keeps the previous calibration.
     pub fn take_change(&mut self) -> Option<Result<ValidCalibration, CalibrationError>> {
         if self.applied != Applied::Pending {
             return None;
@@ -109,13 +109,13 @@ impl CalibrationPages {
         Some(checked)
     }
 
-    /// What became of the last change.
+    /// State of the last change.
     #[must_use]
     pub const fn applied(&self) -> Applied {
         self.applied
     }
 
-    /// The working page, to be stored.
+    /// The working page, for storing.
     ///
     /// # Errors
     /// If it is inconsistent.
@@ -123,7 +123,7 @@ impl CalibrationPages {
         Calibration::from_words(&self.working).seal()
     }
 
-    /// `stored` is in flash now: the reference page is it.
+    /// `stored` is in flash now and becomes the reference page.
     pub fn stored(&mut self, stored: &ValidCalibration) {
         self.reference = stored.to_words();
         if self.controller_page == Page::Reference {
@@ -131,26 +131,26 @@ impl CalibrationPages {
         }
     }
 
-    /// Replaces the working page, as after teaching.
+    /// Replaces the working page, for example after teaching.
     pub fn replace_working(&mut self, calibration: &ValidCalibration) {
         self.working = calibration.to_words();
         self.changed(Page::Working);
     }
 
-    /// A word of the page that tools see.
+    /// A word of the tool's page.
     #[must_use]
     pub fn word(&self, index: usize) -> Option<i32> {
         self.page(self.tool_page).get(index).copied()
     }
 
-    /// Writes bytes of the block from `offset` on; `moving`: only what may be changed while the hitch moves.
+    /// Writes bytes of the block from `offset`; `moving`: only values that may be changed while the hitch moves.
     ///
-    /// A word is checked and changed as a whole. Tools write what doesn't fit one message in pieces of six or seven
-    /// bytes, so a piece may end inside a word; what there is of it waits for the next piece to complete it. A piece
-    /// that begins inside a word and doesn't go on where the last one ended is refused.
+    /// A word is checked and changed as a unit. Tools split long writes into pieces of six or seven bytes, so a piece
+    /// may end inside a word; its first part is kept until the next piece completes it. A piece that begins inside a
+    /// word without continuing the last one is refused.
     ///
     /// # Errors
-    /// Why not; then nothing was changed.
+    /// The reason for the refusal; nothing was changed.
     pub fn write(&mut self, offset: usize, bytes: &[u8], moving: bool) -> Result<(), Refusal> {
         if self.tool_page != Page::Working {
             return Err(Refusal::WriteProtected);
@@ -188,24 +188,24 @@ impl CalibrationPages {
         }
     }
 
-    /// The page that tools see.
+    /// The page of the tool.
     #[must_use]
     pub const fn tool_page(&self) -> Page {
         self.tool_page
     }
 
-    /// The page that the controller runs on.
+    /// The page of the controller.
     #[must_use]
     pub const fn controller_page(&self) -> Page {
         self.controller_page
     }
 
-    /// Chooses the page that tools see.
+    /// Selects the page of the tool.
     pub const fn set_tool_page(&mut self, page: Page) {
         self.tool_page = page;
     }
 
-    /// Chooses the page that the controller runs on.
+    /// Selects the page of the controller.
     pub fn set_controller_page(&mut self, page: Page) {
         if page != self.controller_page {
             self.controller_page = page;
@@ -233,7 +233,7 @@ impl CalibrationPages {
     }
 }
 
-/// Checks that a word may be written just now.
+/// Checks that a word may be written now.
 fn check_place(index: usize, moving: bool) -> Result<WordRange, Refusal> {
     let range = word_range(index).ok_or(Refusal::WriteProtected)?;
     if moving && !range.live {
@@ -242,7 +242,7 @@ fn check_place(index: usize, moving: bool) -> Result<WordRange, Refusal> {
     Ok(range)
 }
 
-/// Checks that a word may be written just now, and with this.
+/// Checks that a word may be written now with this value.
 fn check(index: usize, value: i32, moving: bool) -> Result<(), Refusal> {
     let range = check_place(index, moving)?;
     if !(range.min..=range.max).contains(&value) {

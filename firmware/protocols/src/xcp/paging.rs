@@ -1,4 +1,4 @@
-//! Commands that choose and copy pages of the calibration. It has one segment of two pages: working and reference.
+//! Commands that select and copy pages of the calibration: one segment with a working and a reference page.
 
 use super::error::Refusal;
 use super::memory::{Memory, Page};
@@ -6,10 +6,10 @@ use super::packet::{Answer, done, response};
 
 const SEGMENTS: u8 = 1;
 const PAGES: u8 = 2;
-/// Who a page is chosen for.
+/// Target of a page selection.
 const CONTROLLER: u8 = 0x01;
 const TOOL: u8 = 0x02;
-/// For all segments, whatever number is given.
+/// For all segments; the segment number is ignored.
 const ALL: u8 = 0x80;
 
 /// SET_CAL_PAGE: mode, segment, page.
@@ -24,7 +24,7 @@ pub(super) fn set_page(rest: &[u8], memory: &mut impl Memory) -> Answer {
     if mode & (CONTROLLER | TOOL) == 0 {
         return Err(Refusal::ModeNotValid);
     }
-    // The one that can be refused comes first, so that nothing is changed then.
+    // The selection that can be refused comes first, so that a refusal changes nothing.
     if mode & CONTROLLER != 0 {
         memory.set_controller_page(page)?;
     }
@@ -34,7 +34,7 @@ pub(super) fn set_page(rest: &[u8], memory: &mut impl Memory) -> Answer {
     done()
 }
 
-/// GET_CAL_PAGE: who for, segment.
+/// GET_CAL_PAGE: target, segment.
 pub(super) fn page(rest: &[u8], memory: &impl Memory) -> Answer {
     let [access, segment, ..] = *rest else {
         return Err(Refusal::Syntax);
@@ -55,7 +55,7 @@ pub(super) fn info() -> Answer {
     response(&[SEGMENTS, 0])
 }
 
-/// GET_SEGMENT_INFO: where the segment is, and how many pages it has.
+/// GET_SEGMENT_INFO: address of the segment, and number of pages.
 pub(super) fn segment_info(rest: &[u8], memory: &impl Memory) -> Answer {
     let [mode, segment, info, ..] = *rest else {
         return Err(Refusal::Syntax);
@@ -75,12 +75,12 @@ pub(super) fn segment_info(rest: &[u8], memory: &impl Memory) -> Answer {
     response(&[0, 0, 0, a, b, c, d])
 }
 
-/// GET_PAGE_INFO: the controller and a tool reach both pages, whatever the other one does; only the working page is
-/// written, and only by a tool.
+/// GET_PAGE_INFO: controller and tool can access both pages independently; only the working page is writable, by the
+/// tool.
 pub(super) fn page_info(rest: &[u8]) -> Answer {
-    /// Either of both, with or without the other: bits 0 and 1 for the controller, 2 and 3 for reading by the tool.
+    /// Access with or without the other: bits 0 and 1 for the controller, 2 and 3 for reading by the tool.
     const READABLE: u8 = 0x0F;
-    /// By the tool, whatever the controller does.
+    /// By the tool, independent of the controller.
     const WRITABLE: u8 = 0x30;
     let [_, segment, page, ..] = *rest else {
         return Err(Refusal::Syntax);
@@ -94,7 +94,7 @@ pub(super) fn page_info(rest: &[u8]) -> Answer {
     }
 }
 
-/// COPY_CAL_PAGE: from the reference page to the working page, and nothing else.
+/// COPY_CAL_PAGE: only from the reference page to the working page.
 pub(super) fn copy(rest: &[u8], memory: &mut impl Memory) -> Answer {
     let [from_segment, from, to_segment, to, ..] = *rest else {
         return Err(Refusal::Syntax);

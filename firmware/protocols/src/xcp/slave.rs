@@ -1,4 +1,4 @@
-//! The slave's end of the connection: commands in, answers and samples out.
+//! XCP slave: commands in, answers and samples out.
 
 use heapless::Deque;
 
@@ -12,19 +12,19 @@ use super::{checksum, measuring, paging};
 use crate::can::Frame;
 use crate::j1939::{Id, Pgn};
 
-/// Answers and events that wait for the bus.
+/// Capacity of the queue of answers and events.
 const QUEUE: usize = 4;
-/// Priority on the bus: the lowest but one, so that tuning never holds up the tractor.
+/// Priority on the bus: the second lowest, so that tuning does not delay other messages.
 const PRIORITY: u8 = 6;
-/// Address of the tool, as diagnostic tools have it (249: off-board service tool).
+/// Address of the tool (249: off-board service tool).
 pub const TOOL_ADDRESS: u8 = 249;
 
 /// Resources: calibrating and paging, measuring.
 const CALIBRATION: u8 = 0x01;
 const MEASURING: u8 = 0x04;
-/// Communication mode: little-endian, bytes; GET_COMM_MODE_INFO tells more.
+/// Communication mode: little-endian, bytes; details by GET_COMM_MODE_INFO.
 const MORE_INFORMATION: u8 = 0x80;
-/// Versions of the layers, their first figure, and of this slave, 1.0.
+/// Versions of the layers (major number), and of this slave, 1.0.
 const PROTOCOL_VERSION: u8 = 1;
 const TRANSPORT_VERSION: u8 = 1;
 const DRIVER_VERSION: u8 = 0x10;
@@ -32,7 +32,7 @@ const DRIVER_VERSION: u8 = 0x10;
 const STORE_REQUESTED: u8 = 0x01;
 const DAQ_RUNNING: u8 = 0x40;
 
-/// When measurements are sampled.
+/// Sampling event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Event {
@@ -65,13 +65,13 @@ impl Event {
     }
 }
 
-/// The slave. It talks to one tool at a time, on proprietary J1939 groups: commands to our address from the
-/// tool's, answers back.
+/// The slave. It serves one tool at a time, on proprietary J1939 groups: commands from the tool's address, and answers
+/// to it.
 #[derive(Clone, Debug, Default)]
 pub struct Slave {
     address: Option<u8>,
     connected: bool,
-    /// Memory transfer address: where the next upload or download begins.
+    /// Memory transfer address: start of the next upload or download.
     transfer_address: u32,
     daq: Daq,
     checksum: Option<Checksum>,
@@ -79,25 +79,24 @@ pub struct Slave {
     store: Store,
 }
 
-/// Storing the working page.
+/// State of storing the working page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Store {
     #[default]
     Idle,
-    /// The application hasn't been told yet.
+    /// The application has not started yet.
     Requested,
     UnderWay,
 }
 
 impl Slave {
-    /// A slave that nobody is connected to.
+    /// A slave without connection.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Our address on the bus, `None` while there is none: then nothing is said. A connection ends with the address
-    /// that it was made to.
+    /// Sets the own address on the bus; with `None` nothing is sent. A connection ends when the address changes.
     pub fn set_address(&mut self, address: Option<u8>) {
         if address != self.address {
             self.disconnect();
@@ -105,13 +104,13 @@ impl Slave {
         }
     }
 
-    /// True while a tool is connected.
+    /// Whether a tool is connected.
     #[must_use]
     pub const fn is_connected(&self) -> bool {
         self.connected
     }
 
-    /// Takes a frame from the bus. What isn't a command for us changes nothing.
+    /// Processes a frame from the bus; other frames than commands to this node are ignored.
     pub fn receive(&mut self, frame: &Frame, memory: &mut impl Memory, now_us: u32) {
         let Some(id) = frame.extended_data_id().map(Id::unpack) else {
             return;
@@ -122,7 +121,7 @@ impl Slave {
         let Some((&command, rest)) = frame.data().split_first().filter(|_| for_us) else {
             return;
         };
-        // Until a tool has connected, nothing but CONNECT is answered.
+        // Without a connection only CONNECT is answered.
         if !self.connected && command != code::CONNECT {
             return;
         }
@@ -133,8 +132,8 @@ impl Slave {
         }
     }
 
-    /// Samples what is to be measured with this event. Called once a step for each event that is due, those of one
-    /// millisecond included: they also carry on what takes longer than a step.
+    /// Samples the measurements of this event. Called once in a step for each due event, including the 1 ms event,
+    /// which also continues long operations.
     pub fn event(&mut self, event: Event, memory: &impl Memory, now_us: u32) {
         if event == Event::Every1Ms {
             self.carry_on(memory);
@@ -145,7 +144,7 @@ impl Slave {
         }
     }
 
-    /// The next frame for the bus: answers first, then samples. Called while there is room for one.
+    /// The next frame: answers first, then samples. Called while there is room for one.
     pub fn poll(&mut self) -> Option<Frame> {
         let id = Id {
             priority: PRIORITY,
@@ -158,8 +157,8 @@ impl Slave {
         Frame::data_frame(id.pack().into(), &packet)
     }
 
-    /// True once after a tool has asked for the working page to be stored. The application stores it, and says how
-    /// it went with [`Self::stored`].
+    /// True once after a request to store the working page. The application stores it, and reports the result with
+    /// [`Self::stored`].
     pub fn take_store_request(&mut self) -> bool {
         let requested = self.store == Store::Requested;
         if requested {
@@ -168,7 +167,7 @@ impl Slave {
         requested
     }
 
-    /// The storing that was asked for is over.
+    /// The requested store has ended.
     pub fn stored(&mut self, success: bool) {
         if self.store == Store::Idle {
             return;
@@ -184,7 +183,7 @@ impl Slave {
         }
     }
 
-    /// Tools wait for an answer before the next command, so there is room unless they don't.
+    /// A tool waits for each answer before the next command, so the queue overflows only if it does not.
     fn send(&mut self, packet: Packet) {
         let _ = self.queue.push_back(packet);
     }
@@ -219,7 +218,7 @@ impl Slave {
             code::GET_ID => self.identity(rest, memory),
             code::SET_REQUEST => self.request_store(rest, memory),
             code::GET_SEED => seed(rest, memory),
-            // There is no key: tuning is enabled at the machine.
+            // There is no key: tuning is enabled by a switch on the machine.
             code::UNLOCK => Err(Refusal::Sequence),
             code::SET_MTA => self.set_transfer_address(rest),
             code::UPLOAD => self.upload(rest, memory),
@@ -241,7 +240,7 @@ impl Slave {
         }
     }
 
-    /// A new connection begins from nothing, even if the last one wasn't ended.
+    /// A new connection resets the state, even if the last one was not ended.
     fn connect(&mut self) -> Packet {
         self.disconnect();
         self.connected = true;
@@ -282,7 +281,7 @@ impl Slave {
         response(&[session, protected, 0, 0, 0])
     }
 
-    /// Texts are put under the transfer address.
+    /// Sets the transfer address to a text.
     fn identity(&mut self, rest: &[u8], memory: &impl Memory) -> Answer {
         let [kind, ..] = *rest else {
             return Err(Refusal::Syntax);
@@ -350,7 +349,7 @@ impl Slave {
         }
         self.checksum = Some(Checksum::new(self.transfer_address, length));
         self.transfer_address = self.transfer_address.wrapping_add(length);
-        // The answer comes when it is done.
+        // The answer is sent at the end of the operation.
         Ok(None)
     }
 
@@ -369,7 +368,7 @@ impl Slave {
     }
 }
 
-/// With tuning enabled at the machine nothing is protected (a seed of no bytes); without, no key would help.
+/// With tuning enabled on the machine nothing is protected (seed of zero bytes); otherwise no key unlocks it.
 fn seed(rest: &[u8], memory: &impl Memory) -> Answer {
     match rest {
         [0, CALIBRATION, ..] if !memory.may_calibrate() => Err(Refusal::AccessLocked),
@@ -379,7 +378,7 @@ fn seed(rest: &[u8], memory: &impl Memory) -> Answer {
     }
 }
 
-/// There is one address space.
+/// There is only one address space.
 const fn address(extension: u8, bytes: [u8; 4]) -> Result<u32, Refusal> {
     if extension == 0 {
         Ok(u32::from_le_bytes(bytes))

@@ -1,4 +1,4 @@
-//! A tool and an ECU on one desk.
+//! A tool connected to an ECU.
 
 use hitch_protocols::can::Frame;
 use hitch_protocols::j1939::{Id, Pgn};
@@ -13,7 +13,7 @@ use hitch_quantities::calibration::parameter::ParameterInfo;
 /// Address of the ECU.
 pub const ECU: u8 = 0x80;
 
-/// Both ends.
+/// Tool and ECU.
 pub struct Desk {
     pub slave: Slave,
     pub pages: CalibrationPages,
@@ -22,7 +22,7 @@ pub struct Desk {
     pub now_us: u32,
 }
 
-/// An error code, as the ECU answers it.
+/// An error answer with its code.
 pub type Error = u8;
 
 pub const OUT_OF_RANGE: Error = 0x22;
@@ -31,7 +31,7 @@ pub const ACCESS_DENIED: Error = 0x24;
 pub const ACCESS_LOCKED: Error = 0x25;
 
 impl Desk {
-    /// An ECU that nobody is connected to, at rest, with tuning enabled.
+    /// An ECU without connection, at rest, with tuning enabled.
     pub fn new() -> Self {
         let mut slave = Slave::new();
         slave.set_address(Some(ECU));
@@ -89,7 +89,7 @@ impl Desk {
         packets
     }
 
-    /// What a command is answered with.
+    /// The answer to a command.
     pub fn ask(&mut self, command: &[u8]) -> Result<Vec<u8>, Error> {
         self.send(command);
         let answers = self.packets();
@@ -103,7 +103,7 @@ impl Desk {
         }
     }
 
-    /// What a command that has to be obeyed is answered with.
+    /// The answer to a command that has to succeed.
     pub fn obeyed(&mut self, command: &[u8]) -> Vec<u8> {
         let answer = self.ask(command);
         answer.unwrap_or_else(|error| panic!("{command:02X?}: error {error:02X}"))

@@ -1,4 +1,4 @@
-//! Connecting, status, identity, and who is heard.
+//! Connection, status, identity, and accepted senders.
 
 use hitch_protocols::can::Frame;
 use hitch_protocols::j1939::{Id, Pgn};
@@ -50,7 +50,7 @@ fn only_the_tool_is_heard_and_only_at_our_address() {
     };
     desk.receive(&Frame::data_frame(id.pack().into(), &[0xFF, 0]).unwrap());
     assert!(!desk.slave.is_connected());
-    // An ECU that has no address, or has moved, isn't spoken to there.
+    // An ECU without address, or with a new one, does not answer at the old one.
     desk.slave.set_address(None);
     desk.send(&[0xFF, 0]);
     assert!(!desk.slave.is_connected());

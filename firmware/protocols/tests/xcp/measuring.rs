@@ -1,4 +1,4 @@
-//! Measuring: lists, events, times, and what happens when the bus is too slow.
+//! Measurement: lists, events, time stamps, and overload.
 
 use hitch_protocols::xcp::Event;
 use hitch_protocols::xcp::map::MEASUREMENT_BASE;
@@ -172,7 +172,7 @@ fn a_bus_that_is_too_slow_costs_whole_samples_and_the_tool_is_told_once() {
             assert_eq!(usize::from(packet[1]), step, "all of one moment");
         }
     }
-    // Once the queue is empty it goes on, and the next overload is told again.
+    // When the queue is empty sampling continues, and the next overload is reported again.
     for _ in 0..20 {
         desk.event(Event::Every1Ms);
     }
@@ -256,7 +256,7 @@ fn what_is_running_stays_as_it_is() {
     assert_eq!(desk.ask(&[0xE1, 0xFF, 1, 0, a, b, c, d]), Err(0x11));
     assert_eq!(desk.ask(&[0xE0, 0, 0, 0, 1, 0, 1, 0]), Err(0x11));
     assert_eq!(desk.ask(&[0xD5, 0, 1, 0]), Err(0x11));
-    // A tool that has gone away and comes back begins from nothing.
+    // A tool that reconnects starts without lists.
     desk.obeyed(&[0xFF, 0]);
     desk.event(Event::Every1Ms);
     assert!(desk.packets().is_empty());
@@ -304,7 +304,7 @@ fn clock_and_events_are_described() {
     assert_eq!(desk.ask(&[0xD7, 0, 3, 0]), Err(OUT_OF_RANGE));
 }
 
-/// The root is the ECU's, in single precision; what it is of is an integer.
+/// The root is computed on the ECU in single precision, from an integer.
 #[test]
 fn the_noise_of_the_angle_is_read_in_degrees() {
     let mut desk = Desk::connected();

@@ -1,4 +1,4 @@
-//! Whatever a tool sends: no panic, nothing written that is out of range or locked, a bounded queue.
+//! Random commands: no panic, no write out of range or without permission, a bounded queue.
 
 use hitch_protocols::xcp::{Access, Event};
 use proptest::prelude::*;
@@ -6,7 +6,7 @@ use proptest::test_runner::RngSeed;
 
 use crate::client::{Desk, scalars};
 
-/// Commands that hit addresses and arguments that exist more often than chance would have it.
+/// Commands with a higher share of valid addresses and arguments than random ones.
 fn command() -> impl Strategy<Value = Vec<u8>> {
     let codes = prop_oneof![4 => 0xD0..=0xFF_u8, 1 => any::<u8>()];
     let argument = prop_oneof![4 => 0..5_u8, 1 => any::<u8>(), 1 => Just(0x10), 1 => Just(0xFF)];

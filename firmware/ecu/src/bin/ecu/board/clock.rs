@@ -1,5 +1,5 @@
-//! A free-running clock of microseconds (TIM2), apart from the timer that paces the milliseconds: if that one runs at
-//! a wrong rate, the controller sees it.
+//! A free-running clock of microseconds (TIM2), independent of the timer of the milliseconds: the controller detects a
+//! wrong rate of that timer.
 
 use stm32_metapac::TIM2;
 
@@ -7,7 +7,7 @@ use stm32_metapac::TIM2;
 pub struct Clock(());
 
 impl Clock {
-    /// Starts it from a timer clock of `timer_hz`.
+    /// Starts it at a timer clock of `timer_hz`.
     pub fn start(timer_hz: u32) -> Self {
         let prescaler = timer_hz / 1_000_000 - 1;
         TIM2.psc()

@@ -1,7 +1,7 @@
-//! Three converters, each with an injected sequence that TIM1 starts.
+//! Three converters, each with an injected sequence triggered by TIM1.
 //!
-//! The coils' currents come first in theirs: they have to be sampled in the middle of a pulse. The channels, their set-up
-//! and their flags belong to the part.
+//! The coil currents are first in their sequences, because they have to be sampled in the middle of a pulse. Channels,
+//! initialisation and flags depend on the part.
 
 use hitch_ecu::{AdcCode, Samples};
 use stm32_metapac::{ADC1, ADC2, ADC3};
@@ -12,7 +12,7 @@ use super::part::converters as part;
 pub struct Converters(());
 
 impl Converters {
-    /// Switches them on; they wait for the timer.
+    /// Switches them on; they wait for the trigger.
     pub fn start() -> Self {
         part::start_pins_and_clocks();
         for (adc, sequence) in [ADC1, ADC2, ADC3].into_iter().zip(&part::SEQUENCES) {
@@ -21,7 +21,7 @@ impl Converters {
         Self(())
     }
 
-    /// The samples of a millisecond, once they are all there.
+    /// The samples of a millisecond, once they are complete.
     pub fn take(&mut self) -> Option<Samples> {
         let converters = [ADC1, ADC2, ADC3];
         if !converters.iter().all(|adc| part::is_done(*adc)) {

@@ -1,4 +1,4 @@
-//! The code of the internal reference that the maker has measured for each part.
+//! The code of the internal reference, as measured by the manufacturer for each part.
 
 use hitch_ecu::{AdcCode, BoardScaling};
 
@@ -7,10 +7,10 @@ use super::part::scaling::SCALING;
 
 /// Voltage of the converters' reference on the board, mV.
 const REFERENCE_MV: u32 = 3_300;
-/// Tolerance of the internal reference, per mille (DS8626 and DS12288: 2.5 %), and a digit.
+/// Tolerance of the internal reference, per mille (DS8626 and DS12288: 2.5 %), plus one digit.
 const TOLERANCE_PER_MILLE: u32 = 26;
 
-/// The board's scaling with the code of this very part. A part without a plausible value gets the typical one.
+/// The board's scaling with the code of the part. A part without a plausible value gets the typical one.
 pub fn scaling() -> BoardScaling {
     // SAFETY: a half-word of the system memory, which is always there.
     let factory = u32::from(unsafe { (FACTORY_REFERENCE as *const u16).read_volatile() });

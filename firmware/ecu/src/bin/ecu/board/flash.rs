@@ -1,4 +1,4 @@
-//! Where the calibration and the log of faults are kept: the part's last sectors or pages, far from the program.
+//! Flash of calibration and fault log: the last sectors or pages of the part, separate from the program.
 
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
@@ -17,7 +17,7 @@ pub struct DataFlash {
     pieces: usize,
 }
 
-/// The flash refused, or was asked for what it can't do.
+/// The flash operation failed, or is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FlashError(NorFlashErrorKind);
 
@@ -27,7 +27,7 @@ impl NorFlashError for FlashError {
     }
 }
 
-/// The regions, which nothing else in the program touches: the log of faults, and the calibration behind it.
+/// The regions, which are used for nothing else: the fault log, followed by the calibration.
 pub fn regions() -> FlashRegions<DataFlash> {
     FlashRegions {
         calibration: DataFlash {
@@ -70,7 +70,7 @@ impl ErrorType for DataFlash {
 impl ReadNorFlash for DataFlash {
     const READ_SIZE: usize = 1;
 
-    /// Bytes whose error correction fails read as zeros: the checksum then marks the copy or the entry as damaged.
+    /// Bytes with failed error correction read as zeros: the checksum then marks the copy or the entry as damaged.
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
         self.check(offset, bytes.len(), 1)?;
         let first = self.address(offset);
@@ -114,8 +114,8 @@ impl NorFlash for DataFlash {
     }
 }
 
-/// Unlocks the flash, changes it, and locks it again. The data cache is off meanwhile and is reset afterwards: it is not
-/// kept up to date (RM0090, 3.5.3; RM0440, 3.3.4), and may be corrupted by reads while the other bank is written.
+/// Unlocks the flash, changes it, and locks it again. The data cache is off meanwhile and is reset afterwards: it is
+/// not updated (RM0090, 3.5.3; RM0440, 3.3.4), and may be corrupted by reads while the other bank is written.
 fn changed(work: impl FnOnce()) -> Result<(), FlashError> {
     if !is_usable() {
         return Err(FlashError(NorFlashErrorKind::Other));

@@ -1,4 +1,4 @@
-//! What a pin is for.
+//! Functions of the pins.
 
 use core::convert::Infallible;
 
@@ -32,7 +32,7 @@ pub fn input_with_pull_up(port: Gpio, pin: usize) {
     port.moder().modify(|w| w.set_moder(pin, Moder::INPUT));
 }
 
-/// A line that something else drives.
+/// An input driven by another circuit.
 pub fn input(port: Gpio, pin: usize) {
     port.pupdr().modify(|w| w.set_pupdr(pin, Pupdr::FLOATING));
     port.moder().modify(|w| w.set_moder(pin, Moder::INPUT));

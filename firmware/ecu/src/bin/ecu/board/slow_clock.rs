@@ -1,7 +1,7 @@
-//! The main clock, measured against the low-speed oscillator that the watchdog runs from.
+//! The main clock, measured against the low-speed oscillator of the watchdog.
 //!
-//! A timer on the main clock captures every eighth edge of the oscillator. All other timers share the main clock, so
-//! none of them can show that it runs at a wrong rate.
+//! A timer on the main clock captures every eighth edge of the oscillator. All other timers share the main clock and
+//! cannot detect its error.
 
 use hitch_quantities::units::PerMille;
 
@@ -33,8 +33,8 @@ impl SlowClock {
         }
     }
 
-    /// Takes a captured edge, if there is one. Called more often than edges come, at least four times a millisecond but
-    /// for the time of a step; an edge that was missed spoils its period only.
+    /// Processes a captured edge, if there is one. Called at least four times a millisecond except during a step, which
+    /// is more often than edges occur; a missed edge only invalidates its period.
     pub fn listen(&mut self) {
         let Some(capture) = part::take() else {
             return;
@@ -63,7 +63,7 @@ impl SlowClock {
         self.periods = 0;
     }
 
-    /// Rate of the main clock, per mille of what it was at the start; none until it has been measured.
+    /// Rate of the main clock, per mille of its rate at the start; `None` until it has been measured.
     pub const fn ratio(&self) -> Option<PerMille> {
         self.ratio
     }

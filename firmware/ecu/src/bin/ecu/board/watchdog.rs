@@ -1,4 +1,4 @@
-//! The independent watchdog. It has an oscillator of its own, and nothing stops it once it runs.
+//! The independent watchdog, with its own oscillator. It cannot be stopped once started.
 
 use hitch_ecu::Kick;
 use stm32_metapac::iwdg::vals::{Key, Pr};
@@ -11,7 +11,7 @@ const RELOAD: u16 = 80;
 pub struct Watchdog(());
 
 impl Watchdog {
-    /// Starts it with its longest period without a prescaler: 4 096 * 4 / 47 kHz = 348 ms at least, which covers a slow
+    /// Starts it with its longest period without a prescaler: at least 4 096 * 4 / 47 kHz = 348 ms, which covers a slow
     /// crystal and the tests at power-up. A debugger that halts the processor halts it too.
     pub fn start() -> Self {
         #[cfg(feature = "stm32f405")]
@@ -22,7 +22,7 @@ impl Watchdog {
         Self(())
     }
 
-    /// Shortens the period to that of operation. The first millisecond follows.
+    /// Sets the shorter period for operation, before the first millisecond.
     pub fn begin_operation(&mut self) {
         set_period(Pr::DIVIDE_BY4, RELOAD);
     }
