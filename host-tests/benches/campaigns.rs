@@ -1,7 +1,7 @@
-//! What campaigns cost: simulating each kind of run with each plant, and explaining a campaign from end to end.
+//! Run times: simulation of each kind of run with each plant, and explanation of complete campaigns.
 //!
-//! Simulated are the runs of the demonstration, in samples of its logger (50 Hz). Explained are lab campaigns of twenty
-//! runs; the bar is 10 s on two cores.
+//! The simulated runs are those of the demonstration, at the sample rate of its logger (50 Hz). The explained ones are
+//! lab campaigns of twenty runs; the limit is 10 s on two cores.
 
 use std::hint::black_box;
 use std::path::Path;

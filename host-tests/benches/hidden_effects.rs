@@ -1,13 +1,12 @@
-//! How often is the hidden effect named? Cases of the second rig, answered by `hitch explain` and by what is usual
-//! today.
+//! Detection rates of hidden effects: cases of the second rig, answered by `hitch explain` and by established methods.
 //!
 //! ```text
 //! cargo bench -p host-tests --bench hidden_effects -- --count 40 --family steady --plan lab
 //! cargo bench -p host-tests --bench hidden_effects -- --count 40 --family steady --plan lab --foreign
 //! ```
 //!
-//! Prints a Markdown table a family and plan, and every miss of the project's own method with the command that repeats
-//! it. The rig that measures shares no equation with the model that is fitted.
+//! Prints a Markdown table for each family and plan, and every failure of the project's own method with the command
+//! that repeats it. The rig shares no equation with the fitted model.
 
 use clap::Parser;
 use comfy_table::{Table, presets};
@@ -44,7 +43,7 @@ struct Arguments {
     plan: Vec<Plan>,
     #[command(flatten)]
     wish: WishArguments,
-    /// Machines that differ from their data sheet in every constant and have structures of their own: what has changed
+    /// Machines that differ from their data sheet in every constant and have structural differences: what has changed
     /// between two campaigns?
     #[arg(long, conflicts_with_all = ["effect", "kind", "fidelity", "rough"])]
     foreign: bool,
@@ -163,7 +162,7 @@ fn foreign_machines(
     machines.collect()
 }
 
-/// A machine and what the first method says of it, as text.
+/// A machine and the answer of the first method, as text.
 fn told(adopted: &Adopted, answers: &[Graded], errors: &[Option<f64>]) -> String {
     let sizes = |sizes: &[(&'static str, f64)]| {
         let sizes = sizes.iter().map(|(id, size)| format!("{id} {size:.4}"));
@@ -280,7 +279,7 @@ fn show(
     }
 }
 
-/// How often what a method states with some probability is so.
+/// Reliability of the stated probabilities.
 fn show_reliability(method: &dyn Method, answers: &[Graded]) {
     let reliability = Tally(answers.iter().collect()).reliability();
     if reliability.is_empty() {

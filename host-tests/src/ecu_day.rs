@@ -1,7 +1,7 @@
-//! A day's work of the ECU, drawn at random: an operator, an implement, a tool, a noisy bus, faults and power cuts.
+//! A random day of operation of the ECU: an operator, an implement, a tool, a noisy bus, faults and power cuts.
 //!
-//! It runs on this machine with the plant in closed loop, and what the ECU was told and what it answered is kept, so that
-//! the emulated ECU can be told the same.
+//! It runs on the host with the plant in closed loop. The inputs and outputs of the ECU are recorded, so that the
+//! emulated ECU can be run with the same inputs.
 
 use anyhow::Result;
 use fastrand::Rng;
@@ -11,7 +11,7 @@ use hitch_protocols::can::{ExtendedId, Frame, Id, StandardId};
 use hitch_quantities::{State, Trip};
 use hitch_workbench::ecu::{Bench, CutFlash, EcuMachine, OnHost, Operator};
 
-/// What the ECU was told and what it said, as bytes on its link, and its flash at the end.
+/// Inputs and outputs of the ECU as bytes on its link, and its flash at the end.
 #[derive(Debug, Default)]
 pub struct Day {
     /// Requests.
@@ -52,7 +52,7 @@ pub fn live(seed: u64, milliseconds: u64, flash: Vec<u8>) -> Result<Day> {
         let here_deg = bench.angle_deg();
         habits.act(&mut bench.operator, here_deg, day.is_locked, &mut random);
         fault.change(&mut random);
-        // Some faults are for good; then somebody turns the key.
+        // Some faults are permanent; the power is then switched off and on.
         let often = if day.is_dead { 3_000 } else { 120_000 };
         if random.u32(0..often) == 0 {
             machine.power_cycle()?;
@@ -91,7 +91,7 @@ impl Day {
     }
 }
 
-/// The operator does something every other second. Whoever has switched something undoes it some seconds later.
+/// The operator acts every other second. Each switch is switched back some seconds later.
 #[derive(Default)]
 struct Habits {
     undone_in_ms: u32,
@@ -124,7 +124,7 @@ impl Habits {
                 let locked = operator.panel.with(Contact::FieldMode, false);
                 operator.panel = locked.with(Contact::Service, true);
             }
-            // A mechanic who teaches, until called away.
+            // Teaching by a mechanic, with an interruption.
             14 => {
                 let served = operator.panel.with(Contact::Service, true);
                 operator.panel = served.with(Contact::Up, true);
@@ -184,7 +184,7 @@ impl Tampering {
     }
 }
 
-/// What others say on the bus in a millisecond: mostly nothing, more with a tool at work (`served`).
+/// Frames of other nodes in a millisecond: mostly none, more while a tool is connected (`served`).
 fn traffic(random: &mut Rng, angle_deg: f64, served: bool) -> Vec<Frame> {
     let busy = if served { 200 } else { 20 };
     // A storm now and then: more than the bus can carry.
@@ -212,7 +212,7 @@ fn frame(random: &mut Rng, angle_deg: f64) -> Frame {
             bytes = tool_command(random, bytes);
             0x18EF_80F9
         }
-        // Somebody wants our address: then the tool talks to nobody until the next start.
+        // Another node claims our address: the tool gets no answers until the next start.
         7 if random.u8(0..100) == 0 => 0x18EE_FF80,
         7 => *random
             .choice(&[0x18EA_80F9, 0x18EE_FF85, 0x18EC_80F0, 0x18EB_80F0])

@@ -1,4 +1,4 @@
-//! A tuning tool on the ECU's bus: as much of XCP as it takes to change a number and keep it.
+//! A tuning tool on the ECU's bus: the part of XCP that is needed to change and store a value.
 
 use anyhow::{Result, ensure};
 use hitch_ecu::Contact;
@@ -65,7 +65,7 @@ pub fn store(bench: &mut Bench<'_>, machine: &mut impl EcuMachine) -> Result<()>
     obeyed(bench, machine, &[0xF9, 0x01, 0, 0])
 }
 
-/// True if these frames say that the working page has been stored.
+/// Whether these frames report that the working page has been stored.
 #[must_use]
 pub fn says_stored(said: &[Frame]) -> bool {
     said.iter()

@@ -1,4 +1,4 @@
-//! Runs the firmware's image on an emulated Cortex-M4, from a file to a file.
+//! Runs the firmware's image on an emulated Cortex-M4, with files as input and output.
 
 use std::fs::File;
 use std::io::Read;
@@ -17,7 +17,7 @@ const PATIENCE: Duration = Duration::from_secs(900);
 
 const TICK_BYTES: usize = size_of::<u32>();
 
-/// What the image did.
+/// Result of the image.
 pub struct EmulatedRun {
     /// Image of the outputs of each step.
     pub outputs: Vec<[u8; OUTPUT_BYTES]>,
@@ -47,7 +47,7 @@ pub fn stack_bound() -> Result<u64> {
     bound.with_context(|| format!("{VARIABLE} is no number: run `cargo xtask test`, which sets it"))
 }
 
-/// Boots the image, lets it step through `inputs`, and collects what it wrote.
+/// Boots the image, steps it through `inputs`, and returns its output.
 pub fn run(image: &Path, inputs: &[[u8; INPUT_BYTES]]) -> Result<EmulatedRun> {
     let folder = tempfile::tempdir()?;
     let console = boot(image, folder.path(), Mode::Steps, inputs.as_flattened())?;
@@ -65,11 +65,11 @@ pub fn run(image: &Path, inputs: &[[u8; INPUT_BYTES]]) -> Result<EmulatedRun> {
     })
 }
 
-/// What came back from the emulator.
+/// Output of the emulator.
 pub struct Console {
-    /// What the image said.
+    /// Messages of the image.
     pub text: String,
-    /// What it wrote.
+    /// Data written by the image.
     pub outputs: Vec<u8>,
 }
 

@@ -1,7 +1,7 @@
-//! `firmware/instructions.txt`: how many instructions the controller took on the emulated ECU when somebody last looked.
+//! `firmware/instructions.txt`: reference counts of the controller's instructions on the emulated ECU.
 //!
-//! A count that has moved away from its line is an error; with `HITCH_WRITE_INSTRUCTIONS=1` in the environment the lines
-//! are written anew instead, and the change shows in review. Some have a bar besides, which no writing moves.
+//! A count that deviates from its reference is an error; with `HITCH_WRITE_INSTRUCTIONS=1` in the environment the
+//! references are updated instead, and the change is visible in review. Some counts also have a fixed limit.
 
 use std::{env, fs};
 
@@ -21,7 +21,7 @@ const IMAGES_HEADING: &str = "\
 # Instructions from the converters' codes to the pulses, at most, in the images as they are flashed, on the models of both
 # parts. Written by `HITCH_WRITE_INSTRUCTIONS=1 cargo xtask test`.
 ";
-/// Growth that isn't worth a line in a review, per mille: changes elsewhere move what the compiler merges.
+/// Tolerated growth, per mille: changes elsewhere affect what the compiler merges.
 const GROWTH_PER_MILLE: u64 = 60;
 /// Another compiler may do with so much less.
 const SHRINKAGE_PER_MILLE: u64 = 100;

@@ -1,4 +1,4 @@
-//! A lab that can measure a planned manoeuvre on the second rig with something hidden in it, and explain what it has.
+//! A lab that measures a planned manoeuvre on the second rig with a hidden effect, and explains its campaign.
 
 use hitch_campaign::{Campaign, Noise, Run};
 use hitch_identification::data::experiment::Experiment;
@@ -113,5 +113,5 @@ impl Lab {
     }
 }
 
-/// What the rig's small print and all noise are drawn from.
+/// Seed of the rig's structural details and of all noise.
 const SEED: u64 = 7;

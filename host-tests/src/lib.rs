@@ -1,4 +1,4 @@
-//! Tests across the crates; see `tests/`. Here is what several of them need.
+//! Common parts of the tests across the crates; see `tests/`.
 
 pub mod board;
 pub mod drawn_hitches;

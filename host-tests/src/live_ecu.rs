@@ -1,4 +1,4 @@
-//! An ECU with plant and operator, live: its bus is a TCP port, and time is real.
+//! A live ECU with plant and operator: its bus is a TCP port, and it runs in real time.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -8,7 +8,7 @@ use hitch_ecu::{AdcCode, Contact, Contacts};
 use hitch_workbench::ecu::{Bench, Bus, EcuMachine, Order};
 use hitch_workbench::slcan_server::SlcanServer;
 
-/// What the operator does.
+/// Actions of the operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operator {
     /// Leaves the lever where it is, and so the hitch locked.

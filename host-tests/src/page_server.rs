@@ -1,4 +1,4 @@
-//! `hitch serve` as a browser talks to it.
+//! `hitch serve`, accessed as by a browser.
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
@@ -24,7 +24,7 @@ pub struct PageServer {
     pub path: String,
 }
 
-/// What the server answered.
+/// Response of the server.
 #[derive(Debug)]
 pub struct Answer {
     /// Status code.

@@ -1,4 +1,4 @@
-//! The program `hitch` as a user runs it.
+//! Runs the program `hitch` as a user does.
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;

@@ -1,4 +1,4 @@
-//! Python environments with pinned packages, made once under the target folder.
+//! Python environments with pinned packages, created once under the target folder.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,10 +7,10 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 use hitch_quantities::crc32::Crc32;
 
-/// Runs a command; what it said.
+/// Runs a command; returns its output.
 ///
 /// # Errors
-/// If it can't be run or fails; with what it said.
+/// If it cannot be run or fails; with its output.
 pub fn run(command: &mut Command) -> Result<String> {
     let output = command
         .output()

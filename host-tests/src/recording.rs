@@ -1,7 +1,7 @@
-//! Records what the controller sees while it moves a hitch through a busy, faulty minute.
+//! Records the controller's inputs during a minute of moves and faults.
 //!
-//! The plant is the dynamic one; its sensors have noise. The script holds moves both ways, reversals, both ends of the
-//! stroke, the button, and every way in which a signal can be missing or absurd.
+//! The plant is the dynamic one, with noisy sensors. The script contains moves in both directions, reversals, both ends
+//! of the stroke, the button, and missing and implausible values of every signal.
 
 use hitch_plant::{Currents, HitchRig, Plant, Rig};
 use hitch_quantities::signals::INPUT_BYTES;
@@ -26,7 +26,7 @@ const PRESSURE_NOISE_MILLIBAR: i32 = 150;
 const CURRENT_NOISE_MILLIAMPERE: i32 = 5;
 const SUPPLY_V: f64 = 13.8;
 
-/// What happens to the signals on their way from the hitch to the controller.
+/// Modifications of the signals between hitch and controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fault {
     None,

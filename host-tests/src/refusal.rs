@@ -1,4 +1,4 @@
-//! How the program refuses what it is given: one clear line, exit code 2, no output file, nothing on standard output.
+//! Form of a rejection: one clear line, exit code 2, no output file, no standard output.
 use std::fs;
 use std::path::Path;
 use std::process::Output;

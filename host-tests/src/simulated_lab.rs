@@ -1,5 +1,5 @@
-//! A lab campaign that the project's own plant is measured in: every parameter of its effects means what the catalogue
-//! says. The currents run on between samples, loads are weighed wrong, instruments are noisy and have digits.
+//! A lab campaign simulated with the project's own plant, so that the parameters of its effects have the meaning of the
+//! catalogue. Currents vary between samples, loads have weighing errors, instruments have noise and finite resolution.
 
 use hitch_campaign::{Bench, Campaign, Noise, Run};
 use hitch_plant::simulation::simulate;

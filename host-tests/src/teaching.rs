@@ -1,4 +1,4 @@
-//! Teaching a plant's controller, as service does it.
+//! Teaching of the controller of a plant, as in service.
 
 use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_effects::find;
@@ -36,8 +36,8 @@ pub fn typical(lift_shift_a: f64, lower_shift_a: f64) -> Model {
     ])
 }
 
-/// Holds switch and button for `steps`, or until there is a result; what came of it once they are let go. `tell` changes
-/// what the controller is told.
+/// Holds switch and button for `steps`, or until there is a result; returns the result after their release. `tell` can
+/// modify the controller's inputs.
 pub fn teach_with(
     model: &Model,
     load_kg: f64,

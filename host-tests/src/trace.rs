@@ -1,4 +1,4 @@
-//! Inputs of the controller, one record a step, to run the same steps in several places.
+//! Inputs of the controller, one record per step, for replaying the same steps in several places.
 
 use std::path::{Path, PathBuf};
 

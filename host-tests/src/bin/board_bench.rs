@@ -1,6 +1,6 @@
-//! Runs scenarios on the images as they are flashed: `board-bench LIBRARY PART IMAGE [SCENARIO...]`.
+//! Runs scenarios on the flashed images: `board-bench LIBRARY PART IMAGE [SCENARIO...]`.
 //!
-//! The library is Unicorn's, which is GPL: it is loaded here, in a process of its own, and linked nowhere.
+//! The library is Unicorn, which is GPL: it is loaded in this separate process, and not linked.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -39,7 +39,7 @@ struct Arguments {
     /// Only machines of this kind
     #[arg(long, value_enum)]
     only: Option<Kind>,
-    /// Give each machine spools of second order instead of its own: natural frequency in rad/s, damping, dead time in ms
+    /// Give each machine second-order spools instead of its own: natural frequency in rad/s, damping, dead time in ms
     #[arg(long, value_name = "FREQUENCY,DAMPING,DEAD", value_parser = second_order)]
     spool: Option<SpoolMotion>,
     /// Another value in it, as in `hitch loop --set`
@@ -142,7 +142,7 @@ fn csv(moves: &[MoveFigures]) -> String {
     text
 }
 
-/// A line a millisecond: what the hitch did, and what the controller thought and asked for.
+/// One line per millisecond: state of the hitch, and estimates and outputs of the controller.
 fn trace(drawn: &Drawn, calibration: &ValidCalibration) -> String {
     let mut text = "time_s,lever_deg,rocker_deg,cylinder_bar,lift_a,lower_a,estimated_mm,estimated_mm_s,demanded_mm_s\n"
         .to_owned();

@@ -1,4 +1,4 @@
-//! Records the closed loop anew: only after the inputs of the controller got another layout, or the script changed.
+//! Records the closed loop again: only after a change of the input layout of the controller, or of the script.
 
 use anyhow::Result;
 use host_tests::{recording, trace};

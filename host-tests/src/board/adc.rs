@@ -157,7 +157,7 @@ impl Converter {
         }
     }
 
-    /// True if somebody who waits for the end of the sequence has to wait on.
+    /// Whether the end of the sequence has not been reached.
     #[must_use]
     pub fn is_waiting(&self) -> bool {
         !self.finished
@@ -180,7 +180,7 @@ impl Converter {
         }
     }
 
-    /// After a write at `offset`; what is wrong with it, if anything.
+    /// After a write at `offset`; returns its fault, if any.
     pub fn written(
         &mut self,
         offset: u32,
@@ -215,7 +215,7 @@ impl Converter {
         None
     }
 
-    /// What is wrong with its set-up.
+    /// Faults of its initialisation.
     #[must_use]
     pub fn audit(
         &self,

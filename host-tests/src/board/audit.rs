@@ -1,4 +1,5 @@
-//! What an image has set up, held against the manuals: clocks, wait states, pulses, converters, bus, pins, watchdog.
+//! Checks the initialisation by an image against the manuals: clocks, wait states, pulses, converters, bus, pins,
+//! watchdog.
 
 use super::can;
 use super::chip::Chip;
@@ -8,7 +9,7 @@ use super::part::{DBGMCU, Part, Pin, Port};
 /// off 25 ms after the processor has died.
 const WATCHDOG_NS: [f64; 2] = [4e6, 25e6];
 
-/// What is wrong, a line each.
+/// Faults of the initialisation, one line each.
 pub fn findings(chip: &Chip) -> Vec<String> {
     let mut findings = clocks(chip);
     findings.extend(chip.pwm.audit(&chip.registers, chip.timer_hz()[1]));

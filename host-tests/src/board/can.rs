@@ -389,7 +389,7 @@ fn fdcan_frame([identifier, second, low, high]: [u32; 4]) -> Option<Frame> {
     )
 }
 
-/// Bit rate and sampling point that the image has set, and what is wrong with them.
+/// Bit rate and sampling point as set by the image, with their faults.
 #[must_use]
 pub fn audit(part: Part, registers: &Registers, apb1_hz: f64, crystal_hz: f64) -> Vec<String> {
     let (clock_hz, prescaler, before, after, jump) = match part {

@@ -1,4 +1,4 @@
-//! The clock tree: what frequency each part of the chip has after what the image wrote.
+//! The clock tree: the frequency of each part of the chip for the registers written by the image.
 
 use super::part::{PWR, Part};
 use super::registers::Registers;
@@ -25,9 +25,9 @@ pub struct Clocks {
     /// When the crystal oscillates, ns; `None` while it is off.
     crystal_ready_ns: Option<f64>,
     pll_ready_ns: Option<f64>,
-    /// What the crystal's frequency is of its nominal one.
+    /// Ratio of the crystal's frequency to its nominal one.
     pub crystal_factor: f64,
-    /// The image was told of the failure and has not cleared the flag.
+    /// The failure was signalled to the image, and the flag is not yet cleared.
     security_flag: bool,
 }
 
@@ -78,7 +78,7 @@ impl Clocks {
             (_, 0x08) => stored & !0b1100 | (stored & 0b11) << 2,
             (Part::Stm32f405, 0x0C) => stored | u32::from(self.security_flag) << 7,
             (Part::Stm32g474, 0x1C) => stored | u32::from(self.security_flag) << 8,
-            // The low-speed oscillator is on as soon as it is asked for, or the watchdog runs.
+            // The low-speed oscillator is on as soon as it is requested, or the watchdog runs.
             (Part::Stm32f405, 0x74) | (Part::Stm32g474, 0x94) => stored | (stored & 1) << 1,
             _ => stored,
         }

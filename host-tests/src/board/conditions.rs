@@ -1,10 +1,10 @@
-//! What surrounds the part: oscillators, voltages, and what is wired to its pins.
+//! Surroundings of the part: oscillators, voltages, and circuits at its pins.
 
 use std::collections::HashMap;
 
 use super::part::{Part, Pin};
 
-/// What the scenario sets and may change at any time.
+/// Conditions that a scenario sets and may change at any time.
 #[derive(Clone, Debug)]
 pub struct Conditions {
     /// Time until the crystal oscillates, ns; `None` if it never does.

@@ -71,7 +71,7 @@ pub struct SlowClockCapture {
     base: u32,
     /// Its counter.
     pub counter: Counter,
-    /// The edge that was captured last when somebody looked.
+    /// The edge that was captured last at the time of the last read.
     seen: u64,
 }
 

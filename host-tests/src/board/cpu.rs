@@ -42,7 +42,7 @@ pub enum Register {
     R2 = 68,
     /// Fourth argument.
     R3 = 69,
-    /// Saved by who is called, and so are those up to R11.
+    /// Saved by the callee, as are those up to R11.
     R4 = 70,
     /// See R4.
     R5 = 71,
@@ -67,7 +67,7 @@ pub enum Register {
 impl Register {
     /// All but the program counter.
     pub const ALL: [Self; 16] = [
-        // The program status first: it says which stack pointer there is.
+        // The program status first: it selects the stack pointer.
         Self::Xpsr,
         Self::R0,
         Self::R1,
@@ -87,7 +87,7 @@ impl Register {
     ];
 }
 
-/// What the processor is connected to.
+/// Peripherals of the processor.
 pub trait Bus {
     /// A read of `size` bytes from a peripheral.
     fn read(&mut self, address: u32, size: u32) -> u32;
@@ -135,7 +135,7 @@ struct Functions {
     ) -> c_int,
 }
 
-/// What callbacks get.
+/// Argument of the callbacks.
 struct Attached<B> {
     bus: B,
     emu_stop: unsafe extern "C" fn(Engine) -> c_int,
@@ -150,7 +150,7 @@ struct Window<B> {
     attached: *mut Attached<B>,
 }
 
-/// The processor and what it is connected to.
+/// The processor and its peripherals.
 pub struct Cpu<B: Bus> {
     engine: Engine,
     functions: Functions,
@@ -220,7 +220,7 @@ impl<B: Bus> Cpu<B> {
         check(status, "uc_hook_add")
     }
 
-    /// What it is connected to.
+    /// Its peripherals.
     pub fn bus(&mut self) -> &mut B {
         // SAFETY: `attached` is valid until `drop`, and no callback runs while `self` is borrowed here.
         unsafe { &mut (*self.attached).bus }
@@ -331,7 +331,7 @@ impl<B: Bus> Cpu<B> {
     /// Runs from `pc` on until the bus asks for a stop; the address of the next instruction.
     ///
     /// # Errors
-    /// If the processor meets an instruction that it doesn't know, or an address where nothing is.
+    /// If the processor meets an unknown instruction or an unmapped address.
     pub fn run(&mut self, pc: u32) -> Result<u32> {
         // SAFETY: the engine is valid; callbacks use `attached` only while this runs.
         let status = unsafe {
@@ -410,7 +410,7 @@ fn stop_if_asked<B: Bus>(engine: Engine, attached: &Attached<B>) {
 }
 
 unsafe extern "C" fn on_block<B: Bus>(engine: Engine, address: u64, size: u32, data: *mut c_void) {
-    // SAFETY: `data` is what `hook` gave, and nobody else uses it while the processor runs.
+    // SAFETY: `data` was set by `hook`, and is not used elsewhere while the processor runs.
     let attached = unsafe { &mut *data.cast::<Attached<B>>() };
     let address = address as u32;
     let count = attached.counts.known(address, size);
@@ -474,7 +474,7 @@ unsafe extern "C" fn on_read<B: Bus>(
     size: c_uint,
     data: *mut c_void,
 ) -> u64 {
-    // SAFETY: `data` is the window that `map_bus` gave; nobody else uses what it leads to while the processor runs.
+    // SAFETY: `data` is the window set by `map_bus`; its target is not used elsewhere while the processor runs.
     let (base, attached) = unsafe {
         let window = &*data.cast::<Window<B>>();
         (window.base, &mut *window.attached)

@@ -21,7 +21,7 @@ const fn program_ns(part: Part) -> f64 {
     }
 }
 
-/// Something that changes what the flash holds.
+/// An operation that changes the contents of the flash.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Operation {
     /// A sector or page of the data is erased.
@@ -33,7 +33,7 @@ pub enum Operation {
     Program {
         /// Where.
         offset: u32,
-        /// What.
+        /// Kind.
         bytes: Vec<u8>,
     },
 }
@@ -47,7 +47,7 @@ pub enum Extent {
     Half,
 }
 
-/// What the flash holds: this survives a power cut.
+/// Contents of the flash, which survive a power cut.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contents {
     /// Bytes of the data's place.
@@ -111,12 +111,12 @@ impl Contents {
     }
 }
 
-/// What a write to the controller or the flash led to.
+/// Result of a write to the controller or the flash.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// Nothing out of the ordinary.
     None,
-    /// The image did what the manual forbids.
+    /// The image violated the manual.
     Violation(String),
 }
 
@@ -125,7 +125,7 @@ pub enum Effect {
 pub struct Flash {
     part: Part,
     base: u32,
-    /// What it holds.
+    /// Contents.
     pub contents: Contents,
     key: u32,
     unlocked: bool,

@@ -158,7 +158,7 @@ impl Board {
         self.cpu.bus()
     }
 
-    /// What the image did that the manuals forbid, before the last reset and since.
+    /// Violations of the manuals by the image, before the last reset and since.
     pub fn violations(&mut self) -> BTreeSet<String> {
         let now = self.cpu.bus().violations.iter().cloned();
         let mut all = self.past_violations.clone();
@@ -292,7 +292,7 @@ impl Board {
     /// Runs until this time, ns.
     ///
     /// # Errors
-    /// If the processor meets something that it doesn't know.
+    /// If the processor meets an unknown instruction or address.
     pub fn run_until(&mut self, until_ns: f64) -> Result<()> {
         let chip = self.cpu.bus();
         chip.until_ns = until_ns;
@@ -324,7 +324,7 @@ impl Board {
     /// Runs for some milliseconds.
     ///
     /// # Errors
-    /// If the processor meets something that it doesn't know.
+    /// If the processor meets an unknown instruction or address.
     pub fn run_ms(&mut self, milliseconds: f64) -> Result<()> {
         let until_ns = self.cpu.bus().now_ns + milliseconds * MILLISECOND_NS;
         self.run_until(until_ns)
@@ -411,7 +411,7 @@ impl Board {
         }
     }
 
-    /// What is at the board's outputs.
+    /// Levels of the board's outputs.
     pub fn drive(&mut self) -> Reply {
         let steps = f64::from(PWM_STEPS);
         let chip = self.cpu.bus();

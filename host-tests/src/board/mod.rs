@@ -1,5 +1,5 @@
-//! A bench for the images as they are flashed: the ELF files run on an emulated processor with models of the parts'
-//! peripherals, and the plant on its pins.
+//! A bench for the flashed images: the ELF files run on an emulated processor with models of the peripherals, and with
+//! the plant at the pins.
 //!
 //! ```text
 //!   ELF -> Cpu (Unicorn) <-> Chip: clocks, flash, pins, timers, converters, CAN, watchdog
@@ -8,8 +8,9 @@
 //!                            Board, an `EcuMachine` <-> Bench: plant, coils, sensors, operator
 //! ```
 //!
-//! The models go by the reference manuals (RM0090, RM0440) and data sheets. What the image must not do is recorded as
-//! a violation, and [`Chip::audit`] judges what it has set up. Time is counted in instructions, two clocks each.
+//! The models follow the reference manuals (RM0090, RM0440) and data sheets. Forbidden operations of the image are
+//! recorded as violations, and [`Chip::audit`] checks its initialisation. Time is counted in instructions of two cycles
+//! each.
 
 mod adc;
 mod audit;

@@ -1,4 +1,4 @@
-//! The two parts: what their memories, peripherals and pins are.
+//! The two parts: memories, peripherals and pins.
 
 use std::fmt;
 use std::str::FromStr;

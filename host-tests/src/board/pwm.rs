@@ -120,7 +120,7 @@ impl Pwm {
         registers.get(self.base + CCR1 + 4 * channel)
     }
 
-    /// What is wrong with the timer's set-up for two half-bridge-less drivers at 16 kHz and a trigger a millisecond.
+    /// Faults of the timer's configuration for two low-side drivers at 16 kHz and a trigger per millisecond.
     #[must_use]
     pub fn audit(&self, registers: &Registers, timer_hz: f64) -> Vec<String> {
         let mut findings = Vec::new();

@@ -1,4 +1,4 @@
-//! Registers as they were written.
+//! Registers as written.
 
 use std::collections::HashMap;
 

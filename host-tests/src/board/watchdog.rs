@@ -86,7 +86,7 @@ impl Watchdog {
         }
     }
 
-    /// A write at `offset`; what is wrong with it, if anything.
+    /// A write at `offset`; returns its fault, if any.
     pub fn write(&mut self, offset: u32, value: u32, now_ns: f64) -> Option<String> {
         self.settle(now_ns);
         let arrival_ns = now_ns + UPDATE_CYCLES / self.slow_clock_hz * 1e9;

@@ -1,5 +1,4 @@
-//! From a seed to a machine: every unit of a series, on a cold morning or a hot afternoon, with what happens to hang on
-//! it.
+//! Draws a machine from a seed: part-to-part variation, oil temperature and load.
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -10,7 +9,7 @@ use crate::second_rig::physics::{Physics, SpoolMotion, Stiction};
 
 /// Furthest that a threshold is off the data sheet, A.
 const MOST_SHIFT_A: f64 = 0.1;
-/// Lowest and highest angle that is asked for, degree.
+/// Lowest and highest commanded angle, degree.
 const RANGE_DEG: (f64, f64) = (47.0, 133.0);
 /// Shortest and longest move, degree.
 const MOVE_DEG: (f64, f64) = (2.0, 80.0);
@@ -26,10 +25,10 @@ pub struct Readings {
     pub pressures: bool,
 }
 
-/// A machine and what is asked of it.
+/// A machine and its moves.
 #[derive(Debug, Clone)]
 pub struct Drawn {
-    /// What it was drawn from.
+    /// Seed.
     pub seed: u64,
     /// Whether its effects have more structure than textbooks give them.
     pub structured: bool,

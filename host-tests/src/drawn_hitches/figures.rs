@@ -1,15 +1,15 @@
-//! Tables over many moves: the bars of motion, and the worst cases.
+//! Tables over many moves: the motion limits, and the worst cases.
 
 use super::draw::Drawn;
 use super::session::MoveFigures;
 
 /// A figure of a move with its name and bar.
 pub struct Figure {
-    /// What it is.
+    /// Name.
     pub name: &'static str,
     /// How it is read off a move.
     pub of: fn(&MoveFigures) -> f64,
-    /// What the largest one may be; the time ratio has bars of its own.
+    /// Limit of the largest value; the time ratio has its own limits.
     pub bar: f64,
 }
 
@@ -36,7 +36,7 @@ pub const FIGURES: [Figure; 6] = [
         bar: 1.5,
     },
     Figure {
-        name: "coil activations after arrival",
+        name: "switched on after arrival",
         of: |figures| f64::from(figures.switched_on_after),
         bar: 0.0,
     },
@@ -89,7 +89,7 @@ pub fn table(title: &str, moves: &[&MoveFigures]) -> String {
     text
 }
 
-/// The worst moves by each figure, with what their machines have.
+/// The worst moves by each figure, with the properties of their machines.
 #[must_use]
 pub fn worst(moves: &[MoveFigures], machines: &[Drawn], count: usize) -> String {
     let mut text = String::new();

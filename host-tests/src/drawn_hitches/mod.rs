@@ -1,12 +1,11 @@
-//! The controller on hitches that it has never met, taught or not: drawn from a seed, driven through what
-//! `hitch controller` is told and answers.
+//! The controller on unknown hitches, taught or not: drawn from a seed, and driven through the interface of `hitch
+//! controller`.
 //!
 //! ```text
-//! draw      a seed -> a machine of the second rig, its sensors, and the moves that are asked of it
+//! draw      a seed -> a machine of the second rig, its sensors, and its moves
 //! shortest  the shortest manoeuvre that this machine allows for a move
-//! teaching  the firmware teaches itself the machine, as service does it
-//! session   power-up, picking the hitch up, the moves, and the minute after the last
-//! figures   what the bars of motion are about, and who is worst
+//! teaching  the firmware's teaching of this machine, as in service session   power-up, lever capture, the moves, and
+//! the minute after the last figures   the figures of the motion limits, and the worst cases
 //! ```
 
 pub mod draw;

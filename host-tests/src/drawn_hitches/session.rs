@@ -1,4 +1,4 @@
-//! One machine from power-up on: the hitch is picked up, moved, and watched for a minute.
+//! One machine from power-up: lever capture, moves, and observation for one minute.
 
 use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_controller::Controller;
@@ -48,7 +48,7 @@ pub struct MoveFigures {
     pub switched_on_after: u32,
     /// Peak to peak of the cylinder pressure over that of the shortest manoeuvre.
     pub swing_ratio: f64,
-    /// The first fault, and what tripped the envelope if it was that.
+    /// The first fault, and the row of the envelope if it tripped.
     pub fault: Option<(Fault, Option<Trip>)>,
 }
 
@@ -65,7 +65,7 @@ pub struct Instant {
     pub estimated_mm: f64,
     /// Piston speed as the controller estimates it, and as it asks the valves for it, mm/s; up is positive.
     pub speeds_mm_s: [f64; 2],
-    /// The controller's fault, and what tripped the envelope if it was that.
+    /// The controller's fault, and the row of the envelope if it tripped.
     pub fault: Option<(Fault, Option<Trip>)>,
 }
 
@@ -96,7 +96,7 @@ impl<'a> Session<'a> {
         self.step_with(lever_deg, |_| ())
     }
 
-    /// The same; `tell` changes what the controller is told.
+    /// The same; `tell` can modify the controller's inputs.
     pub fn step_with(&mut self, lever_deg: f64, tell: impl FnOnce(&mut Inputs)) -> Instant {
         let mut inputs = self.inputs(lever_deg);
         tell(&mut inputs);
@@ -121,13 +121,13 @@ impl<'a> Session<'a> {
         &self.hitch
     }
 
-    /// What teaching found, once it is over.
+    /// The result of teaching, once it has ended.
     #[must_use]
     pub fn taught(&self) -> Option<Result<Taught, TeachError>> {
         self.controller.taught()
     }
 
-    /// What a line of `hitch controller` says: no measured currents, and only sensors that are there.
+    /// The inputs of a line of `hitch controller`: no measured currents, and only available sensors.
     fn inputs(&mut self, lever_deg: f64) -> Inputs {
         let milli = |value: f64| (value * 1e3).round() as i32;
         let mut noise = || -> f64 { StandardNormal.sample(&mut self.random) };
@@ -157,7 +157,7 @@ impl<'a> Session<'a> {
         self.pick_up_with(|_| ());
     }
 
-    /// The same; `tell` changes what the controller is told.
+    /// The same; `tell` can modify the controller's inputs.
     pub fn pick_up_with(&mut self, tell: impl Fn(&mut Inputs)) {
         let here_deg = self.hitch.rocker_deg();
         for (steps, away_deg) in [(300, -3.0), (500, 0.0)] {

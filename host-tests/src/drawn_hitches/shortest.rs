@@ -1,5 +1,5 @@
-//! The shortest manoeuvre that a machine allows: the valve opens from its threshold to saturation in an edge, stays
-//! open, and closes with the same edge, so that the hitch comes to rest on the set point. Short moves don't open fully.
+//! The shortest manoeuvre of a machine: the valve opens from its threshold to saturation in an edge, stays open, and
+//! closes with the same edge, so that the hitch comes to rest at the set point. In short moves it does not open fully.
 
 use super::draw::Drawn;
 use crate::second_rig::data_sheet::{LIFT_TABLE, LOWER_TABLE};
@@ -98,7 +98,7 @@ fn drive(drawn: &Drawn, from_deg: f64, to_deg: f64, on_s: f64) -> Tried {
         if beyond(&hitch).abs() <= ARRIVED_DEG {
             arrived = arrived.or(Some(step + 1));
         }
-        // Far beyond: its figures won't be asked for.
+        // Far beyond: its figures are not used.
         if beyond(&hitch) > 8.0 {
             break;
         }

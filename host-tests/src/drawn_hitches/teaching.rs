@@ -1,4 +1,4 @@
-//! The firmware teaches itself a drawn machine, as service does it.
+//! Teaching of a drawn machine by the firmware, as in service.
 
 use hitch_control::commissioning::teach::TeachError;
 use hitch_quantities::ValidCalibration;
@@ -7,7 +7,7 @@ use hitch_quantities::units::MilliDegreePerSecond;
 use super::draw::Drawn;
 use super::session::Session;
 
-/// Longest that somebody holds switch and button, ms.
+/// Longest time for which switch and button are held, ms.
 const LONGEST_MS: usize = 120_000;
 /// Where the lever rests meanwhile, degree.
 const LEVER_DEG: f64 = 60.0;

@@ -28,7 +28,7 @@ pub enum Kind {
 /// A machine, and how its sensor freezes.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// The machine and the one move that is asked of it.
+    /// The machine and its move.
     pub drawn: Drawn,
     /// How.
     pub kind: Kind,
@@ -36,7 +36,7 @@ pub struct Case {
     pub instant_ms: usize,
 }
 
-/// What a freeze cost.
+/// Effect of a freeze.
 #[derive(Debug, Clone, Copy)]
 pub struct Cost {
     /// Seed of the case.
@@ -45,7 +45,7 @@ pub struct Cost {
     pub extra_deg: f64,
     /// From the freeze until both coils are off for the first time, ms.
     pub off_after_ms: Option<usize>,
-    /// The first fault, and what tripped the envelope if it was that.
+    /// The first fault, and the row of the envelope if it tripped.
     pub fault: Option<(Fault, Option<Trip>)>,
 }
 

@@ -1,5 +1,5 @@
-//! Machines with good sensors that do what looks like a frozen one: they stick, creep, are corrected, land on the
-//! ground and run into their end stops.
+//! Machines with healthy sensors in conditions that resemble a frozen one: stick-slip, creep, corrections, ground
+//! contact and end stops.
 
 use hitch_quantities::units::{MilliDegree, PerMille};
 use hitch_quantities::{Fault, Trip, ValidCalibration};
@@ -26,7 +26,7 @@ pub struct FalseTrip {
     pub at_ms: usize,
     /// Where the hitch was and the lever, degree.
     pub place_deg: [f64; 2],
-    /// What it was reported as; `None` if the hitch rests far from its lever without any reason.
+    /// The reported fault; `None` if the hitch rests far from its lever without a reason.
     pub fault: Option<(Fault, Option<Trip>)>,
 }
 
@@ -34,7 +34,7 @@ pub struct FalseTrip {
 const RESTED_MS: usize = 3_000;
 const FAR_DEG: f64 = 1.0;
 
-/// A machine and what surrounds it.
+/// A machine and its conditions.
 struct Surroundings {
     drawn: Drawn,
     /// How far the sensor is turned on its shaft, degree.
@@ -127,7 +127,7 @@ fn next_lever_deg(lever_deg: f64, random: &mut Pcg64) -> f64 {
     .clamp(44.0, 136.0)
 }
 
-/// Drives the machine of a seed; what it reported first.
+/// Drives the machine of a seed; returns its first report.
 #[must_use]
 pub fn first_fault(seed: u64, calibration: &ValidCalibration) -> Option<FalseTrip> {
     first_fault_watched(seed, calibration, |_, _| {})

@@ -1,9 +1,9 @@
-//! The watch of the angle on drawn machines: what a frozen sensor costs, and that a healthy one trips nothing.
+//! Detection of a frozen angle on drawn machines: extra travel with a frozen sensor, and false trips with a healthy
+//! one.
 //!
 //! ```text
-//! freeze    one machine, one move, one instant at which the sensor freezes: the extra travel
-//! healthy   machines that stick, creep, land and are corrected, whose sensors are good: the false trips
-//! quantiles what many freezes cost
+//! freeze    one machine, one move, one instant of the freeze: the extra travel healthy   machines with healthy sensors
+//! that stick, creep, land and are corrected: the false trips quantiles quantiles of the extra travel
 //! ```
 
 pub mod freeze;

@@ -1,4 +1,4 @@
-//! What many freezes cost.
+//! Quantiles of the extra travel of many freezes.
 
 use super::freeze::Cost;
 

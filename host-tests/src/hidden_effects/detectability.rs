@@ -1,4 +1,4 @@
-//! How well the measurements of a case can show what is hidden in it.
+//! Detectability of the hidden effects of a case in its measurements.
 
 use crate::second_rig::campaign_writer::{LOAD_SIGMA, PlannedRun, perfect_readings, planned_runs};
 use crate::second_rig::draw::{Case, Hidden};
@@ -59,7 +59,7 @@ fn whitened(case: &Case, a: &[Reading], b: &[Reading]) -> Vec<f64> {
         .collect()
 }
 
-/// What a clock that is one sigma ahead does to a record.
+/// Effect of a clock offset of one sigma on a record.
 fn skewed(case: &Case, record: &[Reading]) -> Vec<f64> {
     let share = SKEW_SIGMA_S * SAMPLE_RATE_HZ;
     let late: Vec<Reading> = (0..record.len())
@@ -74,7 +74,7 @@ fn skewed(case: &Case, record: &[Reading]) -> Vec<f64> {
     whitened(case, &late, record)
 }
 
-/// Takes out of `signature` what `nuisance`, one prior sigma of it, can imitate.
+/// Projects out of `signature` the part that `nuisance` (one prior sigma of it) can imitate.
 fn project(nuisance: &[f64], signature: &mut [f64]) {
     let share = dot(nuisance, signature) / (dot(nuisance, nuisance) + 1.0);
     for (value, nuisance) in signature.iter_mut().zip(nuisance) {

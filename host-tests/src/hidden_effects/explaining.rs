@@ -8,7 +8,7 @@ use hitch_plant::{Effect, Model};
 
 use super::answer::{Abilities, Answer, Method};
 
-/// What `hitch explain` does.
+/// Method of `hitch explain`.
 #[derive(Debug)]
 pub struct Explaining;
 
@@ -48,7 +48,7 @@ impl Method for Explaining {
                 .iter()
                 .map(|step| (id(step.effect), step.confidence))
                 .collect(),
-            // What it leaves alone is no better on other runs than before.
+            // A model without effects has the same error on other runs as before.
             held_out: Some(steps.first().zip(steps.last()).map_or_else(
                 || (explanation.before.error(), explanation.before.error()),
                 |(first, last)| (first.held_out_before.error, last.held_out_after.error),
@@ -59,7 +59,7 @@ impl Method for Explaining {
     }
 }
 
-/// Index of the parameter that means what the size of the effect's usual form means.
+/// Index of the parameter with the meaning of the size in the effect's default form.
 fn size(effect: &dyn Effect) -> Option<usize> {
     let usual = find(effect.id())?.parameters().first()?;
     let mut parameters = effect.parameters().iter();

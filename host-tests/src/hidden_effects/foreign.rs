@@ -1,4 +1,4 @@
-//! What has changed on a machine that differs from its data sheet in many small ways? The model is adopted from a first
+//! Changes of a machine that differs from its data sheet in many small ways. The model is adopted from a first
 //! campaign; the method answers for a second one.
 
 use std::time::Instant;
@@ -21,7 +21,7 @@ use crate::second_rig::test_stand::Family;
 /// One sigma by which a data sheet's pressures, flows and masses are off, as a share.
 const DATA_SHEET: f64 = 0.03;
 
-/// The same for what a data sheet does not state and a text book estimates: oil, friction, volumes, lags.
+/// The same for properties that a data sheet does not state: oil, friction, volumes, lags.
 const TEXT_BOOK: f64 = 0.1;
 
 /// Streams of random numbers that are apart from those of the machines.
@@ -32,7 +32,7 @@ const STREAM: u64 = 0x0000_6461_7461_7368;
 pub struct Adopted {
     /// The machine.
     pub foreign: Foreign,
-    /// The model, with the effects that the first campaign asked for.
+    /// The model, with the effects identified in the first campaign.
     pub model: Model,
     /// Error that the model leaves in the first campaign, in sigmas.
     pub error: f64,
@@ -63,7 +63,7 @@ impl Adopted {
         }
     }
 
-    /// Lets a method say what has changed.
+    /// Lets a method identify the changes.
     #[must_use]
     pub fn ask(&self, method: &dyn Method) -> Graded {
         self.posed.ask_about(method, &self.model)

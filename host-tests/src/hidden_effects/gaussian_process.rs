@@ -1,7 +1,7 @@
-//! A Gaussian process for the discrepancy (Kennedy & O'Hagan 2001): it corrects what it cannot name.
+//! A Gaussian process for the discrepancy (Kennedy & O'Hagan 2001): it corrects the model without naming an effect.
 //!
-//! Exact, with a squared-exponential kernel over what the model knows at a sample: currents, their rates, simulated
-//! pressure, flow and angle, oil temperature. A few hundred samples of the training runs are its data, length and
+//! Exact, with a squared-exponential kernel over the known signals of a sample: currents, their rates, simulated
+//! pressure, flow and angle, oil temperature. Its data are a few hundred samples of the training runs; length and
 //! variance come from the marginal likelihood over a grid.
 
 use hitch_campaign::{Bench, Campaign};
@@ -89,7 +89,7 @@ impl Method for GaussianProcess {
     }
 }
 
-/// What the model knows at each sample of a run.
+/// The known signals at each sample of a run.
 fn inputs(run: &ReadyRun, trace: &Trace) -> Vec<Input> {
     let time_s = &run.drive.time_s;
     (0..run.len())

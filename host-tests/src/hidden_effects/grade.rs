@@ -1,4 +1,4 @@
-//! Answers held against the truth.
+//! Grades answers against the truth.
 
 use std::collections::BTreeSet;
 use std::time::Instant;
@@ -20,16 +20,16 @@ const EXPLAINED: f64 = 1.1;
 pub struct Posed {
     /// The case.
     pub case: Case,
-    /// Detectability of what is hidden, the least of several; infinite if nothing is.
+    /// Detectability of the hidden effects, the smallest of several; infinite if there are none.
     pub detectability: f64,
 }
 
 /// An answer and how it does.
 #[derive(Debug, Clone)]
 pub struct Graded {
-    /// What was asked.
+    /// The case.
     pub posed: Posed,
-    /// What was said.
+    /// The answer.
     pub answer: Answer,
     /// How long it took, s.
     pub seconds: f64,
@@ -71,7 +71,7 @@ impl Posed {
 }
 
 impl Graded {
-    /// Ids of what is hidden and in the catalogue.
+    /// Ids of the hidden effects that are in the catalogue.
     fn truth(&self) -> BTreeSet<&str> {
         let case = &self.posed.case;
         case.hidden
@@ -115,7 +115,7 @@ impl Graded {
         named == self.truth()
     }
 
-    /// Whether there are names, and neither they nor what they could be are true.
+    /// Whether effects are named, and neither they nor their alternatives are true.
     #[must_use]
     pub fn wrong(&self) -> bool {
         let truth = self.truth();
@@ -168,7 +168,7 @@ impl Graded {
         })
     }
 
-    /// Whether the answer is as good as can be asked of it.
+    /// Whether the answer is fully correct within the method's capabilities.
     #[must_use]
     pub fn good(&self) -> bool {
         match self.posed.case.kind {

@@ -1,7 +1,7 @@
-//! What parameter estimation tools offer: each effect fitted alone, the best Schwarz criterion wins.
+//! The method of parameter estimation tools: each effect is fitted alone, and the best Schwarz criterion selects one.
 //!
-//! Samples count as independent, weights and clocks as exact, nothing is held out: the usual way. The optimiser is
-//! given its best chance: several starts, both signs, all of an effect's parameters.
+//! As usual, samples count as independent, loads and clocks as exact, and no runs are held out. The optimiser gets the
+//! best conditions: several starts, both signs, all parameters of an effect.
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
@@ -154,7 +154,7 @@ fn fit(comparison: &Comparison, mut best: Fitted) -> Fitted {
     best
 }
 
-/// Residuals and what a typical size of each parameter takes off them.
+/// Residuals, and their reduction by a typical size of each parameter.
 fn linearised(comparison: &Comparison, added: &AddedEffect) -> (DVector<f64>, DMatrix<f64>) {
     let at = |added: &AddedEffect| comparison.all(std::slice::from_ref(added));
     let here = at(added);

@@ -1,9 +1,9 @@
 //! Residual-energy localisation with an exhaustive hold-out selection of one term (LISDD, arXiv 2606.23215), with the
 //! effects of the catalogue as the library of terms.
 //!
-//! The regime in which the model leaves the most energy per sample is located first. Each term is then fitted alone to
-//! half of the runs, and the one that leaves the least energy in that regime of the other half is taken, if it leaves
-//! less than the model does.
+//! The regime with the largest residual energy per sample is located first. Each term is then fitted alone to half of
+//! the runs, and the one with the smallest energy in that regime of the other half is selected, if it is below that of
+//! the model.
 
 use std::collections::BTreeMap;
 
@@ -94,7 +94,7 @@ impl Energies {
     }
 }
 
-/// What a model with some effects leaves, by regime.
+/// Residual energy of a model with some effects, by regime.
 fn energies(comparison: &Comparison, effects: &[AddedEffect]) -> Energies {
     let mut sums = BTreeMap::new();
     for (run, trace) in comparison.traces(effects).iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Can the hidden effect be named? Methods answer for cases of the [second rig](crate::second_rig), and are graded.
+//! Benchmark of the identification: methods answer for cases of the [second rig](crate::second_rig), and are graded.
 
 pub mod answer;
 pub mod detectability;
@@ -29,7 +29,7 @@ pub fn methods() -> Vec<Box<dyn Method>> {
     ]
 }
 
-/// The starting point that knows what a family is known for.
+/// The starting point that matches a family.
 #[must_use]
 pub fn starting_point(family: Family) -> Model {
     match family {

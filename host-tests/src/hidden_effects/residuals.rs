@@ -1,7 +1,8 @@
-//! Residuals for the methods of today: measured less simulated in sigmas, weights as weighed, clocks as logged.
+//! Residuals for the established methods: measured minus simulated in sigma, with loads as weighed and clocks as
+//! logged.
 //!
-//! The sigmas are the project's own yardsticks: sensor noise and what the logged currents leave unknown. Without them
-//! the samples at switched currents would drown every method that compares.
+//! The sigmas are those of the project: sensor noise, and the uncertainty from the logged currents. Without the latter,
+//! samples at switched currents would dominate every method.
 
 use hitch_effects::CATALOGUE;
 use hitch_identification::data::clocks::Clocks;

@@ -1,9 +1,9 @@
-//! Sparse regression of residuals (SINDy for model discrepancy, Kaheman 2019): a library of terms, least squares, small
-//! coefficients struck out, again until nothing changes (Brunton 2016).
+//! Sparse regression of residuals (SINDy for model discrepancy, Kaheman 2019): a library of terms, least squares,
+//! removal of small coefficients, repeated until convergence (Brunton 2016).
 //!
-//! Regressed are the rate of the angle's residual and the residuals of pressures and flow. The library has one term an
-//! effect of the catalogue, and the term is the best that an author could write: what the effect at its typical size
-//! does to these signals on these very runs.
+//! The regressed signals are the rate of the angle residual and the residuals of pressures and flow. The library has
+//! one ideal term for each effect of the catalogue: the change of these signals by the effect at its typical size on
+//! the same runs.
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
@@ -49,7 +49,7 @@ impl Method for SparseRegression {
         let columns: Vec<DVector<f64>> = effects
             .iter()
             .map(|effect| {
-                // What the effect takes off the residuals is what its term gives.
+                // The reduction of the residuals by the effect is the value of its term.
                 let term = &target - targets(&comparison, &[AddedEffect::typical(*effect)]);
                 let size = (term.norm_squared() / term.len() as f64).sqrt();
                 if size > 0.0 { term / size } else { term }

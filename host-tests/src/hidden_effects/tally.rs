@@ -1,4 +1,4 @@
-//! Rates with their uncertainty, and what a method's answers come to.
+//! Rates of correct answers, with confidence intervals.
 
 use std::fmt;
 
@@ -15,7 +15,7 @@ pub struct Rate {
 }
 
 impl Rate {
-    /// Counts what is true.
+    /// Counts true outcomes.
     pub fn count(results: impl IntoIterator<Item = bool>) -> Self {
         results.into_iter().fold(Self::default(), |rate, hit| Self {
             hits: rate.hits + usize::from(hit),

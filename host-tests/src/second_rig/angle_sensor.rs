@@ -53,7 +53,7 @@ impl<'a> AngleSensor<'a> {
         }
     }
 
-    /// What it shows, degree.
+    /// Its reading, degree.
     #[must_use]
     pub fn shown_deg(&self) -> f64 {
         let sensors = self.sensors;

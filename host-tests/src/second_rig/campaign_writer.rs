@@ -1,4 +1,4 @@
-//! A drawn case measured: as a campaign in memory, or as the folder that a user would have.
+//! Measures a drawn case: as a campaign in memory, or as a folder.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -23,13 +23,13 @@ pub const LOAD_SIGMA: f64 = 0.005;
 /// Pause between two runs, s.
 const PAUSE_S: f64 = 20.0;
 
-/// Noise streams of a campaign are apart from what draws the case.
+/// The noise streams of a campaign are separate from that of the case.
 const NOISE_STREAM: u64 = 0x006e_6f69_7365;
 
 /// A run of a case with all that was drawn for it.
 #[derive(Debug, Clone)]
 pub struct PlannedRun {
-    /// What is done.
+    /// Manoeuvres.
     pub manoeuvre: Manoeuvre,
     /// When, and with how wrong a weight.
     pub circumstances: Circumstances,
@@ -123,7 +123,7 @@ pub fn log(case: &Case, physics: &Physics, run: &PlannedRun, random: &mut impl R
     }
 }
 
-/// What is hidden in a case, as JSON.
+/// The hidden effects of a case, as JSON.
 #[must_use]
 pub fn truth(case: &Case) -> Value {
     let hidden: Map<String, Value> = case

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::physics::{Physics, Play, SpoolMotion, Stiction};
 
-/// One solenoid with its spool; the spool's place is told in amperes.
+/// One solenoid with its spool; the spool position is in amperes.
 #[derive(Debug, Clone)]
 pub struct CurrentPath {
     plays: Vec<(Play, f64)>,

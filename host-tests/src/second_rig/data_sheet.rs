@@ -1,4 +1,4 @@
-//! What the rig's data sheet says. Written down a second time on purpose: a wrong constant must not hide in both
+//! Data sheet of the rig. It repeats the values of the model on purpose, so that a wrong constant is not in both
 //! plants.
 
 use std::sync::LazyLock;

@@ -1,4 +1,4 @@
-//! From a seed to a case: what is hidden, where it is measured, and how well.
+//! Draws a case from a seed: hidden effects, plan, and instruments.
 
 use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
@@ -11,7 +11,7 @@ use super::outside::OUTSIDE;
 use super::physics::Physics;
 use super::test_stand::Family;
 
-/// What kind of case is wanted.
+/// Kind of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
 pub enum Kind {
     /// One effect of the catalogue.
@@ -27,11 +27,11 @@ pub enum Kind {
 /// Something that is hidden, and how large it is.
 #[derive(Debug, Clone, Copy)]
 pub struct Hidden {
-    /// What.
+    /// The effect.
     pub what: &'static Hideable,
     /// Its size, in its unit.
     pub size: f64,
-    /// What the rest of its shape is drawn from.
+    /// Seed of its remaining shape.
     shape_seed: u64,
 }
 
@@ -47,18 +47,18 @@ impl Hidden {
     }
 }
 
-/// What a drawn case has to be like; what is left open is drawn.
+/// Constraints of a drawn case; the rest is drawn.
 #[derive(Debug, Clone, Copy)]
 pub struct Wish {
     /// The rig.
     pub family: Family,
-    /// What is done with it.
+    /// Plan.
     pub plan: Plan,
     /// How true to the textbook the hidden effects are.
     pub fidelity: Option<Fidelity>,
     /// Slow noise, wrong weights, noisy currents, unnamed physics.
     pub rough: Option<bool>,
-    /// What kind of thing is hidden.
+    /// Kind of the hidden effects.
     pub kind: Option<Kind>,
     /// Which effect is hidden, and how large if that is not to be drawn; makes it a single one.
     pub effect: Option<(&'static Hideable, Option<f64>)>,
@@ -69,21 +69,21 @@ pub struct Wish {
 /// A rig with something hidden in it, and how it is measured.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// What it was drawn from.
+    /// Seed.
     pub seed: u64,
     /// The rig.
     pub family: Family,
-    /// What is done with it.
+    /// Plan.
     pub plan: Plan,
     /// How true to the textbook the hidden effects are.
     pub fidelity: Fidelity,
     /// Whether noise is slow, weights are wrong and unnamed physics is about.
     pub rough: bool,
-    /// What kind of thing is hidden.
+    /// Kind of the hidden effects.
     pub kind: Kind,
-    /// What is hidden.
+    /// The hidden effects.
     pub hidden: Vec<Hidden>,
-    /// What the rig is beside what is hidden: its own structures, and physics that nobody has a name for.
+    /// The rig without the hidden effects: its structural details, and physics outside the catalogue.
     pub(super) unnamed: Physics,
     /// The instruments.
     pub instruments: Instruments,
@@ -96,7 +96,7 @@ impl Case {
         self.physics_with(|_| true)
     }
 
-    /// The rig's physics with some of what is hidden only.
+    /// The rig's physics with only some of the hidden effects.
     #[must_use]
     pub fn physics_with(&self, chosen: impl Fn(&Hidden) -> bool) -> Physics {
         let mut physics = self.unnamed.clone();
@@ -127,7 +127,7 @@ pub fn draw(seed: u64, wish: &Wish) -> Case {
     let kind = match (wish.effect, wish.kind) {
         (Some(_), _) => Kind::Single,
         (None, Some(kind)) => kind,
-        // Most cases are what a user has: one effect.
+        // Most cases have one effect, as is typical in practice.
         (None, None) if kind < 0.55 => Kind::Single,
         (None, None) if kind < 0.75 => Kind::Pair,
         (None, None) if kind < 0.87 => Kind::Nothing,

@@ -1,4 +1,4 @@
-//! A hitch of the second rig whose coil currents are told a millisecond at a time: what a controller drives.
+//! A hitch of the second rig with coil currents set each millisecond, for a controller.
 
 use super::angle_sensor::AngleSensor;
 use super::current_path::CurrentPath;

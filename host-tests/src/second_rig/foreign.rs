@@ -1,8 +1,8 @@
 //! Machines that differ from the data sheet in many small ways, and then change.
 //!
-//! The rig has three to five structures of its own; the model that a user starts from has every constant off by some
-//! percent. A first campaign serves to adopt the machine, a second one has one to three changes, a third one repeats the
-//! second with other manoeuvres and noise.
+//! The rig has three to five structural differences; the initial model has errors of some percent in every constant.
+//! The first campaign is for adopting the machine, the second one has one to three changes, and the third one repeats
+//! the second with other manoeuvres and noise.
 
 use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
@@ -30,16 +30,16 @@ const OWN_CHANGES: f64 = 0.5;
 /// Effects that share numbers of the rig's physics with others: they cannot be there beside those.
 const SHARED: [&str; 2] = ["stribeck-friction", "spool-stiction"];
 
-/// A machine of which nobody has the true data sheet.
+/// A machine without a true data sheet.
 #[derive(Debug, Clone)]
 pub struct Foreign {
-    /// What it was drawn from.
+    /// Seed.
     pub seed: u64,
     /// Its structures, by id and size.
     pub own: Vec<(&'static str, f64)>,
     /// The campaign from which it is adopted.
     pub first: Case,
-    /// The campaign after the changes, which are what is hidden.
+    /// The campaign after the changes, which are the hidden effects.
     pub second: Case,
     /// The same machine measured once more.
     pub third: Case,
@@ -104,7 +104,7 @@ fn physics_of(own: &[(&'static Hideable, f64)], random: &mut Pcg64) -> Physics {
     physics
 }
 
-/// One to three changes, of what the machine has or of what it did not have.
+/// One to three changes, of existing or new effects.
 fn changes(
     pool: &[&'static Hideable],
     own: &[(&'static Hideable, f64)],

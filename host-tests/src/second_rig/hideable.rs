@@ -1,8 +1,8 @@
-//! Every physics of the catalogue that can be hidden, as another author would write it from the literature.
+//! All physics of the catalogue that can be hidden, implemented independently from the literature.
 //!
-//! One number is the size; the rest of a shape is drawn. *Faithful* is the textbook's simplest form, *structured* has
-//! more than that: rounded hysteresis loops, bristles instead of a hyperbolic tangent, spools that swing, coefficients
-//! that change with the temperature.
+//! One number is the size; the remaining shape is drawn. *Faithful* is the simplest textbook form. *Structured* has
+//! more detail: rounded hysteresis loops, bristles instead of a hyperbolic tangent, oscillating spools,
+//! temperature-dependent coefficients.
 
 use rand::Rng;
 use rand_pcg::Pcg64;
@@ -65,7 +65,7 @@ pub struct Hideable {
     pub signed: bool,
     /// Whether the quasi-static rig can have it.
     pub steady: bool,
-    /// Whether the faithful form's size means what the catalogue's first parameter means.
+    /// Whether the size of the faithful form has the meaning of the catalogue's first parameter.
     pub comparable: bool,
     /// Puts it into a rig.
     pub hide: fn(&mut Physics, f64, &mut Shape),
@@ -301,7 +301,7 @@ pub static HIDEABLE: [Hideable; 28] = [
         },
     ),
     dynamic("entrained-air", "", (0.004, 0.06), |rig, size, shape| {
-        // A volume share of the mixture; the equation wants the ratio to the oil.
+        // A volume share of the mixture; the equation uses the ratio to the oil.
         rig.air_ratio = size / (1.0 - size);
         rig.air_exponent = shape.usual_or_between(1.4, 1.0, 1.4);
     }),

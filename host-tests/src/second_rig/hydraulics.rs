@@ -24,7 +24,7 @@ pub struct Circuit<'a> {
     fluidity: f64,
     /// Pump pressure as a lagging compensator has it, Pa.
     pump_pressure_pa: f64,
-    /// What passes the check valve backwards until it is seated, m3/s at the reference drop.
+    /// Backflow through the check valve until it is seated, m3/s at the reference drop.
     unseated_m3_s: f64,
     /// Factor on both valves' flow now: drift and wobble.
     flow_factors: (f64, f64),
@@ -35,9 +35,9 @@ pub struct Circuit<'a> {
 /// Flows and pump pressure.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Flows {
-    /// What the flow meter sees, m3/s, into the cylinder.
+    /// Reading of the flow meter, m3/s, into the cylinder.
     pub metered_m3_s: f64,
-    /// What the cylinder gains, m3/s.
+    /// Flow into the cylinder, m3/s.
     pub net_m3_s: f64,
     /// Pump pressure, Pa.
     pub pump_pressure_pa: f64,
@@ -79,7 +79,7 @@ impl<'a> Circuit<'a> {
         }
     }
 
-    /// Brings what changes slowly up to a time since the campaign began, s, and a travel, m.
+    /// Updates the slow states to a time since the start of the campaign, s, and a travel, m.
     pub fn set_slow(&mut self, since_s: f64, travel_m: f64) {
         let drift = 1.0 + self.physics.flow_drift_1_s * since_s;
         let wobble = 1.0 + self.physics.unnamed_wobble * (since_s / 7.0).sin();
@@ -111,7 +111,7 @@ impl<'a> Circuit<'a> {
         }
     }
 
-    /// Moves what lags behind: compensator and check valve.
+    /// Updates the lagging elements: compensator and check valve.
     pub fn advance(&mut self, spools: Spools, cylinder_pa: f64, dt_s: f64) {
         let share = |tau_s: f64| -(-dt_s / tau_s).exp_m1();
         let opening = self.lift_opening(spools.lift_a, LIFT_REFERENCE_PA);
@@ -176,12 +176,12 @@ impl<'a> Circuit<'a> {
         if short(wanted) <= 0.0 {
             return (self.lift_flow(opening, wanted - cylinder_pa), wanted);
         }
-        // The compensator is shut and the pump gives less than asked for: the pressure settles where both agree.
+        // The compensator is closed and the pump delivers less than demanded: the pressure settles at the balance.
         let pump_pa = rising_root(short, cylinder_pa.max(0.0), wanted);
         (self.lift_flow(opening, pump_pa - cylinder_pa), pump_pa)
     }
 
-    /// What the lift valve passes for a drop from pump to cylinder, m3/s.
+    /// Flow of the lift valve for a drop from pump to cylinder, m3/s.
     fn lift_flow(&self, opening_m3_s: f64, drop_pa: f64) -> f64 {
         let free_pa = drop_pa - CRACKING_PA - self.physics.check_loss_pa;
         if free_pa <= 0.0 {
@@ -194,7 +194,7 @@ impl<'a> Circuit<'a> {
         (half * half + k * free_pa).sqrt() - half
     }
 
-    /// What pump and relief valve leave for the lift valve, m3/s.
+    /// Flow of pump minus relief valve that is available to the lift valve, m3/s.
     fn available(&self, pump_pa: f64) -> f64 {
         let pumped = PUMP_M3_S - self.physics.pump_slip_m3_s_pa * pump_pa;
         let over = self.physics.relief_override_pa;
@@ -206,7 +206,7 @@ impl<'a> Circuit<'a> {
         pumped - relieved
     }
 
-    /// Lowering flow, m3/s: what the return line leaves of the cylinder pressure drives it.
+    /// Lowering flow, m3/s, driven by the cylinder pressure minus the return line loss.
     fn lower(&self, current_a: f64, cylinder_pa: f64) -> f64 {
         let free = self.lower_flow(current_a, cylinder_pa);
         if free <= 0.0
@@ -222,7 +222,7 @@ impl<'a> Circuit<'a> {
         rising_root(excess, 0.0, free)
     }
 
-    /// What the lowering valve passes for a drop, m3/s.
+    /// Flow of the lowering valve for a drop, m3/s.
     fn lower_flow(&self, current_a: f64, drop_pa: f64) -> f64 {
         if drop_pa <= 0.0 {
             return 0.0;

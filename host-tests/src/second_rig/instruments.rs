@@ -1,4 +1,4 @@
-//! What instruments and logger make of a run: offset, noise, digits, gaps, clocks out of step.
+//! Instruments and logger of a run: offset, noise, resolution, gaps, clock offsets.
 
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -17,7 +17,7 @@ const CURRENT_DIGIT_A: f64 = 0.001;
 /// Correlation of slow noise from one sample to the next.
 const SLOWNESS: f64 = 0.95;
 
-/// What a flow bench's port shows in the first sample, before it is under pressure, bar.
+/// Port pressure of a flow bench in the first sample, before pressurisation, bar.
 const EMPTY_PORT_BAR: f64 = 3.0;
 
 /// The instruments of a campaign.
@@ -112,7 +112,7 @@ impl Instruments {
 }
 
 fn rounded(value: f64, digit: f64) -> f64 {
-    // Through the decimal text that a log would hold: what is in memory is what a file gives back.
+    // Rounded through the decimal text of a log: the values in memory equal those in a file.
     format!("{:.3}", (value / digit).round() * digit)
         .parse()
         .unwrap_or(value)

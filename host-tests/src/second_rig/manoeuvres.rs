@@ -1,4 +1,4 @@
-//! What the lab and the field do with a rig: loads, temperatures and courses of the currents.
+//! Manoeuvres of lab and field plans: loads, temperatures and current traces.
 
 use rand::Rng;
 
@@ -16,7 +16,7 @@ pub enum Plan {
     Field,
 }
 
-/// What the valve block is bolted to.
+/// Bench of the valve block.
 #[derive(Debug, Clone, Copy)]
 pub enum Stand {
     /// Cylinder, linkage, load.
@@ -88,7 +88,7 @@ impl Course {
 /// Normal manoeuvres ramp the current over this time, s.
 const RAMP_S: f64 = 0.2;
 
-/// What a current controller takes to change its current, s.
+/// Rise time of a current controller, s.
 const SWITCHED_S: f64 = 0.008;
 
 /// A run to be measured.
@@ -96,7 +96,7 @@ const SWITCHED_S: f64 = 0.008;
 pub struct Manoeuvre {
     /// File name.
     pub file: String,
-    /// What it is measured on.
+    /// Bench.
     pub stand: Stand,
     /// Oil temperature, degC.
     pub oil_temperature_c: f64,
@@ -141,7 +141,7 @@ impl Manoeuvre {
     }
 }
 
-/// The runs of a plan; random in what no two campaigns have alike.
+/// The runs of a plan, with random details that differ between campaigns.
 pub fn runs(plan: Plan, random: &mut impl Rng) -> Vec<Manoeuvre> {
     match plan {
         Plan::Lab => lab(random),

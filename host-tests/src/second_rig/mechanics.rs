@@ -81,7 +81,7 @@ impl<'a> Machine<'a> {
         rising_root(weight_n, 0.0, STROKE_M).max(travel_m)
     }
 
-    /// What a pressure has to hold, N: oil does not pull the hitch to the ground.
+    /// Force that the pressure has to support, N: oil does not pull the hitch to the ground.
     fn held_n(&self, posture: &Posture, speed_m_s: f64) -> f64 {
         self.weight_n(posture, speed_m_s).max(0.0)
     }
@@ -162,7 +162,7 @@ impl<'a> Machine<'a> {
         speed_m_s - (speed_m_s.abs() / limit_m + creep) * motion.bristles_m
     }
 
-    /// Quasi-static step of the midpoint rule: the piston's speed is what flow and forces agree on.
+    /// Quasi-static step of the midpoint rule: the piston speed balances flow and forces.
     pub fn step_steady(
         &self,
         circuit: &Circuit,
@@ -348,7 +348,7 @@ impl Motion {
     }
 }
 
-/// Whether a stop carries what pushes the piston: no oil is lost to a piston that stands.
+/// Whether a stop carries the force on the piston: a stationary piston displaces no oil.
 fn at_a_stop(motion: &Motion, acceleration: f64) -> bool {
     let (travel_m, speed_m_s) = (motion.travel_m, motion.speed_m_s);
     (travel_m >= STROKE_M && speed_m_s >= 0.0 && acceleration >= 0.0)

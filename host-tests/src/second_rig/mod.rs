@@ -1,20 +1,20 @@
 //! A second rig that measures campaigns whose hidden physics is known.
 //!
-//! Nothing here is the model crate's plant: the equations are written a second time from the rig's data sheet and the
-//! catalogue's literature, move in finer steps, and may have structure that no fitted model has. Only the format of a
+//! This rig does not use the model crate's plant: its equations are an independent implementation from the data sheet
+//! and the literature, with finer steps and optional structure that no fitted model has. Only the format of a
 //! campaign is shared.
 //!
 //! ```text
 //! draw           a seed -> family, plan, hidden effects, instruments
 //! foreign        a machine that differs from the data sheet in many ways, and its changes
 //! hideable       every physics that can be hidden, with its usual sizes; fills a `Physics`
-//! physics        what a rig has beyond its data sheet, as plain numbers
-//! manoeuvres     what the lab and the field do: loads, temperatures, courses of the currents
+//! physics        deviations of a rig from its data sheet, as plain numbers manoeuvres     lab and field plans: loads,
+//! temperatures, current traces
 //! current_path   coil current -> spool            hydraulics   spools and pressure -> flows
 //! linkage        travel -> angle, height          mechanics    forces and motion
 //! test_stand     one run, sample by sample        instruments  noise, gaps, rounding
-//! driven_hitch   a hitch whose currents are told a millisecond at a time, for closing a loop around it
-//! on_order       runs that a design of experiments asks for
+//! driven_hitch   a hitch with currents set each millisecond, for a closed loop on_order       runs requested by a
+//! design of experiments
 //! campaign_writer  the campaign in memory or in a folder
 //! ```
 

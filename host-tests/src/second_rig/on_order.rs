@@ -1,11 +1,11 @@
-//! Runs that somebody else planned, as the second rig carries them out.
+//! Runs of an external plan on the second rig.
 
 use hitch_identification::design::plan::{RunPlan, Stand as PlannedStand};
 use hitch_plant::{Currents, Model, Rig};
 
 use super::manoeuvres::{Course, Manoeuvre, Stand};
 
-/// A planned run; `model` says where its start is.
+/// A planned run; `model` defines its start angle.
 #[must_use]
 pub fn on_order(plan: &RunPlan, model: &Model) -> Manoeuvre {
     let stand = match (plan.stand, plan.rig(model)) {

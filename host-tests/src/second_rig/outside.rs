@@ -1,4 +1,4 @@
-//! Physics that is in no catalogue: to be owned up to, not to be named.
+//! Physics outside the catalogue: the expected verdict is "unexplained".
 
 use super::hideable::{Hideable, Shape};
 use super::physics::Physics;

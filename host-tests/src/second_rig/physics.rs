@@ -1,4 +1,4 @@
-//! What a rig has beyond its data sheet, as plain numbers; the default has nothing.
+//! Deviations of a rig from its data sheet, as plain numbers; the default has none.
 
 /// One play of a Prandtl-Ishlinskii operator.
 #[derive(Debug, Clone, Copy)]
@@ -53,7 +53,7 @@ pub struct FlowForce {
 pub struct Friction {
     /// Coulomb force, N.
     pub coulomb_n: f64,
-    /// What the force is more at rest, N.
+    /// Additional force at rest, N.
     pub stribeck_n: f64,
     /// Speed over which that fades, m/s.
     pub stribeck_speed_m_s: f64,
@@ -84,7 +84,7 @@ pub struct Ground {
     pub damping_n_s_m: f64,
 }
 
-/// Instruments that are not what their data sheet says.
+/// Instruments that deviate from their data sheet.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Sensors {
     /// Gain error of the angle.
@@ -114,7 +114,7 @@ pub struct Physics {
     pub plays: Vec<Play>,
     /// Stiction of both spools.
     pub stiction: Option<Stiction>,
-    /// How both spools follow, beyond what the family is known for.
+    /// Dynamics of both spools in addition to those of the family.
     pub spool: SpoolMotion,
     /// Relative error of the lift valve's flow, at half and at full opening.
     pub lift_flow_error: (f64, f64),
@@ -128,7 +128,7 @@ pub struct Physics {
     pub droop_with_flow: f64,
     /// Lag of the compensator, s.
     pub compensator_lag_s: f64,
-    /// What the check valve takes more than its cracking pressure, Pa.
+    /// Pressure loss of the check valve above its cracking pressure, Pa.
     pub check_loss_pa: f64,
     /// The same over flow, Pa s/m3.
     pub check_loss_pa_s_m3: f64,
@@ -158,7 +158,7 @@ pub struct Physics {
     pub load_arm_m: f64,
     /// The ground.
     pub ground: Option<Ground>,
-    /// Inertia of load and piston beyond what the weights are, as a share of that.
+    /// Additional inertia of load and piston, relative to that of the weights.
     pub inertia_share: f64,
     /// Moment of inertia on the rocker shaft that it does not have, kg m2.
     pub rocker_inertia_kg_m2: f64,
@@ -178,9 +178,9 @@ pub struct Physics {
     pub cushion_m: f64,
     /// Relative change of both valves' flow per second since the campaign began.
     pub flow_drift_1_s: f64,
-    /// Cam-like force at the piston that nobody has a name for, N.
+    /// Cam-like force at the piston outside the catalogue, N.
     pub unnamed_force_n: f64,
-    /// Slow wobble of the lowering valve's gain that nobody has a name for.
+    /// Slow variation of the lowering valve's gain outside the catalogue.
     pub unnamed_wobble: f64,
 }
 

@@ -35,12 +35,12 @@ impl Family {
     }
 }
 
-/// What does not follow from physics and manoeuvre.
+/// Properties of a run that do not follow from physics and manoeuvre.
 #[derive(Debug, Clone, Copy)]
 pub struct Circumstances {
     /// Time since the campaign began, s.
     pub since_s: f64,
-    /// What the load weighs over what the scales said.
+    /// True load relative to the weighed one.
     pub load_factor: f64,
 }
 
@@ -77,7 +77,7 @@ struct Rig<'a> {
     step_s: f64,
 }
 
-/// What the valve block is bolted to.
+/// Bench of the valve block.
 enum Place<'a> {
     Hitch(Machine<'a>, Motion, AngleSensor<'a>),
     Flow(f64),

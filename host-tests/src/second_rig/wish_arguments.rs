@@ -1,4 +1,4 @@
-//! What a drawn case has to be like, on a command line.
+//! Command line arguments that constrain the drawn cases.
 
 use clap::Args;
 
@@ -7,7 +7,7 @@ use super::hideable::{Fidelity, Hideable, find};
 use super::manoeuvres::Plan;
 use super::test_stand::Family;
 
-/// What the drawn cases have to be like; what is not given is drawn.
+/// Constraints of the drawn cases; the rest is drawn.
 #[derive(Debug, Clone, Args)]
 pub struct WishArguments {
     /// The effect to hide, by its id
@@ -16,7 +16,7 @@ pub struct WishArguments {
     /// Its size, in its unit
     #[arg(long, requires = "effect", allow_negative_numbers = true)]
     size: Option<f64>,
-    /// What kind of thing to hide if no effect is given
+    /// Kind of the hidden effects if no effect is given
     #[arg(long, value_enum)]
     kind: Option<Kind>,
     /// How true to the textbook the hidden effects are

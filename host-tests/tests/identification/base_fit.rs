@@ -1,4 +1,4 @@
-//! Base models that are off, fitted to campaigns of the second rig whose constants are known.
+//! Wrong base models, fitted to campaigns of the second rig with known constants.
 
 use hitch_identification::adequacy::lack_of_fit::cells;
 use hitch_identification::adequacy::unsuitable_base::{is_unsuitable, wrong_share};

@@ -1,5 +1,5 @@
-//! What has changed on a machine whose model is known: adopted effects stay as they are unless the measurements say
-//! otherwise, and a change of one is a step like a new effect.
+//! Changes of a machine with a known model: adopted effects stay unless the measurements show a change, which is a step
+//! like a new effect.
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -102,7 +102,7 @@ fn each_account_is_better_than_the_one_before_and_the_last_one_is_the_answer() {
     assert_eq!(ids(&accounts[accounts.len() - 1]), ids(&found.after));
 }
 
-/// What the command prints as JSON for two campaigns.
+/// Output of the command for two campaigns, as JSON.
 fn changes(baseline: &str, new: &str) -> Value {
     let output = run(&campaigns(), &["changes", baseline, new, "--json", "-"]);
     assert!(

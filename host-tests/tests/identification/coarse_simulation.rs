@@ -1,4 +1,4 @@
-//! What a search learns from drafts and condensed runs is what it would learn from fine simulations of all samples.
+//! Coarse simulations and condensed runs lead to the same search results as fine simulations of all samples.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use hitch_plant::{AddedEffect, Effect, Model};
 /// off, where those within 37 are worth a fit.
 const BAR: f64 = 0.25;
 
-/// What is less than this many sigmas, root mean square, is no signature.
+/// Size below which a change is not a signature, sigma root mean square.
 const NO_SIGNATURE: f64 = 0.02;
 
 /// A shipped campaign made ready for a model.
@@ -25,7 +25,7 @@ fn ready(campaign: &str, model: Model) -> (Experiment, Model) {
     (Experiment::new(&campaign, &model), model)
 }
 
-/// A campaign with what the dynamic model makes of it.
+/// A campaign with the simulation of the dynamic model.
 struct Compared {
     experiment: Experiment,
     model: Model,
@@ -59,7 +59,7 @@ impl Compared {
         residuals(experiment, &self.model, &self.weights, &estimate)
     }
 
-    /// What an effect of typical size changes.
+    /// Signature of an effect of typical size.
     fn signature(&self, experiment: &Experiment, effect: &'static dyn Effect) -> Vec<Vec<f64>> {
         let with = self.left(experiment, Some(AddedEffect::typical(effect)));
         difference(&with, &self.left(experiment, None))
@@ -94,7 +94,7 @@ fn a_draft_shows_what_an_effect_changes() {
 /// Least and largest part of an effect's signature that a condensed experiment may show of it, as the sum of squares.
 const SHOWN: std::ops::RangeInclusive<f64> = 0.8..=1.2;
 
-/// Sum of squares of what an effect of typical size changes under the yardsticks of some runs.
+/// Sum of squares of the signature of an effect of typical size, in the sigmas of some runs.
 fn shown(
     runs: &Experiment,
     model: &Model,

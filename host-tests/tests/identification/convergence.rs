@@ -1,6 +1,6 @@
-//! A run simulated at the steps of its log is the run simulated in steps as fine as one likes.
+//! A run simulated at the steps of its log agrees with a simulation in very fine steps.
 //!
-//! The currents are those that a 50 Hz logger wrote, noise and all, taken as straight lines from sample to sample.
+//! The currents are those of a 50 Hz logger with noise, interpolated linearly between samples.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use hitch_plant::{AddedEffect, Channel, Currents, Effect, Model};
 /// Pieces that a sample is cut into for the converged solution: steps of half a millisecond.
 const FINER: usize = 40;
 
-/// Largest root mean square by which a channel may be off, as a share of its own.
+/// Largest root mean square deviation of a channel, relative to its own.
 const BAR: f64 = 0.001;
 
 /// The same with an effect of typical size.

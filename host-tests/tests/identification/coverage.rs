@@ -1,8 +1,9 @@
-//! Every effect's parameters lie within the intervals stated for them, on lab campaigns simulated with it.
+//! Confidence intervals of the parameters of every effect contain the true values, on simulated lab campaigns.
 //!
-//! The truth is the project's own plant, so that every parameter means what the catalogue says; the currents run on
-//! between samples, loads are weighed wrong, instruments are noisy and have digits. `HITCH_COVERAGE_SEEDS=100` judges
-//! every effect by a hundred campaigns, `HITCH_COVERAGE_EFFECT=spool-lag` that effect alone.
+//! The truth is the project's own plant, so that every parameter has the meaning of the catalogue. Currents vary
+//! between samples, loads have weighing errors, instruments have noise and finite resolution.
+//! `HITCH_COVERAGE_SEEDS=100` tests every effect with a hundred campaigns, `HITCH_COVERAGE_EFFECT=spool-lag` that
+//! effect alone.
 
 use hitch_effects::CATALOGUE;
 use hitch_identification::data::experiment::Experiment;
@@ -14,7 +15,7 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
-/// Seeds of an effect if the environment does not say otherwise.
+/// Default number of seeds of an effect.
 const FEW_SEEDS: u64 = 3;
 
 /// Standard deviations by which an estimate may miss, were its interval a normal distribution's.

@@ -1,5 +1,5 @@
-//! A constant that is declared too large or too small is found like a missing effect, with its size: the campaigns are
-//! of the machine as the paper declares it, and the model declares something else.
+//! A constant that is declared too large or too small is identified like a missing effect, with its size: the campaigns
+//! are of the machine in the paper, and the model declares a different value.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! The pieces of the estimation against closed forms: sensitivities, nuisance projection, evidence, whitening, and the
-//! least-squares fit, on a campaign that the fitted plant itself was measured in.
+//! Parts of the estimation compared with closed forms: sensitivities, nuisance projection, evidence, whitening, and the
+//! least-squares fit, on a campaign simulated with the fitted plant itself.
 
 use std::sync::LazyLock;
 

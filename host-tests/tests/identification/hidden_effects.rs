@@ -1,5 +1,6 @@
-//! A few cases of the second rig, always the same: the hidden effect is named, nothing is named where nothing is
-//! hidden, and what is in no catalogue is owned up to. `cargo bench -p host-tests --bench hidden_effects` asks many more.
+//! A few fixed cases of the second rig: the hidden effect is named, no effect is named without a hidden one, and
+//! physics outside the catalogue is reported as unexplained. `cargo bench -p host-tests --bench hidden_effects` runs
+//! many more.
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
@@ -15,7 +16,7 @@ use host_tests::second_rig::hideable::{Fidelity, find};
 use host_tests::second_rig::manoeuvres::Plan;
 use host_tests::second_rig::test_stand::Family;
 
-/// Seed, what is to be hidden, how true to the textbook, on good instruments or rough ones.
+/// Seed, hidden effects, faithful or structured form, good or rough instruments.
 type Question = (u64, &'static str, Fidelity, bool);
 
 fn wish(family: Family, plan: Plan, (_, id, fidelity, rough): Question) -> Wish {
@@ -30,7 +31,7 @@ fn wish(family: Family, plan: Plan, (_, id, fidelity, rough): Question) -> Wish 
     }
 }
 
-/// Answers, told on the way so that a miss can be drawn again.
+/// Answers, printed during the test so that a failure can be repeated.
 fn ask(family: Family, plan: Plan, questions: &[Question]) -> Vec<Graded> {
     questions
         .iter()
@@ -134,7 +135,7 @@ fn explained(case: &Case) -> Explanation {
     explain(&Experiment::new(&campaign(case), &model), &model, &|_| {})
 }
 
-/// What is named first, and how large it is over what is hidden.
+/// The effect that is named first, and the ratio of its size to the hidden one.
 fn first_over_truth(case: &Case) -> (&'static dyn Effect, f64) {
     let found = explained(case);
     let first = found.steps.first().expect("something is found");
@@ -368,7 +369,7 @@ fn the_ground_is_found_where_loads_ring_on_it() {
     }
 }
 
-/// What is written is what was measured.
+/// A written campaign equals the measured one.
 #[test]
 fn a_written_campaign_is_read_back() {
     let question = (12, "angle-sensor-lag", Fidelity::Structured, true);

@@ -1,6 +1,6 @@
-//! Campaigns of an independent rig whose hidden physics is known: the effects named are the hidden ones and no other.
+//! Campaigns of an independent rig with known hidden physics: exactly the hidden effects are named.
 //!
-//! `campaigns/NAME.truth.json` says what is hidden in `campaigns/NAME`.
+//! `campaigns/NAME.truth.json` lists the hidden effects of `campaigns/NAME`.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ fn explained(name: &str, model: &Model) -> Explanation {
     explain(&Experiment::new(&campaign, model), model, &|_| {})
 }
 
-/// What is hidden, by effect id.
+/// The hidden effects, by id.
 fn hidden(name: &str) -> Vec<(String, f64)> {
     let text = std::fs::read_to_string(campaigns().join(format!("{name}.truth.json")));
     let truth: serde_json::Value =
@@ -143,7 +143,7 @@ fn the_wrong_starting_point_is_not_called_adequate() {
 }
 
 // REQ-DIAG-03
-/// An end cushion is not in the catalogue: what is left has to be owned up to, and to point at the angle.
+/// An end cushion is not in the catalogue: the remaining error has to be reported, with its correlation with the angle.
 #[test]
 fn what_is_not_in_the_catalogue_is_unexplained() {
     let explanation = explained("known-outside", &hitch_model_file::nominal());

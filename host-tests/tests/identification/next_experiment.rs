@@ -1,4 +1,4 @@
-//! What to measure next: proposed on campaigns that leave two effects alike, then measured, then decided.
+//! The next experiment: proposed for campaigns with two indistinguishable effects, then measured, then decisive.
 
 use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
@@ -89,8 +89,8 @@ fn named(explanation: &Explanation) -> (Vec<&'static str>, bool) {
     )
 }
 
-/// Explains a campaign that leaves a hidden effect open, measures what is proposed, and explains again: then the hidden
-/// effect is named and none of those that it was taken for is left. Returns what was proposed, and these others.
+/// Explains a campaign that leaves a hidden effect ambiguous, measures the proposal, and explains again: then the
+/// hidden effect is named without alternatives. Returns the proposal and the former alternatives.
 fn closes(hidden: &str, lab: &mut Lab) -> (&'static Manoeuvre, Vec<&'static str>) {
     let first = lab.explain();
     assert_eq!(first.verdict, Verdict::Ambiguous, "{:?}", named(&first));
@@ -136,7 +136,7 @@ fn a_drooping_compensator_is_told_from_a_scaled_flow_by_another_load() {
     }
 }
 
-/// On rising currents hysteresis is a shifted threshold; what tells them apart is a current that comes back.
+/// On rising currents hysteresis resembles a threshold shift; a falling current separates them.
 #[test]
 fn hysteresis_is_told_from_a_threshold_by_a_current_that_comes_back() {
     let ids = ["solenoid-hysteresis", "lift-threshold-shift"];
@@ -152,7 +152,7 @@ fn hysteresis_is_told_from_a_threshold_by_a_current_that_comes_back() {
     );
 }
 
-/// Both of a pair fitted to what a lab has measured, and the angle between them.
+/// Both effects of a pair fitted to the measurements of a lab, and the angle between them.
 struct Twins {
     experiment: Experiment,
     fits: [Fit; 2],
@@ -185,7 +185,7 @@ impl Twins {
 }
 
 // REQ-DIAG-10
-/// The twins that the catalogue warns of are close on plain steps, and far apart with what is proposed.
+/// Confounded effects of the catalogue are close on plain steps, and far apart with the proposal.
 #[test]
 fn twins_come_apart() {
     for (ids, channels, plans) in [
@@ -254,7 +254,7 @@ fn a_sensor_is_asked_for_where_no_manoeuvre_helps() {
 }
 
 // REQ-DIAG-10
-/// What is promised is what a measurement then gives.
+/// The predicted separation equals that of a measurement.
 #[test]
 fn the_expected_likelihood_ratio_is_met() {
     let ids = ["compensator-droop", "lift-flow-scale"];

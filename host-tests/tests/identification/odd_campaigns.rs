@@ -1,4 +1,4 @@
-//! Campaigns that are well formed but odd: no command may die of them, hang, or print anything but its document.
+//! Valid but unusual campaigns: no command may fail, hang, or print anything but its document.
 use std::fs;
 
 use host_tests::program::run;

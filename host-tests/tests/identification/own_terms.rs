@@ -1,4 +1,4 @@
-//! A term of a user's own, from the model file to the explanation, through the program.
+//! A user-defined term, from the model file to the explanation, through the program.
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -30,7 +30,7 @@ low = 5
 high = 150
 "#;
 
-/// A campaign of a rig with an end cushion, which the catalogue does not know.
+/// A campaign of a rig with an end cushion, which is not in the catalogue.
 fn campaign() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns/known-outside")
 }

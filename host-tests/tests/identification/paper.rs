@@ -1,4 +1,4 @@
-//! `hitch paper` as a script reads it: the paper's values and the model's side by side.
+//! JSON output of `hitch paper`: values of the paper and of the model.
 use std::sync::OnceLock;
 
 use host_tests::program::run;

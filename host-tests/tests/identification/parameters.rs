@@ -1,4 +1,4 @@
-//! The parts of identification against closed forms, and the whole on ringing pressures.
+//! Parts of the identification compared with closed forms, and the whole on oscillating pressures.
 
 use std::path::Path;
 
@@ -189,7 +189,7 @@ fn friction_is_named_where_pressures_ring() {
     );
 }
 
-/// Holding alone says nothing of valves that never open.
+/// Holding alone has no information on valves that never open.
 #[test]
 fn a_campaign_that_only_holds_cannot_decide() {
     let mut campaign = shipped("clean-steady");

@@ -1,5 +1,5 @@
-//! A channel that is late by a sample: with clocks of their own it may be the logger's, with one clock for all it is the
-//! sensor's.
+//! A channel that is delayed by a sample: with independent clocks the logger can be the cause, with synchronous clocks
+//! it is the sensor.
 
 use std::path::Path;
 

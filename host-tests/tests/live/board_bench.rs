@@ -1,5 +1,5 @@
-//! The images as they are flashed, on models of both parts with the plant attached: each scenario of
-//! [`host_tests::board::scenarios`], in a process of its own.
+//! The flashed images on models of both parts with the plant attached: each scenario of
+//! [`host_tests::board::scenarios`], in a separate process.
 //!
 //! They need images for ARM: `cargo xtask test` builds them and runs these tests. `HITCH_BOARD_MINUTES` makes the random
 //! operation longer, for a release.
@@ -26,7 +26,7 @@ fn library() -> &'static Path {
     })
 }
 
-/// Runs a scenario; what it says.
+/// Runs a scenario; returns its output.
 fn scenario(part: &str, name: &str) -> String {
     let folder = std::env::var_os(IMAGES_VARIABLE).expect("the folder with the images");
     let image = PathBuf::from(folder).join(format!("ecu-{part}"));

@@ -1,4 +1,4 @@
-//! From the ECU to a campaign and from a calibration to the ECU, by the programs that a user has.
+//! Recording from the ECU and writing calibrations to it, with the commands of the program.
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;

@@ -1,7 +1,6 @@
-//! The controller on the emulated ECU does exactly what it does here.
+//! The controller on the emulated ECU behaves exactly as on the host.
 //!
-//! These tests need QEMU and an image for ARM, which `cargo test` alone has not: `cargo xtask test` provides both and
-//! runs them.
+//! These tests require QEMU and an image for ARM, which `cargo xtask test` provides.
 
 use std::sync::LazyLock;
 

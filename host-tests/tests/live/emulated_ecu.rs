@@ -1,7 +1,6 @@
-//! The whole application on the emulated ECU does exactly what it does here, and takes no more memory than there is.
+//! The whole application on the emulated ECU behaves exactly as on the host, within its memory.
 //!
-//! These tests need QEMU and an image for ARM, which `cargo test` alone has not: `cargo xtask test` provides both and
-//! runs them.
+//! These tests require QEMU and an image for ARM, which `cargo xtask test` provides.
 
 use std::time::{Duration, Instant};
 
@@ -17,7 +16,7 @@ const MINUTES: u64 = 60;
 /// Instructions from the converters' codes to the drivers' pulses, whatever happens: 4 % of a millisecond at 168 MHz
 /// and two clocks an instruction.
 const MOST_INSTRUCTIONS: u64 = 12_000;
-/// Instructions of a whole millisecond in which nothing is stored: what fits at 168 MHz and two clocks an instruction.
+/// Instructions of a whole millisecond without storing: the limit at 168 MHz and two cycles per instruction.
 const MOST_OF_MILLISECOND: u64 = 84_000;
 /// RAM of the ECU that the application may take, its stack included.
 const MOST_RAM_BYTES: u64 = 48 * 1024;

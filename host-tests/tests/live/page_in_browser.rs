@@ -1,4 +1,4 @@
-//! The page of `hitch serve` in a real browser, at the widths of a desktop and of a phone, light and dark.
+//! The page of `hitch serve` in a browser, at desktop and phone widths, in light and dark theme.
 //!
 //! `cargo xtask test` installs the browser. The pictures of each view are kept in the target folder. With
 //! `UPDATE_PICTURE=1 cargo test -p host-tests --test live -- --ignored page_in_browser`, one of them becomes `docs/page.png`.

@@ -1,8 +1,8 @@
-//! The ECU's bus, used by programs that other people wrote: python-can, cantools, can-j1939 and pyxcp.
+//! The ECU's bus, used by third-party programs: python-can, cantools, can-j1939 and pyxcp.
 //!
-//! Each script runs against an ECU of its own: the firmware's application with plant and operator, its bus on a TCP
-//! port. Their packages are installed once, under the target folder; on a machine without Python or network these tests
-//! say so and are left out, except in continuous integration (`CI` is set).
+//! Each script runs with its own ECU: the firmware's application with plant and operator, its bus on a TCP port. The
+//! packages are installed once, under the target folder; without Python or network these tests are skipped with a
+//! message, except in continuous integration (`CI` is set).
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ fn installed_python() -> Option<&'static Path> {
     python.as_deref()
 }
 
-/// Runs a script against the ECU that `start` gives; what it said has to hold `expected`.
+/// Runs a script with the ECU of `start`; its output has to contain `expected`.
 fn client<M: EcuMachine>(
     script: &str,
     start: impl FnOnce() -> M + Send,
@@ -61,7 +61,7 @@ fn client<M: EcuMachine>(
     }
 }
 
-/// The application on this machine. Its flash is blank, so it runs on the factory's calibration and says so.
+/// The application on the host. Its flash is blank, so it uses the factory calibration and reports it.
 fn here() -> OnHost {
     OnHost::start(CutFlash::blank())
 }
@@ -121,7 +121,7 @@ fn logs_of_the_bus_are_runs() {
     assert!(candump.lift_current_a == asc.lift_current_a && angle(candump) == angle(asc));
 }
 
-/// The example of the README, with an ECU of its own.
+/// The example of the README, with its own ECU.
 #[test]
 fn a_gain_is_tuned_while_the_hitch_moves() {
     let Some(python) = installed_python() else {

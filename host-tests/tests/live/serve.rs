@@ -1,4 +1,4 @@
-//! `hitch serve` without a browser: who is let in, and what each tab's session does.
+//! `hitch serve` without a browser: access control, and sessions of the tabs.
 use std::fs;
 use std::process::Command;
 

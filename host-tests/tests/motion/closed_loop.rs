@@ -1,4 +1,4 @@
-//! The controller in closed loop with the dynamic plant, and what a wrong and a right calibration do to it.
+//! The controller in closed loop with the dynamic plant, with wrong and correct calibrations.
 
 use hitch_effects::find;
 use hitch_plant::{AddedEffect, Model};

@@ -1,4 +1,4 @@
-//! Currents of the valve map become currents in coils: the firmware's regulation on a model of coil and driver.
+//! Current regulation of the firmware on a model of coil and driver.
 
 use hitch_control::current::Regulation;
 use hitch_quantities::calibration::design_parameters::CurrentParameters;
@@ -11,7 +11,7 @@ const PARAMETERS: CurrentParameters = CurrentParameters::NOMINAL;
 const CONVERTER_STEP_MA: f64 = 5_000.0 / 4_096.0;
 const NOISE_MA: f64 = 3.0;
 
-/// A coil, its driver, what is measured of it, and the regulation.
+/// A coil with driver and measurement, and the regulation.
 struct Bench {
     coil: Coil,
     regulation: Regulation,

@@ -1,6 +1,6 @@
-//! The controller of an untaught machine on hitches that it has never met: drawn, driven, and tabulated.
+//! The controller without teaching on unknown hitches: drawn, driven, and tabulated.
 //!
-//! `cargo run --release -p host-tests --bin drive-drawn-hitches` does it with many more.
+//! `cargo run --release -p host-tests --bin drive-drawn-hitches` runs many more.
 
 use hitch_quantities::Calibration;
 use host_tests::drawn_hitches::draw::{Drawn, draw};
@@ -12,7 +12,7 @@ use host_tests::second_rig::physics::SpoolMotion;
 const MACHINES: usize = 40;
 const MOVES: usize = 4;
 
-/// What is asked of a kind of machine; final errors, pressure swings and faults have the same bars everywhere.
+/// Limits for a kind of machine; final errors, pressure swings and faults have the same limits everywhere.
 struct Bars {
     /// Median of time over shortest, and 95 % quantile.
     ratio: [f64; 2],
@@ -35,7 +35,7 @@ fn an_untaught_machine_moves_well_whatever_it_is() {
     drive_all("textbook machines", false, &bars);
 }
 
-/// Structured machines are what no controller has been made for; their loads swing on compensators that lag.
+/// Structured machines have effects outside the controller's models; their loads oscillate on compensators with lag.
 #[test]
 fn a_load_that_swings_on_its_compensator_is_lifted_gently() {
     let bars = Bars {

@@ -1,5 +1,5 @@
-//! A converter whose reference drifts, and a sensor supply that drifts, under the whole application in closed loop: the
-//! hitch hardly moves, and it is reported.
+//! A drift of the converters' reference, and of a sensor supply, with the whole application in closed loop: the hitch
+//! hardly moves, and the drift is reported.
 
 use hitch_ecu::{AdcCode, Contacts, Samples};
 use hitch_plant::Model;
@@ -11,7 +11,7 @@ const START_DEG: f64 = 90.0;
 const AT_DEG: f64 = 110.0;
 /// Length of a drift, ms.
 const DRIFT_MS: u64 = 3_000;
-/// What is left of reference or sensor supply at its end.
+/// Final value of reference or sensor supply.
 const LEFT: f64 = 0.92;
 
 struct Machine<'m> {

@@ -1,12 +1,12 @@
-//! How much further a hitch travels for a fault than if both coils had been cut the moment it appeared: measured on
-//! the dynamic plant, both ways, at several loads, in every phase of a long move.
+//! Extra travel of a hitch after a fault compared with cutting both coils at its instant: measured on the dynamic
+//! plant, in both directions, at several loads, in every phase of a long move.
 
 use hitch_plant::{Currents, Model};
 use hitch_quantities::units::{Count, Microsecond, MilliAmp, MilliDegree, MilliVolt, PerMille};
 use hitch_quantities::{Calibration, Fault, Inputs, Outputs};
 use hitch_workbench::closed_loop::{ClosedLoop, Sample};
 
-/// What is done to a hitch in motion.
+/// Faults of a moving hitch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Trouble {
     /// Not a fault: the yardstick.
@@ -73,7 +73,7 @@ const EVERY_MS: usize = 35;
 /// How long the hitch is watched afterwards, ms.
 const WATCHED_MS: usize = 600;
 
-/// What the sensors last said.
+/// Last readings of the sensors.
 #[derive(Clone, Copy, Default)]
 struct Memory {
     inputs: Inputs,
@@ -305,9 +305,9 @@ fn a_stuck_driver_moves_a_resting_hitch_by_little() {
     }
 }
 
-/// What a sensor that drifts away from a resting hitch does to it.
+/// Effect of a drifting sensor on a hitch at rest.
 struct Drift {
-    /// What it was reported as, and when, s.
+    /// The reported fault, and its time, s.
     found: Option<(Fault, f64)>,
     /// True way from where it rested, degree.
     travel_deg: f64,

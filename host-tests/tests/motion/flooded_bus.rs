@@ -1,4 +1,4 @@
-//! A bus gone mad beside a hitch at work: nothing on it changes what the controller does by a bit.
+//! A flooded bus during operation: it does not change a single bit of the controller's outputs.
 
 use fastrand::Rng;
 use hitch_ecu::link::Reply;
@@ -9,7 +9,7 @@ use hitch_workbench::ecu::{Bench, CutFlash, OnHost, Order};
 
 const ECU: u8 = 0x80;
 const DURATION_MS: u32 = 20_000;
-/// Twice what 250 kbit/s carry of the shortest frames.
+/// Twice the capacity of 250 kbit/s for the shortest frames.
 const FRAMES_A_MS: usize = 8;
 
 /// A frame of nonsense; half of them look like something that the ECU knows. Proper commands to the hitch aren't
@@ -54,7 +54,7 @@ fn nonsense(random: &mut Rng) -> Frame {
     Frame::data_frame(ExtendedId::new(raw).unwrap().into(), data).unwrap()
 }
 
-/// What an ECU does while the operator works, without what it says.
+/// Outputs of an ECU during operation, without its frames.
 fn work(mut bus: impl FnMut(u32) -> Vec<Frame>) -> (Vec<Reply>, usize) {
     let model = hitch_model_file::named("dynamic").unwrap();
     let mut bench = Bench::new(&model, 150.0, 40.0, 80.0, 5);

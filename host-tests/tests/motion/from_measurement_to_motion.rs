@@ -1,4 +1,4 @@
-//! The whole way: valves whose curves differ in several ways are measured, explained, calibrated and driven.
+//! The complete process: valves with several deviations are measured, explained, calibrated and driven.
 
 use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
@@ -13,7 +13,7 @@ use rand_pcg::Pcg64;
 
 const SEED: u64 = 20;
 
-/// What the valves of this tractor have: threshold, saturation, flow force, hysteresis.
+/// Deviations of the valves: threshold, saturation, flow force, hysteresis.
 const HIDDEN: [(&str, f64); 4] = [
     ("lower-threshold-shift", 0.2),
     ("lower-flow-scale", -0.067),

@@ -1,5 +1,5 @@
-//! How close motion comes to what the plant allows, on plants as they are met: typical hysteresis, friction, spool lag
-//! and air, thick oil in the cold, thresholds that are off by 0.1 A, taught by the firmware itself.
+//! Motion compared with the limits of the plant, with typical hysteresis, friction, spool lag and air, cold oil, and
+//! threshold offsets of 0.1 A, after teaching.
 
 use hitch_workbench::closed_loop::{MoveResult, Scenario, Summary, run};
 use host_tests::teaching::{taught_calibration, typical};

@@ -1,4 +1,4 @@
-//! Power cuts lose no calibration and move no hitch, whenever they come.
+//! A power cut at any time neither destroys a calibration nor moves the hitch.
 
 use fastrand::Rng;
 use hitch_plant::Model;
@@ -25,10 +25,10 @@ fn stored_gain(flash: &CutFlash) -> (i32, Source) {
     (loaded.calibration.position.approach_gain.0, loaded.source)
 }
 
-/// Starts the ECU again; nobody touches anything, and so nothing may happen.
+/// Starts the ECU again without any operation; no coil may be driven.
 fn assert_nothing_moves(bench: &mut Bench<'_>, flash: &CutFlash, milliseconds: u32, when: &str) {
     bench.operator.lever_target_deg = bench.operator.lever_deg;
-    // The valves close, and what had speed swings on its oil until it rests.
+    // The valves close, and a moving load oscillates on its oil until it rests.
     (0..SWINGING_MS).for_each(|_| bench.tick_without_power());
     let (rest_deg, mut machine) = (bench.angle_deg(), OnHost::start(flash.clone()));
     for millisecond in 0..milliseconds {

@@ -1,6 +1,5 @@
-//! Rate control: the button outside moves the hitch at its set speed, whatever hangs on it, whatever the oil's
-//! temperature, both ways, with sensors of pressure and without, on plants as they are met, taught by the firmware
-//! itself.
+//! Rate control: the external button moves the hitch at its set speed for all loads and oil temperatures, in both
+//! directions, with and without pressure sensors, after teaching.
 
 use hitch_plant::Model;
 use hitch_quantities::units::MilliDegreePerSecond;
@@ -18,7 +17,7 @@ const RATES_DEG_PER_S: [f64; 8] = [-15.0, -10.0, -5.0, -2.0, 2.0, 5.0, 10.0, 15.
 /// How far the speed may be off the set one.
 const BAR: f64 = 0.05;
 
-/// What is held against the set speed.
+/// Error of the speed.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     load_kg: f64,

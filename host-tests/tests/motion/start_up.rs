@@ -1,5 +1,4 @@
-//! From power-up on the line that enables the coils' drivers is low until the operator has picked the hitch up,
-//! whatever else goes on.
+//! From power-up the enable line of the coil drivers is low until the lever capture, under all conditions.
 
 use hitch_ecu::{Contact, Panel};
 use hitch_plant::Model;
@@ -98,7 +97,7 @@ fn the_line_rises_with_the_first_move_after_the_pick_up() {
             picked_up || !reply.enable,
             "locked, and enabled all the same"
         );
-        // The lock opens in one millisecond, and what follows from that is the next one's.
+        // The lock opens in one millisecond, and the first drive follows in the next one.
         picked_up |= reply.state != State::Locked as u8;
         if reply.enable {
             // Picked up by a lever that is still a little below, the hitch may first be lowered by that.

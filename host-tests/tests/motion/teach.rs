@@ -1,4 +1,4 @@
-//! The firmware teaches itself thresholds and ends on plants whose valves and sensors are off.
+//! The firmware identifies thresholds and ends on plants whose valves and sensors deviate.
 
 use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_plant::Model;
@@ -14,7 +14,7 @@ fn shifted(lift_a: f64, lower_a: f64) -> Model {
     ])
 }
 
-/// As good as a machine whose valves are as the calibration says.
+/// As accurate as a machine whose valves match the calibration.
 fn assert_as_good(run: &LoopRun, right: &LoopRun) {
     let (summary, right) = (run.summary, right.summary);
     assert!(summary.final_error_max_deg <= 0.3, "{summary:?}");
@@ -44,7 +44,7 @@ fn thresholds_that_are_off_by_a_quarter_ampere_are_found() {
             let found = taught(&model, load_kg).unwrap();
             let [lift_found_a, lower_found_a] =
                 [found.lift_shift, found.lower_shift].map(|shift| f64::from(shift.0) * 1e-3);
-            // What else is found, the lags of the spools, has a test of its own.
+            // The spool lags have a separate test.
             let hydraulics = &nominal().hydraulics;
             let thresholds_alone = Taught {
                 lift_lag: hydraulics.spool_lag,
@@ -77,7 +77,7 @@ fn thresholds_that_are_off_by_a_quarter_ampere_are_found() {
 }
 
 // REQ-MOTION-05
-/// A step of current tells how slow a spool is, with a load on aerated oil that swings behind it and a noisy sensor.
+/// A current step yields the spool lag, with a load that oscillates on aerated oil and a noisy sensor.
 #[test]
 fn the_lags_of_the_spools_are_found() {
     let effects = dynamic_with(&[
@@ -170,7 +170,7 @@ fn what_is_implausible_is_refused() {
         taught_with(&hitch_model_file::dynamic(), 150.0, 120_000, squeezed),
         Some(Err(TeachError::Ends))
     );
-    // Somebody pushes the hitch up for a moment during the third ramp.
+    // The hitch is pushed up for a moment during the third ramp.
     let pushed = |step: usize, inputs: &mut Inputs| {
         if (5_900..6_100).contains(&step) {
             inputs.rocker_angle = inputs.rocker_angle.map(|angle| angle + MilliDegree(400));

@@ -1,4 +1,4 @@
-//! The traces are worth replaying: they reach every state and most faults, and survive being stored.
+//! Coverage of the traces: they reach every state and most faults, and are stored without loss.
 
 use std::collections::BTreeSet;
 

@@ -23,7 +23,7 @@ fn width_a(drawn: &Drawn) -> f64 {
         .sum()
 }
 
-/// Textbook machines with wide hysteresis, and what they were taught.
+/// Textbook machines with wide hysteresis, and the results of teaching.
 fn taught_machines() -> Vec<(Drawn, ValidCalibration)> {
     let nominal = Calibration::nominal().validate().unwrap();
     let wide = |drawn: &Drawn| !drawn.structured && width_a(drawn) >= WIDE_A;
@@ -87,7 +87,7 @@ fn a_taught_hitch_moves_well_on_valves_with_wide_hysteresis() {
     }
 }
 
-/// A hitch that is taught near an end mustn't take the end for what its valve does.
+/// Near an end, teaching must not attribute the end stop to the valve.
 #[test]
 fn wherever_teaching_begins_it_finds_the_same() {
     let nominal = Calibration::nominal().validate().unwrap();

@@ -54,7 +54,7 @@ impl ControllerProcess {
         line.trim_end().to_owned()
     }
 
-    /// Closes the input; exit code and what was said on standard error.
+    /// Closes the input; returns exit code and standard error.
     fn close(mut self) -> (Option<i32>, String) {
         drop(self.input.take());
         let output = self.child.wait_with_output().unwrap();
@@ -65,7 +65,8 @@ impl ControllerProcess {
     }
 }
 
-/// Somebody else's hitch: valves linear from other thresholds, a lag of 60 ms, angle straight from flow.
+/// An external hitch: linear valves with other thresholds, a lag of 60 ms, angle proportional to the integral of the
+/// flow.
 struct Toy {
     controller: ControllerProcess,
     step: u32,
@@ -191,7 +192,7 @@ fn a_machine_is_taught_through_the_door_and_what_was_found_is_kept() {
     }
     let lower_limit = found.position.lower_limit.0;
     assert!((lower_limit - 45_600).abs() <= 50, "{lower_limit}");
-    // It goes on with what was found: the lever at its bottom stop brings the hitch to the new limit.
+    // It continues with the result: the lever at its bottom stop moves the hitch to the new limit.
     for lever_deg in [60.0, 40.0, 90.0, 40.0] {
         (0..3_000).for_each(|_| {
             step_taught(&mut controller, &mut toy, lever_deg, false);

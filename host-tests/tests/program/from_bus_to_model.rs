@@ -15,7 +15,7 @@ const LOAD_KG: f64 = 150.0;
 const MOVES: [(u32, f64); 4] = [(1, 90.0), (3, 110.0), (6, 70.0), (10, 100.0)];
 const DURATION_S: u32 = 13;
 
-/// What candump logs while the operator works on a hitch whose lowering valve opens later than the nominal one.
+/// Log of candump during operation of a hitch whose lowering valve opens later than the nominal one.
 fn log(shift_a: f64, measured_period_ms: u32) -> String {
     let model = dynamic_with(&[("lower-threshold-shift", &[shift_a])]);
     let mut calibration = Calibration::nominal();
@@ -43,7 +43,7 @@ fn log(shift_a: f64, measured_period_ms: u32) -> String {
     text
 }
 
-/// What `hitch explain` says of such a log.
+/// Output of `hitch explain` for such a log.
 fn explained(shift_a: f64, measured_period_ms: u32) -> serde_json::Value {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path().join("c");
@@ -83,7 +83,8 @@ fn a_log_of_the_bus_names_what_is_hidden_in_the_plant() {
     let close_by = (shift_a(&found) - HIDDEN_A).abs() < 0.004;
     assert!(close_by && found["verdict"] == "explained");
     assert_eq!(found["steps"].as_array().unwrap().len(), 1);
-    // A coil is cut within a millisecond, of which samples every 20 ms know little; what is hidden still comes first.
+    // A coil is cut within a millisecond, which samples every 20 ms do not resolve; the hidden effect still comes
+    // first.
     let found = explained(HIDDEN_A, 20);
     assert!((shift_a(&found) - HIDDEN_A).abs() < 0.02);
 }

@@ -1,4 +1,4 @@
-//! What reads and writes of the processor do: registers, flash, and the page of RAM with a stuck bit.
+//! Reads and writes of the processor: registers, flash, and the RAM page with a stuck bit.
 
 use super::{CLOCKS_PER_INSTRUCTION, Chip, ECCD, ECCR, POLLING_NS, Stop};
 use crate::board::cpu::Bus;
@@ -100,7 +100,7 @@ impl Chip {
         }
     }
 
-    /// Somebody has looked whether a converter is done.
+    /// The end of a conversion was polled.
     fn polled(&mut self, index: usize) {
         if self.converters[index].is_waiting() {
             // No further than to whatever happens next: nothing is skipped.

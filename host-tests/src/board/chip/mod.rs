@@ -1,4 +1,4 @@
-//! The part around its processor: what registers do, and the course of time.
+//! The part around its processor: registers and time.
 
 mod access;
 mod reset;
@@ -22,7 +22,7 @@ use crate::board::watchdog::Watchdog;
 
 /// Clocks that an instruction takes: a mean over code that waits for flash now and then.
 const CLOCKS_PER_INSTRUCTION: f64 = 2.0;
-/// Time that a look at converters that aren't done passes: whoever polls them has nothing else to do.
+/// Time that a poll of unfinished converters takes: a polling program does nothing else.
 const POLLING_NS: f64 = 2e3;
 /// `ECCR` of the STM32G474, and its flag of a double error.
 const ECCR: u32 = 0x18;
@@ -31,7 +31,7 @@ const ECCD: u32 = 31;
 /// Why the processor has stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// It is the time that was asked for.
+    /// The requested time is reached.
     Time,
     /// The watchdog resets the part.
     Watchdog,
@@ -50,13 +50,13 @@ pub enum Stop {
 pub struct Chip {
     /// Which one.
     pub part: Part,
-    /// What the image has written.
+    /// Registers as written by the image.
     pub registers: Registers,
     /// Time, ns.
     pub now_ns: f64,
     /// When the processor is to stop, ns.
     pub until_ns: f64,
-    /// What is around it.
+    /// Surroundings.
     pub conditions: Conditions,
     /// Clock tree.
     pub clocks: Clocks,
@@ -70,7 +70,7 @@ pub struct Chip {
     pub can: Can,
     /// Watchdog.
     pub watchdog: Watchdog,
-    /// What the image did that the manuals forbid.
+    /// Violations of the manuals by the image.
     pub violations: BTreeSet<String>,
     /// Instructions since the start.
     pub instructions: u64,
@@ -151,7 +151,7 @@ impl Chip {
         self.raise_if_pending();
     }
 
-    /// Clocks, for whoever judges them.
+    /// Clocks, for checks.
     #[must_use]
     pub const fn timer_hz(&self) -> [f64; 2] {
         self.timer_hz
@@ -171,7 +171,7 @@ impl Chip {
             && self.registers.bit(base + 0x14, pin.number)
     }
 
-    /// What a pin is: 0 input, 1 output, 2 alternate function, 3 analogue.
+    /// Mode of a pin: 0 input, 1 output, 2 alternate function, 3 analogue.
     #[must_use]
     pub fn mode(&self, pin: Pin) -> u32 {
         self.registers.field(self.port(pin.port), 2 * pin.number, 2)
@@ -374,7 +374,7 @@ impl Chip {
         }
     }
 
-    /// What is wrong with what the image has set up.
+    /// Faults of the initialisation by the image.
     #[must_use]
     pub fn audit(&self) -> Vec<String> {
         audit::findings(self)

@@ -11,7 +11,7 @@ use crate::board::ENABLE_READ_BACK;
 /// A fault of wires, sensors and coils.
 #[derive(Clone, Copy)]
 pub struct Fault {
-    /// What it is.
+    /// Description.
     pub name: &'static str,
     /// Longest reaction at the pin, ms: the row's time, a millisecond until it is sampled, and one to react.
     pub most_ms: f64,
@@ -20,7 +20,7 @@ pub struct Fault {
     pub always_shows: bool,
     /// Whether only a restart clears it.
     pub until_restart: bool,
-    /// What it does to the samples, in the step of this number.
+    /// Its effect on the samples, in the step of this number.
     pub inject: fn(&mut Contacts, usize),
 }
 

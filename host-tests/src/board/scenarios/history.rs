@@ -22,7 +22,7 @@ const TOOL: u8 = 0xF9;
 /// Address of the ECU.
 const ECU: u8 = 0x80;
 
-/// What DM2 says.
+/// Content of DM2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Previous {
     Nothing,
@@ -73,7 +73,7 @@ fn previous(rig: &mut Rig<'_>) -> Result<Previous> {
     }
 }
 
-/// Switches power off and on with these contents; what DM2 says then.
+/// Switches power off and on with these contents; returns DM2 afterwards.
 fn after_power_up(rig: &mut Rig<'_>, contents: Option<&Contents>) -> Result<Previous> {
     rig.board.cycle_power()?;
     if let Some(contents) = contents {
@@ -98,7 +98,7 @@ pub fn fault_history(setup: &Setup) -> Result<String> {
     let model = hitch_model_file::nominal();
     let mut rig = Rig::typical(setup, &model)?;
     rig.run(CLAIMED_MS)?;
-    // Erased flash has no calibration, which is a trouble of its own and active at each start.
+    // Erased flash has no calibration, which is a separate trouble, active at each start.
     ensure!(previous(&mut rig)? == Previous::Nothing, "a new ECU");
     ensure!(
         after_power_up(&mut rig, None)? == Previous::Nothing,

@@ -1,4 +1,4 @@
-//! What the images have to stand, one function a scenario. Each returns a line of what was measured.
+//! Scenarios for the images, one function each. Each returns a line with the measured figures.
 
 mod bus;
 mod faults;
@@ -30,7 +30,7 @@ pub struct Setup {
     pub image: Image,
 }
 
-/// A scenario; an error says what went wrong.
+/// A scenario; an error describes the failure.
 pub type Scenario = fn(&Setup) -> Result<String>;
 
 /// All of them, by name.

@@ -11,7 +11,7 @@ const DOWN_DEG: f64 = 70.0;
 /// How far from the set point a move may end, degree: the calibration is not that of this plant.
 const NEAR_DEG: f64 = 1.0;
 
-/// Lifts, holds and lowers; pulses, instructions and set-up are judged.
+/// Lifts, holds and lowers; checks pulses, instructions and initialisation.
 pub fn lift_hold_lower(setup: &Setup) -> Result<String> {
     let model = hitch_model_file::nominal();
     let mut rig = Rig::typical(setup, &model)?;

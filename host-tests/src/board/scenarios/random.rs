@@ -1,4 +1,4 @@
-//! Random operation with faults: an operator who moves the hitch most of the time, wires that break and mend, a busy
+//! Random operation with faults: an operator who moves the hitch most of the time, intermittent wire breaks, a busy
 //! bus.
 
 use anyhow::{Result, ensure};
@@ -67,7 +67,7 @@ pub fn operation(setup: &Setup) -> Result<String> {
     Ok(said)
 }
 
-/// The board, and what has happened.
+/// The board, and a summary of events.
 struct Shift<'m> {
     rig: Rig<'m>,
     random: fastrand::Rng,

@@ -56,7 +56,7 @@ impl<'m> Rig<'m> {
         )
     }
 
-    /// A millisecond in which `tamper` changes what sensors and wires give.
+    /// A millisecond in which `tamper` changes the signals of sensors and wires.
     pub fn tick_with(&mut self, tamper: impl FnOnce(&mut Contacts)) -> Result<Moment> {
         let moment = self
             .bench
@@ -96,7 +96,7 @@ impl<'m> Rig<'m> {
         self.board.chip().now_ns
     }
 
-    /// How long after `fault_ns` a coil was driven for the last time, ms; what happens within `watched_ms` counts.
+    /// Time of the last drive of a coil after `fault_ns`, ms, within `watched_ms`.
     pub fn off_after_ms(
         &mut self,
         fault_ns: f64,

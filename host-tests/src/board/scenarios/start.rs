@@ -6,7 +6,7 @@ use super::Setup;
 use super::rig::{READY_MS, Rig};
 use crate::board::{Conditions, Contents, Operation, Stop};
 
-/// Frames of the address claim and the status say that the application runs.
+/// Frames of the address claim and the status show that the application runs.
 fn starts(setup: &Setup, conditions: Conditions) -> Result<f64> {
     let model = hitch_model_file::nominal();
     let mut rig = Rig::new(setup, &model, Contents::erased(setup.part), conditions)?;

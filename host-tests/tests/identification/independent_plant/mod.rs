@@ -1,5 +1,5 @@
-//! The plant's numerics against a second opinion: the same rig written anew, solved by a published stiff solver
-//! (Radau IIA of order five, step-size controlled to nine digits).
+//! Numerics of the plant compared with an independent implementation of the same rig and a published stiff solver
+//! (Radau IIA of order five, with step-size control to nine digits).
 
 mod rig;
 
@@ -7,7 +7,7 @@ use differential_equations::prelude::{IVP, ImplicitRungeKutta};
 use hitch_plant::{Currents, HitchRig, Plant};
 use rig::{Rig, State, linkage};
 
-/// The logger's rate, and so the longest step that the plant is asked for.
+/// The logger's rate, and therefore the longest step of the plant.
 const SAMPLE_S: f64 = 0.02;
 
 /// Time in s and both currents in A, linear in between.

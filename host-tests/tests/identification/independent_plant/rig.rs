@@ -1,4 +1,4 @@
-//! The dynamic rig, written a second time from its data sheet: nothing here comes from the model crate.
+//! The dynamic rig, implemented independently of the model crate from its data sheet.
 //!
 //! Units are chosen so that one absolute tolerance fits all states: mm, mm/s, bar and A.
 
