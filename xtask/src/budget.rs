@@ -1,7 +1,7 @@
-//! What the ECU's images may take, and what they took when somebody last looked.
+//! Size budgets of the ECU's images, and their recorded sizes.
 //!
-//! `firmware/sizes.txt` holds a line an image. An image that is over its budget, or that has moved away from its line,
-//! ends the task; `cargo xtask sizes` writes the lines anew, and the change shows in review.
+//! `firmware/sizes.txt` has a line for each image. An image over its budget, or with a size that differs from its line,
+//! is an error; `cargo xtask sizes` updates the lines, and the change is visible in review.
 
 use std::fs;
 use std::path::PathBuf;
@@ -11,22 +11,22 @@ use arm_build::workspace;
 
 use crate::size::Size;
 
-/// Flash that an image may take.
+/// Maximum flash of an image.
 const FLASH_BYTES: u64 = 192 * 1024;
-/// RAM that it may take, variables and the deepest stack together.
+/// Maximum RAM of an image: variables and the deepest stack.
 const RAM_BYTES: u64 = 48 * 1024;
-/// The image that has no flash to fit, as it runs in the emulator.
+/// The image without flash limit, as it runs in the emulator.
 pub const EMULATED: &str = "emulated";
-/// Growth that isn't worth a line in a review, per mille.
+/// Tolerated growth, per mille.
 const GROWTH_PER_MILLE: u64 = 20;
-/// The newer of the two compilers makes images that are smaller by 46.
+/// The images of the newer of the two compilers are smaller by 46 per mille.
 const SHRINKAGE_PER_MILLE: u64 = 80;
 
 const HEADING: &str = "\
 # Bytes that the images take: flash, RAM without the stack, and a bound of the stack. Written by `cargo xtask sizes`.
 ";
 
-/// An image and what it takes.
+/// An image with its sizes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
     name: String,
@@ -79,7 +79,7 @@ fn path() -> PathBuf {
     workspace::root().join("firmware/sizes.txt")
 }
 
-/// Writes down what the images take.
+/// Records the sizes of the images.
 pub fn write(entries: &[Entry]) -> Result<()> {
     let lines: String = entries.iter().map(Entry::line).collect();
     let path = path();
@@ -87,7 +87,7 @@ pub fn write(entries: &[Entry]) -> Result<()> {
         .with_context(|| format!("can't write {}", path.display()))
 }
 
-/// Holds the images to their budgets and to what was written down.
+/// Checks the images against their budgets and the recorded sizes.
 pub fn check(entries: &[Entry]) -> Result<()> {
     let path = path();
     let text = fs::read_to_string(&path).with_context(|| {

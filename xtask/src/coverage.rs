@@ -1,6 +1,6 @@
-//! Coverage of the safety envelope: its own tests have to reach each piece of its code, and so each of its lines.
+//! Coverage of the safety envelope: its tests have to reach each region of its code, and therefore each line.
 //!
-//! A piece is what lies between two branches, so a line with a condition in it has several.
+//! A region is the code between two branches, so a line with a condition has several.
 
 use std::collections::BTreeSet;
 use std::env;
@@ -13,15 +13,15 @@ use anyhow::{Context, Result, bail, ensure};
 use arm_build::{process, workspace};
 use llvm_profparser::{CoverageMapping, merge_profiles};
 
-/// What has to be covered, from the workspace's root: the envelope, and the rows of its table.
+/// The covered files, relative to the workspace's root: the envelope, and the rows of its table.
 const COVERED: [&str; 2] = [
     "firmware/safety/src",
     "firmware/quantities/src/signals/trip.rs",
 ];
-/// Tells this program that cargo has started it in the compiler's place.
+/// Environment variable that marks a start of this program by cargo in place of the compiler.
 const COUNTING: &str = "HITCH_COUNTING_RUSTC";
 
-/// Runs the envelope's tests with counters in the code, and looks for pieces that none of them has reached.
+/// Runs the envelope's tests with counters, and reports regions that no test reached.
 pub fn run() -> Result<()> {
     let folder = workspace::target().join("coverage");
     // Counters of earlier runs belong to other programs.
@@ -38,11 +38,11 @@ pub fn run() -> Result<()> {
     judge(&regions(&test, &counters)?)
 }
 
-/// Compiles a test with counters; the program. What a build script counts goes into `folder`, not beside the sources.
+/// Compiles a test with counters; returns the program. Counters of build scripts are written to `folder`.
 fn build(tests: &[&str], folder: &Path) -> Result<PathBuf> {
     let mut command = process::command(workspace::cargo(), &["test", "--locked", "--no-run"]);
     command.args(tests).arg("--message-format=json");
-    // Only the workspace's own crates get counters, so what they depend on isn't compiled again.
+    // Only the workspace's crates have counters, so their dependencies are not compiled again.
     let this = env::current_exe().context("where is this program?")?;
     command
         .env("RUSTC_WORKSPACE_WRAPPER", this)
@@ -55,7 +55,7 @@ fn build(tests: &[&str], folder: &Path) -> Result<PathBuf> {
         "the tests don't compile; see above"
     );
     let messages = String::from_utf8_lossy(&output.stdout);
-    // Of all that cargo reports only the test has a program.
+    // Of all artefacts reported by cargo only the test is a program.
     let program = messages.lines().find_map(|line| {
         let (_, rest) = line.split_once("\"executable\":\"")?;
         Some(PathBuf::from(rest.split_once('"')?.0))
@@ -63,7 +63,7 @@ fn build(tests: &[&str], folder: &Path) -> Result<PathBuf> {
     program.context("cargo names no test program")
 }
 
-/// If cargo has started this program in the compiler's place: compiles with counters.
+/// If cargo has started this program in place of the compiler: compiles with counters.
 pub fn compile() -> Option<ExitCode> {
     env::var_os(COUNTING)?;
     let mut arguments = env::args_os().skip(1);
@@ -78,7 +78,7 @@ pub fn compile() -> Option<ExitCode> {
     })
 }
 
-/// A piece of code without a branch in it, by its file from the workspace's root, and how often it was reached.
+/// A region of code without branches, by its file relative to the workspace's root, with its count.
 struct Region {
     file: PathBuf,
     first_line: usize,

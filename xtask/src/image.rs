@@ -1,4 +1,4 @@
-//! Building the images for ARM.
+//! Builds the images for ARM.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,18 +11,18 @@ use image_stack::Bound;
 use crate::budget::{self, Entry};
 use crate::{programming, seal, size};
 
-/// Parts that there is a board for, by the features that choose them.
+/// Supported parts, by the features that select them.
 pub const PARTS: [&str; 2] = ["stm32f405", "stm32g474"];
 
 /// The image for the emulator.
 pub struct Emulated {
-    /// Where it is.
+    /// Path.
     pub path: PathBuf,
-    /// How deep its stack can get.
+    /// Maximum stack depth.
     pub stack: Bound,
 }
 
-/// Builds the library as the ECU takes it, proves that it can't panic, builds all images and holds them to their
+/// Builds the library for the ECU, proves that it cannot panic, builds all images, and checks them against their
 /// budgets.
 pub fn build_all(way: Way) -> Result<Emulated> {
     let folder = folder(way);
@@ -40,13 +40,13 @@ pub fn build_all(way: Way) -> Result<Emulated> {
     Ok(emulated)
 }
 
-/// Builds the images; what they take.
+/// Builds the images; returns their sizes.
 pub fn sizes(way: Way) -> Result<Vec<Entry>> {
     let (images, _) = build_images(way)?;
     Ok(images.into_iter().map(|image| image.entry).collect())
 }
 
-/// Builds the images and shows how deep their stacks can get, and by which calls.
+/// Builds the images and prints their maximum stack depths with the calls.
 pub fn show_stacks(way: Way) -> Result<()> {
     let (images, _) = build_images(way)?;
     for image in images {
@@ -55,7 +55,7 @@ pub fn show_stacks(way: Way) -> Result<()> {
     Ok(())
 }
 
-/// An image that was built.
+/// A built image.
 struct Image {
     entry: Entry,
     stack: Bound,
@@ -80,7 +80,7 @@ fn build_images(way: Way) -> Result<(Vec<Image>, Emulated)> {
     let mut images = Vec::new();
     for part in PARTS {
         build(way, &["--bin", "ecu", "--features", part])?;
-        // All parts build into the same place; each image is kept under its own name.
+        // All parts have the same build path; each image is copied under its own name.
         let name = format!("ecu-{part}");
         let path = folder.join(&name);
         fs::copy(folder.join("ecu"), &path)

@@ -1,8 +1,8 @@
-//! Folders of a crate are its layers: none may use what lies above it.
+//! The folders of a crate are layers: a folder may use only itself and lower ones.
 //!
-//! Cargo keeps crates from using each other in a circle; between the folders of a crate nothing does. So the sources are
-//! read for the paths of their `use` lines, and for those that begin with `crate::` anywhere, and each has to lead to the
-//! same folder or to one further down. Only tests may look upwards.
+//! Cargo prevents cyclic dependencies of crates, but not of the folders in a crate. This check therefore reads the
+//! paths of `use` lines and of `crate::` paths in the sources: each has to lead to the same folder or to a lower one.
+//! Tests are exempt.
 
 use std::fs;
 use std::path::Path;
@@ -12,13 +12,13 @@ use arm_build::workspace;
 
 /// The folders of a crate in their order.
 struct Layers {
-    /// Where the crate's sources are, from the workspace's root.
+    /// Folder of the crate's sources, relative to the workspace's root.
     sources: &'static str,
-    /// Its top modules, the lowest first; those of one entry may use each other.
+    /// Its top modules, the lowest first; modules of one entry may use each other.
     order: &'static [&'static [&'static str]],
 }
 
-/// What is held to an order; another crate takes an entry here.
+/// The checked crates; add an entry for a new one.
 const CRATES: [Layers; 7] = [
     Layers {
         sources: "firmware/quantities/src",
@@ -125,7 +125,7 @@ const CRATES: [Layers; 7] = [
     },
 ];
 
-/// Refuses imports that lead upwards, and modules that have no place in the order.
+/// Rejects imports of higher layers, and modules without an entry.
 pub fn check() -> Result<()> {
     let mut wrong = Vec::new();
     for layers in &CRATES {
@@ -155,15 +155,15 @@ pub fn check() -> Result<()> {
 }
 
 impl Layers {
-    /// How high a module is.
+    /// Level of a module.
     fn height(&self, module: &str) -> Option<usize> {
         self.order.iter().position(|layer| layer.contains(&module))
     }
 
-    /// What is wrong with a file at this place below the sources.
+    /// Faults of a file at this path below the sources.
     fn judge(&self, place: &Path, text: &str) -> Vec<String> {
         let module = module_of(place);
-        // The crate's front page names all of them.
+        // The root of the crate declares all of them.
         let Some(own) = module.first() else {
             return Vec::new();
         };
@@ -186,7 +186,7 @@ impl Layers {
     }
 }
 
-/// The module that a file is; the crate's root is none.
+/// The module of a file; `None` for the root of the crate.
 fn module_of(place: &Path) -> Vec<String> {
     let mut module: Vec<String> = place
         .with_extension("")
@@ -202,7 +202,7 @@ fn module_of(place: &Path) -> Vec<String> {
     module
 }
 
-/// The top module that a path leads to, as seen from a module; `None` if it leads out of the crate, or to its root.
+/// The top module of a path, as seen from a module; `None` for another crate, or for the root.
 fn absolute(module: &[String], path: &str) -> Option<String> {
     let mut parts = path.split("::").peekable();
     if parts.next_if_eq(&"crate").is_some() {
@@ -220,8 +220,8 @@ fn absolute(module: &[String], path: &str) -> Option<String> {
     }
 }
 
-/// The paths of a source that may lead to other modules of its crate: those that begin with `crate` or `super`, with
-/// what is in braces taken apart. Neither comments nor tests are looked at.
+/// The paths of a source that may lead to other modules of its crate: those that start with `crate` or `super`, with
+/// braces expanded. Comments and tests are ignored.
 fn paths(text: &str) -> Vec<String> {
     let code: String = without_tests(text)
         .lines()
@@ -232,7 +232,7 @@ fn paths(text: &str) -> Vec<String> {
     for root in ["crate::", "super::"] {
         for (at, _) in code.match_indices(root) {
             let before = code[..at].chars().next_back();
-            // In the middle of a path, or a macro's `$crate`.
+            // Inside a path, or `$crate` of a macro.
             if before.is_some_and(|sign| sign.is_alphanumeric() || "_:$".contains(sign)) {
                 continue;
             }
@@ -242,7 +242,7 @@ fn paths(text: &str) -> Vec<String> {
     found
 }
 
-/// The paths that a text begins with: `a::{b, c::d}` is `a::b` and `a::c::d`.
+/// The paths at the start of a text: `a::{b, c::d}` is `a::b` and `a::c::d`.
 fn apart(text: &str) -> Vec<String> {
     let end = text
         .find(|sign: char| !(sign.is_alphanumeric() || "_:".contains(sign)))
@@ -274,7 +274,7 @@ fn apart(text: &str) -> Vec<String> {
     paths
 }
 
-/// A source up to its tests, which are a module at its end.
+/// A source without its tests, which are a module at its end.
 fn without_tests(text: &str) -> &str {
     let tests = text
         .match_indices("#[cfg(test)]\nmod ")

@@ -1,7 +1,7 @@
-//! Mutation test of the parts that have to be right: every change to their code has to be noticed by their tests.
+//! Mutation tests of the critical parts: their tests have to detect every mutation of their code.
 //!
-//! That takes minutes, so `firmware/mutants.txt` says for which code of each part it was last done. Where a byte of
-//! that is different, it is done again.
+//! This takes minutes. `firmware/mutants.txt` therefore records the tested state of each part; after a change of the
+//! part or of its tests, the mutation test is repeated.
 
 use std::ffi::OsString;
 use std::fs;
@@ -14,24 +14,24 @@ use hitch_quantities::calibration::design_parameters::{
     PositionParameters, SafetyParameters, SensorParameters,
 };
 
-/// A part of the firmware, and the tests that have to notice every change to it.
+/// A part of the firmware, and the tests that have to detect every mutation of it.
 #[derive(Debug)]
 struct Part {
     name: &'static str,
-    /// What is changed, from the workspace's root.
+    /// The mutated files, relative to the workspace's root.
     changed: &'static [&'static str],
-    /// What else decides whether a change is noticed, its tests included.
+    /// Other files that affect the result, including its tests.
     decides: &'static [&'static str],
-    /// The packages that are changed.
+    /// The mutated packages.
     packages: &'static [&'static str],
-    /// The package whose tests have to notice.
+    /// The package of the tests.
     tested: &'static str,
     /// Its tests, as options of cargo.
     tests: &'static [&'static str],
-    /// Tests that are left out: random ones whose steps would take most of the time.
+    /// Excluded tests: random ones with long run times.
     skipped: Option<&'static str>,
-    /// A change to this function makes a loop endless, which the tests notice by their time, and on the ECU the
-    /// watchdog.
+    /// Function whose mutation results in an endless loop, which the tests detect by their time limit, and the ECU by
+    /// its watchdog.
     looping: Option<&'static str>,
 }
 
@@ -127,21 +127,21 @@ const PARTS: [Part; 4] = [
     },
 ];
 
-/// Says for which code of each part every change was noticed.
+/// Records for which code of each part every mutation was detected.
 const PROVEN: &str = "firmware/mutants.txt";
-/// The version that is installed where there is none; each knows a few changes more.
+/// The version that is installed if there is none; versions differ slightly in their mutations.
 const VERSION: &str = "27.1.0";
-/// Changes at a time.
+/// Number of parallel mutations.
 const JOBS: &str = "2";
-/// What cargo-mutants ends with if a change went unnoticed.
+/// Exit code of cargo-mutants if a mutation was missed.
 const SURVIVES: i32 = 2;
-/// What cargo-mutants ends with if no change went unnoticed, but the tests of some didn't end in time.
+/// Exit code of cargo-mutants if no mutation was missed, but some tests exceeded the time limit.
 const HANGS: i32 = 3;
-/// Time that tests have at least, s: they take a few, and more on a busy machine.
+/// Minimum time limit of the tests, s: they take a few seconds, more on a busy machine.
 const TEST_TIME: &str = "20";
 
-/// Changes each part in every way and writes down that its tests have noticed; unless `again`, only if anything of
-/// it is different from what was written down.
+/// Applies all mutations to each part, and records the result; unless `again`, only if the part differs from the
+/// record.
 pub fn run(again: bool) -> Result<()> {
     let path = workspace::root().join(PROVEN);
     for part in &PARTS {
@@ -159,7 +159,7 @@ pub fn run(again: bool) -> Result<()> {
     Ok(())
 }
 
-/// What is written down, with another line for a part.
+/// The record with a replaced line for a part.
 fn with_line(known: &str, name: &str, line: &str) -> String {
     let title = "# Changes to the code of each part, and how its tests notice them. Written by `cargo xtask mutants`.";
     let lines = PARTS.iter().filter_map(|part| {
@@ -176,7 +176,7 @@ fn with_line(known: &str, name: &str, line: &str) -> String {
 }
 
 impl Part {
-    /// A number that is another one if anything that decides is.
+    /// Hash of all files that affect the result.
     fn code(&self) -> Result<u64> {
         let crc = Crc::<u64>::new(&CRC_64_XZ);
         let mut digest = crc.digest();
@@ -200,7 +200,7 @@ impl Part {
         Ok(digest.finalize())
     }
 
-    /// Changes it in every way; how many changes there were.
+    /// Applies all mutations; returns their number.
     fn prove(&self) -> Result<String> {
         let folder = workspace::target().join("mutants").join(self.name);
         fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
@@ -209,7 +209,7 @@ impl Part {
             let path = folder.join("mutants.out").join(list);
             fs::read_to_string(&path).with_context(|| path.display().to_string())
         };
-        // The exit code of cargo-mutants doesn't show these beside tests that took too long.
+        // The exit code of cargo-mutants does not distinguish these from tests over the time limit.
         let missed = found("missed.txt")?;
         ensure!(
             missed.is_empty(),
@@ -241,8 +241,8 @@ impl Part {
             .args(self.tests.iter().map(|test| format!("--cargo-arg={test}")))
             .arg("--output")
             .arg(folder)
-            // Each job changes a copy of the sources and builds it there: in a folder that both share, or that the
-            // sources themselves are built in, cargo would take what one copy has built for the other's.
+            // Each job builds a mutated copy of the sources in its own folder: in a shared one, cargo would use the
+            // output of another copy.
             .env_remove("CARGO_TARGET_DIR");
         if let Some(skipped) = self.skipped {
             let skip = format!("--cargo-test-arg={skipped}");
@@ -258,7 +258,7 @@ impl Part {
     }
 }
 
-/// The file itself, or the files in the folder, always in the same order.
+/// The file itself, or the files in the folder, in a fixed order.
 fn files(path: &Path) -> Result<Vec<PathBuf>> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);
@@ -271,7 +271,7 @@ fn files(path: &Path) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Finds cargo-mutants, or installs it beside what is built.
+/// Finds cargo-mutants, or installs it in the target folder.
 fn program() -> Result<OsString> {
     const NAME: &str = "cargo-mutants";
     let folder = workspace::target().join("tools");
@@ -285,7 +285,7 @@ fn program() -> Result<OsString> {
             return Ok(program);
         }
     }
-    // Its time passes in what it starts, so it needn't be optimised.
+    // Its run time is spent in child processes, so it is not optimised.
     let options = ["install", "--locked", "--debug", "--version", VERSION];
     let mut install = process::command(workspace::cargo(), &options);
     install.arg("--root").arg(folder).arg(NAME);

@@ -1,4 +1,4 @@
-//! Images as programmers for flash take them: plain bytes, and Intel's hexadecimal records.
+//! Images in the formats of flash programmers: plain bytes, and Intel hexadecimal records.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use object::read::elf::{ElfFile32, ProgramHeader};
 
 /// Bytes of a record.
 const RECORD_BYTES: usize = 32;
-/// An extended address counts in these.
+/// Unit of an extended address.
 const BANK_BYTES: usize = 1 << 16;
 
 /// Writes `NAME.bin` and `NAME.hex` beside the image.
@@ -27,7 +27,7 @@ pub fn write(image: &Path) -> Result<()> {
     written("hex", hexadecimal(first, &bytes)?.as_bytes())
 }
 
-/// What the image puts into flash, gaps filled as erased flash is, and where it begins.
+/// Flash contents of the image with its start address; gaps are filled as erased flash.
 pub fn flash(file: &[u8]) -> Result<(u32, Vec<u8>)> {
     let elf = ElfFile32::<LittleEndian>::parse(file)?;
     let mut pieces = Vec::new();

@@ -1,4 +1,4 @@
-//! How much memory of the ECU an image takes.
+//! Memory sizes of an image.
 
 use std::fmt;
 use std::fs;
@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use object::elf::{SHF_ALLOC, SHF_WRITE, SHT_NOBITS};
 use object::{Object, ObjectSection, SectionFlags};
 
-/// Bytes of an image by where they live.
+/// Bytes of an image by memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Size {
     /// Code and constants, in flash.
@@ -29,7 +29,7 @@ impl fmt::Display for Size {
     }
 }
 
-/// Sizes of the sections that are loaded.
+/// Sizes of the loaded sections.
 pub fn of(image: &Path) -> Result<Size> {
     let bytes =
         fs::read(image).with_context(|| format!("can't read the image {}", image.display()))?;

@@ -11,13 +11,13 @@ use arm_build::{process, setup, workspace};
 
 use crate::image;
 
-/// Names the image for the tests that run it.
+/// Environment variable with the image for the tests that run it.
 const IMAGE_VARIABLE: &str = "HITCH_EMULATED_IMAGE";
 
-/// Tells them how deep its stack can get, in bytes.
+/// Environment variable with its maximum stack depth, in bytes.
 const STACK_VARIABLE: &str = "HITCH_STACK_BOUND";
 
-/// Names the folder with the images for the parts.
+/// Environment variable with the folder of the images for the parts.
 const IMAGES_VARIABLE: &str = "HITCH_BOARD_IMAGES";
 
 /// Modules of the test program `live` with tests that need images or a browser. Each runs alone: some are in real time.
@@ -29,7 +29,7 @@ const ON_TARGET: [&str; 5] = [
     "python_clients::",
 ];
 
-/// How many tests ended how.
+/// Numbers of tests by result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Counts {
     passed: u32,
@@ -42,14 +42,14 @@ impl fmt::Display for Counts {
     }
 }
 
-/// What became of one group of tests.
+/// Result of a group of tests.
 struct Outcome {
     counts: Counts,
-    /// Cargo's own word, which also covers tests that do not compile or that die.
+    /// Exit status of cargo, which also covers tests that do not compile or crash.
     success: bool,
 }
 
-/// Builds the images, runs all tests, and closes with one line that counts them.
+/// Builds the images, runs all tests, and finally prints a line with their numbers.
 pub fn run(way: Option<Way>) -> Result<()> {
     let way = setup::toolchain(way)?;
     setup::emulator()?;
@@ -62,7 +62,7 @@ pub fn run(way: Option<Way>) -> Result<()> {
         success: true,
     };
     for module in ON_TARGET {
-        // With the features of the whole workspace, so that nothing is built again.
+        // With the features of the whole workspace, so that nothing is rebuilt.
         let mut on_target = cargo_test(&["--workspace", "--test", "live"]);
         on_target
             .args(["--", "--ignored", "--nocapture", module])
@@ -105,7 +105,7 @@ fn cargo_test(arguments: &[&str]) -> Command {
     command
 }
 
-/// Runs a test command, passing on what it prints and counting its results.
+/// Runs a test command, forwards its output, and counts its results.
 fn run_group(command: &mut Command) -> Result<Outcome> {
     process::announce(command);
     stdout().flush()?;

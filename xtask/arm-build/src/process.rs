@@ -1,4 +1,4 @@
-//! Running other programs so that the reader sees which, and learns what to do when they fail.
+//! Runs other programs; prints their commands, and a suggested correction if they fail.
 
 use std::ffi::OsStr;
 use std::process::{Command, Stdio};
@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 
 use crate::workspace;
 
-/// A command that runs in the workspace's root.
+/// A command with the workspace's root as working directory.
 pub fn command<S: AsRef<OsStr>>(program: S, arguments: &[&str]) -> Command {
     let mut command = Command::new(program);
     command
@@ -17,7 +17,7 @@ pub fn command<S: AsRef<OsStr>>(program: S, arguments: &[&str]) -> Command {
     command
 }
 
-/// Shows the command and runs it; an error unless it succeeds.
+/// Prints the command and runs it; an error unless it succeeds.
 pub fn run(command: &mut Command) -> Result<()> {
     announce(command);
     let status = command
@@ -29,19 +29,19 @@ pub fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// The trimmed output of a command that says something, or nothing if it can't be started or fails.
+/// The trimmed output of a command; `None` if it is empty, or the command cannot be started or fails.
 pub fn output(command: &mut Command) -> Option<String> {
     let output = command.stderr(Stdio::null()).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;
     output.status.success().then(|| text.trim().to_owned())
 }
 
-/// Says which command comes next.
+/// Prints the next command.
 pub fn announce(command: &Command) {
     println!("+ {}", shown(command));
 }
 
-/// The command as one would type it.
+/// The command as typed in a shell.
 pub fn shown(command: &Command) -> String {
     let words = std::iter::once(command.get_program()).chain(command.get_args());
     words

@@ -1,4 +1,4 @@
-//! Finding the ARM parts and a browser, and installing what is missing where that can be done without asking.
+//! Finds the ARM tools and a browser, and installs missing ones if this is possible without interaction.
 
 use std::path::Path;
 
@@ -7,10 +7,10 @@ use anyhow::{Context, Result, bail};
 use crate::process;
 use crate::toolchain::{TARGET, Way};
 
-/// The emulator of the ECU's processor.
+/// The emulator executable.
 pub const EMULATOR: &str = "qemu-system-arm";
 
-/// The browser that the page of `hitch serve` is tried in.
+/// The browser for the tests of the page of `hitch serve`.
 pub const BROWSER: &str = "chromium";
 
 const DEBIAN_TOOLCHAIN: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
@@ -22,7 +22,7 @@ pub fn run(way: Option<Way>) -> Result<()> {
     browser()
 }
 
-/// Finds or installs a compiler for ARM: `wanted`, or else the first way that works.
+/// Finds or installs a compiler for ARM: `wanted`, or else the first source that works.
 pub fn toolchain(wanted: Option<Way>) -> Result<Way> {
     let ways = wanted.map_or_else(|| vec![Way::Rustup, Way::Debian], |way| vec![way]);
     let found = ways.iter().copied().find(|way| way.is_there());
@@ -67,7 +67,7 @@ fn version_of(program: &str) -> Option<String> {
     version.lines().next().map(str::to_owned)
 }
 
-/// Tries to install what `way` needs; says why not if it can't.
+/// Tries to install the packages of `way`; returns the reason for a failure.
 fn install(way: Way) -> bool {
     let result = match way {
         Way::Rustup => process::run(&mut process::command("rustup", &["target", "add", TARGET])),
@@ -87,7 +87,7 @@ fn install_packages(packages: &[&str]) -> Result<()> {
     if process::output(&mut process::command("id", &["-u"])).as_deref() != Some("0") {
         bail!("only root can run `apt-get install {}`", packages.join(" "));
     }
-    // Another package manager may be at work; wait for it.
+    // Another package manager may be running; wait for it.
     let apt = |arguments: &[&str]| {
         let mut command = process::command("apt-get", &["-qq", "-o", "DPkg::Lock::Timeout=300"]);
         command

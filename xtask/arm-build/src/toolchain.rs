@@ -1,4 +1,4 @@
-//! The compiler for the ECU's processor, and the two ways to get one.
+//! The compiler for the ECU's processor, from rustup or Debian.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,10 +11,10 @@ use crate::{process, workspace};
 /// The ECU's processor: Cortex-M4 with a single-precision floating-point unit.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 
-/// Where Debian's packages put the sources of `core`.
+/// Location of the sources of `core` in Debian's packages.
 const DEBIAN_SOURCES: &str = "/usr/lib/rustlib/src/rust/library/core/src/lib.rs";
 
-/// A way to a compiler for the target.
+/// Source of a compiler for the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// The toolchain in use, with the target's `core` from rustup.
@@ -44,7 +44,7 @@ impl Way {
         }
     }
 
-    /// Whether all of it is on this machine.
+    /// Whether it is completely installed.
     pub fn is_there(self) -> bool {
         match self {
             Self::Rustup => {
@@ -57,7 +57,7 @@ impl Way {
         }
     }
 
-    /// What a reader should know of this way.
+    /// Description of this source.
     pub fn description(self) -> &'static str {
         match self {
             Self::Rustup => "the toolchain in use, with its target thumbv7em-none-eabihf",
@@ -77,7 +77,7 @@ impl Way {
         Ok(command)
     }
 
-    /// Each way builds into its own folder: two compilers in one would rebuild each other's work.
+    /// Each source has its own build folder: two compilers in one would rebuild each other's output.
     pub fn target_dir(self) -> PathBuf {
         workspace::target().join("arm").join(self.name())
     }
@@ -87,17 +87,17 @@ fn debian_cargo(subcommand: &str) -> Result<Command> {
     let mut command = process::command("/usr/bin/cargo", &[subcommand, "-Zbuild-std=core"]);
     command
         .env("RUSTC", "/usr/bin/rustc")
-        // Building `core` is unstable, but its sources are exactly this compiler's.
+        // Building `core` is unstable, but the sources match this compiler exactly.
         .env("RUSTC_BOOTSTRAP", "1")
         .env("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER", rust_lld()?)
         .env_remove("RUSTUP_TOOLCHAIN")
-        // Cargo points these at the toolchain that runs xtask.
+        // Cargo sets these to the toolchain that runs xtask.
         .env_remove("RUSTDOC")
         .env_remove("LD_LIBRARY_PATH");
     Ok(command)
 }
 
-/// The linker that comes with the ordinary toolchain; Debian's packages have none.
+/// The linker of the ordinary toolchain; Debian's packages have none.
 fn rust_lld() -> Result<PathBuf> {
     let root = sysroot().context("`rustc --print sysroot` says nothing: is rustc on the path?")?;
     let version = process::output(&mut process::command("rustc", &["-vV"])).unwrap_or_default();
@@ -119,7 +119,7 @@ fn sysroot() -> Option<PathBuf> {
     process::output(&mut process::command("rustc", &["--print", "sysroot"])).map(PathBuf::from)
 }
 
-/// Debian also has an old compiler under the same name, which the workspace is too new for.
+/// Debian also has an older compiler of the same name, which cannot build the workspace.
 fn debian_rustc_is_new() -> bool {
     let version =
         process::output(Command::new("/usr/bin/rustc").arg("--version")).unwrap_or_default();

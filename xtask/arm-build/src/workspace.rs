@@ -1,4 +1,4 @@
-//! Where things are.
+//! Paths of the workspace.
 
 use std::env;
 use std::ffi::OsString;
@@ -9,8 +9,8 @@ use anyhow::{Context, Result};
 
 /// The workspace's root: the nearest folder above the running crate that holds the lock file.
 pub fn root() -> PathBuf {
-    // Cargo names the crate at run time. A target folder that several clones share may hold a program that another
-    // clone built.
+    // Cargo sets the crate at run time. A target folder that several clones share may contain a program built by
+    // another clone.
     let of_crate =
         env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
     let of_crate = PathBuf::from(of_crate);
@@ -26,7 +26,7 @@ pub fn target() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |dir| root().join(dir))
 }
 
-/// The cargo that runs this task.
+/// The cargo executable of this task.
 pub fn cargo() -> OsString {
     env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }

@@ -6,7 +6,7 @@ use hitch_protocols::xcp::measurements::MeasurementInfo;
 use hitch_protocols::xcp::pages::Applied;
 use hitch_quantities::{Fault, State, Trip};
 
-/// How raw values are shown.
+/// Display of raw values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Conversion {
     name: String,
@@ -39,7 +39,7 @@ pub fn scaled(conversions: &mut Vec<Conversion>, suffix: &str, per_unit: i32) ->
     )
 }
 
-/// The name of the conversion of a number in single precision, which is none.
+/// The name of the identity conversion of a single-precision number.
 fn float(conversions: &mut Vec<Conversion>, suffix: &str) -> String {
     add(
         conversions,
@@ -88,7 +88,7 @@ fn add(conversions: &mut Vec<Conversion>, conversion: Conversion) -> String {
     name
 }
 
-/// The unit of a suffix, as people write it.
+/// The unit of a suffix, as displayed.
 fn unit(suffix: &str) -> &'static str {
     match suffix {
         "deg" => "deg",

@@ -1,11 +1,11 @@
-//! How a tool reaches the ECU: XCP on CAN, and its description language (AML) as far as it is used.
+//! The interface of a tool to the ECU: XCP on CAN, with the used part of its description language (AML).
 
 use std::fmt::Write as _;
 
 use hitch_protocols::j1939::{Id, PREFERRED_ADDRESS, Pgn};
 use hitch_protocols::xcp::{Event, TOOL_ADDRESS};
 
-/// What the blocks below consist of, after ASAM's AML for XCP 1.4.
+/// Definition of the blocks below, after ASAM's AML for XCP 1.4.
 pub const AML: &str = include_str!("xcp.aml");
 
 /// The pages of the calibration.
@@ -19,7 +19,7 @@ pub const PAGES: &str = "    \
     /end IF_DATA
 ";
 
-/// Commands that the slave knows beside those that every one has to.
+/// Optional commands that the slave supports.
 const OPTIONAL_COMMANDS: [&str; 31] = [
     "GET_COMM_MODE_INFO",
     "GET_ID",
@@ -54,7 +54,7 @@ const OPTIONAL_COMMANDS: [&str; 31] = [
     "ALLOC_ODT_ENTRY",
 ];
 
-/// Bit of an identifier that says that it has 29 bits.
+/// Bit of an identifier that marks 29 bits.
 const EXTENDED: u32 = 0x8000_0000;
 
 /// Protocol layer, measuring, pages and transport.

@@ -1,8 +1,8 @@
 //! The description file (ASAM MCD-2 MC, "A2L") of the ECU's parameters and measurements.
 //!
-//! Everything in it comes from the firmware's own tables: names, units, ranges and reasons of the parameters, the
-//! measurements, and the map that gives them their addresses. So it is right for every image that is built from the
-//! same source, whatever a linker does; the identity in it (EPK) is what an ECU answers if they belong together.
+//! All contents come from the tables of the firmware: names, units, ranges and reasons of the parameters, the
+//! measurements, and their address map. The file is therefore valid for every image from the same source, independent
+//! of the linker; its identity (EPK) has to equal that of the ECU.
 
 mod conversion;
 mod interface;
@@ -26,7 +26,7 @@ use hitch_quantities::calibration::valve_table::VALVE_POINTS;
 
 use conversion::Conversion;
 
-/// Where the file is kept.
+/// Path of the file.
 const FILE: &str = "firmware/hitch.a2l";
 
 /// Writes the file.
@@ -37,7 +37,7 @@ pub fn write() -> Result<()> {
     Ok(())
 }
 
-/// What the file says.
+/// Contents of the file.
 fn text() -> String {
     let mut conversions = Vec::new();
     let body = [
@@ -147,7 +147,7 @@ fn scalar(
     );
 }
 
-/// Current over flow, the number of points in front of them.
+/// Current over flow, preceded by the number of points.
 fn valve(
     text: &mut String,
     name: &str,

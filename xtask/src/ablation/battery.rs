@@ -11,7 +11,7 @@ use serde::Deserialize;
 
 use super::SWITCH;
 
-/// A part of the project with a benchmark of its own.
+/// A part of the project with its own benchmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Battery {
@@ -52,14 +52,14 @@ const FIGURES: [(&str, &str); 6] = [
     ("fault", "fault"),
 ];
 
-/// What a benchmark measured.
+/// Result of a benchmark.
 #[derive(Debug, Default)]
 pub struct Outcome {
     /// Cells of the table, without the cells that compare.
     cells: Vec<String>,
     /// Whether the answer was good, by campaign.
     good: BTreeMap<String, bool>,
-    /// Time of the processor, s.
+    /// Processor time, s.
     cpu_s: f64,
 }
 
