@@ -25,7 +25,7 @@ export function element(name, attributes = {}, ...children) {
   return made;
 }
 
-/** A number with so many significant digits, without an exponent where that is short.
+/** A number with a fixed number of significant digits, without an exponent if short.
  * @param {number | null} value
  * @param {number} [digits] */
 export function number(value, digits = 3) {

@@ -1,13 +1,13 @@
 // @ts-check
-/** The map of the error: channels by regime, current, load, temperature or run. */
+/** Error map: channels by regime, current, load, temperature or run. */
 import { byId, element, sigmas } from "./dom.js";
 
-/** Errors of this many sigma and more have the darkest colour. */
+/** Error with the darkest colour, sigma. */
 const DARKEST = 30;
 
 let grouping = "regime";
 
-/** Draws the map; `visit` is called with a cell that was pressed.
+/** Draws the map; `visit` is called with the selected cell.
  * @param {any} state
  * @param {(cell: any) => void} visit */
 export function drawMap(state, visit) {

@@ -1,5 +1,5 @@
 // @ts-check
-/** The page: what is open, and what happens when something is pressed. */
+/** State of the page, and handlers of its controls. */
 import { byId, element, sigmas } from "./dom.js";
 import { drawMap, worstCell } from "./error_map.js";
 import { drawMissing, drawRanking, insert } from "./missing.js";
@@ -12,7 +12,7 @@ import { Refused, ask, begin, follow, leave, post } from "./server.js";
 let state = null;
 /** @type {any} */
 let view = null;
-/** Candidates of a ranking that is being made.
+/** Candidates of a ranking in progress.
  * @type {any[]} */
 let tried = [];
 /** The candidate whose signature is drawn.
@@ -43,7 +43,7 @@ async function open() {
   }
 }
 
-/** Asks for everything anew, and leaves the zoom as it is. */
+/** Requests the state again, and keeps the zoom. */
 async function refresh() {
   state = await ask("state");
   if (!state.ranking) signed = null;
@@ -56,7 +56,7 @@ async function refresh() {
   }
 }
 
-/** Everything but the run. */
+/** Draws everything except the run. */
 function draw() {
   byId("title").textContent = `${state.campaign}: error ${sigmas(state.error)} σ`;
   byId("subtitle").textContent = [state.description, `model ${state.model}`,
@@ -67,7 +67,7 @@ function draw() {
   drawMissing(state, { ...acts, signed: signed?.name });
 }
 
-/** What the panels can have done. */
+/** Actions of the panels. */
 const acts = {
   go: guarded(async (/** @type {number} */ at) => {
     await post("go", { at });
@@ -81,7 +81,7 @@ const acts = {
     try {
       await follow(hear, guarded(refresh));
       const { title } = await post("start", task);
-      // It may be over already.
+      // The computation may have ended already.
       if (title && !byId("job").hidden) byId("job").dataset.title = title;
     } catch (error) {
       leave();
@@ -110,7 +110,7 @@ async function look(index) {
     ({ ...channel, ...channels[at] })) };
 }
 
-/** Leads to the panel of the model, where the error falls. */
+/** Scrolls to the panel of the model, which shows the error. */
 function watch() {
   byId("model").scrollIntoView({ block: "nearest" });
   byId("model-title").focus({ preventScroll: true });
@@ -120,7 +120,7 @@ function watch() {
 let wanted = null;
 let previewing = false;
 
-/** Redraws the run with a parameter set by hand; while one is on its way, only the latest waits.
+/** Redraws the run with a manually set parameter; during a request, only the latest value is queued.
  * @param {any} trial */
 async function preview(trial) {
   wanted = trial;
@@ -145,7 +145,7 @@ async function preview(trial) {
   }
 }
 
-/** What the server tells of a computation.
+/** Handles a progress message of a computation.
  * @param {any} message */
 function hear(message) {
   if (message.kind === "progress") {
@@ -175,7 +175,7 @@ function fraction(share) {
   else bar.value = share;
 }
 
-/** Shows what runs, and lets nothing else be started.
+/** Shows the running computation, and disables the start of others.
  * @param {string | null} title */
 function showJob(title) {
   const job = byId("job");
@@ -186,7 +186,7 @@ function showJob(title) {
   document.body.toggleAttribute("data-busy", Boolean(title));
 }
 
-/** Says what went wrong for some seconds.
+/** Shows a message for some seconds.
  * @param {string} text */
 function say(text) {
   const message = byId("message");
@@ -195,7 +195,7 @@ function say(text) {
   setTimeout(() => { message.hidden = true; }, 8000);
 }
 
-/** The same function, but what goes wrong in it is said on the page.
+/** Wraps a function so that its errors are shown on the page.
  * @template {any[]} A
  * @param {(...args: A) => Promise<void>} work */
 function guarded(work) {
@@ -214,7 +214,7 @@ function listRuns() {
   byId("run").replaceChildren(...state.runs.map(option));
 }
 
-/** Shows where a cell of the map is worst.
+/** Shows the stretch with the largest error of a cell.
  * @param {any} cell */
 async function visit(cell) {
   const { run, stretch } = await ask("worst", { by: cell.by, part: cell.part, channel: cell.channel });

@@ -1,13 +1,13 @@
 // @ts-check
-/** What the model lacks: the ranking of single effects, and the explanation as a set of effects. */
+/** Missing effects: ranking of single effects, and explanation as a set of effects. */
 import { byId, element, number, sigmas } from "./dom.js";
 
-/** Less than this share explained, or of confidence, is no sign of an effect. */
+/** Explained share or confidence below which an effect is not detectable. */
 const SIGN = 0.005;
 
 /** @typedef {(task: any) => void} Run */
 
-/** What the panel can have done, and the name of the effect whose signature is drawn.
+/** Actions of the panel, and the name of the effect whose signature is drawn.
  * @typedef {{run: Run, sign: (effect: any) => void, signed: string}} Acts */
 
 /** Draws ranking and explanation of a state.
@@ -19,7 +19,7 @@ export function drawMissing(state, acts) {
   else byId("ranking").replaceChildren();
 }
 
-/** Draws candidates, those that were tried so far.
+/** Draws the candidates evaluated so far.
  * @param {any[]} candidates
  * @param {Acts} acts
  * @param {string | null} [next] */
@@ -37,7 +37,7 @@ export function drawRanking(candidates, acts, next = null) {
   byId("ranking").replaceChildren(...parts);
 }
 
-/** Puts a candidate that was just tried among the others: of an effect its better form, the best effect first.
+/** Adds an evaluated candidate: the best form of each effect, the best effect first.
  * @param {any[]} candidates
  * @param {any} tried */
 export function insert(candidates, tried) {
@@ -52,7 +52,7 @@ export function insert(candidates, tried) {
 function candidate(one, acts) {
   const add = element("button", { type: "button", class: "add", "aria-label": `Add ${one.effect.title}`,
     onclick: () => acts.run({ task: "add", effect: one.effect.name }) }, "Add");
-  // A ranking that is being made has no confidences yet, and the server no candidates to draw.
+  // A ranking in progress has no confidences yet, and the server no signatures.
   const sign = one.confidence === undefined ? [] : [element("button", { type: "button", class: "sign",
     "aria-pressed": one.effect.name === acts.signed, "aria-label": `Signature of ${one.effect.title}`,
     title: "Shows the part of the run's residuals that this effect explains",
@@ -115,7 +115,7 @@ function explanation(found, keeps, run) {
       element("p", {}, found.not_visible.join(", ")))] : [])];
 }
 
-/** A term for what stays unexplained.
+/** The suggested term for the remaining error.
  * @param {any} term
  * @param {Run} run */
 function suggested(term, run) {

@@ -7,10 +7,10 @@ import { address } from "./server.js";
 /** Positions of a slider. */
 const POSITIONS = 1000;
 
-/** How long a slider has rested when its value is taken, ms: keys move it step by step. */
+/** Time at rest after which the value of a slider is used, ms: keys move it in steps. */
 const REST_MS = 500;
 
-/** So many scales lie on either side of a parameter without limits. */
+/** Range of a parameter without limits, in scales to either side. */
 const SCALES = 5;
 
 /** @typedef {{go: (at: number) => void, run: (task: any) => void, preview: (trial: any) => void}} Acts */

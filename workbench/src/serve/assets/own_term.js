@@ -1,19 +1,19 @@
 // @ts-check
-/** The form for a term of the user's own; the server checks it while it is being written. */
+/** Form for a user-defined term, checked by the server during input. */
 import { byId, element } from "./dom.js";
 import { Refused, ask, post } from "./server.js";
 
-/** How long the form has rested when it is checked, ms. */
+/** Time without input after which the form is checked, ms. */
 const REST_MS = 300;
 
-/** Fields of a parameter: key, label, whether it is a number, and what the first row begins with. */
+/** Fields of a parameter: key, label, whether it is a number, and default of the first row. */
 const FIELDS = /** @type {[string, string, boolean, string][]} */ ([["name", "name", false, "c"], ["unit", "unit", false, ""],
   ["null", "null", true, "0"], ["start", "start", true, "0.5"], ["low", "low", true, "0"], ["high", "high", true, "1"]]);
 
 /** @type {ReturnType<typeof setTimeout> | undefined} */
 let resting;
 
-/** Fills the form with what the server offers.
+/** Fills the form with the elements offered by the server.
  * @param {(task: any) => void} run */
 export async function openForm(run) {
   const offered = await ask("formulas");
@@ -55,12 +55,12 @@ function text(id) {
   return /** @type {HTMLInputElement} */ (byId(id)).value.trim();
 }
 
-/** The formula as it stands, so that columns count. */
+/** The unmodified formula, so that columns are valid. */
 function formula() {
   return /** @type {HTMLInputElement} */ (byId("term-formula")).value;
 }
 
-/** What the form holds. */
+/** Content of the form. */
 function term() {
   const parameters = [...byId("term-rows").children].map((made) => Object.fromEntries(FIELDS.map(([key, , numeric]) => {
     const value = /** @type {HTMLInputElement | null} */ (made.querySelector(`[data-key="${key}"]`))?.value.trim() ?? "";
@@ -71,7 +71,7 @@ function term() {
 
 let asked = 0;
 
-/** Has the server check the form; whether it is right. */
+/** Checks the form on the server; returns whether it is valid. */
 async function check() {
   clearTimeout(resting);
   const number = ++asked;

@@ -2,19 +2,19 @@
 /** The channels of a run over time, all with one time axis: measured, simulated, and the residual below. */
 import { byId, colour, sigmas } from "./dom.js";
 
-/** Heights of the parts of the plot, px, where there is room for them. */
+/** Preferred heights of the parts of the plot, px. */
 const SIGNAL = 125, RESIDUAL = 70, CURRENTS = 80;
 
-/** Heights that are the same everywhere, px. */
+/** Fixed heights, px. */
 const GAP = 22, BOTTOM = 42, TOP = 24, LEGEND = 64;
 
-/** What stands above the plot, px, and how small its parts may get. */
+/** Height above the plot, px, and minimum scale of its parts. */
 const ABOVE = 215, SMALLEST = 0.5;
 
-/** How much of a run is shown on either side of its worst place, s. */
+/** Time shown before and after the stretch with the largest error, s. */
 const AROUND_S = 1.5;
 
-/** So many sigma hold 95 % of the noise. */
+/** Half width of the 95 % band of the noise, sigma. */
 const BAND = 2;
 
 /** The plotting library, which loads while the campaign is read. */
@@ -43,7 +43,7 @@ export async function drawRun(view, place) {
     modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] });
 }
 
-/** Redraws what a parameter changes: simulated curves and residuals. Axes and titles stay.
+/** Redraws the parts that depend on a parameter: simulated curves and residuals.
  * @param {any} view */
 export async function redrawRun(view) {
   const plotly = await library;
@@ -137,7 +137,7 @@ function residuals(channel) {
   return lines.map((line) => ({ ...line, unit: "σ", of: channel.title }));
 }
 
-/** By how much the parts are smaller than they could be, so that all of them fit into a wide window.
+/** Scale of the parts, so that all of them fit into a wide window.
  * @param {number} channels */
 function shrink(channels) {
   if (!matchMedia("(min-width: 70rem)").matches) return 1;

@@ -3,7 +3,7 @@
 
 /** @typedef {{file?: string, line?: number, column?: number, what: string, mend?: string}} Fault */
 
-/** A request that the server did not answer as wished. */
+/** A refused or failed request. */
 export class Refused extends Error {
   /** @param {Fault} fault */
   constructor(fault) {
@@ -14,10 +14,10 @@ export class Refused extends Error {
 
 let session = "";
 
-/** Where the tab keeps its session while it is loaded again. */
+/** Storage key of the session during a reload. */
 const KEPT = "hitch session";
 
-/** Begins the session of this tab, or goes on with it if the page was loaded again; its state. */
+/** Starts the session of this tab, or continues it after a reload; returns its state. */
 export async function begin() {
   const navigation = /** @type {PerformanceNavigationTiming} */ (performance.getEntriesByType("navigation")[0]);
   session = (navigation.type === "reload" && sessionStorage.getItem(KEPT)) || "";
@@ -30,14 +30,14 @@ export async function begin() {
   return ask("state");
 }
 
-/** Asks for a view.
+/** Requests a view.
  * @param {string} path
  * @param {Record<string, string | number>} [query] */
 export function ask(path, query = {}) {
   return answer(fetch(address(path, query)));
 }
 
-/** Has something done.
+/** Posts an action.
  * @param {string} path
  * @param {Record<string, unknown>} body */
 export function post(path, body) {
@@ -63,10 +63,10 @@ async function answer(request) {
   return body;
 }
 
-/** Follows what runs for this tab until it is over. A tab that waits for nothing holds no connection: a browser has few.
+/** Follows the running computation of this tab. An idle tab has no connection, as browsers limit their number.
  * @param {(message: any) => void} hear
  * @param {() => void} reconnected
- * @returns {Promise<void>} settled as soon as nothing can be missed */
+ * @returns {Promise<void>} settled as soon as no message can be missed */
 export function follow(hear, reconnected) {
   const events = new EventSource(address("events"));
   let opened = false;
@@ -85,5 +85,5 @@ export function follow(hear, reconnected) {
   });
 }
 
-/** Ends following. */
+/** Closes the connection. */
 export let leave = () => {};
