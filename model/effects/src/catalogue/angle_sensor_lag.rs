@@ -50,7 +50,7 @@ pub static FILTERING: Described = Described {
 pub static DELAYED: Described = Described {
     id: "angle-sensor-lag",
     form: Some("delayed"),
-    title: "Lag of the rocker angle sensor, part of it dead time",
+    title: "Lag of the rocker angle sensor, with dead time",
     equation: "(1 - dead) lag y' + y = angle(t - dead lag)",
     source: "sensors that average over a window (half of it is dead time) or send on a bus: 5 to 50 ms",
     shows: "the angle trails its true course by speed times lag, and starts late; pressures and flow \

@@ -13,7 +13,7 @@ use crate::described::Described;
 pub static BULK_MODULUS: Described = Described {
     id: "bulk-modulus",
     form: None,
-    title: "Bulk modulus of the oil, off the declared one",
+    title: "Deviation of the bulk modulus of the oil",
     equation: "E = (1 + change) E_declared",
     source: "Jelali & Kroll 3.2: 0.7 to 1.8e9 Pa with line and cylinder wall",
     shows: "slower or faster ringing of the cylinder pressure, the more the further the cylinder is out; hoses take up \

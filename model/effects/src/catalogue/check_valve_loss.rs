@@ -48,7 +48,7 @@ pub static THROTTLING: Described = Described {
          Q_table(I) sqrt(dp_orifice / 1.5 bar)",
     source: "orifice law of an open poppet; 0.3 to 1 bar at rated flow in data sheets of cartridge \
          check valves",
-    shows: "large lift flows fall short while small ones fit, at every load alike; the pump pressure \
+    shows: "large lift flows are too small while small ones fit, equally at every load; the pump pressure \
          does not change",
     parameters: &[LOSS, STEADY],
     channels: &[Channel::Flow, Channel::RockerAngle],
@@ -65,7 +65,7 @@ pub static THROTTLING: Described = Described {
 /// Pressure loss of a check valve whose poppet opens against its spring.
 pub static LIFTING: Described = Described {
     form: Some("lifting"),
-    title: "Pressure loss of the check valve, whose poppet lifts with the flow",
+    title: "Pressure loss of the check valve, with flow-dependent poppet lift",
     equation: "dp_orifice = p_P - p_C - 2.5 bar - loss [steady + (1 - steady) Q / 40 l/min]; Q = \
          Q_table(I) sqrt(dp_orifice / 1.5 bar)",
     source: "force balance of a poppet on its spring; 0.3 to 1 bar at rated flow in data sheets of \

@@ -32,7 +32,7 @@ const EXCESS: Parameter = Parameter {
 pub static PRELOAD: Described = Described {
     id: "compensator-margin",
     form: None,
-    title: "Margin of the pressure compensator, off the declared one",
+    title: "Deviation of the compensator margin",
     equation: "p_P - p_C = 4 bar + excess; p_idle = 4 bar + excess; Q = Q_table(I) sqrt((p_P - p_C - 2.5 bar) / 1.5 bar)",
     source: "preload of the compensator's spring: 10 to 30 % off the data sheet",
     shows: "the pump pressure is higher or lower than declared by the same amount at idle and over every load, and the lift \
@@ -49,10 +49,10 @@ pub static PRELOAD: Described = Described {
 pub static BYPASS: Described = Described {
     id: "compensator-margin",
     form: Some("bypass"),
-    title: "Margin of the pressure compensator and idle pressure, off the declared ones",
+    title: "Deviation of the compensator margin and the idle pressure",
     equation: "p_P - p_C = 4 bar + excess; p_idle = 4 bar + idle excess",
     source: "drop of the bypass at the pump's flow: 2 to 15 bar",
-    shows: "the pump pressure at idle and the one over the load are off by different amounts",
+    shows: "the deviations of the pump pressure at idle and under load differ",
     parameters: &[
         EXCESS,
         Parameter {

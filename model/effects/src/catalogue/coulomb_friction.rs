@@ -62,9 +62,9 @@ const STEP_S: f64 = 0.01;
 pub static BRISTLES: Described = Described {
     id: "coulomb-friction",
     form: Some("bristles"),
-    title: "Coulomb friction at the piston, which holds at rest",
+    title: "Coulomb friction at the piston, with friction force at rest",
     equation: "F = force * z / bending, z' = v - (|v| + creep) z / bending",
-    source: "Dahl 1968; Canudas de Wit et al. 1995 (LuGre with a level that does not hang on the speed); Jelali & Kroll 4.3",
+    source: "Dahl 1968; Canudas de Wit et al. 1995 (LuGre with a speed-independent level); Jelali & Kroll 4.3",
     shows: "cylinder pressure at rest lies higher after lifting than after lowering, by the same at every load; slower \
             lowering of light loads",
     parameters: &[

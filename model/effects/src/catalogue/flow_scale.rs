@@ -45,7 +45,7 @@ pub static LIFT: Described = Described {
     title: "Scaled flow of the lift valve",
     equation: "Q = (1 + scale) Q_table(I)",
     source: SOURCE,
-    shows: "lifting at every current by the same share: flow and speed; equivalent to another margin of the \
+    shows: "lifting at every current by the same factor: flow and speed; equivalent to another margin of the \
             compensator, another discharge coefficient or a stiffer spring of the check valve",
     parameters: &[SCALE],
     channels: CHANNELS,
@@ -58,9 +58,9 @@ pub static LIFT: Described = Described {
 /// Flow scale of the lift valve that increases with its opening.
 pub static LIFT_UNEVEN: Described = Described {
     form: Some("uneven"),
-    title: "Scaled flow of the lift valve, wide open otherwise",
+    title: "Scaled flow of the lift valve, with a different scale when fully open",
     equation: "Q = (1 + scale (1 + growth (2 Q_table / Q_largest - 1))) Q_table(I)",
-    shows: "lifting at every current, by another share when fast than when slow: flow and speed",
+    shows: "lifting at every current, with different factors for fast and slow motion: flow and speed",
     parameters: &[SCALE, GROWTH],
     refines: true,
     attach: |values, _, hooks| scale(&mut hooks.lift_flow_factor, values[0], values[1]),
@@ -74,7 +74,7 @@ pub static LOWERING: Described = Described {
     title: "Scaled flow of the lowering valve",
     equation: "Q = (1 + scale) Q_table(I)",
     source: SOURCE,
-    shows: "lowering at every current and load by the same share: flow and speed",
+    shows: "lowering at every current and load by the same factor: flow and speed",
     parameters: &[SCALE],
     channels: CHANNELS,
     needs: None,
@@ -86,9 +86,9 @@ pub static LOWERING: Described = Described {
 /// Flow scale of the lowering valve that increases with its opening.
 pub static LOWERING_UNEVEN: Described = Described {
     form: Some("uneven"),
-    title: "Scaled flow of the lowering valve, wide open otherwise",
+    title: "Scaled flow of the lowering valve, with a different scale when fully open",
     equation: "Q = (1 + scale (1 + growth (2 Q_table / Q_largest - 1))) Q_table(I)",
-    shows: "lowering at every current and load, by another share when fast than when slow: flow and speed",
+    shows: "lowering at every current and load, with different factors for fast and slow motion: flow and speed",
     parameters: &[SCALE, GROWTH],
     refines: true,
     attach: |values, _, hooks| scale(&mut hooks.lower_flow_factor, values[0], values[1]),

@@ -49,7 +49,7 @@ pub static SPRINGY: Described = Described {
     title: "Contact with the ground",
     equation: "F = stiffness (h_ground - h), upwards; h_ground = lowest point of the stroke + height",
     source: "Bekker with exponent one; floor 1e6 to 1e7 N/m, soil 5e4 to 5e5 N/m",
-    shows: "lowering ends early and the cylinder pressure falls to nothing while the angle stands",
+    shows: "lowering ends early and the cylinder pressure falls to zero at constant angle",
     parameters: &[HEIGHT, STIFFNESS],
     channels: CHANNELS,
     needs: None,
@@ -67,10 +67,10 @@ pub static SPRINGY: Described = Described {
 pub static DAMPED: Described = Described {
     id: "ground-contact",
     form: Some("damped"),
-    title: "Contact with ground that damps",
+    title: "Contact with viscoelastic ground",
     equation: "F = stiffness (h_ground - h) - damping h', upwards; h_ground = lowest point of the stroke + height",
     source: "Bekker with exponent one; soil 1e3 to 1e4 N s/m",
-    shows: "lowering ends early and the cylinder pressure falls to nothing while the angle stands; oscillation on \
+    shows: "lowering ends early and the cylinder pressure falls to zero at constant angle; oscillation on \
          the ground decays faster",
     parameters: &[
         HEIGHT,

@@ -52,7 +52,7 @@ pub static ELASTIC: Described = Described {
 pub static CREEPING: Described = Described {
     id: "hose-compliance",
     form: Some("creeping"),
-    title: "Compliance of hoses whose wall creeps",
+    title: "Compliance of hoses with wall creep",
     equation: "dp/dt = (sum Q - A v - W') / (V/E + (1 - share) C), W' = (share C p - W) / creep",
     source: "Kelvin-Voigt in series with a spring, the standard linear solid (Ferry 1980, ch. 1); size as of hoses that \
          swell at once",

@@ -49,7 +49,7 @@ pub static OF_LOAD: Described = Described {
 /// Inertia with a part on the rocker shaft.
 pub static AND_SHAFT: Described = Described {
     form: Some("shaft"),
-    title: "Inertia of load and linkage, part of it on the rocker shaft",
+    title: "Inertia of load and linkage, partly on the rocker shaft",
     equation: "p A = F_weight + share ((1 - shaft) M(x) + shaft M_0 (dphi/dx)^2 / (dphi/dx)_0^2) dv/dt, \
          M = m (dh/dx)^2 + 20 kg, 0: 150 kg at mid stroke",
     parameters: &[

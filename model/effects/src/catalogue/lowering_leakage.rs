@@ -48,9 +48,9 @@ pub static EVEN: Described = Described {
 pub static THINNING: Described = Described {
     id: "lowering-leakage",
     form: Some("thinning"),
-    title: "Leakage of the load-holding valves, of thin oil more",
+    title: "Leakage of the load-holding valves, viscosity-dependent",
     equation: "Q_leak = conductance nu(40 C) / nu(T) p_C",
-    source: "laminar gap that stays as wide, Merritt 3.3: G goes with 1 / mu",
+    source: "laminar gap of constant width, Merritt 3.3: G is proportional to 1 / mu",
     shows: "the hitch sinks while holding, faster under heavy loads and with hot oil; little else",
     parameters: PARAMETERS,
     channels: CHANNELS,

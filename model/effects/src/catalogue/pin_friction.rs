@@ -49,7 +49,7 @@ pub static EVEN: Described = Described {
 /// Friction in the pins of the linkage that varies over the stroke.
 pub static UNEVEN: Described = Described {
     form: Some("uneven"),
-    title: "Friction in the pins of the linkage, uneven over the stroke",
+    title: "Friction in the pins of the linkage, dependent on the stroke",
     equation: "F = share (1 + slope z + bow (3 z^2 - 1) / 2) F_weight tanh(v / 3 mm/s), z = 2 x / stroke - 1",
     shows: "cylinder pressure steps down from lifting to holding and again to lowering, in proportion to the load and \
          with a share that varies over the stroke",

@@ -14,7 +14,7 @@ pub static PRESSURE_SENSOR_OFFSET: Described = Described {
     title: "Offset of the cylinder pressure sensor",
     equation: "y = p_C + offset",
     source: "data sheets of mobile pressure sensors, 0.25 to 1 % of full scale",
-    shows: "cylinder pressure off by a constant while pump pressure and flows fit; in \
+    shows: "constant deviation of the cylinder pressure while pump pressure and flows fit; in \
          pressure alone easily taken for dead weight",
     parameters: &[Parameter {
         name: "offset",

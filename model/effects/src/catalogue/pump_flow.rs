@@ -11,10 +11,10 @@ use crate::described::Described;
 pub static PUMP_FLOW: Described = Described {
     id: "pump-flow",
     form: None,
-    title: "Flow of the pump, off the declared one",
+    title: "Deviation of the pump flow",
     equation: "Q_pump = (1 + change) 48 l/min",
-    source: "engine speed and displacement; what is less than a fifth off is seldom missed by a lift",
-    shows: "lifting at high currents, alike at all pressures; invisible while the compensator has flow to spare",
+    source: "engine speed and displacement; a deviation below 20 % rarely affects a lift",
+    shows: "lifting at high currents, equally at all pressures; invisible while the compensator has surplus flow",
     parameters: &[Parameter {
         name: "change",
         unit: "",

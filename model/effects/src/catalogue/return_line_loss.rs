@@ -47,7 +47,7 @@ pub static TURBULENT: Described = Described {
 /// Back pressure of the return line with a laminar part.
 pub static LAMINAR: Described = Described {
     form: Some("laminar"),
-    title: "Back pressure of the return line, in part laminar",
+    title: "Back pressure of the return line, partly laminar",
     equation: "p_T = loss ((1 - share) q^2 + share nu(T) / nu(40 C) q), q = Q_lower / 40 l/min",
     source: "Hagen & Poiseuille: 2 m of 12.7 mm pipe 2.6 bar at 40 C and 60 l/min, 8.7 bar at 20 C",
     shows: "lowering at high current and light load is slower, the more the colder the oil",

@@ -59,7 +59,7 @@ pub static CREEPING: Described = Described {
 pub static SWINGING: Described = Described {
     id: "spool-lag",
     form: Some("swinging"),
-    title: "Lag of the spools, which swing",
+    title: "Lag of the spools, underdamped",
     equation: "(lag / 2 damping)^2 w'' + lag w' + w = I; Q = Q_table(w)",
     source: "second-order spool, Merritt ch. 6; data sheets of proportional valves: 5 to 15 Hz, damping \
          0.7 to 1",

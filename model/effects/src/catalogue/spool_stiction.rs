@@ -65,7 +65,7 @@ pub static STICKING: Described = Described {
 pub static FOLLOWING: Described = Described {
     id: "spool-stiction",
     form: Some("following"),
-    title: "Stiction of the spools, which follow once loose",
+    title: "Stiction of the spools, with free motion after breakaway",
     equation: "stuck at I_0 until |I - I_0| > band; then w = I - sign(dI/dt) (1 - jump) band / 2 until \
          I turns or stands still; Q = Q_table(w)",
     source: "Choudhury, Thornhill & Shah 2005; 0.5 to 2 % of 3.3 A with dither, 3 to 6 % on plain DC",

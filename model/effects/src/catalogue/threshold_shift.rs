@@ -23,7 +23,7 @@ pub static LIFT: ThresholdShift = ThresholdShift {
     id: "lift-threshold-shift",
     title: "Shifted threshold of the lift valve",
     shows: "lifting at low currents: flow, speed, and the current at which the pump pressure rises; on rising \
-            currents alone easily taken for hysteresis",
+            currents alone easily confused with hysteresis",
     channels: &[Channel::PumpPressure, Channel::Flow, Channel::RockerAngle],
 };
 
@@ -32,7 +32,7 @@ pub static LOWERING: ThresholdShift = ThresholdShift {
     valve: Valve::Lowering,
     id: "lower-threshold-shift",
     title: "Shifted threshold of the lowering valve",
-    shows: "lowering at low currents: flow and speed; on rising currents alone easily taken for hysteresis",
+    shows: "lowering at low currents: flow and speed; on rising currents alone easily confused with hysteresis",
     channels: &[Channel::Flow, Channel::RockerAngle],
 };
 

@@ -63,7 +63,7 @@ pub static EVEN: Described = Described {
 pub static THICKENING: Described = Described {
     id: "viscous-friction",
     form: Some("thickening"),
-    title: "Viscous friction at the piston, in thick oil more",
+    title: "Viscous friction at the piston, viscosity-dependent",
     equation: "F = coefficient (nu(T) / nu(40 C))^exponent v",
     source: "Jelali & Kroll 4.3; 3 to 5 times as much when cold",
     shows: "cylinder pressure higher while lifting and lower while lowering, the more the faster and the \
