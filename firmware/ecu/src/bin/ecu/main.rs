@@ -1,9 +1,9 @@
 //! The ECU: the application on a board.
 //!
-//! A cyclic executive: TIM1 starts the converters a thousand times a second, and when they are done one tick of the
-//! application runs. There is one task and nothing interrupts it, so nothing is shared, nothing waits for a lock, the
-//! stack's depth is one call chain, and the order of things is the order of the source. The bus is listened to while
-//! the converters are awaited: between two looks at it no more frames can arrive than its queue holds.
+//! A cyclic executive: TIM1 triggers the converters a thousand times a second, and when they have finished, one tick of
+//! the application runs. There is a single task without interrupts, so there is no shared state and no lock, the stack
+//! has a single call chain, and the execution order is that of the source. While the program waits for the converters
+//! it receives frames from the bus, often enough that the hardware queue does not overflow.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Pulse-width outputs for the coils, the enable line, and the trigger of the converters: all from TIM1.
+//! PWM outputs for the coils, the enable line, and the trigger of the converters, from TIM1.
 //!
 //! ```text
 //!   counter   /\    /\    /\         up and down: 2 x 5 250 steps of 168 MHz, 16 kHz
@@ -7,8 +7,9 @@
 //!              TRGO starts the injected conversions, when the coil's current passes its mean
 //! ```
 //!
-//! One timer paces everything, so the controller can't run at another rate than the drivers. Compare values
-//! take effect at once: waiting for the next update would add a millisecond of dead time to the current regulation.
+//! One timer is the time base of everything, so the controller cannot run at a different rate than the drivers. Compare
+//! values take effect at once: waiting for the next update would add a millisecond of dead time to the current
+//! regulation.
 
 use core::convert::Infallible;
 
@@ -20,7 +21,7 @@ use stm32_metapac::{DBGMCU, GPIOA, GPIOB, TIM1};
 use super::part::scaling::SCALING;
 use super::pins::{self, Pin};
 
-/// Turning points of the counter in a millisecond: two a pulse, 16 pulses.
+/// Turning points of the counter in a millisecond: two per pulse, 16 pulses.
 const TURNING_POINTS: u16 = 32;
 const LIFT: usize = 0;
 const LOWER: usize = 1;
@@ -29,10 +30,10 @@ const ENABLE_PIN: usize = 10;
 /// PB11: the enable line as the drivers see it.
 const FEEDBACK_PIN: usize = 11;
 
-/// The coils' drivers on this board.
+/// The coil drivers of this board.
 pub type Coils = CoilDriver<Channel, Channel, Pin, Pin>;
 
-/// A pulse-width output of TIM1.
+/// A PWM output of TIM1.
 pub struct Channel(usize);
 
 impl ErrorType for Channel {
@@ -52,7 +53,7 @@ impl SetDutyCycle for Channel {
 
 /// Outputs low, counter stopped. `function` is TIM1's alternate function on PA8 and PA9.
 pub fn start(function: u8) -> Coils {
-    // A debugger that halts the processor stops the timer and so disables its outputs.
+    // A debugger that halts the processor stops the timer and thereby disables its outputs.
     DBGMCU.apb2fzr().modify(|w| w.set_tim1(true));
     pins::output(GPIOB, ENABLE_PIN);
     pins::input(GPIOB, FEEDBACK_PIN);
@@ -65,8 +66,8 @@ pub fn start(function: u8) -> Coils {
             .modify(|w| w.set_ocm(channel, Ocm::PWM_MODE1));
         TIM1.ccer().modify(|w| w.set_cce(channel, true));
     }
-    // The clock security system is a break source: when the crystal fails, hardware cuts the outputs, which are then
-    // driven to their idle level, low. The pin BKIN isn't used; its input is low.
+    // The clock security system is a break source: when the crystal fails, hardware drives the outputs to their idle
+    // level, low. The pin BKIN is not used; its input is low.
     TIM1.bdtr().modify(|w| {
         w.set_bke(0, true);
         w.set_bkp(0, Bkp::ACTIVE_HIGH);
@@ -90,8 +91,8 @@ pub fn run() {
     TIM1.cr1().modify(|w| w.set_cen(true));
 }
 
-/// Cuts both coils for good, whatever state the program is in: the enable line drops and the timer lets go of its
-/// outputs, which pull-down resistors then hold low.
+/// Switches both coils off permanently, in any state of the program: the enable line goes low and the timer releases
+/// its outputs, which pull-down resistors hold low.
 pub fn cut() {
     GPIOB.bsrr().write(|w| w.set_br(ENABLE_PIN, true));
     TIM1.bdtr().modify(|w| w.set_moe(false));

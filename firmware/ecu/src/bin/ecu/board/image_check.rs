@@ -1,21 +1,21 @@
-//! The program in flash, checked at the start and over and over while it runs.
+//! Check of the program in flash, at the start and continuously.
 //!
-//! The checksum is that of all that is programmed, from the vector table to the initial values of variables; `cargo
-//! xtask arm` writes it into the image ([`SEAL`]). An image that was built without that task has no checksum: then what
-//! was found at the start counts, which notices changes while the program runs, but none before.
+//! The checksum covers the whole image, from the vector table to the initial values of variables; `cargo xtask arm`
+//! writes it into the image ([`SEAL`]). An image that was built without that task has no checksum: the reference is
+//! then the checksum at the start, which detects later changes only.
 
 use hitch_quantities::crc32::Crc32;
 
-/// Bytes that are looked at in a millisecond: 128 KiB take half a second.
+/// Bytes checked in a millisecond: 128 KiB take half a second.
 const BYTES: usize = 256;
 /// First address of flash.
 const START: usize = 0x0800_0000;
-/// Words in front of and behind the checksum, by which the task finds its place.
+/// Words before and after the checksum, which mark its position.
 const MAGIC: [u32; 2] = [0x4B43_4548, 0xA5C3_1E7D];
-/// What erased flash holds: no checksum.
+/// Content of erased flash: no checksum.
 const UNSEALED: u32 = u32::MAX;
 
-/// MemoryRange of the checksum, behind [`MAGIC`]. It counts as erased while the checksum is worked out.
+/// Location of the checksum, after [`MAGIC`]. It counts as erased in the computation of the checksum.
 #[used]
 #[unsafe(no_mangle)]
 static IMAGE_SEAL: [u32; 3] = [MAGIC[0], MAGIC[1], UNSEALED];
@@ -26,7 +26,7 @@ unsafe extern "C" {
     static __edata: u32;
 }
 
-/// Address of the first byte behind the image.
+/// Address of the first byte after the image.
 fn end() -> usize {
     let [from, to] = [&raw const __sdata, &raw const __edata].map(|address| address as usize);
     (&raw const __sidata) as usize + (to - from)
@@ -45,9 +45,9 @@ pub struct ImageCheck {
 }
 
 impl ImageCheck {
-    /// Checks the whole image; none if it isn't what the task has built.
+    /// Checks the whole image; `None` if it differs from the one built by the task.
     pub fn start() -> Option<Self> {
-        // SAFETY: an aligned word of the image; volatile, for the task changes it after the compiler has seen it.
+        // SAFETY: an aligned word of the image; volatile, because the task changes it after compilation.
         let sealed = unsafe { (place() as *const u32).read_volatile() };
         let mut checksum = Crc32::default();
         take(&mut checksum, START, end());
@@ -59,7 +59,7 @@ impl ImageCheck {
         })
     }
 
-    /// Looks at the next bytes; false if the image has changed.
+    /// Checks the next bytes; false if the image has changed.
     pub fn step(&mut self) -> bool {
         let until = (self.at + BYTES).min(end());
         take(&mut self.checksum, self.at, until);
@@ -72,7 +72,7 @@ impl ImageCheck {
     }
 }
 
-/// Goes on with the bytes from `from` until `to`; those of the checksum count as erased.
+/// Continues with the bytes from `from` to `to`; those of the checksum count as erased.
 fn take(checksum: &mut Crc32, from: usize, to: usize) {
     let seal = place()..place() + 4;
     take_bytes(checksum, from, to.min(seal.start));
@@ -86,6 +86,6 @@ fn take_bytes(checksum: &mut Crc32, from: usize, to: usize) {
     let Some(length) = to.checked_sub(from) else {
         return;
     };
-    // SAFETY: inside the image, which is in flash and read only; should it change after all, any bytes will do.
+    // SAFETY: inside the image, which is in flash and read only; any value is acceptable after a change.
     checksum.update(unsafe { core::slice::from_raw_parts(from as *const u8, length) });
 }

@@ -1,9 +1,9 @@
-//! Frames that were received and wait for their millisecond.
+//! Queue of received frames.
 
 use heapless::Deque;
 use hitch_protocols::can::Frame;
 
-/// Four milliseconds of a bus of 250 kbit/s at its fullest.
+/// Capacity: four milliseconds of a fully loaded bus of 250 kbit/s.
 const CAPACITY: usize = 16;
 
 /// The queue.
@@ -21,14 +21,14 @@ impl Inbox {
         }
     }
 
-    /// Takes a frame; if there is no room it is dropped and counted.
+    /// Adds a frame; if there is no room it is dropped and counted.
     pub fn put(&mut self, frame: Frame) {
         if self.frames.push_back(frame).is_err() {
             self.count_dropped();
         }
     }
 
-    /// Counts a frame, or several in a row, that the controller's own queue had no room for.
+    /// Counts a frame, or several consecutive ones, dropped by the controller's hardware queue.
     pub fn count_dropped(&mut self) {
         self.dropped = self.dropped.saturating_add(1);
     }
@@ -38,7 +38,7 @@ impl Inbox {
         self.frames.pop_front()
     }
 
-    /// Frames for which there was no room.
+    /// Number of dropped frames.
     pub const fn dropped(&self) -> u16 {
         self.dropped
     }

@@ -1,7 +1,7 @@
-//! Registers, and nothing else: what differs from part to part is in the part's file and in the drivers that it names.
+//! Drivers on register level: the differences between parts are in the folder of the part.
 //!
-//! The register layouts come from `stm32-metapac`, whose accesses are safe; a reserved bit or a wrong order of writes
-//! is what reading the reference manuals (RM0090 for the STM32F405, RM0440 for the STM32G474) has to prevent.
+//! The register layouts come from `stm32-metapac`, whose accesses are safe. Reserved bits and the order of writes are
+//! checked against the reference manuals (RM0090 for the STM32F405, RM0440 for the STM32G474).
 
 mod clock;
 mod coils;
@@ -46,28 +46,29 @@ pub use slow_clock::SlowClock;
 pub use switches::Switches;
 pub use watchdog::Watchdog;
 
-/// Everything that the ECU's board has.
+/// The peripherals of the ECU's board.
 pub struct Board {
-    /// The pulse-width outputs and the enable line.
+    /// The PWM outputs and the enable line.
     pub coils: Coils,
-    /// The converters, which also pace the milliseconds.
+    /// The converters, which also trigger the milliseconds.
     pub converters: Converters,
     /// The bus.
     pub can: Can,
     /// The operator's contacts.
     pub switches: Switches,
-    /// The clock that the controller checks its pace by.
+    /// The clock against which the controller checks the tick rate.
     pub clock: Clock,
     /// Measures the main clock against the watchdog's oscillator.
     pub slow_clock: SlowClock,
-    /// Resets the ECU unless it is kicked.
+    /// Resets the ECU if it is not triggered in time.
     pub watchdog: Watchdog,
-    /// Where the calibration and the log of faults are kept.
+    /// Flash of the calibration and of the fault log.
     pub flash: FlashRegions<DataFlash>,
 }
 
 impl Board {
-    /// Sets everything up; the coils are off. The watchdog comes first: a crystal that doesn't start leads to a reset.
+    /// Initialises all peripherals; the coils are off. The watchdog is first: a crystal that does not start leads to a
+    /// reset.
     pub fn start() -> Self {
         let watchdog = Watchdog::start();
         part::start_clocks();

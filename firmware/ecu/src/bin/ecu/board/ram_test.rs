@@ -1,13 +1,13 @@
-//! Test of all RAM at power-up, before anything is in it.
+//! Test of the whole RAM at power-up, before its initialisation.
 //!
-//! A march over all words, from the bottom and from the top: each is found as it was left, filled with a pattern, its
-//! complement and its own address. That finds bits that are stuck or can't change, and words that share an address
-//! line. It takes 60 ms at the 16 MHz at which a part starts.
+//! A march test over all words, upwards and downwards: each word is compared with its last value, and filled with a
+//! pattern, its complement and its own address. The test detects stuck bits, and words with a shared address line. It
+//! takes 60 ms at the initial clock of 16 MHz.
 
 use core::arch::naked_asm;
 
-/// Called by the start-up code before it initialises RAM. There is no stack yet, so registers have to do. With damaged
-/// RAM it never returns: no output of the part has been switched on, and none will be.
+/// Called by the start-up code before it initialises RAM. There is no stack yet, so only registers are used. With
+/// damaged RAM it never returns: all outputs of the part stay off.
 #[unsafe(no_mangle)]
 #[unsafe(naked)]
 unsafe extern "C" fn __pre_init() {

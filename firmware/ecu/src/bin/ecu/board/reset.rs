@@ -1,4 +1,4 @@
-//! Why the part was reset.
+//! Cause of the last reset.
 
 use stm32_metapac::RCC;
 
@@ -7,11 +7,11 @@ const WATCHDOG: u32 = 1 << 29;
 const SOFTWARE: u32 = 1 << 28;
 const POWER: u32 = 1 << 27;
 
-/// The cause in words, read once: the flags are cleared for the next time.
+/// The cause as text, read once: the flags are cleared afterwards.
 pub fn reset_cause() -> &'static str {
     let flags = RCC.csr().read().0;
     RCC.csr().modify(|w| w.set_rmvf(true));
-    // Power-up sets the others as well.
+    // Power-up sets the other flags as well.
     match flags {
         _ if flags & POWER != 0 => "power or brown-out",
         _ if flags & WATCHDOG != 0 => "watchdog",

@@ -1,8 +1,8 @@
-//! The part's number, which tells its node from others on the bus.
+//! The serial number of the part, which distinguishes its node from others on the bus.
 
 use stm32_metapac::UID;
 
-/// 21 bits (those of a NAME's identity) from the 96 that the maker has burnt into the part: an FNV-1a hash of them.
+/// 21 bits (the identity number of a NAME): an FNV-1a hash of the 96-bit unique number of the part.
 pub fn serial_number() -> u32 {
     const PRIME: u32 = 0x0100_0193;
     let words = [0, 1, 2].map(|index| UID.uid(index).read());

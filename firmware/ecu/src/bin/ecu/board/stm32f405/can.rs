@@ -1,7 +1,7 @@
 //! bxCAN at 250 kbit/s on PA11 and PA12.
 //!
-//! Registers instead of the crate `bxcan`: what the ECU needs of it is a page, and that crate's claim to the registers
-//! is `unsafe` to make.
+//! Registers instead of the crate `bxcan`: the ECU needs only a small part of it, and the access of that crate to the
+//! registers requires `unsafe`.
 
 use embedded_can::{ExtendedId, Id, StandardId};
 use hitch_protocols::can::Frame;
@@ -20,7 +20,7 @@ pub struct Can {
 }
 
 impl Can {
-    /// Joins the bus; it is synchronised after eleven recessive bits, for which nobody waits here.
+    /// Joins the bus; it is synchronised after eleven recessive bits, which is not waited for.
     pub fn start() -> Self {
         pins::alternate(GPIOA, 11, FUNCTION);
         pins::alternate(GPIOA, 12, FUNCTION);
@@ -30,11 +30,11 @@ impl Can {
         });
         while !CAN1.msr().read().inak() {}
         CAN1.mcr().modify(|w| {
-            // Comes back by itself after bus-off, and sends in the order of asking.
+            // Automatic recovery after bus-off, and transmission in the order of requests.
             w.set_abom(true);
             w.set_txfp(true);
         });
-        // 42 MHz / 12 = 3.5 MHz: 14 quanta a bit, sampled after 12 (86 %; J1939-11 asks for 80 to 90 %).
+        // 42 MHz / 12 = 3.5 MHz: 14 quanta per bit, sampled after 12 (86 %; J1939-11 requires 80 to 90 %).
         CAN1.btr().write(|w| {
             w.set_brp(12 - 1);
             w.set_ts(0, 11 - 1);
@@ -48,7 +48,7 @@ impl Can {
         }
     }
 
-    /// Empties the controller's queue, which holds three frames.
+    /// Empties the hardware queue, which holds three frames.
     pub fn listen(&mut self) {
         while let Some(frame) = received() {
             self.inbox.put(frame);
@@ -60,17 +60,17 @@ impl Can {
         }
     }
 
-    /// The oldest frame that was received.
+    /// The oldest received frame.
     pub fn next_heard(&mut self) -> Option<Frame> {
         self.inbox.take()
     }
 
-    /// Frames that were received and for which there was no room.
+    /// Number of received frames that were dropped.
     pub const fn dropped(&self) -> u16 {
         self.inbox.dropped()
     }
 
-    /// Hands a frame over; false if no mailbox is free.
+    /// Queues a frame; false if no mailbox is free.
     pub fn send(&mut self, frame: &Frame) -> bool {
         let status = CAN1.tsr().read();
         let free = usize::from(status.code()).min(2);
@@ -110,7 +110,7 @@ impl Can {
     }
 }
 
-/// The oldest frame in the controller's queue.
+/// The oldest frame in the hardware queue.
 fn received() -> Option<Frame> {
     if CAN1.rfr(0).read().fmp() == 0 {
         return None;
@@ -136,7 +136,7 @@ fn received() -> Option<Frame> {
     }
 }
 
-/// One filter of 32 bits that masks nothing, into FIFO 0.
+/// One 32-bit filter that passes all frames, into FIFO 0.
 fn accept_everything() {
     CAN1.fmr().modify(|w| w.set_finit(true));
     CAN1.fs1r().modify(|w| w.set_fsc(0, true));

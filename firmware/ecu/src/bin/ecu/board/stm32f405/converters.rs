@@ -1,4 +1,4 @@
-//! Which channels the signals are on the STM32F405, and how its converters are set up and asked.
+//! Converter channels of the STM32F405, and the configuration of its converters.
 
 use hitch_ecu::Signal;
 use stm32_metapac::adc::Adc;
@@ -10,7 +10,7 @@ use crate::board::pins;
 
 /// TIM1_TRGO (RM0090, table of `JEXTSEL`).
 const TIM1_TRGO: u8 = 1;
-/// The channels of the three sequences in the order of their ranks, and what they measure.
+/// The channels of the three sequences in the order of their ranks, with their signals.
 pub const SEQUENCES: [[(u8, Signal); 4]; 3] = [
     [
         (2, Signal::LiftCurrent), // PA2
@@ -32,10 +32,10 @@ pub const SEQUENCES: [[(u8, Signal); 4]; 3] = [
     ],
 ];
 
-/// VREFINT, on ADC1 alone.
+/// VREFINT, on ADC1 only.
 const REFERENCE: u8 = 17;
 
-/// Makes the pins analogue and sets the converters' clock.
+/// Sets the pins to analogue mode, and the clock of the converters.
 pub fn start_pins_and_clocks() {
     for pin in 0..=3 {
         pins::analog(GPIOA, pin);
@@ -51,14 +51,14 @@ pub fn start_pins_and_clocks() {
     });
 }
 
-/// True once a sequence has run.
+/// Whether a sequence has ended.
 pub fn is_done(adc: Adc) -> bool {
     adc.sr().read().jeoc()
 }
 
-/// Makes ready for the next one.
+/// Prepares the next sequence.
 pub fn clear(adc: Adc) {
-    // Writing zero clears; the other flags don't mind.
+    // Writing zero clears a flag; the other flags are not affected.
     adc.sr().modify(|w| w.set_jeoc(false));
 }
 

@@ -1,7 +1,7 @@
-//! Sectors 8 to 11, of 128 KiB each: two for the log of faults, two for the calibration.
+//! Sectors 8 to 11, of 128 KiB each: two for the fault log, two for the calibration.
 //!
-//! The program can't run from flash while a sector is erased (1 to 2 s): the ECU only erases while it is locked or starts, the
-//! watchdog gets a longer period first, and the loop that waits runs from RAM.
+//! The program cannot run from flash while a sector is erased (1 to 2 s). The ECU therefore erases only while it is
+//! locked or at the start, with a longer period of the watchdog, and the wait loop runs from RAM.
 
 use stm32_metapac::FLASH;
 use stm32_metapac::flash::vals::Psize;
@@ -10,18 +10,18 @@ use crate::board::watchdog::with_long_period;
 
 /// First address.
 pub const BASE: usize = 0x0808_0000;
-/// Sectors of the log of faults, which come first.
+/// Sectors of the fault log, which are first.
 pub const LOG_PIECES: usize = 2;
 /// Sectors of the calibration.
 pub const CALIBRATION_PIECES: usize = 2;
 /// Bytes of a sector.
 pub const PIECE_BYTES: usize = 128 * 1024;
-/// Bytes that are programmed together.
+/// Bytes of a programming unit.
 pub const WORD_BYTES: usize = 4;
 
 const FIRST_SECTOR: u8 = 8;
 
-/// Lets the flash be changed (RM0090, 3.6.1).
+/// Unlocks the flash (RM0090, 3.6.1).
 pub fn unlock() {
     FLASH.keyr().write_value(0x4567_0123);
     FLASH.keyr().write_value(0xCDEF_89AB);
@@ -50,7 +50,7 @@ pub unsafe fn program(address: usize, word: &[u8; WORD_BYTES]) {
     FLASH.cr().modify(|w| w.set_pg(false));
 }
 
-/// Locks the flash again, and says whether all went well since it was unlocked.
+/// Locks the flash again; returns whether all operations since unlocking succeeded.
 pub fn finish() -> bool {
     let status = FLASH.sr().read();
     // Writing ones clears.
@@ -59,7 +59,7 @@ pub fn finish() -> bool {
     !(status.wrperr() || status.pgaerr() || status.pgperr() || status.pgserr())
 }
 
-/// The layout of this flash doesn't depend on option bytes.
+/// The layout of this flash does not depend on option bytes.
 pub const fn is_usable() -> bool {
     true
 }
@@ -74,7 +74,8 @@ pub const fn take_damaged_read() -> bool {
     false
 }
 
-/// Starts what the control register is set to, and waits for its end. Runs from RAM: the flash can't be read meanwhile.
+/// Starts the operation in the control register, and waits for its end. Runs from RAM: the flash is not readable
+/// meanwhile.
 #[inline(never)]
 #[unsafe(link_section = ".data.start_and_wait")]
 fn start_and_wait() {

@@ -1,4 +1,4 @@
-//! STM32F405RG: clocks, and where its converters find their signals.
+//! STM32F405RG: clocks and peripherals.
 
 mod can;
 pub mod converters;
@@ -19,7 +19,8 @@ pub const TIMER_FUNCTION: u8 = 1;
 /// Clock of TIM2: twice that of APB1.
 pub const TIMER_HZ: u32 = 84_000_000;
 
-/// 168 MHz from a crystal of 8 MHz, whose failure raises the non-maskable interrupt; APB1 gets 42 MHz, APB2 84 MHz.
+/// 168 MHz from a crystal of 8 MHz, whose failure raises the non-maskable interrupt; APB1 runs at 42 MHz, APB2 at 84
+/// MHz.
 pub fn start_clocks() {
     RCC.cr().modify(|w| w.set_hseon(true));
     while !RCC.cr().read().hserdy() {}
@@ -36,7 +37,7 @@ pub fn start_clocks() {
         w.set_csson(true);
     });
     while !RCC.cr().read().pllrdy() {}
-    // The flash has to be slowed down before the core speeds up.
+    // The wait states have to be increased before the core clock.
     FLASH.acr().write(|w| {
         w.set_latency(Latency::WS5);
         w.set_prften(true);
@@ -69,6 +70,6 @@ fn start_peripherals() {
         w.set_adc2en(true);
         w.set_adc3en(true);
     });
-    // Two cycles until a clock has arrived (erratum 2.1.13); reading back takes as long.
+    // A clock is active after two cycles (erratum 2.1.13); reading back takes as long.
     let _ = RCC.apb2enr().read();
 }

@@ -1,6 +1,6 @@
-//! Registers of the STM32F405 that nothing changes after the start, and the bits of them that count.
+//! Constant configuration registers of the STM32F405, with masks of the checked bits.
 
-/// Each bit counts.
+/// All bits.
 const ALL: u32 = u32::MAX;
 
 /// Address and mask.

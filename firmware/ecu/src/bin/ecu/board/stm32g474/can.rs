@@ -1,7 +1,7 @@
 //! FDCAN as a classic CAN at 250 kbit/s on PA11 and PA12.
 //!
-//! Registers instead of the crate `fdcan`: that one panics on frames longer than the buffer it is given, and its claim
-//! to the registers is `unsafe` to make.
+//! Registers instead of the crate `fdcan`: it panics on frames longer than the given buffer, and its access to the
+//! registers requires `unsafe`.
 
 use embedded_can::{ExtendedId, Id, StandardId};
 use hitch_protocols::can::Frame;
@@ -27,14 +27,14 @@ pub struct Can {
 }
 
 impl Can {
-    /// Joins the bus; it is synchronised after eleven recessive bits, for which nobody waits here.
+    /// Joins the bus; it is synchronised after eleven recessive bits, which is not waited for.
     pub fn start() -> Self {
         pins::alternate(GPIOA, 11, FUNCTION);
         pins::alternate(GPIOA, 12, FUNCTION);
         FDCAN1.cccr().modify(|w| w.set_init(true));
         while !FDCAN1.cccr().read().init() {}
         FDCAN1.cccr().modify(|w| w.set_cce(true));
-        // 8 MHz / 2 = 4 MHz: 16 quanta a bit, sampled after 14 (87.5 %).
+        // 8 MHz / 2 = 4 MHz: 16 quanta per bit, sampled after 14 (87.5 %).
         FDCAN1.nbtp().write(|w| {
             w.set_nbrp(2 - 1);
             w.set_ntseg1(13 - 1);
@@ -51,7 +51,7 @@ impl Can {
         }
     }
 
-    /// Empties the controller's queue, which holds three frames.
+    /// Empties the hardware queue, which holds three frames.
     pub fn listen(&mut self) {
         while let Some(frame) = received() {
             self.inbox.put(frame);
@@ -63,20 +63,20 @@ impl Can {
         }
     }
 
-    /// The oldest frame that was received.
+    /// The oldest received frame.
     pub fn next_heard(&mut self) -> Option<Frame> {
         self.inbox.take()
     }
 
-    /// Frames that were received and for which there was no room.
+    /// Number of received frames that were dropped.
     pub const fn dropped(&self) -> u16 {
         self.inbox.dropped()
     }
 
-    /// Hands a frame over; false if the queue is full. A controller that was thrown off the bus is let back on.
+    /// Queues a frame; false if the queue is full. After bus-off the controller is restarted.
     pub fn send(&mut self, frame: &Frame) -> bool {
         if FDCAN1.psr().read().bo() && FDCAN1.cccr().read().init() {
-            // 129 times eleven recessive bits later it takes part again.
+            // It takes part again after 129 times eleven recessive bits.
             FDCAN1.cccr().modify(|w| w.set_init(false));
         }
         let queue = FDCAN1.txfqs().read();
@@ -111,7 +111,7 @@ impl Can {
     }
 }
 
-/// The oldest frame in the controller's queue.
+/// The oldest frame in the hardware queue.
 fn received() -> Option<Frame> {
     let state = FDCAN1.rxfs(0).read();
     if state.ffl() == 0 {

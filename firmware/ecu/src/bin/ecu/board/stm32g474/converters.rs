@@ -1,4 +1,4 @@
-//! Which channels the signals are on the STM32G474, and how its converters are set up and asked.
+//! Converter channels of the STM32G474, and the configuration of its converters.
 
 use embedded_hal::delay::DelayNs;
 use hitch_ecu::Signal;
@@ -12,7 +12,7 @@ use crate::board::pins;
 
 /// TIM1_TRGO for ADC1 and 2 and for ADC3 (RM0440, tables of `JEXTSEL`).
 const TIM1_TRGO: u8 = 0;
-/// The channels of the three sequences in the order of their ranks, and what they measure.
+/// The channels of the three sequences in the order of their ranks, with their signals.
 pub const SEQUENCES: [[(u8, Signal); 4]; 3] = [
     [
         (3, Signal::LiftCurrent),      // PA2
@@ -37,7 +37,7 @@ pub const SEQUENCES: [[(u8, Signal); 4]; 3] = [
 /// VREFINT, on ADC1 and ADC3.
 const REFERENCE: u8 = 18;
 
-/// Makes the pins analogue and sets the converters' clock.
+/// Sets the pins to analogue mode, and the clock of the converters.
 pub fn start_pins_and_clocks() {
     for pin in 0..=3 {
         pins::analog(GPIOA, pin);
@@ -58,12 +58,12 @@ pub fn start_pins_and_clocks() {
     }
 }
 
-/// True once a sequence has run.
+/// Whether a sequence has ended.
 pub fn is_done(adc: Adc) -> bool {
     adc.isr().read().jeos()
 }
 
-/// Makes ready for the next one.
+/// Prepares the next sequence.
 pub fn clear(adc: Adc) {
     // Writing one clears.
     adc.isr().write(|w| w.set_jeos(true));
@@ -87,7 +87,7 @@ pub fn start_sequence(adc: Adc, sequence: &[(u8, Signal); 4]) {
     adc.isr().write(|w| w.set_adrdy(true));
     adc.cr().modify(|w| w.set_aden(true));
     while !adc.isr().read().adrdy() {}
-    // Without the queue of contexts the sequence stays when it has run.
+    // Without the queue of contexts the sequence is kept after a run.
     adc.cfgr().modify(|w| w.set_jqdis(true));
     adc.jsqr().write(|w| {
         w.set_jl(3);
@@ -111,6 +111,6 @@ fn wake_and_calibrate(adc: Adc) {
         w.set_adcal(true);
     });
     while adc.cr().read().adcal() {}
-    // The converter may be enabled four of its cycles later.
+    // The converter may be enabled four cycles later.
     cortex_m::asm::delay(32);
 }

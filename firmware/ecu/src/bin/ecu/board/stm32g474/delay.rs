@@ -5,7 +5,7 @@ use embedded_hal::delay::DelayNs;
 /// Cycles of the core in a microsecond.
 const CYCLES_PER_US: u32 = 168;
 
-/// Waits by counting cycles. It waits at least as long as it is asked to.
+/// Waits at least the requested time by counting cycles.
 pub struct CycleDelay;
 
 impl DelayNs for CycleDelay {

@@ -1,4 +1,5 @@
-//! The last six pages of the second bank, of 2 KiB each: two for the log of faults, four for the calibration. The program runs on from the first bank meanwhile.
+//! The last six pages of the second bank, of 2 KiB each: two for the fault log, four for the calibration. The program
+//! continues from the first bank meanwhile.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
@@ -8,19 +9,19 @@ use crate::board::watchdog::with_long_period;
 
 /// First address.
 pub const BASE: usize = 0x0807_D000;
-/// Pages of the log of faults, which come first.
+/// Pages of the fault log, which are first.
 pub const LOG_PIECES: usize = 2;
 /// Pages of the calibration.
 pub const CALIBRATION_PIECES: usize = 4;
 /// Bytes of a page.
 pub const PIECE_BYTES: usize = 2 * 1024;
-/// Bytes that are programmed together.
+/// Bytes of a programming unit.
 pub const WORD_BYTES: usize = 8;
 
-/// Of 128 pages in the bank.
+/// Index of the first page, of 128 pages in the bank.
 const FIRST_PAGE: u8 = 122;
 
-/// Lets the flash be changed (RM0440, 3.3.5).
+/// Unlocks the flash (RM0440, 3.3.5).
 pub fn unlock() {
     FLASH.keyr().write_value(0x4567_0123);
     FLASH.keyr().write_value(0xCDEF_89AB);
@@ -33,7 +34,7 @@ pub fn erase_piece(number: u8) {
         w.set_bker(true);
         w.set_pnb(FIRST_PAGE + number);
     });
-    // 22 ms, in which the program goes on in the other bank.
+    // 22 ms; the program continues from the other bank.
     with_long_period(|| {
         FLASH.cr().modify(|w| w.set_strt(true));
         wait();
@@ -57,7 +58,7 @@ pub unsafe fn program(address: usize, word: &[u8; WORD_BYTES]) {
     FLASH.cr().modify(|w| w.set_pg(false));
 }
 
-/// Locks the flash again, and says whether all went well since it was unlocked.
+/// Locks the flash again; returns whether all operations since unlocking succeeded.
 pub fn finish() -> bool {
     let status = FLASH.sr().read();
     // Writing ones clears.
@@ -66,8 +67,8 @@ pub fn finish() -> bool {
     !(status.operr() || status.wrperr() || status.pgaerr() || status.pgserr())
 }
 
-/// True if the flash has two banks with pages of 2 KiB (option bit `DBANK`, as delivered). With one bank the pages have
-/// other places, and erasing by these numbers could hit the program.
+/// Whether the flash has two banks with pages of 2 KiB (option bit `DBANK`, as delivered). With one bank the pages have
+/// other addresses, and erasing by these numbers could destroy the program.
 pub fn is_usable() -> bool {
     FLASH.optr().read().dbank()
 }
@@ -75,9 +76,9 @@ pub fn is_usable() -> bool {
 /// Set by the non-maskable interrupt.
 static DAMAGED: AtomicBool = AtomicBool::new(false);
 
-/// True if something was read since the last call whose error correction fails: programming it was interrupted.
+/// Whether the error correction of a read has failed since the last call: its programming was interrupted.
 pub fn take_damaged_read() -> bool {
-    // The interrupt is taken before this has been executed.
+    // The interrupt is taken before this instruction.
     cortex_m::asm::dsb();
     cortex_m::asm::isb();
     let damaged = DAMAGED.load(Ordering::Relaxed);
@@ -85,8 +86,8 @@ pub fn take_damaged_read() -> bool {
     damaged
 }
 
-/// The cause of a non-maskable interrupt, if it is a failed error correction from [`BASE`] on: it is noted, and
-/// the flag is cleared.
+/// Handles a non-maskable interrupt caused by failed error correction from [`BASE`]: it is recorded, and the flag is
+/// cleared.
 pub fn note_damaged_read() -> bool {
     /// Offset of the data in the second bank.
     const OFFSET: u32 = BASE as u32 - 0x0804_0000;

@@ -1,4 +1,4 @@
-//! STM32G474RE: clocks, and where its converters find their signals.
+//! STM32G474RE: clocks and peripherals.
 
 mod can;
 pub mod converters;
@@ -20,8 +20,8 @@ pub const TIMER_FUNCTION: u8 = 6;
 /// Clock of TIM2: that of the core.
 pub const TIMER_HZ: u32 = 168_000_000;
 
-/// 168 MHz from a crystal of 8 MHz, whose failure raises the non-maskable interrupt. The buses run as fast; the CAN
-/// controller runs from the crystal itself.
+/// 168 MHz from a crystal of 8 MHz, whose failure raises the non-maskable interrupt. The buses have the same clock; the
+/// CAN controller is clocked by the crystal.
 pub fn start_clocks() {
     RCC.apb1enr1().modify(|w| w.set_pwren(true));
     let _ = RCC.apb1enr1().read();
@@ -42,7 +42,7 @@ pub fn start_clocks() {
         w.set_csson(true);
     });
     while !RCC.cr().read().pllrdy() {}
-    // The flash has to be slowed down before the core speeds up.
+    // The wait states have to be increased before the core clock.
     FLASH.acr().write(|w| {
         w.set_latency(Latency::WS4);
         w.set_prften(true);
@@ -50,7 +50,7 @@ pub fn start_clocks() {
         w.set_dcen(true);
     });
     while FLASH.acr().read().latency() != Latency::WS4 {}
-    // By way of half the clock, for a microsecond at least (RM0440, 7.2.7).
+    // At half the clock for at least one microsecond (RM0440, 7.2.7).
     RCC.cfgr().modify(|w| w.set_hpre(Hpre::DIV2));
     RCC.cfgr().modify(|w| w.set_sw(Sw::PLL1_R));
     while RCC.cfgr().read().sws() != Sw::PLL1_R {}
@@ -76,8 +76,8 @@ fn start_peripherals() {
         w.set_tim1en(true);
         w.set_syscfgen(true);
     });
-    // Two cycles until a clock has arrived; reading back takes as long.
+    // A clock is active after two cycles; reading back takes as long.
     let _ = RCC.apb2enr().read();
-    // A lockup of the core cuts the outputs, as a fault inside a fault does.
+    // A lockup of the core switches the outputs off, as does a nested fault.
     SYSCFG.cfgr2().modify(|w| w.set_cll(true));
 }

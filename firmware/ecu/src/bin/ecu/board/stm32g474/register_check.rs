@@ -1,6 +1,6 @@
-//! Registers of the STM32G474 that nothing changes after the start, and the bits of them that count.
+//! Constant configuration registers of the STM32G474, with masks of the checked bits.
 
-/// Each bit counts.
+/// All bits.
 const ALL: u32 = u32::MAX;
 
 /// Address and mask.
@@ -17,7 +17,7 @@ pub const REGISTERS: &[(u32, u32)] = &[
     (0x4000_7080, ALL),
     // Wait states and caches.
     (0x4002_2000, ALL),
-    // A lockup of the core cuts the outputs.
+    // A lockup of the core switches the outputs off.
     (0x4001_0018, ALL),
     // GPIOA: mode, type, speed, pulls, functions.
     (0x4800_0000, ALL),
