@@ -2,7 +2,7 @@
 use clap::{Parser, Subcommand};
 
 use crate::commands::{
-    add, calibrate, changes, compare, controller, diagnose, ecu, effects, explain,
+    add, calibrate, changes, compare, controller, diagnose, ecu, effects, explain, export_fmu,
     flash_calibration, import, loop_, main_job, model, paper, record, serve, simulate, tune,
 };
 use crate::error::Error;
@@ -54,6 +54,8 @@ pub enum Command {
     Loop(loop_::Args),
     /// Run the firmware's controller on stdin/stdout, for an external plant
     Controller(controller::Args),
+    /// Export the plant or the controller as an FMI 2.0 co-simulation unit (FMU)
+    ExportFmu(export_fmu::Args),
     /// Run the firmware image on an emulated Cortex-M4 with plant, and CAN on a TCP port
     Ecu(ecu::Args),
     /// Write a calibration to a running ECU, with verification
@@ -87,6 +89,7 @@ impl Command {
             Self::Paper(args) => paper::run(args),
             Self::Loop(args) => loop_::run(args),
             Self::Controller(args) => controller::run(args),
+            Self::ExportFmu(args) => export_fmu::run(args),
             Self::Ecu(args) => ecu::run(args),
             Self::FlashCalibration(args) => flash_calibration::run(args),
             Self::Record(args) => record::run(args),

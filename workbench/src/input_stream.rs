@@ -1,37 +1,25 @@
 //! Converts CSV lines from a running plant into the controller's inputs.
 
+use hitch_controller_host::samples::{QUANTITIES, SWITCHES, inputs};
 use hitch_input::input_error::quote;
 use hitch_input::naming::{offer_names, unknown_name};
-use hitch_quantities::units::{
-    MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliDegreePerSecond, MilliVolt, PerMille,
-    RevolutionPerMinute,
-};
-use hitch_quantities::{Inputs, Switches};
+use hitch_quantities::Inputs;
 
 /// Required columns.
 const NEEDED: [&str; 3] = ["time_s", "lever_deg", "rocker_angle_deg"];
-/// All columns.
-const KNOWN: [&str; 17] = [
-    "time_s",
-    "lever_deg",
-    "rocker_angle_deg",
-    "cylinder_pressure_bar",
-    "pump_pressure_bar",
-    "oil_temperature_c",
-    "supply_v",
-    "jog_deg_per_s",
-    "upper_limit_deg",
-    "lowering_dial_percent",
-    "engine_speed_rpm",
-    "measured_lift_current_a",
-    "measured_lower_current_a",
-    "transport_lock",
-    "hold",
-    "quick_lift",
-    "teach",
-];
+/// All columns: the time, then quantities and switches.
+const KNOWN: [&str; 1 + QUANTITIES.len() + SWITCHES.len()] = known();
 /// Time step between lines, s: the controller's step, with tolerance for rounded time stamps.
 const STEP_S: std::ops::RangeInclusive<f64> = 0.000_45..=0.001_55;
+
+const fn known() -> [&'static str; 1 + QUANTITIES.len() + SWITCHES.len()] {
+    let mut names = ["time_s"; 1 + QUANTITIES.len() + SWITCHES.len()];
+    let (_, rest) = names.split_at_mut(1);
+    let (quantities, switches) = rest.split_at_mut(QUANTITIES.len());
+    quantities.copy_from_slice(&QUANTITIES);
+    switches.copy_from_slice(&SWITCHES);
+    names
+}
 
 /// A fault of a line, with its position.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -157,38 +145,11 @@ impl Columns {
 
 /// The inputs for values in the order of [`KNOWN`]; a switch is on if its value is not zero.
 fn inputs_of(values: &[Option<f64>; KNOWN.len()]) -> Inputs {
-    let scaled =
-        |index: usize, counts: f64| values[index].map(|value: f64| (value * counts).round() as i32);
-    let milli = |index: usize| scaled(index, 1e3);
-    let on = |index: usize| values[index].is_some_and(|value| value != 0.0);
-    Inputs {
-        lever: milli(1).map(MilliDegree),
-        rocker_angle: milli(2).map(MilliDegree),
-        cylinder_pressure: milli(3).map(MilliBar),
-        pump_pressure: milli(4).map(MilliBar),
-        oil_temperature: milli(5).map(MilliCelsius),
-        supply: milli(6).map(MilliVolt),
-        jog: milli(7).map(MilliDegreePerSecond),
-        upper_limit: milli(8).map(MilliDegree),
-        lowering_dial: scaled(9, 10.0).map(PerMille),
-        engine_speed: scaled(10, 1.0).map(RevolutionPerMinute),
-        lift_current: milli(11).map(MilliAmp),
-        lower_current: milli(12).map(MilliAmp),
-        // The lines are the time base, and the values do not come from converters.
-        step_time: None,
-        second_angle: None,
-        sensor_supply: None,
-        reference: None,
-        set_point: None,
-        clock_ratio: None,
-        enable_line_fault: false,
-        switches: Switches {
-            transport_lock: on(13),
-            hold: on(14),
-            quick_lift: on(15),
-            teach: on(16),
-        },
-    }
+    let quantities = std::array::from_fn(|index| values[1 + index]);
+    let switches = std::array::from_fn(|index| {
+        values[1 + QUANTITIES.len() + index].is_some_and(|value| value != 0.0)
+    });
+    inputs(&quantities, switches)
 }
 
 /// The cells of a line, each with the character position of its start.
@@ -223,6 +184,8 @@ fn number(column: usize, cell: &str) -> Result<Option<f64>, LineError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hitch_quantities::Switches;
+    use hitch_quantities::units::{MilliBar, MilliDegree, PerMille, RevolutionPerMinute};
 
     const HEADER: &str = "time_s,lever_deg,rocker_angle_deg,supply_v\n";
 

@@ -3,7 +3,6 @@
 
 pub mod base_fit;
 pub mod calibrate;
-pub mod calibration_file;
 pub mod cli;
 pub mod closed_loop;
 pub mod commands;
@@ -13,6 +12,7 @@ pub mod ecu;
 pub mod effect_arg;
 pub mod error;
 pub mod explanation;
+pub mod fmu_export;
 pub mod heat_table;
 pub mod import;
 pub mod input_stream;
@@ -27,7 +27,6 @@ pub mod search_args;
 pub mod serve;
 pub mod slcan_server;
 pub mod status_line;
-pub mod teaching;
 pub mod text;
 pub mod tuning;
 pub mod valve_survey;

@@ -19,7 +19,7 @@ struct Layers {
 }
 
 /// The checked crates; add an entry for a new one.
-const CRATES: [Layers; 7] = [
+const CRATES: [Layers; 8] = [
     Layers {
         sources: "firmware/quantities/src",
         order: &[
@@ -87,6 +87,16 @@ const CRATES: [Layers; 7] = [
         ],
     },
     Layers {
+        sources: "workbench/fmu/src",
+        order: &[
+            &["location", "units", "variable"],
+            &["component"],
+            &["plant", "controller"],
+            &["description", "content"],
+            &["abi"],
+        ],
+    },
+    Layers {
         sources: "workbench/src",
         order: &[
             &["error", "progress", "text"],
@@ -99,18 +109,13 @@ const CRATES: [Layers; 7] = [
                 "input_stream",
                 "heat_table",
             ],
-            &[
-                "demonstration",
-                "valve_survey",
-                "calibration_file",
-                "base_fit",
-                "teaching",
-            ],
+            &["demonstration", "valve_survey", "base_fit"],
             &[
                 "calibrate",
                 "closed_loop",
                 "comparison",
                 "explanation",
+                "fmu_export",
                 "import",
                 "slcan_server",
                 "xcp_tool",

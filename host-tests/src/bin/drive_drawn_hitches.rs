@@ -165,11 +165,11 @@ fn trace(drawn: &Drawn, calibration: &ValidCalibration) -> String {
 
 fn calibration(arguments: &Arguments) -> anyhow::Result<ValidCalibration> {
     let mut calibration = match &arguments.calibration {
-        Some(path) => (*hitch_workbench::calibration_file::read(path)?).clone(),
+        Some(path) => (*hitch_controller_host::calibration_file::read(path)?).clone(),
         None => Calibration::nominal(),
     };
     for setting in &arguments.set {
-        hitch_workbench::calibration_file::set(&mut calibration, setting)
+        hitch_controller_host::calibration_file::set(&mut calibration, setting)
             .map_err(anyhow::Error::msg)?;
     }
     calibration

@@ -37,7 +37,7 @@ fn main() -> anyhow::Result<()> {
     let arguments = Arguments::parse();
     let mut calibration = Calibration::nominal();
     for setting in &arguments.set {
-        hitch_workbench::calibration_file::set(&mut calibration, setting)
+        hitch_controller_host::calibration_file::set(&mut calibration, setting)
             .map_err(anyhow::Error::msg)?;
     }
     let calibration = calibration

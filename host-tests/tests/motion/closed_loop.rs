@@ -1,11 +1,11 @@
 //! The controller in closed loop with the dynamic plant, with wrong and correct calibrations.
 
+use hitch_controller_host::calibration_file::with_settings;
 use hitch_effects::find;
 use hitch_plant::{AddedEffect, Model};
 use hitch_quantities::units::{MicrometrePerSecond, PerMille};
 use hitch_quantities::{Calibration, ValidCalibration};
 use hitch_workbench::calibrate::calibrate;
-use hitch_workbench::calibration_file::with_settings;
 use hitch_workbench::closed_loop::show::text;
 use hitch_workbench::closed_loop::{ClosedLoop, LoopRun, Scenario, run};
 

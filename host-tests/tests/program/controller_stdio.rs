@@ -3,7 +3,7 @@
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 
-use hitch_workbench::calibration_file;
+use hitch_controller_host::calibration_file;
 use host_tests::program::hitch;
 
 const HEADER: &str = "time_s,lever_deg,rocker_angle_deg";

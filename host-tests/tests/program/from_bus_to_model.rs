@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::fs;
 
+use hitch_controller_host::calibration_file;
 use hitch_quantities::Calibration;
-use hitch_workbench::calibration_file;
 use hitch_workbench::ecu::{Bench, CutFlash, OnHost, Order, delivered};
 use host_tests::program::run;
 use host_tests::teaching::dynamic_with;

@@ -74,6 +74,19 @@ impl Dimension {
         Self(parts)
     }
 
+    /// Exponents of kilogram, metre, second, ampere and kelvin; `None` if one is not whole.
+    #[must_use]
+    pub fn whole_powers(self) -> Option<[i8; 5]> {
+        let mut powers = [0; 5];
+        for (power, parts) in powers.iter_mut().zip(self.0) {
+            if parts % PARTS != 0 {
+                return None;
+            }
+            *power = i8::try_from(parts / PARTS).ok()?;
+        }
+        Some(powers)
+    }
+
     /// Whether it is a pure number.
     #[must_use]
     pub fn is_number(self) -> bool {

@@ -52,11 +52,13 @@ mod constants;
 mod meaning;
 mod read;
 mod round_trip;
+mod scalars;
 mod starting_points;
 mod template;
 mod terms;
 mod write;
 
+pub use scalars::{Scalar, scalars, with_scalars};
 pub use starting_points::{dynamic, nominal};
 pub use template::{Template, Valve};
 pub use write::quoted;

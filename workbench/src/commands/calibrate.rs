@@ -2,14 +2,15 @@
 
 use std::path::PathBuf;
 
+use hitch_controller_host::calibration_file;
 use hitch_quantities::Calibration;
 use hitch_quantities::calibration::valve_table::ValveTable;
 
 use super::loop_::read_files;
 use crate::calibrate::calibrate;
 use crate::error::Error;
+use crate::output;
 use crate::outputs::Outputs;
-use crate::{calibration_file, output};
 
 /// Arguments of `hitch calibrate`.
 #[derive(Debug, clap::Args)]

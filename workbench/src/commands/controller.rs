@@ -4,14 +4,15 @@ use std::io::{self, BufRead, Write};
 use std::path::{Path, PathBuf};
 
 use hitch_controller::Controller;
+use hitch_controller_host::calibration_file;
+use hitch_controller_host::teaching::{self, Teaching};
 use hitch_input::input_error::{InputError, Position};
-use hitch_quantities::{Outputs, State};
+use hitch_quantities::Outputs;
 
 use super::loop_::calibration;
 use crate::error::Error;
 use crate::input_stream::{Columns, LineError};
-use crate::teaching::Teaching;
-use crate::{output, outputs, teaching};
+use crate::{output, outputs};
 
 /// Header of the output.
 const HEADER: &str = "lift_current_a,lower_current_a,state";
@@ -53,25 +54,25 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let inputs: Vec<PathBuf> = args.calibration.iter().cloned().collect();
     outputs::Outputs::check([args.out.as_deref()], &inputs)?;
     let controller = Controller::new(calibration(args.calibration.as_ref())?);
-    let teaching = Teaching::new(args.out.clone());
     serve(
         controller,
-        teaching,
+        args.out.as_deref(),
         io::stdin().lock(),
         io::stdout().lock(),
     )
 }
 
-/// Answers every line of `input` on `output`, flushed line by line.
+/// Answers every line of `input` on `output`, flushed line by line. What was taught goes into the file `taught`.
 ///
 /// # Errors
 /// If a line is invalid (with line and column), `output` is closed, or the taught calibration cannot be written.
 pub fn serve(
     mut controller: Controller,
-    mut teaching: Teaching,
+    taught: Option<&Path>,
     mut input: impl BufRead,
     mut output: impl Write,
 ) -> Result<(), Error> {
+    let mut teaching = Teaching::default();
     let mut line = String::new();
     if !next_line(&mut input, &mut line, 1)? {
         return Err(fault(
@@ -92,7 +93,10 @@ pub fn serve(
                 .inputs(&line)
                 .map_err(|error| fault(number, error))?;
             let outputs = controller.step(&inputs);
-            teaching.follow(&mut controller, outputs.state)?;
+            let found = teaching.follow(&mut controller, outputs.state);
+            if let (Some(path), Some(found)) = (taught, found) {
+                output::write_file(path, calibration_file::write(&found).as_bytes())?;
+            }
             answer(&mut output, &reply(&outputs, &controller))?;
         }
         number += 1;
@@ -102,11 +106,7 @@ pub fn serve(
 
 fn reply(outputs: &Outputs, controller: &Controller) -> String {
     let ampere = |milli: i32| f64::from(milli) * 1e-3;
-    let state = match (outputs.fault, outputs.state) {
-        (Some(fault), state) => format!("{}:{}", state.name(), fault.name()),
-        (None, State::Teaching) => teaching::state(controller.taught()),
-        (None, state) => state.name().to_owned(),
-    };
+    let state = teaching::state(outputs, controller);
     format!(
         "{:.3},{:.3},{state}",
         ampere(outputs.lift_current.0),

@@ -2,7 +2,8 @@
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use crate::calibration_file;
+use hitch_controller_host::calibration_file;
+
 use crate::error::Error;
 use crate::output;
 use crate::progress::Progress;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use hitch_controller_host::calibration_file;
 use hitch_quantities::ValidCalibration;
 use serde::Serialize;
 
@@ -12,7 +13,7 @@ use crate::output::JsonArg;
 use crate::outputs::Outputs;
 use crate::progress::Progress;
 use crate::report::loop_page;
-use crate::{calibration_file, closed_loop, output};
+use crate::{closed_loop, output};
 
 /// Arguments of `hitch loop`.
 #[derive(Debug, clap::Args)]

@@ -8,6 +8,7 @@ pub mod diagnose;
 pub mod ecu;
 pub mod effects;
 pub mod explain;
+pub mod export_fmu;
 pub mod flash_calibration;
 pub mod import;
 pub mod loop_;

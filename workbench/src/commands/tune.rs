@@ -2,17 +2,18 @@
 
 use std::path::PathBuf;
 
+use hitch_controller_host::calibration_file;
 use hitch_quantities::Calibration;
 
 use crate::calibrate::calibrate;
 use crate::closed_loop::{Scenario, Summary};
 use crate::commands::loop_::{changed, read_files};
 use crate::error::Error;
+use crate::output;
 use crate::outputs::Outputs;
 use crate::progress::Progress;
 use crate::text::{Table, known};
 use crate::tuning::{Judged, Trial, changes};
-use crate::{calibration_file, output};
 
 /// Arguments of `hitch tune`.
 #[derive(Debug, clap::Args)]

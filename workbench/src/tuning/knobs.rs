@@ -1,9 +1,9 @@
 //! The values that are tuned, and their ranges.
 
+use hitch_controller_host::calibration_file::{scalar, set};
 use hitch_quantities::{Calibration, ValidCalibration};
 
 use super::Change;
-use crate::calibration_file::{scalar, set};
 
 /// `group.name` of the tuned values.
 pub const KNOBS: [&str; 10] = [

@@ -1,0 +1,57 @@
+//! Messages to the importer.
+
+use std::ffi::{CString, c_void};
+
+use super::types::{Callbacks, LogFunction, Status};
+
+/// The importer's function for messages, and the name of the instance.
+#[derive(Clone)]
+pub struct Logger {
+    function: Option<LogFunction>,
+    environment: *mut c_void,
+    instance: CString,
+}
+
+// SAFETY: the environment is never read here. It goes back to the importer in the thread of the importer's own call.
+unsafe impl Send for Logger {}
+
+impl Logger {
+    /// A logger of an instance; without callbacks it says nothing.
+    pub fn new(callbacks: Option<&Callbacks>, instance: &str) -> Self {
+        Self {
+            function: callbacks.and_then(|callbacks| callbacks.logger),
+            environment: callbacks.map_or(std::ptr::null_mut(), |callbacks| callbacks.environment),
+            instance: without_zeros(instance),
+        }
+    }
+
+    /// Writes a message.
+    pub fn write(&self, status: Status, text: &str) {
+        let Some(function) = self.function else {
+            return;
+        };
+        let category = match status {
+            Status::Discard => c"logStatusDiscard",
+            _ => c"logStatusError",
+        };
+        // It is taken for a format.
+        let text = without_zeros(&text.replace('%', "%%"));
+        // SAFETY: the importer promises that its function can be called as the standard declares it until the instance is
+        // freed. The texts end with a zero byte and live until the call returns; the format asks for no argument.
+        unsafe {
+            function(
+                self.environment,
+                self.instance.as_ptr(),
+                status,
+                category.as_ptr(),
+                text.as_ptr(),
+            );
+        }
+    }
+}
+
+/// A text for C: nothing behind a zero byte.
+pub fn without_zeros(text: &str) -> CString {
+    let bytes: Vec<u8> = text.bytes().take_while(|byte| *byte != 0).collect();
+    CString::new(bytes).unwrap_or_default()
+}

@@ -1,0 +1,17 @@
+//! Plant and controller as FMI 2.0 co-simulation units (docs/fmu.md).
+//!
+//! From the bottom layer to the top: the [`variable`]s of a unit and their [`Value`](variable::Value)s; the
+//! [`component`], which is what a unit simulates, with [`plant`] and [`controller`]; the [`content`] that a unit carries,
+//! and its [`description`] for importers; and the interface in C, which is what the shared library exports.
+//!
+//! Only the interface has unsafe code: it takes pointers from the importing tool.
+
+pub mod abi;
+pub mod component;
+pub mod content;
+pub mod controller;
+pub mod description;
+mod location;
+pub mod plant;
+mod units;
+pub mod variable;

@@ -1,0 +1,78 @@
+//! The shared library of the units: where it is, and what the standard calls this machine.
+
+use std::env::consts::{ARCH, DLL_PREFIX, DLL_SUFFIX, OS};
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+
+/// The library's file beside the program, or where `cargo` or an installation puts it.
+///
+/// # Errors
+/// If it is in none of these folders.
+pub fn find(program: &Path) -> Result<PathBuf, Error> {
+    let name = format!("{DLL_PREFIX}hitch_fmu{DLL_SUFFIX}");
+    let folders = folders(program);
+    let mut files = folders.iter().map(|folder| folder.join(&name));
+    files.find(|file| file.is_file()).ok_or_else(|| {
+        let shown: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
+        Error::Usage(format!(
+            "{name}: the library of the units is in none of {}; build it with `cargo build --release`, or put it \
+             beside the program",
+            shown.join(", ")
+        ))
+    })
+}
+
+/// The folders in which it may be, the first one first. `cargo` builds it into `deps`; a copy beside the program may be
+/// older.
+fn folders(program: &Path) -> Vec<PathBuf> {
+    let beside = program.parent().unwrap_or(Path::new("."));
+    vec![
+        beside.join("deps"),
+        beside.to_path_buf(),
+        beside.join("..").join("lib"),
+    ]
+}
+
+/// Name of this machine's folder below `binaries`, and the ending of a library there.
+///
+/// # Errors
+/// If the standard has no name for this machine.
+pub fn platform() -> Result<(&'static str, &'static str), Error> {
+    let folder = match (OS, ARCH) {
+        ("linux", "x86_64") => "linux64",
+        ("linux", "x86") => "linux32",
+        ("linux", "aarch64") => "aarch64-linux",
+        ("windows", "x86_64") => "win64",
+        ("windows", "x86") => "win32",
+        // One library for both processors, as far as importers of FMI 2.0 know.
+        ("macos", _) => "darwin64",
+        _ => {
+            return Err(Error::Usage(format!(
+                "FMI 2.0 has no name for {OS} on {ARCH}; export on Linux, Windows or macOS"
+            )));
+        }
+    };
+    Ok((folder, DLL_SUFFIX))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_library_is_named_with_its_places() {
+        let folder = tempfile::tempdir().unwrap();
+        let program = folder.path().join("bin").join("hitch");
+        let said = find(&program).unwrap_err().to_string();
+        assert!(
+            said.contains("hitch_fmu") && said.contains("deps"),
+            "{said}"
+        );
+        let lib = folder.path().join("bin").join("deps");
+        std::fs::create_dir_all(&lib).unwrap();
+        let file = lib.join(format!("{DLL_PREFIX}hitch_fmu{DLL_SUFFIX}"));
+        std::fs::write(&file, "").unwrap();
+        assert_eq!(find(&program).unwrap(), file);
+    }
+}
