@@ -5,7 +5,10 @@
 //! and its [`description`] for importers; and the interface in C, which is what the shared library exports.
 //!
 //! Only the interface has unsafe code: it takes pointers from the importing tool.
+#![deny(unsafe_code)]
+#![deny(clippy::undocumented_unsafe_blocks)]
 
+#[allow(unsafe_code, reason = "an importer hands over pointers")]
 pub mod abi;
 pub mod component;
 pub mod content;
