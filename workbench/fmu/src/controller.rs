@@ -20,7 +20,7 @@ const NEEDED: usize = 2;
 
 /// Indices of the variables.
 mod index {
-    use super::{QUANTITIES, SWITCHES};
+    use hitch_controller_host::samples::{QUANTITIES, SWITCHES};
 
     pub const QUANTITY: usize = 0;
     pub const IS_SAMPLED: usize = QUANTITY + QUANTITIES.len();
