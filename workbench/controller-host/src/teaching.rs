@@ -1,19 +1,19 @@
-//! Teaching a machine behind the controller: what is found is taken up once the button is let go.
+//! Teaching of a machine behind the controller: the result is applied when the button is released.
 
 use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_controller::Controller;
 use hitch_quantities::{Outputs, State, ValidCalibration};
 
-/// Watches whether the machine has been taught.
+/// Monitors the teaching state.
 #[derive(Debug, Clone, Default)]
 pub struct Teaching {
-    /// Whether it is being taught.
+    /// Whether teaching is active.
     under_way: bool,
 }
 
 impl Teaching {
-    /// After a step that ended in `state`: what was found, once both coils are off for good. The controller has then
-    /// taken it up.
+    /// After a step that ended in `state`: the new calibration, once both coils are off permanently. The controller has
+    /// then applied it.
     pub fn follow(
         &mut self,
         controller: &mut Controller,
@@ -24,14 +24,14 @@ impl Teaching {
             return None;
         }
         let found = controller.taught()?.ok()?;
-        // Found within limits that a calibration may have anyway.
+        // Teaching yields only values within the limits of a calibration.
         let calibration = found.applied_to(controller.calibration()).validate().ok()?;
         controller.recalibrate(calibration.clone());
         Some(calibration)
     }
 }
 
-/// What the controller says of itself after a step: its state, with the fault, or with the result of teaching.
+/// The state of the controller after a step as text, with the fault or with the result of teaching.
 #[must_use]
 pub fn state(outputs: &Outputs, controller: &Controller) -> String {
     match (outputs.fault, outputs.state) {
@@ -41,7 +41,7 @@ pub fn state(outputs: &Outputs, controller: &Controller) -> String {
     }
 }
 
-/// What a machine says of itself as long as the button is held that teaches it.
+/// The state while the teach button is held.
 fn result(result: Option<Result<Taught, TeachError>>) -> String {
     let reason = match result {
         None => return State::Teaching.name().to_owned(),

@@ -62,7 +62,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     )
 }
 
-/// Answers every line of `input` on `output`, flushed line by line. What was taught goes into the file `taught`.
+/// Answers every line of `input` on `output`, flushed line by line. A taught calibration is written to the file `taught`.
 ///
 /// # Errors
 /// If a line is invalid (with line and column), `output` is closed, or the taught calibration cannot be written.
