@@ -209,7 +209,8 @@ impl Instance {
     pub fn step(&mut self, from_s: f64, dt_s: f64) -> Result<(), Fault> {
         let now = &mut self.now;
         let slack_s = ROUNDING * from_s.abs().max(1.0);
-        if !((from_s - now.time_s).abs() <= slack_s) {
+        let gap_s = (from_s - now.time_s).abs();
+        if gap_s.is_nan() || gap_s > slack_s {
             return Err(Fault::error(format!(
                 "the step begins at {from_s} s, but the last one ended at {} s; go on from there",
                 now.time_s
