@@ -11,6 +11,7 @@ use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_
 use hitch_campaign::Campaign;
 use hitch_identification::data::clocks::Clocks;
 use hitch_identification::data::experiment::{Experiment, Nuisance, ReadyRun};
+use hitch_identification::data::problem::Problem;
 use hitch_identification::data::trace_cache::CurrentShift;
 use hitch_identification::explanation::explain::explain;
 use hitch_plant::{AddedEffect, Channel};
@@ -93,8 +94,7 @@ fn explain_campaigns(criterion: &mut Criterion) {
         group.bench_function(&model.name, |bencher| {
             bencher.iter(|| {
                 explain(
-                    &Experiment::new(&campaign, &model),
-                    black_box(&model),
+                    Problem::new(&Experiment::new(&campaign, &model), black_box(&model)),
                     &|_| {},
                 )
             });

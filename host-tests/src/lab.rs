@@ -2,6 +2,7 @@
 
 use hitch_campaign::{Campaign, Noise, Run};
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::design::plan::RunPlan;
 use hitch_identification::explanation::explain::{Explanation, explain};
 use hitch_plant::Model;
@@ -109,7 +110,7 @@ impl Lab {
     /// Explains all that was measured.
     #[must_use]
     pub fn explain(&self) -> Explanation {
-        explain(&self.experiment(), &self.model, &|_| {})
+        explain(Problem::new(&self.experiment(), &self.model), &|_| {})
     }
 }
 

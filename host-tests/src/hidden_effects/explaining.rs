@@ -3,6 +3,7 @@
 use hitch_campaign::Campaign;
 use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Verdict, explain};
 use hitch_plant::{Effect, Model};
 
@@ -27,7 +28,7 @@ impl Method for Explaining {
 
     fn answer(&self, campaign: &Campaign, model: &Model) -> Answer {
         let experiment = Experiment::new(campaign, model);
-        let explanation = explain(&experiment, model, &|_| {});
+        let explanation = explain(Problem::new(&experiment, model), &|_| {});
         let steps = &explanation.steps;
         let id = |effect: &dyn Effect| effect.id().to_owned();
         Answer {

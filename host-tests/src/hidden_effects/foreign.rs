@@ -4,6 +4,7 @@
 use std::time::Instant;
 
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{explain, fit_base};
 use hitch_plant::{Constants, Model};
 use rand::SeedableRng;
@@ -51,7 +52,7 @@ impl Adopted {
         let start = Instant::now();
         let first = campaign(&foreign.first);
         let experiment = Experiment::new(&first, &data_sheet);
-        let explanation = explain(&experiment, &data_sheet, &|_| {});
+        let explanation = explain(Problem::new(&experiment, &data_sheet), &|_| {});
         let effects = explanation.after.estimate.effects.clone();
         let seconds = start.elapsed().as_secs_f64();
         Self {
@@ -74,7 +75,7 @@ impl Adopted {
     pub fn error_elsewhere(&self, model: &Model) -> f64 {
         let third = campaign(&self.foreign.third);
         let experiment = Experiment::new(&third, model);
-        fit_base(&experiment, model).error()
+        fit_base(Problem::new(&experiment, model)).error()
     }
 }
 

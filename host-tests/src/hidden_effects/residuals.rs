@@ -7,6 +7,7 @@
 use hitch_effects::CATALOGUE;
 use hitch_identification::data::clocks::Clocks;
 use hitch_identification::data::experiment::{Experiment, Nuisance};
+use hitch_identification::data::problem::Problem;
 use hitch_identification::estimate::Estimate;
 use hitch_identification::residuals::whitening::Weights;
 use hitch_plant::simulation::Trace;
@@ -28,7 +29,7 @@ impl<'a> Comparison<'a> {
         Self {
             experiment,
             model,
-            weights: Weights::new(experiment, model, &estimate),
+            weights: Weights::new(Problem::new(experiment, model), &estimate),
         }
     }
 

@@ -4,6 +4,7 @@ use hitch_identification::adequacy::lack_of_fit::cells;
 use hitch_identification::adequacy::unsuitable_base::{is_unsuitable, wrong_share};
 use hitch_identification::base::{BaseFit, fit_base_model};
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::fit_base;
 use hitch_model_file::Valve;
 use hitch_plant::units::lpm_from_m3_s;
@@ -227,7 +228,7 @@ fn only_another_machine_is_a_hopeless_base() {
         let campaign = campaign.expect("a shipped campaign");
         let hopeless = |model: &Model| {
             let experiment = Experiment::new(&campaign, model);
-            let base = fit_base(&experiment, model);
+            let base = fit_base(Problem::new(&experiment, model));
             let channels = [0, 1, 2, 3].map(|channel| base.channel_error(channel));
             println!(
                 "{name}, {}: error {:.2} sigma, by channel {channels:.1?}, share of wrong cells {:.2}",

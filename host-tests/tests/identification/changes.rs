@@ -7,6 +7,7 @@ use std::sync::Mutex;
 use hitch_campaign::Campaign;
 use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain::{Explanation, Verdict, explain_with};
 use hitch_identification::search::subset::Options;
@@ -33,8 +34,7 @@ fn from_adopted(friction_n: f64, changes: bool) -> Explanation {
         ..Options::default()
     };
     explain_with(
-        &Experiment::new(&campaign, &model),
-        &model,
+        Problem::new(&Experiment::new(&campaign, &model), &model),
         options,
         &|_| {},
     )
@@ -86,7 +86,7 @@ fn each_account_is_better_than_the_one_before_and_the_last_one_is_the_answer() {
         improved: &|fit: &Fit| accounts.lock().unwrap().push(fit.clone()),
         ..Options::default()
     };
-    let found = explain_with(&experiment, &model, options, &|_| {});
+    let found = explain_with(Problem::new(&experiment, &model), options, &|_| {});
     let accounts = accounts.into_inner().unwrap();
     let costs: Vec<f64> = accounts.iter().map(|fit| fit.cost).collect();
     assert!(

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::estimate::Estimate;
 use hitch_identification::estimation::fit::evaluate;
 use hitch_identification::estimation::jacobian::{difference, residuals, square_sum};
@@ -37,7 +38,7 @@ impl Compared {
     fn new() -> Self {
         let (experiment, model) = ready("clean-dynamic", hitch_model_file::dynamic());
         let estimate = Estimate::new(&experiment, Vec::new());
-        let weights = Weights::new(&experiment, &model, &estimate);
+        let weights = Weights::new(Problem::new(&experiment, &model), &estimate);
         Self {
             experiment,
             model,
@@ -56,7 +57,11 @@ impl Compared {
     fn left(&self, experiment: &Experiment, added: Option<AddedEffect>) -> Vec<Vec<f64>> {
         let mut estimate = self.estimate.clone();
         estimate.effects.extend(added);
-        residuals(experiment, &self.model, &self.weights, &estimate)
+        residuals(
+            Problem::new(experiment, &self.model),
+            &self.weights,
+            &estimate,
+        )
     }
 
     /// Signature of an effect of typical size.
@@ -101,11 +106,11 @@ fn shown(
     estimate: &Estimate,
     effect: &'static dyn Effect,
 ) -> f64 {
-    let weights = Weights::new(runs, model, estimate);
+    let weights = Weights::new(Problem::new(runs, model), estimate);
     let mut with = estimate.clone();
     with.effects.push(AddedEffect::typical(effect));
     let [with, without] =
-        [&with, estimate].map(|estimate| residuals(runs, model, &weights, estimate));
+        [&with, estimate].map(|estimate| residuals(Problem::new(runs, model), &weights, estimate));
     square_sum(&difference(&with, &without))
 }
 
@@ -130,9 +135,9 @@ fn a_condensed_experiment_shows_what_an_effect_changes() {
 #[test]
 fn a_condensed_experiment_leaves_what_noise_leaves() {
     let (experiment, model) = ready("clean-steady", hitch_model_file::nominal());
-    let base = fit_base(&experiment, &model);
+    let base = fit_base(Problem::new(&experiment, &model));
     let condensed = experiment.condensed(&model, &base.estimate.nuisances);
-    let seen = evaluate(&condensed, &model, base.estimate);
+    let seen = evaluate(Problem::new(&condensed, &model), base.estimate);
     let variance = square_sum(&seen.residuals) / seen.weights.count() as f64;
     assert!((0.85..1.15).contains(&variance), "{variance}");
 }

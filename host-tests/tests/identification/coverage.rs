@@ -7,6 +7,7 @@
 
 use hitch_effects::CATALOGUE;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::fit_base;
 use hitch_identification::search::single_effects::try_effects;
 use hitch_plant::{AddedEffect, Dynamics, Effect, Model};
@@ -76,8 +77,13 @@ fn distances(effect: &'static dyn Effect, seed: u64) -> Distances {
     let rig = nominal.with_effects(vec![truth.clone()]);
     let campaign = campaign(&rig, &mut random);
     let experiment = Experiment::new(&campaign, &nominal);
-    let base = fit_base(&experiment, &nominal);
-    let candidates = try_effects(&experiment, &nominal, &base, &[effect], &|_| {});
+    let base = fit_base(Problem::new(&experiment, &nominal));
+    let candidates = try_effects(
+        Problem::new(&experiment, &nominal),
+        &base,
+        &[effect],
+        &|_| {},
+    );
     let found = candidates.first().expect("one effect was tried");
     let intervals = found.intervals.iter().zip(found.values());
     intervals

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Explanation, Verdict, explain};
 use hitch_plant::{Constants, Model};
 
@@ -15,7 +16,10 @@ fn explained(declare: fn(&mut Constants)) -> Explanation {
     let mut constants = hitch_model_file::dynamic().constants().clone();
     declare(&mut constants);
     let model = Model::new("misdeclared", constants).expect("the linkage is the paper's");
-    explain(&Experiment::new(&campaign, &model), &model, &|_| {})
+    explain(
+        Problem::new(&Experiment::new(&campaign, &model), &model),
+        &|_| {},
+    )
 }
 
 /// Asserts that one effect is named, with a size to within a share of it.

@@ -5,6 +5,7 @@ use std::sync::LazyLock;
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::estimate::Estimate;
 use hitch_identification::estimation::fit::{Fit, evaluate, refine};
 use hitch_identification::estimation::jacobian::{
@@ -47,7 +48,7 @@ static MEASURED: LazyLock<Measured> = LazyLock::new(|| {
     let campaign: Campaign = campaign(&rig, &mut Pcg64::seed_from_u64(SEED));
     let experiment = Experiment::new(&campaign, &model);
     let start = Estimate::new(&experiment, vec![friction(TRUE_N)]);
-    let fit = refine(&experiment, &model, start);
+    let fit = refine(Problem::new(&experiment, &model), start);
     Measured {
         experiment,
         model,
@@ -72,7 +73,7 @@ fn a_column_of_the_jacobian_is_the_derivative_of_the_residuals() {
         model,
         fit,
     } = &*MEASURED;
-    let jacobian = Jacobian::new(experiment, model, &fit.weights, &fit.estimate);
+    let jacobian = Jacobian::new(Problem::new(experiment, model), &fit.weights, &fit.estimate);
     for (column, &shared) in jacobian.shared.iter().enumerate() {
         if shared.has_prior() {
             continue;
@@ -82,7 +83,7 @@ fn a_column_of_the_jacobian_is_the_derivative_of_the_residuals() {
         let at = |sign: f64| {
             let mut estimate = fit.estimate.clone();
             estimate.set(shared, fit.estimate.get(shared) + sign * step);
-            residuals(experiment, model, &fit.weights, &estimate)
+            residuals(Problem::new(experiment, model), &fit.weights, &estimate)
         };
         // Columns are changes of the simulation: residuals fall where it rises.
         let central = difference(&at(-1.0), &at(1.0));
@@ -109,7 +110,7 @@ fn a_projection_takes_out_its_own_columns_and_nothing_twice() {
         model,
         fit,
     } = &*MEASURED;
-    let jacobian = Jacobian::new(experiment, model, &fit.weights, &fit.estimate);
+    let jacobian = Jacobian::new(Problem::new(experiment, model), &fit.weights, &fit.estimate);
     let column = |k: usize| -> Vec<Vec<f64>> {
         let runs = jacobian.runs.iter();
         runs.map(|run| run.shared[k].clone()).collect()
@@ -215,8 +216,12 @@ fn a_fit_finds_the_friction_within_its_standard_error() {
         experiment, model, ..
     } = &*MEASURED;
     let start = Estimate::new(experiment, vec![friction(2.0 * TRUE_N)]);
-    let found = refine(experiment, model, start);
-    let jacobian = Jacobian::new(experiment, model, &found.weights, &found.estimate);
+    let found = refine(Problem::new(experiment, model), start);
+    let jacobian = Jacobian::new(
+        Problem::new(experiment, model),
+        &found.weights,
+        &found.estimate,
+    );
     let size = (0..jacobian.shared.len())
         .find(|&k| !jacobian.shared[k].has_prior())
         .expect("the size is free");
@@ -231,6 +236,6 @@ fn a_fit_finds_the_friction_within_its_standard_error() {
     for factor in [0.95, 1.05] {
         let mut beside = found.estimate.clone();
         beside.effects[0].values[0] *= factor;
-        assert!(evaluate(experiment, model, beside).cost > found.cost);
+        assert!(evaluate(Problem::new(experiment, model), beside).cost > found.cost);
     }
 }

@@ -4,6 +4,7 @@
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Explanation, explain};
 use hitch_plant::Effect;
 use host_tests::hidden_effects::answer::Method;
@@ -132,7 +133,10 @@ fn an_effect_is_named_where_pressures_ring() {
 /// A case explained from where its family starts.
 fn explained(case: &Case) -> Explanation {
     let model = starting_point(case.family);
-    explain(&Experiment::new(&campaign(case), &model), &model, &|_| {})
+    explain(
+        Problem::new(&Experiment::new(&campaign(case), &model), &model),
+        &|_| {},
+    )
 }
 
 /// The effect that is named first, and the ratio of its size to the hidden one.
@@ -357,7 +361,10 @@ fn the_ground_is_found_where_loads_ring_on_it() {
         let question = (seed, "ground-contact", Fidelity::Faithful, false);
         let (case, measured) = short_moves(question);
         let model = starting_point(case.family);
-        let found = explain(&Experiment::new(&measured, &model), &model, &|_| {});
+        let found = explain(
+            Problem::new(&Experiment::new(&measured, &model), &model),
+            &|_| {},
+        );
         let first = found.steps.first().expect("something is found");
         let (height_m, truth_m) = (first.values[0], case.hidden[0].size);
         println!(

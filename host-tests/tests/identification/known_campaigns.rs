@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Explanation, Verdict, explain};
 use hitch_plant::Model;
 
@@ -15,7 +16,10 @@ fn campaigns() -> PathBuf {
 
 fn explained(name: &str, model: &Model) -> Explanation {
     let campaign = Campaign::load(&campaigns().join(name)).expect("a shipped campaign");
-    explain(&Experiment::new(&campaign, model), model, &|_| {})
+    explain(
+        Problem::new(&Experiment::new(&campaign, model), model),
+        &|_| {},
+    )
 }
 
 /// The hidden effects, by id.

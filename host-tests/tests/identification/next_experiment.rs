@@ -2,6 +2,7 @@
 
 use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::design::alternative::angle_deg;
 use hitch_identification::design::manoeuvre::MANOEUVRES;
 use hitch_identification::design::plan::{Manoeuvre, RunPlan, Segment, Stand};
@@ -142,7 +143,7 @@ fn hysteresis_is_told_from_a_threshold_by_a_current_that_comes_back() {
     let ids = ["solenoid-hysteresis", "lift-threshold-shift"];
     let lab = Lab::new(Family::Steady, usual(ids[0]), ALL, &RISING_LIFTS);
     let twins = Twins::new(&lab, ids);
-    let next = next_experiment(&twins.experiment, &lab.model, &[twins.pair()]);
+    let next = next_experiment(Problem::new(&twins.experiment, &lab.model), &[twins.pair()]);
     let manoeuvre = proposed(&next.expect("a pair"));
     let comes_back = ["triangle", "reversals", "staircase"];
     assert!(
@@ -164,10 +165,10 @@ impl Twins {
         let experiment = lab.experiment();
         let fits = ids.map(|id| {
             let start = Estimate::new(&experiment, vec![effect(id)]);
-            refine(&experiment, &lab.model, start)
+            refine(Problem::new(&experiment, &lab.model), start)
         });
         let other = &fits[1].estimate.effects[0];
-        let angle = angle_deg(&experiment, &lab.model, &fits[0], other);
+        let angle = angle_deg(Problem::new(&experiment, &lab.model), &fits[0], other);
         Self {
             angle_deg: angle.expect("an effect"),
             fits,
@@ -203,7 +204,10 @@ fn twins_come_apart() {
     ] {
         let mut lab = Lab::new(Family::Steady, usual(ids[0]), channels, plans);
         let before = Twins::new(&lab, ids);
-        let next = next_experiment(&before.experiment, &lab.model, &[before.pair()]);
+        let next = next_experiment(
+            Problem::new(&before.experiment, &lab.model),
+            &[before.pair()],
+        );
         let next = next.expect("a pair");
         lab.measure(proposed(&next).runs);
         let after = Twins::new(&lab, ids).angle_deg;
@@ -221,7 +225,7 @@ fn a_ringing_plant_is_designed_for_as_well() {
     let ids = ["entrained-air", "hose-compliance"];
     let lab = Lab::new(Family::Dynamic, usual(ids[0]), ALL, &STEPS);
     let twins = Twins::new(&lab, ids);
-    let next = next_experiment(&twins.experiment, &lab.model, &[twins.pair()]);
+    let next = next_experiment(Problem::new(&twins.experiment, &lab.model), &[twins.pair()]);
     let next = next.expect("a pair");
     let manoeuvre = proposed(&next);
     assert!(
@@ -238,7 +242,7 @@ fn a_sensor_is_asked_for_where_no_manoeuvre_helps() {
     let lab = Lab::new(Family::Steady, usual(ids[0]), ANGLE_ONLY, &STEPS);
     let twins = Twins::new(&lab, ids);
     assert!(twins.angle_deg < 3.0, "{}", twins.angle_deg);
-    let next = next_experiment(&twins.experiment, &lab.model, &[twins.pair()]);
+    let next = next_experiment(Problem::new(&twins.experiment, &lab.model), &[twins.pair()]);
     let next = next.expect("a pair");
     assert!(next.separates.is_empty() && next.minutes.is_nan());
     assert!(next.expected_likelihood_ratio < DISTINGUISHABLE);
@@ -262,7 +266,10 @@ fn the_expected_likelihood_ratio_is_met() {
     let excess = |twins: &Twins| twins.fits[1].cost - twins.fits[0].cost;
     let first = lab();
     let twins = Twins::new(&first, ids);
-    let bench = TestBench::new(&twins.experiment, &first.model, &twins.fits[0]);
+    let bench = TestBench::new(
+        Problem::new(&twins.experiment, &first.model),
+        &twins.fits[0],
+    );
     let known = [bench.known(twins.pair())];
     for name in ["light-and-heavy-lift", "creep-and-stop", "full-opening"] {
         let manoeuvre = MANOEUVRES.iter().find(|manoeuvre| manoeuvre.name == name);
@@ -273,13 +280,11 @@ fn the_expected_likelihood_ratio_is_met() {
         let measured = Twins::new(&more, ids);
         let own = measured.fits[0].clone();
         let base = evaluate(
-            &measured.experiment,
-            &more.model,
+            Problem::new(&measured.experiment, &more.model),
             Estimate::new(&measured.experiment, vec![]),
         );
         let inflation = weigh(
-            &measured.experiment,
-            &more.model,
+            Problem::new(&measured.experiment, &more.model),
             &base,
             effect(ids[0]).effect,
             own,

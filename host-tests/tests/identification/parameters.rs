@@ -9,6 +9,7 @@ use hitch_identification::data::clocks::Clocks;
 use hitch_identification::data::conditioning::Drive;
 use hitch_identification::data::experiment::{Experiment, Nuisance};
 use hitch_identification::data::noise::from_second_differences;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::data::trace_cache::CurrentShift;
 use hitch_identification::explanation::explain::{Verdict, explain};
 use hitch_identification::selection::evidence::variance_inflation;
@@ -174,7 +175,10 @@ fn friction_is_named_where_pressures_ring() {
         values: vec![350.0],
     };
     let campaign = ringing_campaign(&hidden, 4);
-    let explanation = explain(&Experiment::new(&campaign, &model), &model, &|_| {});
+    let explanation = explain(
+        Problem::new(&Experiment::new(&campaign, &model), &model),
+        &|_| {},
+    );
     let named: Vec<&str> = explanation
         .steps
         .iter()
@@ -195,7 +199,10 @@ fn a_campaign_that_only_holds_cannot_decide() {
     let mut campaign = shipped("clean-steady");
     campaign.runs.retain(|run| run.file == "hold_250kg.csv");
     let model = hitch_model_file::nominal();
-    let explanation = explain(&Experiment::new(&campaign, &model), &model, &|_| {});
+    let explanation = explain(
+        Problem::new(&Experiment::new(&campaign, &model), &model),
+        &|_| {},
+    );
     assert_eq!(explanation.verdict, Verdict::NotEnoughData);
     assert!(
         explanation

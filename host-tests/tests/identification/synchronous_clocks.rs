@@ -5,6 +5,7 @@ use std::path::Path;
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Explanation, Verdict, explain};
 use hitch_plant::Channel;
 
@@ -20,7 +21,10 @@ fn explained(synchronous: bool) -> Explanation {
         }
     }
     let model = hitch_model_file::nominal();
-    explain(&Experiment::new(&campaign, &model), &model, &|_| ())
+    explain(
+        Problem::new(&Experiment::new(&campaign, &model), &model),
+        &|_| (),
+    )
 }
 
 #[test]

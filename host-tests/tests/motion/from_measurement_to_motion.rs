@@ -2,6 +2,7 @@
 
 use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Verdict, explain};
 use hitch_plant::AddedEffect;
 use hitch_quantities::{Calibration, ValidCalibration};
@@ -49,7 +50,7 @@ fn several_deviations_of_the_valves_are_found_and_the_motion_is_better_by_them()
     let rig = nominal_model.with_effects(hidden());
     let campaign = campaign(&rig, &mut Pcg64::seed_from_u64(SEED));
     let experiment = Experiment::new(&campaign, &nominal_model);
-    let found = explain(&experiment, &nominal_model, &|_| {});
+    let found = explain(Problem::new(&experiment, &nominal_model), &|_| {});
     for step in &found.steps {
         println!(
             "{} {:?} {:?}",

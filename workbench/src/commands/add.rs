@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use hitch_campaign::Campaign;
 use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::estimation::fit::{Fit, refine};
 use hitch_identification::explanation::explain::fit_freely;
 use hitch_identification::search::single_effects::try_effects;
@@ -53,10 +54,10 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
     let experiment = Experiment::new(&campaign, &model);
-    let base = fit_freely(&experiment, &model);
+    let base = fit_freely(Problem::new(&experiment, &model));
     let fit = fit_with(&experiment, &model, base.clone(), &effects, &progress);
     progress.say("evaluating each effect with the others present");
-    let weighed = leave_one_out(&experiment, &model, &fit, model.effects.len());
+    let weighed = leave_one_out(Problem::new(&experiment, &model), &fit, model.effects.len());
     drop(progress);
     let rebuilt = rebuilt(&model, &fit.estimate.effects, output::stem(&args.out));
     output::write_file(&args.out, hitch_model_file::to_toml(&rebuilt).as_bytes())?;
@@ -90,13 +91,13 @@ fn fit_with(
     let say = |what: &str| progress.say(format!("fitting {what}"));
     let mut fit = base;
     for effect in effects {
-        let tried = try_effects(experiment, model, &fit, &[*effect], &say);
+        let tried = try_effects(Problem::new(experiment, model), &fit, &[*effect], &say);
         if let Some(candidate) = tried.into_iter().next() {
             fit = candidate.fit;
         }
     }
     // Insignificant effects are fitted only coarsely in the trial.
-    refine(experiment, model, fit.estimate)
+    refine(Problem::new(experiment, model), fit.estimate)
 }
 
 /// The effects of these names; none of them may be in the model.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{diagnose, fit_base};
 
 use crate::error::Error;
@@ -37,8 +38,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
     let experiment = Experiment::new(&campaign, &model);
-    let base = fit_base(&experiment, &model);
-    let found = diagnose(&experiment, &model, base, &|what| {
+    let base = fit_base(Problem::new(&experiment, &model));
+    let found = diagnose(Problem::new(&experiment, &model), base, &|what| {
         progress.say(format!("trying {what}"))
     });
     let shown = Diagnosis::new(&experiment, &model, &found);

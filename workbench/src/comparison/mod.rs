@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::{Experiment, ReadyRun};
+use hitch_identification::data::problem::Problem;
 use hitch_identification::estimate::Estimate;
 use hitch_identification::estimation::fit::{ErrorSums, Fit, evaluate, fit_loads};
 use hitch_identification::residuals::whitening::Weights;
@@ -103,9 +104,9 @@ impl Evaluated {
     pub fn new(campaign: &Campaign, model: &Model) -> Self {
         let experiment = Experiment::new(campaign, model);
         let start = Estimate::new(&experiment, model.effects.clone());
-        let weights = Weights::new(&experiment, model, &start);
-        let loaded = fit_loads(&experiment, model, &weights, start);
-        let fit = evaluate(&experiment, model, loaded);
+        let weights = Weights::new(Problem::new(&experiment, model), &start);
+        let loaded = fit_loads(Problem::new(&experiment, model), &weights, start);
+        let fit = evaluate(Problem::new(&experiment, model), loaded);
         Self {
             experiment: Arc::new(experiment),
             fit,

@@ -3,6 +3,7 @@
 use hitch_campaign::Campaign;
 use hitch_identification::adequacy::localization::ErrorProfile;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain;
 use hitch_identification::search::subset::Options;
@@ -104,9 +105,9 @@ impl Explained {
         options: Options<'_>,
         progress: hitch_identification::Progress<'_>,
     ) -> Self {
-        let explanation = explain::explain_with(experiment, model, options, progress);
+        let explanation = explain::explain_with(Problem::new(experiment, model), options, progress);
         let suggestion = (!options.is_over()).then(|| {
-            suggest(experiment, model, &explanation, &|what| {
+            suggest(Problem::new(experiment, model), &explanation, &|what| {
                 progress(&format!("a term of its own, {what}"));
             })
         });

@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use hitch_identification::adequacy::lack_of_fit::{adequate, cells};
 use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::design::{NextExperiment, Pair, Rival, next_experiment};
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain::{self, Verdict};
@@ -92,7 +93,7 @@ fn next(
         fit: &candidate.fit,
     });
     let pair = Pair { named, other };
-    next_experiment(experiment, model, &[pair])
+    next_experiment(Problem::new(experiment, model), &[pair])
 }
 
 fn shown(

@@ -2,6 +2,7 @@
 
 use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Explanation, explain};
 use hitch_paper::flow_table::{flow_lpm, table_2};
 use hitch_paper::tables::{FIGURE_12_LIFT_A, FIGURE_12_LOADS_KG};
@@ -86,7 +87,7 @@ impl Table5 {
     pub fn of(model: &Model, progress: &Progress) -> Self {
         let model = &quasi_static(model);
         let experiment = Experiment::new(&test_bench::campaign(), model);
-        let found = explain(&experiment, model, &|what| {
+        let found = explain(Problem::new(&experiment, model), &|what| {
             progress.say(format!("Table 5: trying {what}"))
         });
         let rebuilt = model.with_effects(found.after.estimate.effects.clone());

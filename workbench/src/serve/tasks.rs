@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hitch_identification::data::experiment::Experiment;
+use hitch_identification::data::problem::Problem;
 use hitch_identification::estimate::Estimate;
 use hitch_identification::estimation::fit::{Fit, evaluate, fit_loads, refine, short_fit};
 use hitch_identification::explanation::explain::diagnose_each;
@@ -201,10 +202,14 @@ impl Ready {
             }
             What::Set(estimate, title) => {
                 reporter.progress("evaluating all runs", None, None);
-                let weights = Weights::new(self.experiment(), self.model(), estimate);
+                let weights = Weights::new(Problem::new(self.experiment(), self.model()), estimate);
                 let estimate = estimate.clone();
-                let loaded = fit_loads(self.experiment(), self.model(), &weights, estimate);
-                let fit = evaluate(self.experiment(), self.model(), loaded);
+                let loaded = fit_loads(
+                    Problem::new(self.experiment(), self.model()),
+                    &weights,
+                    estimate,
+                );
+                let fit = evaluate(Problem::new(self.experiment(), self.model()), loaded);
                 Outcome::Steps(vec![self.step(title.clone(), fit, None)])
             }
             What::Fit => {
@@ -225,12 +230,14 @@ impl Ready {
     fn rank(&self, reporter: &Reporter) -> Ranking {
         reporter.progress("fitting the clocks and loads", None, None);
         let start = self.present.evaluated.fit.estimate.clone();
-        let base = refine(self.experiment(), self.model(), start.with_adopted());
+        let base = refine(
+            Problem::new(self.experiment(), self.model()),
+            start.with_adopted(),
+        );
         reporter.progress("simulating every effect at a few sizes", None, None);
         let done = AtomicUsize::new(0);
         let diagnosis = diagnose_each(
-            self.experiment(),
-            self.model(),
+            Problem::new(self.experiment(), self.model()),
             base.clone(),
             &|_| {},
             &|candidate, all| {
@@ -282,7 +289,7 @@ impl Ready {
         }
         let (experiment, model) = (self.experiment(), self.model());
         let base = &self.present.evaluated.fit;
-        let tried = try_effects(experiment, model, base, &[effect], &|_| {
+        let tried = try_effects(Problem::new(experiment, model), base, &[effect], &|_| {
             reporter.progress("estimating its size", None, None);
         });
         let tried = tried.into_iter().next();
@@ -304,19 +311,24 @@ impl Ready {
         let told = |round: usize, text: &str, fit: &Fit| {
             reporter.progress(text, Some(round as f64 / whole), Some(fit.error()));
         };
-        let mut fit = evaluate(experiment, model, estimate);
+        let mut fit = evaluate(Problem::new(experiment, model), estimate);
         told(0, "start", &fit);
         for round in 1..=ROUNDS {
-            let descent = short_fit(experiment, model, &fit.weights, fit.estimate, false);
-            fit = evaluate(experiment, model, descent.estimate);
+            let descent = short_fit(
+                Problem::new(experiment, model),
+                &fit.weights,
+                fit.estimate,
+                false,
+            );
+            fit = evaluate(Problem::new(experiment, model), descent.estimate);
             told(round, &format!("fitting, round {round}"), &fit);
             if descent.last_reduction <= WORTHWHILE * descent.cost {
                 break;
             }
         }
-        let fit = refine(experiment, model, fit.estimate);
+        let fit = refine(Problem::new(experiment, model), fit.estimate);
         told(ROUNDS + 1, "evaluating held-out runs", &fit);
-        let error = held_out(experiment, model, &fit).error;
+        let error = held_out(Problem::new(experiment, model), &fit).error;
         reporter.progress("done", Some(1.0), None);
         self.step(title, fit, Some(error))
     }

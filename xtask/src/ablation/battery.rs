@@ -29,8 +29,12 @@ const CAMPAIGNS: [&str; 4] = [
     "--seed 8001 --count 6 --family steady --plan lab --kind nothing",
 ];
 
-/// Drawn hitches, with two seeds: the moves that follow from power-up, and more machines.
-const HITCHES: [&str; 1] = ["--seed 1 --machines 120 --moves 6 --worst 0"];
+/// Drawn hitches: the first moves after power-up, many moves of few machines, and spools of second order.
+const HITCHES: [&str; 3] = [
+    "--seed 1 --machines 120 --moves 6 --worst 0",
+    "--seed 501 --machines 30 --moves 20 --worst 0",
+    "--seed 1001 --machines 60 --moves 6 --worst 0 --spool 50,0.6,5",
+];
 
 /// Rows of the benchmark of the identification: start of the row there, and the heading here.
 const RATES: [(&str, &str); 6] = [

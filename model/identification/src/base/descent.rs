@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::base::normal::{Normal, Point, Problem};
+use crate::base::normal::{BaseProblem, Normal, Point};
 use crate::residuals::whitening::Weights;
 
 /// Number of damping values tried for one step, the first of a descent, and the factor from one to the next.
@@ -14,7 +14,12 @@ const DAMPING_FACTOR: f64 = 20.0;
 const WORTHWHILE: f64 = 1e-6;
 
 /// Descends from `start` under given weights with at most `jacobians` Jacobians.
-pub fn descend(problem: &Problem<'_>, weights: &Weights, start: &Point, jacobians: usize) -> Point {
+pub fn descend(
+    problem: &BaseProblem<'_>,
+    weights: &Weights,
+    start: &Point,
+    jacobians: usize,
+) -> Point {
     let mut point = problem.point(weights, start.theta.clone(), start.estimate.clone());
     let mut damping = FIRST_DAMPING;
     for _ in 0..jacobians {
@@ -43,7 +48,7 @@ pub fn descend(problem: &Problem<'_>, weights: &Weights, start: &Point, jacobian
 
 /// The end of a damped step. Unknowns that would leave their range are fixed, and the others are solved without them.
 fn step(
-    problem: &Problem<'_>,
+    problem: &BaseProblem<'_>,
     weights: &Weights,
     normal: &Normal,
     point: &Point,

@@ -9,6 +9,7 @@ use crate::base::correction::corrected;
 use crate::base::parameter::Parameter;
 use crate::base::prior::Prior;
 use crate::data::experiment::{Experiment, LOAD_PRIOR, Nuisance};
+use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::jacobian::{dot, huber, huber_residuals, square_sum};
 use crate::residuals::whitening::Weights;
@@ -19,7 +20,7 @@ use crate::residuals::whitening::Weights;
 const STEP: f64 = 0.02;
 
 /// The least-squares problem: a campaign and a declared model whose constants are unknown.
-pub struct Problem<'a> {
+pub struct BaseProblem<'a> {
     /// The campaign.
     pub experiment: &'a Experiment,
     /// The declared model with its effects.
@@ -83,7 +84,7 @@ pub struct Normal {
     loads: Vec<Option<LoadRow>>,
 }
 
-impl Problem<'_> {
+impl BaseProblem<'_> {
     /// The corrected model; `None` if its dimensions form no valid linkage.
     pub fn model(&self, theta: &DVector<f64>) -> Option<Model> {
         let constants = corrected(self.declared.constants(), self.parameters, theta);
@@ -93,7 +94,8 @@ impl Problem<'_> {
     /// The cost of corrections, loads and clocks.
     pub fn point(&self, weights: &Weights, theta: DVector<f64>, estimate: Estimate) -> Point {
         let cost = self.model(&theta).map_or(f64::INFINITY, |model| {
-            let residuals = huber_residuals(self.experiment, &model, weights, &estimate);
+            let residuals =
+                huber_residuals(Problem::new(self.experiment, &model), weights, &estimate);
             square_sum(&residuals) + estimate.prior_cost() + self.prior.cost(&theta)
         });
         Point {

@@ -6,10 +6,11 @@ use hitch_plant::units::lpm_from_m3_s;
 use nalgebra::{DMatrix, DVector};
 
 use crate::base::descent::descend;
-use crate::base::normal::{Normal, Point, Problem, RunColumns};
+use crate::base::normal::{BaseProblem, Normal, Point, RunColumns};
 use crate::base::parameter::{Parameter, parameters};
 use crate::base::prior::Prior;
 use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimation::fit::{COARSE, Fit, evaluate_weighted, refine};
 use crate::explanation::explain::fit_base;
 use crate::residuals::whitening::Weights;
@@ -89,9 +90,9 @@ pub struct BaseFit {
 pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&str)) -> BaseFit {
     let parameters = parameters(declared.constants());
     let prior = Prior::new(declared.constants(), &parameters);
-    let before = fit_base(experiment, declared);
+    let before = fit_base(Problem::new(experiment, declared));
     let inseparable: Vec<bool> = parameters.iter().map(|one| !one.is_separable()).collect();
-    let mut problem = Problem {
+    let mut problem = BaseProblem {
         experiment,
         declared,
         parameters: &parameters,
@@ -118,7 +119,7 @@ pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&s
     let point = improved(&problem, point, false);
     let model = problem.model(&point.theta);
     let model = model.unwrap_or_else(|| declared.clone());
-    let after = refine(experiment, &model, point.estimate.clone());
+    let after = refine(Problem::new(experiment, &model), point.estimate.clone());
     let report = Report {
         declared,
         model: &model,
@@ -138,18 +139,18 @@ pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&s
 }
 
 /// One round: constants and loads under new weights, then clocks and loads.
-fn improved(problem: &Problem<'_>, point: Point, coarse: bool) -> Point {
+fn improved(problem: &BaseProblem<'_>, point: Point, coarse: bool) -> Point {
     let Some(model) = problem.model(&point.theta) else {
         return point;
     };
-    let weights = Weights::new(problem.experiment, &model, &point.estimate);
+    let weights = Weights::new(Problem::new(problem.experiment, &model), &point.estimate);
     let weights = match coarse {
         true => weights.scaled(COARSE),
         false => weights,
     };
     let mut point = descend(problem, &weights, &point, JACOBIANS);
     if let Some(model) = problem.model(&point.theta) {
-        point.estimate = refine(problem.experiment, &model, point.estimate).estimate;
+        point.estimate = refine(Problem::new(problem.experiment, &model), point.estimate).estimate;
     }
     point
 }
@@ -172,13 +173,13 @@ fn held(parameters: &[Parameter], determined: &[bool]) -> Vec<bool> {
 
 /// Posterior sigma of each unknown, from campaign and prior, and whether the campaign determines it. Residuals beyond
 /// noise and slow noise reduce the campaign's information.
-fn posterior(problem: &Problem<'_>, point: &Point) -> (Vec<f64>, Vec<bool>) {
+fn posterior(problem: &BaseProblem<'_>, point: &Point) -> (Vec<f64>, Vec<bool>) {
     let prior = problem.prior;
     let found = problem.model(&point.theta).and_then(|model| {
-        let weights = Weights::new(problem.experiment, &model, &point.estimate);
+        let weights = Weights::new(Problem::new(problem.experiment, &model), &point.estimate);
         let columns = problem.columns(&weights, point)?;
         let estimate = point.estimate.clone();
-        let fit = evaluate_weighted(problem.experiment, &model, estimate, weights);
+        let fit = evaluate_weighted(Problem::new(problem.experiment, &model), estimate, weights);
         Some((fit, columns))
     });
     let Some((fit, columns)) = found else {

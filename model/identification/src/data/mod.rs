@@ -6,6 +6,7 @@ pub mod conditioning;
 pub(crate) mod defect_correction;
 pub mod experiment;
 pub mod noise;
+pub mod problem;
 pub mod regime;
 pub(crate) mod start_angle;
 pub mod trace_cache;

@@ -1,8 +1,8 @@
 //! Confounded alternatives of an effect, and the angle between their signatures.
 
-use hitch_plant::{AddedEffect, Effect, Model};
+use hitch_plant::{AddedEffect, Effect};
 
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimate::Shared;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{Jacobian, difference, dot, residuals};
@@ -30,15 +30,14 @@ impl Alternative {
     /// An effect that was fitted as the last one in place of the last one of `whole`, with its likelihood ratio.
     #[must_use]
     pub fn new(
-        experiment: &Experiment,
-        model: &Model,
+        problem: Problem<'_>,
         whole: &Fit,
         (fit, relative_likelihood_ratio): (Fit, f64),
     ) -> Option<Self> {
         let added = fit.estimate.effects.last()?.clone();
         Some(Self {
             effect: added.effect,
-            angle_deg: angle_deg(experiment, model, whole, &added)?,
+            angle_deg: angle_deg(problem, whole, &added)?,
             values: added.values,
             relative_likelihood_ratio,
             error_after: fit.error(),
@@ -50,19 +49,14 @@ impl Alternative {
 /// Angle between the signatures of the last effect of a fit and of `other` in its place, degree, with the other
 /// effects, the loads and the clocks projected out. `None` without a last effect.
 #[must_use]
-pub fn angle_deg(
-    experiment: &Experiment,
-    model: &Model,
-    whole: &Fit,
-    other: &AddedEffect,
-) -> Option<f64> {
-    Some(Replacement::new(experiment, model, whole)?.angle_deg(other))
+pub fn angle_deg(problem: Problem<'_>, whole: &Fit, other: &AddedEffect) -> Option<f64> {
+    Some(Replacement::new(problem, whole)?.angle_deg(other))
 }
 
 /// The last effect of a fit, for comparison with other effects in its place.
 pub struct Replacement<'a> {
-    experiment: &'a Experiment,
-    model: &'a Model,
+    /// The measured data and the model.
+    problem: Problem<'a>,
     whole: &'a Fit,
     last: usize,
     /// Projection of all other free parameters.
@@ -76,13 +70,12 @@ pub struct Replacement<'a> {
 impl<'a> Replacement<'a> {
     /// Compares to the last effect of a fit; `None` if there is none.
     #[must_use]
-    pub fn new(experiment: &'a Experiment, model: &'a Model, whole: &'a Fit) -> Option<Self> {
+    pub fn new(problem: Problem<'a>, whole: &'a Fit) -> Option<Self> {
         let last = whole.estimate.effects.len().checked_sub(1)?;
-        let jacobian = Jacobian::new(experiment, model, &whole.weights, &whole.estimate);
+        let jacobian = Jacobian::new(problem, &whole.weights, &whole.estimate);
         let jacobian = without(jacobian, last);
         let mut replacement = Self {
-            experiment,
-            model,
+            problem,
             whole,
             last,
             projection: NuisanceProjection::new(jacobian, &whole.estimate, 0..0),
@@ -128,7 +121,7 @@ impl<'a> Replacement<'a> {
     fn residuals(&self, effect: AddedEffect) -> Vec<Vec<f64>> {
         let mut estimate = self.whole.estimate.clone();
         estimate.effects[self.last] = effect;
-        residuals(self.experiment, self.model, &self.whole.weights, &estimate)
+        residuals(self.problem, &self.whole.weights, &estimate)
     }
 }
 

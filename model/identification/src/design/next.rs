@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use hitch_plant::{Effect, Model};
+use hitch_plant::Effect;
 use rayon::prelude::*;
 
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::design::manoeuvre::MANOEUVRES;
 use crate::design::plan::Manoeuvre;
 use crate::design::sensor::additional_instrument;
@@ -135,12 +135,8 @@ impl Judged {
 /// ratio per minute. If none distinguishes any pair, the result names an additional sensor instead. `None` without
 /// pairs.
 #[must_use]
-pub fn next_experiment(
-    experiment: &Experiment,
-    model: &Model,
-    pairs: &[Pair],
-) -> Option<NextExperiment> {
-    let bench = TestBench::new(experiment, model, pairs.first()?.named.fit);
+pub fn next_experiment(problem: Problem<'_>, pairs: &[Pair]) -> Option<NextExperiment> {
+    let bench = TestBench::new(problem, pairs.first()?.named.fit);
     let known: Vec<PairPrior> = pairs.iter().map(|pair| bench.known(*pair)).collect();
     let judged: Vec<Judged> = MANOEUVRES
         .par_iter()

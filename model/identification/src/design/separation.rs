@@ -12,6 +12,7 @@ use hitch_plant::{Effect, Model};
 use nalgebra::DMatrix;
 
 use crate::data::experiment::{Experiment, Nuisance, ReadyRun};
+use crate::data::problem::Problem;
 use crate::design::plan::Manoeuvre;
 use crate::estimate::{Estimate, Shared};
 use crate::estimation::fit::Fit;
@@ -47,8 +48,8 @@ impl<'a> Pair<'a> {
 
 /// The campaign's instruments and noise, for the evaluation of manoeuvres.
 pub struct TestBench<'a> {
-    model: &'a Model,
-    experiment: &'a Experiment,
+    /// The measured data and the model.
+    problem: Problem<'a>,
     rate_hz: f64,
     /// Mean square of the residuals of the named model, at least one.
     variance: f64,
@@ -71,11 +72,11 @@ struct Normal {
 impl<'a> TestBench<'a> {
     /// The test bench of a campaign whose best fit is `fit`.
     #[must_use]
-    pub fn new(experiment: &'a Experiment, model: &'a Model, fit: &Fit) -> Self {
+    pub fn new(problem: Problem<'a>, fit: &Fit) -> Self {
+        let experiment = problem.experiment;
         let compared = fit.weights.count().max(1) as f64;
         Self {
-            model,
-            experiment,
+            problem,
             rate_hz: rate_hz(experiment),
             variance: (square_sum(&fit.residuals) / compared).max(1.0),
             persistence: persistence(experiment, &fit.residuals),
@@ -86,8 +87,8 @@ impl<'a> TestBench<'a> {
     #[must_use]
     pub fn known(&self, pair: Pair<'a>) -> PairPrior<'a> {
         let normals = pair.rivals().map(|rival| {
-            let (experiment, fit) = (self.experiment, rival.fit);
-            let jacobian = Jacobian::new(experiment, self.model, &fit.weights, &fit.estimate);
+            let fit = rival.fit;
+            let jacobian = Jacobian::new(self.problem, &fit.weights, &fit.estimate);
             Normal {
                 matrix: jacobian.reduced(&fit.estimate).0,
                 shared: jacobian.shared,
@@ -114,7 +115,7 @@ impl<'a> TestBench<'a> {
     /// The model with a rival's effects.
     #[must_use]
     pub fn with(&self, rival: Rival) -> Model {
-        rival.fit.estimate.applied_to(self.model)
+        rival.fit.estimate.applied_to(self.problem.model)
     }
 
     /// The sample rate, Hz.
@@ -126,7 +127,7 @@ impl<'a> TestBench<'a> {
     /// Whether the campaign measures each channel, by `Channel::index`.
     #[must_use]
     pub fn channels(&self) -> [bool; 4] {
-        self.experiment.noise.map(f64::is_finite)
+        self.problem.experiment.noise.map(f64::is_finite)
     }
 
     /// Expected likelihood ratio against `wrong` if `truth` is true, after refitting `wrong`.
@@ -139,9 +140,10 @@ impl<'a> TestBench<'a> {
     ) -> f64 {
         let logged = self.measured(manoeuvre, truth);
         let estimate = |rival: Rival| Estimate::new(&logged, rival.fit.estimate.effects.clone());
-        let weights = Weights::new(&logged, self.model, &estimate(truth));
+        let problem = self.problem.on(&logged);
+        let weights = Weights::new(problem, &estimate(truth));
         let wrong = estimate(wrong);
-        let jacobian = Jacobian::new(&logged, self.model, &weights, &wrong);
+        let jacobian = Jacobian::new(problem, &weights, &wrong);
         let Some((cost, left)) = adapted(&jacobian, &wrong, normal) else {
             return 0.0;
         };
@@ -151,13 +153,13 @@ impl<'a> TestBench<'a> {
     /// Noise-free log of a manoeuvre by the campaign's instruments with a rival as the truth, with the campaign's noise
     /// declared.
     fn measured(&self, manoeuvre: &Manoeuvre, truth: Rival) -> Experiment {
-        let noise = self.experiment.noise;
-        let sigma = self.experiment.current_noise;
+        let noise = self.problem.experiment.noise;
+        let sigma = self.problem.experiment.current_noise;
         let campaign = Campaign {
             name: manoeuvre.name.to_owned(),
             description: String::new(),
             sample_rate_hz: self.rate_hz,
-            synchronous: self.experiment.clocks_within_s == 0.0,
+            synchronous: self.problem.experiment.clocks_within_s == 0.0,
             noise: Noise {
                 lift_current_a: Some(sigma.lift_a),
                 lower_current_a: Some(sigma.lower_a),
@@ -167,8 +169,8 @@ impl<'a> TestBench<'a> {
             runs: manoeuvre.log(&self.with(truth), self.rate_hz, self.channels()),
         };
         let mut logged = Experiment {
-            current_persistence: self.experiment.current_persistence,
-            ..Experiment::new(&campaign, self.model)
+            current_persistence: self.problem.experiment.current_persistence,
+            ..Experiment::new(&campaign, self.problem.model)
         };
         let truth = self.with(truth);
         for run in &mut logged.runs {

@@ -7,10 +7,10 @@
 //! differences cancel the curvature (Nocedal & Wright 2006, ch. 8.1). They allow a longer step, so that no single
 //! sample dominates.
 
-use hitch_plant::{Model, SizeResponse};
+use hitch_plant::SizeResponse;
 use rayon::prelude::*;
 
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimate::Shared;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{Jacobian, difference, huber_residuals};
@@ -22,8 +22,7 @@ const STEP: f64 = 0.01;
 ///
 /// Columns of switching and located sizes stay as they are: a longer step would cross other events.
 pub(crate) fn with_central_differences(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     fit: &Fit,
     mut jacobian: Jacobian,
 ) -> Jacobian {
@@ -40,7 +39,7 @@ pub(crate) fn with_central_differences(
         .par_iter()
         .enumerate()
         .filter(|&(_, &shared)| smooth(shared))
-        .map(|(column, &shared)| (column, quotient(experiment, model, fit, shared)))
+        .map(|(column, &shared)| (column, quotient(problem, fit, shared)))
         .collect();
     for (column, quotients) in columns {
         for (run, quotient) in jacobian.runs.iter_mut().zip(quotients) {
@@ -51,7 +50,7 @@ pub(crate) fn with_central_differences(
 }
 
 /// Change of the simulation per step of one scale.
-fn quotient(experiment: &Experiment, model: &Model, fit: &Fit, shared: Shared) -> Vec<Vec<f64>> {
+fn quotient(problem: Problem<'_>, fit: &Fit, shared: Shared) -> Vec<Vec<f64>> {
     let (value, scale) = (fit.estimate.get(shared), fit.estimate.scale(shared));
     let step = STEP * value.abs().max(scale);
     let [below, above] = [-step, step].map(|step| {
@@ -60,7 +59,7 @@ fn quotient(experiment: &Experiment, model: &Model, fit: &Fit, shared: Shared) -
         moved
     });
     let taken = (above.get(shared) - below.get(shared)) / scale;
-    let left = |estimate| huber_residuals(experiment, model, &fit.weights, estimate);
+    let left = |estimate| huber_residuals(problem, &fit.weights, estimate);
     // The residual decreases where the simulation increases.
     let mut change = difference(&left(&below), &left(&above));
     for sample in change.iter_mut().flatten() {

@@ -4,11 +4,10 @@
 //! such a local minimum, and no gradient leads out of it. Shifting a channel of a simulated trace is cheap, so all
 //! offsets on a grid are evaluated.
 
-use hitch_plant::Model;
 use rayon::prelude::*;
 
 use crate::data::clocks::{Clocks, LARGEST_OFFSET_S, OFFSET_PRIOR_S};
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::data::trace_cache::CurrentShift;
 use crate::estimate::Estimate;
 use crate::estimation::jacobian::{dot, huber};
@@ -20,11 +19,11 @@ const STEP_S: f64 = 0.004;
 /// The estimate with the clock offsets of least cost, all other parameters fixed. Unchanged if nothing rings or the
 /// clocks are known.
 pub(crate) fn synchronised(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     weights: &Weights,
     estimate: Estimate,
 ) -> Estimate {
+    let Problem { experiment, .. } = problem;
     if !experiment.ringing || experiment.clocks_within_s == 0.0 {
         return estimate;
     }
@@ -35,7 +34,7 @@ pub(crate) fn synchronised(
         })
         .chain([estimate.clocks])
         .collect();
-    let costs = costs(experiment, model, weights, &estimate, &tried);
+    let costs = costs(problem, weights, &estimate, &tried);
     let mut better = estimate;
     for (channel, offset_s) in better.clocks.offsets_s.iter_mut().enumerate() {
         let best = costs
@@ -51,12 +50,12 @@ pub(crate) fn synchronised(
 
 /// Cost of each channel for each set of clock offsets, including their prior.
 fn costs(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     weights: &Weights,
     estimate: &Estimate,
     tried: &[Clocks],
 ) -> Vec<[f64; 4]> {
+    let Problem { experiment, model } = problem;
     let model = estimate.applied_to(model);
     let of_runs: Vec<Vec<[f64; 4]>> = experiment
         .runs

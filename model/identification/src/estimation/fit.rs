@@ -3,9 +3,7 @@
 //! The fit compares simulated trajectories, not one-step predictions: those feed the measured pressure back and hide
 //! leakage and friction.
 
-use hitch_plant::Model;
-
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::clock_synchronisation::synchronised;
 use crate::estimation::jacobian::{huber, load_steps, residuals, square_sum};
@@ -106,14 +104,9 @@ impl Fit {
     /// spool does not follow the noise of the currents, so under its own weights the same residuals weigh four times as
     /// much. A wrong threshold makes a simulated hitch miss a stop, where the other fit's weights exclude all samples.
     #[must_use]
-    pub fn cost_under_weights_of(
-        &self,
-        experiment: &Experiment,
-        model: &Model,
-        other: &Self,
-    ) -> f64 {
+    pub fn cost_under_weights_of(&self, problem: Problem<'_>, other: &Self) -> f64 {
         let (estimate, weights) = (self.estimate.clone(), other.weights.clone());
-        let beside = evaluate_weighted(experiment, model, estimate, weights).cost;
+        let beside = evaluate_weighted(problem, estimate, weights).cost;
         beside.min(self.cost)
     }
 
@@ -138,20 +131,15 @@ impl Fit {
 
 /// Evaluates an estimate without changing it.
 #[must_use]
-pub fn evaluate(experiment: &Experiment, model: &Model, estimate: Estimate) -> Fit {
-    let weights = Weights::new(experiment, model, &estimate);
-    evaluate_weighted(experiment, model, estimate, weights)
+pub fn evaluate(problem: Problem<'_>, estimate: Estimate) -> Fit {
+    let weights = Weights::new(problem, &estimate);
+    evaluate_weighted(problem, estimate, weights)
 }
 
 /// Evaluates an estimate under given weights.
 #[must_use]
-pub fn evaluate_weighted(
-    experiment: &Experiment,
-    model: &Model,
-    estimate: Estimate,
-    weights: Weights,
-) -> Fit {
-    let residuals = residuals(experiment, model, &weights, &estimate);
+pub fn evaluate_weighted(problem: Problem<'_>, estimate: Estimate, weights: Weights) -> Fit {
+    let residuals = residuals(problem, &weights, &estimate);
     let cost = square_sum(&huber(residuals.clone())) + estimate.prior_cost();
     Fit {
         estimate,
@@ -163,88 +151,60 @@ pub fn evaluate_weighted(
 
 /// Fits all free parameters from `start`, coarse to fine.
 #[must_use]
-pub fn fit(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
-    let weights = Weights::new(experiment, model, &start);
-    let start = coarse_descent(experiment, model, &weights, start);
-    refine(experiment, model, start)
+pub fn fit(problem: Problem<'_>, start: Estimate) -> Fit {
+    let weights = Weights::new(problem, &start);
+    let start = coarse_descent(problem, &weights, start);
+    refine(problem, start)
 }
 
 /// Descends with the coarse weights, which emphasise flow and angle.
-fn coarse_descent(
-    experiment: &Experiment,
-    model: &Model,
-    weights: &Weights,
-    start: Estimate,
-) -> Estimate {
+fn coarse_descent(problem: Problem<'_>, weights: &Weights, start: Estimate) -> Estimate {
     let (coarse, moves) = (weights.clone().scaled(COARSE), Moves::All);
-    descend(experiment, model, &coarse, start, moves, COARSE_ITERATIONS).estimate
+    descend(problem, &coarse, start, moves, COARSE_ITERATIONS).estimate
 }
 
 /// A short fit under given weights that decides whether an effect deserves a full fit. If `far`, it starts with the
 /// coarse weights.
 #[must_use]
-pub fn short_fit(
-    experiment: &Experiment,
-    model: &Model,
-    weights: &Weights,
-    start: Estimate,
-    far: bool,
-) -> Descent {
+pub fn short_fit(problem: Problem<'_>, weights: &Weights, start: Estimate, far: bool) -> Descent {
     let start = if far {
-        coarse_descent(experiment, model, weights, start)
+        coarse_descent(problem, weights, start)
     } else {
         start
     };
-    descend(
-        experiment,
-        model,
-        weights,
-        start,
-        Moves::All,
-        COARSE_ITERATIONS,
-    )
+    descend(problem, weights, start, Moves::All, COARSE_ITERATIONS)
 }
 
 /// Fits from a start near the optimum.
 #[must_use]
-pub fn refine(experiment: &Experiment, model: &Model, start: Estimate) -> Fit {
+pub fn refine(problem: Problem<'_>, start: Estimate) -> Fit {
     let found = |weights: &Weights, start: Estimate| {
-        let start = synchronised(experiment, model, weights, start);
+        let start = synchronised(problem, weights, start);
         let moves = Moves::All;
-        descend(experiment, model, weights, start, moves, FINE_ITERATIONS).estimate
+        descend(problem, weights, start, moves, FINE_ITERATIONS).estimate
     };
-    let weights = Weights::new(experiment, model, &start);
+    let weights = Weights::new(problem, &start);
     let near = found(&weights, start);
     // The weights depend on the values: repeat with the weights at the values found.
-    let weights = Weights::new(experiment, model, &near);
+    let weights = Weights::new(problem, &near);
     let there = found(&weights, near);
-    evaluate_weighted(experiment, model, there, weights)
+    evaluate_weighted(problem, there, weights)
 }
 
 /// A few iterations under given weights from a start that has almost converged. Sizes of switching effects stay fixed:
 /// a step that improves a few runs slightly moves the switching instants of all others.
 #[must_use]
-pub fn refine_once(
-    experiment: &Experiment,
-    model: &Model,
-    weights: &Weights,
-    start: Estimate,
-) -> Estimate {
+pub fn refine_once(problem: Problem<'_>, weights: &Weights, start: Estimate) -> Estimate {
     let moves = Moves::AllButSwitching;
-    descend(experiment, model, weights, start, moves, LAST_ITERATIONS).estimate
+    descend(problem, weights, start, moves, LAST_ITERATIONS).estimate
 }
 
 /// Fits only each run's load error under given weights, by two Gauss-Newton steps: the problem is nearly linear.
 #[must_use]
-pub fn fit_loads(
-    experiment: &Experiment,
-    model: &Model,
-    weights: &Weights,
-    start: Estimate,
-) -> Estimate {
+pub fn fit_loads(problem: Problem<'_>, weights: &Weights, start: Estimate) -> Estimate {
     let mut estimate = start;
     for _ in 0..2 {
-        let steps = load_steps(experiment, model, weights, &estimate);
+        let steps = load_steps(problem, weights, &estimate);
         for (run, step) in steps.into_iter().enumerate() {
             estimate.set_load(run, estimate.load(run) + step);
         }
@@ -253,9 +213,9 @@ pub fn fit_loads(
 }
 
 /// The same fit with one effect moved to the end of the list.
-pub(crate) fn with_last(experiment: &Experiment, model: &Model, fit: &Fit, effect: usize) -> Fit {
+pub(crate) fn with_last(problem: Problem<'_>, fit: &Fit, effect: usize) -> Fit {
     let mut estimate = fit.estimate.clone();
     let moved = estimate.effects.remove(effect);
     estimate.effects.push(moved);
-    evaluate(experiment, model, estimate)
+    evaluate(problem, estimate)
 }

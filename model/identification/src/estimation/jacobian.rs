@@ -4,12 +4,12 @@
 //! a load error affects only its own run. Eliminating the load errors run by run (Schur complement) leaves a system of
 //! the size of the shared parameters. Its columns are the projected signatures, orthogonal to the load columns.
 
-use hitch_plant::{Channel, Model, SizeResponse};
+use hitch_plant::{Channel, SizeResponse};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::data::clocks::OFFSET_PRIOR_S;
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::data::trace_cache::CurrentShift;
 use crate::estimate::{Estimate, Shared, Step};
 use crate::residuals::whitening::Weights;
@@ -53,12 +53,8 @@ const HUBER_THRESHOLD: f64 = 10.0;
 
 /// Whitened residuals of every run under an estimate.
 #[must_use]
-pub fn residuals(
-    experiment: &Experiment,
-    model: &Model,
-    weights: &Weights,
-    estimate: &Estimate,
-) -> Vec<Vec<f64>> {
+pub fn residuals(problem: Problem<'_>, weights: &Weights, estimate: &Estimate) -> Vec<Vec<f64>> {
+    let Problem { experiment, model } = problem;
     let model = estimate.applied_to(model);
     (0..experiment.runs.len())
         .into_par_iter()
@@ -90,12 +86,11 @@ pub fn huber(mut residuals: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 /// [`residuals`] transformed by [`huber`].
 #[must_use]
 pub fn huber_residuals(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     weights: &Weights,
     estimate: &Estimate,
 ) -> Vec<Vec<f64>> {
-    huber(residuals(experiment, model, weights, estimate))
+    huber(residuals(problem, weights, estimate))
 }
 
 /// Sum of squares of residuals.
@@ -151,13 +146,13 @@ fn quotient(base: &[Vec<f64>], moved: Vec<Vec<f64>>, step: f64) -> Vec<Vec<f64>>
 
 /// Sensitivity of all runs to one shared parameter.
 fn shared_column(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     weights: &Weights,
     estimate: &Estimate,
     base: &[Vec<f64>],
     parameter: Shared,
 ) -> Vec<Vec<f64>> {
+    let Problem { experiment, .. } = problem;
     let (value, scale) = (estimate.get(parameter), estimate.scale(parameter));
     let step = match estimate.size_response(parameter) {
         SizeResponse::Located => FINE_STEP * scale,
@@ -172,23 +167,18 @@ fn shared_column(
         moved.set(parameter, value - step);
     }
     let taken = (moved.get(parameter) - value) / scale;
-    quotient(
-        base,
-        huber_residuals(experiment, model, weights, &moved),
-        taken,
-    )
+    quotient(base, huber_residuals(problem, weights, &moved), taken)
 }
 
 /// Sensitivities of all runs to their load errors, per step of one prior sigma.
 fn load_columns(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     weights: &Weights,
     estimate: &Estimate,
     base: &[Vec<f64>],
 ) -> Vec<Vec<f64>> {
     let mut moved = estimate.clone();
-    let steps: Vec<f64> = (0..experiment.runs.len())
+    let steps: Vec<f64> = (0..problem.experiment.runs.len())
         .map(|run| {
             let load = estimate.load(run);
             moved.set_load(run, load + 1.0);
@@ -199,7 +189,7 @@ fn load_columns(
             moved.load(run) - load
         })
         .collect();
-    let moved = huber_residuals(experiment, model, weights, &moved);
+    let moved = huber_residuals(problem, weights, &moved);
     let mut columns = quotient(base, moved, 1.0);
     for (column, step) in columns.iter_mut().zip(steps) {
         column.iter_mut().for_each(|change| *change /= step);
@@ -211,11 +201,11 @@ fn load_columns(
 ///
 /// An offset only shifts a channel of an existing trace: one simulation serves all four.
 fn offset_columns(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     weights: &Weights,
     estimate: &Estimate,
 ) -> [Vec<Vec<f64>>; 4] {
+    let Problem { experiment, model } = problem;
     let model = estimate.applied_to(model);
     let columns: Vec<[Vec<f64>; 4]> = (0..experiment.runs.len())
         .into_par_iter()
@@ -255,15 +245,14 @@ impl SlowColumns {
     /// Difference quotients at `estimate`, whose residuals are `base`.
     #[must_use]
     pub fn new(
-        experiment: &Experiment,
-        model: &Model,
+        problem: Problem<'_>,
         weights: &Weights,
         estimate: &Estimate,
         base: &[Vec<f64>],
     ) -> Self {
         let (clocks, loads) = rayon::join(
-            || offset_columns(experiment, model, weights, estimate),
-            || load_columns(experiment, model, weights, estimate, base),
+            || offset_columns(problem, weights, estimate),
+            || load_columns(problem, weights, estimate, base),
         );
         Self { clocks, loads }
     }
@@ -271,14 +260,10 @@ impl SlowColumns {
 
 /// Optimal steps of the load errors, in prior sigmas, with all other parameters fixed.
 #[must_use]
-pub fn load_steps(
-    experiment: &Experiment,
-    model: &Model,
-    weights: &Weights,
-    estimate: &Estimate,
-) -> Vec<f64> {
-    let base = huber_residuals(experiment, model, weights, estimate);
-    let loads = load_columns(experiment, model, weights, estimate, &base);
+pub fn load_steps(problem: Problem<'_>, weights: &Weights, estimate: &Estimate) -> Vec<f64> {
+    let Problem { experiment, .. } = problem;
+    let base = huber_residuals(problem, weights, estimate);
+    let loads = load_columns(problem, weights, estimate, &base);
     base.iter()
         .zip(&loads)
         .enumerate()
@@ -295,32 +280,27 @@ pub fn load_steps(
 impl Jacobian {
     /// Difference quotients at `estimate`, for all shared parameters and each run's load.
     #[must_use]
-    pub fn new(
-        experiment: &Experiment,
-        model: &Model,
-        weights: &Weights,
-        estimate: &Estimate,
-    ) -> Self {
-        let base = huber_residuals(experiment, model, weights, estimate);
-        let slow = SlowColumns::new(experiment, model, weights, estimate, &base);
-        Self::with_slow_columns(experiment, model, weights, estimate, &base, &slow)
+    pub fn new(problem: Problem<'_>, weights: &Weights, estimate: &Estimate) -> Self {
+        let base = huber_residuals(problem, weights, estimate);
+        let slow = SlowColumns::new(problem, weights, estimate, &base);
+        Self::with_slow_columns(problem, weights, estimate, &base, &slow)
     }
 
     /// The same with given residuals, and with the columns of clocks and loads from a nearby estimate.
     #[must_use]
     pub fn with_slow_columns(
-        experiment: &Experiment,
-        model: &Model,
+        problem: Problem<'_>,
         weights: &Weights,
         estimate: &Estimate,
         base: &[Vec<f64>],
         slow: &SlowColumns,
     ) -> Self {
+        let Problem { experiment, .. } = problem;
         let shared = estimate.shared();
         let columns: Vec<Vec<Vec<f64>>> = shared
             .par_iter()
             .filter(|parameter| !parameter.has_prior())
-            .map(|&parameter| shared_column(experiment, model, weights, estimate, base, parameter))
+            .map(|&parameter| shared_column(problem, weights, estimate, base, parameter))
             .collect();
         let runs = (0..base.len())
             .map(|run| RunJacobian {

@@ -7,9 +7,9 @@
 //! Jacobian is kept and updated by Broyden's method (Broyden 1965). A descent ends only if a fresh Jacobian predicts no
 //! further reduction.
 
-use hitch_plant::{Model, SizeResponse};
+use hitch_plant::SizeResponse;
 
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimate::Step;
 use crate::estimate::{Estimate, Shared};
 use crate::estimation::jacobian::{Jacobian, SlowColumns, huber_residuals, square_sum};
@@ -55,16 +55,14 @@ pub(crate) enum Moves {
 
 /// Descends from `start` under given weights with at most `jacobians` Jacobians.
 pub(crate) fn descend(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     weights: &Weights,
     start: Estimate,
     moves: Moves,
     jacobians: usize,
 ) -> Descent {
     let problem = LeastSquares {
-        experiment,
-        model,
+        problem,
         weights,
         moves,
     };
@@ -115,8 +113,8 @@ pub(crate) fn descend(
 
 /// The least-squares problem of a descent.
 struct LeastSquares<'a> {
-    experiment: &'a Experiment,
-    model: &'a Model,
+    /// The measured data and the model.
+    problem: Problem<'a>,
     weights: &'a Weights,
     moves: Moves,
 }
@@ -134,7 +132,7 @@ struct AcceptedStep {
 
 impl LeastSquares<'_> {
     fn point(&self, estimate: Estimate) -> Point {
-        let residuals = huber_residuals(self.experiment, self.model, self.weights, &estimate);
+        let residuals = huber_residuals(self.problem, self.weights, &estimate);
         let cost = square_sum(&residuals) + estimate.prior_cost();
         Point {
             estimate,
@@ -144,20 +142,18 @@ impl LeastSquares<'_> {
     }
 
     fn slow_columns(&self, point: &Point) -> SlowColumns {
-        let (experiment, model, weights) = (self.experiment, self.model, self.weights);
         SlowColumns::new(
-            experiment,
-            model,
-            weights,
+            self.problem,
+            self.weights,
             &point.estimate,
             &point.residuals,
         )
     }
 
     fn jacobian(&self, point: &Point, slow: &SlowColumns) -> Jacobian {
-        let (experiment, model, weights) = (self.experiment, self.model, self.weights);
+        let (problem, weights) = (self.problem, self.weights);
         let (estimate, residuals) = (&point.estimate, &point.residuals);
-        Jacobian::with_slow_columns(experiment, model, weights, estimate, residuals, slow)
+        Jacobian::with_slow_columns(problem, weights, estimate, residuals, slow)
     }
 
     /// The first step, by increasing damping, that reduces the cost.

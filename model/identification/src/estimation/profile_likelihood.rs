@@ -6,9 +6,7 @@
 //! predicted amount (profile likelihood, Venzon & Moolgavkar 1988), with all other free parameters re-optimised to
 //! first order.
 
-use hitch_plant::Model;
-
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimate::Shared;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{Jacobian, huber_residuals};
@@ -30,10 +28,8 @@ const BISECTIONS: usize = 3;
 
 /// The cost along one parameter of a fit.
 pub struct ProfileLikelihood<'a> {
-    /// The measured data.
-    pub experiment: &'a Experiment,
-    /// The model without effects.
-    pub model: &'a Model,
+    /// The measured data and the model.
+    pub problem: Problem<'a>,
     /// The fit, whose weights are used.
     pub fit: &'a Fit,
     /// The parameter.
@@ -78,7 +74,7 @@ impl ProfileLikelihood<'_> {
             return f64::INFINITY;
         }
         moved.set(self.shared, value);
-        let residuals = huber_residuals(self.experiment, self.model, &self.fit.weights, &moved);
+        let residuals = huber_residuals(self.problem, &self.fit.weights, &moved);
         self.projection.cost_after(&residuals) - self.projection.here()
     }
 }

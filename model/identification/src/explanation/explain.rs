@@ -4,11 +4,12 @@
 //! and weighed against the model with all others (size, interval, detectability, probability). Confounded alternatives
 //! are listed, and the remaining residuals are tested for lack of fit.
 
-use hitch_plant::{Effect, Model};
+use hitch_plant::Effect;
 
 use crate::adequacy::attribution::{Attribution, attribute};
 use crate::adequacy::lack_of_fit::{Cell, adequate, cells, cells_since};
 use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::data::regime::Regime;
 use crate::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
 use crate::estimate::Estimate;
@@ -126,41 +127,37 @@ pub struct Diagnosis {
 
 /// Fits loads and clocks of a model; its effects stay unchanged.
 #[must_use]
-pub fn fit_base(experiment: &Experiment, model: &Model) -> Fit {
+pub fn fit_base(problem: Problem<'_>) -> Fit {
+    let Problem { experiment, model } = problem;
     let start = Estimate::new(experiment, model.effects.clone());
-    refine(experiment, model, start.with_adopted())
+    refine(problem, start.with_adopted())
 }
 
 /// Fits a model with all its effects.
 #[must_use]
-pub fn fit_freely(experiment: &Experiment, model: &Model) -> Fit {
+pub fn fit_freely(problem: Problem<'_>) -> Fit {
+    let Problem { experiment, model } = problem;
     let start = Estimate::new(experiment, model.effects.clone());
-    fit(experiment, model, start)
+    fit(problem, start)
 }
 
 /// Adds each effect that the model lacks, one at a time.
 #[must_use]
-pub fn diagnose(
-    experiment: &Experiment,
-    model: &Model,
-    base: Fit,
-    progress: Progress,
-) -> Diagnosis {
-    diagnose_each(experiment, model, base, progress, &|_, _| {})
+pub fn diagnose(problem: Problem<'_>, base: Fit, progress: Progress) -> Diagnosis {
+    diagnose_each(problem, base, progress, &|_, _| {})
 }
 
 /// [`diagnose`] with a callback for each form once it is weighed, in any order, with the number of forms.
 #[must_use]
 pub fn diagnose_each(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     base: Fit,
     progress: Progress,
     weighed: &(dyn Fn(&Candidate, usize) + Sync),
 ) -> Diagnosis {
-    let absent = showing(experiment, model, &base.estimate);
+    let absent = showing(problem, &base.estimate);
     let report = |candidate: &Candidate| weighed(candidate, absent.len());
-    let candidates = try_each(experiment, model, &base, &absent, progress, &report);
+    let candidates = try_each(problem, &base, &absent, progress, &report);
     let confidences = confidences(&candidates);
     Diagnosis {
         base,
@@ -171,42 +168,38 @@ pub fn diagnose_each(
 
 /// Finds missing effects and changed ones of the model.
 #[must_use]
-pub fn explain(experiment: &Experiment, model: &Model, progress: Progress) -> Explanation {
-    explain_with(experiment, model, Options::default(), progress)
+pub fn explain(problem: Problem<'_>, progress: Progress) -> Explanation {
+    explain_with(problem, Options::default(), progress)
 }
 
 /// [`explain`] with options.
 #[must_use]
-pub fn explain_with(
-    experiment: &Experiment,
-    model: &Model,
-    options: Options<'_>,
-    progress: Progress,
-) -> Explanation {
-    let before = fit_base(experiment, model);
+pub fn explain_with(problem: Problem<'_>, options: Options<'_>, progress: Progress) -> Explanation {
+    let Problem { model, .. } = problem;
+    let before = fit_base(problem);
     let adopted = !model.effects.is_empty();
-    let refitted = adopted.then(|| fit_freely(experiment, model));
+    let refitted = adopted.then(|| fit_freely(problem));
     let mut found = if enough(&before) {
-        search(experiment, model, &before, options, progress)
+        search(problem, &before, options, progress)
     } else {
         Found::nothing(&before)
     };
     progress("how sure that is");
-    let mut steps = steps(experiment, model, &before, &found);
+    let mut steps = steps(problem, &before, &found);
     while let Some(insignificant) = steps.iter().position(may_be_absent) {
         let effect = found.order[insignificant];
         let reduced = found.fit.estimate.without(effect);
         let removed = reduced.effects.len() < found.fit.estimate.effects.len();
-        found.fit = refine(experiment, model, reduced);
-        found.held_out = held_out(experiment, model, &found.fit);
+        found.fit = refine(problem, reduced);
+        found.held_out = held_out(problem, &found.fit);
         found.order.remove(insignificant);
         for other in &mut found.order {
             *other -= usize::from(removed && *other > effect);
         }
-        steps = self::steps(experiment, model, &before, &found);
+        steps = self::steps(problem, &before, &found);
     }
     let base = (before, refitted);
-    concluded(experiment, model, base, found, steps)
+    concluded(problem, base, found, steps)
 }
 
 /// Whether the interval of a step's size contains its absent value. A single jump that the noise of a current decides
@@ -221,30 +214,25 @@ fn may_be_absent(step: &ExplanationStep) -> bool {
 }
 
 /// The members of the set as steps, in greedy order of the cost reduction that each adds.
-fn steps(
-    experiment: &Experiment,
-    model: &Model,
-    before: &Fit,
-    found: &Found,
-) -> Vec<ExplanationStep> {
-    let weighed = found.refitted.weighed(experiment, model, &found.fit);
+fn steps(problem: Problem<'_>, before: &Fit, found: &Found) -> Vec<ExplanationStep> {
+    let weighed = found.refitted.weighed(problem, &found.fit);
     let mut steps: Vec<ExplanationStep> = Vec::new();
     for (count, &effect) in found.order.iter().enumerate() {
         let last = count + 1 == found.order.len();
         let fit = match last {
             true => found.fit.clone(),
-            false => with_some(experiment, model, found, &found.order[..=count]),
+            false => with_some(problem, found, &found.order[..=count]),
         };
         let (error_before, held_out_before) = match steps.last() {
             Some(step) => (step.error_after, step.held_out_after),
-            None => (before.error(), held_out(experiment, model, before)),
+            None => (before.error(), held_out(problem, before)),
         };
         let held_out_after = match last {
             true => found.held_out,
-            false => held_out(experiment, model, &fit),
+            false => held_out(problem, &fit),
         };
-        let whole = with_last(experiment, model, &found.fit, effect);
-        let candidate = weighed_last(experiment, model, whole.clone());
+        let whole = with_last(problem, &found.fit, effect);
+        let candidate = weighed_last(problem, whole.clone());
         let estimate = &found.fit.estimate;
         let id = estimate.effects[effect].effect.id();
         let with_it = weighed
@@ -260,7 +248,7 @@ fn steps(
             detectability: candidate.detectability,
             explained_share: candidate.explained_share,
             other_forms: other_forms(&found.fit, id, &weighed),
-            indistinguishable: alternatives(experiment, model, &whole, &weighed),
+            indistinguishable: alternatives(problem, &whole, &weighed),
             values: candidate.values().to_vec(),
             intervals: candidate.intervals,
             changed_from: estimate.adopted_as(id).map(|adopted| adopted.size),
@@ -271,7 +259,7 @@ fn steps(
 }
 
 /// The fit with a subset of the added or changed effects, by their indices.
-fn with_some(experiment: &Experiment, model: &Model, found: &Found, effects: &[usize]) -> Fit {
+fn with_some(problem: Problem<'_>, found: &Found, effects: &[usize]) -> Fit {
     let mut estimate = found.fit.estimate.clone();
     for effect in (0..estimate.effects.len()).rev() {
         if !estimate.is_unchanged(effect) && !effects.contains(&effect) {
@@ -280,17 +268,17 @@ fn with_some(experiment: &Experiment, model: &Model, found: &Found, effects: &[u
     }
     match found.refitted.fit_of(&key_of(&estimate)) {
         Some(fit) => fit.clone(),
-        None => refine(experiment, model, estimate),
+        None => refine(problem, estimate),
     }
 }
 
 /// The last effect of a fit weighed against the model with all others.
-fn weighed_last(experiment: &Experiment, model: &Model, whole: Fit) -> Candidate {
+fn weighed_last(problem: Problem<'_>, whole: Fit) -> Candidate {
     let last = whole.estimate.effects.len() - 1;
     let named = whole.estimate.effects[last].effect;
     let without = whole.estimate.without(last);
-    let base = evaluate(experiment, model, without);
-    weigh(experiment, model, &base, named, whole)
+    let base = evaluate(problem, without);
+    weigh(problem, &base, named, whole)
 }
 
 /// Forms of an effect that explain the campaign as well as its own.
@@ -304,12 +292,7 @@ fn other_forms(fit: &Fit, id: &str, weighed: &[Weighed]) -> Vec<Option<&'static 
 }
 
 /// Confounded alternatives of the last effect of a fit.
-fn alternatives(
-    experiment: &Experiment,
-    model: &Model,
-    whole: &Fit,
-    weighed: &[Weighed],
-) -> Vec<Alternative> {
+fn alternatives(problem: Problem<'_>, whole: &Fit, weighed: &[Weighed]) -> Vec<Alternative> {
     let last = whole.estimate.effects.len() - 1;
     let named = whole.estimate.effects[last].effect.id();
     let own = key_of(&whole.estimate);
@@ -331,13 +314,8 @@ fn alternatives(
             let id = other(&set)?;
             let effects = &set.fit.estimate.effects;
             let index = effects.iter().position(|added| added.effect.id() == id)?;
-            let its = with_last(experiment, model, set.fit, index);
-            Alternative::new(
-                experiment,
-                model,
-                whole,
-                (its, set.relative_likelihood_ratio),
-            )
+            let its = with_last(problem, set.fit, index);
+            Alternative::new(problem, whole, (its, set.relative_likelihood_ratio))
         })
         .collect();
     alternatives.sort_by(|a, b| {
@@ -348,12 +326,12 @@ fn alternatives(
 }
 
 fn concluded(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     (before, refitted): (Fit, Option<Fit>),
     found: Found,
     steps: Vec<ExplanationStep>,
 ) -> Explanation {
+    let Problem { experiment, .. } = problem;
     let after = found.fit;
     let cells = cells_since(&cells(experiment, &before), experiment, &after);
     let missing = missing_manoeuvre(experiment, &after);
@@ -364,13 +342,13 @@ fn concluded(
         Attribution::default()
     };
     let next_experiment = match verdict {
-        Verdict::Ambiguous => next_experiment(experiment, model, &pairs(&after, &steps)),
+        Verdict::Ambiguous => next_experiment(problem, &pairs(&after, &steps)),
         Verdict::NotEnoughData => missing.map(NextExperiment::missing),
         _ => None,
     };
     let undetected = match verdict {
         Verdict::Unexplained => Vec::new(),
-        _ => undetected(experiment, model, &after),
+        _ => undetected(problem, &after),
     };
     Explanation {
         before,

@@ -3,10 +3,11 @@
 //! "Nothing missing" only covers detectable effects. The slip of a pump shows if the demand exceeds its delivery, a
 //! relief valve at a stop. Duty cycles contain neither, so their verdict says nothing about these effects.
 
-use hitch_plant::{AddedEffect, Channel, Effect, Model};
+use hitch_plant::{AddedEffect, Channel, Effect};
 use rayon::prelude::*;
 
 use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{Jacobian, difference, huber, huber_residuals};
 use crate::estimation::nuisance_projection::NuisanceProjection;
@@ -27,12 +28,13 @@ pub struct Undetected {
 /// Effects, at their typical size, whose signature beyond the free parameters of a fit is too small; by increasing
 /// detectability.
 #[must_use]
-pub fn undetected(experiment: &Experiment, model: &Model, fit: &Fit) -> Vec<Undetected> {
+pub fn undetected(problem: Problem<'_>, fit: &Fit) -> Vec<Undetected> {
+    let Problem { experiment, model } = problem;
     let experiment =
         &experiment.coarse_in_time(&fit.estimate.applied_to(model), &fit.estimate.nuisances);
     let base = huber(fit.residuals.clone());
     let (weights, estimate) = (&fit.weights, &fit.estimate);
-    let jacobian = Jacobian::new(experiment, model, weights, estimate);
+    let jacobian = Jacobian::new(problem, weights, estimate);
     let projection = NuisanceProjection::new(&jacobian, estimate, 0..0);
     let mut undetected: Vec<Undetected> = absent(model, estimate)
         .into_par_iter()
@@ -40,7 +42,7 @@ pub fn undetected(experiment: &Experiment, model: &Model, fit: &Fit) -> Vec<Unde
         .map(|effect| {
             let mut with = estimate.clone();
             with.effects.push(AddedEffect::typical(effect));
-            let with = huber_residuals(experiment, model, weights, &with);
+            let with = huber_residuals(problem, weights, &with);
             let (left, penalty) = projection.project_within_range(difference(&base, &with));
             Undetected {
                 effect,

@@ -17,6 +17,7 @@ use hitch_plant::{Channel, Currents, Model, units};
 use rayon::prelude::*;
 
 use crate::data::experiment::{Experiment, ReadyRun};
+use crate::data::problem::Problem;
 use crate::data::trace_cache::CurrentShift;
 use crate::estimate::Estimate;
 use crate::residuals::contact_mask::contact_mask;
@@ -61,7 +62,8 @@ pub struct Weights {
 impl Weights {
     /// Weights at `estimate`.
     #[must_use]
-    pub fn new(experiment: &Experiment, model: &Model, estimate: &Estimate) -> Self {
+    pub fn new(problem: Problem<'_>, estimate: &Estimate) -> Self {
+        let Problem { experiment, model } = problem;
         let model = estimate.applied_to(model);
         let runs: Vec<RunWeights> = (0..experiment.runs.len())
             .into_par_iter()

@@ -2,7 +2,7 @@
 
 use hitch_plant::{Effect, Model};
 
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 
 /// Callback with a description of the current task, for progress displays.
@@ -16,11 +16,8 @@ pub(crate) fn absent(model: &Model, estimate: &Estimate) -> Vec<&'static dyn Eff
 }
 
 /// Those of them that act on a measured channel: an angle sensor that was not logged explains nothing.
-pub(crate) fn showing(
-    experiment: &Experiment,
-    model: &Model,
-    estimate: &Estimate,
-) -> Vec<&'static dyn Effect> {
+pub(crate) fn showing(problem: Problem<'_>, estimate: &Estimate) -> Vec<&'static dyn Effect> {
+    let Problem { experiment, model } = problem;
     let mut absent = absent(model, estimate);
     absent.retain(|effect| {
         let mut channels = effect.channels().iter();

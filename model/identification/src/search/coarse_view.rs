@@ -1,16 +1,13 @@
 //! A fit on a condensed experiment, for screening before full fits.
 
-use hitch_plant::Model;
-
 use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimation::fit::{Fit, evaluate, evaluate_weighted};
 
 /// A fit and its experiment, both condensed if that saves most of the work.
 pub(crate) struct Coarse<'a> {
-    /// All samples.
-    pub experiment: &'a Experiment,
-    /// The model that effects are added to.
-    pub model: &'a Model,
+    /// The measured data and the model.
+    pub problem: Problem<'a>,
     /// The fit to all samples.
     pub present: &'a Fit,
     /// The experiment on fewer samples.
@@ -23,23 +20,33 @@ pub(crate) struct Coarse<'a> {
 
 impl<'a> Coarse<'a> {
     /// Condenses the experiment of a fit.
-    pub fn new(experiment: &'a Experiment, model: &'a Model, present: &'a Fit) -> Self {
+    pub fn new(problem: Problem<'a>, present: &'a Fit) -> Self {
+        let Problem { experiment, model } = problem;
         let fitted = present.estimate.applied_to(model);
         let nuisances = &present.estimate.nuisances;
         let few = experiment.condensed(&fitted, nuisances);
         let seen = match few.samples() < experiment.samples() {
-            true => evaluate(&few, model, present.estimate.clone()),
+            true => evaluate(problem.on(&few), present.estimate.clone()),
             false => present.clone(),
         };
         let coarse_in_time = few.coarse_in_time(&fitted, nuisances);
         Self {
-            experiment,
-            model,
+            problem,
             present,
             few,
             seen,
             coarse_in_time,
         }
+    }
+
+    /// The condensed experiment, and the model.
+    pub fn condensed(&self) -> Problem<'_> {
+        self.problem.on(&self.few)
+    }
+
+    /// The condensed experiment with coarse time steps, and the model.
+    pub fn with_coarse_steps(&self) -> Problem<'_> {
+        self.problem.on(&self.coarse_in_time)
     }
 
     /// Cost of another fit on the condensed experiment, under the weights of this one or its own, whichever is less.
@@ -49,7 +56,7 @@ impl<'a> Coarse<'a> {
             return self.seen.cost;
         }
         let weights = self.seen.weights.clone();
-        let under_these = evaluate_weighted(&self.few, self.model, estimate(), weights).cost;
-        under_these.min(evaluate(&self.few, self.model, estimate()).cost)
+        let under_these = evaluate_weighted(self.condensed(), estimate(), weights).cost;
+        under_these.min(evaluate(self.condensed(), estimate()).cost)
     }
 }

@@ -4,10 +4,10 @@
 //! its second stage) distinguishes them, but between two samples a clock offset rounds corners as a second stage does.
 //! The cost therefore has separate local minima with different clock offsets, and no descent path between them.
 
-use hitch_plant::{Effect, Model, ParameterKind};
+use hitch_plant::{Effect, ParameterKind};
 
 use crate::data::clocks::{Clocks, OFFSET_PRIOR_S};
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, refine};
 
@@ -15,11 +15,11 @@ use crate::estimation::fit::{Fit, refine};
 const AMBIGUOUS_OFFSET_S: f64 = 0.5 * OFFSET_PRIOR_S;
 
 /// The better of a fit and of the fit from a start with the same total delay, all of it assigned to the lag.
-pub(crate) fn with_best_delay_split(experiment: &Experiment, model: &Model, fit: Fit) -> Fit {
+pub(crate) fn with_best_delay_split(problem: Problem<'_>, fit: Fit) -> Fit {
     let Some(start) = with_offsets_in_lag(&fit.estimate) else {
         return fit;
     };
-    let other = refine(experiment, model, start);
+    let other = refine(problem, start);
     if other.cost < fit.cost { other } else { fit }
 }
 

@@ -3,7 +3,7 @@
 use hitch_plant::{AddedEffect, Effect, SizeResponse};
 use rayon::prelude::*;
 
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimate::{Estimate, Shared};
 use crate::estimation::jacobian::{Jacobian, difference, huber, subtract};
 use crate::estimation::nuisance_projection::NuisanceProjection;
@@ -97,19 +97,17 @@ pub(crate) struct DictionaryBuilder<'a> {
 impl DictionaryBuilder<'_> {
     /// The dictionary around a fit.
     pub fn dictionary(&self) -> Dictionary {
-        let Coarse {
-            few, model, seen, ..
-        } = self.coarse;
-        let slow = slow_columns(few, model, seen);
-        let jacobian = jacobian_by(few, model, seen, &slow);
+        let (problem, seen) = (self.coarse.condensed(), &self.coarse.seen);
+        let slow = slow_columns(problem, seen);
+        let jacobian = jacobian_by(problem, seen, &slow);
         let here = huber(seen.residuals.clone());
-        let fine = self.screen(few, &jacobian, &here);
+        let fine = self.screen(problem, &jacobian, &here);
         let own = self.own(&fine);
         let mut without = here.clone();
         for entry in &own {
             add(&mut without, &entry.change);
         }
-        let rough = self.screen(&self.coarse.coarse_in_time, &jacobian, &here);
+        let rough = self.screen(self.coarse.with_coarse_steps(), &jacobian, &here);
         let new = rough.columns(self.effects.clone());
         let forms = self.other_forms(&fine, &own);
         let changed = match self.changes {
@@ -132,7 +130,7 @@ impl DictionaryBuilder<'_> {
         } = dictionary;
         let here = huber(seen.residuals.clone());
         let entries = self
-            .screen(&self.coarse.coarse_in_time, &jacobian, &here)
+            .screen(self.coarse.with_coarse_steps(), &jacobian, &here)
             .fine_columns(entries);
         Dictionary {
             is_thorough: true,
@@ -142,12 +140,12 @@ impl DictionaryBuilder<'_> {
 
     fn screen<'s>(
         &'s self,
-        experiment: &'s Experiment,
+        problem: Problem<'s>,
         jacobian: &'s Jacobian,
         here: &'s [Vec<f64>],
     ) -> Screen<'s> {
         Screen {
-            experiment,
+            problem,
             coarse: self.coarse,
             scans: self.scans,
             worthwhile: self.worthwhile,
@@ -187,7 +185,7 @@ impl DictionaryBuilder<'_> {
             let other = |form: &&'static dyn Effect| {
                 form.id() == entry.id() && form.form() != entry.added.effect.form()
             };
-            let forms = possible(self.coarse.model).filter(other);
+            let forms = possible(self.coarse.problem.model).filter(other);
             let forms = forms.flat_map(|form| in_form(&entry.added, form));
             forms.map(move |added| (index, entry, added))
         });

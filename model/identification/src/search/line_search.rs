@@ -5,10 +5,10 @@
 //! minimum with a small error, as the clocks still compensated for what was missing. Close to the optimum a fine search
 //! follows. A piecewise constant cost needs a wide search: a descent ends at its first step.
 
-use hitch_plant::{AddedEffect, Model, SizeResponse};
+use hitch_plant::{AddedEffect, SizeResponse};
 use rayon::prelude::*;
 
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimation::fit::{Fit, evaluate_weighted, refine};
 use crate::search::shape_starts::scaled;
 
@@ -21,7 +21,8 @@ const TO_EITHER_SIDE: i32 = 10;
 const NEARLY_WHOLE: f64 = 0.01;
 
 /// The better of a fit and of the fits from nearby sizes of its last effect, if that is switching or stepped.
-pub(crate) fn line_searched(experiment: &Experiment, model: &Model, fit: Fit) -> Fit {
+pub(crate) fn line_searched(problem: Problem<'_>, fit: Fit) -> Fit {
+    let Problem { experiment, .. } = problem;
     let last = fit.estimate.effects.last();
     let reaches = match last.filter(|added| !added.is_null()) {
         Some(added) => reaches(added.effect.size_response(), experiment.ringing),
@@ -29,9 +30,9 @@ pub(crate) fn line_searched(experiment: &Experiment, model: &Model, fit: Fit) ->
     };
     let along = |fit: Fit| {
         reaches.iter().fold(fit, |fit, &reach| {
-            let nearby = nearby(experiment, model, &fit, reach);
+            let nearby = nearby(problem, &fit, reach);
             if nearby.cost < fit.cost {
-                let refined = refine(experiment, model, nearby.estimate.clone());
+                let refined = refine(problem, nearby.estimate.clone());
                 better(better(fit, nearby), refined)
             } else {
                 fit
@@ -42,9 +43,9 @@ pub(crate) fn line_searched(experiment: &Experiment, model: &Model, fit: Fit) ->
         let mut estimate = fit.estimate.clone();
         estimate.effects.pop();
         estimate.effects.push(whole);
-        let whole = evaluate_weighted(experiment, model, estimate, fit.weights.clone());
-        let nearby = nearby(experiment, model, &whole, reaches[0]);
-        along(refine(experiment, model, better(whole, nearby).estimate))
+        let whole = evaluate_weighted(problem, estimate, fit.weights.clone());
+        let nearby = nearby(problem, &whole, reaches[0]);
+        along(refine(problem, better(whole, nearby).estimate))
     });
     let fit = along(fit);
     match whole {
@@ -69,7 +70,7 @@ fn reaches(response: SizeResponse, ringing: bool) -> &'static [f64] {
 }
 
 /// The best of the nearby sizes, all other parameters fixed.
-fn nearby(experiment: &Experiment, model: &Model, fit: &Fit, reach: f64) -> Fit {
+fn nearby(problem: Problem<'_>, fit: &Fit, reach: f64) -> Fit {
     let sizes = (-TO_EITHER_SIDE..=TO_EITHER_SIDE).into_par_iter();
     sizes
         .map(|step| {
@@ -78,7 +79,7 @@ fn nearby(experiment: &Experiment, model: &Model, fit: &Fit, reach: f64) -> Fit 
                 let away = reach * f64::from(step) / f64::from(TO_EITHER_SIDE);
                 *last = resized(last, away.exp());
             }
-            evaluate_weighted(experiment, model, estimate, fit.weights.clone())
+            evaluate_weighted(problem, estimate, fit.weights.clone())
         })
         .min_by(|a, b| a.cost.total_cmp(&b.cost))
         .expect("there are sizes")

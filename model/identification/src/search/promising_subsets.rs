@@ -42,7 +42,7 @@ pub(crate) fn starts(
     more: usize,
 ) -> Starts {
     let Coarse {
-        model,
+        problem,
         present,
         few,
         seen,
@@ -104,7 +104,7 @@ pub(crate) fn starts(
         }
         let starts = |&column: &usize| dictionary.is_start(column);
         if !refitted.contains(&key) && subset.columns.iter().all(starts) {
-            estimates.push(start(dictionary, present, model, subset));
+            estimates.push(start(dictionary, present, problem.model, subset));
         }
         taken.push(key);
         if taken.len() > FITTED {

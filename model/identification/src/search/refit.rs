@@ -52,17 +52,10 @@ impl Refits<'_> {
         known: &Refitted,
         progress: Progress,
     ) -> Vec<Fit> {
-        let Coarse {
-            experiment,
-            model,
-            seen: present,
-            coarse_in_time,
-            ..
-        } = self.coarse;
+        let (problem, present) = (self.coarse.problem, &self.coarse.seen);
+        let coarse = self.coarse.with_coarse_steps();
         let projections = Projections::new(jacobian, &present.estimate);
-        let residuals = |estimate: &Estimate| {
-            huber_residuals(coarse_in_time, model, &present.weights, estimate)
-        };
+        let residuals = |estimate: &Estimate| huber_residuals(coarse, &present.weights, estimate);
         // Clock offsets have compensated for what is missing. Where a start makes them unnecessary, no descent path
         // leads back.
         let cost = |estimate: &Estimate| {
@@ -95,21 +88,16 @@ impl Refits<'_> {
         let nearest = self.nearest(short_fits, REFINED).into_par_iter();
         let coarse_fits: Vec<(f64, Fit)> = nearest
             .map(|start| {
-                let fit = with_best_delay_split(
-                    coarse_in_time,
-                    model,
-                    refine(coarse_in_time, model, start),
-                );
+                let fit = with_best_delay_split(coarse, refine(coarse, start));
                 let (estimate, weights) = (fit.estimate.clone(), present.weights.clone());
-                let under_present =
-                    evaluate_weighted(coarse_in_time, model, estimate, weights).cost;
+                let under_present = evaluate_weighted(coarse, estimate, weights).cost;
                 let cost = fit.cost.min(under_present) + self.penalty.of_all(&fit.estimate);
                 (cost, fit)
             })
             .collect();
         let likely = self.likely(coarse_fits).into_par_iter();
         let refined = likely.map(|estimate| {
-            let fit = with_best_delay_split(experiment, model, refine(experiment, model, estimate));
+            let fit = with_best_delay_split(problem, refine(problem, estimate));
             let fit = self.line_searched(fit);
             progress(&key(&fit).name());
             fit
@@ -151,13 +139,11 @@ impl Refits<'_> {
     /// The fit from one start. If clocks are off, a start with all clocks in step is tried as well: the delay may
     /// belong to the effect, and there is no descent path between the two minima.
     pub fn one(&self, start: Estimate) -> Fit {
-        let Coarse {
-            experiment, model, ..
-        } = self.coarse;
+        let problem = self.coarse.problem;
         let from = |start: Estimate| {
             let found = self.short_fit_from(start);
-            let fit = refine(experiment, model, found.estimate);
-            self.line_searched(with_best_delay_split(experiment, model, fit))
+            let fit = refine(problem, found.estimate);
+            self.line_searched(with_best_delay_split(problem, fit))
         };
         let in_step = start.clocks.are_off().then(|| {
             let clocks = Clocks::default();
@@ -175,14 +161,9 @@ impl Refits<'_> {
 
     /// A short fit under the present weights; far from the data also by way of the coarse weights.
     fn short_fit_from(&self, start: Estimate) -> Descent {
-        let Coarse {
-            model,
-            seen,
-            coarse_in_time,
-            ..
-        } = self.coarse;
-        let weights = &seen.weights;
-        let from = |far: bool| short_fit(coarse_in_time, model, weights, start.clone(), far);
+        let weights = &self.coarse.seen.weights;
+        let problem = self.coarse.with_coarse_steps();
+        let from = |far: bool| short_fit(problem, weights, start.clone(), far);
         let near = from(false);
         let samples = weights.count() as f64;
         if (near.cost / samples).sqrt() <= POOR_ERROR {
@@ -202,11 +183,8 @@ impl Refits<'_> {
         });
         match jumps {
             Some(index) => {
-                let Coarse {
-                    experiment, model, ..
-                } = self.coarse;
-                let last = with_last(experiment, model, &fit, index);
-                line_searched(experiment, model, last)
+                let problem = self.coarse.problem;
+                line_searched(problem, with_last(problem, &fit, index))
             }
             None => fit,
         }

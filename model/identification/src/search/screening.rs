@@ -7,7 +7,7 @@
 use hitch_plant::{AddedEffect, Effect, SizeResponse, is_same};
 use rayon::prelude::*;
 
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::jacobian::{Jacobian, difference, huber_residuals};
 use crate::estimation::nuisance_projection::NuisanceProjection;
@@ -43,8 +43,8 @@ pub(crate) const EXPLAINED: f64 = 1.05;
 
 /// Screening of single effects around a fit.
 pub(crate) struct Screen<'a> {
-    /// The experiment for simulations: the condensed one, or its version with coarse time steps.
-    pub experiment: &'a Experiment,
+    /// The experiment for simulations, the condensed one or its version with coarse time steps, and the model.
+    pub problem: Problem<'a>,
     pub coarse: &'a Coarse<'a>,
     pub scans: &'a Scans,
     /// Smallest predicted reduction of the cost for which an effect is examined closely.
@@ -78,7 +78,7 @@ impl Screen<'_> {
     pub fn fine_columns(&self, entries: Vec<Entry>) -> Vec<Entry> {
         let has_local_minima = |entry: &Entry| {
             let effect = entry.added.effect;
-            entry.kind == Kind::New && scan_grid(self.coarse.experiment, effect).is_some()
+            entry.kind == Kind::New && scan_grid(self.coarse.problem.experiment, effect).is_some()
         };
         let (searched, mut entries): (Vec<Entry>, Vec<Entry>) =
             entries.into_iter().partition(has_local_minima);
@@ -162,11 +162,9 @@ impl Screen<'_> {
             return;
         };
         let Coarse {
-            experiment,
-            model,
-            present,
-            ..
+            problem, present, ..
         } = self.coarse;
+        let experiment = problem.experiment;
         let is_unexplained = present.error() > EXPLAINED;
         if let Some(grid) = scan_grid(experiment, hint.effect)
             && (promising || (is_unexplained && !grid.hinted))
@@ -174,10 +172,10 @@ impl Screen<'_> {
             // Condensed runs do not show when a spool jumps; runs with coarse time steps do show the ringing of a
             // pressure.
             let runs = match experiment.ringing {
-                true => self.experiment,
-                false => *experiment,
+                true => self.problem,
+                false => *problem,
             };
-            let look = || scan(runs, model, present, &hint, grid);
+            let look = || scan(runs, present, &hint, grid);
             let found = self.scans.of(hint.effect, present.cost, look);
             ends.extend(self.ends(found, false));
         }
@@ -264,7 +262,6 @@ impl Screen<'_> {
 
     /// Residuals of an estimate after Huber's loss, under the present weights.
     pub fn residuals(&self, estimate: &Estimate) -> Vec<Vec<f64>> {
-        let Coarse { model, seen, .. } = self.coarse;
-        huber_residuals(self.experiment, model, &seen.weights, estimate)
+        huber_residuals(self.problem, &self.coarse.seen.weights, estimate)
     }
 }

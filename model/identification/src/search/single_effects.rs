@@ -1,9 +1,9 @@
 //! Effects tried one at a time on a fitted model.
 
-use hitch_plant::{AddedEffect, Effect, Model, is_same};
+use hitch_plant::{AddedEffect, Effect, is_same};
 use rayon::prelude::*;
 
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, evaluate_weighted};
 use crate::search::best_subset::fitted;
@@ -27,28 +27,27 @@ pub type OnWeighed<'a> = &'a (dyn Fn(&Candidate) + Sync);
 /// Each effect in its best form added to a fit and weighed, by decreasing probability.
 #[must_use]
 pub fn try_effects(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     base: &Fit,
     effects: &[&'static dyn Effect],
     progress: Progress,
 ) -> Vec<Candidate> {
-    try_each(experiment, model, base, effects, progress, &|_| {})
+    try_each(problem, base, effects, progress, &|_| {})
 }
 
 /// [`try_effects`] with a callback for each form once it is weighed, in any order.
 #[must_use]
 pub fn try_each(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     base: &Fit,
     effects: &[&'static dyn Effect],
     progress: Progress,
     weighed: OnWeighed,
 ) -> Vec<Candidate> {
+    let Problem { experiment, .. } = problem;
     let scans = Scans::default();
     let penalty = Penalty::given(experiment, base);
-    let coarse = Coarse::new(experiment, model, base);
+    let coarse = Coarse::new(problem, base);
     let builder = DictionaryBuilder {
         coarse: &coarse,
         effects: effects.to_vec(),
@@ -85,18 +84,18 @@ pub fn try_each(
         penalty,
         options: Options::default(),
     };
-    let slow = slow_columns(experiment, model, base);
+    let slow = slow_columns(problem, base);
     let promising = |cost: f64| coarse.seen.cost - cost > builder.worthwhile || effects.len() == 1;
     let tried = starts.into_par_iter().enumerate();
     let tried = tried.map(|(rank, (cost, effect, estimate))| {
         progress(effect.id());
         let candidate = match estimate {
             Some(estimate) if promising(cost) && rank < FITTED => {
-                weigh(experiment, model, base, effect, refits.one(estimate))
+                weigh(problem, base, effect, refits.one(estimate))
             }
             Some(estimate) if promising(cost) => {
-                let fit = evaluate_weighted(experiment, model, estimate, base.weights.clone());
-                weigh_by(experiment, model, base, effect, fit, &slow)
+                let fit = evaluate_weighted(problem, estimate, base.weights.clone());
+                weigh_by(problem, base, effect, fit, &slow)
             }
             _ => {
                 let mut fit = base.clone();

@@ -9,6 +9,7 @@ use hitch_plant::{AddedEffect, Model, Parameter};
 use rayon::prelude::*;
 
 use crate::data::experiment::{Experiment, ReadyRun};
+use crate::data::problem::Problem;
 use crate::data::regime::Regime;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::residuals;
@@ -152,16 +153,16 @@ const FIRST_INFORMATIVE: usize = 2;
 /// The sizes and shapes of an effect around those that fit the most informative runs best; `hint` is the effect at any
 /// size.
 pub(crate) fn scan(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     base: &Fit,
     hint: &AddedEffect,
     grid: &Grid,
 ) -> Vec<AddedEffect> {
+    let Problem { experiment, model } = problem;
     let failed = failed(base);
     let informative = match grid.informative {
         Informative::Changed => {
-            let changed = changed(experiment, model, base, hint);
+            let changed = changed(problem, base, hint);
             of_each_valve(experiment, &geometric_mean(&changed, &unexplained(base)))
         }
         Informative::Failed => most_informative_runs(experiment, &failed, INFORMATIVE_SAMPLES),
@@ -316,11 +317,11 @@ fn bounded_loss(residual: f64) -> f64 {
 
 /// Loss between two sizes of the effect in each run. A run that every size changes alike, like a plateau that is
 /// reached from below, does not determine the size.
-fn changed(experiment: &Experiment, model: &Model, base: &Fit, hint: &AddedEffect) -> Vec<f64> {
+fn changed(problem: Problem<'_>, base: &Fit, hint: &AddedEffect) -> Vec<f64> {
     let [smaller, larger] = HINT_VARIATIONS.map(|share| {
         let mut with = base.estimate.clone();
         with.effects.push(scaled(hint, share));
-        residuals(experiment, model, &base.weights, &with)
+        residuals(problem, &base.weights, &with)
     });
     let runs = smaller.iter().zip(&larger);
     runs.map(|(a, b)| a.iter().zip(b).map(|(a, b)| bounded_loss(a - b)).sum())

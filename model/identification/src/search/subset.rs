@@ -12,10 +12,10 @@
 
 use std::time::Instant;
 
-use hitch_plant::{Effect, Model};
+use hitch_plant::Effect;
 
 use crate::data::clocks::Clocks;
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimation::fit::{Fit, evaluate, evaluate_weighted};
 use crate::search::candidates::{Progress, showing};
 use crate::search::coarse_view::Coarse;
@@ -111,21 +111,19 @@ impl Found {
 
 /// Searches the set of effects that explains a campaign best, from a fit of the model alone.
 pub(crate) fn search(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     base: &Fit,
     options: Options<'_>,
     progress: Progress,
 ) -> Found {
     let mut search = Search {
-        experiment,
-        model,
+        problem,
         options,
         progress,
         scans: Scans::default(),
         refitted: Refitted::new(base),
         present: base.clone(),
-        left: held_out(experiment, model, base),
+        left: held_out(problem, base),
         order: Vec::new(),
         rivals: Vec::new(),
     };
@@ -147,8 +145,8 @@ pub(crate) fn search(
 
 /// State of a search.
 struct Search<'a> {
-    experiment: &'a Experiment,
-    model: &'a Model,
+    /// The measured data and the model.
+    problem: Problem<'a>,
     options: Options<'a>,
     progress: Progress<'a>,
     scans: Scans,
@@ -169,7 +167,7 @@ impl Search<'_> {
         let name = key(&self.present).name();
         (self.progress)(&format!("what is missing beside {name}"));
         let present = self.present.clone();
-        let coarse = Coarse::new(self.experiment, self.model, &present);
+        let coarse = Coarse::new(self.problem, &present);
         let builder = self.builder(&coarse, |_| true);
         let dictionary = builder.dictionary();
         self.fits_subsets(&coarse, &dictionary, MORE);
@@ -193,11 +191,11 @@ impl Search<'_> {
 
     /// Repeats the dictionary with all clocks in step, for delays that clock offsets compensate.
     fn tries_synchronised(&mut self, present: &Fit) {
-        let in_step = synchronous(self.experiment, self.model, present);
+        let in_step = synchronous(self.problem, present);
         if let Some(in_step) = in_step
             && self.refitted.least_error() > EXPLAINED
         {
-            let coarse = Coarse::new(self.experiment, self.model, &in_step);
+            let coarse = Coarse::new(self.problem, &in_step);
             let dictionary = self.builder(&coarse, delays::is_delay).dictionary();
             // A set that was fitted with clock offsets may have another local minimum with all clocks in step.
             let known = Refitted::new(present);
@@ -217,8 +215,8 @@ impl Search<'_> {
             (self.progress)(&format!("what is there in place of {id}"));
             let weights = self.present.weights.clone();
             let without = estimate.without(index);
-            let center = evaluate_weighted(self.experiment, self.model, without, weights);
-            let coarse = Coarse::new(self.experiment, self.model, &center);
+            let center = evaluate_weighted(self.problem, without, weights);
+            let coarse = Coarse::new(self.problem, &center);
             let builder = self.builder(&coarse, |effect| rivals.contains(&effect.id()));
             let dictionary = match center.error() < CONFOUNDABLE_ERROR {
                 true => builder.thorough(builder.dictionary()),
@@ -235,15 +233,14 @@ impl Search<'_> {
         coarse: &'a Coarse,
         wanted: impl Fn(&dyn Effect) -> bool,
     ) -> DictionaryBuilder<'a> {
-        let (experiment, model) = (self.experiment, self.model);
-        let mut effects = showing(experiment, model, &coarse.present.estimate);
+        let mut effects = showing(self.problem, &coarse.present.estimate);
         effects.retain(|effect| wanted(*effect));
         DictionaryBuilder {
             coarse,
             effects,
             changes: self.options.changes,
             scans: &self.scans,
-            worthwhile: 0.5 * Penalty::given(experiment, coarse.present).minimum(),
+            worthwhile: 0.5 * Penalty::given(self.problem.experiment, coarse.present).minimum(),
         }
     }
 
@@ -269,7 +266,7 @@ impl Search<'_> {
             options: self.options,
         };
         for fit in refits.of(starts.estimates, &dictionary.jacobian, known, self.progress) {
-            if resolution::is_resolved(self.experiment, &fit.estimate) {
+            if resolution::is_resolved(self.problem.experiment, &fit.estimate) {
                 self.refitted.insert(fit);
             }
         }
@@ -278,10 +275,9 @@ impl Search<'_> {
     /// Moves to the best set that is better than the present one and has less error in held-out runs. Returns whether
     /// there is one.
     fn moves_to_best(&mut self) -> bool {
-        let (experiment, model) = (self.experiment, self.model);
-        let better = self.refitted.better(experiment, model, &self.present);
+        let better = self.refitted.better(self.problem, &self.present);
         let admitted = better.into_iter().take(TRIED).find_map(|fit| {
-            let its = held_out(experiment, model, fit);
+            let its = held_out(self.problem, fit);
             let fewer = key(fit).len() < key(&self.present).len();
             let gain = self.left.excess() - its.excess();
             // A campaign of one run has no held-out runs; the test is then skipped.
@@ -314,11 +310,11 @@ impl Search<'_> {
 
 /// A fit re-evaluated with all clocks in step, if they are off: clock offsets that compensate for a missing delay hide
 /// it from the secants.
-fn synchronous(experiment: &Experiment, model: &Model, fit: &Fit) -> Option<Fit> {
+fn synchronous(problem: Problem<'_>, fit: &Fit) -> Option<Fit> {
     fit.estimate.clocks.are_off().then(|| {
         let mut estimate = fit.estimate.clone();
         estimate.clocks = Clocks::default();
-        evaluate(experiment, model, estimate)
+        evaluate(problem, estimate)
     })
 }
 

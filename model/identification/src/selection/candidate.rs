@@ -1,10 +1,11 @@
 //! An effect fitted in addition to the free parameters of a model, and its evidence.
 
-use hitch_plant::{AddedEffect, Effect, Model};
+use hitch_plant::{AddedEffect, Effect};
 use rayon::prelude::*;
 
 use crate::adequacy::lack_of_fit::SLOW_NOISE;
 use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimate::Shared;
 use crate::estimation::central_differences::with_central_differences;
 use crate::estimation::fit::Fit;
@@ -113,59 +114,47 @@ pub fn plausibility(explained_share: f64) -> f64 {
 
 /// Weighs the last effect of a fitted model against the model without it.
 #[must_use]
-pub fn weigh(
-    experiment: &Experiment,
-    model: &Model,
-    base: &Fit,
-    effect: &'static dyn Effect,
-    fit: Fit,
-) -> Candidate {
-    let slow = slow_columns(experiment, model, &fit);
-    let jacobian = jacobian_by(experiment, model, &fit, &slow);
-    let jacobian = with_central_differences(experiment, model, &fit, jacobian);
-    weigh_with(experiment, model, base, effect, fit, &jacobian)
+pub fn weigh(problem: Problem<'_>, base: &Fit, effect: &'static dyn Effect, fit: Fit) -> Candidate {
+    let slow = slow_columns(problem, &fit);
+    let jacobian = jacobian_by(problem, &fit, &slow);
+    let jacobian = with_central_differences(problem, &fit, jacobian);
+    weigh_with(problem, base, effect, fit, &jacobian)
 }
 
 /// Columns of clocks and loads at a fit, from its residuals.
-pub(crate) fn slow_columns(experiment: &Experiment, model: &Model, fit: &Fit) -> SlowColumns {
+pub(crate) fn slow_columns(problem: Problem<'_>, fit: &Fit) -> SlowColumns {
     let residuals = huber(fit.residuals.clone());
-    SlowColumns::new(experiment, model, &fit.weights, &fit.estimate, &residuals)
+    SlowColumns::new(problem, &fit.weights, &fit.estimate, &residuals)
 }
 
 /// Jacobian at a fit, from its residuals and the columns of clocks and loads there or nearby.
-pub(crate) fn jacobian_by(
-    experiment: &Experiment,
-    model: &Model,
-    fit: &Fit,
-    slow: &SlowColumns,
-) -> Jacobian {
+pub(crate) fn jacobian_by(problem: Problem<'_>, fit: &Fit, slow: &SlowColumns) -> Jacobian {
     let residuals = huber(fit.residuals.clone());
     let (weights, estimate) = (&fit.weights, &fit.estimate);
-    Jacobian::with_slow_columns(experiment, model, weights, estimate, &residuals, slow)
+    Jacobian::with_slow_columns(problem, weights, estimate, &residuals, slow)
 }
 
 /// [`weigh`] with the columns of clocks and loads from a nearby estimate, and with forward differences: accurate enough
 /// to rank effects.
 pub(crate) fn weigh_by(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     base: &Fit,
     effect: &'static dyn Effect,
     fit: Fit,
     slow: &SlowColumns,
 ) -> Candidate {
-    let jacobian = jacobian_by(experiment, model, &fit, slow);
-    weigh_with(experiment, model, base, effect, fit, &jacobian)
+    let jacobian = jacobian_by(problem, &fit, slow);
+    weigh_with(problem, base, effect, fit, &jacobian)
 }
 
 fn weigh_with(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     base: &Fit,
     effect: &'static dyn Effect,
     fit: Fit,
     jacobian: &Jacobian,
 ) -> Candidate {
+    let Problem { experiment, .. } = problem;
     let index = fit.estimate.effects.len() - 1;
     let variance = fit.variance();
     let free = fit.estimate.free_parameters(effect.id());
@@ -176,7 +165,7 @@ fn weigh_with(
         detectability,
         inflation,
         explained_share,
-    } = Evidence::new(experiment, model, &fit, jacobian);
+    } = Evidence::new(problem, &fit, jacobian);
     let intervals = signatures
         .par_iter()
         .map(|signature| {
@@ -186,8 +175,7 @@ fn weigh_with(
             let systematic = 1.96 * systematic(&fit.estimate.effects[index], signature.parameter);
             let predicted = 1.96 * deviation * fit.estimate.scale(signature.shared);
             let profile = ProfileLikelihood {
-                experiment,
-                model,
+                problem,
                 fit: &fit,
                 shared: signature.shared,
                 projection: &signature.projection,
@@ -200,7 +188,7 @@ fn weigh_with(
             )
         })
         .collect();
-    let cost_reduction = base.cost - fit.cost_under_weights_of(experiment, model, base);
+    let cost_reduction = base.cost - fit.cost_under_weights_of(problem, base);
     Candidate {
         effect,
         likelihood_ratio: cost_reduction / (variance * inflation),
@@ -284,10 +272,11 @@ struct Evidence {
 impl Evidence {
     /// Uses the whole change instead of its derivative: the derivative of an effect with a threshold or a switching
     /// effect overestimates it.
-    fn new(experiment: &Experiment, model: &Model, fit: &Fit, jacobian: &Jacobian) -> Self {
+    fn new(problem: Problem<'_>, fit: &Fit, jacobian: &Jacobian) -> Self {
+        let Problem { experiment, .. } = problem;
         let last = fit.estimate.effects.len() - 1;
         let without = fit.estimate.without(last);
-        let without = huber_residuals(experiment, model, &fit.weights, &without);
+        let without = huber_residuals(problem, &fit.weights, &without);
         let change = difference(&without, &huber(fit.residuals.clone()));
         let own = |shared: &Shared| matches!(shared, Shared::Effect(effect, _) if *effect == last);
         let columns = &jacobian.shared;

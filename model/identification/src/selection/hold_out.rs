@@ -1,9 +1,9 @@
 //! Cross-validation: error in held-out runs.
 
-use hitch_plant::Model;
 use rayon::prelude::*;
 
 use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::fit::{ErrorSums, Fit, evaluate_weighted, fit_loads, refine_once};
 use crate::residuals::whitening::Weights;
@@ -45,7 +45,8 @@ impl HeldOut {
 /// from the other runs; for a held-out run only its load error is fitted, within its prior. The weights are those of
 /// the fit to all runs. [`HeldOut::NONE`] with fewer than two runs.
 #[must_use]
-pub fn held_out(experiment: &Experiment, model: &Model, fit: &Fit) -> HeldOut {
+pub fn held_out(problem: Problem<'_>, fit: &Fit) -> HeldOut {
+    let Problem { experiment, .. } = problem;
     let folds = FOLDS.min(experiment.runs.len());
     if folds < 2 {
         return HeldOut::NONE;
@@ -55,7 +56,7 @@ pub fn held_out(experiment: &Experiment, model: &Model, fit: &Fit) -> HeldOut {
         .map(|fold| {
             let outside = |run: usize| run % folds != fold;
             let (train, weights, start) = part(experiment, fit, outside);
-            let trained = refine_once(&train, model, &weights, start);
+            let trained = refine_once(problem.on(&train), &weights, start);
             let (test, weights, test_start) = part(experiment, fit, |run| !outside(run));
             let start = Estimate {
                 effects: trained.effects,
@@ -64,8 +65,9 @@ pub fn held_out(experiment: &Experiment, model: &Model, fit: &Fit) -> HeldOut {
                 nuisances: test_start.nuisances,
                 clocks_within_s: test_start.clocks_within_s,
             };
-            let loaded = fit_loads(&test, model, &weights, start);
-            let tested = evaluate_weighted(&test, model, loaded, weights);
+            let test = problem.on(&test);
+            let loaded = fit_loads(test, &weights, start);
+            let tested = evaluate_weighted(test, loaded, weights);
             (ErrorSums::of(&tested), ErrorSums::with_huber_loss(&tested))
         })
         .collect();
@@ -79,20 +81,14 @@ pub fn held_out(experiment: &Experiment, model: &Model, fit: &Fit) -> HeldOut {
 /// Held-out error of `fit` under the weights of `other`, if its own weights are so different that the two are not
 /// comparable: a sticking spool does not follow the noise of the currents.
 #[must_use]
-pub fn held_out_under_weights_of(
-    experiment: &Experiment,
-    model: &Model,
-    fit: &Fit,
-    other: &Fit,
-) -> Option<HeldOut> {
+pub fn held_out_under_weights_of(problem: Problem<'_>, fit: &Fit, other: &Fit) -> Option<HeldOut> {
     let (estimate, weights) = (other.estimate.clone(), fit.weights.clone());
-    let under_its = evaluate_weighted(experiment, model, estimate, weights).cost;
+    let under_its = evaluate_weighted(problem, estimate, weights).cost;
     let incomparable = under_its > INCOMPARABLE * other.cost;
     incomparable.then(|| {
         let weights = other.weights.clone();
         held_out(
-            experiment,
-            model,
+            problem,
             &Fit {
                 weights,
                 ..fit.clone()

@@ -3,9 +3,7 @@
 //! An effect that is weighed when it is added absorbs part of the effects added later: neither its value nor its
 //! evidence is final.
 
-use hitch_plant::Model;
-
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimation::fit::{Fit, refine, with_last};
 use crate::selection::candidate::{Candidate, weigh};
 
@@ -20,30 +18,20 @@ pub struct LeaveOneOut {
 
 /// Weighs each effect of a fitted model, from the `first` one on, against the model with all others.
 #[must_use]
-pub fn leave_one_out(
-    experiment: &Experiment,
-    model: &Model,
-    fit: &Fit,
-    first: usize,
-) -> Vec<LeaveOneOut> {
+pub fn leave_one_out(problem: Problem<'_>, fit: &Fit, first: usize) -> Vec<LeaveOneOut> {
     let effects = first..fit.estimate.effects.len();
     effects
-        .map(|index| leave_one_out_of(experiment, model, fit, index))
+        .map(|index| leave_one_out_of(problem, fit, index))
         .collect()
 }
 
 /// Weighs one effect of a fitted model against the model with all others.
-pub(crate) fn leave_one_out_of(
-    experiment: &Experiment,
-    model: &Model,
-    fit: &Fit,
-    index: usize,
-) -> LeaveOneOut {
-    let without = refine(experiment, model, fit.estimate.without(index));
-    let whole = with_last(experiment, model, fit, index);
+pub(crate) fn leave_one_out_of(problem: Problem<'_>, fit: &Fit, index: usize) -> LeaveOneOut {
+    let without = refine(problem, fit.estimate.without(index));
+    let whole = with_last(problem, fit, index);
     let effect = fit.estimate.effects[index].effect;
     LeaveOneOut {
-        candidate: weigh(experiment, model, &without, effect, whole),
+        candidate: weigh(problem, &without, effect, whole),
         without,
     }
 }

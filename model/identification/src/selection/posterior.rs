@@ -2,9 +2,8 @@
 
 use std::collections::HashMap;
 
-use hitch_plant::Model;
-
 use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, evaluate_weighted};
 use crate::selection::complexity_penalty::Penalty;
@@ -118,13 +117,14 @@ impl Refitted {
     }
 
     /// Sets that are better than the present one, by penalised cost.
-    pub fn better(&self, experiment: &Experiment, model: &Model, present: &Fit) -> Vec<&Fit> {
+    pub fn better(&self, problem: Problem<'_>, present: &Fit) -> Vec<&Fit> {
+        let Problem { experiment, .. } = problem;
         let penalty = self.penalty(experiment);
-        let here = penalized(experiment, model, present, present, penalty);
+        let here = penalized(problem, present, present, penalty);
         let own = key(present);
         let others = self.fits.iter().filter(|(key, _)| **key != own);
         let mut better: Vec<(f64, &Fit)> = others
-            .map(|(_, fit)| (penalized(experiment, model, fit, present, penalty), fit))
+            .map(|(_, fit)| (penalized(problem, fit, present, penalty), fit))
             .filter(|(cost, _)| *cost < here - BETTER)
             .collect();
         better.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -139,14 +139,15 @@ impl Refitted {
     }
 
     /// Posterior probability of each set, and its penalised likelihood ratio relative to the best one.
-    pub fn weighed(&self, experiment: &Experiment, model: &Model, best: &Fit) -> Vec<Weighed<'_>> {
+    pub fn weighed(&self, problem: Problem<'_>, best: &Fit) -> Vec<Weighed<'_>> {
+        let Problem { experiment, .. } = problem;
         let penalty = Penalty::given(experiment, best);
-        let here = penalized(experiment, model, best, best, penalty);
+        let here = penalized(problem, best, best, penalty);
         let mut weighed: Vec<Weighed> = self
             .fits
             .iter()
             .map(|(key, fit)| {
-                let cost = penalized(experiment, model, fit, best, penalty);
+                let cost = penalized(problem, fit, best, penalty);
                 Weighed {
                     key,
                     fit,
@@ -179,14 +180,8 @@ pub(crate) struct Weighed<'a> {
 
 /// Penalised cost of a fit, under the weights of another fit or its own, whichever is less: a sticking spool does not
 /// follow the noise of the currents, and under its own weights its residuals are larger.
-fn penalized(
-    experiment: &Experiment,
-    model: &Model,
-    fit: &Fit,
-    beside: &Fit,
-    penalty: Penalty,
-) -> f64 {
+fn penalized(problem: Problem<'_>, fit: &Fit, beside: &Fit, penalty: Penalty) -> f64 {
     let (estimate, weights) = (fit.estimate.clone(), beside.weights.clone());
-    let under_its = evaluate_weighted(experiment, model, estimate, weights).cost;
+    let under_its = evaluate_weighted(problem, estimate, weights).cost;
     under_its.min(fit.cost) + penalty.of_all(&fit.estimate)
 }

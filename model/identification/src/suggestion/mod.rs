@@ -15,9 +15,9 @@ mod spread;
 
 use hitch_effects::TermEffect;
 use hitch_effects::expression::TermDefinition;
-use hitch_plant::{AddedEffect, Effect, Model};
+use hitch_plant::{AddedEffect, Effect};
 
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimation::fit::{Fit, evaluate, refine};
 use crate::explanation::explain::{Explanation, Verdict};
 use crate::search::candidates::Progress;
@@ -69,8 +69,7 @@ pub struct Suggestion {
 /// Searches for a term if the verdict of an explanation is [`Verdict::Unexplained`].
 #[must_use]
 pub fn suggest(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     found: &Explanation,
     progress: Progress,
 ) -> Option<Suggestion> {
@@ -78,21 +77,21 @@ pub fn suggest(
         return None;
     }
     let last = found.steps.last().map(|step| step.held_out_after);
-    let present = last.unwrap_or_else(|| held_out(experiment, model, &found.before));
+    let present = last.unwrap_or_else(|| held_out(problem, &found.before));
     let excess = |left: HeldOut| left.excess().max(0.0);
-    let mut tried = trials(experiment, model, found, &found.before, progress);
+    let mut tried = trials(problem, found, &found.before, progress);
     let least = tried
         .iter()
         .map(|trial| excess(trial.held_out))
         .fold(excess(present), f64::min);
     if !found.steps.is_empty() && least > SETTLED * excess(present) {
-        tried.extend(trials(experiment, model, found, &found.after, progress));
+        tried.extend(trials(problem, found, &found.after, progress));
     }
     let best = tried
         .into_iter()
         .min_by(|a, b| a.score().total_cmp(&b.score()))?;
     let left = excess(best.held_out) / excess(present);
-    (left < 1.0 - WORTH_OFFERING).then(|| best.suggestion(experiment, model, found, present))
+    (left < 1.0 - WORTH_OFFERING).then(|| best.suggestion(problem, found, present))
 }
 
 /// A term fitted on a start, and its error in held-out runs.
@@ -112,15 +111,15 @@ impl Trial {
 
     fn suggestion(
         self,
-        experiment: &Experiment,
-        model: &Model,
+        problem: Problem<'_>,
         found: &Explanation,
         held_out_before: HeldOut,
     ) -> Suggestion {
+        let Problem { model, .. } = problem;
         let given = model.effects.len();
-        let (candidate, dropped) = without_unneeded(experiment, model, self.candidate, given);
+        let (candidate, dropped) = without_unneeded(problem, self.candidate, given);
         let held_out_after = if dropped {
-            held_out(experiment, model, &candidate.fit)
+            held_out(problem, &candidate.fit)
         } else {
             self.held_out
         };
@@ -149,21 +148,21 @@ impl Trial {
 
 /// The most promising terms added to a start, fitted and evaluated on held-out runs.
 fn trials(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     found: &Explanation,
     start: &Fit,
     progress: Progress,
 ) -> Vec<Trial> {
-    let definitions = shapes::definitions(experiment, model, start, &found.rest.depends_on);
+    let Problem { experiment, .. } = problem;
+    let definitions = shapes::definitions(problem, start, &found.rest.depends_on);
     let count = if experiment.ringing {
         FITTED_RINGING
     } else {
         FITTED
     };
-    let terms = screen::best(experiment, model, start, definitions, count);
+    let terms = screen::best(problem, start, definitions, count);
     let effects: Vec<&'static dyn Effect> = terms.iter().map(|term| *term as &dyn Effect).collect();
-    let tried = try_effects(experiment, model, start, &effects, progress);
+    let tried = try_effects(problem, start, &effects, progress);
     tried
         .iter()
         .filter(|candidate| candidate.likelihood_ratio >= SIGNIFICANT)
@@ -173,7 +172,7 @@ fn trials(
             let term = terms.iter().copied().find(|term| term.id() == id)?;
             Some(Trial {
                 term,
-                held_out: held_out(experiment, model, &candidate.fit),
+                held_out: held_out(problem, &candidate.fit),
                 candidate: candidate.clone(),
             })
         })
@@ -183,8 +182,7 @@ fn trials(
 
 /// The candidate without the steps that are not needed with it, and whether there were any.
 fn without_unneeded(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     mut candidate: Candidate,
     given: usize,
 ) -> (Candidate, bool) {
@@ -193,13 +191,12 @@ fn without_unneeded(
     while index + 1 < candidate.fit.estimate.effects.len() {
         let mut reduced = candidate.fit.estimate.clone();
         let AddedEffect { effect, .. } = reduced.effects.remove(index);
-        let reduced = refine(experiment, model, reduced);
+        let reduced = refine(problem, reduced);
         let mut whole = candidate.fit.estimate.clone();
         let moved = whole.effects.remove(index);
         whole.effects.push(moved);
-        let whole = evaluate(experiment, model, whole);
-        let needed =
-            weigh(experiment, model, &reduced, effect, whole).likelihood_ratio >= SIGNIFICANT;
+        let whole = evaluate(problem, whole);
+        let needed = weigh(problem, &reduced, effect, whole).likelihood_ratio >= SIGNIFICANT;
         if needed {
             index += 1;
         } else {
@@ -210,8 +207,8 @@ fn without_unneeded(
     if dropped {
         let mut without = candidate.fit.estimate.clone();
         without.effects.pop();
-        let base = refine(experiment, model, without);
-        candidate = weigh(experiment, model, &base, candidate.effect, candidate.fit);
+        let base = refine(problem, without);
+        candidate = weigh(problem, &base, candidate.effect, candidate.fit);
     }
     (candidate, dropped)
 }

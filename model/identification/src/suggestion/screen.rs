@@ -2,10 +2,10 @@
 
 use hitch_effects::TermEffect;
 use hitch_effects::expression::TermDefinition;
-use hitch_plant::{AddedEffect, Effect, Model};
+use hitch_plant::{AddedEffect, Effect};
 use rayon::prelude::*;
 
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{Jacobian, dot, huber_residuals};
 use crate::estimation::nuisance_projection::NuisanceProjection;
@@ -17,13 +17,12 @@ const SIZE: f64 = 0.5;
 /// reduction.
 #[must_use]
 pub fn best(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     fit: &Fit,
     definitions: Vec<TermDefinition>,
     count: usize,
 ) -> Vec<&'static TermEffect> {
-    let jacobian = Jacobian::new(experiment, model, &fit.weights, &fit.estimate);
+    let jacobian = Jacobian::new(problem, &fit.weights, &fit.estimate);
     let projection = NuisanceProjection::new(&jacobian, &fit.estimate, 0..0);
     let base: Vec<Vec<f64>> = jacobian.runs.iter().map(|r| r.residual.clone()).collect();
     let left = projection.project(base.clone());
@@ -31,7 +30,7 @@ pub fn best(
         .into_par_iter()
         .filter_map(|definition| TermEffect::define(definition).ok())
         .map(|term| {
-            let (size, moved) = secant(experiment, model, fit, &base, term);
+            let (size, moved) = secant(problem, fit, &base, term);
             (
                 explained(term, size, &left, &projection.project(moved)),
                 term,
@@ -53,8 +52,7 @@ pub fn best(
 
 /// The size of a small step, and the decrease of the residuals with it.
 fn secant(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     fit: &Fit,
     base: &[Vec<f64>],
     term: &'static TermEffect,
@@ -64,7 +62,7 @@ fn secant(
     let size = added.values[0];
     let mut estimate = fit.estimate.clone();
     estimate.effects.push(added);
-    let moved = huber_residuals(experiment, model, &fit.weights, &estimate);
+    let moved = huber_residuals(problem, &fit.weights, &estimate);
     let signature = base
         .iter()
         .zip(moved)

@@ -1,9 +1,9 @@
 //! The grammar of suggestions: combinations of place, signal and shape with a physical meaning.
 
 use hitch_effects::expression::{ParameterDefinition, TermDefinition};
-use hitch_plant::{Model, Place};
+use hitch_plant::Place;
 
-use crate::data::experiment::Experiment;
+use crate::data::problem::Problem;
 use crate::estimation::fit::Fit;
 use crate::suggestion::spread;
 
@@ -146,12 +146,7 @@ const OFF: f64 = 1.05;
 
 /// Terms to screen on a fitted model; `depends_on` lists the attribution's signals, the most important first.
 #[must_use]
-pub fn definitions(
-    experiment: &Experiment,
-    model: &Model,
-    fit: &Fit,
-    depends_on: &[String],
-) -> Vec<TermDefinition> {
+pub fn definitions(problem: Problem<'_>, fit: &Fit, depends_on: &[String]) -> Vec<TermDefinition> {
     let wanted: Vec<&str> = depends_on
         .iter()
         .take(FIRST_NAMES)
@@ -168,7 +163,7 @@ pub fn definitions(
     {
         let signals = place_grammar.signals.iter().enumerate();
         for (_, signal) in signals.filter(|(rank, signal)| *rank == 0 || wanted.contains(signal)) {
-            if let Some(scales) = spread::quantiles(experiment, model, signal) {
+            if let Some(scales) = spread::quantiles(problem, signal) {
                 place_grammar.push(signal, scales, &mut definitions);
             }
         }

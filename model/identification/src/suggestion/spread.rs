@@ -2,7 +2,8 @@
 
 use hitch_plant::{Channel, Model, units};
 
-use crate::data::experiment::{Experiment, ReadyRun};
+use crate::data::experiment::ReadyRun;
+use crate::data::problem::Problem;
 
 /// Quantiles at which the scale of a shape starts.
 pub const QUANTILES: [f64; 3] = [0.2, 0.45, 0.7];
@@ -10,7 +11,8 @@ pub const QUANTILES: [f64; 3] = [0.2, 0.45, 0.7];
 /// Quantiles of a signal, in SI, over the relevant samples: those with flow for a flow or a speed, those with current
 /// for a current. `None` if the campaign does not contain it.
 #[must_use]
-pub fn quantiles(experiment: &Experiment, model: &Model, signal: &str) -> Option<[f64; 3]> {
+pub fn quantiles(problem: Problem<'_>, signal: &str) -> Option<[f64; 3]> {
+    let Problem { experiment, model } = problem;
     let mut values: Vec<f64> = experiment
         .runs
         .iter()

@@ -1,0 +1,34 @@
+//! The problem that all steps of an identification share.
+
+use hitch_plant::Model;
+
+use crate::data::experiment::Experiment;
+
+/// Measured data and the model that is compared with them.
+#[derive(Debug, Clone, Copy)]
+pub struct Problem<'a> {
+    /// The measured data.
+    pub experiment: &'a Experiment,
+    /// The model: its constants, and the effects that it had before the identification.
+    pub model: &'a Model,
+}
+
+impl<'a> Problem<'a> {
+    /// Measured data and a model.
+    #[must_use]
+    pub fn new(experiment: &'a Experiment, model: &'a Model) -> Self {
+        Self { experiment, model }
+    }
+
+    /// The same model on other data.
+    #[must_use]
+    pub fn on(self, experiment: &'a Experiment) -> Self {
+        Self { experiment, ..self }
+    }
+
+    /// Another model on the same data.
+    #[must_use]
+    pub fn with_model(self, model: &'a Model) -> Self {
+        Self { model, ..self }
+    }
+}
