@@ -3,7 +3,7 @@
 use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
-use hitch_identification::design::alternative::angle_deg;
+use hitch_identification::design::alternative::Replacement;
 use hitch_identification::design::manoeuvre::MANOEUVRES;
 use hitch_identification::design::plan::{Manoeuvre, RunPlan, Segment, Stand};
 use hitch_identification::design::separation::TestBench;
@@ -168,9 +168,9 @@ impl Twins {
             refine(Problem::new(&experiment, &lab.model), start)
         });
         let other = &fits[1].estimate.effects[0];
-        let angle = angle_deg(Problem::new(&experiment, &lab.model), &fits[0], other);
+        let problem = Problem::new(&experiment, &lab.model);
         Self {
-            angle_deg: angle.expect("an effect"),
+            angle_deg: Replacement::new(problem, &fits[0], 0).angle_deg(other),
             fits,
             experiment,
         }
@@ -286,8 +286,8 @@ fn the_expected_likelihood_ratio_is_met() {
         let inflation = weigh(
             Problem::new(&measured.experiment, &more.model),
             &base,
-            effect(ids[0]).effect,
             own,
+            0,
         )
         .inflation;
         let found = (excess(&measured) - excess(&twins)) / inflation;

@@ -106,6 +106,9 @@ fn parameter(definition: &ParameterDefinition) -> Parameter {
 
 /// Kind of a quantity by its unit, which is known to be valid.
 fn kind(unit: &str) -> ParameterKind {
+    if unit.is_empty() {
+        return ParameterKind::Ratio;
+    }
     let of = |unit: &str| Unit::parse(unit).ok().map(|unit| unit.dimension);
     match of(unit) {
         dimension if dimension == of("A") => ParameterKind::Current,

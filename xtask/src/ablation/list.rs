@@ -64,7 +64,7 @@ impl Ablation {
             );
         }
         let off = format!(
-            "{{ extern crate std; std::env::var_os(\"{SWITCH}\").is_some_and(|name| name == \"{}\") }}",
+            "({{ extern crate std; std::env::var_os(\"{SWITCH}\").is_some_and(|name| name == \"{}\") }})",
             self.name
         );
         Ok(text.replacen(find, &replace.replace("{off}", &off), 1))
@@ -89,7 +89,7 @@ mod tests {
         let replaced = replaced.expect("the text is there");
         assert!(replaced.contains("HITCH_ABLATION"), "{replaced}");
         assert!(
-            replaced.starts_with("fn f() {\n    let a = if {"),
+            replaced.starts_with("fn f() {\n    let a = if ({"),
             "{replaced}"
         );
         assert!(

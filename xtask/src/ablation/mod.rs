@@ -7,8 +7,9 @@
 mod battery;
 mod list;
 
+use std::collections::BTreeSet;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use arm_build::{process, workspace};
@@ -62,6 +63,7 @@ fn copied(ablations: &[Ablation]) -> Result<PathBuf> {
     let folder = workspace::target().join("ablation/source");
     let listed = process::output(&mut process::command("git", &["ls-files"]));
     let files = listed.context("git can't list the files of the workspace")?;
+    remove_others(&folder, &files)?;
     for file in files.lines() {
         let (from, to) = (root.join(file), folder.join(file));
         if !from.is_file() {
@@ -80,4 +82,19 @@ fn copied(ablations: &[Ablation]) -> Result<PathBuf> {
         }
     }
     Ok(folder)
+}
+
+/// Removes files of an earlier copy that the workspace no longer has.
+fn remove_others(folder: &Path, files: &str) -> Result<()> {
+    let listed: BTreeSet<PathBuf> = files.lines().map(|file| folder.join(file)).collect();
+    if folder.is_dir() {
+        for file in workspace::files(folder)? {
+            if !listed.contains(&file)
+                || !workspace::root().join(file.strip_prefix(folder)?).exists()
+            {
+                fs::remove_file(&file)?;
+            }
+        }
+    }
+    Ok(())
 }

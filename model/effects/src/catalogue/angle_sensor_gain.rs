@@ -21,7 +21,7 @@ pub static ANGLE_SENSOR_GAIN: Described = Described {
     parameters: &[Parameter {
         name: "gain",
         unit: "",
-        kind: ParameterKind::Other,
+        kind: ParameterKind::Ratio,
         key: "gain",
         meaning: "relative error of the angle",
         null: 0.0,

@@ -70,7 +70,7 @@ pub static DELAYED: Described = Described {
         Parameter {
             name: "dead",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "dead",
             meaning: "share of it that is dead time",
             null: 0.0,

@@ -21,7 +21,7 @@ pub static BULK_MODULUS: Described = Described {
     parameters: &[Parameter {
         name: "change",
         unit: "",
-        kind: ParameterKind::Other,
+        kind: ParameterKind::Ratio,
         key: "change",
         meaning: "change of the modulus as a share of the declared one",
         null: 0.0,

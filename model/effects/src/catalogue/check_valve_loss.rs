@@ -30,7 +30,7 @@ const LOSS: Parameter = Parameter {
 const STEADY: Parameter = Parameter {
     name: "steady",
     unit: "",
-    kind: ParameterKind::Other,
+    kind: ParameterKind::Ratio,
     key: "steady",
     meaning: "share of it that is independent of the flow",
     null: 0.5,

@@ -35,7 +35,7 @@ const SLOPE: Parameter = Parameter {
 const FLOW: Parameter = Parameter {
     name: "flow",
     unit: "",
-    kind: ParameterKind::Other,
+    kind: ParameterKind::Ratio,
     key: "flow",
     meaning: "share of the margin lost from zero lift flow to the pump's full flow",
     null: 0.0,

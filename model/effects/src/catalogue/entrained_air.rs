@@ -29,7 +29,7 @@ pub static ENTRAINED_AIR: Described = Described {
         Parameter {
             name: "share",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "share",
             meaning: "volume of air at atmospheric pressure relative to the whole volume",
             null: 0.0,
@@ -40,7 +40,7 @@ pub static ENTRAINED_AIR: Described = Described {
         Parameter {
             name: "polytropic",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "polytropic",
             meaning: "polytropic exponent n of the air",
             null: 1.0,

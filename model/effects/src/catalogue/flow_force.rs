@@ -25,7 +25,7 @@ pub static ON_FLOW: Described = Described {
     parameters: &[Parameter {
         name: "ratio",
         unit: "",
-        kind: ParameterKind::Other,
+        kind: ParameterKind::Ratio,
         key: "ratio",
         meaning: "flow force over spring force at the reference drop",
         null: 0.0,

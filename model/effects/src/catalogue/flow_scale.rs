@@ -12,7 +12,7 @@ use crate::described::Described;
 const SCALE: Parameter = Parameter {
     name: "scale",
     unit: "",
-    kind: ParameterKind::Other,
+    kind: ParameterKind::Ratio,
     key: "scale",
     meaning: "relative change of the flow, at half the largest",
     null: 0.0,
@@ -24,7 +24,7 @@ const SCALE: Parameter = Parameter {
 const GROWTH: Parameter = Parameter {
     name: "growth",
     unit: "",
-    kind: ParameterKind::Other,
+    kind: ParameterKind::Ratio,
     key: "growth",
     meaning: "relative growth of the scale from half to the largest flow",
     null: 0.0,

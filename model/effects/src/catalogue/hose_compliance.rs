@@ -63,7 +63,7 @@ pub static CREEPING: Described = Described {
         Parameter {
             name: "share",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "share",
             meaning: "share of it that creeps",
             null: 0.0,

@@ -30,7 +30,7 @@ pub static WITH_WEIGHT: Described = Described {
         Parameter {
             name: "share",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "share",
             meaning: "change of the weight's force at the end of the stroke",
             null: 0.0,
@@ -41,7 +41,7 @@ pub static WITH_WEIGHT: Described = Described {
         Parameter {
             name: "even",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "even",
             meaning: "part of it that is constant over the stroke; negative: more at the low end",
             null: 0.5,
@@ -72,7 +72,7 @@ pub static WITH_LOAD: Described = Described {
         Parameter {
             name: "share",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "share",
             meaning: "change of the load's force, mean over the stroke",
             null: 0.0,

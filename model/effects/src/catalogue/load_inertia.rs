@@ -19,7 +19,7 @@ const USUAL_LOAD_KG: f64 = 150.0;
 const SHARE: Parameter = Parameter {
     name: "share",
     unit: "",
-    kind: ParameterKind::Other,
+    kind: ParameterKind::Ratio,
     key: "share",
     meaning: "share of the inertia of load and dead weight",
     null: 0.0,
@@ -57,7 +57,7 @@ pub static AND_SHAFT: Described = Described {
         Parameter {
             name: "shaft",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "shaft",
             meaning: "share of it on the rocker shaft, at 150 kg and mid-stroke",
             null: 0.0,

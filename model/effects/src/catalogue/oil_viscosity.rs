@@ -35,7 +35,7 @@ pub static SERIES: Described = Described {
         Parameter {
             name: "share",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "share",
             meaning: "laminar share of the flow at 15 bar and 40 C",
             null: 0.0,
@@ -84,7 +84,7 @@ pub static FLOW_NUMBER: Described = Described {
     parameters: &[Parameter {
         name: "critical",
         unit: "",
-        kind: ParameterKind::Other,
+        kind: ParameterKind::Ratio,
         key: "critical_flow_number",
         meaning: "flow number at which the flow turns turbulent",
         null: 0.0,

@@ -7,7 +7,7 @@ pub(crate) const fn shape(name: &'static str, meaning: &'static str, widest: f64
     Parameter {
         name,
         unit: "",
-        kind: ParameterKind::Other,
+        kind: ParameterKind::Ratio,
         key: name,
         meaning,
         null: 0.0,

@@ -15,7 +15,7 @@ use crate::described::Described;
 const SHARE: Parameter = Parameter {
     name: "share",
     unit: "",
-    kind: ParameterKind::Other,
+    kind: ParameterKind::Ratio,
     key: "share",
     meaning: "friction over the weight's force",
     null: 0.0,

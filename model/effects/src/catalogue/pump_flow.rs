@@ -18,7 +18,7 @@ pub static PUMP_FLOW: Described = Described {
     parameters: &[Parameter {
         name: "change",
         unit: "",
-        kind: ParameterKind::Other,
+        kind: ParameterKind::Ratio,
         key: "change",
         meaning: "change of the flow as a share of the declared one",
         null: 0.0,

@@ -36,7 +36,7 @@ pub static RELIEF_OVERRIDE: Described = Described {
         Parameter {
             name: "above",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "above",
             meaning: "share of it above the setting",
             null: 0.2,

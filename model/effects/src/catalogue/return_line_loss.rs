@@ -56,7 +56,7 @@ pub static LAMINAR: Described = Described {
         Parameter {
             name: "share",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "share",
             meaning: "share of it that is laminar, at 40 l/min and 40 degC",
             null: 0.0,

@@ -39,7 +39,7 @@ pub static CREEPING: Described = Described {
         Parameter {
             name: "share",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "share",
             meaning: "share of the lag in the second stage",
             null: 0.0,
@@ -80,7 +80,7 @@ pub static SWINGING: Described = Described {
         Parameter {
             name: "damping",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "damping",
             meaning: "damping ratio of the spool",
             null: 1.0,

@@ -32,7 +32,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "jump",
         unit: "",
-        kind: ParameterKind::Other,
+        kind: ParameterKind::Ratio,
         key: "jump",
         meaning: "share of the band that it recovers in one jump",
         null: 0.5,

@@ -34,7 +34,7 @@ pub static STRIBECK_FRICTION: Described = Described {
         Parameter {
             name: "breakaway",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "breakaway",
             meaning: "breakaway friction relative to sliding friction",
             null: 1.0,

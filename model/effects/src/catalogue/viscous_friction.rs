@@ -73,7 +73,7 @@ pub static THICKENING: Described = Described {
         Parameter {
             name: "exponent",
             unit: "",
-            kind: ParameterKind::Other,
+            kind: ParameterKind::Ratio,
             key: "exponent",
             meaning: "exponent of its dependence on viscosity",
             null: 0.0,

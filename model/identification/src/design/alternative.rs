@@ -22,79 +22,73 @@ pub struct Alternative {
     pub relative_likelihood_ratio: f64,
     /// Error of the model with it in place of the named effect.
     pub error_after: f64,
-    /// The model with it in place of the named effect, fitted; it is the last effect.
+    /// The model with it in place of the named effect, fitted.
     pub fit: Fit,
 }
 
 impl Alternative {
-    /// An effect that was fitted as the last one in place of the last one of `whole`, with its likelihood ratio.
+    /// An effect, by its index in `fit`, that was fitted in place of the one of `replacement`.
     #[must_use]
     pub fn new(
-        problem: Problem<'_>,
-        whole: &Fit,
-        (fit, relative_likelihood_ratio): (Fit, f64),
-    ) -> Option<Self> {
-        let added = fit.estimate.effects.last()?.clone();
-        Some(Self {
+        replacement: &Replacement,
+        fit: Fit,
+        index: usize,
+        relative_likelihood_ratio: f64,
+    ) -> Self {
+        let added = fit.estimate.effects[index].clone();
+        Self {
             effect: added.effect,
-            angle_deg: angle_deg(problem, whole, &added)?,
+            angle_deg: replacement.angle_deg(&added),
             values: added.values,
             relative_likelihood_ratio,
             error_after: fit.error(),
             fit,
-        })
+        }
     }
 }
 
-/// Angle between the signatures of the last effect of a fit and of `other` in its place, degree, with the other
-/// effects, the loads and the clocks projected out. `None` without a last effect.
-#[must_use]
-pub fn angle_deg(problem: Problem<'_>, whole: &Fit, other: &AddedEffect) -> Option<f64> {
-    Some(Replacement::new(problem, whole)?.angle_deg(other))
-}
-
-/// The last effect of a fit, for comparison with other effects in its place.
+/// An effect of a fit, for comparison with other effects in its place.
 pub struct Replacement<'a> {
     /// The measured data and the model.
     problem: Problem<'a>,
     whole: &'a Fit,
-    last: usize,
+    index: usize,
     /// Projection of all other free parameters.
     projection: NuisanceProjection<Jacobian>,
-    /// Residuals without the last effect.
+    /// Residuals without the effect.
     empty: Vec<Vec<f64>>,
-    /// Projected signature of the last effect.
+    /// Projected signature of the effect.
     own: Vec<Vec<f64>>,
 }
 
 impl<'a> Replacement<'a> {
-    /// Compares to the last effect of a fit; `None` if there is none.
+    /// The effect with an index in a fit.
     #[must_use]
-    pub fn new(problem: Problem<'a>, whole: &'a Fit) -> Option<Self> {
-        let last = whole.estimate.effects.len().checked_sub(1)?;
+    pub fn new(problem: Problem<'a>, whole: &'a Fit, index: usize) -> Self {
         let jacobian = Jacobian::new(problem, &whole.weights, &whole.estimate);
-        let jacobian = without(jacobian, last);
+        let jacobian = without(jacobian, index);
         let mut replacement = Self {
             problem,
             whole,
-            last,
+            index,
             projection: NuisanceProjection::new(jacobian, &whole.estimate, 0..0),
             empty: Vec::new(),
             own: Vec::new(),
         };
         replacement.empty =
-            replacement.residuals(AddedEffect::null(whole.estimate.effects[last].effect));
+            replacement.residuals(AddedEffect::null(whole.estimate.effects[index].effect));
         replacement.own = replacement.signature(&whole.residuals);
-        Some(replacement)
+        replacement
     }
 
-    /// Angle between the projected signatures of the last effect and of `other` in its place, degree.
+    /// Angle between the projected signatures of the effect and of `other` in its place, degree, with the other effects,
+    /// the loads and the clocks projected out.
     #[must_use]
     pub fn angle_deg(&self, other: &AddedEffect) -> f64 {
         self.likeness(other).0
     }
 
-    /// [`Replacement::angle_deg`], and the multiple of `other` that is closest to the last effect.
+    /// [`Replacement::angle_deg`], and the multiple of `other` that is closest to the effect.
     #[must_use]
     pub fn likeness(&self, other: &AddedEffect) -> (f64, f64) {
         let others = self.signature(&self.residuals(other.clone()));
@@ -107,7 +101,7 @@ impl<'a> Replacement<'a> {
         (between_deg(&self.own, &others), share)
     }
 
-    /// Cost reduction that only the last effect explains, to first order.
+    /// Cost reduction that only the effect explains, to first order.
     #[must_use]
     pub fn explained(&self) -> f64 {
         product(&self.own, &self.own)
@@ -120,7 +114,7 @@ impl<'a> Replacement<'a> {
 
     fn residuals(&self, effect: AddedEffect) -> Vec<Vec<f64>> {
         let mut estimate = self.whole.estimate.clone();
-        estimate.effects[self.last] = effect;
+        estimate.effects[self.index] = effect;
         residuals(self.problem, &self.whole.weights, &estimate)
     }
 }

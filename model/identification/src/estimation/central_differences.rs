@@ -18,17 +18,17 @@ use crate::estimation::jacobian::{Jacobian, difference, huber_residuals};
 /// Step to either side, as a share of the parameter's value, or of its scale if that is larger.
 const STEP: f64 = 0.01;
 
-/// The Jacobian with the columns of the last effect's parameters replaced by central differences, within their ranges.
+/// The Jacobian with the columns of an effect's parameters replaced by central differences, within their ranges.
 ///
 /// Columns of switching and located sizes stay as they are: a longer step would cross other events.
 pub(crate) fn with_central_differences(
     problem: Problem<'_>,
     fit: &Fit,
     mut jacobian: Jacobian,
+    index: usize,
 ) -> Jacobian {
-    let last = fit.estimate.effects.len() - 1;
     let smooth = |shared: Shared| {
-        matches!(shared, Shared::Effect(effect, _) if effect == last)
+        matches!(shared, Shared::Effect(effect, _) if effect == index)
             && matches!(
                 fit.estimate.size_response(shared),
                 SizeResponse::Smooth | SizeResponse::Stepped

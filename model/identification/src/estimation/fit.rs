@@ -211,11 +211,3 @@ pub fn fit_loads(problem: Problem<'_>, weights: &Weights, start: Estimate) -> Es
     }
     estimate
 }
-
-/// The same fit with one effect moved to the end of the list.
-pub(crate) fn with_last(problem: Problem<'_>, fit: &Fit, effect: usize) -> Fit {
-    let mut estimate = fit.estimate.clone();
-    let moved = estimate.effects.remove(effect);
-    estimate.effects.push(moved);
-    evaluate(problem, estimate)
-}

@@ -4,6 +4,8 @@
 //! and weighed against the model with all others (size, interval, detectability, probability). Confounded alternatives
 //! are listed, and the remaining residuals are tested for lack of fit.
 
+use std::cell::LazyCell;
+
 use hitch_plant::Effect;
 
 use crate::adequacy::attribution::{Attribution, attribute};
@@ -11,9 +13,9 @@ use crate::adequacy::lack_of_fit::{Cell, adequate, cells, cells_since};
 use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
 use crate::data::regime::Regime;
-use crate::design::{Alternative, NextExperiment, Pair, Rival, next_experiment};
+use crate::design::{Alternative, NextExperiment, Pair, Replacement, Rival, next_experiment};
 use crate::estimate::Estimate;
-use crate::estimation::fit::{Fit, evaluate, fit, refine, with_last};
+use crate::estimation::fit::{Fit, evaluate, fit, refine};
 use crate::explanation::undetected::{Undetected, undetected};
 use crate::search::candidates::{Progress, showing};
 use crate::search::single_effects::{confidences, try_each};
@@ -198,8 +200,7 @@ pub fn explain_with(problem: Problem<'_>, options: Options<'_>, progress: Progre
         }
         steps = self::steps(problem, &before, &found);
     }
-    let base = (before, refitted);
-    concluded(problem, base, found, steps)
+    concluded(problem, before, refitted, found, steps)
 }
 
 /// Whether the interval of a step's size contains its absent value. A single jump that the noise of a current decides
@@ -231,8 +232,8 @@ fn steps(problem: Problem<'_>, before: &Fit, found: &Found) -> Vec<ExplanationSt
             true => found.held_out,
             false => held_out(problem, &fit),
         };
-        let whole = with_last(problem, &found.fit, effect);
-        let candidate = weighed_last(problem, whole.clone());
+        let whole = evaluate(problem, found.fit.estimate.clone());
+        let candidate = weighed_alone(problem, whole.clone(), effect);
         let estimate = &found.fit.estimate;
         let id = estimate.effects[effect].effect.id();
         let with_it = weighed
@@ -248,7 +249,7 @@ fn steps(problem: Problem<'_>, before: &Fit, found: &Found) -> Vec<ExplanationSt
             detectability: candidate.detectability,
             explained_share: candidate.explained_share,
             other_forms: other_forms(&found.fit, id, &weighed),
-            indistinguishable: alternatives(problem, &whole, &weighed),
+            indistinguishable: alternatives(problem, &whole, effect, &weighed),
             values: candidate.values().to_vec(),
             intervals: candidate.intervals,
             changed_from: estimate.adopted_as(id).map(|adopted| adopted.size),
@@ -272,13 +273,10 @@ fn with_some(problem: Problem<'_>, found: &Found, effects: &[usize]) -> Fit {
     }
 }
 
-/// The last effect of a fit weighed against the model with all others.
-fn weighed_last(problem: Problem<'_>, whole: Fit) -> Candidate {
-    let last = whole.estimate.effects.len() - 1;
-    let named = whole.estimate.effects[last].effect;
-    let without = whole.estimate.without(last);
-    let base = evaluate(problem, without);
-    weigh(problem, &base, named, whole)
+/// An effect of a fit weighed against the model with all others.
+fn weighed_alone(problem: Problem<'_>, whole: Fit, index: usize) -> Candidate {
+    let base = evaluate(problem, whole.estimate.without(index));
+    weigh(problem, &base, whole, index)
 }
 
 /// Forms of an effect that explain the campaign as well as its own.
@@ -291,10 +289,15 @@ fn other_forms(fit: &Fit, id: &str, weighed: &[Weighed]) -> Vec<Option<&'static 
         .collect()
 }
 
-/// Confounded alternatives of the last effect of a fit.
-fn alternatives(problem: Problem<'_>, whole: &Fit, weighed: &[Weighed]) -> Vec<Alternative> {
-    let last = whole.estimate.effects.len() - 1;
-    let named = whole.estimate.effects[last].effect.id();
+/// Confounded alternatives of an effect of a fit.
+fn alternatives(
+    problem: Problem<'_>,
+    whole: &Fit,
+    effect: usize,
+    weighed: &[Weighed],
+) -> Vec<Alternative> {
+    let replacement = LazyCell::new(|| Replacement::new(problem, whole, effect));
+    let named = whole.estimate.effects[effect].effect.id();
     let own = key_of(&whole.estimate);
     let own: Vec<&str> = own.ids().collect();
     let other = |set: &&Weighed| -> Option<&'static str> {
@@ -314,8 +317,9 @@ fn alternatives(problem: Problem<'_>, whole: &Fit, weighed: &[Weighed]) -> Vec<A
             let id = other(&set)?;
             let effects = &set.fit.estimate.effects;
             let index = effects.iter().position(|added| added.effect.id() == id)?;
-            let its = with_last(problem, set.fit, index);
-            Alternative::new(problem, whole, (its, set.relative_likelihood_ratio))
+            let fit = evaluate(problem, set.fit.estimate.clone());
+            let ratio = set.relative_likelihood_ratio;
+            Some(Alternative::new(&replacement, fit, index, ratio))
         })
         .collect();
     alternatives.sort_by(|a, b| {
@@ -327,7 +331,8 @@ fn alternatives(problem: Problem<'_>, whole: &Fit, weighed: &[Weighed]) -> Vec<A
 
 fn concluded(
     problem: Problem<'_>,
-    (before, refitted): (Fit, Option<Fit>),
+    before: Fit,
+    refitted: Option<Fit>,
     found: Found,
     steps: Vec<ExplanationStep>,
 ) -> Explanation {

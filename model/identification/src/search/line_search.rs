@@ -20,17 +20,16 @@ const TO_EITHER_SIDE: i32 = 10;
 /// Largest distance of a shape parameter from the upper end of its range, as a share, at which the end is tried too.
 const NEARLY_WHOLE: f64 = 0.01;
 
-/// The better of a fit and of the fits from nearby sizes of its last effect, if that is switching or stepped.
-pub(crate) fn line_searched(problem: Problem<'_>, fit: Fit) -> Fit {
-    let Problem { experiment, .. } = problem;
-    let last = fit.estimate.effects.last();
-    let reaches = match last.filter(|added| !added.is_null()) {
-        Some(added) => reaches(added.effect.size_response(), experiment.ringing),
-        None => &[],
+/// The better of a fit and of the fits from nearby sizes of an effect, by its index, that is switching or stepped.
+pub(crate) fn line_searched(problem: Problem<'_>, fit: Fit, index: usize) -> Fit {
+    let added = &fit.estimate.effects[index];
+    let reaches = match added.is_null() {
+        false => reaches(added.effect.size_response(), problem.experiment.ringing),
+        true => &[],
     };
     let along = |fit: Fit| {
         reaches.iter().fold(fit, |fit, &reach| {
-            let nearby = nearby(problem, &fit, reach);
+            let nearby = nearby(problem, &fit, index, reach);
             if nearby.cost < fit.cost {
                 let refined = refine(problem, nearby.estimate.clone());
                 better(better(fit, nearby), refined)
@@ -39,12 +38,11 @@ pub(crate) fn line_searched(problem: Problem<'_>, fit: Fit) -> Fit {
             }
         })
     };
-    let whole = last.and_then(whole).map(|whole| {
+    let whole = whole(added).map(|whole| {
         let mut estimate = fit.estimate.clone();
-        estimate.effects.pop();
-        estimate.effects.push(whole);
+        estimate.effects[index] = whole;
         let whole = evaluate_weighted(problem, estimate, fit.weights.clone());
-        let nearby = nearby(problem, &whole, reaches[0]);
+        let nearby = nearby(problem, &whole, index, reaches[0]);
         along(refine(problem, better(whole, nearby).estimate))
     });
     let fit = along(fit);
@@ -70,15 +68,13 @@ fn reaches(response: SizeResponse, ringing: bool) -> &'static [f64] {
 }
 
 /// The best of the nearby sizes, all other parameters fixed.
-fn nearby(problem: Problem<'_>, fit: &Fit, reach: f64) -> Fit {
+fn nearby(problem: Problem<'_>, fit: &Fit, index: usize, reach: f64) -> Fit {
     let sizes = (-TO_EITHER_SIDE..=TO_EITHER_SIDE).into_par_iter();
     sizes
         .map(|step| {
             let mut estimate = fit.estimate.clone();
-            if let Some(last) = estimate.effects.last_mut() {
-                let away = reach * f64::from(step) / f64::from(TO_EITHER_SIDE);
-                *last = resized(last, away.exp());
-            }
+            let away = reach * f64::from(step) / f64::from(TO_EITHER_SIDE);
+            estimate.effects[index] = resized(&estimate.effects[index], away.exp());
             evaluate_weighted(problem, estimate, fit.weights.clone())
         })
         .min_by(|a, b| a.cost.total_cmp(&b.cost))

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::data::clocks::Clocks;
 use crate::estimate::Estimate;
-use crate::estimation::fit::{Fit, evaluate_weighted, refine, short_fit, with_last};
+use crate::estimation::fit::{Fit, evaluate, evaluate_weighted, refine, short_fit};
 use crate::estimation::jacobian::{Jacobian, huber_residuals, square_sum};
 use crate::estimation::least_squares::Descent;
 use crate::search::candidates::Progress;
@@ -184,7 +184,7 @@ impl Refits<'_> {
         match jumps {
             Some(index) => {
                 let problem = self.coarse.problem;
-                line_searched(problem, with_last(problem, &fit, index))
+                line_searched(problem, evaluate(problem, fit.estimate), index)
             }
             None => fit,
         }

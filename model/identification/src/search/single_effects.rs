@@ -85,22 +85,24 @@ pub fn try_each(
         options: Options::default(),
     };
     let slow = slow_columns(problem, base);
+    // Index of the added effect.
+    let added = base.estimate.effects.len();
     let promising = |cost: f64| coarse.seen.cost - cost > builder.worthwhile || effects.len() == 1;
     let tried = starts.into_par_iter().enumerate();
     let tried = tried.map(|(rank, (cost, effect, estimate))| {
         progress(effect.id());
         let candidate = match estimate {
             Some(estimate) if promising(cost) && rank < FITTED => {
-                weigh(problem, base, effect, refits.one(estimate))
+                weigh(problem, base, refits.one(estimate), added)
             }
             Some(estimate) if promising(cost) => {
                 let fit = evaluate_weighted(problem, estimate, base.weights.clone());
-                weigh_by(problem, base, effect, fit, &slow)
+                weigh_by(problem, base, fit, added, &slow)
             }
             _ => {
                 let mut fit = base.clone();
                 fit.estimate.effects.push(AddedEffect::null(effect));
-                Candidate::absent(effect, fit)
+                Candidate::absent(fit, added)
             }
         };
         weighed(&candidate);

@@ -1,6 +1,6 @@
 //! An effect fitted in addition to the free parameters of a model, and its evidence.
 
-use hitch_plant::{AddedEffect, Effect};
+use hitch_plant::{AddedEffect, Effect, ParameterKind};
 use rayon::prelude::*;
 
 use crate::adequacy::lack_of_fit::SLOW_NOISE;
@@ -37,6 +37,8 @@ pub struct Candidate {
     pub effect: &'static dyn Effect,
     /// The fitted model with it.
     pub fit: Fit,
+    /// Index of the effect in the fit.
+    pub index: usize,
     /// Reduction of the cost in units of the residual variance times the effect's variance inflation: approximately
     /// chi-squared with one degree of freedom if the effect is absent.
     pub likelihood_ratio: f64,
@@ -51,12 +53,14 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// The candidate of an effect that the screening rejected, with a fit at its null value.
+    /// The candidate of an effect that the screening rejected, with a fit that contains it at its null value.
     #[must_use]
-    pub fn absent(effect: &'static dyn Effect, fit: Fit) -> Self {
+    pub fn absent(fit: Fit, index: usize) -> Self {
+        let effect = fit.estimate.effects[index].effect;
         Self {
             effect,
             fit,
+            index,
             likelihood_ratio: 0.0,
             inflation: 1.0,
             detectability: 0.0,
@@ -96,8 +100,7 @@ impl Candidate {
     /// Fitted values of its parameters, in their units.
     #[must_use]
     pub fn values(&self) -> &[f64] {
-        let added = self.fit.estimate.effects.last();
-        added.map_or(&[], |added| &added.values)
+        &self.fit.estimate.effects[self.index].values
     }
 }
 
@@ -112,13 +115,13 @@ pub fn plausibility(explained_share: f64) -> f64 {
     explained_share.powi(2) / (explained_share.powi(2) + left.powi(2)).max(f64::MIN_POSITIVE)
 }
 
-/// Weighs the last effect of a fitted model against the model without it.
+/// Weighs an effect of a fitted model, by its index, against the model without it.
 #[must_use]
-pub fn weigh(problem: Problem<'_>, base: &Fit, effect: &'static dyn Effect, fit: Fit) -> Candidate {
+pub fn weigh(problem: Problem<'_>, base: &Fit, fit: Fit, index: usize) -> Candidate {
     let slow = slow_columns(problem, &fit);
     let jacobian = jacobian_by(problem, &fit, &slow);
-    let jacobian = with_central_differences(problem, &fit, jacobian);
-    weigh_with(problem, base, effect, fit, &jacobian)
+    let jacobian = with_central_differences(problem, &fit, jacobian, index);
+    weigh_with(problem, base, fit, index, &jacobian)
 }
 
 /// Columns of clocks and loads at a fit, from its residuals.
@@ -139,23 +142,23 @@ pub(crate) fn jacobian_by(problem: Problem<'_>, fit: &Fit, slow: &SlowColumns) -
 pub(crate) fn weigh_by(
     problem: Problem<'_>,
     base: &Fit,
-    effect: &'static dyn Effect,
     fit: Fit,
+    index: usize,
     slow: &SlowColumns,
 ) -> Candidate {
     let jacobian = jacobian_by(problem, &fit, slow);
-    weigh_with(problem, base, effect, fit, &jacobian)
+    weigh_with(problem, base, fit, index, &jacobian)
 }
 
 fn weigh_with(
     problem: Problem<'_>,
     base: &Fit,
-    effect: &'static dyn Effect,
     fit: Fit,
+    index: usize,
     jacobian: &Jacobian,
 ) -> Candidate {
     let Problem { experiment, .. } = problem;
-    let index = fit.estimate.effects.len() - 1;
+    let effect = fit.estimate.effects[index].effect;
     let variance = fit.variance();
     let free = fit.estimate.free_parameters(effect.id());
     let signatures: Vec<Signature> = (0..effect.parameters().len().min(free))
@@ -165,7 +168,7 @@ fn weigh_with(
         detectability,
         inflation,
         explained_share,
-    } = Evidence::new(problem, &fit, jacobian);
+    } = Evidence::new(problem, &fit, index, jacobian);
     let intervals = signatures
         .par_iter()
         .map(|signature| {
@@ -197,6 +200,7 @@ fn weigh_with(
         explained_share,
         intervals,
         fit,
+        index,
     }
 }
 
@@ -208,13 +212,13 @@ fn weigh_with(
 /// lag into its stages is uncertain by the same time.
 pub(crate) fn systematic(added: &AddedEffect, parameter: usize) -> f64 {
     let (parameters, values) = (added.effect.parameters(), &added.values);
-    let absolute = match (parameters[0].unit, parameters[parameter].unit) {
-        (_, "A") => SYSTEMATIC_A,
-        (_, "s") => SYSTEMATIC_S,
-        ("s", "") if values[0] > 0.0 => SYSTEMATIC_S / values[0],
+    let absolute = match (parameters[0].kind, parameters[parameter].kind) {
+        (_, ParameterKind::Current) => SYSTEMATIC_A,
+        (_, ParameterKind::Time) => SYSTEMATIC_S,
+        (ParameterKind::Time, ParameterKind::Ratio) if values[0] > 0.0 => SYSTEMATIC_S / values[0],
         _ => 0.0,
     };
-    let is_relative = parameter > 0 && parameters[parameter].unit.is_empty();
+    let is_relative = parameter > 0 && parameters[parameter].kind == ParameterKind::Ratio;
     let whole = if is_relative { 1.0 } else { 0.0 };
     absolute.hypot(SYSTEMATIC_SHARE * values[parameter].abs().max(whole))
 }
@@ -258,7 +262,7 @@ impl<'a> Signature<'a> {
     }
 }
 
-/// Evidence of the last effect of a fit.
+/// Evidence of an effect of a fit.
 struct Evidence {
     /// Root mean square of its change of the residuals at the fitted size, in sigmas, with all other free parameters
     /// projected out.
@@ -272,13 +276,11 @@ struct Evidence {
 impl Evidence {
     /// Uses the whole change instead of its derivative: the derivative of an effect with a threshold or a switching
     /// effect overestimates it.
-    fn new(problem: Problem<'_>, fit: &Fit, jacobian: &Jacobian) -> Self {
-        let Problem { experiment, .. } = problem;
-        let last = fit.estimate.effects.len() - 1;
-        let without = fit.estimate.without(last);
+    fn new(problem: Problem<'_>, fit: &Fit, index: usize, jacobian: &Jacobian) -> Self {
+        let without = fit.estimate.without(index);
         let without = huber_residuals(problem, &fit.weights, &without);
         let change = difference(&without, &huber(fit.residuals.clone()));
-        let own = |shared: &Shared| matches!(shared, Shared::Effect(effect, _) if *effect == last);
+        let own = |shared: &Shared| matches!(shared, Shared::Effect(effect, _) if *effect == index);
         let columns = &jacobian.shared;
         let first = columns.iter().position(own).unwrap_or(0);
         let count = columns.iter().filter(|shared| own(shared)).count();
@@ -286,7 +288,7 @@ impl Evidence {
         let (left, penalty) = projection.project_within_range(change);
         Self {
             detectability: detectability(&left, penalty, fit.weights.count()),
-            inflation: variance_inflation(experiment, &fit.residuals, &left),
+            inflation: variance_inflation(problem.experiment, &fit.residuals, &left),
             explained_share: explained_share(&left, &huber(fit.residuals.clone())),
         }
     }

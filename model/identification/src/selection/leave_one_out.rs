@@ -4,7 +4,7 @@
 //! evidence is final.
 
 use crate::data::problem::Problem;
-use crate::estimation::fit::{Fit, refine, with_last};
+use crate::estimation::fit::{Fit, evaluate, refine};
 use crate::selection::candidate::{Candidate, weigh};
 
 /// An effect weighed against the model with all other effects.
@@ -28,10 +28,9 @@ pub fn leave_one_out(problem: Problem<'_>, fit: &Fit, first: usize) -> Vec<Leave
 /// Weighs one effect of a fitted model against the model with all others.
 pub(crate) fn leave_one_out_of(problem: Problem<'_>, fit: &Fit, index: usize) -> LeaveOneOut {
     let without = refine(problem, fit.estimate.without(index));
-    let whole = with_last(problem, fit, index);
-    let effect = fit.estimate.effects[index].effect;
+    let whole = evaluate(problem, fit.estimate.clone());
     LeaveOneOut {
-        candidate: weigh(problem, &without, effect, whole),
+        candidate: weigh(problem, &without, whole, index),
         without,
     }
 }

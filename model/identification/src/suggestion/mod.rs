@@ -15,7 +15,7 @@ mod spread;
 
 use hitch_effects::TermEffect;
 use hitch_effects::expression::TermDefinition;
-use hitch_plant::{AddedEffect, Effect};
+use hitch_plant::Effect;
 
 use crate::data::problem::Problem;
 use crate::estimation::fit::{Fit, evaluate, refine};
@@ -125,9 +125,7 @@ impl Trial {
         };
         let mut fit = candidate.fit.clone();
         let term = settled(self.term, candidate.values());
-        if let Some(last) = fit.estimate.effects.last_mut() {
-            last.effect = term;
-        }
+        fit.estimate.effects[candidate.index].effect = term;
         let kept = |effect: &dyn Effect| {
             let mut effects = fit.estimate.effects.iter();
             effects.any(|added| added.effect.id() == effect.id())
@@ -188,27 +186,25 @@ fn without_unneeded(
 ) -> (Candidate, bool) {
     let mut dropped = false;
     let mut index = given;
-    while index + 1 < candidate.fit.estimate.effects.len() {
+    while index < candidate.index {
         let mut reduced = candidate.fit.estimate.clone();
-        let AddedEffect { effect, .. } = reduced.effects.remove(index);
+        reduced.effects.remove(index);
         let reduced = refine(problem, reduced);
-        let mut whole = candidate.fit.estimate.clone();
-        let moved = whole.effects.remove(index);
-        whole.effects.push(moved);
-        let whole = evaluate(problem, whole);
-        let needed = weigh(problem, &reduced, effect, whole).likelihood_ratio >= SIGNIFICANT;
+        let whole = evaluate(problem, candidate.fit.estimate.clone());
+        let needed = weigh(problem, &reduced, whole, index).likelihood_ratio >= SIGNIFICANT;
         if needed {
             index += 1;
         } else {
             dropped = true;
             candidate.fit = reduced;
+            candidate.index -= 1;
         }
     }
     if dropped {
         let mut without = candidate.fit.estimate.clone();
-        without.effects.pop();
+        without.effects.remove(candidate.index);
         let base = refine(problem, without);
-        candidate = weigh(problem, &base, candidate.effect, candidate.fit);
+        candidate = weigh(problem, &base, candidate.fit, candidate.index);
     }
     (candidate, dropped)
 }

@@ -17,6 +17,8 @@ pub enum ParameterKind {
     Current,
     /// A time.
     Time,
+    /// A pure number.
+    Ratio,
     /// Any other quantity.
     Other,
 }
