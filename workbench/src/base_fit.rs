@@ -5,6 +5,7 @@ use std::fmt;
 use hitch_identification::base::{BaseFit, CurvePoint, FittedConstant};
 use hitch_identification::data::experiment::Experiment;
 use hitch_plant::Model;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::text::{Table, wrapped};
@@ -13,7 +14,7 @@ use crate::text::{Table, wrapped};
 const WIDTH: usize = 100;
 
 /// Result of `hitch model fit`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct ShownBaseFit {
     /// Name of the campaign.
     pub campaign: String,
@@ -36,26 +37,28 @@ pub struct ShownBaseFit {
 }
 
 /// A constant.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct ShownConstant {
     /// Name in a model file.
     pub name: String,
-    /// Unit.
+    /// Unit of the values.
     pub unit: &'static str,
-    /// Declared value.
+    /// Declared value, in the unit.
     pub declared: f64,
-    /// Fitted value.
+    /// Fitted value, in the unit.
     pub fitted: f64,
-    /// Lower end of the 95 % interval.
+    /// Lower end of the 95 % interval, in the unit; `null` if it is unknown.
+    #[schemars(with = "Option<f64>")]
     pub low: f64,
-    /// Upper end of the 95 % interval.
+    /// Upper end of the 95 % interval, in the unit; `null` if it is unknown.
+    #[schemars(with = "Option<f64>")]
     pub high: f64,
     /// Whether the campaign determines it.
     pub determined: bool,
 }
 
 /// A point of a flow curve.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct ShownPoint {
     /// Table of the valve.
     pub valve: &'static str,
@@ -65,9 +68,11 @@ pub struct ShownPoint {
     pub declared_lpm: f64,
     /// Fitted flow, l/min.
     pub fitted_lpm: f64,
-    /// Lower end of the 95 % interval, l/min.
+    /// Lower end of the 95 % interval, l/min; `null` if it is unknown.
+    #[schemars(with = "Option<f64>")]
     pub low_lpm: f64,
-    /// Upper end of the 95 % interval, l/min.
+    /// Upper end of the 95 % interval, l/min; `null` if it is unknown.
+    #[schemars(with = "Option<f64>")]
     pub high_lpm: f64,
     /// Whether the campaign determines it.
     pub determined: bool,

@@ -3,7 +3,8 @@ use clap::{Parser, Subcommand};
 
 use crate::commands::{
     add, calibrate, changes, compare, controller, diagnose, ecu, effects, explain, export_fmu,
-    flash_calibration, import, loop_, main_job, model, paper, record, serve, simulate, tune,
+    flash_calibration, import, loop_, main_job, model, paper, record, schema, serve, simulate,
+    tune,
 };
 use crate::error::Error;
 use crate::output;
@@ -66,6 +67,8 @@ pub enum Command {
     Import(import::Args),
     /// Tune position and rate control against the plant, over loads and valve spread
     Tune(tune::Args),
+    /// Print the JSON Schema of the document that a command writes with --json
+    Schema(schema::Args),
     /// Convert an identified model into the firmware's calibration: valve map, thresholds, limits
     Calibrate(calibrate::Args),
 }
@@ -94,6 +97,7 @@ impl Command {
             Self::FlashCalibration(args) => flash_calibration::run(args),
             Self::Record(args) => record::run(args),
             Self::Import(args) => import::run(args),
+            Self::Schema(args) => schema::run(args),
             Self::Tune(args) => tune::run(args),
             Self::Calibrate(args) => calibrate::run(args),
         }

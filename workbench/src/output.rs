@@ -1,4 +1,6 @@
 //! Output of the program: standard output, JSON documents, and files that are written atomically.
+mod document;
+
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -6,6 +8,8 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::error::Error;
+
+pub use document::Document;
 
 /// Prints a text on standard output.
 ///
@@ -45,11 +49,7 @@ impl JsonArg {
         let Some(path) = &self.target else {
             return Ok(());
         };
-        let mut document = serde_json::to_string_pretty(result).map_err(|error| {
-            Error::Failed(format!("the result cannot be written as JSON: {error}"))
-        })?;
-        document.push('\n');
-        write_file(path, document.as_bytes())
+        write_file(path, Document::of(result).pretty()?.as_bytes())
     }
 }
 

@@ -7,4 +7,6 @@ mod controller_stdio;
 mod fmu;
 mod from_bus_to_model;
 mod import;
+mod schema;
+mod small_campaign;
 mod tune;

@@ -1,5 +1,6 @@
 //! Figures of merit of a move, evaluated on the true angle, not on the measured one.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::ideal_ramp::IdealRamp;
@@ -9,8 +10,8 @@ use super::scenario::Move;
 /// A move has arrived when the angle stays within this distance of the set point, degree.
 pub const ARRIVED_DEG: f64 = 0.5;
 
-/// Figures of one move; NaN is `null` in a document.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+/// Figures of one move.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct MoveResult {
     /// Start angle, degree.
     pub from_deg: f64,
@@ -22,13 +23,15 @@ pub struct MoveResult {
     pub oil_temperature_c: f64,
     /// Whether the angle finally stays within 0.5 degree of the set point.
     pub arrived: bool,
-    /// Time from the step of the set point until the angle stays within 0.5 degree, s; NaN if it never does.
+    /// Time from the step of the set point until the angle stays within 0.5 degree, s; `null` if it never does.
+    #[schemars(with = "Option<f64>")]
     pub time_s: f64,
-    /// Shortest time of the plant with edges of a normal manoeuvre, s: see [`IdealRamp`]. NaN if the plant cannot do
-    /// the move.
+    /// Shortest time of the plant with edges of a normal manoeuvre, s; `null` if the plant cannot do the move.
+    #[schemars(with = "Option<f64>")]
     pub shortest_s: f64,
-    /// `time_s / shortest_s`; NaN if either is NaN. Below one if the valve opened or closed more steeply than in a
+    /// `time_s / shortest_s`; `null` if either is `null`. Below one if the valve opened or closed more steeply than in a
     /// normal manoeuvre.
+    #[schemars(with = "Option<f64>")]
     pub ratio: f64,
     /// Root mean square of the difference from the angle of the ideal manoeuvre at the same time, until both have
     /// arrived, degree.
@@ -36,26 +39,30 @@ pub struct MoveResult {
     /// Largest overshoot of the set point, degree.
     pub overshoot_deg: f64,
     /// Distance from the set point at the end of the run, degree.
+    #[schemars(with = "Option<f64>")]
     pub final_error_deg: f64,
     /// On time of the coils in the minute after `time_s`, s, including the tail of the approach. Zero if it never
     /// arrives.
     pub active_after_s: f64,
     /// Number of coil activations in the minute after `time_s`; zero if it never arrives.
     pub switched_on_after: u32,
-    /// Peak-to-peak cylinder pressure during the move relative to the ideal ramp; NaN if there is none.
+    /// Peak-to-peak cylinder pressure during the move relative to the ideal ramp; `null` if there is none.
+    #[schemars(with = "Option<f64>")]
     pub pressure_swing_ratio: f64,
 }
 
 /// Figures of a set of moves.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Summary {
     /// Number of moves.
     pub moves: usize,
     /// Number of moves that arrived.
     pub arrived: usize,
-    /// Median time ratio of the moves that arrived; NaN if none did.
+    /// Median time ratio of the moves that arrived; `null` if none did.
+    #[schemars(with = "Option<f64>")]
     pub ratio_median: f64,
-    /// 95 % quantile of the time ratio of the moves that arrived; NaN if none did.
+    /// 95 % quantile of the time ratio of the moves that arrived; `null` if none did.
+    #[schemars(with = "Option<f64>")]
     pub ratio_p95: f64,
     /// Median tracking error, degree.
     pub tracking_error_median_deg: f64,

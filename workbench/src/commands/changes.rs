@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use hitch_campaign::Campaign;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::error::Error;
@@ -33,9 +34,9 @@ pub struct Args {
     json: JsonArg,
 }
 
-/// Both explanations.
-#[derive(Debug, Serialize)]
-struct Changes {
+/// Result of `hitch changes`: both explanations.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Changes {
     /// Effects that the model lacks on the reference campaign.
     baseline: Explanation,
     /// Changes since: the steps from the model of the reference campaign to a model of the new campaign.

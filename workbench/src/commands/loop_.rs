@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use hitch_controller_host::calibration_file;
 use hitch_quantities::ValidCalibration;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::closed_loop::show::text;
@@ -48,10 +49,12 @@ pub struct Args {
     report: Option<PathBuf>,
 }
 
-/// The result as a JSON document.
-#[derive(Debug, Serialize)]
-struct Document<'a> {
+/// Result of `hitch loop`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Driven<'a> {
+    /// Figures of each move, in the order of the scenario.
     moves: &'a [MoveResult],
+    /// Figures of all moves.
     summary: Summary,
 }
 
@@ -82,7 +85,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         });
         output::write_file(path, page.as_bytes())?;
     }
-    let document = Document {
+    let document = Driven {
         moves: &driven.results,
         summary: driven.summary,
     };

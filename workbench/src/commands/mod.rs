@@ -16,6 +16,7 @@ pub mod main_job;
 pub mod model;
 pub mod paper;
 pub mod record;
+pub mod schema;
 pub mod serve;
 pub mod simulate;
 pub mod tune;

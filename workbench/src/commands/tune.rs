@@ -4,16 +4,18 @@ use std::path::PathBuf;
 
 use hitch_controller_host::calibration_file;
 use hitch_quantities::Calibration;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::calibrate::calibrate;
 use crate::closed_loop::{Scenario, Summary};
 use crate::commands::loop_::{changed, read_files};
 use crate::error::Error;
-use crate::output;
+use crate::output::{self, JsonArg};
 use crate::outputs::Outputs;
 use crate::progress::Progress;
 use crate::text::{Table, known};
-use crate::tuning::{Judged, Trial, changes};
+use crate::tuning::{Change, Judged, Trial, changes};
 
 /// Arguments of `hitch tune`.
 #[derive(Debug, clap::Args)]
@@ -46,6 +48,42 @@ pub struct Args {
     /// Moves to drive
     #[arg(long, value_enum, default_value_t = Scenario::Tuning)]
     scenario: Scenario,
+    #[command(flatten)]
+    json: JsonArg,
+}
+
+/// Result of `hitch tune`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Tuned {
+    /// The values that the search changed.
+    changes: Vec<Change>,
+    /// Figures of the initial calibration.
+    before: Figures,
+    /// Figures of the tuned calibration.
+    after: Figures,
+}
+
+/// Figures of a calibration on the plant and its neighbours.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+struct Figures {
+    /// Cost, the objective of the search; a smaller one is better.
+    cost: f64,
+    /// Figures of all moves.
+    summary: Summary,
+}
+
+impl Tuned {
+    fn new(before: &Judged, after: &Judged) -> Self {
+        let figures = |judged: &Judged| Figures {
+            cost: judged.cost,
+            summary: judged.summary,
+        };
+        Self {
+            changes: changes(&before.calibration, &after.calibration),
+            before: figures(before),
+            after: figures(after),
+        }
+    }
 }
 
 /// Runs the command.
@@ -54,7 +92,7 @@ pub struct Args {
 /// If the model or the calibration is invalid, or the result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let inputs = read_files(&args.model, args.calibration.as_ref());
-    let outputs = Outputs::check([Some(args.out.as_path())], &inputs)?;
+    let outputs = Outputs::check([Some(args.out.as_path()), args.json.target()], &inputs)?;
     let model = hitch_model_file::named(&args.model)?;
     let base = match &args.calibration {
         Some(path) => calibration_file::read(path)?,
@@ -81,15 +119,17 @@ pub fn run(args: &Args) -> Result<(), Error> {
     drop(progress);
     let text = calibration_file::write_tuned(&after.calibration, &base);
     output::write_file(&args.out, text.as_bytes())?;
-    outputs.say(|| told(&before, &after))
+    let tuned = Tuned::new(&before, &after);
+    outputs.tell(&args.json, &tuned, || told(&tuned))
 }
 
 /// Values and figures before and after.
-fn told(before: &Judged, after: &Judged) -> String {
+fn told(tuned: &Tuned) -> String {
+    let (before, after) = (&tuned.before, &tuned.after);
     let mut values = Table::new(["value", "before", "after"]);
-    for change in changes(&before.calibration, &after.calibration) {
+    for change in &tuned.changes {
         values.row([
-            change.key,
+            change.key.clone(),
             format!("{:.3}", change.before),
             format!("{:.3}", change.after),
         ]);

@@ -3,6 +3,7 @@
 use hitch_campaign::Bench;
 use hitch_identification::data::experiment::ReadyRun;
 use hitch_identification::data::regime::Regime;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Current below which a valve counts as off, A.
@@ -13,7 +14,7 @@ const EDGES_A: [f64; 4] = [1.0, 1.6, 2.2, 2.8];
 const TEMPERATURE_STEP_C: f64 = 10.0;
 
 /// Grouping of the samples.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Grouping {
     /// By regime.

@@ -13,6 +13,7 @@ use hitch_identification::estimation::fit::{ErrorSums, Fit, evaluate, fit_loads}
 use hitch_identification::residuals::whitening::Weights;
 use hitch_plant::simulation::Trace;
 use hitch_plant::{Channel, Model};
+use schemars::JsonSchema;
 use serde::Serialize;
 use tally::Tally;
 
@@ -22,7 +23,7 @@ pub use groups::Grouping;
 const WORST_STRETCH_S: f64 = 1.0;
 
 /// Result of `hitch compare`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Comparison {
     /// Name of the campaign.
     pub campaign: String,
@@ -41,7 +42,7 @@ pub struct Comparison {
 }
 
 /// Error of one channel.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct ChannelError {
     /// Key of the channel.
     pub channel: &'static str,
@@ -58,7 +59,7 @@ pub struct ChannelError {
 }
 
 /// Error of one channel in one part of the data.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Cell {
     /// Grouping of the samples.
     pub by: Grouping,
@@ -75,7 +76,7 @@ pub struct Cell {
 }
 
 /// The stretch of time in which a channel has its largest error.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct WorstStretch {
     /// Key of the channel.
     pub channel: &'static str,

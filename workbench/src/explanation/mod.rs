@@ -1,4 +1,5 @@
 //! Results of `hitch explain` and `hitch diagnose`, as JSON and as text.
+mod channel_figures;
 mod found;
 mod next;
 mod of_diagnosis;
@@ -7,18 +8,19 @@ mod of_suggestion;
 mod rebuilt;
 mod show;
 
+pub use channel_figures::ChannelFigures;
 pub use found::{Explained, Found};
 pub use next::{Detail, Next};
 pub use of_diagnosis::explained;
 pub use of_explanation::parameters;
 pub use rebuilt::rebuilt;
-pub use show::late_ms;
 
+use indexmap::IndexMap;
+use schemars::JsonSchema;
 use serde::Serialize;
-use serde_json::{Map, Value};
 
 /// Result of `hitch explain`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Explanation {
     /// Head, common to all results.
     #[serde(flatten)]
@@ -41,7 +43,7 @@ pub struct Explanation {
 }
 
 /// Result of `hitch diagnose`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Diagnosis {
     /// Head, common to all results; the error after is that of the best candidate, if it is accepted.
     #[serde(flatten)]
@@ -54,7 +56,7 @@ pub struct Diagnosis {
 }
 
 /// Head of every result on a campaign.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Head {
     /// Name of the campaign.
     pub campaign: String,
@@ -66,10 +68,9 @@ pub struct Head {
     pub error_after: f64,
     /// Error of a perfect model: the noise of the instruments, in sigma.
     pub noise_floor: f64,
-    /// By channel key, in the channel's unit: the error before and after, the noise of the instrument, and the offset
-    /// of its clock relative to the currents, s.
-    pub channels: Map<String, Value>,
-    /// Verdict.
+    /// By channel key: errors, noise and delay.
+    pub channels: IndexMap<&'static str, ChannelFigures>,
+    /// Verdict: `nothing-missing`, `explained`, `ambiguous`, `unexplained` or `not-enough-data`.
     pub verdict: &'static str,
     /// Whether the base is unsuitable: the error is large everywhere, with and without effects.
     pub hopeless_base: bool,
@@ -80,7 +81,7 @@ pub const HOPELESS_BASE: &str = "The base model does not match this machine: the
     hitch model fit CAMPAIGN --model MODEL --out FILE";
 
 /// One added effect.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Step {
     /// Id of the effect.
     pub effect: &'static str,
@@ -96,17 +97,22 @@ pub struct Step {
     pub error_before: f64,
     /// Error after it was added, in sigma.
     pub error_after: f64,
-    /// Error before, on held-out runs.
+    /// Error before, on held-out runs, in sigma; `null` if no run was held out.
+    #[schemars(with = "Option<f64>")]
     pub held_out_before: f64,
-    /// Error after, on held-out runs.
+    /// Error after, on held-out runs, in sigma; `null` if no run was held out.
+    #[schemars(with = "Option<f64>")]
     pub held_out_after: f64,
-    /// Error before on held-out runs with the robust loss of the fit, the criterion for choosing effects.
+    /// Error before on held-out runs with the robust loss of the fit, in sigma, the criterion for choosing effects;
+    /// `null` if no run was held out.
+    #[schemars(with = "Option<f64>")]
     pub held_out_loss_before: f64,
-    /// The same after.
+    /// The same after; `null` if no run was held out.
+    #[schemars(with = "Option<f64>")]
     pub held_out_loss_after: f64,
     /// Confidence that it is this effect, 0 to 1.
     pub confidence: f64,
-    /// Share of the mean square beyond noise that it explains, relative to the model without it, where it acts.
+    /// Share of the mean square beyond noise that it explains, 0 to 1, relative to the model without it, where it acts.
     pub explained_share: f64,
     /// Effects that are indistinguishable from it on these data.
     pub indistinguishable: Vec<&'static str>,
@@ -140,18 +146,19 @@ fn with_form(id: &str, form: Option<&str>) -> String {
 }
 
 /// An effect that explains the campaign equally well in place of another.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Alternative {
     /// Id of the effect.
     pub effect: &'static str,
     /// Angle between the two signatures, all other effects projected out, degree.
+    #[schemars(with = "Option<f64>")]
     pub angle_deg: f64,
     /// Error with it instead, in sigma.
     pub error_after: f64,
 }
 
 /// An effect that is not detectable in this campaign.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct NotVisible {
     /// Id of the effect.
     pub effect: &'static str,
@@ -164,7 +171,7 @@ pub struct NotVisible {
 }
 
 /// An effect that may be missing.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Candidate {
     /// Id of the effect.
     pub effect: &'static str,
@@ -185,24 +192,26 @@ pub struct Candidate {
 }
 
 /// A parameter with its interval.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Parameter {
     /// Name.
     pub name: &'static str,
     /// Unit; empty for a pure number.
     pub unit: &'static str,
-    /// Estimate.
+    /// Estimate, in the unit.
     pub value: f64,
-    /// Lower end of the 95 % interval.
+    /// Lower end of the 95 % interval, in the unit; `null` if it is unknown.
+    #[schemars(with = "Option<f64>")]
     pub low: f64,
-    /// Upper end of the 95 % interval.
+    /// Upper end of the 95 % interval, in the unit; `null` if it is unknown.
+    #[schemars(with = "Option<f64>")]
     pub high: f64,
     /// Whether the estimate is at an end of its allowed range and therefore not a measurement.
     pub at_its_limit: bool,
 }
 
 /// The error that the catalogue does not explain.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Unexplained {
     /// Remaining share of the squared error above the noise, 0 to 1.
     pub share: f64,
@@ -218,7 +227,7 @@ pub struct Unexplained {
 }
 
 /// A suggested term: a candidate for a model file, not an identified cause.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Suggested {
     /// Where it acts.
     pub place: &'static str,
@@ -226,11 +235,13 @@ pub struct Suggested {
     pub formula: String,
     /// Its parameters.
     pub parameters: Vec<Parameter>,
-    /// Error without it, on held-out runs.
+    /// Error without it, on held-out runs, in sigma; `null` if no run was held out.
+    #[schemars(with = "Option<f64>")]
     pub held_out_before: f64,
-    /// Error with it, on held-out runs.
+    /// Error with it, on held-out runs, in sigma; `null` if no run was held out.
+    #[schemars(with = "Option<f64>")]
     pub held_out_after: f64,
-    /// Error with it.
+    /// Error with it, in sigma.
     pub error_after: f64,
     /// Steps that are redundant beside it.
     pub replaces: Vec<&'static str>,

@@ -1,10 +1,11 @@
 //! The proposed next experiment: as a sentence, and in parts.
 
 use hitch_identification::design::NextExperiment;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The proposed next experiment, if any.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, JsonSchema)]
 pub struct Next {
     /// As one sentence.
     pub next_experiment: Option<String>,
@@ -13,7 +14,7 @@ pub struct Next {
 }
 
 /// The parts of a proposed experiment.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Detail {
     /// The manoeuvre.
     pub manoeuvre: String,

@@ -7,9 +7,12 @@ use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain;
 use hitch_identification::explanation::undetected::Undetected;
 use hitch_plant::{Channel, Effect, Model};
-use serde_json::{Map, Value, json};
+use indexmap::IndexMap;
 
-use super::{Alternative, Explanation, Head, NotVisible, Parameter, Step, Unexplained};
+use super::channel_figures::{CLOCK, SUM};
+use super::{
+    Alternative, ChannelFigures, Explanation, Head, NotVisible, Parameter, Step, Unexplained,
+};
 
 impl Explanation {
     /// The display form of an explanation of a campaign, with the initial model.
@@ -117,21 +120,21 @@ pub fn channels(
     model: &Model,
     before: &Fit,
     after: &Fit,
-) -> Map<String, Value> {
+) -> IndexMap<&'static str, ChannelFigures> {
     let spool_lag_s = model.spool_lag_s();
     let measured = |channel: &Channel| experiment.noise[channel.index()].is_finite();
     let entry = |channel: Channel| {
         let noise = experiment.noise[channel.index()];
         let error = |fit: &Fit| fit.channel_error(channel.index()) * noise;
         (
-            channel.key().to_owned(),
-            json!({
-                "before": error(before),
-                "after": error(after),
-                "noise": noise,
-                "late_s": after.estimate.clocks.offsets_s[channel.index()],
-                "delay_s": delays(after, spool_lag_s, channel),
-            }),
+            channel.key(),
+            ChannelFigures {
+                before: error(before),
+                after: error(after),
+                noise,
+                late_s: after.estimate.clocks.offsets_s[channel.index()],
+                delay_s: delays(after, spool_lag_s, channel),
+            },
         )
     };
     Channel::ALL
@@ -143,22 +146,19 @@ pub fn channels(
 
 /// Contributions to a channel's delay behind the currents, s: its clock offset, the declared spool lag, and effects
 /// whose size is a time and that the channel shows; and their sum.
-fn delays(fit: &Fit, spool_lag_s: f64, channel: Channel) -> Map<String, Value> {
+fn delays(fit: &Fit, spool_lag_s: f64, channel: Channel) -> IndexMap<&'static str, f64> {
     let shown = fit.estimate.effects.iter().filter(|added| {
         added.effect.parameters()[0].unit == "s" && added.effect.channels().contains(&channel)
     });
     let effects = shown.map(|added| (added.effect.id(), added.values[0]));
     let clock_s = fit.estimate.clocks.offsets_s[channel.index()];
-    let known = [("clock", clock_s), ("declared spool lag", spool_lag_s)];
+    let known = [(CLOCK, clock_s), ("declared spool lag", spool_lag_s)];
     let parts: Vec<(&str, f64)> = known
         .into_iter()
         .chain(effects)
         .filter(|(_, part_s)| *part_s != 0.0)
         .collect();
     let sum_s: f64 = parts.iter().map(|(_, part_s)| part_s).sum();
-    let whole = std::iter::once(("sum", sum_s));
-    let parts = parts.into_iter().chain(whole);
-    parts
-        .map(|(name, part_s)| (name.to_owned(), json!(part_s)))
-        .collect()
+    let whole = std::iter::once((SUM, sum_s));
+    parts.into_iter().chain(whole).collect()
 }

@@ -180,50 +180,22 @@ impl fmt::Display for Head {
         )?;
         let mut table = Table::new(["channel", "before", "after", "noise", "offset, ms"]);
         for (channel, values) in &self.channels {
-            let number = |key: &str| {
-                values[key]
-                    .as_f64()
-                    .map_or("-".to_owned(), |value| format!("{value:.3}"))
-            };
             table.row([
-                channel.clone(),
-                number("before"),
-                number("after"),
-                number("noise"),
-                late_ms(values),
+                (*channel).to_owned(),
+                known(values.before, 3),
+                known(values.after, 3),
+                known(values.noise, 3),
+                values.late_ms(),
             ]);
         }
         write!(f, "{table}")?;
         for (channel, values) in &self.channels {
-            if let Some(parts) = delay_ms(values) {
+            if let Some(parts) = values.delay_ms() {
                 writeln!(f, "  {channel} is {parts} behind the currents")?;
             }
         }
         Ok(())
     }
-}
-
-/// A channel's delay behind the currents with its contributions, ms, as text; `None` if the clock offset is the only
-/// one.
-fn delay_ms(channel: &serde_json::Value) -> Option<String> {
-    let parts = channel["delay_s"].as_object()?;
-    let ms = |part: &serde_json::Value| 1e3 * part.as_f64().unwrap_or(f64::NAN);
-    let is_effect = |name: &&String| !["sum", "clock"].contains(&name.as_str());
-    parts.keys().find(is_effect)?;
-    let named = parts.iter().filter(|(name, _)| name.as_str() != "sum");
-    let terms: Vec<String> = named
-        .map(|(name, part)| format!("{name} {:.0}", ms(part)))
-        .collect();
-    let sum = ms(&parts["sum"]);
-    Some(format!("{sum:.0} ms ({})", terms.join(" + ")))
-}
-
-/// Offset of a channel's clock relative to the currents, ms, as text.
-pub fn late_ms(channel: &serde_json::Value) -> String {
-    let late_s = channel["late_s"].as_f64();
-    // Less than half a millisecond is displayed as none.
-    let late_ms = late_s.map(|late_s| (1e3 * late_s).round() + 0.0);
-    late_ms.map_or("-".to_owned(), |late_ms| format!("{late_ms:.0}"))
 }
 
 impl Step {

@@ -6,6 +6,7 @@ use hitch_paper::check_valve::Spring;
 use hitch_paper::travel_time::Panel;
 use hitch_paper::{flow_table, orifice_area, tables, travel_time};
 use hitch_plant::{Model, Valve};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::progress::Progress;
@@ -18,7 +19,7 @@ const PORT_DIAMETERS_M: [f64; 3] = [0.008, 0.010, 0.012];
 const COMPRESSION_M: f64 = 0.005;
 
 /// The paper's results and the model's.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Paper {
     /// Name of the model.
     pub model: String,
@@ -35,7 +36,7 @@ pub struct Paper {
 }
 
 /// Table 2 of one valve.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct FlowTable {
     /// `lift` or `lower`.
     pub valve: &'static str,
@@ -48,7 +49,7 @@ pub struct FlowTable {
 }
 
 /// One row of Table 2.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct FlowRow {
     /// Solenoid current, A.
     pub current_a: f64,
@@ -61,18 +62,18 @@ pub struct FlowRow {
 }
 
 /// The largest estimated area.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct LargestArea {
     /// Value of the paper, mm2.
     pub paper_mm2: f64,
     /// Value of this model, mm2.
     pub model_mm2: f64,
-    /// Relative difference.
+    /// `model_mm2 / paper_mm2 - 1`.
     pub relative_difference: f64,
 }
 
 /// The check valve's cracking pressure.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct CheckValve {
     /// Value of the paper, bar.
     pub paper_bar: f64,
@@ -83,7 +84,7 @@ pub struct CheckValve {
 }
 
 /// A spring that satisfies the cracking pressure.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct SpringRow {
     /// Diameter of the port, mm.
     pub port_diameter_mm: f64,
@@ -96,7 +97,7 @@ pub struct SpringRow {
 }
 
 /// Figure 12: times of travel, with the paper's statements on them.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Figure12 {
     /// Figure 12A.
     pub lifting: Travel,
@@ -107,7 +108,7 @@ pub struct Figure12 {
 }
 
 /// One panel of Figure 12.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Travel {
     /// Currents, A: the rows.
     pub currents_a: [f64; 5],
@@ -118,7 +119,7 @@ pub struct Travel {
 }
 
 /// A statement of the paper.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Statement {
     /// The statement, with its section.
     pub paper: &'static str,

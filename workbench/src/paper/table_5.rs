@@ -9,6 +9,7 @@ use hitch_paper::tables::{FIGURE_12_LIFT_A, FIGURE_12_LOADS_KG};
 use hitch_paper::test_bench::{self, deviation, saturation_a, table_5, threshold_a};
 use hitch_paper::travel_time::travel_s;
 use hitch_plant::{AddedEffect, Constants, Dynamics, Model, Valve};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::explanation::{Parameter, parameters};
@@ -22,7 +23,7 @@ const HARDLY_LPM: f64 = 1e-3;
 const HALVINGS: usize = 40;
 
 /// Table 5 compared with Table 2 and with the rebuilt model.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Table5 {
     /// One entry a valve: lift, lower.
     pub valves: [ValveCheck; 2],
@@ -37,7 +38,7 @@ pub struct Table5 {
 }
 
 /// A valve's characteristic numbers: Table 2, Table 5, and the model with the effects found.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct ValveCheck {
     /// `lift` or `lower`.
     pub valve: &'static str,
@@ -50,9 +51,9 @@ pub struct ValveCheck {
 }
 
 /// The same quantity from three sources.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub struct Triple {
-    /// Table 2, the manufacturer's.
+    /// Table 2, the manufacturer's; the unit is that of the quantity.
     pub table_2: f64,
     /// Table 5, the paper's measurement.
     pub table_5: f64,
@@ -61,24 +62,24 @@ pub struct Triple {
 }
 
 /// An identified effect, compared with the difference of the two tables.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct EffectCheck {
     /// Id of the effect.
     pub effect: &'static str,
-    /// Value that converts Table 2 into Table 5; `null` for an effect that the tables do not imply.
+    /// Value that converts Table 2 into Table 5, in the unit of the parameter; `null` for an effect that the tables do not imply.
     pub expected: Option<f64>,
     /// The identified parameter.
     pub found: Parameter,
 }
 
 /// Time of the slowest lift of Figure 12, s; the figure's axis ends at 30 s.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub struct SlowestLift {
     /// Current, A.
     pub current_a: f64,
-    /// With the threshold of Table 2A.
+    /// Time with the threshold of Table 2A, s; `null` if the lift never ends.
     pub table_2_s: Option<f64>,
-    /// With the threshold of Table 5.
+    /// Time with the threshold of Table 5, s; `null` if the lift never ends.
     pub table_5_s: Option<f64>,
 }
 

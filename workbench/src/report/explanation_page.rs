@@ -11,7 +11,7 @@ use super::runs::runs;
 use super::staircase::staircase;
 use super::{page, staircase};
 use crate::comparison::{Comparison, Evaluated, Grouping};
-use crate::explanation::{Explanation, Found, Step, late_ms};
+use crate::explanation::{ChannelFigures, Explanation, Found, Step};
 use crate::text::known;
 
 /// Groupings shown before and after.
@@ -138,18 +138,17 @@ fn steps(steps: &[Step]) -> Markup {
 }
 
 fn channels(shown: &Explanation) -> Markup {
-    let row = |(channel, values): (&String, &serde_json::Value)| {
-        let number = |key: &str| {
-            values[key]
-                .as_f64()
-                .map_or("–".to_owned(), |value| format!("{value:.3}"))
+    let row = |(channel, values): (&&str, &ChannelFigures)| {
+        let number = |value: f64| match value.is_finite() {
+            true => format!("{value:.3}"),
+            false => "–".to_owned(),
         };
         vec![
-            channel.clone(),
-            number("before"),
-            number("after"),
-            number("noise"),
-            late_ms(values),
+            (*channel).to_owned(),
+            number(values.before),
+            number(values.after),
+            number(values.noise),
+            values.late_ms(),
         ]
     };
     let rows: Vec<Vec<String>> = shown.head.channels.iter().map(row).collect();

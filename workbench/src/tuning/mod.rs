@@ -11,6 +11,9 @@ use cmaes::{CMAESOptions, DVector};
 use hitch_effects::find;
 use hitch_plant::{AddedEffect, Model};
 use hitch_quantities::{Calibration, ValidCalibration};
+use schemars::JsonSchema;
+use serde::Serialize;
+
 use knobs::{Least, with_values, without};
 
 use crate::closed_loop::{Course, Move, MoveResult, Summary, courses, figures};
@@ -56,13 +59,13 @@ pub struct Judged {
 }
 
 /// One value that was searched.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Change {
-    /// `group.key`
+    /// Group and key of the calibration file, without the unit: `group.key`.
     pub key: String,
-    /// Value before, engineering units.
+    /// Value before, in the unit of the calibration file.
     pub before: f64,
-    /// Value after, engineering units.
+    /// Value after, in the unit of the calibration file.
     pub after: f64,
 }
 

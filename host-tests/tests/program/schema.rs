@@ -1,0 +1,113 @@
+//! The documents of `--json` against the schemas of `hitch schema`.
+
+use std::path::Path;
+
+use host_tests::program::run;
+use jsonschema::Validator;
+use serde_json::{Value, json};
+
+use crate::small_campaign::campaign;
+
+/// The schema of a command's document, as it is printed.
+fn schema(command: &str) -> Value {
+    let mut arguments = vec!["schema"];
+    arguments.extend(command.split(' '));
+    let output = run(Path::new("."), &arguments);
+    assert!(output.status.success(), "{output:?}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Forbids keys that a schema does not list: its descriptions are then complete.
+fn close(schema: &mut Value) {
+    match schema {
+        Value::Object(object) => {
+            if object.contains_key("properties") {
+                object.insert("additionalProperties".to_owned(), json!(false));
+            }
+            object.values_mut().for_each(close);
+        }
+        Value::Array(values) => values.iter_mut().for_each(close),
+        _ => {}
+    }
+}
+
+/// Validates the document of a command against its schema, and against the closed schema.
+fn assert_valid(folder: &Path, command: &str, more: &str) {
+    let arguments = format!("{command} {more} --json -");
+    let output = run(folder, &arguments.split_whitespace().collect::<Vec<_>>());
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments}: {said}");
+    assert!(
+        output.stdout.starts_with(b"{\n  \"format\": 1,\n"),
+        "{arguments}: the version is first"
+    );
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let mut schema = schema(command);
+    let validator: Validator = jsonschema::validator_for(&schema).unwrap();
+    let faults: Vec<String> = validator
+        .iter_errors(&document)
+        .map(|e| e.to_string())
+        .collect();
+    assert!(faults.is_empty(), "{arguments}: {faults:?}");
+    close(&mut schema);
+    let closed = jsonschema::validator_for(&schema).unwrap();
+    let faults: Vec<String> = closed
+        .iter_errors(&document)
+        .map(|e| e.to_string())
+        .collect();
+    assert!(faults.is_empty(), "{arguments}: {faults:?}");
+    let mut wrong = document;
+    wrong["format"] = json!(2);
+    assert!(
+        !validator.is_valid(&wrong),
+        "{command}: the version is fixed"
+    );
+}
+
+#[test]
+fn documents_on_a_campaign_follow_their_schemas() {
+    let dir = campaign();
+    let folder = dir.path();
+    assert_valid(folder, "compare", ".");
+    assert_valid(folder, "diagnose", ".");
+    assert_valid(folder, "explain", ".");
+    assert_valid(folder, "changes", ". .");
+    assert_valid(folder, "model fit", ". --out fitted.toml");
+}
+
+#[test]
+fn documents_of_the_closed_loop_follow_their_schemas() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path();
+    assert_valid(folder, "loop", "--scenario quick");
+    // Too heavy to lift: times without a value.
+    assert_valid(folder, "loop", "--scenario ends --load 2000");
+    assert_valid(
+        folder,
+        "tune",
+        "--scenario quick --trials 10 --out tuned.toml",
+    );
+}
+
+#[test]
+fn the_document_of_the_paper_follows_its_schema() {
+    let dir = tempfile::tempdir().unwrap();
+    assert_valid(dir.path(), "paper", "");
+}
+
+#[test]
+fn a_command_without_a_document_is_refused() {
+    let list = run(Path::new("."), &["schema"]);
+    let list = String::from_utf8(list.stdout).unwrap();
+    assert!(
+        list.contains("explain\n") && list.contains("model fit\n"),
+        "{list}"
+    );
+    let refused = run(Path::new("."), &["schema", "effects"]);
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        said.contains("\"effects\"") && said.contains("explain"),
+        "{said}"
+    );
+}

@@ -1,0 +1,131 @@
+//! `hitch schema`: the JSON Schema of the documents that commands write.
+
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema};
+
+use crate::base_fit::ShownBaseFit;
+use crate::commands::{changes, loop_, tune};
+use crate::comparison::Comparison;
+use crate::error::Error;
+use crate::explanation::{Diagnosis, Explanation};
+use crate::output::{self, Document};
+use crate::paper::Paper;
+
+/// Makes the schema of a document.
+type MakeSchema = fn() -> Schema;
+
+/// Commands with the option `--json`, and the schema of their document.
+const DOCUMENTS: [(&str, MakeSchema); 8] = [
+    ("compare", schema::<Comparison>),
+    ("diagnose", schema::<Diagnosis>),
+    ("explain", schema::<Explanation>),
+    ("changes", schema::<changes::Changes>),
+    ("model fit", schema::<ShownBaseFit>),
+    ("loop", schema::<loop_::Driven<'static>>),
+    ("tune", schema::<tune::Tuned>),
+    ("paper", schema::<Paper>),
+];
+
+/// Arguments of `hitch schema`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Examples:\n  hitch schema\n  hitch schema explain\n  hitch schema model fit"
+)]
+pub struct Args {
+    /// Command that writes the document; without one, the commands that have a schema are listed
+    #[arg(value_name = "COMMAND")]
+    command: Vec<String>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the named command writes no JSON document.
+pub fn run(args: &Args) -> Result<(), Error> {
+    if args.command.is_empty() {
+        let names = DOCUMENTS.map(|(name, _)| format!("{name}\n"));
+        return output::print(&names.concat());
+    }
+    let wanted = args.command.join(" ");
+    let Some((_, schema)) = DOCUMENTS.iter().find(|(name, _)| *name == wanted) else {
+        let names = DOCUMENTS.map(|(name, _)| name).join(", ");
+        return Err(Error::Usage(format!(
+            "{wanted:?} writes no JSON document; these commands do: {names}"
+        )));
+    };
+    let mut schema = schema();
+    schema.insert("title".to_owned(), format!("hitch {wanted} --json").into());
+    let text = serde_json::to_string_pretty(&schema)
+        .map_err(|error| Error::Failed(format!("the schema cannot be written: {error}")))?;
+    output::print(&format!("{text}\n"))
+}
+
+/// The schema of a result's document, as it is written.
+fn schema<T: JsonSchema>() -> Schema {
+    SchemaSettings::draft2020_12()
+        .for_serialize()
+        .into_generator()
+        .into_root_schema_for::<Document<T>>()
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    /// The names of all commands with the option `--json`.
+    fn with_json(command: &clap::Command, above: &str) -> Vec<String> {
+        let of = |inner: &clap::Command| {
+            let name = format!("{above} {}", inner.get_name());
+            let mut names = with_json(inner, &name);
+            if inner
+                .get_arguments()
+                .any(|arg| arg.get_long() == Some("json"))
+            {
+                names.push(name.trim_start().to_owned());
+            }
+            names
+        };
+        command.get_subcommands().flat_map(of).collect()
+    }
+
+    #[test]
+    fn every_command_with_a_document_has_a_schema() {
+        #[derive(clap::Parser)]
+        struct All {
+            #[command(subcommand)]
+            _command: crate::cli::Command,
+        }
+        let mut names = with_json(&All::command(), "");
+        let mut known = DOCUMENTS.map(|(name, _)| name.to_owned()).to_vec();
+        names.sort();
+        known.sort();
+        assert_eq!(names, known);
+    }
+
+    #[test]
+    fn every_value_is_described() {
+        for (name, schema) in DOCUMENTS {
+            let schema = serde_json::to_value(schema()).unwrap();
+            let mut missing = Vec::new();
+            undescribed(&schema, name, &mut missing);
+            assert!(missing.is_empty(), "{missing:?}");
+        }
+    }
+
+    /// Adds the paths of properties without a description.
+    fn undescribed(schema: &serde_json::Value, path: &str, missing: &mut Vec<String>) {
+        let of = |key: &str| schema.get(key).and_then(serde_json::Value::as_object);
+        for (name, property) in of("properties").into_iter().flatten() {
+            let path = format!("{path}.{name}");
+            if property.get("description").is_none() {
+                missing.push(path.clone());
+            }
+            undescribed(property, &path, missing);
+        }
+        for (name, definition) in of("$defs").into_iter().flatten() {
+            undescribed(definition, &format!("{path}.{name}"), missing);
+        }
+    }
+}
