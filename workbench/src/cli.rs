@@ -1,23 +1,17 @@
 //! The command line.
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::commands::{
-    add, calibrate, changes, compare, controller, diagnose, ecu, effects, explain, export_fmu,
-    flash_calibration, import, loop_, main_job, model, paper, record, schema, serve, simulate,
-    tune,
+    add, calibrate, changes, compare, completions, controller, diagnose, ecu, effects, explain,
+    export_fmu, flash_calibration, import, loop_, main_job, man, model, paper, record, schema,
+    serve, simulate, tune,
 };
 use crate::error::Error;
 use crate::output;
 
 /// The electro-hydraulic hitch: measurement -> physics -> firmware -> motion.
 #[derive(Debug, Parser)]
-#[command(
-    name = "hitch",
-    version,
-    about,
-    disable_help_subcommand = true,
-    args_conflicts_with_subcommands = true
-)]
+#[command(name = "hitch", version, about, args_conflicts_with_subcommands = true)]
 #[command(after_help = "Examples:\n  hitch\n  hitch explain lab-a --report lab-a.html")]
 pub struct Cli {
     /// Command; without one, the demonstration campaign is processed from measurement to motion
@@ -69,6 +63,10 @@ pub enum Command {
     Tune(tune::Args),
     /// Print the JSON Schema of the document that a command writes with --json
     Schema(schema::Args),
+    /// Print the completions of a shell for commands and options
+    Completions(completions::Args),
+    /// Print the manual page of the program or of a command
+    Man(man::Args),
     /// Convert an identified model into the firmware's calibration: valve map, thresholds, limits
     Calibrate(calibrate::Args),
 }
@@ -98,6 +96,8 @@ impl Command {
             Self::Record(args) => record::run(args),
             Self::Import(args) => import::run(args),
             Self::Schema(args) => schema::run(args),
+            Self::Completions(args) => completions::run(args, Cli::command()),
+            Self::Man(args) => man::run(args, Cli::command()),
             Self::Tune(args) => tune::run(args),
             Self::Calibrate(args) => calibrate::run(args),
         }
@@ -144,7 +144,6 @@ mod tests {
 
     #[test]
     fn definition_is_sound() {
-        use clap::CommandFactory;
         Cli::command().debug_assert();
     }
 
@@ -167,7 +166,6 @@ mod tests {
 
     #[test]
     fn help_lists_everything_that_is_tuned() {
-        use clap::CommandFactory;
         let command = Cli::command();
         let tune = command.find_subcommand("tune").unwrap();
         let help = tune.get_after_help().unwrap().to_string();
@@ -179,7 +177,6 @@ mod tests {
 
     #[test]
     fn every_command_has_an_example() {
-        use clap::CommandFactory;
         for command in Cli::command().get_subcommands() {
             let help = command
                 .get_after_help()

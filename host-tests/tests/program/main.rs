@@ -8,5 +8,6 @@ mod fmu;
 mod from_bus_to_model;
 mod import;
 mod schema;
+mod shell;
 mod small_campaign;
 mod tune;
