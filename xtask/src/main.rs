@@ -2,6 +2,7 @@
 
 mod a2l;
 mod ablation;
+mod benchmarks;
 mod budget;
 mod check;
 mod coverage;
@@ -36,6 +37,8 @@ usage: cargo xtask <task> [--arm rustup|debian]
           that they do, or with --again
   ablations identification|control [NAME...]
           remove one heuristic of xtask/ablations.toml at a time and print what the benchmark loses
+  benchmarks [NAME...]
+          measure the results in docs/BENCHMARKS.md, or those of these names, again and write them into it
   a2l     write firmware/hitch.a2l, the description of parameters and measurements for tuning tools
   setup   find or install the ARM toolchain and the emulator
 
@@ -60,6 +63,9 @@ fn run(arguments: &[String]) -> Result<()> {
     let (task, options) = arguments.split_first().context(USAGE)?;
     if task == "ablations" {
         return ablation::run(options);
+    }
+    if task == "benchmarks" {
+        return benchmarks::run(options);
     }
     let again = task == "mutants" && options == ["--again"];
     let way = match options {

@@ -23,10 +23,10 @@ pub enum Battery {
 
 /// Drawn campaigns: first seed, number, and the other arguments.
 const CAMPAIGNS: [&str; 4] = [
-    "--seed 1 --count 30 --family steady --plan lab",
-    "--seed 1 --count 10 --family dynamic --plan lab",
-    "--seed 3101 --count 16 --family steady --plan field",
-    "--seed 8001 --count 6 --family steady --plan lab --kind nothing",
+    "--seed 1 --count 18 --family steady --plan lab",
+    "--seed 1 --count 5 --family dynamic --plan lab",
+    "--seed 3101 --count 8 --family steady --plan field",
+    "--seed 8001 --count 3 --family steady --plan lab --kind nothing",
 ];
 
 /// Drawn hitches: the first moves after power-up, many moves of few machines, and spools of second order.
