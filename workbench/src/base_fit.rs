@@ -8,10 +8,8 @@ use hitch_plant::Model;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::text::colour::by_sigma;
 use crate::text::{Table, wrapped};
-
-/// Width of running text, characters.
-const WIDTH: usize = 100;
 
 /// Result of `hitch model fit`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
@@ -133,11 +131,14 @@ fn point(fitted: &CurvePoint) -> ShownPoint {
 
 impl fmt::Display for ShownBaseFit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "Campaign {}, model {}: error {:.2} sigma before the fit, {:.2} sigma after it\n",
-            self.campaign, self.model, self.error_before, self.error_after
-        )?;
+        let head = format!(
+            "Campaign {}, model {}: error {} sigma before the fit, {} sigma after it",
+            self.campaign,
+            self.model,
+            by_sigma(&format!("{:.2}", self.error_before), self.error_before),
+            by_sigma(&format!("{:.2}", self.error_after), self.error_after)
+        );
+        writeln!(f, "{}\n", wrapped(&head))?;
         let mut table = Table::new(["constant", "declared", "fitted", "95 % interval", "unit"]);
         for constant in self.constants.iter().filter(|constant| constant.determined) {
             table.row([
@@ -181,16 +182,16 @@ impl fmt::Display for ShownBaseFit {
                 "Not determined by this campaign, declared value kept: {}.",
                 unknown.join(", ")
             );
-            writeln!(f, "{}", wrapped(&line, WIDTH))?;
+            writeln!(f, "{}", wrapped(&line))?;
         }
         if !self.at_an_end.is_empty() {
             let line = format!(
                 "At the limit of the allowed deviation from the declared value, check the data sheet: {}.",
                 self.at_an_end.join(", ")
             );
-            writeln!(f, "{}", wrapped(&line, WIDTH))?;
+            writeln!(f, "{}", wrapped(&line))?;
         }
-        writeln!(f, "Next: {}", self.next)
+        writeln!(f, "{}", wrapped(&format!("Next: {}", self.next)))
     }
 }
 

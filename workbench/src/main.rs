@@ -1,12 +1,15 @@
 //! `hitch`: measurement -> physics -> firmware -> motion.
 use std::process::ExitCode;
 
+use hitch_workbench::text::colour::BAD;
+
 fn main() -> ExitCode {
     match hitch_workbench::cli::run(std::env::args_os()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             if !error.is_silent() {
-                eprintln!("hitch: {error}");
+                let (style, reset) = (BAD.render(), BAD.render_reset());
+                anstream::eprintln!("{style}hitch:{reset} {error}");
             }
             error.exit_code()
         }

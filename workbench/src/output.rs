@@ -11,12 +11,15 @@ use crate::error::Error;
 
 pub use document::Document;
 
-/// Prints a text on standard output.
+/// Prints a text on standard output; without its colours where it is not a terminal, or `NO_COLOR` is set.
 ///
 /// # Errors
 /// If standard output is closed or full.
 pub fn print(text: &str) -> Result<(), Error> {
-    print_bytes(text.as_bytes())
+    let mut out = anstream::stdout().lock();
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .map_err(Error::Stdout)
 }
 
 fn print_bytes(bytes: &[u8]) -> Result<(), Error> {

@@ -1,7 +1,7 @@
 //! Moves as tables and text, for terminal and report.
 
 use super::metrics::{MoveResult, Summary};
-use crate::text::{Table, known};
+use crate::text::{Table, known, wrapped};
 
 /// Header of the table of moves, for terminal and report.
 pub const HEADER: [&str; 9] = [
@@ -53,7 +53,9 @@ pub fn text(moves: &[MoveResult], summary: &Summary) -> String {
     for result in moves {
         table.row(row(result));
     }
-    format!("{table}\n{}", summed_up(summary))
+    let lines = summed_up(summary);
+    let lines: Vec<String> = lines.lines().map(wrapped).collect();
+    format!("{table}\n{}\n", lines.join("\n"))
 }
 
 /// The summary in two lines, and a third one if a move did not arrive.

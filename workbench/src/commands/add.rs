@@ -21,6 +21,7 @@ use crate::model_arg::ModelArg;
 use crate::output;
 use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
+use crate::text::{indented, wrapped};
 
 /// Arguments of `hitch add`.
 #[derive(Debug, clap::Args)]
@@ -62,19 +63,19 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let rebuilt = rebuilt(&model, &fit.estimate.effects, output::stem(&args.out));
     output::write_file(&args.out, hitch_model_file::to_toml(&rebuilt).as_bytes())?;
     let mut text = match is_unsuitable(&experiment, &base, &fit) {
-        true => format!("{HOPELESS_BASE}\n\n"),
+        true => format!("{}\n\n", wrapped(HOPELESS_BASE)),
         false => String::new(),
     };
     // Writing to a string cannot fail.
-    let _ = writeln!(
-        text,
+    let head = format!(
         "Campaign {}, model {}: error {:.2} sigma",
         campaign.name,
         model.name,
         base.error()
     );
+    let _ = writeln!(text, "{}", wrapped(&head));
     for effect in &weighed {
-        let _ = writeln!(text, "{}", shown(effect));
+        let _ = writeln!(text, "{}", indented(&shown(effect), 2));
     }
     let _ = writeln!(text, "With all effects: error {:.2} sigma", fit.error());
     outputs.say(|| text)
@@ -128,7 +129,7 @@ fn shown(effect: &LeaveOneOut) -> String {
     let parameters = parameters(candidate.effect, candidate.values(), &candidate.intervals);
     let parameters: Vec<String> = parameters.iter().map(ToString::to_string).collect();
     let line = format!(
-        "  + {}: {}; error {:.2} sigma without it",
+        "+ {}: {}; error {:.2} sigma without it",
         full_name(candidate.effect),
         parameters.join(", "),
         effect.without.error()

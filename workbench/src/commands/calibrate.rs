@@ -11,6 +11,7 @@ use crate::calibrate::calibrate;
 use crate::error::Error;
 use crate::output;
 use crate::outputs::Outputs;
+use crate::text::indented;
 
 /// Arguments of `hitch calibrate`.
 #[derive(Debug, clap::Args)]
@@ -47,11 +48,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
         ("lift", &calibration.lift, &base.lift),
         ("lower", &calibration.lower, &base.lower),
     ] {
-        text += &format!(
-            "  {name}: {} (was {})\n",
-            described(table),
-            described(before)
-        );
+        let line = format!("{name}: {} (was {})", described(table), described(before));
+        text += &format!("{}\n", indented(&line, 2));
     }
     outputs.say(|| text)
 }

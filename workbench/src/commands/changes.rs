@@ -12,6 +12,8 @@ use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
 use crate::search_args::SearchArgs;
+use crate::text::colour::by_sigma;
+use crate::text::wrapped;
 
 /// Arguments of `hitch changes`.
 #[derive(Debug, clap::Args)]
@@ -80,16 +82,21 @@ impl std::fmt::Display for Changes {
             true => String::new(),
             false => format!(" with {}", names.join(", ")),
         };
-        writeln!(
-            f,
-            "Baseline {}: model {}{added}, error {:.2} sigma",
-            baseline.head.campaign, baseline.head.model, baseline.head.error_after
-        )?;
-        writeln!(
-            f,
-            "New {}: error {:.2} -> {:.2} sigma",
-            new.head.campaign, new.head.error_before, new.head.error_after
-        )?;
+        let sigma = |error: f64| by_sigma(&format!("{error:.2}"), error);
+        let line = format!(
+            "Baseline {}: model {}{added}, error {} sigma",
+            baseline.head.campaign,
+            baseline.head.model,
+            sigma(baseline.head.error_after)
+        );
+        writeln!(f, "{}", wrapped(&line))?;
+        let line = format!(
+            "New {}: error {} -> {} sigma",
+            new.head.campaign,
+            sigma(new.head.error_before),
+            sigma(new.head.error_after)
+        );
+        writeln!(f, "{}", wrapped(&line))?;
         if new.steps.is_empty() {
             return writeln!(f, "\nNo change is detectable with these campaigns.");
         }

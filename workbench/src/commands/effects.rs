@@ -9,7 +9,7 @@ use crate::effect_arg::find;
 use crate::error::Error;
 use crate::model_arg::ModelArg;
 use crate::output;
-use crate::text::{Table, wrapped};
+use crate::text::{Table, indented, wrapped};
 
 /// Arguments of `hitch effects`.
 #[derive(Debug, clap::Args)]
@@ -44,36 +44,23 @@ pub fn run(args: &Args) -> Result<(), Error> {
 fn list(model: &Model) -> String {
     let mut text = String::new();
     for effect in hitch_effects::available(model) {
-        let _ = writeln!(
-            text,
-            "{:<26} {}\n{:26} {}",
-            full_name(effect),
-            effect.title(),
-            "",
-            effect.equation()
-        );
+        let name = full_name(effect);
+        let _ = writeln!(text, "{}", wrapped(&format!("{name}: {}", effect.title())));
+        let _ = writeln!(text, "{}", indented(effect.equation(), 4));
     }
-    text + "\nhitch effects EFFECT shows all that is known of one; hitch effects --formulas what formulas of one's own \
-            in a model file are made of.\n"
+    let hint = "hitch effects EFFECT shows all that is known of one; hitch effects --formulas what formulas of one's \
+                own in a model file are made of.";
+    format!("{text}\n{}\n", wrapped(hint))
 }
 
 /// Full description of an effect. (Writing to a string cannot fail.)
 fn card(effect: &dyn Effect) -> String {
     let mut text = format!(
-        "{}: {}\n\n  {}\n\n",
-        full_name(effect),
-        effect.title(),
-        effect.equation()
+        "{}\n\n{}\n\n",
+        wrapped(&format!("{}: {}", full_name(effect), effect.title())),
+        indented(effect.equation(), 2)
     );
-    let mut table = Table::new([
-        "parameter",
-        "unit",
-        "off at",
-        "often",
-        "least",
-        "greatest",
-        "meaning",
-    ]);
+    let mut table = Table::new(["parameter", "unit", "off at", "often", "least", "greatest"]);
     for parameter in effect.parameters() {
         let numbers = [
             parameter.null,
@@ -85,7 +72,8 @@ fn card(effect: &dyn Effect) -> String {
         let cells = cells
             .into_iter()
             .chain(numbers.map(|number| number.to_string()));
-        table.row(cells.chain([parameter.meaning.to_owned()]));
+        table.row(cells);
+        table.note(parameter.meaning);
     }
     let channels: Vec<&str> = effect
         .channels()
@@ -98,7 +86,7 @@ fn card(effect: &dyn Effect) -> String {
         ("Shows", effect.shows()),
         ("Channels", &channels.join(", ")),
     ] {
-        let _ = writeln!(text, "{}", wrapped(&format!("{name}: {words}"), 100));
+        let _ = writeln!(text, "{}", wrapped(&format!("{name}: {words}")));
     }
     let _ = writeln!(
         text,

@@ -14,6 +14,7 @@ use crate::outputs::Outputs;
 use crate::progress::Progress;
 use crate::rebuild::Rebuild;
 use crate::report::main_page;
+use crate::text::{colour, indented, wrapped};
 use crate::{demonstration, output};
 
 /// Number of worst cells that are listed.
@@ -51,12 +52,13 @@ pub fn run(args: &Args) -> Result<(), Error> {
 
 fn compared(campaign: &Campaign, model: &Model) -> String {
     let (comparison, _) = Comparison::new(campaign, model);
-    let mut text = format!(
-        "Measured: {}, {} runs. Largest errors of the model {}:\n",
+    let head = format!(
+        "Measured: {}, {} runs. Largest errors of the model {}:",
         campaign.name,
         campaign.runs.len(),
         model.name
     );
+    let mut text = format!("{}\n", wrapped(&head));
     for cell in comparison.worst_cells().into_iter().take(NAMED_CELLS) {
         text += &format!(
             "  {}, {}: {:.1} sigma\n",
@@ -71,19 +73,20 @@ fn explained(found: &Found) -> String {
     let mut text = String::from("\nMissing:\n");
     for step in &shown.steps {
         let parameters: Vec<String> = step.parameters.iter().map(ToString::to_string).collect();
-        text += &format!("  {}: {}\n", step.name(), parameters.join(", "));
+        let line = format!("{}: {}", step.name(), parameters.join(", "));
+        text += &format!("{}\n", indented(&line, 2));
     }
     let head = &shown.head;
     let held_out = shown.steps.last().map(|step| step.held_out_after);
     let held_out = held_out
         .filter(|error| !error.is_nan())
         .map(|error| format!(" ({error:.2} on held-out runs)"));
-    text += &format!(
-        "  the error falls from {:.2} to {:.2} sigma{}: {}\n",
+    let line = format!(
+        "the error falls from {:.2} to {:.2} sigma{}: {}",
         head.error_before,
         head.error_after,
         held_out.unwrap_or_default(),
-        head.verdict
+        colour::verdict(head.verdict)
     );
-    text
+    format!("{text}{}\n", indented(&line, 2))
 }

@@ -6,7 +6,8 @@ use hitch_plant::Channel;
 
 use super::{Cell, Comparison, Grouping};
 use crate::heat_table::{HeatTable, Shade};
-use crate::text::Table;
+use crate::text::colour::by_sigma;
+use crate::text::{Table, indented, wrapped};
 
 /// Number of worst cells that are listed.
 const NAMED_CELLS: usize = 5;
@@ -17,16 +18,18 @@ const NAMED_ABOVE: f64 = 1.2;
 
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "Campaign {}, model {}", self.campaign, self.model)?;
+        let head = format!("Campaign {}, model {}", self.campaign, self.model);
+        writeln!(f, "{}", wrapped(&head))?;
         writeln!(
             f,
-            "  error {:.2} sigma (noise of the instruments: {:.2})\n",
-            self.error, self.noise_floor
+            "  error {} sigma (noise of the instruments: {:.2})\n",
+            sigma(self.error),
+            self.noise_floor
         )?;
         let mut table = Table::new(["channel", "error sigma", "rms", "noise", "unit", "samples"]);
         for channel in &self.channels {
             let numbers = [
-                format!("{:.2}", channel.error),
+                sigma(channel.error),
                 format!("{:.3}", channel.rms),
                 format!("{:.3}", channel.noise),
             ];
@@ -103,11 +106,12 @@ impl Comparison {
         }
         writeln!(f, "Largest errors by condition")?;
         for cell in worst {
-            writeln!(
-                f,
-                "  {}, {}: {:.1} sigma, mean {:+.1}",
-                cell.channel, cell.part, cell.error, cell.bias
-            )?;
+            let error = by_sigma(&format!("{:.1}", cell.error), cell.error);
+            let line = format!(
+                "{}, {}: {error} sigma, mean {:+.1}",
+                cell.channel, cell.part, cell.bias
+            );
+            writeln!(f, "{}", indented(&line, 2))?;
         }
         writeln!(f, "Largest errors in time")?;
         for stretch in self
@@ -116,14 +120,20 @@ impl Comparison {
             .filter(|stretch| stretch.error > NAMED_ABOVE)
         {
             let (from_s, to_s) = (stretch.from_s, stretch.to_s);
-            writeln!(
-                f,
-                "  {}: {} from {from_s:.1} to {to_s:.1} s, {:.1} sigma",
-                stretch.channel, stretch.run, stretch.error
-            )?;
+            let error = by_sigma(&format!("{:.1}", stretch.error), stretch.error);
+            let line = format!(
+                "{}: {} from {from_s:.1} to {to_s:.1} s, {error} sigma",
+                stretch.channel, stretch.run
+            );
+            writeln!(f, "{}", indented(&line, 2))?;
         }
         Ok(())
     }
+}
+
+/// An error in sigma, in its colour.
+fn sigma(error: f64) -> String {
+    by_sigma(&format!("{error:.2}"), error)
 }
 
 impl HeatTable {
@@ -134,9 +144,7 @@ impl HeatTable {
             .chain(self.columns.iter().map(String::as_str));
         let mut table = Table::new(header);
         for (name, cells) in &self.rows {
-            let cells = cells
-                .iter()
-                .map(|cell| cell.map_or("-".to_owned(), |value| format!("{value:.2}")));
+            let cells = cells.iter().map(|cell| cell.map_or("-".to_owned(), sigma));
             table.row([name.clone()].into_iter().chain(cells));
         }
         table

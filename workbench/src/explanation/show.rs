@@ -9,10 +9,11 @@ use super::{
     Alternative, Diagnosis, Explanation, HOPELESS_BASE, Head, Next, NotVisible, Parameter, Step,
     Suggested, Unexplained,
 };
-use crate::text::{Table, known, wrapped};
+use crate::text::colour::{self, by_sigma};
+use crate::text::{Table, indented, known, wrapped};
 
-/// Width of running text, characters.
-const WIDTH: usize = 100;
+/// Indentation of the details of a step, characters.
+const DETAIL: usize = 5;
 
 impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -32,33 +33,34 @@ impl fmt::Display for Explanation {
         writeln!(
             f,
             "{}",
-            wrapped(
-                &format!("Verdict: {}. {}", self.head.verdict, self.meaning()),
-                WIDTH
-            )
+            wrapped(&format!(
+                "Verdict: {}. {}",
+                colour::verdict(self.head.verdict),
+                self.meaning()
+            ))
         )?;
         if self.unfinished {
             let line = "The search reached its limit of time or rounds before its result was stable: there may be more effects.";
-            writeln!(f, "{}", wrapped(line, WIDTH))?;
+            writeln!(f, "{}", wrapped(line))?;
         }
         write!(f, "{}{}", self.unexplained, self.next)?;
         if !self.not_visible.is_empty() {
             let line = format!("{}:", self.blind_spots());
-            writeln!(f, "{}", wrapped(&line, WIDTH))?;
+            writeln!(f, "{}", wrapped(&line))?;
         }
         self.not_visible
             .iter()
-            .try_for_each(|effect| write!(f, "  {effect}"))
+            .try_for_each(|effect| write!(f, "{effect}"))
     }
 }
 
 impl fmt::Display for NotVisible {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.effect, self.shows)?;
+        let mut line = format!("{}: {}", self.effect, self.shows);
         if !self.missing_channels.is_empty() {
-            write!(f, "; no run has {}", self.missing_channels.join(", "))?;
+            line += &format!("; no run has {}", self.missing_channels.join(", "));
         }
-        writeln!(f)
+        writeln!(f, "{}", indented(&line, 2))
     }
 }
 
@@ -67,7 +69,7 @@ impl fmt::Display for Next {
         match &self.next_experiment {
             Some(sentence) => {
                 let line = format!("Next experiment: {sentence}.");
-                writeln!(f, "{}", wrapped(&line, WIDTH))
+                writeln!(f, "{}", wrapped(&line))
             }
             None => Ok(()),
         }
@@ -124,20 +126,21 @@ impl fmt::Display for Diagnosis {
             "error after",
             "confidence",
             "detectability",
-            "value",
         ]);
         for candidate in &self.candidates {
             table.row([
                 candidate.name(),
                 format!("{:.1} %", 100.0 * candidate.explains),
-                format!("{:.2}", candidate.error_after),
+                by_sigma(
+                    &format!("{:.2}", candidate.error_after),
+                    candidate.error_after,
+                ),
                 format!("{:.2}", candidate.confidence),
                 format!("{:.2}", candidate.detectability),
-                candidate
-                    .parameters
-                    .first()
-                    .map_or(String::new(), ToString::to_string),
             ]);
+            if let Some(parameter) = candidate.parameters.first() {
+                table.note(parameter.to_string());
+            }
         }
         writeln!(f, "{table}")?;
         for candidate in self
@@ -146,21 +149,19 @@ impl fmt::Display for Diagnosis {
             .filter(|candidate| !candidate.indistinguishable.is_empty())
         {
             let others = candidate.indistinguishable.join(", ");
-            writeln!(
-                f,
-                "With these data {} is indistinguishable from {others}.",
-                candidate.name()
-            )?;
+            let name = candidate.name();
+            let line = format!("With these data {name} is indistinguishable from {others}.");
+            writeln!(f, "{}", wrapped(&line))?;
         }
         writeln!(
             f,
             "Verdict with the best candidate alone: {}.",
-            self.head.verdict
+            colour::verdict(self.head.verdict)
         )?;
         if self.head.verdict == Verdict::Unexplained.name() {
             let hint = "No single effect explains this campaign: several differences are likely, and the confidences, which \
                         compare single effects, do not apply. Use hitch explain, which searches sets of effects.";
-            writeln!(f, "{}", wrapped(hint, WIDTH))?;
+            writeln!(f, "{}", wrapped(hint))?;
         }
         write!(f, "{}", self.next)
     }
@@ -169,13 +170,15 @@ impl fmt::Display for Diagnosis {
 impl fmt::Display for Head {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.hopeless_base {
-            writeln!(f, "{}\n", wrapped(HOPELESS_BASE, WIDTH))?;
+            writeln!(f, "{}\n", wrapped(HOPELESS_BASE))?;
         }
-        writeln!(f, "Campaign {}, model {}", self.campaign, self.model)?;
-        let (before, after) = (self.error_before, self.error_after);
+        let head = format!("Campaign {}, model {}", self.campaign, self.model);
+        writeln!(f, "{}", wrapped(&head))?;
+        let [before, after] = [self.error_before, self.error_after]
+            .map(|error| by_sigma(&format!("{error:.2}"), error));
         writeln!(
             f,
-            "  error {before:.2} -> {after:.2} sigma (noise of the instruments: {:.2})\n",
+            "  error {before} -> {after} sigma (noise of the instruments: {:.2})\n",
             self.noise_floor
         )?;
         let mut table = Table::new(["channel", "before", "after", "noise", "offset, ms"]);
@@ -191,7 +194,8 @@ impl fmt::Display for Head {
         write!(f, "{table}")?;
         for (channel, values) in &self.channels {
             if let Some(parts) = values.delay_ms() {
-                writeln!(f, "  {channel} is {parts} behind the currents")?;
+                let line = format!("{channel} is {parts} behind the currents");
+                writeln!(f, "{}", indented(&line, 2))?;
             }
         }
         Ok(())
@@ -240,38 +244,39 @@ impl Step {
     }
 }
 
+/// A step without its number; lines after the first are indented.
 impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let values: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
-        writeln!(f, "{}: {}{}", self.name(), self.change(), values.join(", "))?;
-        writeln!(
-            f,
-            "     error {:.2} -> {:.2}, {}; confidence {:.2}, detectability {:.2}",
+        let head = format!("{}: {}{}", self.name(), self.change(), values.join(", "));
+        // The number that precedes it takes the place of the indentation.
+        writeln!(f, "{}", indented(&head, DETAIL).trim_start())?;
+        let mut detail = |line: &str| writeln!(f, "{}", indented(line, DETAIL));
+        detail(&format!(
+            "error {:.2} -> {}, {}; confidence {:.2}, detectability {:.2}",
             self.error_before,
-            self.error_after,
+            by_sigma(&format!("{:.2}", self.error_after), self.error_after),
             self.on_held_out(),
             self.confidence,
             self.detectability
-        )?;
+        ))?;
         if plausibility(self.explained_share) < 0.5 {
             let share = 100.0 * self.explained_share;
-            writeln!(
-                f,
-                "     explains {share:.0} % of the error where it acts: probably another effect, outside the catalogue, acts there"
-            )?;
+            detail(&format!(
+                "explains {share:.0} % of the error where it acts: probably another effect, outside the catalogue, acts there"
+            ))?;
         }
         if self.form_undetermined {
             let forms = self.other_forms.iter();
             let forms: Vec<&str> = forms.map(|form| form.unwrap_or("default")).collect();
-            writeln!(
-                f,
-                "     form undetermined: {} explains the campaign equally well",
+            detail(&format!(
+                "form undetermined: {} explains the campaign equally well",
                 forms.join(", ")
-            )?;
+            ))?;
         }
         if !self.alternatives.is_empty() {
             let others: Vec<String> = self.alternatives.iter().map(ToString::to_string).collect();
-            writeln!(f, "     indistinguishable from: {}", others.join(", "))?;
+            detail(&format!("indistinguishable from: {}", others.join(", ")))?;
         }
         Ok(())
     }
@@ -306,17 +311,17 @@ impl fmt::Display for Unexplained {
         if self.share < 0.005 && self.depends_on.is_empty() {
             return Ok(());
         }
-        write!(
-            f,
-            "  {:.1} % of the squared error above the noise remains",
+        let mut line = format!(
+            "{:.1} % of the squared error above the noise remains",
             100.0 * self.share
-        )?;
+        );
         if !self.depends_on.is_empty() {
-            write!(f, "; it correlates with {}", self.depends_on.join(", "))?;
+            line += &format!("; it correlates with {}", self.depends_on.join(", "));
         }
-        writeln!(f)?;
+        writeln!(f, "{}", indented(&line, 2))?;
         if let Some(place) = &self.whereabouts {
-            writeln!(f, "  It is largest at {place}.")?;
+            let line = format!("It is largest at {place}.");
+            writeln!(f, "{}", indented(&line, 2))?;
         }
         self.suggested
             .as_ref()
@@ -327,22 +332,20 @@ impl fmt::Display for Unexplained {
 impl fmt::Display for Suggested {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let parameters: Vec<String> = self.parameters.iter().map(ToString::to_string).collect();
-        write!(
-            f,
-            "\n  Suggested term: it reduces the error on held-out runs from {} to {}",
+        let mut head = format!(
+            "Suggested term: it reduces the error on held-out runs from {} to {}",
             known(self.held_out_before, 2),
             known(self.held_out_after, 2)
-        )?;
+        );
         if !self.replaces.is_empty() {
-            write!(f, ", in place of {}", self.replaces.join(", "))?;
+            head += &format!(", in place of {}", self.replaces.join(", "));
         }
-        writeln!(
-            f,
-            ":\n\n    {} = {}\n    {}\n\n  It describes the error; it is not an identified cause. For a model file:",
-            self.place,
-            self.formula,
-            parameters.join(", ")
-        )?;
+        writeln!(f, "\n{}:\n", indented(&head, 2))?;
+        let formula = format!("{} = {}", self.place, self.formula);
+        writeln!(f, "{}", indented(&formula, 4))?;
+        writeln!(f, "{}\n", indented(&parameters.join(", "), 4))?;
+        let line = "It describes the error; it is not an identified cause. For a model file:";
+        writeln!(f, "{}", indented(line, 2))?;
         for line in self.model_file.lines() {
             let indent = if line.is_empty() { "" } else { "    " };
             writeln!(f, "{indent}{line}")?;

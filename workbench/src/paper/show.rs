@@ -2,7 +2,8 @@
 use std::fmt;
 
 use super::{CheckValve, Figure12, FlowTable, Paper, Table5, Travel};
-use crate::text::Table;
+use crate::text::colour::{self, BAD, GOOD, painted};
+use crate::text::{Table, indented, wrapped};
 
 impl fmt::Display for Paper {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -11,10 +12,9 @@ impl fmt::Display for Paper {
             writeln!(f, "{table}")?;
         }
         let area = &self.orifice_area;
-        writeln!(
-            f,
-            "Largest estimated orifice area (4.1; equations 5 and 6, least squares on Table 2)"
-        )?;
+        let title =
+            "Largest estimated orifice area (4.1; equations 5 and 6, least squares on Table 2)";
+        writeln!(f, "{}", wrapped(title))?;
         writeln!(
             f,
             "  paper {:.3} mm2, model {:.3} mm2: {:+.4} %\n",
@@ -58,16 +58,14 @@ impl fmt::Display for FlowTable {
 
 impl fmt::Display for Table5 {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "Table 5: effects identified in the paper's flow test (Table 2, adjusted to the thresholds and saturations"
-        )?;
-        writeln!(f, "of Table 5, with the noise of a flow meter)")?;
+        let title = "Table 5: effects identified in the paper's flow test (Table 2, adjusted to the thresholds and \
+                     saturations of Table 5, with the noise of a flow meter)";
+        writeln!(f, "{}", wrapped(title))?;
         let [before, after] = self.error;
         writeln!(
             f,
             "  error {before:.2} -> {after:.2} sigma, verdict {}",
-            self.verdict
+            colour::verdict(self.verdict)
         )?;
         let mut table = Table::new(["effect", "expected", "found, 95 %"]);
         for check in &self.effects {
@@ -95,15 +93,9 @@ impl fmt::Display for Table5 {
             }
         }
         write!(f, "{table}")?;
-        writeln!(
-            f,
-            "  A shift moves the whole curve: no single shift yields both lowering currents of Table 5, 1.25 and 3.1 A."
-        )?;
-        writeln!(
-            f,
-            "  The lift threshold was found in steps of 0.1 A, so 1.1 A does not contradict 1.126 A; but at {} A a",
-            self.slowest_lift.current_a
-        )?;
+        let line = "A shift moves the whole curve: no single shift yields both lowering currents of Table 5, 1.25 and \
+                    3.1 A.";
+        writeln!(f, "{}", indented(line, 2))?;
         let time = |time_s: Option<f64>| {
             time_s.map_or("infinite time".to_owned(), |time_s| {
                 format!("{time_s:.1} s")
@@ -113,10 +105,12 @@ impl fmt::Display for Table5 {
             time(self.slowest_lift.table_2_s),
             time(self.slowest_lift.table_5_s),
         );
-        writeln!(
-            f,
-            "  lift takes {table_2} with 1.126 A and {table_5} with 1.1 A. The axis of Figure 12A ends at 30 s."
-        )
+        let line = format!(
+            "The lift threshold was found in steps of 0.1 A, so 1.1 A does not contradict 1.126 A; but at {} A a lift \
+             takes {table_2} with 1.126 A and {table_5} with 1.1 A. The axis of Figure 12A ends at 30 s.",
+            self.slowest_lift.current_a
+        );
+        writeln!(f, "{}", indented(&line, 2))
     }
 }
 
@@ -131,15 +125,15 @@ impl fmt::Display for CheckValve {
             "  paper {} bar, model {} bar",
             self.paper_bar, self.model_bar
         )?;
-        writeln!(
-            f,
-            "  The paper states neither spring nor port. Springs with this cracking pressure, compressed by {} mm:",
-            {
-                self.springs
-                    .first()
-                    .map_or(0.0, |spring| spring.compression_mm)
-            }
-        )?;
+        let compression_mm = self
+            .springs
+            .first()
+            .map_or(0.0, |spring| spring.compression_mm);
+        let line = format!(
+            "The paper states neither spring nor port. Springs with this cracking pressure, compressed by \
+             {compression_mm} mm:"
+        );
+        writeln!(f, "{}", indented(&line, 2))?;
         let mut table = Table::new(["port mm", "stiffness N/mm", "equation 7 bar"]);
         for spring in &self.springs {
             table.row([
@@ -164,13 +158,15 @@ impl fmt::Display for Figure12 {
             "Figure 12B: lowering time, s, by current and load\n{}",
             self.lowering
         )?;
-        writeln!(
-            f,
-            "The paper has Figure 12 as a plot only. Its statements on the figure, compared with the model:"
-        )?;
+        let line = "The paper has Figure 12 as a plot only. Its statements on the figure, compared with the model:";
+        writeln!(f, "{}", wrapped(line))?;
         for statement in &self.statements {
-            let verdict = if statement.holds { "holds" } else { "FAILS" };
-            writeln!(f, "  {verdict}  {}: {}", statement.paper, statement.model)?;
+            let verdict = match statement.holds {
+                true => painted(GOOD, "holds"),
+                false => painted(BAD, "FAILS"),
+            };
+            let line = format!("{verdict} {}: {}", statement.paper, statement.model);
+            writeln!(f, "{}", indented(&line, 2))?;
         }
         Ok(())
     }

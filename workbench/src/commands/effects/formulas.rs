@@ -9,7 +9,8 @@ use hitch_plant::hooks::signals::SIGNALS;
 use crate::text::Table;
 
 const HEAD: &str = "\
-A term of your own in a model file is fitted, added and reported like an effect of the catalogue:
+A term of your own in a model file is fitted, added and reported like an effect
+of the catalogue:
 
   [[term]]
   id = \"end-cushion\"
@@ -30,9 +31,10 @@ A term of your own in a model file is fitted, added and reported like an effect 
   low = 5
   high = 150
 
-The first parameter is the size: at its null value the term has to be zero. Inside everything is SI and the units are
-checked; a number takes a unit as in 3[mm/s]. Operators: + - * / ^ and parentheses. hitch effects --model FILE lists the
-terms of a file.
+The first parameter is the size: at its null value the term has to be zero.
+Inside everything is SI and the units are checked; a number takes a unit as in
+3[mm/s]. Operators: + - * / ^ and parentheses. hitch effects --model FILE lists
+the terms of a file.
 ";
 
 /// Places, signals and functions. (Writing to a string cannot fail.)
