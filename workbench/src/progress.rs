@@ -33,6 +33,15 @@ impl Progress {
         )
     }
 
+    /// Shows nothing, for work that is one of many.
+    #[must_use]
+    pub fn hidden() -> Self {
+        Self {
+            bar: ProgressBar::hidden(),
+            lines: None,
+        }
+    }
+
     /// Shows a bar for work of `total` steps.
     pub fn of(total: usize, message: impl Into<String>) -> Self {
         let template = "{spinner} [{bar:30}] {pos} of {len}, {msg} ({elapsed}, {eta} to go)";

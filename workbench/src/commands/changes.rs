@@ -1,16 +1,19 @@
 //! `hitch changes`: compares two campaigns of one machine, or of two machines of a series.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use hitch_campaign::Campaign;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::commands::fleet::FleetArgs;
 use crate::error::Error;
 use crate::explanation::{Explanation, Found};
 use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
+use crate::progress::Progress;
 use crate::search_args::SearchArgs;
 use crate::text::colour::by_sigma;
 use crate::text::wrapped;
@@ -18,13 +21,14 @@ use crate::text::wrapped;
 /// Arguments of `hitch changes`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Example: hitch changes may november --model tractor.toml --out november.toml"
+    after_help = "Examples:\n  hitch changes may november --model tractor.toml --out november.toml\n  hitch changes series/first series/* --jsonl series.jsonl"
 )]
 pub struct Args {
     /// Folder of the reference campaign
     baseline: PathBuf,
-    /// Folder of the campaign that is compared with it
-    new: PathBuf,
+    /// Folders of the campaigns that are compared with it; several with --jsonl
+    #[arg(required = true, value_name = "NEW")]
+    new: Vec<PathBuf>,
     #[command(flatten)]
     model: ModelArg,
     /// Write the model of the new campaign to this file
@@ -34,6 +38,8 @@ pub struct Args {
     search: SearchArgs,
     #[command(flatten)]
     json: JsonArg,
+    #[command(flatten)]
+    fleet: FleetArgs,
 }
 
 /// Result of `hitch changes`: both explanations.
@@ -50,13 +56,57 @@ pub struct Changes {
 /// # Errors
 /// If a campaign or the model file is invalid, or a result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
+    let others = [
+        ("--json", args.json.target().is_some()),
+        ("--out", args.out.is_some()),
+    ];
+    match args.fleet.single(&args.new, &others)? {
+        Some(new) => one(args, new),
+        None => many(args),
+    }
+}
+
+/// Compares each campaign with the model of the reference campaign, which is explained once.
+fn many(args: &Args) -> Result<(), Error> {
     let mut inputs = campaign_files(&args.baseline);
-    inputs.extend(campaign_files(&args.new));
+    inputs.push(args.model.file());
+    let model = args.model.load()?;
+    let linkage = model.linkage().clone();
+    let baseline = Campaign::load_with(&args.baseline, &linkage)?;
+    // Only a call that has work to do explains it.
+    let explained = OnceLock::new();
+    args.fleet.run(&args.new, &inputs, |folder| {
+        let new = Campaign::load_with(folder, &linkage)?;
+        let (baseline, adopted) = explained.get_or_init(|| {
+            let options = args.search.options();
+            let found = Found::with_progress(
+                &baseline,
+                model.clone(),
+                options,
+                &|_| {},
+                &Progress::hidden(),
+            );
+            let adopted = found.rebuilt(found.shown.head.campaign.clone());
+            (found.shown, adopted)
+        });
+        let options = args.search.options();
+        let progress = Progress::hidden();
+        let new = Found::with_progress(&new, adopted.clone(), options, &|_| {}, &progress);
+        Ok(Changes {
+            baseline: baseline.clone(),
+            new: new.shown,
+        })
+    })
+}
+
+fn one(args: &Args, new: &Path) -> Result<(), Error> {
+    let mut inputs = campaign_files(&args.baseline);
+    inputs.extend(campaign_files(new));
     inputs.push(args.model.file());
     let outputs = Outputs::check([args.out.as_deref(), args.json.target()], &inputs)?;
     let model = args.model.load()?;
     let load = |folder| Campaign::load_with(folder, model.linkage());
-    let [baseline, new] = [&args.baseline, &args.new].map(|folder| load(folder));
+    let [baseline, new] = [args.baseline.as_path(), new].map(load);
     let (baseline, new) = (baseline?, new?);
     let baseline = Found::new(&baseline, model, args.search.options(), &|_| {});
     let adopted = baseline.rebuilt(baseline.shown.head.campaign.clone());

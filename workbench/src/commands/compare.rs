@@ -1,9 +1,10 @@
 //! `hitch compare`: compares a model with measurements.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use hitch_campaign::Campaign;
 
+use crate::commands::fleet::FleetArgs;
 use crate::comparison::Comparison;
 use crate::error::Error;
 use crate::model_arg::ModelArg;
@@ -14,10 +15,13 @@ use crate::report::comparison_page;
 
 /// Arguments of `hitch compare`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: hitch compare lab-a --model dynamic --report lab-a.html")]
+#[command(
+    after_help = "Examples:\n  hitch compare lab-a --model dynamic --report lab-a.html\n  hitch compare fleet/* --jsonl fleet.jsonl"
+)]
 pub struct Args {
-    /// Folder of the campaign
-    campaign: PathBuf,
+    /// Folders of the campaigns; several with --jsonl
+    #[arg(required = true, value_name = "CAMPAIGN")]
+    campaigns: Vec<PathBuf>,
     #[command(flatten)]
     model: ModelArg,
     #[command(flatten)]
@@ -25,6 +29,8 @@ pub struct Args {
     /// Write a report to this file: self-contained HTML
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
+    #[command(flatten)]
+    fleet: FleetArgs,
 }
 
 /// Runs the command.
@@ -32,11 +38,31 @@ pub struct Args {
 /// # Errors
 /// If the campaign or the model file is invalid, or a result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    let mut inputs = campaign_files(&args.campaign);
+    let others = [
+        ("--json", args.json.target().is_some()),
+        ("--report", args.report.is_some()),
+    ];
+    match args.fleet.single(&args.campaigns, &others)? {
+        Some(campaign) => one(args, campaign),
+        None => many(args),
+    }
+}
+
+fn many(args: &Args) -> Result<(), Error> {
+    let model = args.model.load()?;
+    args.fleet
+        .run(&args.campaigns, &[args.model.file()], |folder| {
+            let campaign = Campaign::load_with(folder, model.linkage())?;
+            Ok(Comparison::new(&campaign, &model).0)
+        })
+}
+
+fn one(args: &Args, folder: &Path) -> Result<(), Error> {
+    let mut inputs = campaign_files(folder);
     inputs.push(args.model.file());
     let outputs = Outputs::check([args.report.as_deref(), args.json.target()], &inputs)?;
     let model = args.model.load()?;
-    let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
+    let campaign = Campaign::load_with(folder, model.linkage())?;
     let progress = Progress::start(format!("comparing {} with {}", model.name, campaign.name));
     let (comparison, evaluated) = Comparison::new(&campaign, &model);
     drop(progress);

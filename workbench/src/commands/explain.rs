@@ -1,24 +1,29 @@
 //! `hitch explain`: finds and adds missing effects until no further one is significant.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use hitch_campaign::Campaign;
 use hitch_plant::AddedEffect;
 
+use crate::commands::fleet::FleetArgs;
 use crate::error::Error;
 use crate::explanation::{Found, rebuilt};
 use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
+use crate::progress::Progress;
 use crate::report::explanation_page;
 use crate::search_args::SearchArgs;
 
 /// Arguments of `hitch explain`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: hitch explain lab-a --out lab-a.toml --report lab-a.html")]
+#[command(
+    after_help = "Examples:\n  hitch explain lab-a --out lab-a.toml --report lab-a.html\n  hitch explain fleet/* --budget 60 --jsonl fleet.jsonl --resume"
+)]
 pub struct Args {
-    /// Folder of the campaign
-    campaign: PathBuf,
+    /// Folders of the campaigns; several with --jsonl
+    #[arg(required = true, value_name = "CAMPAIGN")]
+    campaigns: Vec<PathBuf>,
     #[command(flatten)]
     model: ModelArg,
     /// Write the model with the added effects to this file, updated during the search with the best model so far
@@ -31,6 +36,8 @@ pub struct Args {
     search: SearchArgs,
     #[command(flatten)]
     json: JsonArg,
+    #[command(flatten)]
+    fleet: FleetArgs,
 }
 
 /// Runs the command.
@@ -38,7 +45,32 @@ pub struct Args {
 /// # Errors
 /// If the campaign or the model file is invalid, or a result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
-    let mut inputs = campaign_files(&args.campaign);
+    let others = [
+        ("--json", args.json.target().is_some()),
+        ("--report", args.report.is_some()),
+        ("--out", args.out.is_some()),
+    ];
+    match args.fleet.single(&args.campaigns, &others)? {
+        Some(campaign) => one(args, campaign),
+        None => many(args),
+    }
+}
+
+fn many(args: &Args) -> Result<(), Error> {
+    let model = args.model.load()?;
+    args.fleet
+        .run(&args.campaigns, &[args.model.file()], |folder| {
+            let campaign = Campaign::load_with(folder, model.linkage())?;
+            // The time limit is that of a campaign: it starts here.
+            let options = args.search.options();
+            let progress = Progress::hidden();
+            let found = Found::with_progress(&campaign, model.clone(), options, &|_| {}, &progress);
+            Ok(found.shown)
+        })
+}
+
+fn one(args: &Args, folder: &Path) -> Result<(), Error> {
+    let mut inputs = campaign_files(folder);
     inputs.push(args.model.file());
     let wanted = [
         args.out.as_deref(),
@@ -47,7 +79,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     ];
     let outputs = Outputs::check(wanted, &inputs)?;
     let model = args.model.load()?;
-    let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
+    let campaign = Campaign::load_with(folder, model.linkage())?;
     // The best result so far is on disk if the search is interrupted.
     let out = args.out.as_deref().filter(|path| !output::is_stdout(path));
     let base = model.clone();

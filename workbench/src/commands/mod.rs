@@ -11,6 +11,7 @@ pub mod effects;
 pub mod explain;
 pub mod export_fmu;
 pub mod flash_calibration;
+pub mod fleet;
 pub mod import;
 pub mod loop_;
 pub mod main_job;

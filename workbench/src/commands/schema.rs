@@ -4,6 +4,7 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 
 use crate::base_fit::ShownBaseFit;
+use crate::commands::fleet::Line;
 use crate::commands::{changes, loop_, tune};
 use crate::comparison::Comparison;
 use crate::error::Error;
@@ -26,6 +27,13 @@ const DOCUMENTS: [(&str, MakeSchema); 8] = [
     ("paper", schema::<Paper>),
 ];
 
+/// Commands with the option `--jsonl`, and the schema of a line.
+const LINES: [(&str, MakeSchema); 3] = [
+    ("compare", line::<Comparison>),
+    ("explain", line::<Explanation>),
+    ("changes", line::<changes::Changes>),
+];
+
 /// Arguments of `hitch schema`.
 #[derive(Debug, clap::Args)]
 #[command(
@@ -35,6 +43,9 @@ pub struct Args {
     /// Command that writes the document; without one, the commands that have a schema are listed
     #[arg(value_name = "COMMAND")]
     command: Vec<String>,
+    /// Print the schema of a line of --jsonl instead
+    #[arg(long)]
+    jsonl: bool,
 }
 
 /// Runs the command.
@@ -42,19 +53,26 @@ pub struct Args {
 /// # Errors
 /// If the named command writes no JSON document.
 pub fn run(args: &Args) -> Result<(), Error> {
+    let (documents, option) = match args.jsonl {
+        false => (&DOCUMENTS[..], "--json"),
+        true => (&LINES[..], "--jsonl"),
+    };
+    let names: Vec<&str> = documents.iter().map(|(name, _)| *name).collect();
     if args.command.is_empty() {
-        let names = DOCUMENTS.map(|(name, _)| format!("{name}\n"));
-        return output::print(&names.concat());
+        return output::print(&format!("{}\n", names.join("\n")));
     }
     let wanted = args.command.join(" ");
-    let Some((_, schema)) = DOCUMENTS.iter().find(|(name, _)| *name == wanted) else {
-        let names = DOCUMENTS.map(|(name, _)| name).join(", ");
+    let Some((_, schema)) = documents.iter().find(|(name, _)| *name == wanted) else {
         return Err(Error::Usage(format!(
-            "{wanted:?} writes no JSON document; these commands do: {names}"
+            "{wanted:?} is no command with {option}; these are: {}",
+            names.join(", ")
         )));
     };
     let mut schema = schema();
-    schema.insert("title".to_owned(), format!("hitch {wanted} --json").into());
+    schema.insert(
+        "title".to_owned(),
+        format!("hitch {wanted} {option}").into(),
+    );
     let text = serde_json::to_string_pretty(&schema)
         .map_err(|error| Error::Failed(format!("the schema cannot be written: {error}")))?;
     output::print(&format!("{text}\n"))
@@ -62,10 +80,19 @@ pub fn run(args: &Args) -> Result<(), Error> {
 
 /// The schema of a result's document, as it is written.
 fn schema<T: JsonSchema>() -> Schema {
+    written::<Document<T>>()
+}
+
+/// The schema of a line with a result, or with the reason why there is none.
+fn line<T: JsonSchema>() -> Schema {
+    written::<Line<T>>()
+}
+
+fn written<T: JsonSchema>() -> Schema {
     SchemaSettings::draft2020_12()
         .for_serialize()
         .into_generator()
-        .into_root_schema_for::<Document<T>>()
+        .into_root_schema_for::<T>()
 }
 
 #[cfg(test)]
@@ -74,14 +101,14 @@ mod tests {
 
     use super::*;
 
-    /// The names of all commands with the option `--json`.
-    fn with_json(command: &clap::Command, above: &str) -> Vec<String> {
+    /// The names of all commands with an option.
+    fn with_option(command: &clap::Command, above: &str, option: &str) -> Vec<String> {
         let of = |inner: &clap::Command| {
             let name = format!("{above} {}", inner.get_name());
-            let mut names = with_json(inner, &name);
+            let mut names = with_option(inner, &name, option);
             if inner
                 .get_arguments()
-                .any(|arg| arg.get_long() == Some("json"))
+                .any(|arg| arg.get_long() == Some(option))
             {
                 names.push(name.trim_start().to_owned());
             }
@@ -97,16 +124,19 @@ mod tests {
             #[command(subcommand)]
             _command: crate::cli::Command,
         }
-        let mut names = with_json(&All::command(), "");
-        let mut known = DOCUMENTS.map(|(name, _)| name.to_owned()).to_vec();
-        names.sort();
-        known.sort();
-        assert_eq!(names, known);
+        for (documents, option) in [(&DOCUMENTS[..], "json"), (&LINES[..], "jsonl")] {
+            let mut names = with_option(&All::command(), "", option);
+            let known = documents.iter().map(|(name, _)| (*name).to_owned());
+            let mut known: Vec<String> = known.collect();
+            names.sort();
+            known.sort();
+            assert_eq!(names, known);
+        }
     }
 
     #[test]
     fn every_value_is_described() {
-        for (name, schema) in DOCUMENTS {
+        for (name, schema) in DOCUMENTS.into_iter().chain(LINES) {
             let schema = serde_json::to_value(schema()).unwrap();
             let mut missing = Vec::new();
             undescribed(&schema, name, &mut missing);

@@ -40,6 +40,17 @@ impl Found {
         improved: &(dyn Fn(&[AddedEffect]) + Sync),
     ) -> Self {
         let progress = Progress::start(format!("reading {}", campaign.name));
+        Self::with_progress(campaign, model, options, improved, &progress)
+    }
+
+    /// Explains a campaign, and reports progress to `progress`.
+    pub fn with_progress(
+        campaign: &Campaign,
+        model: Model,
+        options: Options<'_>,
+        improved: &(dyn Fn(&[AddedEffect]) + Sync),
+        progress: &Progress,
+    ) -> Self {
         let experiment = Experiment::new(campaign, &model);
         let better = |fit: &Fit| {
             progress.result(account(&model, fit));
