@@ -1,4 +1,4 @@
-//! The firmware's controller on a computer: [calibration files](calibration_file), [samples](samples) in engineering
+//! The firmware's controller on a computer: [calibration files](calibration_file), [samples] in engineering
 //! units, and [teaching].
 //!
 //! The program `hitch` and the FMU use it, so that both drive the controller in the same way.
