@@ -1,23 +1,25 @@
-//! Teaching: the firmware finds the threshold currents and the lags of both valves and the ends of travel by itself.
+//! Teaching: the firmware identifies the threshold currents and the spool lags of both valves, and the ends of travel.
 //!
-//! A service switch and a held button start it from the lock; letting go ends it. Several ramps a valve, up and down in
-//! turn, then once to either end, and a step of current for each valve:
+//! It starts from the lock with a service switch and a held button, and ends when the button is released. It consists
+//! of several current ramps for each valve, up and down in turn, one move to each end, and a current step for each
+//! valve:
 //!
 //! ```text
 //! +------+   rested    +------+  moved   +------+        +------+  over          +------+
 //! | Rest | ----------> | Ramp | -------> | Rest | -...-> | Open | -------------> | Done |
 //! +------+             +------+          +------+        +------+  (both valves) +------+
-//!     ^    after the   +-------+  stands    ^
+//!     ^    after the   +-------+  still     ^
 //!     +--- ramps ----> | Drive | -----------+
-//!                      +-------+  still
+//!                      +-------+
 //! ```
 //!
-//! Behind a step the hitch goes a fifth of its travel, a heavy one further down than up. An end in its way would look
-//! like another valve. So steps come last, from the lower end; those in the lowest quarter only take it out of there.
+//! A step moves the hitch by a fifth of its travel, a heavy one further down than up. Contact with an end during a step
+//! would look like another valve. Therefore the steps come last and start at the lower end. Steps in the lowest quarter
+//! are not evaluated: they only move the hitch out of it.
 //!
-//! A ramp rises until the hitch has moved further than noise. By then the current is past the threshold, by how much
-//! depends on ramp, valve, spool and filter. So a *twin* goes up the same ramp on the calibration's own curve: where it
-//! has moved as far, its current differs from the real one by just what the real threshold is off.
+//! A ramp rises until the hitch has moved further than noise. The current then exceeds the threshold by an amount that
+//! depends on ramp, valve, spool and filter. Therefore a model (the *twin*) follows the same ramp with the curve of the
+//! calibration. At the same travel, its current differs from the real one by the error of the threshold.
 
 use hitch_quantities::calibration::design_parameters::TeachParameters;
 use hitch_quantities::calibration::linkage::LinkageTable;
@@ -34,33 +36,33 @@ use crate::estimation::spool_lag::nominal_lags;
 use crate::valve::drop_scale::DropScale;
 use crate::valve::phase::Direction;
 
-/// Ramps a valve.
+/// Ramps for each valve.
 pub const REPEATS: usize = 3;
-/// Ramps of both valves, and a drive to either end.
+/// Ramps of both valves, and a move to each end.
 const RAMPS: usize = 2 * REPEATS;
 const RAMPS_AND_DRIVES: usize = RAMPS + 2;
 
-/// Why a machine could not be taught.
+/// Reason for which teaching failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TeachError {
-    /// Button or switch was let go, or a fault came in between.
+    /// Button or switch was released, or a fault occurred.
     Aborted,
-    /// The hitch doesn't move at the largest current of a ramp, or never reaches an end.
+    /// The hitch does not move at the largest current of a ramp, or does not reach an end.
     NoMotion,
-    /// A threshold is further off than valves of this kind are.
+    /// A threshold is further from the calibrated one than the spread of these valves.
     OutOfRange,
-    /// The ramps of a valve don't agree.
+    /// The ramps of a valve do not agree.
     Spread,
-    /// The ends of travel don't fit the linkage.
+    /// The ends of travel do not fit the linkage.
     Ends,
 }
 
-/// What was found.
+/// The result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Taught {
-    /// How far the lift valve's curve is shifted.
+    /// Shift of the lift curve.
     pub lift_shift: MilliAmp,
-    /// How far the lowering valve's curve is shifted.
+    /// Shift of the lowering curve.
     pub lower_shift: MilliAmp,
     /// Lag of the lift valve's spool.
     pub lift_lag: Millisecond,
@@ -75,12 +77,11 @@ pub struct Taught {
 }
 
 impl Taught {
-    /// The calibration with what was found in it, sealed: curves shifted, linkage moved to the sensor, limits inside
-    /// the ends.
+    /// The calibration with the result, sealed: curves shifted, linkage moved to the sensor, limits inside the ends.
     #[must_use]
     pub fn applied_to(&self, calibration: &Calibration) -> Calibration {
         let mut taught = calibration.clone();
-        // What an untaught lift valve is taken to open late by has been found with the rest.
+        // The initial offset of an untaught lift valve is part of the identified shift.
         shift(&mut taught.lift, self.lift_shift - INITIAL_LIFT_OFFSET);
         shift(&mut taught.lower, self.lower_shift);
         taught.hydraulics.spool_lag = self.lift_lag;
@@ -102,7 +103,7 @@ fn shift(table: &mut ValveTable, by: MilliAmp) {
     }
 }
 
-/// Ends that the linkage expects.
+/// Ends according to the linkage.
 fn expected_ends(linkage: &LinkageTable, parameters: &TeachParameters) -> [MilliDegree; 2] {
     [Micrometre::ZERO, parameters.stroke].map(|travel| linkage.angle(travel))
 }
@@ -129,7 +130,7 @@ struct Ramp {
     start: Micrometre,
     current_ua: i32,
     twin: Twin,
-    /// Current at which the hitch had moved, and the twin's.
+    /// Current at which the hitch had moved, and that of the twin.
     moved_at: Option<MilliAmp>,
     twin_at: Option<MilliAmp>,
 }
@@ -140,7 +141,7 @@ struct Opening {
     start: Micrometre,
     age: Millisecond,
     twin: Twin,
-    /// The hitch's and the twin's.
+    /// Of the hitch and of the twin.
     ways: [Way; 2],
 }
 
@@ -156,12 +157,12 @@ struct TeachDrive {
 #[derive(Clone, Copy, Debug)]
 pub struct Teach {
     step: TeachStage,
-    /// Ramps, drives and steps that are over.
+    /// Completed ramps, moves and steps.
     finished: usize,
     filtered_udeg: Option<i32>,
     shifts: [[MilliAmp; REPEATS]; 2],
     lags: [Millisecond; 2],
-    /// The narrower one that was found so far.
+    /// The smaller result so far.
     hysteresis: MilliAmp,
     ends: [MilliDegree; 2],
     result: Option<Result<Taught, TeachError>>,
@@ -183,13 +184,13 @@ impl Default for Teach {
 }
 
 impl Teach {
-    /// What came of it, once something has.
+    /// The result, once teaching has ended.
     #[must_use]
     pub const fn result(&self) -> Option<Result<Taught, TeachError>> {
         self.result
     }
 
-    /// It can't go on.
+    /// Teaching failed.
     pub fn abort(&mut self) {
         self.end(Err(TeachError::Aborted));
     }
@@ -199,7 +200,7 @@ impl Teach {
         self.step = TeachStage::Done;
     }
 
-    /// One step; the currents to ask for.
+    /// One step; the requested currents.
     pub fn step(
         &mut self,
         angle: MilliDegree,
@@ -231,7 +232,7 @@ impl Teach {
         CoilCurrents { lift, lower }
     }
 
-    /// Up and down in turn.
+    /// Ramps alternate between up and down.
     const fn direction(&self) -> Direction {
         match self.finished % 2 {
             0 => Direction::Lift,
@@ -239,7 +240,7 @@ impl Teach {
         }
     }
 
-    /// The angle without most of its noise.
+    /// The angle, low-passed.
     fn filtered(&mut self, angle: MilliDegree, calibration: &Calibration) -> MilliDegree {
         let now = angle.0.saturating_mul(1000);
         let before = self.filtered_udeg.unwrap_or(now);
@@ -269,7 +270,7 @@ impl Teach {
         } else if self.finished < RAMPS_AND_DRIVES {
             TeachStage::Drive(TeachDrive {
                 looked: travel,
-                // A cylinder that was pressed against its end has to lose 150 bar first.
+                // A cylinder that was pressed against its end first has to release 150 bar.
                 age: -parameters.rest_time,
                 total: Millisecond::ZERO,
             })
@@ -284,7 +285,7 @@ impl Teach {
         MilliAmp::ZERO
     }
 
-    /// One step up a ramp; the coil is cut once the hitch has moved, the twin goes on until it has.
+    /// One step of a ramp. The coil is cut once the hitch has moved; the twin continues until it has moved as far.
     fn ramp(
         &mut self,
         mut ramp: Ramp,
@@ -294,7 +295,7 @@ impl Teach {
         calibration: &Calibration,
     ) -> Result<MilliAmp, TeachError> {
         let parameters = &calibration.teach;
-        // Milliamperes a second are microamperes a millisecond.
+        // A milliampere per second is a microampere per millisecond.
         ramp.current_ua = ramp.current_ua.saturating_add(parameters.ramp_slope.0);
         let current = MilliAmp(Divisor::THOUSAND.divide(ramp.current_ua));
         let moved = Micrometre(direction.sign((travel - ramp.start).0));
@@ -354,7 +355,7 @@ impl Teach {
         }
     }
 
-    /// One step after a step of current, which falls again once the hitch goes steadily.
+    /// One step of a current step, which ends once the speed is constant.
     fn open(
         &mut self,
         mut opening: Opening,
@@ -366,7 +367,7 @@ impl Teach {
         let valve = self.finished % 2;
         let parameters = &calibration.teach;
         let falling = (opening.age - STEP).max(Millisecond::ZERO).0;
-        // Milliamperes a second are microamperes a millisecond.
+        // A milliampere per second is a microampere per millisecond.
         let current_ua = Self::driving(calibration)[valve]
             .0
             .saturating_mul(1000)
@@ -405,7 +406,7 @@ impl Teach {
         }
     }
 
-    /// All that was found.
+    /// The complete result.
     fn taught(&self) -> Taught {
         let [lift_shift, lower_shift] = self.shifts.map(|shifts| mean(&shifts));
         let [lift_lag, lower_lag] = self.lags;
@@ -421,7 +422,7 @@ impl Teach {
         }
     }
 
-    /// Currents that drive the hitch slowly, by the calibration's curves.
+    /// Currents for a slow move, according to the calibrated curves.
     fn driving(calibration: &Calibration) -> [MilliAmp; 2] {
         let parameters = &calibration.teach;
         [
@@ -430,7 +431,7 @@ impl Teach {
         ]
     }
 
-    /// One step towards an end, which is where the hitch stands still.
+    /// One step towards an end. The end is reached when the hitch stands still.
     fn drive(
         &mut self,
         mut drive: TeachDrive,

@@ -1,33 +1,33 @@
-//! The hysteresis of a valve, taught: how much further than it rose the current has to fall until the hitch slows down.
+//! Identification of the hysteresis of a valve: the additional fall of the current before the hitch slows down.
 //!
-//! While the current falls at a rate `s` the spool stays where it is for `H / s`, then it follows, and goes through the
-//! curve on which it opened. The twin has no hysteresis and follows at once:
+//! While the current falls at a rate `s`, the spool remains in place for `H / s`, then follows and passes the curve on
+//! which it opened. The twin has no hysteresis and follows immediately:
 //!
 //! ```text
 //! way while it falls = v (H / s + c)      c: the curve's, and the lag's      H = s (t - t_twin)     t: that way over v
 //! ```
 //!
-//! That leaves out by how much the spool's lag differs from the twin's: 10 ms make 4 mA of it. A valve with less than
-//! the calibration says (dither can take all of it) is left at that: believing in more than there is makes a hitch stop
-//! a bit sooner, believing in less sends it beyond its set point.
+//! A difference between the lags of spool and twin is neglected: 10 ms give an error of 4 mA. A valve with less
+//! hysteresis than calibrated (dither can remove all of it) keeps the calibrated value: a value that is too large makes
+//! a hitch stop slightly early, and one that is too small causes overshoot.
 
 use hitch_quantities::fixed::Divisor;
 use hitch_quantities::units::{MilliAmp, MilliAmpPerSecond};
 
 use super::teach_lag::Way;
 
-/// Longest that the spool of any valve stays, ms: beyond it something else carried the hitch on.
+/// Longest time that a spool remains in place, ms; beyond it the hitch moved for another reason.
 const LONGEST: i32 = 750;
 
-/// The hysteresis of a valve whose hitch went the `real` way where one without went the `twin` way, as the current fell
-/// at `rate`: at least what is `known`, and just that if one of them stood still.
+/// Hysteresis of a valve from the `real` travel and the `twin` travel while the current falls at `rate`. At least
+/// `known`, and `known` if one of them stood still.
 #[must_use]
 pub fn found(real: &Way, twin: &Way, rate: MilliAmpPerSecond, known: MilliAmp) -> MilliAmp {
     let (Some(real), Some(twin)) = (real.coasting_time(), twin.coasting_time()) else {
         return known;
     };
     let later = real.saturating_sub(twin).clamp(0, LONGEST);
-    // No ramp is steeper than 10 A/s: a word holds the product.
+    // Ramps are at most 10 A/s, so the product fits a word.
     MilliAmp(Divisor::THOUSAND.divide(later.wrapping_mul(rate.0))).max(known)
 }
 

@@ -1,43 +1,44 @@
-//! The lag of a spool, taught: how long after a step of current the hitch moves as fast as its valve lets it.
+//! Identification of a spool lag from a current step.
 //!
-//! Behind a step every curve opens in a time that goes with the lag `T` of its spool, however it is bent. Once the
-//! speed is steady the way is a straight line over the time, and where that line begins is the delay:
+//! After a step every curve opens in a time that is proportional to the lag `T` of its spool, whatever its shape. At
+//! constant speed the travel is a straight line over time, and the intercept of that line is the delay:
 //!
 //! ```text
 //! x(t) = v (t - t0)      t0 = (x2 t1 - x1 t2) / (x2 - x1)      T = T_twin (t0 - 8/5 usual) / t0_twin
 //! ```
 //!
-//! By a usual time a hitch trails its valve anyway, for its load has to be accelerated; by three fifths more than on a
-//! move, for the little flow of a step takes longer to raise the pressure against friction.
-//! Load and oil change `v`, of which `t0` is free. The twin takes the same step on the calibration's curve and spool,
-//! through the same filter. Means over two windows leave little of sensor's noise and load's swing.
+//! A hitch trails its valve by a usual time, because its load has to be accelerated. At a step this time is larger by
+//! three fifths than in a move, because the small flow takes longer to raise the pressure against friction. Load and
+//! oil change `v`, which `t0` does not depend on. The twin performs the same step with the curve and the spool of the
+//! calibration, through the same filter. Means over two windows suppress the noise of the sensor and the oscillation of
+//! the load.
 
 use hitch_quantities::fixed::{Divisor, mul_div};
 use hitch_quantities::units::{Micrometre, Microsecond, Millisecond};
 
-/// How long the current is on.
+/// Duration of the current.
 pub const STEP: Millisecond = Millisecond(800);
-/// The windows begin here, and are so long: the slowest spool has opened, and a load has swung at least once in each.
+/// Begin and length of the windows: the slowest spool has opened, and each window contains an oscillation of the load.
 const EARLY: i32 = 300;
 const LATE: i32 = 600;
 const WINDOW: i32 = 200;
-/// Their middles, in milliseconds.
+/// Their middles, ms.
 const MIDDLES: (i32, i32) = (EARLY + WINDOW / 2, LATE + WINDOW / 2);
-/// Sums of a hitch that is slower than 4 mm/s tell nothing: it has come to an end.
+/// Smallest sum: a hitch that is slower than 4 mm/s has reached an end.
 const LEAST: i32 = 4 * (LATE - EARLY) * WINDOW;
 
-/// Sums of the way over both windows, in micrometres, and what follows them.
+/// Sums of the travel over both windows, um, and the travel after them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Way {
     early: i32,
     late: i32,
-    /// The way when the windows were over, and the last one.
+    /// The travel at the end of the windows, and the latest one.
     steady: Micrometre,
     last: Micrometre,
 }
 
 impl Way {
-    /// The way at an `age` of the step.
+    /// Takes in the travel at an `age` of the step.
     pub fn note(&mut self, age: Millisecond, way: Micrometre) {
         if (EARLY..EARLY + WINDOW).contains(&age.0) {
             self.early = self.early.saturating_add(way.0);
@@ -50,19 +51,19 @@ impl Way {
         self.last = way;
     }
 
-    /// Where the line through the means of both windows begins, ms; `None` if there is no such line.
+    /// Intercept of the line through the means of both windows, ms; `None` if there is no such line.
     fn delay(&self) -> Option<i32> {
         let later = self.time_for(self.early, MIDDLES.1 - MIDDLES.0)?;
         Some(MIDDLES.0.saturating_sub(later))
     }
 
-    /// How long the way since the windows would have taken at the steady speed, ms.
+    /// Time that the travel since the windows takes at the constant speed, ms.
     #[must_use]
     pub fn coasting_time(&self) -> Option<i32> {
         self.time_for((self.last - self.steady).0, WINDOW * (LATE - EARLY))
     }
 
-    /// `sum` over the rise between the windows, times `scale`, if that rise is a speed.
+    /// `sum` over the rise between the windows, times `scale`, if the hitch moves.
     fn time_for(&self, sum: i32, scale: i32) -> Option<i32> {
         let rise = self.late.saturating_sub(self.early);
         let time = mul_div(sum, scale, Divisor::at_least_one(rise));
@@ -70,8 +71,8 @@ impl Way {
     }
 }
 
-/// The lag of the spool that went the `real` way, but for a `usual` time, where the calibration's with `known` lag went
-/// the `twin` way: what is known, if the two are further apart than the `limit`.
+/// Lag of a spool from the `real` travel, with the `usual` time subtracted, and the `twin` travel with the `known` lag
+/// of the calibration. It is the known lag if the two differ by more than the `limit`.
 #[must_use]
 pub fn found(
     real: &Way,

@@ -1,4 +1,4 @@
-//! The twin that goes through teaching beside the hitch: what the calibration makes of the same current.
+//! Model of the hitch during teaching: the response of the calibrated valve to the same current.
 
 use hitch_quantities::Calibration;
 use hitch_quantities::fixed::Divisor;
@@ -9,7 +9,7 @@ use crate::estimation::spool_lag::nominal_lags;
 use crate::valve::drop_scale::DropScale;
 use crate::valve::phase::Direction;
 
-/// The calibration's valve, spool and piston.
+/// Valve, spool and piston according to the calibration.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Twin {
     spool_ua: i32,
@@ -18,7 +18,7 @@ pub struct Twin {
 }
 
 impl Twin {
-    /// One step with a current; how far it has moved, through the filter that the hitch's angle goes through.
+    /// One step with a current; the travel, through the filter of the angle.
     pub fn step(
         &mut self,
         current_ua: i32,

@@ -1,17 +1,17 @@
-//! Current regulation: which share of the supply gives a coil the current that the envelope lets pass.
+//! Current regulation: duty cycle of a coil for the current that the envelope permits.
 //!
 //! ```text
 //! u = R i* + kp e + sum(ki e)        e = i* + dither - i
 //! duty = (u + Vf) / (supply + Vf)    Vf: the freewheeling diode's, while the driver is off
 //! ```
 //!
-//! The first term is what the coil needs at rest; with a good estimate of its resistance the others are only busy when
-//! the current changes. The estimate follows what the integral has to add while the current is steady: resistance
-//! changes with temperature, which is slow. A milliohm times a milliampere is a microvolt, so none of this
-//! needs a division but the last line. What is multiplied is limited to what the compiler can see to fit a word: a
-//! product that may have to saturate takes eight times as long. The second and the third term are in [`pi`].
+//! The first term is the voltage at rest. With a good estimate of the resistance the others act only while the current
+//! changes. The estimate follows the integral while the current is constant: the resistance changes slowly with
+//! temperature. A milliohm times a milliampere is a microvolt, so only the last line needs a division. Factors are
+//! limited such that the compiler can prove that their product fits a word: a saturating product takes eight times as
+//! long. The second and the third term are in [`pi`].
 //!
-//! Without a measured current the first term alone remains.
+//! Without a measured current only the first term remains.
 
 pub mod pi;
 
@@ -22,20 +22,19 @@ use hitch_quantities::{CoilCurrents, Duties, Inputs};
 
 use pi::{Gains, ProportionalIntegral, VoltageRange};
 
-/// Highest supply that is reckoned with: with the diode's drop, a hundred times its microvolts still fit.
+/// Largest supply: with the voltage of the diode, a hundred times its microvolts still fit a word.
 const MOST_SUPPLY: MilliVolt = MilliVolt(19_000);
-/// Highest drop over the diode.
+/// Largest voltage of the diode.
 const MOST_DROP: MilliVolt = MilliVolt(2_000);
 /// Largest current.
 const MOST_CURRENT: MilliAmp = MilliAmp(8_191);
 /// Largest resistance.
 const MOST_RESISTANCE: MilliOhm = MilliOhm(65_535);
-/// Bits behind the point of the resistance that is learnt, in milliohms: a milliohm a second is one of these a
-/// millisecond, but for 2 %.
+/// Fractional bits of the estimated resistance, milliohm: a milliohm per second is one unit per millisecond, to 2 %.
 const RESISTANCE_BITS: u32 = 10;
-/// Lowest: below it nothing is regulated anyway.
+/// Smallest supply; nothing is regulated below it.
 const LEAST_SUPPLY: MilliVolt = MilliVolt(1_000);
-/// A request that moves less than this is steady.
+/// A request that changes by less than this is constant.
 const STEADY: MilliAmp = MilliAmp(50);
 
 /// Regulates both coils.
@@ -43,7 +42,7 @@ const STEADY: MilliAmp = MilliAmp(50);
 pub struct Regulation {
     lift: Regulator,
     lower: Regulator,
-    /// Where in its period the dither is.
+    /// Phase of the dither.
     phase: Millisecond,
 }
 
@@ -59,7 +58,7 @@ impl Regulation {
         }
     }
 
-    /// One step with the currents that the envelope lets pass.
+    /// One step with the currents that the envelope permits.
     pub fn drive(
         &mut self,
         passed: CoilCurrents,
@@ -96,7 +95,7 @@ impl Regulation {
     }
 }
 
-/// Microvolts over a resistance.
+/// Voltage of a resistance, microvolt.
 fn microvolts(resistance: MilliOhm, current: MilliAmp) -> i32 {
     let resistance = resistance.limited(MilliOhm::ZERO, MOST_RESISTANCE);
     let current = current.limited(-MOST_CURRENT, MOST_CURRENT);
@@ -109,7 +108,7 @@ struct Regulator {
     pi: ProportionalIntegral,
     /// Resistance in 2^-10 milliohms.
     resistance: i32,
-    /// The request when it last changed, and how long ago.
+    /// The request at its last change, and the time since then.
     steady: MilliAmp,
     steady_for: Millisecond,
 }
@@ -162,7 +161,7 @@ impl Regulator {
         share(voltage_uv.saturating_add(drop_uv), supply + drop)
     }
 
-    /// Moves what the integral has to add into the resistance, a little a step.
+    /// Moves a small part of the integral into the resistance.
     fn learn(&mut self, asked: MilliAmp, parameters: &CurrentParameters) {
         if (asked - self.steady).magnitude() > STEADY {
             self.steady = asked;
@@ -185,12 +184,12 @@ impl Regulator {
     }
 }
 
-/// A resistance as it is learnt.
+/// An estimated resistance.
 const fn finely(resistance: MilliOhm) -> i32 {
     resistance.0 << RESISTANCE_BITS
 }
 
-/// The share of a voltage that makes another, which it is limited to.
+/// Share of a voltage that gives another one, limited to that one.
 fn share(part_uv: i32, whole: MilliVolt) -> Duty {
     let whole = whole.limited(LEAST_SUPPLY, MOST_SUPPLY + MOST_DROP).0;
     let part_uv = part_uv.max(0).min(whole.saturating_mul(1000));

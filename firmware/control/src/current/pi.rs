@@ -1,16 +1,16 @@
-//! A proportional and an integral part on the error of a coil's current, with anti-windup.
+//! Proportional and integral part on the current error of a coil, with anti-windup.
 //!
 //! ```text
 //!   u = rest + kp e + I        I' = I + ki e, unless u is below zero or beyond the supply, and e drives it further
 //! ```
 //!
-//! A milliohm times a milliampere is a microvolt: no part is divided by anything. Gains have 16 bits, as validation sees
-//! to, and errors 14 with their sign, so that a product fits a word and needs no check.
+//! A milliohm times a milliampere is a microvolt, so no term needs a division. Gains have 16 bits, which validation
+//! ensures, and errors 14 bits including the sign, so that a product fits a word without a check.
 
 use hitch_quantities::calibration::design_parameters::CurrentParameters;
 use hitch_quantities::units::MilliAmp;
 
-/// Largest error that counts: all one of 13 bits and a sign can say, which a single instruction limits to.
+/// Largest error: 13 bits and a sign, to which a single instruction limits.
 const MOST_ERROR: i32 = (1 << 13) - 1;
 
 /// Gains from a current's error to a voltage, in milliohms.
@@ -24,7 +24,7 @@ impl Gains {
     /// Those of a calibration.
     #[must_use]
     pub const fn of(parameters: &CurrentParameters) -> Self {
-        // The largest that validation lets through are 50 000 and 20 000.
+        // Validation permits at most 50 000 and 20 000.
         Self {
             proportional: parameters.proportional.0 as u16,
             integral: parameters.integral.0 as u16,
@@ -32,33 +32,33 @@ impl Gains {
     }
 }
 
-/// The voltages that can be given.
+/// Range of the voltage.
 #[derive(Clone, Copy, Debug)]
 pub struct VoltageRange {
-    /// Smallest: what the current flows on through while the driver is off.
+    /// Smallest: the voltage against which the current flows on while the driver is off.
     pub least_uv: i32,
     /// Largest: the supply.
     pub most_uv: i32,
 }
 
-/// The regulator's memory.
+/// State of the regulator.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ProportionalIntegral {
     integral_uv: i32,
 }
 
 impl ProportionalIntegral {
-    /// Without an integral.
+    /// Without integral part.
     pub const NEW: Self = Self { integral_uv: 0 };
 
-    /// What the integral has come to, in microvolts.
+    /// Integral part, microvolt.
     #[must_use]
     pub const fn integral_uv(&self) -> i32 {
         self.integral_uv
     }
 
-    /// The voltage, in microvolts, for an error of the current that needs `rest_uv` when there is none. The integral is
-    /// never larger than the largest voltage.
+    /// Voltage, microvolt, for a current error; `rest_uv`: voltage without an error. The integral part never exceeds
+    /// the largest voltage.
     #[must_use]
     pub fn step(
         &mut self,
@@ -76,7 +76,7 @@ impl ProportionalIntegral {
             .saturating_add(integral_uv);
         let at_most_uv = voltage_uv.min(given.most_uv);
         let beyond_uv = voltage_uv.saturating_sub(at_most_uv.max(0));
-        // Of the same sign, as the leading bit says.
+        // Equal signs, by the leading bit.
         let outwards = beyond_uv != 0 && beyond_uv ^ change_uv >= 0;
         if !outwards {
             let most_uv = given.most_uv;

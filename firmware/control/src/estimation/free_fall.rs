@@ -1,28 +1,28 @@
 //! Model of a load that sinks through a valve opening: gravity accelerates it, and the pressure rises with the square
 //! of its speed.
 //!
-//! The cylinder carries the weight and the load's acceleration, `p = p_rest (1 + R a / g)` with the rise `R` of the
-//! load over travel of the piston, and the flow through an opening goes with the root of `p`. So with the speed `v_s`
-//! that the opening gives in the long run
+//! The cylinder carries the weight and the acceleration of the load, `p = p_rest (1 + R a / g)`, with the ratio `R` of
+//! load travel to piston travel. The flow through an opening is proportional to the square root of `p`. With the
+//! steady-state speed `v_s` of the opening
 //!
 //! ```text
 //! v' = (g / R) (1 - (v / v_s)^2)
 //! ```
 //!
-//! A fast opening cannot exceed free fall, and a closing valve passes more flow than in steady state. Near the settled
-//! speed that is a lag of `v_s R / 2g`, 40 ms at 190 mm/s, the same for every weight.
+//! A fast opening cannot exceed free fall, and a closing valve passes more flow than in steady state. Near the steady
+//! speed the load has a lag of `v_s R / 2g`, 40 ms at 190 mm/s, for every weight.
 
 use hitch_quantities::fixed::{Divisor, mul_div};
 use hitch_quantities::units::{Micrometre, MicrometrePerSecond};
 
-/// `g / R` in a millisecond, with `R` = 4.3 of the rig, which is within 7 % of that over the whole stroke.
+/// `g / R` per millisecond, with `R` = 4.3 of the rig, which is accurate to 7 % over the whole stroke.
 const FALL: MicrometrePerSecond = MicrometrePerSecond(2_281);
-/// Speeds are squared in steps of so many um/s, so that the ECU divides 32 bits and not 64.
+/// Unit of squared speeds, um/s: the ECU then divides 32 bits instead of 64.
 const COARSE: i32 = 64;
-/// `4 g / R` in um/s2, over the square of those steps.
+/// `4 g / R` in um/s2, in units of its square.
 const FOUR_FALLS: Divisor = Divisor::at_least_one(9_124_000 / (COARSE * COARSE));
 
-/// Speed downwards a millisecond after it was `speed`; `settled`: what the opening gives in the long run.
+/// Downward speed one millisecond after `speed`; `settled`: steady-state speed of the opening.
 #[must_use]
 pub fn next_speed(speed: MicrometrePerSecond, settled: MicrometrePerSecond) -> MicrometrePerSecond {
     if settled <= MicrometrePerSecond::ZERO {
@@ -38,18 +38,18 @@ pub fn next_speed(speed: MicrometrePerSecond, settled: MicrometrePerSecond) -> M
     }
 }
 
-/// Square of a speed downwards in its coarse steps.
+/// Square of a downward speed in coarse units.
 fn coarse_squared(speed: MicrometrePerSecond) -> i32 {
-    /// A word holds the square of it: 2.9 m/s.
+    /// Largest speed whose square fits a word: 2.9 m/s.
     const FASTEST: i32 = 46_000;
     let coarse = (speed.0 / COARSE).min(FASTEST);
     coarse.wrapping_mul(coarse)
 }
 
-/// How much further a load that sinks at `speed` goes than its valve alone would let it.
+/// Additional stopping distance of a load that sinks at `speed`, beyond that of its valve.
 ///
-/// That is the `f` for which `x + T v_s + f(v)` moves with the demanded speed: `f' v' = v_s - v`, so with the law above
-/// near the settled speed `f = v^2 R / 4g`.
+/// It is the `f` for which `x + T v_s + f(v)` moves with the demanded speed: `f' v' = v_s - v`, and with the law above
+/// near the steady speed `f = v^2 R / 4g`.
 #[must_use]
 pub fn free_fall_stopping_distance(speed: MicrometrePerSecond) -> Micrometre {
     Micrometre(FOUR_FALLS.divide(coarse_squared(speed)))

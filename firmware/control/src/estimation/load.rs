@@ -1,9 +1,9 @@
-//! The pressure drop over the lowering valve: measured if there is a sensor, else learnt from how fast
-//! the hitch sinks.
+//! Pressure drop over the lowering valve: measured if there is a sensor, otherwise estimated from the sinking speed.
 //!
-//! Lowering is not compensated, so speed goes with the root of the drop: `v / v_model = sqrt(dp / dp_est)`.
-//! With `r = (v - v_model) / v_model` small, `dp / dp_est - 1 = 2 r`; the estimate follows that in
-//! [`HydraulicParameters::drop_learning`]. The load stays on the hitch between moves, so the estimate does.
+//! Lowering is not compensated, so the speed is proportional to the square root of the drop:
+//! `v / v_model = sqrt(dp / dp_est)`. For a small `r = (v - v_model) / v_model`, `dp / dp_est - 1 = 2 r`. The estimate
+//! follows with the time constant [`HydraulicParameters::drop_learning`]. It is kept between moves, because the load
+//! stays on the hitch.
 
 use hitch_quantities::calibration::design_parameters::HydraulicParameters;
 use hitch_quantities::fixed::{Divisor, mul_div, mul_shift_16};
@@ -12,30 +12,30 @@ use hitch_quantities::units::{MicrometrePerSecond, MilliBar};
 use super::motion_observer::MotionObserver;
 use crate::valve::phase::{Direction, Phase};
 
-/// Sinking slower than this (of the map's 280 mm/s) says more about the threshold than about the load.
+/// Smallest sinking speed for the estimate (the map has 280 mm/s): below it the threshold dominates.
 const TELLING_SPEED: MicrometrePerSecond = MicrometrePerSecond(25_000);
 
-/// Largest factor that sinking may teach, and its inverse the smallest.
+/// Largest factor of the estimate; its inverse is the smallest.
 const MOST_FACTOR: i32 = 10;
 
-/// The learnt factor's one.
+/// A factor of one.
 const ONE: i32 = 1 << 16;
 
 /// Pressure drop over the lowering valve.
 #[derive(Clone, Copy, Debug)]
 pub struct LoadEstimate {
-    /// What a sensor says at rest, or the calibration assumes; in microbars, so that slow changes aren't rounded away.
+    /// Drop at rest by the sensor or the calibration, in microbar, so that slow changes are not rounded away.
     resting_microbar: i32,
-    /// What sinking has taught to multiply that by, in units of 2^-16: the load, and how thin the oil is.
+    /// Factor from the sinking speed, in units of 2^-16: load and viscosity of the oil.
     factor: i32,
     /// The product.
     microbar: i32,
-    /// Whether the sensor has been seen.
+    /// Whether the sensor has delivered a value.
     has_sensor: bool,
 }
 
 impl LoadEstimate {
-    /// Starts at the calibration's assumption.
+    /// Starts with the assumption of the calibration.
     #[must_use]
     pub fn new(hydraulics: &HydraulicParameters) -> Self {
         let assumed = hydraulics.assumed_drop.0.saturating_mul(1000);
@@ -47,7 +47,8 @@ impl LoadEstimate {
         }
     }
 
-    /// One step: at rest follows the sensor if there is one, while lowering learns from `motion`.
+    /// One step: at rest the sensor is followed, if there is one; during lowering the factor is estimated from
+    /// `motion`.
     pub fn update(
         &mut self,
         sensor: Option<MilliBar>,
@@ -73,7 +74,7 @@ impl LoadEstimate {
             .min(high);
     }
 
-    /// The drop that the lowering map should use.
+    /// The drop for the lowering map.
     #[must_use]
     pub fn drop(&self) -> MilliBar {
         MilliBar(Divisor::THOUSAND.divide(self.microbar))
@@ -97,7 +98,7 @@ impl LoadEstimate {
             return;
         }
         let excess = (-motion.bias()).limited(-model, model);
-        // Speeds in steps of 64 um/s: the ECU divides 32 bits and not 64.
+        // Speeds in units of 64 um/s: the ECU then divides 32 bits instead of 64.
         let twice = mul_div(
             self.factor,
             excess.0 / 32,

@@ -1,5 +1,5 @@
-//! Where the hitch rests: the position estimate, averaged long enough to tell a leak from noise and from
-//! a load that still swings on its oil.
+//! Rest position: the position estimate, averaged for long enough to distinguish a leak from noise and from an
+//! oscillating load.
 
 use hitch_quantities::calibration::design_parameters::HoldParameters;
 use hitch_quantities::fixed::Divisor;
@@ -7,7 +7,7 @@ use hitch_quantities::units::Micrometre;
 
 use crate::valve::phase::Phase;
 
-/// Averaged position; follows at once at the start and while the hitch isn't resting.
+/// Averaged position; it follows without delay at the start and while the hitch does not rest.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RestPosition {
     started: bool,

@@ -1,4 +1,4 @@
-//! What the operator sets besides the lever: engine, rate dial, quick lift, float and the button outside.
+//! Operator inputs besides the lever: engine, rate dial, quick lift, float and external button.
 
 pub mod lever;
 pub mod lock;
@@ -13,17 +13,17 @@ use hitch_quantities::units::{
     RevolutionPerMinute,
 };
 
-/// Knows whether the engine has been running for long enough.
+/// Monitors whether the engine has been running for long enough.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EngineWatch {
     running_for: Millisecond,
-    /// The engine speed has been known: from then on silence counts as a stopped engine.
+    /// The engine speed has been received: from then on a missing value counts as a stopped engine.
     was_known: bool,
 }
 
 impl EngineWatch {
-    /// One step; true if the hitch may be used. A machine that has never told its engine speed may always, unless the
-    /// calibration requires it.
+    /// One step; true if the hitch may be used. A machine that has never received an engine speed may be used, unless
+    /// the calibration requires the speed.
     pub fn permits(
         &mut self,
         speed: Option<RevolutionPerMinute>,
@@ -42,8 +42,8 @@ impl EngineWatch {
     }
 }
 
-/// Lets a button through only once it has been seen released: one that is pressed at power-up or
-/// during a fault is stuck, or somebody leans on it.
+/// Passes a button only after it has been seen released: one that is pressed at power-up or during a fault is stuck or
+/// pressed by accident.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ButtonGuard {
     seen_released: bool,
@@ -56,7 +56,7 @@ impl ButtonGuard {
         jog.filter(|_| self.seen_released)
     }
 
-    /// The button has to be seen released again.
+    /// Requires the button to be seen released again.
     pub fn distrust(&mut self) {
         self.seen_released = false;
     }
@@ -96,8 +96,8 @@ impl QuickLift {
     }
 }
 
-/// Float: with the lever at its bottom stop and the hitch down, both coils stay off and the hitch may
-/// settle wherever ground and implement take it.
+/// Float: with the lever at its lower stop and the hitch down, both coils stay off, and ground and implement move the
+/// hitch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Float {
     floating: bool,
@@ -142,8 +142,8 @@ impl Float {
     }
 }
 
-/// The highest set point: the calibration's, or the operator's dial if that is lower. A dial below the
-/// lower limit asks for the lower limit.
+/// The highest set point: that of the calibration, or of the dial if it is lower. A dial below the lower limit gives
+/// the lower limit.
 #[must_use]
 pub fn upper_limit(dial: Option<MilliDegree>, position: &PositionParameters) -> MilliDegree {
     dial.map_or(position.upper_limit, |dial| {
@@ -151,8 +151,8 @@ pub fn upper_limit(dial: Option<MilliDegree>, position: &PositionParameters) -> 
     })
 }
 
-/// Largest lowering speed that the rate dial allows: nothing at its shut end, the speed of a new machine in
-/// the middle, all of it at its open end, straight in between. Without a dial it is all of it.
+/// Largest lowering speed by the rate dial: zero at its closed end, the speed of a new machine in the middle, the full
+/// speed at its open end, linear in between. Without a dial it is the full speed.
 #[must_use]
 pub fn lowering_limit(
     dial: Option<PerMille>,

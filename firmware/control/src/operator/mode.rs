@@ -1,4 +1,4 @@
-//! Operating modes and what leads from one to the other.
+//! Operating modes and their transitions.
 //!
 //! ```text
 //!             power-up, reset
@@ -20,11 +20,11 @@
 //!             +---------------+
 //! ```
 //!
-//! With the service switch on, the button outside teaches a locked machine instead of moving it; letting go, or
-//! switching the switch off, locks.
+//! With the service switch on, the external button teaches a locked machine instead of moving it. Release of the button
+//! or of the switch locks.
 //!
-//! A jog button outside the cab works while the lever is locked (it is held by a hand that sees the
-//! hitch) and leaves the lever locked. A fault wins over everything from any mode.
+//! The external button works while the lever is locked, because its operator sees the hitch, and leaves the lever
+//! locked. A fault has priority in any mode.
 
 use hitch_quantities::calibration::design_parameters::LockParameters;
 use hitch_quantities::units::Millisecond;
@@ -35,23 +35,23 @@ use super::lock::StartLock;
 /// The operating mode.
 #[derive(Clone, Copy, Debug)]
 pub enum Mode {
-    /// Waiting for the lever to pick the hitch up.
+    /// Waits for the lever to pass the position of the hitch.
     Locked(StartLock),
     /// The hitch follows the lever.
     Position,
     /// The hitch moves while a button is held.
     Jog,
-    /// The hitch stays where it is; the lever has no say.
+    /// The hitch remains in place; the lever has no effect.
     Hold,
-    /// The machine is being taught.
+    /// Teaching is active.
     Teach,
     /// The operator has locked the hitch for the road.
     TransportLock,
     /// Both coils off; `healthy_for` counts towards the lock.
     Fault {
-        /// What is wrong, or was.
+        /// The present or last fault.
         fault: Fault,
-        /// For how long nothing has been wrong.
+        /// Time without a fault.
         healthy_for: Millisecond,
     },
 }
@@ -63,7 +63,7 @@ impl Default for Mode {
 }
 
 impl Mode {
-    /// The lock, freshly shut.
+    /// The lock in its initial state.
     #[must_use]
     pub fn locked() -> Self {
         Self::Locked(StartLock::default())
@@ -93,7 +93,7 @@ impl Mode {
         }
     }
 
-    /// A step with or without a jog request; `teach`: it is a request to teach.
+    /// A step with or without a jog request; `teach`: the request is for teaching.
     #[must_use]
     pub fn jogged(self, requested: bool, teach: bool) -> Self {
         match (self, requested) {
@@ -104,7 +104,7 @@ impl Mode {
         }
     }
 
-    /// A step with the operator's switches, and with an engine that permits use or doesn't.
+    /// A step with the switches of the operator, and with the permission of the engine monitor.
     #[must_use]
     pub fn switched(self, switches: Switches, engine_permits: bool) -> Self {
         match self {
@@ -119,7 +119,7 @@ impl Mode {
         }
     }
 
-    /// True where no coil may be on, whatever was going on before.
+    /// True if both coils have to be off, whatever was active before.
     #[must_use]
     pub const fn is_still(&self) -> bool {
         matches!(

@@ -1,3 +1,3 @@
-//! What the sensors say, judged.
+//! Sensor signals and their plausibility.
 
 pub mod sensors;

@@ -1,22 +1,22 @@
-//! Sensor plausibility: which samples may be believed.
+//! Sensor plausibility: selection of valid samples.
 //!
-//! Angle and lever are needed: a bad sample is bridged by the last good one for a few steps, then it is a
-//! fault. Pressures are helpers: without a believable one the controller goes by its estimate.
+//! Angle and lever are required: an invalid sample is replaced by the last valid one for a few steps, then it is a
+//! fault. Pressures are optional: without a valid one the controller uses its estimate.
 
 use hitch_quantities::calibration::design_parameters::SensorParameters;
 use hitch_quantities::units::{MilliBar, MilliDegree, Millisecond};
 use hitch_quantities::{Fault, Inputs};
 
-/// Samples that may be believed.
+/// Valid samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sensed {
     /// Set point: the lever's, or an implement's.
     pub set_point: MilliDegree,
     /// Rocker angle.
     pub angle: MilliDegree,
-    /// Cylinder pressure, if there is a believable one.
+    /// Cylinder pressure, if it is valid.
     pub cylinder_pressure: Option<MilliBar>,
-    /// Pump pressure, if there is a believable one.
+    /// Pump pressure, if it is valid.
     pub pump_pressure: Option<MilliBar>,
 }
 
@@ -28,10 +28,10 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// Judges one sample of everything.
+    /// Checks the samples of one step.
     ///
     /// # Errors
-    /// The fault of a needed sensor that has been bad for longer than it may be bridged.
+    /// The fault of a required sensor that has been invalid for longer than the allowed gap.
     pub fn judge(
         &mut self,
         inputs: &Inputs,
@@ -44,7 +44,7 @@ impl Sensors {
             parameters.angle_max,
         );
         let angle = self.angle.without_jump(angle, parameters.angle_jump);
-        // Both bridges run on every step, so that one fault doesn't freeze the watch over the other.
+        // Both checks run in every step, so that one fault does not stop the other check.
         let lever = self
             .lever
             .judge(lever, parameters.bridged)
@@ -56,7 +56,7 @@ impl Sensors {
         let pressure = |sample| in_range(sample, parameters.pressure_min, parameters.pressure_max);
         Ok(Sensed {
             angle: angle?,
-            // An implement doesn't make up for a broken lever.
+            // An implement does not replace a faulty lever.
             set_point: lever.map(|lever| inputs.set_point.unwrap_or(lever))?,
             cylinder_pressure: pressure(inputs.cylinder_pressure),
             pump_pressure: pressure(inputs.pump_pressure),
@@ -68,7 +68,7 @@ fn in_range<T: Ord + Copy>(sample: Option<T>, low: T, high: T) -> Option<T> {
     sample.filter(|&value| low <= value && value <= high)
 }
 
-/// Bridges a signal over short gaps.
+/// Bridges short gaps of a signal.
 #[derive(Clone, Copy, Debug, Default)]
 struct Bridge {
     last: Option<MilliDegree>,
@@ -76,7 +76,7 @@ struct Bridge {
 }
 
 impl Bridge {
-    /// Drops a sample that is further from the last good one than `jump`; after a gap any sample will do.
+    /// Discards a sample that differs from the last valid one by more than `jump`; after a gap any sample is accepted.
     fn without_jump(&self, sample: Option<MilliDegree>, jump: MilliDegree) -> Option<MilliDegree> {
         sample.filter(|&value| {
             self.last

@@ -1,50 +1,50 @@
-//! The inverse of a valve's curve, laid out so that a look-up takes no more than one in an evenly spaced table.
+//! Inverse of a valve curve with the look-up cost of one evenly spaced table.
 //!
 //! ```text
-//!   flow -> which 512th of the range -> the piece of the curve that it begins in, or the next one
+//!   flow -> cell of the range (of 512) -> piece of the curve in which the cell begins, or the next one
 //!   current = base of the piece + flow * slope of the piece
 //! ```
 //!
-//! A valve's breakpoints are where the valve has its kinks, so they are kept: on an even grid they would be missed by
-//! milliamperes. They are further apart than a cell of the grid is wide ([`ValveTable::least_gap`]), so that one
-//! comparison finds the piece. The first piece is "no flow, no current", the last one begins at saturation, and what is
-//! outside the range is in the first or the last cell: nothing is left to be limited.
+//! The breakpoints of the curve are kept: on an even grid the current would be wrong by milliamperes. They are further
+//! apart than a cell is wide ([`ValveTable::least_gap`]), so that one comparison finds the piece. The first piece is
+//! "no flow, no current", the last one begins at saturation. Flows outside the range are in the first or the last cell,
+//! so no limiter is needed.
 //!
-//! A base is the current at no flow of the piece's straight line, with what rounding needs. Slopes stop short of a
-//! milliampere a step, three hundred times that of the rig's valves; a steeper piece is followed at that slope and ends
-//! in a step.
+//! The base of a piece is the current of its straight line at no flow, with an offset for rounding. Slopes are limited
+//! to a milliampere per step, three hundred times that of the rig's valves; a steeper piece has this slope and ends
+//! with a jump.
 
 use hitch_quantities::calibration::valve_table::{VALVE_POINTS, ValvePoint, ValveTable};
 use hitch_quantities::units::{MicroLitrePerSecond, MilliAmp};
 
-/// Cells of the range, which a saturating instruction limits to: a power of two.
+/// Cells of the range: a power of two, for a saturating instruction.
 const CELLS: usize = 512;
 /// The last cell.
 const LAST_CELL: i32 = CELLS as i32 - 1;
-/// A piece a point, and the one without flow.
+/// One piece per point, and the one without flow.
 const PIECES: usize = VALVE_POINTS + 1;
 
-/// Bits behind the point of a base and of a slope.
+/// Fractional bits of a base and of a slope.
 const CURRENT_BITS: u32 = 32;
 /// Half a milliampere.
 const HALF: u64 = 1 << (CURRENT_BITS - 1);
 
-/// What flows are counted in on the axis of a curve: steps in a microlitre a second, in 2^-26.
+/// Unit of flows on the axis of a curve: steps per microlitre per second, in 2^-26.
 #[derive(Clone, Copy, Debug)]
 pub struct FlowSteps(pub u32);
 
 impl FlowSteps {
-    /// Microlitres a second.
+    /// Microlitres per second.
     pub const MICROLITRES: Self = Self(1 << Self::BITS);
     const BITS: u32 = 26;
 
-    /// For flows within their limit and reference drops within theirs it fits.
+    /// It fits a word for flows and reference drops within their limits.
     const fn of(self, flow: MicroLitrePerSecond) -> i32 {
         let steps = (flow.0 as u64).wrapping_mul(self.0 as u64);
         (steps.wrapping_add(1 << (Self::BITS - 1)) >> Self::BITS) as i32
     }
 
-    /// A breakpoint, half a milliampere higher: what is looked up is rounded down.
+    /// A breakpoint, raised by half a milliampere, because the result is rounded down.
     const fn place(self, point: &ValvePoint) -> CurvePoint {
         let current = (point.current.0 as u64) << CURRENT_BITS;
         (self.of(point.flow), current.wrapping_add(HALF))
@@ -52,12 +52,11 @@ impl FlowSteps {
 }
 
 /// The inverse of one valve's curve.
-///
-/// In this order each field is within reach of a load from the curve's address.
+/// In this order each field is within reach of a load instruction from the address of the curve.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct InverseCurve {
-    /// The piece that the lower end of each cell is in.
+    /// The piece that contains the lower end of each cell.
     first_piece: [u8; CELLS],
     /// Cells per step, in 2^-32.
     cells_per_step: i32,
@@ -69,26 +68,26 @@ pub struct InverseCurve {
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 struct Piece {
-    /// Current at no flow of the line that the piece is on, in milliamperes and in 2^-32 mA beyond them: below zero it
-    /// wraps.
+    /// Current of the line of the piece at no flow: milliamperes, and the remainder in 2^-32 mA, which wraps below
+    /// zero.
     base: (u32, u32),
-    /// In 2^-32 mA a step.
+    /// In 2^-32 mA per step.
     slope: u32,
     end: i32,
 }
 
-/// A place on the curve: steps, and current in 2^-32 mA.
+/// A point of the curve: steps, and current in 2^-32 mA.
 type CurvePoint = (i32, u64);
 
 impl Piece {
-    /// The first one with flow, raised by half a milliampere: the current of the smallest flow is just above the threshold,
-    /// and the end for no more than what is there.
+    /// The first one with flow is raised by half a milliampere, so that the current of the smallest flow is just above
+    /// the threshold; the last one is not raised.
     fn first(threshold: u64, to: CurvePoint) -> Self {
         let from = (1, threshold.wrapping_add(HALF));
         Self::between(from, (to.0, to.1.wrapping_add(HALF - 1)))
     }
 
-    /// The slope is rounded down: the end is not overshot.
+    /// The slope is rounded down, so that the end is not exceeded.
     fn between(from: CurvePoint, to: CurvePoint) -> Self {
         let run = to.0.wrapping_sub(from.0).cast_unsigned().max(1);
         let slope = to.1.wrapping_sub(from.1) / u64::from(run);
@@ -116,8 +115,8 @@ impl InverseCurve {
         }; PIECES],
     };
 
-    /// Makes this the inverse of the curve in `table`, which validation has seen, over an axis in `steps`. It is made
-    /// in its place: a copy would take a large part of the stack.
+    /// Computes the inverse of the curve in a valid `table` over an axis in `steps`, in place: a copy would need a
+    /// large part of the stack.
     #[inline(never)]
     pub fn fill(&mut self, table: &ValveTable, steps: FlowSteps) {
         let points = table.used();
@@ -128,7 +127,7 @@ impl InverseCurve {
         let threshold = points.first().map_or(0, |first| steps.place(first).1);
         let mut from = (0, threshold);
         for at in 1..=points.len() {
-            // Beyond the last point nothing rises any more.
+            // The curve is constant beyond the last point.
             let to = points
                 .get(at)
                 .map_or((i32::MAX, from.1), |point| steps.place(point));
@@ -141,8 +140,8 @@ impl InverseCurve {
         }
     }
 
-    /// Sets a piece that begins behind a flow, and begins the cells from there to its end in it. Those beyond
-    /// saturation may as well begin in the one before.
+    /// Sets a piece that begins at a flow, and assigns the cells from there to its end. Cells beyond saturation may
+    /// begin in the previous piece.
     fn set_piece(&mut self, at: usize, begins: i32, piece: Piece) {
         let cells = self.cell(begins).wrapping_add(1)..self.cell(piece.end).wrapping_add(1);
         let cells = self.first_piece.get_mut(cells).unwrap_or_default();
@@ -158,8 +157,8 @@ impl InverseCurve {
         self.saturation
     }
 
-    /// Current that lets a flow of so many steps through: none for none, just more than the threshold for the smallest,
-    /// the saturation current for all that is more than the valve can give.
+    /// Current for a flow in steps: zero for no flow, just above the threshold for the smallest flow, the saturation
+    /// current for flows beyond saturation.
     #[must_use]
     pub fn current(&self, steps: i32) -> MilliAmp {
         let at = usize::from(self.first_piece[self.cell(steps)]) % VALVE_POINTS;
@@ -172,7 +171,7 @@ impl InverseCurve {
         MilliAmp((base.wrapping_add(rise) >> CURRENT_BITS) as i32)
     }
 
-    /// The cell that a flow is in.
+    /// The cell of a flow.
     #[allow(
         clippy::manual_clamp,
         reason = "of `clamp` the compiler doesn't make a saturation here, but six instructions more"

@@ -1,13 +1,12 @@
-//! The valve map and its inverse: which current lets which flow through.
+//! The valve map and its inverse: from flow to current.
 //!
 //! The curve itself is a table of the calibration ([`hitch_quantities::calibration::valve_table`]).
 //!
-//! * No flow is no current, and no current is no flow.
-//! * The current of the smallest flow is just above the threshold; that of any flow beyond saturation is the
-//!   saturation current.
-//! * Lifting is compensated: flow depends on the current alone. Lowering goes with the root of the
-//!   pressure drop (turbulent orifice, `Q = Cd A sqrt(2 dp / rho)`), so a flow is brought to the
-//!   drop at which the table was measured: `Q_ref = Q sqrt(dp_ref / dp)`.
+//! * No flow has no current, and no current has no flow.
+//! * The smallest flow has a current just above the threshold; flows beyond saturation have the saturation current.
+//! * Lifting is compensated: the flow depends on the current alone. The lowering flow is proportional to the square
+//!   root of the pressure drop (turbulent orifice, `Q = Cd A sqrt(2 dp / rho)`). A flow is therefore converted to the
+//!   drop of the table: `Q_ref = Q sqrt(dp_ref / dp)`.
 
 use hitch_quantities::Calibration;
 use hitch_quantities::units::{MicroLitrePerSecond, MilliAmp, MilliBar};
@@ -15,7 +14,7 @@ use hitch_quantities::units::{MicroLitrePerSecond, MilliAmp, MilliBar};
 use super::drop_scale::{DropReference, DropScale};
 use super::inverse_curve::{FlowSteps, InverseCurve};
 
-/// What the inverse maps need of a calibration, worked out once.
+/// Data of the inverse maps, computed once for a calibration.
 #[derive(Clone, Copy, Debug)]
 pub struct ValveCurves {
     lift: InverseCurve,
@@ -39,7 +38,7 @@ impl ValveCurves {
         curves
     }
 
-    /// Makes these the curves of a calibration, in their place. Not inlined: it would add to the stack of a step.
+    /// Computes the curves of a calibration in place. Not inlined: it would add to the stack of a step.
     #[inline(never)]
     pub fn fill(&mut self, calibration: &Calibration) {
         self.reference = DropReference::new(calibration.hydraulics.reference_drop);
@@ -47,13 +46,13 @@ impl ValveCurves {
         self.lower.fill(&calibration.lower, self.reference.steps());
     }
 
-    /// The lowering valve's scale at a pressure drop.
+    /// Flow scale of the lowering valve at a pressure drop.
     #[must_use]
     pub fn scale(&self, drop: MilliBar) -> DropScale {
         DropScale::new(&self.reference, drop)
     }
 
-    /// The maps at a scale of the lowering valve.
+    /// The maps at a flow scale of the lowering valve.
     #[must_use]
     pub const fn at(&self, scale: DropScale) -> ValveMap<'_> {
         ValveMap {
