@@ -216,7 +216,7 @@ fn another_machine() -> Model {
 
 // REQ-DIAG-08
 #[test]
-fn only_another_machine_is_a_hopeless_base() {
+fn only_another_machine_is_an_unsuitable_base() {
     let folder = |name: &str| format!("{}/campaigns/{name}", env!("CARGO_MANIFEST_DIR"));
     for name in [
         "known-friction",
@@ -246,7 +246,7 @@ fn only_another_machine_is_a_hopeless_base() {
 
 // REQ-DIAG-08
 #[test]
-fn diagnose_says_first_that_the_base_is_hopeless() {
+fn diagnose_first_reports_an_unsuitable_base() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("another.toml");
     std::fs::write(&file, hitch_model_file::to_toml(&another_machine())).expect("a file");
@@ -265,7 +265,7 @@ fn diagnose_says_first_that_the_base_is_hopeless() {
 }
 
 #[test]
-fn a_new_model_file_loads_and_faults_are_told() {
+fn a_new_model_file_loads_and_errors_are_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = |name: &str, text: &str| {
         std::fs::write(folder.path().join(name), text).expect("a file");

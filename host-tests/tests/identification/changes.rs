@@ -77,7 +77,7 @@ fn a_frozen_model_keeps_its_effects() {
 }
 
 #[test]
-fn each_account_is_better_than_the_one_before_and_the_last_one_is_the_answer() {
+fn each_partial_result_is_better_and_the_last_one_is_the_answer() {
     let model = hitch_model_file::nominal();
     let campaign = Campaign::load(&campaigns().join("known-leak-and-lag")).expect("shipped");
     let experiment = Experiment::new(&campaign, &model);

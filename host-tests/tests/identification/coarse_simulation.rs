@@ -72,7 +72,7 @@ impl Compared {
 }
 
 #[test]
-fn a_draft_is_a_fine_simulation_where_the_search_starts() {
+fn a_coarse_simulation_is_exact_at_the_start_of_the_search() {
     let compared = Compared::new();
     let [fine, draft] =
         [&compared.experiment, &compared.coarse_in_time()].map(|runs| compared.left(runs, None));
@@ -80,7 +80,7 @@ fn a_draft_is_a_fine_simulation_where_the_search_starts() {
 }
 
 #[test]
-fn a_draft_shows_what_an_effect_changes() {
+fn a_coarse_simulation_shows_the_change_of_an_effect() {
     let compared = Compared::new();
     let drafted = compared.coarse_in_time();
     let samples = compared.weights.count() as f64;
@@ -115,7 +115,7 @@ fn shown(
 }
 
 #[test]
-fn a_condensed_experiment_shows_what_an_effect_changes() {
+fn a_condensed_experiment_shows_the_change_of_an_effect() {
     let (experiment, model) = ready("clean-steady", hitch_model_file::nominal());
     let estimate = Estimate::new(&experiment, Vec::new());
     let condensed = experiment.condensed(&model, &estimate.nuisances);
@@ -133,7 +133,7 @@ fn a_condensed_experiment_shows_what_an_effect_changes() {
 }
 
 #[test]
-fn a_condensed_experiment_leaves_what_noise_leaves() {
+fn a_condensed_experiment_has_the_residuals_of_noise() {
     let (experiment, model) = ready("clean-steady", hitch_model_file::nominal());
     let base = fit_base(Problem::new(&experiment, &model));
     let condensed = experiment.condensed(&model, &base.estimate.nuisances);

@@ -88,7 +88,7 @@ fn nothing_is_named_where_nothing_is_hidden() {
 
 // REQ-DIAG-03
 #[test]
-fn what_is_outside_the_catalogue_is_owned_up_to() {
+fn an_effect_outside_the_catalogue_is_reported_as_unknown() {
     let graded = ask(
         Family::Steady,
         Plan::Lab,
@@ -159,7 +159,7 @@ fn band_over_truth(question: Question) -> f64 {
 
 /// A hose that creeps within a second rings much like one that swells at once, whose valley no secant meets.
 #[test]
-fn a_hose_that_swells_at_once_is_none_that_creeps() {
+fn an_elastic_hose_is_not_reported_as_creeping() {
     let (named, share) = first_over_truth(&anything(Family::Dynamic, Plan::Lab, 5_133));
     assert_eq!((named.id(), named.form()), ("hose-compliance", None));
     assert!((share - 1.0).abs() < 0.01);
@@ -168,7 +168,7 @@ fn a_hose_that_swells_at_once_is_none_that_creeps() {
 /// A tenth of a milliampere beside its band a spool that sticks jumps at other times, and the ringing that follows hides
 /// how much better the right one is: it is found all the same, within a thousandth.
 #[test]
-fn a_spool_that_sticks_is_found_where_its_jumps_make_pressures_ring() {
+fn stiction_is_found_with_ringing_pressures() {
     let question = (30, "spool-stiction", Fidelity::Faithful, false);
     assert!((band_over_truth(question) - 1.0).abs() < 1e-3);
 }
@@ -176,7 +176,7 @@ fn a_spool_that_sticks_is_found_where_its_jumps_make_pressures_ring() {
 /// The last of a current's noise shakes the model's spools and rings its pressures; a spool that sticks within it would
 /// hold them still, and is not there.
 #[test]
-fn the_noise_of_a_current_is_no_stiction() {
+fn current_noise_is_not_reported_as_stiction() {
     let question = (23, "nothing", Fidelity::Faithful, true);
     let graded = ask(Family::Dynamic, Plan::Lab, &[question]);
     assert!(graded[0].answer.named.is_empty() && !graded[0].answer.unknown);
@@ -184,7 +184,7 @@ fn the_noise_of_a_current_is_no_stiction() {
 
 /// Through the same gap oil of 62 degC leaks 2.7 times as much as oil of 40 degC.
 #[test]
-fn a_leak_of_thin_oil_leaves_nothing_unknown() {
+fn a_viscosity_dependent_leak_is_explained_completely() {
     let question = (31, "lowering-leakage", Fidelity::Structured, false);
     let graded = ask(Family::Steady, Plan::Lab, &[question]);
     assert_eq!(graded[0].answer.named, ["lowering-leakage"]);
@@ -194,7 +194,7 @@ fn a_leak_of_thin_oil_leaves_nothing_unknown() {
 /// Ground that a hitch without inertia only ever rests on is as likely soft and high as hard and low, but there it is,
 /// and a landing that comes a hair earlier is no inertia.
 #[test]
-fn the_ground_that_a_hitch_rests_on_is_named_and_nothing_beside_it() {
+fn ground_contact_at_rest_is_named_alone() {
     let questions = [
         (917, "ground-contact", Fidelity::Faithful, false),
         (901, "ground-contact", Fidelity::Structured, false),
@@ -211,7 +211,7 @@ fn the_ground_that_a_hitch_rests_on_is_named_and_nothing_beside_it() {
 /// pitches without the links, a compensator is late: the usual form of an effect leaves that unknown, or has others named
 /// for it.
 #[test]
-fn what_an_effect_has_beyond_its_usual_form_is_no_second_effect() {
+fn another_form_of_an_effect_is_not_a_second_effect() {
     let questions = [
         (901, "viscous-friction", Fidelity::Structured, false),
         (903, "pin-friction", Fidelity::Structured, false),
@@ -230,7 +230,7 @@ fn what_an_effect_has_beyond_its_usual_form_is_no_second_effect() {
 /// A spool that sticks looks like a hysteresis along every secant, which leaves a quarter of the cost; in fine steps it is
 /// found beside it.
 #[test]
-fn a_spool_that_sticks_is_no_hysteresis() {
+fn stiction_is_not_reported_as_hysteresis() {
     let case = anything(Family::Steady, Plan::Lab, 5_227);
     let (hidden, size_a) = (case.hidden[0].what.id, case.hidden[0].size);
     let found = explained(&case);
@@ -247,7 +247,7 @@ fn a_spool_that_sticks_is_no_hysteresis() {
 /// Whether a spool that follows once loose moves on a step of the current is the same for all bands that are less than the
 /// step: slopes over less than a milliampere see nothing of the way to the right one.
 #[test]
-fn a_band_is_found_beyond_the_ledges_of_the_cost() {
+fn a_stiction_band_is_found_despite_local_minima() {
     let question = (14, "spool-stiction", Fidelity::Structured, false);
     assert!((band_over_truth(question) - 1.0).abs() < 0.05);
 }
@@ -255,7 +255,7 @@ fn a_band_is_found_beyond_the_ledges_of_the_cost() {
 /// A check valve that takes a little more the more flows, and a lift valve whose curve is off by a little less where it
 /// is wide open, are the same on these data: the one with its usual form goes first, and the other is said beside it.
 #[test]
-fn what_may_be_two_things_is_the_usual_one_first() {
+fn of_two_confounded_effects_the_usual_one_is_first() {
     for seed in [5_220, 5_234] {
         let case = anything(Family::Steady, Plan::Lab, seed);
         let found = explained(&case);
@@ -320,7 +320,7 @@ fn two_effects_are_named_though_each_alone_looks_wrong() {
 /// The jumps of a spool that sticks have to be met to a few hundredths of a percent, though half of the runs are wrong for
 /// another reason still: oil that thickens, and a flow force that shuts the lowering valve.
 #[test]
-fn a_spool_that_sticks_is_found_beside_another_effect() {
+fn stiction_is_found_together_with_another_effect() {
     for seed in [6058, 6117] {
         let case = pair(Family::Steady, Plan::Lab, seed);
         let graded = Posed::new(case).ask(&Explaining);

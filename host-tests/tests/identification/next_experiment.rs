@@ -188,7 +188,7 @@ impl Twins {
 // REQ-DIAG-10
 /// Confounded effects of the catalogue are close on plain steps, and far apart with the proposal.
 #[test]
-fn twins_come_apart() {
+fn the_proposed_experiment_separates_confounded_effects() {
     for (ids, channels, plans) in [
         (
             ["solenoid-hysteresis", "lift-threshold-shift"],

@@ -31,7 +31,7 @@ fn shipped(name: &str) -> Campaign {
 
 /// A trace that was kept is the one that would be made anew, and never another model's.
 #[test]
-fn kept_traces_are_those_of_their_model() {
+fn cached_traces_belong_to_their_model() {
     let campaign = shipped("clean-dynamic");
     let friction = AddedEffect::typical(find("coulomb-friction").expect("an effect"));
     let off = AddedEffect::null(friction.effect);
@@ -81,7 +81,7 @@ fn noise_is_seen_through_a_manoeuvre() {
 }
 
 #[test]
-fn cleaning_a_current_removes_noise_and_keeps_corners_where_they_are() {
+fn conditioning_a_current_removes_noise_and_keeps_corners() {
     let mut rng = Rng::with_seed(2);
     let sigma_a = 0.003;
     let time_s: Vec<f64> = (0..600).map(|k| f64::from(k) * 0.02).collect();

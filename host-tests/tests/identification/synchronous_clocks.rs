@@ -28,7 +28,7 @@ fn explained(synchronous: bool) -> Explanation {
 }
 
 #[test]
-fn clocks_of_their_own_may_be_late() {
+fn separate_clocks_may_have_offsets() {
     let explanation = explained(false);
     assert_eq!(explanation.verdict, Verdict::NothingMissing);
     let late_s = explanation.after.estimate.clocks.offsets_s[Channel::RockerAngle.index()];
@@ -36,7 +36,7 @@ fn clocks_of_their_own_may_be_late() {
 }
 
 #[test]
-fn behind_one_clock_the_sensor_is_late() {
+fn with_synchronous_clocks_a_delay_is_a_sensor_lag() {
     let explanation = explained(true);
     assert_eq!(explanation.after.estimate.clocks.offsets_s, [0.0; 4]);
     let [step] = explanation.steps.as_slice() else {

@@ -81,7 +81,7 @@ fn a_step_fits_the_ecu() {
 
 #[test]
 #[ignore = "needs the ARM image: run by `cargo xtask test`"]
-fn a_step_and_its_parts_take_what_is_written_down() {
+fn a_step_and_its_parts_take_the_recorded_instructions() {
     let (_, run) = &*RECORDED;
     let count = run.instructions.len() as u64;
     let folder = tempfile::tempdir().unwrap();

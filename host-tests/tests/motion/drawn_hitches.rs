@@ -37,7 +37,7 @@ fn an_untaught_machine_moves_well_whatever_it_is() {
 
 /// Structured machines have effects outside the controller's models; their loads oscillate on compensators with lag.
 #[test]
-fn a_load_that_swings_on_its_compensator_is_lifted_gently() {
+fn a_load_that_oscillates_on_its_compensator_is_lifted_gently() {
     let bars = Bars {
         ratio: [1.4, 2.5],
         overshooting: 0.15,
@@ -50,7 +50,7 @@ fn a_load_that_swings_on_its_compensator_is_lifted_gently() {
 /// The estimate takes every spool for one of first order. What it gets wrong of such a one mustn't make a hitch go to and
 /// fro about its set point until that looks like a leak.
 #[test]
-fn a_spool_that_swings_slowly_is_no_reason_to_hunt() {
+fn a_slow_second_order_spool_causes_no_limit_cycle() {
     let machines: Vec<Drawn> = (1..=MACHINES as u64)
         .map(|seed| {
             draw(seed, MOVES).with_spool(SpoolMotion::Swinging {

@@ -286,7 +286,7 @@ fn no_fault_takes_the_hitch_further_than_it_may() {
 // REQ-SAFE-06
 /// A driver that switches itself on under a resting hitch.
 #[test]
-fn a_stuck_driver_moves_a_resting_hitch_by_little() {
+fn a_stuck_driver_moves_a_resting_hitch_only_slightly() {
     let model = hitch_model_file::dynamic();
     for load_kg in LOADS_KG {
         for trouble in [LiftStuck, LowerStuck] {

@@ -107,7 +107,7 @@ fn a_flood_of_nonsense_changes_nothing_at_the_coils() {
 }
 
 #[test]
-fn a_node_that_babbles_one_frame_changes_nothing_either() {
+fn a_node_that_repeats_one_frame_changes_nothing() {
     let (quiet, _) = work(|_| Vec::new());
     let request = ExtendedId::new(0x18EA_80F9).unwrap();
     let frame = Frame::data_frame(request.into(), &Pgn::DM1.to_bytes()).unwrap();

@@ -62,7 +62,7 @@ fn a_healthy_angle_trips_nothing() {
 
 // REQ-SAFE-10
 #[test]
-fn a_healthy_hitch_may_stand_while_it_swings_is_taken_up_or_lands() {
+fn no_fault_of_a_healthy_hitch_that_stands_oscillates_or_lands() {
     let faults = false_trips(
         [
             &SWINGING[..],

@@ -367,7 +367,7 @@ fn every_command_has_help_with_an_example() {
 }
 
 #[test]
-fn a_reader_that_has_seen_enough_is_no_fault() {
+fn a_closed_pipe_is_no_error() {
     let mut child: std::process::Child = {
         let mut command: Command = hitch();
         command

@@ -164,7 +164,7 @@ fn step_taught(
 }
 
 #[test]
-fn a_machine_is_taught_through_the_door_and_what_was_found_is_kept() {
+fn a_machine_is_taught_over_stdin_and_keeps_the_result() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("taught.toml");
     let mut controller = ControllerProcess::open_with(

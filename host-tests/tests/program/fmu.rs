@@ -476,7 +476,7 @@ fn a_wrong_export_is_one_line_and_leaves_no_file() {
 }
 
 #[test]
-fn a_missing_library_is_said_with_its_places() {
+fn a_missing_library_is_reported_with_the_searched_places() {
     let folder = tempfile::tempdir().unwrap();
     let alone = folder.path().join("hitch");
     fs::copy(hitch().get_program(), &alone).unwrap();

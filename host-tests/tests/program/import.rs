@@ -153,7 +153,7 @@ fn candump() -> String {
 
 // REQ-INPUT-03
 #[test]
-fn signals_of_a_bus_are_told_by_names_comments_and_units() {
+fn signals_of_a_bus_are_recognised_by_names_comments_and_units() {
     let dbc = "VERSION \"\"\nBU_: Rig\n\
         BO_ 257 Valves: 4 Rig\n SG_ Y1 : 0|16@1+ (1,0) [0|0] \"mA\" Rig\n SG_ Y2 : 16|16@1+ (1,0) [0|0] \"mA\" Rig\n\
         BO_ 258 Hitch: 4 Rig\n SG_ Winkel : 0|16@1+ (0.01,0) [0|0] \"\u{b0}\" Rig\n \

@@ -177,7 +177,7 @@ fn the_dynamic_plant_agrees_with_a_published_solver() {
 }
 
 #[test]
-fn a_torn_oil_column_closes_where_it_tore() {
+fn a_cavity_in_the_oil_closes_where_it_opened() {
     for load_kg in [50.0, 150.0, 250.0] {
         let comparison = compare(CUT, load_kg);
         print(load_kg, &comparison);
