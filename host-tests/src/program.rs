@@ -3,13 +3,18 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
-/// A command that runs `hitch`, built if it is not up to date.
+/// Environment variable that names the program. `cargo xtask test` sets it to the one that the test build contains:
+/// another build has other features of the dependencies and takes minutes.
+const PROGRAM_VARIABLE: &str = "HITCH_PROGRAM";
+
+/// A command that runs `hitch`: the one that the environment names, or one that is built if it is not up to date.
 ///
 /// # Panics
 /// If it cannot be built: then no test of it can run.
 pub fn hitch() -> Command {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    Command::new(PROGRAM.get_or_init(build))
+    let named = || std::env::var_os(PROGRAM_VARIABLE).map(PathBuf::from);
+    Command::new(PROGRAM.get_or_init(|| named().unwrap_or_else(build)))
 }
 
 /// Runs `hitch` in a folder.

@@ -20,6 +20,9 @@ const STACK_VARIABLE: &str = "HITCH_STACK_BOUND";
 /// Environment variable with the folder of the images for the parts.
 const IMAGES_VARIABLE: &str = "HITCH_BOARD_IMAGES";
 
+/// Names the program `hitch` for the tests that run it.
+const PROGRAM_VARIABLE: &str = "HITCH_PROGRAM";
+
 /// Modules of the test program `live` with tests that need images or a browser. Each runs alone: some are in real time.
 const ON_TARGET: [&str; 5] = [
     "board_bench::",
@@ -101,7 +104,9 @@ fn summarise(host: &Outcome, target: &Outcome) -> Result<()> {
 
 fn cargo_test(arguments: &[&str]) -> Command {
     let mut command = process::command(workspace::cargo(), &["test", "--locked", "--no-fail-fast"]);
-    command.args(arguments);
+    // The build of the tests contains the program, because the workbench has a test that runs it.
+    let program = workspace::target().join("debug/hitch");
+    command.args(arguments).env(PROGRAM_VARIABLE, program);
     command
 }
 

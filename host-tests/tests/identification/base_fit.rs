@@ -260,7 +260,7 @@ fn diagnose_first_reports_an_unsuitable_base() {
         let output = command.output().expect("it runs");
         String::from_utf8_lossy(&output.stdout).into_owned()
     };
-    assert!(said(false).starts_with("This looks like another machine"));
+    assert!(said(false).starts_with("The base model does not match this machine"));
     assert!(said(true).contains("\"hopeless_base\": true"));
 }
 

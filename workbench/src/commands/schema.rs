@@ -126,6 +126,8 @@ mod tests {
         }
         for (documents, option) in [(&DOCUMENTS[..], "json"), (&LINES[..], "jsonl")] {
             let mut names = with_option(&All::command(), "", option);
+            // It has the option, but writes no such document.
+            names.retain(|name| name != "schema");
             let known = documents.iter().map(|(name, _)| (*name).to_owned());
             let mut known: Vec<String> = known.collect();
             names.sort();
