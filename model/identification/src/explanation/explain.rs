@@ -217,6 +217,7 @@ fn may_be_absent(step: &ExplanationStep) -> bool {
 /// The members of the set as steps, in greedy order of the cost reduction that each adds.
 fn steps(problem: Problem<'_>, before: &Fit, found: &Found) -> Vec<ExplanationStep> {
     let weighed = found.refitted.weighed(problem, &found.fit);
+    let whole = evaluate(problem, found.fit.estimate.clone());
     let mut steps: Vec<ExplanationStep> = Vec::new();
     for (count, &effect) in found.order.iter().enumerate() {
         let last = count + 1 == found.order.len();
@@ -232,7 +233,6 @@ fn steps(problem: Problem<'_>, before: &Fit, found: &Found) -> Vec<ExplanationSt
             true => found.held_out,
             false => held_out(problem, &fit),
         };
-        let whole = evaluate(problem, found.fit.estimate.clone());
         let candidate = weighed_alone(problem, whole.clone(), effect);
         let estimate = &found.fit.estimate;
         let id = estimate.effects[effect].effect.id();

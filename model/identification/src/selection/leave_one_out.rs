@@ -19,18 +19,18 @@ pub struct LeaveOneOut {
 /// Weighs each effect of a fitted model, from the `first` one on, against the model with all others.
 #[must_use]
 pub fn leave_one_out(problem: Problem<'_>, fit: &Fit, first: usize) -> Vec<LeaveOneOut> {
+    let whole = evaluate(problem, fit.estimate.clone());
     let effects = first..fit.estimate.effects.len();
     effects
-        .map(|index| leave_one_out_of(problem, fit, index))
+        .map(|index| leave_one_out_of(problem, &whole, index))
         .collect()
 }
 
-/// Weighs one effect of a fitted model against the model with all others.
-pub(crate) fn leave_one_out_of(problem: Problem<'_>, fit: &Fit, index: usize) -> LeaveOneOut {
-    let without = refine(problem, fit.estimate.without(index));
-    let whole = evaluate(problem, fit.estimate.clone());
+/// Weighs one effect of an evaluated model against the model with all others.
+fn leave_one_out_of(problem: Problem<'_>, whole: &Fit, index: usize) -> LeaveOneOut {
+    let without = refine(problem, whole.estimate.without(index));
     LeaveOneOut {
-        candidate: weigh(problem, &without, whole, index),
+        candidate: weigh(problem, &without, whole.clone(), index),
         without,
     }
 }
