@@ -83,12 +83,13 @@ impl Battery {
     /// Builds the benchmark in a copy of the workspace.
     pub fn build(self, source: &Path) -> Result<PathBuf> {
         let target = workspace::target().join("ablation/target");
-        let what: &[&str] = match self {
-            Self::Identification => &["bench", "--no-run", "--bench", "hidden_effects"],
-            Self::Control => &["build", "--release", "--bin", "drive-drawn-hitches"],
+        let (what, name): (&[&str], &str) = match self {
+            Self::Identification => (&["bench", "--no-run", "--bench"], "hidden_effects"),
+            Self::Control => (&["build", "--release", "--bin"], "drive-drawn-hitches"),
         };
         let mut command = process::command(workspace::cargo(), what);
         command
+            .arg(name)
             .args([
                 "--package",
                 "host-tests",
@@ -105,10 +106,6 @@ impl Battery {
         process::announce(&command);
         let output = command.stderr(Stdio::inherit()).output()?;
         let messages = String::from_utf8(output.stdout)?;
-        let name = match self {
-            Self::Identification => "hidden_effects",
-            Self::Control => "drive-drawn-hitches",
-        };
         // The last artefact of that name is the program.
         let executable = messages
             .lines()
