@@ -35,7 +35,7 @@ pub struct Abilities {
     pub intervals: bool,
 }
 
-/// A method that identifies what a model lacks.
+/// A method that identifies the missing effects of a model.
 pub trait Method: Sync {
     /// Name in tables.
     fn name(&self) -> &'static str;

@@ -31,7 +31,7 @@ fn python() -> Option<&'static Path> {
         .as_deref()
 }
 
-/// Runs a script in a folder; what it said.
+/// Runs a script in a folder and returns its output.
 fn script(python: &Path, folder: &Path, script: &Path, arguments: &[&str]) -> String {
     let cache = Path::new(env!("CARGO_TARGET_TMPDIR")).join("python-cache");
     let mut command = Command::new(python);
@@ -244,7 +244,7 @@ fn quick_move(calibration: &str) -> Vec<Sample> {
         .collect()
 }
 
-/// A line of `hitch controller` with what a sample was told.
+/// An input line of `hitch controller` for a sample.
 fn line(step: usize, inputs: &Inputs) -> String {
     let milli = |value: Option<i32>| {
         value.map_or(String::new(), |value| format!("{}", f64::from(value) / 1e3))

@@ -24,7 +24,7 @@ const UNITS: [(&str, &str); 10] = [
 pub struct Scalar {
     /// Its table, or the id of its effect, and its key: `pump.theoretical_flow_lpm`.
     pub name: String,
-    /// What it is.
+    /// Short description.
     pub meaning: String,
     /// Its unit; empty for a pure number.
     pub unit: &'static str,

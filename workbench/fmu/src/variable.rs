@@ -29,7 +29,7 @@ pub enum Causality {
 pub struct Variable {
     /// Name, ending in the unit.
     pub name: String,
-    /// What it is.
+    /// Short description.
     pub description: String,
     /// What it is for.
     pub causality: Causality,

@@ -38,7 +38,7 @@ pub unsafe fn call(
     fault.status
 }
 
-/// What a panic said.
+/// Message of a panic.
 pub fn said(panic: &(dyn Any + Send)) -> &str {
     let text = panic.downcast_ref::<String>().map(String::as_str);
     text.or_else(|| panic.downcast_ref::<&str>().copied())

@@ -36,8 +36,8 @@ impl Logger {
         };
         // It is taken for a format.
         let text = without_zeros(&text.replace('%', "%%"));
-        // SAFETY: the importer promises that its function can be called as the standard declares it until the instance is
-        // freed. The texts end with a zero byte and live until the call returns; the format asks for no argument.
+        // SAFETY: the importer promises that its function can be called as the standard declares it until the instance
+        // is freed. The texts end with a zero byte and live until the call returns. The format has no argument.
         unsafe {
             function(
                 self.environment,

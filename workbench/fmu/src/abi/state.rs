@@ -7,7 +7,7 @@ use super::guard::call;
 use super::instance::{Fault, Instance, Stored};
 use super::types::{Fmi2Component, Fmi2State, Status, ValueReference};
 
-/// What is said of what no unit can do.
+/// Message for a function that no unit supports.
 fn unsupported(flag: &str) -> Fault {
     Fault::error(format!(
         "is not supported: {flag} is false in modelDescription.xml"

@@ -11,7 +11,7 @@ use crate::variable::Value;
 /// Where values can be set.
 const SETTABLE: [Phase; 3] = [Phase::Instantiated, Phase::Initialising, Phase::Stepping];
 
-/// What is said of a variable of another type.
+/// Message for a variable of another type.
 fn other_type(reference: ValueReference) -> Fault {
     Fault::error(format!(
         "value reference {reference} has another type; see modelDescription.xml"
