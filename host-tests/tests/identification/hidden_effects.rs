@@ -108,7 +108,7 @@ fn an_effect_is_named_in_the_field() {
     assert!(graded[0].named_first());
 }
 
-/// A campaign of the dynamic rig: the short moves of the lab alone, for ringing pressures take long to simulate.
+/// The short moves of a lab campaign of the dynamic rig: ringing pressures take long to simulate.
 fn short_moves(question: Question) -> (Case, Campaign) {
     let case = draw(question.0, &wish(Family::Dynamic, Plan::Lab, question));
     let mut measured = campaign(&case);
@@ -130,7 +130,7 @@ fn an_effect_is_named_where_pressures_ring() {
     assert_eq!(answer.named, ["entrained-air"]);
 }
 
-/// A case explained from where its family starts.
+/// The explanation of a case from the starting point of its family.
 fn explained(case: &Case) -> Explanation {
     let model = starting_point(case.family);
     explain(
@@ -149,7 +149,7 @@ fn first_over_truth(case: &Case) -> (&'static dyn Effect, f64) {
     (first.effect, found / hidden)
 }
 
-/// The band of a spool that sticks, which is named first where pressures ring, over the one that it has.
+/// Ratio of the identified to the true stiction band; fails if stiction is not named first.
 fn band_over_truth(question: Question) -> f64 {
     let case = draw(question.0, &wish(Family::Dynamic, Plan::Lab, question));
     let (named, share) = first_over_truth(&case);
@@ -157,7 +157,8 @@ fn band_over_truth(question: Question) -> f64 {
     share
 }
 
-/// A hose that creeps within a second rings much like one that swells at once, whose valley no secant meets.
+/// A hose that creeps within a second gives nearly the same ringing pressures as an elastic one, and the minimum of the
+/// elastic one is narrow.
 #[test]
 fn an_elastic_hose_is_not_reported_as_creeping() {
     let (named, share) = first_over_truth(&anything(Family::Dynamic, Plan::Lab, 5_133));
@@ -165,16 +166,16 @@ fn an_elastic_hose_is_not_reported_as_creeping() {
     assert!((share - 1.0).abs() < 0.01);
 }
 
-/// A tenth of a milliampere beside its band a spool that sticks jumps at other times, and the ringing that follows hides
-/// how much better the right one is: it is found all the same, within a thousandth.
+/// With a band that is wrong by 0.1 mA, a sticking spool jumps at other times, and the ringing that follows has another
+/// phase: the minimum is narrow. The band is required within 0.1 %.
 #[test]
 fn stiction_is_found_with_ringing_pressures() {
     let question = (30, "spool-stiction", Fidelity::Faithful, false);
     assert!((band_over_truth(question) - 1.0).abs() < 1e-3);
 }
 
-/// The last of a current's noise shakes the model's spools and rings its pressures; a spool that sticks within it would
-/// hold them still, and is not there.
+/// The current noise that remains after conditioning moves the model's spools and excites its pressures. Stiction would
+/// suppress this, but the machine has none.
 #[test]
 fn current_noise_is_not_reported_as_stiction() {
     let question = (23, "nothing", Fidelity::Faithful, true);
@@ -182,7 +183,7 @@ fn current_noise_is_not_reported_as_stiction() {
     assert!(graded[0].answer.named.is_empty() && !graded[0].answer.unknown);
 }
 
-/// Through the same gap oil of 62 degC leaks 2.7 times as much as oil of 40 degC.
+/// The leak through a gap is 2.7 times as large at 62 degC as at 40 degC.
 #[test]
 fn a_viscosity_dependent_leak_is_explained_completely() {
     let question = (31, "lowering-leakage", Fidelity::Structured, false);
@@ -191,8 +192,8 @@ fn a_viscosity_dependent_leak_is_explained_completely() {
     assert!(!graded[0].answer.unknown);
 }
 
-/// Ground that a hitch without inertia only ever rests on is as likely soft and high as hard and low, but there it is,
-/// and a landing that comes a hair earlier is no inertia.
+/// At rest, soft high ground and stiff low ground are indistinguishable; contact that begins slightly early must not be
+/// reported as inertia.
 #[test]
 fn ground_contact_at_rest_is_named_alone() {
     let questions = [
@@ -207,9 +208,8 @@ fn ground_contact_at_rest_is_named_alone() {
     }
 }
 
-/// Cold seals and pipes hold back more, pins turn unevenly, a metering edge is off otherwise when wide open, a load
-/// pitches without the links, a compensator is late: the usual form of an effect leaves that unknown, or has others named
-/// for it.
+/// Each hidden effect has a form that differs from the usual one of the catalogue (for example friction that depends on
+/// temperature). The difference must be reported neither as unknown nor as a second effect.
 #[test]
 fn another_form_of_an_effect_is_not_a_second_effect() {
     let questions = [
@@ -227,8 +227,8 @@ fn another_form_of_an_effect_is_not_a_second_effect() {
     }
 }
 
-/// A spool that sticks looks like a hysteresis along every secant, which leaves a quarter of the cost; in fine steps it is
-/// found beside it.
+/// Hysteresis imitates stiction and leaves a quarter of the cost; the minimum of stiction is narrower than the secants
+/// of the search, and needs fine steps.
 #[test]
 fn stiction_is_not_reported_as_hysteresis() {
     let case = anything(Family::Steady, Plan::Lab, 5_227);
@@ -244,16 +244,16 @@ fn stiction_is_not_reported_as_hysteresis() {
     assert!((first.values[0] / size_a - 1.0).abs() < 5e-3);
 }
 
-/// Whether a spool that follows once loose moves on a step of the current is the same for all bands that are less than the
-/// step: slopes over less than a milliampere see nothing of the way to the right one.
+/// A spool moves on a step of the current for every band below the step height: the cost is piecewise constant in the
+/// band, and slopes over less than a milliampere are zero.
 #[test]
 fn a_stiction_band_is_found_despite_local_minima() {
     let question = (14, "spool-stiction", Fidelity::Structured, false);
     assert!((band_over_truth(question) - 1.0).abs() < 0.05);
 }
 
-/// A check valve that takes a little more the more flows, and a lift valve whose curve is off by a little less where it
-/// is wide open, are the same on these data: the one with its usual form goes first, and the other is said beside it.
+/// A flow-dependent check valve loss and a variant of the lift flow scale are indistinguishable on these data: the
+/// effect in its usual form is first, and the other is listed as indistinguishable.
 #[test]
 fn of_two_confounded_effects_the_usual_one_is_first() {
     for seed in [5_220, 5_234] {
@@ -275,12 +275,12 @@ fn of_two_confounded_effects_the_usual_one_is_first() {
     }
 }
 
-/// A campaign as it is drawn, whatever is hidden in it.
+/// A campaign drawn without restrictions.
 fn anything(family: Family, plan: Plan, seed: u64) -> Case {
     drawn(family, plan, seed, None)
 }
 
-/// A pair as it is drawn, whatever it is.
+/// A drawn campaign with two hidden effects.
 fn pair(family: Family, plan: Plan, seed: u64) -> Case {
     drawn(family, plan, seed, Some(Kind::Pair))
 }
@@ -303,9 +303,8 @@ fn ids(names: impl IntoIterator<Item = impl Into<String>>) -> Vec<String> {
 }
 
 // REQ-DIAG-04
-/// As long as the second is missing, the first of two effects may run a held-out run into a stop that its hitch never
-/// reached: that a threshold is off shows in all the others. An arm that is there all over the stroke looks like a load
-/// that was weighed wrongly in each run.
+/// With one of the two effects alone, a held-out run may reach a stop that the measured hitch did not reach. A constant
+/// error of the load arm is confounded with the errors of the weighed loads.
 #[test]
 fn two_effects_are_named_though_each_alone_looks_wrong() {
     for seed in [2011, 2016] {
@@ -317,8 +316,8 @@ fn two_effects_are_named_though_each_alone_looks_wrong() {
     }
 }
 
-/// The jumps of a spool that sticks have to be met to a few hundredths of a percent, though half of the runs are wrong for
-/// another reason still: oil that thickens, and a flow force that shuts the lowering valve.
+/// The stiction band is required to a few hundredths of a percent while the second effect (viscosity, flow force) still
+/// disturbs half of the runs.
 #[test]
 fn stiction_is_found_together_with_another_effect() {
     for seed in [6058, 6117] {
@@ -353,8 +352,8 @@ fn the_form_of_the_first_effect_is_chosen_anew_with_the_second() {
     assert_eq!(found.steps.len(), case.hidden.len());
 }
 
-/// A millimetre higher than its ground a hitch hangs, a millimetre lower it stands, and a load rings on stiff ground:
-/// the place is found all the same.
+/// Contact with stiff ground makes the cost discontinuous in the height, and the load rings on it. The height is
+/// required within 1 mm.
 #[test]
 fn the_ground_is_found_where_loads_ring_on_it() {
     for seed in 13..16 {
