@@ -83,6 +83,7 @@ fn log(rig: &Model, manoeuvre: &Manoeuvre, instruments: &Instruments, random: &m
         file: manoeuvre.file.clone(),
         bench,
         oil_temperature_c: manoeuvre.oil_temperature_c,
+        oil_temperature_known: true,
         time_s: fine_s.iter().copied().step_by(FINER).collect(),
         lift_current_a: logged(|currents| currents.lift_a, random),
         lower_current_a: logged(|currents| currents.lower_a, random),

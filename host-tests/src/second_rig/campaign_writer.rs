@@ -115,6 +115,7 @@ pub fn log(case: &Case, physics: &Physics, run: &PlannedRun, random: &mut impl R
             },
         },
         oil_temperature_c: manoeuvre.oil_temperature_c,
+        oil_temperature_known: true,
         time_s,
         lift_current_a,
         lower_current_a,

@@ -33,7 +33,7 @@ fn course(plan: &RunPlan, current_a: impl Fn(Currents) -> f64) -> Course {
     let segments: f64 = plan.course.iter().map(|s| s.ramp_s + s.stay_s).sum();
     let mut time_s = plan.duration_s() - segments;
     let mut knots = vec![(time_s, 0.0)];
-    for segment in plan.course {
+    for segment in &plan.course {
         let to_a = current_a(segment.to);
         knots.push((time_s + segment.ramp_s, to_a));
         time_s += segment.ramp_s + segment.stay_s;

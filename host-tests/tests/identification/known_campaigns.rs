@@ -5,6 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use hitch_campaign::Campaign;
+use hitch_identification::adequacy::signal::Signal;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{Explanation, Verdict, explain};
@@ -153,5 +154,5 @@ fn what_is_not_in_the_catalogue_is_unexplained() {
     let explanation = explained("known-outside", &hitch_model_file::nominal());
     assert_eq!(explanation.verdict, Verdict::Unexplained);
     assert!(explanation.rest.share > 0.2);
-    assert_eq!(explanation.rest.depends_on[0], "rocker_angle_deg");
+    assert_eq!(explanation.rest.depends_on[0], Signal::RockerAngle);
 }

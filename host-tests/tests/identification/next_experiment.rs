@@ -4,7 +4,8 @@ use hitch_effects::find;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::design::alternative::Replacement;
-use hitch_identification::design::manoeuvre::MANOEUVRES;
+use hitch_identification::design::levels::Levels;
+use hitch_identification::design::manoeuvre::TEMPLATES;
 use hitch_identification::design::plan::{Manoeuvre, RunPlan, Segment, Stand};
 use hitch_identification::design::separation::TestBench;
 use hitch_identification::design::{NextExperiment, Pair, Rival, next_experiment};
@@ -33,11 +34,11 @@ const fn lower(lower_a: f64, ramp_s: f64, stay_s: f64) -> Segment {
     Segment { to, ramp_s, stay_s }
 }
 
-const fn hitch(load_kg: f64, start: f64, course: &'static [Segment]) -> RunPlan {
+fn hitch(load_kg: f64, start: f64, course: &[Segment]) -> RunPlan {
     RunPlan {
         stand: Stand::Hitch { load_kg, start },
         oil_temperature_c: 40.0,
-        course,
+        course: course.to_vec(),
     }
 }
 
@@ -45,22 +46,32 @@ const fn hitch(load_kg: f64, start: f64, course: &'static [Segment]) -> RunPlan 
 const LOAD_KG: f64 = 150.0;
 
 /// Steps up from rest at one load, each log ended before the current falls.
-static RISING_LIFTS: [RunPlan; 4] = [
-    hitch(LOAD_KG, 0.1, &[lift(1.3, 0.01, 4.0)]),
-    hitch(LOAD_KG, 0.1, &[lift(1.5, 0.01, 3.0)]),
-    hitch(LOAD_KG, 0.1, &[lift(1.9, 0.01, 1.5)]),
-    hitch(LOAD_KG, 0.1, &[lift(2.4, 0.01, 1.0)]),
-];
+fn rising_lifts() -> Vec<RunPlan> {
+    let lifts = [(1.3, 4.0), (1.5, 3.0), (1.9, 1.5), (2.4, 1.0)];
+    lifts
+        .map(|(lift_a, stay_s)| hitch(LOAD_KG, 0.1, &[lift(lift_a, 0.01, stay_s)]))
+        .to_vec()
+}
 
 /// Lifts and lowerings in steps, at one load.
-static STEPS: [RunPlan; 6] = [
-    hitch(LOAD_KG, 0.1, &[lift(1.4, 0.2, 3.0), lift(0.0, 0.2, 1.0)]),
-    hitch(LOAD_KG, 0.1, &[lift(1.8, 0.2, 1.5), lift(0.0, 0.2, 1.0)]),
-    hitch(LOAD_KG, 0.1, &[lift(2.4, 0.2, 1.0), lift(0.0, 0.2, 1.0)]),
-    hitch(LOAD_KG, 0.9, &[lower(1.6, 0.2, 3.0), lower(0.0, 0.2, 1.0)]),
-    hitch(LOAD_KG, 0.9, &[lower(1.9, 0.2, 1.5), lower(0.0, 0.2, 1.0)]),
-    hitch(LOAD_KG, 0.9, &[lower(2.4, 0.2, 0.8), lower(0.0, 0.2, 1.0)]),
-];
+fn steps() -> Vec<RunPlan> {
+    let lifts = [(1.4, 3.0), (1.8, 1.5), (2.4, 1.0)].map(|(lift_a, stay_s)| {
+        let course = [lift(lift_a, 0.2, stay_s), lift(0.0, 0.2, 1.0)];
+        hitch(LOAD_KG, 0.1, &course)
+    });
+    let lowerings = [(1.6, 3.0), (1.9, 1.5), (2.4, 0.8)].map(|(lower_a, stay_s)| {
+        let course = [lower(lower_a, 0.2, stay_s), lower(0.0, 0.2, 1.0)];
+        hitch(LOAD_KG, 0.9, &course)
+    });
+    [lifts, lowerings].concat()
+}
+
+/// The listed manoeuvres on the machine of a lab.
+fn manoeuvres(lab: &Lab) -> Vec<Manoeuvre> {
+    let levels = Levels::new(&lab.experiment(), &lab.model);
+    let templates = TEMPLATES.iter();
+    templates.map(|template| template.on(&levels)).collect()
+}
 
 /// An effect of the catalogue at its usual size.
 fn effect(id: &str) -> AddedEffect {
@@ -73,9 +84,9 @@ fn usual(id: &'static str) -> (&'static str, f64) {
 }
 
 /// The listed manoeuvre that an experiment proposes.
-fn proposed(next: &NextExperiment) -> &'static Manoeuvre {
-    MANOEUVRES
-        .iter()
+fn proposed(lab: &Lab, next: &NextExperiment) -> Manoeuvre {
+    manoeuvres(lab)
+        .into_iter()
         .find(|manoeuvre| manoeuvre.instruction == next.manoeuvre)
         .unwrap_or_else(|| panic!("a listed manoeuvre, not {next}"))
 }
@@ -92,7 +103,7 @@ fn named(explanation: &Explanation) -> (Vec<&'static str>, bool) {
 
 /// Explains a campaign that leaves a hidden effect ambiguous, measures the proposal, and explains again: then the
 /// hidden effect is named without alternatives. Returns the proposal and the former alternatives.
-fn closes(hidden: &str, lab: &mut Lab) -> (&'static Manoeuvre, Vec<&'static str>) {
+fn closes(hidden: &str, lab: &mut Lab) -> (Manoeuvre, Vec<&'static str>) {
     let first = lab.explain();
     assert_eq!(first.verdict, Verdict::Ambiguous, "{:?}", named(&first));
     let next = first.next_experiment.expect("ambiguous");
@@ -103,8 +114,8 @@ fn closes(hidden: &str, lab: &mut Lab) -> (&'static Manoeuvre, Vec<&'static str>
         .filter(|id| *id != hidden)
         .collect();
     assert!(!rivals.is_empty(), "{hidden}: {next}");
-    let manoeuvre = proposed(&next);
-    lab.measure(manoeuvre.runs);
+    let manoeuvre = proposed(lab, &next);
+    lab.measure(&manoeuvre.runs);
     let second = lab.explain();
     let step = second.steps.iter().find(|step| step.effect.id() == hidden);
     let step = step.unwrap_or_else(|| panic!("{hidden}, not {:?}", named(&second)));
@@ -130,10 +141,10 @@ fn a_drooping_compensator_is_told_from_a_scaled_flow_by_another_load() {
         ("compensator-droop", 0.005, "lift-flow-scale"),
         ("lift-flow-scale", 0.04, "compensator-droop"),
     ] {
-        let mut lab = Lab::new(Family::Steady, (hidden, size), NO_PUMP_SENSOR, &STEPS);
+        let mut lab = Lab::new(Family::Steady, (hidden, size), NO_PUMP_SENSOR, &steps());
         let (manoeuvre, rivals) = closes(hidden, &mut lab);
         assert!(rivals.contains(&twin), "{hidden} or {rivals:?}");
-        assert!(changes_pressure(manoeuvre), "{}", manoeuvre.name);
+        assert!(changes_pressure(&manoeuvre), "{}", manoeuvre.name);
     }
 }
 
@@ -141,10 +152,10 @@ fn a_drooping_compensator_is_told_from_a_scaled_flow_by_another_load() {
 #[test]
 fn hysteresis_is_told_from_a_threshold_by_a_current_that_comes_back() {
     let ids = ["solenoid-hysteresis", "lift-threshold-shift"];
-    let lab = Lab::new(Family::Steady, usual(ids[0]), ALL, &RISING_LIFTS);
+    let lab = Lab::new(Family::Steady, usual(ids[0]), ALL, &rising_lifts());
     let twins = Twins::new(&lab, ids);
     let next = next_experiment(Problem::new(&twins.experiment, &lab.model), &[twins.pair()]);
-    let manoeuvre = proposed(&next.expect("a pair"));
+    let manoeuvre = proposed(&lab, &next.expect("a pair"));
     let comes_back = ["triangle", "reversals", "staircase"];
     assert!(
         comes_back.iter().any(|kind| manoeuvre.name.contains(kind)),
@@ -193,23 +204,24 @@ fn the_proposed_experiment_separates_confounded_effects() {
         (
             ["solenoid-hysteresis", "lift-threshold-shift"],
             ALL,
-            &RISING_LIFTS[..],
+            rising_lifts(),
         ),
         (
             ["compensator-droop", "lift-flow-scale"],
             NO_PUMP_SENSOR,
-            &STEPS,
+            steps(),
         ),
-        (["coulomb-friction", "pin-friction"], ALL, &STEPS),
+        (["coulomb-friction", "pin-friction"], ALL, steps()),
     ] {
-        let mut lab = Lab::new(Family::Steady, usual(ids[0]), channels, plans);
+        let mut lab = Lab::new(Family::Steady, usual(ids[0]), channels, &plans);
         let before = Twins::new(&lab, ids);
         let next = next_experiment(
             Problem::new(&before.experiment, &lab.model),
             &[before.pair()],
         );
         let next = next.expect("a pair");
-        lab.measure(proposed(&next).runs);
+        let manoeuvre = proposed(&lab, &next);
+        lab.measure(&manoeuvre.runs);
         let after = Twins::new(&lab, ids).angle_deg;
         let before = before.angle_deg;
         assert!(
@@ -223,13 +235,13 @@ fn the_proposed_experiment_separates_confounded_effects() {
 #[test]
 fn a_ringing_plant_is_designed_for_as_well() {
     let ids = ["entrained-air", "hose-compliance"];
-    let lab = Lab::new(Family::Dynamic, usual(ids[0]), ALL, &STEPS);
+    let lab = Lab::new(Family::Dynamic, usual(ids[0]), ALL, &steps());
     let twins = Twins::new(&lab, ids);
     let next = next_experiment(Problem::new(&twins.experiment, &lab.model), &[twins.pair()]);
     let next = next.expect("a pair");
-    let manoeuvre = proposed(&next);
+    let manoeuvre = proposed(&lab, &next);
     assert!(
-        changes_pressure(manoeuvre) || manoeuvre.name.contains("steps"),
+        changes_pressure(&manoeuvre) || manoeuvre.name.contains("steps"),
         "{next}"
     );
     assert!(next.expected_likelihood_ratio >= DISTINGUISHABLE, "{next}");
@@ -239,7 +251,7 @@ fn a_ringing_plant_is_designed_for_as_well() {
 #[test]
 fn a_sensor_is_asked_for_where_no_manoeuvre_helps() {
     let ids = ["pin-friction", "lower-flow-scale"];
-    let lab = Lab::new(Family::Steady, usual(ids[0]), ANGLE_ONLY, &STEPS);
+    let lab = Lab::new(Family::Steady, usual(ids[0]), ANGLE_ONLY, &steps());
     let twins = Twins::new(&lab, ids);
     assert!(twins.angle_deg < 3.0, "{}", twins.angle_deg);
     let next = next_experiment(Problem::new(&twins.experiment, &lab.model), &[twins.pair()]);
@@ -262,9 +274,10 @@ fn a_sensor_is_asked_for_where_no_manoeuvre_helps() {
 #[test]
 fn the_expected_likelihood_ratio_is_met() {
     let ids = ["compensator-droop", "lift-flow-scale"];
-    let lab = || Lab::new(Family::Steady, usual(ids[0]), NO_PUMP_SENSOR, &STEPS);
+    let lab = || Lab::new(Family::Steady, usual(ids[0]), NO_PUMP_SENSOR, &steps());
     let excess = |twins: &Twins| twins.fits[1].cost - twins.fits[0].cost;
     let first = lab();
+    let listed = manoeuvres(&first);
     let twins = Twins::new(&first, ids);
     let bench = TestBench::new(
         Problem::new(&twins.experiment, &first.model),
@@ -272,11 +285,11 @@ fn the_expected_likelihood_ratio_is_met() {
     );
     let known = [bench.known(twins.pair())];
     for name in ["light-and-heavy-lift", "creep-and-stop", "full-opening"] {
-        let manoeuvre = MANOEUVRES.iter().find(|manoeuvre| manoeuvre.name == name);
+        let manoeuvre = listed.iter().find(|manoeuvre| manoeuvre.name == name);
         let manoeuvre = manoeuvre.expect("listed");
         let expected = bench.likelihood_ratios(manoeuvre, &known)[0];
         let mut more = lab();
-        more.measure(manoeuvre.runs);
+        more.measure(&manoeuvre.runs);
         let measured = Twins::new(&more, ids);
         let own = measured.fits[0].clone();
         let base = evaluate(
@@ -300,10 +313,12 @@ fn the_expected_likelihood_ratio_is_met() {
 
 #[test]
 fn manoeuvres_can_be_carried_out() {
-    for (index, manoeuvre) in MANOEUVRES.iter().enumerate() {
+    let lab = Lab::new(Family::Steady, usual("solenoid-hysteresis"), ALL, &steps());
+    let manoeuvres = manoeuvres(&lab);
+    for (index, manoeuvre) in manoeuvres.iter().enumerate() {
         let name = manoeuvre.name;
         assert!(
-            MANOEUVRES[..index].iter().all(|other| other.name != name),
+            manoeuvres[..index].iter().all(|other| other.name != name),
             "{name} twice"
         );
         assert!(!manoeuvre.instruction.ends_with('.') && !manoeuvre.runs.is_empty());
@@ -312,7 +327,7 @@ fn manoeuvres_can_be_carried_out() {
             "{name}: {}",
             manoeuvre.minutes()
         );
-        for run in manoeuvre.runs {
+        for run in &manoeuvre.runs {
             for time_s in run.time_s(SAMPLE_RATE_HZ) {
                 let Currents { lift_a, lower_a } = run.currents(time_s);
                 assert!(

@@ -55,7 +55,13 @@ fn explained(name: &str, dir: &TempDir) -> String {
             let document: Value =
                 serde_json::from_slice(&output.stdout).expect("one JSON document");
             assert_eq!(document["model"], model, "{name}");
-            if let (Some(word), "nominal") = (document["verdict"].as_str(), model) {
+            let open = ["unexplained", "ambiguous", "not-enough-data"];
+            let verdict_now = document["verdict"].as_str();
+            if verdict_now.is_some_and(|word| open.contains(&word)) {
+                let next = &document["next_experiment"];
+                assert!(next.is_string(), "{name}, {model}: {verdict_now:?}");
+            }
+            if let (Some(word), "nominal") = (verdict_now, model) {
                 word.clone_into(&mut verdict);
             }
         }

@@ -90,8 +90,10 @@ pub struct Run {
     pub file: String,
     /// Test stand of the run.
     pub bench: Bench,
-    /// Oil temperature of the run, degrees Celsius; 40 by default.
+    /// Oil temperature of the run, degrees Celsius: of the manifest, else the mean of the log, else 40.
     pub oil_temperature_c: f64,
+    /// Whether the oil temperature is stated or logged, and not assumed.
+    pub oil_temperature_known: bool,
     /// Time stamps as logged, s; strictly increasing, at least [`Run::FEWEST_SAMPLES`].
     pub time_s: Vec<f64>,
     /// Current of the lift solenoid, A; short dropouts are filled, so no value is missing.
@@ -161,7 +163,13 @@ impl Run {
     pub fn read(path: &Path, bench: Bench, oil_temperature_c: f64) -> Result<Self, CampaignError> {
         let file = path.file_name().unwrap_or_default().to_string_lossy();
         let table = run_log::table(path, run_log::Settings::default())?;
-        run_log::run(&table, &file, cut::Cut::NONE, bench, oil_temperature_c)
+        run_log::run(
+            &table,
+            &file,
+            cut::Cut::NONE,
+            bench,
+            Some(oil_temperature_c),
+        )
     }
 
     /// Samples of a channel, in its unit, NaN at a dropout; `None` if it was not measured.

@@ -16,8 +16,6 @@ use crate::{Bench, Campaign, CampaignError, Noise, Run, run_log};
 
 /// The supported format version.
 const FORMAT: f64 = 1.0;
-/// Default oil temperature of a run, degrees Celsius: that of the valve tables.
-const DEFAULT_OIL_TEMPERATURE_C: f64 = 40.0;
 /// Range of loads that the cylinder can hold below the relief pressure, with a margin, kg.
 const LOAD_KG: std::ops::RangeInclusive<f64> = 0.0..=2000.0;
 /// Range of pressures of hydraulics of this class, bar.
@@ -234,7 +232,8 @@ fn file_name<'t>(table: &'t TomlTable<'_>, key: &str) -> Result<&'t str, Campaig
     Err(table.error_at(key, what, mend))
 }
 
-fn conditions(table: &TomlTable<'_>) -> Result<(Bench, f64), CampaignError> {
+/// Test stand of a run, and its oil temperature if stated, degrees Celsius.
+fn conditions(table: &TomlTable<'_>) -> Result<(Bench, Option<f64>), CampaignError> {
     let others = [
         "file",
         "bench",
@@ -262,11 +261,7 @@ fn conditions(table: &TomlTable<'_>) -> Result<(Bench, f64), CampaignError> {
             return Err(table.error_at("bench", what, "use \"hitch\" or \"flow\""));
         }
     };
-    let oil_temperature_c = table.number("oil_temperature_c", OIL_TEMPERATURE_C)?;
-    Ok((
-        bench,
-        oil_temperature_c.unwrap_or(DEFAULT_OIL_TEMPERATURE_C),
-    ))
+    Ok((bench, table.number("oil_temperature_c", OIL_TEMPERATURE_C)?))
 }
 
 fn belongs_elsewhere(table: &TomlTable<'_>, key: &str, bench: &str) -> Result<(), CampaignError> {

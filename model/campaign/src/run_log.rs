@@ -14,6 +14,9 @@ use crate::scale::nominal_linkage;
 use crate::table::{LIFT, LOWER, OIL_TEMPERATURE, TIME, Table};
 use crate::{Bench, CampaignError, Run, bus_log, csv_log, mdf_log};
 
+/// Oil temperature of a run without a stated or logged one, degrees Celsius: that of the paper's valve tables.
+const ASSUMED_OIL_TEMPERATURE_C: f64 = 40.0;
+
 /// Interpretation of the logs of a campaign.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings<'s> {
@@ -57,7 +60,8 @@ pub fn table(path: &Path, settings: Settings<'_>) -> Result<Table, CampaignError
     }
 }
 
-/// The run of a part of a log; it may contain only currents.
+/// The run of a part of a log; it may contain only currents. The oil temperature is the stated one, else the mean of the
+/// log, else an assumed one.
 ///
 /// # Errors
 /// The first fault, with file, line and column.
@@ -66,7 +70,7 @@ pub fn run(
     file: &str,
     cut: Cut,
     bench: Bench,
-    oil_temperature_c: f64,
+    stated_temperature_c: Option<f64>,
 ) -> Result<Run, CampaignError> {
     let table = table.cut(cut)?;
     let time_s = table.required(TIME)?;
@@ -77,16 +81,27 @@ pub fn run(
         let measurable = channel != Channel::RockerAngle || matches!(bench, Bench::Hitch { .. });
         table.measured(channel.key()).filter(|_| measurable)
     });
+    let oil_temperature_log_c = table.measured(OIL_TEMPERATURE);
+    let known_temperature_c =
+        stated_temperature_c.or_else(|| mean(oil_temperature_log_c.as_deref()?));
     Ok(Run {
         file: cut.name(file),
         bench,
-        oil_temperature_c,
+        oil_temperature_c: known_temperature_c.unwrap_or(ASSUMED_OIL_TEMPERATURE_C),
+        oil_temperature_known: known_temperature_c.is_some(),
         time_s: time_s.to_vec(),
         lift_current_a,
         lower_current_a,
         channels,
-        oil_temperature_log_c: table.measured(OIL_TEMPERATURE),
+        oil_temperature_log_c,
     })
+}
+
+/// Mean of the samples that are not dropouts.
+fn mean(samples: &[f64]) -> Option<f64> {
+    let finite = || samples.iter().filter(|sample| sample.is_finite());
+    let count = finite().count();
+    (count > 0).then(|| finite().sum::<f64>() / count as f64)
 }
 
 /// Rejects a run without any measured channel.

@@ -73,6 +73,7 @@ fn reads_what_is_there_and_fills_in_what_is_not() {
         (lift.bench, lift.oil_temperature_c),
         (Bench::Hitch { load_kg: 50.0 }, 40.0)
     );
+    assert!(!lift.oil_temperature_known && flow.oil_temperature_known);
     assert_eq!(lift.channel(Channel::RockerAngle).unwrap()[2], 90.2);
     assert_eq!(lift.channel(Channel::PumpPressure), None);
     assert_eq!(
@@ -89,6 +90,25 @@ fn reads_what_is_there_and_fills_in_what_is_not() {
         None,
         "a flow bench has no rocker"
     );
+}
+
+#[test]
+fn a_logged_oil_temperature_is_that_of_a_run_without_a_stated_one() {
+    let warming: String = log()
+        .lines()
+        .enumerate()
+        .map(|(i, line)| match i {
+            0 => format!("{line},oil_temperature_c\n"),
+            1 => format!("{line},\n"),
+            _ => format!("{line},{}\n", 50 + i),
+        })
+        .collect();
+    let dir = folder(MANIFEST.as_bytes(), warming.as_bytes());
+    let runs = Campaign::load(dir.path()).unwrap().runs;
+    // The mean of 52 to 62; the first cell is a dropout.
+    assert_eq!(runs[0].oil_temperature_c, 57.0);
+    assert!(runs[0].oil_temperature_known);
+    assert_eq!(runs[1].oil_temperature_c, 18.5);
 }
 
 #[test]

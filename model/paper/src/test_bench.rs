@@ -131,6 +131,7 @@ fn run(valve: Valve, port_pressure_bar: f64, gauss: &mut Gauss) -> Run {
         file: format!("flow_{name}_{port_pressure_bar:03.0}bar.csv"),
         bench: Bench::Flow { port_pressure_bar },
         oil_temperature_c: 40.0,
+        oil_temperature_known: true,
         time_s,
         lift_current_a,
         lower_current_a,

@@ -64,7 +64,7 @@ impl Grouping {
             Self::Regime => regime(run, sample),
             Self::Current => Some(current(run, sample)),
             Self::Load => Some(load(run.bench)),
-            Self::Temperature => Some(temperature(run.oil_temperature_c)),
+            Self::Temperature => Some(temperature(run)),
             Self::Run => Some(Part {
                 place: 0.0,
                 name: run.file.clone(),
@@ -120,8 +120,14 @@ fn load(bench: Bench) -> Part {
     }
 }
 
-fn temperature(oil_temperature_c: f64) -> Part {
-    let low = (oil_temperature_c / TEMPERATURE_STEP_C).floor() * TEMPERATURE_STEP_C;
+fn temperature(run: &ReadyRun) -> Part {
+    if !run.oil_temperature_known {
+        return Part {
+            place: f64::NEG_INFINITY,
+            name: "not measured".to_owned(),
+        };
+    }
+    let low = (run.oil_temperature_c / TEMPERATURE_STEP_C).floor() * TEMPERATURE_STEP_C;
     Part {
         place: low,
         name: format!("{low:.0} to {:.0} C", low + TEMPERATURE_STEP_C),

@@ -1,5 +1,6 @@
 //! Comparison of a model with measurements by condition, time and channel, in units of the instruments' noise.
 mod groups;
+mod raw_error;
 mod show;
 mod tally;
 
@@ -18,6 +19,7 @@ use serde::Serialize;
 use tally::Tally;
 
 pub use groups::Grouping;
+pub use raw_error::{RawError, raw_errors};
 
 /// Length of the worst stretch of a run, s.
 const WORST_STRETCH_S: f64 = 1.0;
@@ -48,9 +50,9 @@ pub struct ChannelError {
     pub channel: &'static str,
     /// Unit of the values.
     pub unit: &'static str,
-    /// Root mean square in sigma.
+    /// Weighted error: root mean square in sigma.
     pub error: f64,
-    /// Root mean square of measured - simulated, in the unit.
+    /// Unweighted error: root mean square of measured - simulated, in the unit.
     pub rms: f64,
     /// One sigma of the instrument, in the unit.
     pub noise: f64,
@@ -128,24 +130,6 @@ impl Evaluated {
             .collect()
     }
 
-    /// Measured minus simulated samples of a channel of a run, in the channel's unit, NaN where not compared.
-    pub fn differences(&self, run: usize, channel: Channel, trace: &Trace) -> Vec<f64> {
-        let Some(measured) = &self.experiment.runs[run].measured[channel.index()] else {
-            return Vec::new();
-        };
-        let scale = &self.fit.weights.runs[run].scale[channel.index() * measured.len()..];
-        let pairs = measured.iter().zip(trace.channel(channel)).zip(scale);
-        pairs
-            .map(|((measured, simulated), scale)| {
-                if *scale > 0.0 {
-                    measured - simulated
-                } else {
-                    f64::NAN
-                }
-            })
-            .collect()
-    }
-
     /// Root mean square of the residuals of a channel of a run, in sigma.
     pub fn error(&self, run: usize, channel: Channel) -> f64 {
         let mut tally = Tally::default();
@@ -157,9 +141,7 @@ impl Evaluated {
 
     /// Simulated samples of every channel of a run, in the channels' units.
     pub fn simulated(&self, model: &Model, run: usize) -> Trace {
-        let nuisance = self.fit.estimate.nuisances[run];
-        let model = model.with_effects(self.fit.estimate.effects.clone());
-        self.experiment.runs[run].simulate(&model, nuisance, &self.fit.estimate.clocks)
+        raw_error::simulated(&self.experiment, &self.fit, model, run)
     }
 }
 
@@ -190,23 +172,16 @@ impl Comparison {
 }
 
 fn channels(evaluated: &Evaluated, model: &Model, sums: &ErrorSums) -> Vec<ChannelError> {
-    let runs = 0..evaluated.experiment.runs.len();
-    let traces: Vec<Trace> = runs.map(|run| evaluated.simulated(model, run)).collect();
+    let raw = raw_errors(&evaluated.experiment, &evaluated.fit, model);
     let of = |channel: Channel| {
-        let mut raw = Tally::default();
-        for (run, trace) in traces.iter().enumerate() {
-            evaluated
-                .differences(run, channel, trace)
-                .into_iter()
-                .for_each(|difference| raw.add(difference));
-        }
-        (raw.samples > 0).then(|| ChannelError {
+        let RawError { rms, samples } = raw[channel.index()];
+        (samples > 0).then(|| ChannelError {
             channel: channel.key(),
             unit: channel.unit(),
             error: sums.channel(channel.index()),
-            rms: raw.rms(),
+            rms,
             noise: evaluated.experiment.noise[channel.index()],
-            samples: raw.samples,
+            samples,
         })
     };
     Channel::ALL.into_iter().filter_map(of).collect()

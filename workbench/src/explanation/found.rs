@@ -72,7 +72,7 @@ impl Found {
             .rest
             .depends_on
             .first()
-            .and_then(|signal| ErrorProfile::new(&experiment, &explanation.after, signal));
+            .and_then(|signal| ErrorProfile::new(&experiment, &explanation.after, *signal));
         shown.unexplained.whereabouts = rest.as_ref().map(ToString::to_string);
         Self {
             rest,

@@ -2,13 +2,15 @@
 
 use std::cmp::Ordering;
 
+use hitch_identification::adequacy::attribution::attribute;
 use hitch_identification::adequacy::lack_of_fit::{adequate, cells};
 use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
+use hitch_identification::design::exploration::exploring;
 use hitch_identification::design::{NextExperiment, Pair, Rival, next_experiment};
 use hitch_identification::estimation::fit::Fit;
-use hitch_identification::explanation::explain::{self, Verdict};
+use hitch_identification::explanation::explain::{self, Verdict, missing_manoeuvre};
 use hitch_identification::selection::candidate;
 use hitch_identification::selection::evidence::{DISTINGUISHABLE, SIGNIFICANT};
 use hitch_plant::Model;
@@ -31,6 +33,7 @@ impl Diagnosis {
         // Head and verdict refer to the accepted candidate.
         let settled = usize::from(believed.is_some());
         candidates[settled..].sort_by(as_shown);
+        let verdict = verdict(experiment, found, believed);
         Self {
             head: Head {
                 campaign: experiment.name.clone(),
@@ -39,11 +42,11 @@ impl Diagnosis {
                 error_after: after.error(),
                 noise_floor: 1.0,
                 channels: channels(experiment, model, &found.base, after),
-                verdict: verdict(experiment, found, believed).name(),
+                verdict: verdict.name(),
                 hopeless_base: is_unsuitable(experiment, &found.base, after),
             },
             candidates,
-            next: next(experiment, model, found, believed).into(),
+            next: next(Problem::new(experiment, model), found, believed, verdict).into(),
         }
     }
 }
@@ -79,21 +82,41 @@ fn verdict(
     }
 }
 
-/// The experiment that separates the best candidate from the next best of those that fit equally well.
+/// The next experiment, unless the model is adequate with at most one effect.
 fn next(
-    experiment: &Experiment,
-    model: &Model,
+    problem: Problem<'_>,
     found: &explain::Diagnosis,
     believed: Option<&candidate::Candidate>,
+    verdict: Verdict,
 ) -> Option<NextExperiment> {
-    let best = believed?;
+    let fit = believed.map_or(&found.base, |best| &best.fit);
+    match verdict {
+        Verdict::NothingMissing | Verdict::Explained => None,
+        Verdict::Ambiguous => separating(problem, found, believed?),
+        Verdict::NotEnoughData => {
+            let missing = missing_manoeuvre(problem.experiment, fit);
+            Some(missing.map_or_else(|| exploring(problem, fit, &[]), NextExperiment::missing))
+        }
+        Verdict::Unexplained => {
+            let rest = attribute(problem.experiment, &found.base, fit);
+            Some(exploring(problem, fit, &rest.depends_on))
+        }
+    }
+}
+
+/// The experiment that separates the best candidate from the next best of those that fit equally well.
+fn separating(
+    problem: Problem<'_>,
+    found: &explain::Diagnosis,
+    best: &candidate::Candidate,
+) -> Option<NextExperiment> {
     let twin = *twins(found, best).first()?;
     let [named, other] = [best, twin].map(|candidate| Rival {
         effect: candidate.effect,
         fit: &candidate.fit,
     });
     let pair = Pair { named, other };
-    next_experiment(Problem::new(experiment, model), &[pair])
+    next_experiment(problem, &[pair])
 }
 
 fn shown(

@@ -1,5 +1,6 @@
 //! Converts the identification's explanation into its display form.
 
+use hitch_identification::adequacy::signal::Signal;
 use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::design;
@@ -13,6 +14,7 @@ use super::channel_figures::{CLOCK, SUM};
 use super::{
     Alternative, ChannelFigures, Explanation, Head, NotVisible, Parameter, Step, Unexplained,
 };
+use crate::comparison::raw_errors;
 
 impl Explanation {
     /// The display form of an explanation of a campaign, with the initial model.
@@ -32,7 +34,12 @@ impl Explanation {
             steps: found.steps.iter().map(step).collect(),
             unexplained: Unexplained {
                 share: found.rest.share,
-                depends_on: found.rest.depends_on.clone(),
+                depends_on: found
+                    .rest
+                    .depends_on
+                    .iter()
+                    .map(Signal::to_string)
+                    .collect(),
                 whereabouts: None,
                 suggested_term: None,
                 suggested: None,
@@ -123,6 +130,10 @@ pub fn channels(
 ) -> IndexMap<&'static str, ChannelFigures> {
     let spool_lag_s = model.spool_lag_s();
     let measured = |channel: &Channel| experiment.noise[channel.index()].is_finite();
+    let (raw_before, raw_after) = (
+        raw_errors(experiment, before, model),
+        raw_errors(experiment, after, model),
+    );
     let entry = |channel: Channel| {
         let noise = experiment.noise[channel.index()];
         let error = |fit: &Fit| fit.channel_error(channel.index()) * noise;
@@ -131,6 +142,8 @@ pub fn channels(
             ChannelFigures {
                 before: error(before),
                 after: error(after),
+                rms_before: raw_before[channel.index()].rms,
+                rms_after: raw_after[channel.index()].rms,
                 noise,
                 late_s: after.estimate.clocks.offsets_s[channel.index()],
                 delay_s: delays(after, spool_lag_s, channel),

@@ -6,8 +6,8 @@ use hitch_identification::explanation::explain::Verdict;
 use hitch_identification::selection::candidate::plausibility;
 
 use super::{
-    Alternative, Diagnosis, Explanation, HOPELESS_BASE, Head, Next, NotVisible, Parameter, Step,
-    Suggested, Unexplained,
+    Alternative, ChannelFigures, Diagnosis, Explanation, HOPELESS_BASE, Head, Next, NotVisible,
+    Parameter, Step, Suggested, Unexplained,
 };
 use crate::text::colour::{self, by_sigma};
 use crate::text::{Table, indented, known, wrapped};
@@ -181,15 +181,17 @@ impl fmt::Display for Head {
             "  error {before} -> {after} sigma (noise of the instruments: {:.2})\n",
             self.noise_floor
         )?;
-        let mut table = Table::new(["channel", "before", "after", "noise", "offset, ms"]);
+        let mut table = Table::new(["channel"].into_iter().chain(ChannelFigures::HEADINGS));
         for (channel, values) in &self.channels {
-            table.row([
-                (*channel).to_owned(),
-                known(values.before, 3),
-                known(values.after, 3),
-                known(values.noise, 3),
-                values.late_ms(),
-            ]);
+            let [before, after, rest @ ..] = values.cells();
+            let [worst, best] = values.sigmas();
+            let sigmas = [by_sigma(&before, worst), by_sigma(&after, best)];
+            table.row(
+                [(*channel).to_owned()]
+                    .into_iter()
+                    .chain(sigmas)
+                    .chain(rest),
+            );
         }
         write!(f, "{table}")?;
         for (channel, values) in &self.channels {

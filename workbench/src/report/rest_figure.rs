@@ -27,7 +27,7 @@ pub fn picture(profile: &ErrorProfile) -> Markup {
             "Remaining error of the {}: mean and scatter",
             profile.channel.title().to_lowercase()
         ),
-        x_title: &profile.signal,
+        x_title: profile.signal.key(),
         y_title: "measured - simulated, sigma",
         lines: vec![
             line("mean + scatter", Stroke::Measured, &above),
@@ -61,6 +61,7 @@ pub fn suggestion(term: &Suggested) -> Markup {
 
 #[cfg(test)]
 mod tests {
+    use hitch_identification::adequacy::signal::Signal;
     use hitch_plant::Channel;
 
     use super::*;
@@ -74,7 +75,7 @@ mod tests {
             deviation: 1.0,
         };
         let profile = ErrorProfile {
-            signal: "rocker_angle_deg".to_owned(),
+            signal: Signal::RockerAngle,
             channel: Channel::Flow,
             bins: vec![bin(50.0), bin(60.0)],
             stretch: (45.0, 65.0),

@@ -1,6 +1,7 @@
 //! Converts evaluated models into the runs of a report.
 
 use hitch_campaign::Bench;
+use hitch_identification::data::experiment::ReadyRun;
 use hitch_plant::{Channel, Model};
 
 use super::runs::{ChannelView, RunView};
@@ -12,7 +13,7 @@ pub fn run_views(model: &Model, before: &Evaluated, after: Option<&Evaluated>) -
         let run = &before.experiment.runs[index];
         RunView {
             file: run.file.clone(),
-            conditions: conditions(run.bench, run.oil_temperature_c),
+            conditions: conditions(run),
             time_s: run.drive.time_s.clone(),
             channels: channel_views(model, index, before, after),
         }
@@ -44,10 +45,13 @@ fn channel_views(
 }
 
 /// Load or port pressure, and oil temperature, as text.
-pub fn conditions(bench: Bench, oil_temperature_c: f64) -> String {
-    let bench = match bench {
+pub fn conditions(run: &ReadyRun) -> String {
+    let bench = match run.bench {
         Bench::Hitch { load_kg } => format!("{load_kg:.0} kg"),
         Bench::Flow { port_pressure_bar } => format!("flow bench at {port_pressure_bar:.0} bar"),
     };
-    format!("{bench}, oil at {oil_temperature_c:.0} °C")
+    match run.oil_temperature_known {
+        true => format!("{bench}, oil at {:.0} °C", run.oil_temperature_c),
+        false => format!("{bench}, oil temperature not measured"),
+    }
 }

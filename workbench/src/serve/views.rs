@@ -59,7 +59,7 @@ fn runs(experiment: &Experiment) -> Vec<Value> {
     let run = |run: &ReadyRun| {
         json!({
             "file": run.file,
-            "conditions": conditions(run.bench, run.oil_temperature_c),
+            "conditions": conditions(run),
         })
     };
     experiment.runs.iter().map(run).collect()
@@ -208,7 +208,7 @@ pub fn run(session: &Session, index: usize) -> Option<Value> {
     Some(json!({
         "run": index,
         "file": ready.file,
-        "conditions": conditions(ready.bench, ready.oil_temperature_c),
+        "conditions": conditions(ready),
         "time_s": ready.drive.time_s,
         "lift_current_a": currents.iter().map(|current| current.lift_a).collect::<Vec<_>>(),
         "lower_current_a": currents.iter().map(|current| current.lower_a).collect::<Vec<_>>(),

@@ -1,8 +1,6 @@
 //! Signals on which the remaining error depends.
 
-use hitch_campaign::Bench;
-use hitch_plant::Channel;
-
+use crate::adequacy::signal::Signal;
 use crate::data::experiment::Experiment;
 use crate::estimation::fit::Fit;
 
@@ -14,21 +12,9 @@ const BINS: usize = 12;
 pub struct Attribution {
     /// Remaining share of the squared error in excess of noise, 0 to 1.
     pub share: f64,
-    /// Names of signals, by decreasing correlation ratio.
-    pub depends_on: Vec<String>,
+    /// Signals, by decreasing correlation ratio.
+    pub depends_on: Vec<Signal>,
 }
-
-/// Names of the signals that are examined.
-const SIGNALS: [&str; 8] = [
-    "rocker_angle_deg",
-    "cylinder_pressure_bar",
-    "flow_lpm",
-    "lift_current_a",
-    "lower_current_a",
-    "load_kg",
-    "oil_temperature_c",
-    "time_s",
-];
 
 /// Ranks signals by the share of the variance of the squared residuals that their bins explain.
 #[must_use]
@@ -40,13 +26,14 @@ pub fn attribute(experiment: &Experiment, before: &Fit, after: &Fit) -> Attribut
         0.0
     };
     let squares = squares_by_sample(experiment, after);
-    let mut ranked: Vec<(f64, &str)> = SIGNALS
-        .iter()
-        .filter_map(|&name| {
-            let values = signal_values(experiment, name)?;
-            Some((correlation_ratio(&values, &squares), name))
+    let mut ranked: Vec<(f64, Signal)> = Signal::ALL
+        .map(|signal| {
+            (
+                correlation_ratio(&signal.samples(experiment), &squares),
+                signal,
+            )
         })
-        .collect();
+        .to_vec();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
     let best = ranked.first().map_or(0.0, |(ratio, _)| *ratio);
     Attribution {
@@ -54,7 +41,7 @@ pub fn attribute(experiment: &Experiment, before: &Fit, after: &Fit) -> Attribut
         depends_on: ranked
             .into_iter()
             .filter(|(ratio, _)| *ratio > 0.25 * best && *ratio > 0.0)
-            .map(|(_, name)| name.to_owned())
+            .map(|(_, signal)| signal)
             .collect(),
     }
 }
@@ -72,35 +59,6 @@ fn squares_by_sample(experiment: &Experiment, fit: &Fit) -> Vec<f64> {
         }
     }
     squares
-}
-
-/// A signal, by its name, at every sample of every run; `None` for an unknown name.
-pub(crate) fn signal_values(experiment: &Experiment, name: &str) -> Option<Vec<f64>> {
-    let signal = SIGNALS.iter().position(|&signal| signal == name)?;
-    let mut values = Vec::new();
-    for run in &experiment.runs {
-        let measured = |channel: Channel, sample: usize| {
-            run.measured[channel.index()]
-                .as_ref()
-                .map_or(f64::NAN, |v| v[sample])
-        };
-        for sample in 0..run.len() {
-            values.push(match signal {
-                0 => measured(Channel::RockerAngle, sample),
-                1 => measured(Channel::CylinderPressure, sample),
-                2 => measured(Channel::Flow, sample),
-                3 => run.drive.currents[sample].lift_a,
-                4 => run.drive.currents[sample].lower_a,
-                5 => match run.bench {
-                    Bench::Hitch { load_kg } => load_kg,
-                    Bench::Flow { .. } => f64::NAN,
-                },
-                6 => run.oil_temperature_c,
-                _ => run.drive.time_s[sample],
-            });
-        }
-    }
-    Some(values)
 }
 
 /// Share of the variance of `y` between the bins of `x` (square of Pearson's correlation ratio).

@@ -2,7 +2,7 @@
 
 use hitch_plant::Channel;
 
-use crate::adequacy::attribution::signal_values;
+use crate::adequacy::signal::Signal;
 use crate::data::experiment::{Experiment, ReadyRun};
 use crate::estimation::fit::Fit;
 
@@ -40,8 +40,8 @@ pub struct Bin {
 /// Residuals of the worst channel along a signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorProfile {
-    /// Name of the signal, with its unit.
-    pub signal: String,
+    /// The signal.
+    pub signal: Signal,
     /// The channel.
     pub channel: Channel,
     /// Bins with enough samples, in the order of the signal.
@@ -55,9 +55,9 @@ pub struct ErrorProfile {
 }
 
 impl ErrorProfile {
-    /// Profile along a signal, by the attribution's name; `None` if the campaign does not contain it.
+    /// Profile along a signal; `None` if the campaign has too few samples of it.
     #[must_use]
-    pub fn new(experiment: &Experiment, fit: &Fit, signal: &str) -> Option<Self> {
+    pub fn new(experiment: &Experiment, fit: &Fit, signal: Signal) -> Option<Self> {
         let compared = Channel::ALL
             .into_iter()
             .filter(|c| fit.weights.counts[c.index()] > 0);
@@ -66,18 +66,18 @@ impl ErrorProfile {
             error(a).total_cmp(&error(b))
         };
         let channel = compared.max_by(by_error)?;
-        let samples = samples(experiment, fit, signal, channel)?;
+        let samples = samples(experiment, fit, signal, channel);
         let bins = bins(&samples);
         let (low, high) = stretch(&bins)?;
         let (least, greatest) = (bins[0].centre, bins[bins.len() - 1].centre);
         let near = NEAR * (greatest - least);
         let end = match signal {
-            "rocker_angle_deg" if high < least + near => Some("near the bottom"),
-            "rocker_angle_deg" if low > greatest - near => Some("near the top"),
+            Signal::RockerAngle if high < least + near => Some("near the bottom"),
+            Signal::RockerAngle if low > greatest - near => Some("near the top"),
             _ => None,
         };
         Some(Self {
-            signal: signal.to_owned(),
+            signal,
             channel,
             motion: motion(&samples, low, high),
             stretch: (low, high),
@@ -103,13 +103,8 @@ impl std::fmt::Display for ErrorProfile {
 /// A compared sample: value of the signal, whitened residual, motion.
 type Sample = (f64, f64, &'static str);
 
-fn samples(
-    experiment: &Experiment,
-    fit: &Fit,
-    signal: &str,
-    channel: Channel,
-) -> Option<Vec<Sample>> {
-    let values = signal_values(experiment, signal)?;
+fn samples(experiment: &Experiment, fit: &Fit, signal: Signal, channel: Channel) -> Vec<Sample> {
+    let values = signal.samples(experiment);
     let mut samples = Vec::new();
     let mut first = 0;
     for (index, run) in experiment.runs.iter().enumerate() {
@@ -123,7 +118,7 @@ fn samples(
         }
         first += run.len();
     }
-    Some(samples)
+    samples
 }
 
 fn motion_of(run: &ReadyRun, sample: usize) -> &'static str {

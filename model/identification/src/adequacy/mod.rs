@@ -3,4 +3,5 @@
 pub mod attribution;
 pub mod lack_of_fit;
 pub mod localization;
+pub mod signal;
 pub mod unsuitable_base;

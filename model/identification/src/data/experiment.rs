@@ -43,6 +43,8 @@ pub struct ReadyRun {
     pub bench: Bench,
     /// Oil temperature, degree Celsius.
     pub oil_temperature_c: f64,
+    /// Whether the oil temperature was stated or logged, and not assumed.
+    pub oil_temperature_known: bool,
     /// Conditioned currents.
     pub drive: Drive,
     /// Measured channels by [`Channel::index`], in their units; NaN for samples that are not compared.
@@ -192,6 +194,7 @@ impl ReadyRun {
             file: run.file.clone(),
             bench: run.bench,
             oil_temperature_c: run.oil_temperature_c,
+            oil_temperature_known: run.oil_temperature_known,
             drive,
             start_angle_deg: measured_deg(run).unwrap_or(f64::NAN),
             measured,

@@ -2,12 +2,11 @@
 //!
 //! Each is the cheapest known way to separate some effects from others: a triangle shows hysteresis, two rates separate
 //! it from lag, two loads separate pressure-dependent from flow-dependent effects, two temperatures identify those that
-//! depend on viscosity. Currents are for the paper's valves, which open at 1.0 to 1.25 A and are fully open at 3.1 to
-//! 3.3 A.
+//! depend on viscosity. Currents, loads and pressures are relative to the machine, see [`template`](super::template):
+//! current 0 is the threshold of the valve and 1 its full opening.
 
-use hitch_plant::Currents;
-
-use crate::design::plan::{Manoeuvre, RunPlan, Segment, Stand, USUAL_OIL_C};
+use crate::design::plan::USUAL_OIL_C;
+use crate::design::template::{Load, RunTemplate, SegmentTemplate, StandTemplate, Template, Valve};
 
 /// Ramp of a step of the current, s: the fastest change of a current controller.
 const STEP_S: f64 = 0.01;
@@ -15,10 +14,7 @@ const STEP_S: f64 = 0.01;
 /// Ramp of an ordinary motion, s.
 const RAMP_S: f64 = 0.2;
 
-const LIGHT_KG: f64 = 50.0;
-const MIDDLE_KG: f64 = 150.0;
-const HEAVY_KG: f64 = 250.0;
-
+/// Oil temperatures for effects that depend on viscosity, degree Celsius.
 const COLD_C: f64 = 18.0;
 const WARM_C: f64 = 60.0;
 
@@ -27,360 +23,358 @@ const LOW: f64 = 0.06;
 const MIDDLE: f64 = 0.5;
 const HIGH: f64 = 0.94;
 
-const fn lift(lift_a: f64, ramp_s: f64, stay_s: f64) -> Segment {
-    Segment {
-        to: Currents {
-            lift_a,
-            lower_a: 0.0,
-        },
+const fn lift(opening: f64, ramp_s: f64, stay_s: f64) -> SegmentTemplate {
+    SegmentTemplate {
+        open: Some((Valve::Lift, opening)),
         ramp_s,
         stay_s,
     }
 }
 
-const fn lower(lower_a: f64, ramp_s: f64, stay_s: f64) -> Segment {
-    Segment {
-        to: Currents {
-            lift_a: 0.0,
-            lower_a,
-        },
+const fn lower(opening: f64, ramp_s: f64, stay_s: f64) -> SegmentTemplate {
+    SegmentTemplate {
+        open: Some((Valve::Lower, opening)),
         ramp_s,
         stay_s,
     }
 }
 
-const fn off(ramp_s: f64, stay_s: f64) -> Segment {
-    lift(0.0, ramp_s, stay_s)
+const fn off(ramp_s: f64, stay_s: f64) -> SegmentTemplate {
+    SegmentTemplate {
+        open: None,
+        ramp_s,
+        stay_s,
+    }
 }
 
-const fn hitch(load_kg: f64, start: f64, course: &'static [Segment]) -> RunPlan {
-    hitch_at(USUAL_OIL_C, load_kg, start, course)
+const fn hitch(load: Load, start: f64, course: &'static [SegmentTemplate]) -> RunTemplate {
+    hitch_at(USUAL_OIL_C, load, start, course)
 }
 
 const fn hitch_at(
     oil_temperature_c: f64,
-    load_kg: f64,
+    load: Load,
     start: f64,
-    course: &'static [Segment],
-) -> RunPlan {
-    RunPlan {
-        stand: Stand::Hitch { load_kg, start },
+    course: &'static [SegmentTemplate],
+) -> RunTemplate {
+    RunTemplate {
+        stand: StandTemplate::Hitch { load, start },
         oil_temperature_c,
         course,
     }
 }
 
-const fn bench(port_pressure_bar: f64, course: &'static [Segment]) -> RunPlan {
-    RunPlan {
-        stand: Stand::Flow { port_pressure_bar },
+const fn bench(share_of_relief: f64, course: &'static [SegmentTemplate]) -> RunTemplate {
+    RunTemplate {
+        stand: StandTemplate::Flow { share_of_relief },
         oil_temperature_c: USUAL_OIL_C,
         course,
     }
 }
 
-static SLOW_LIFT: [Segment; 4] = [
-    lift(1.0, RAMP_S, 0.3),
-    lift(1.6, 5.0, 0.0),
-    lift(1.0, 5.0, 0.0),
+static SLOW_LIFT: [SegmentTemplate; 4] = [
+    lift(-0.059, RAMP_S, 0.3),
+    lift(0.223, 5.0, 0.0),
+    lift(-0.059, 5.0, 0.0),
     off(RAMP_S, 1.0),
 ];
 
-static FAST_LIFT: [Segment; 8] = [
-    lift(2.2, 0.5, 0.0),
+static FAST_LIFT: [SegmentTemplate; 8] = [
+    lift(0.505, 0.5, 0.0),
     off(0.5, 0.3),
-    lift(2.2, 0.5, 0.0),
+    lift(0.505, 0.5, 0.0),
     off(0.5, 0.3),
-    lift(2.2, 0.5, 0.0),
+    lift(0.505, 0.5, 0.0),
     off(0.5, 0.3),
-    lift(2.2, 0.5, 0.0),
+    lift(0.505, 0.5, 0.0),
     off(0.5, 1.0),
 ];
 
-static SLOW_LOWER: [Segment; 4] = [
-    lower(0.9, RAMP_S, 0.3),
-    lower(1.8, 4.5, 0.0),
-    lower(0.9, 4.5, 0.0),
+static SLOW_LOWER: [SegmentTemplate; 4] = [
+    lower(-0.047, RAMP_S, 0.3),
+    lower(0.378, 4.5, 0.0),
+    lower(-0.047, 4.5, 0.0),
     off(RAMP_S, 1.0),
 ];
 
-static FAST_LOWER: [Segment; 8] = [
-    lower(2.2, 0.5, 0.0),
+static FAST_LOWER: [SegmentTemplate; 8] = [
+    lower(0.567, 0.5, 0.0),
     off(0.5, 0.3),
-    lower(2.2, 0.5, 0.0),
+    lower(0.567, 0.5, 0.0),
     off(0.5, 0.3),
-    lower(2.2, 0.5, 0.0),
+    lower(0.567, 0.5, 0.0),
     off(0.5, 0.3),
-    lower(2.2, 0.5, 0.0),
+    lower(0.567, 0.5, 0.0),
     off(0.5, 1.0),
 ];
 
-static LIFT_STAIRS: [Segment; 10] = [
-    lift(1.1, STEP_S, 1.2),
-    lift(1.2, STEP_S, 1.2),
-    lift(1.3, STEP_S, 1.2),
-    lift(1.4, STEP_S, 1.2),
-    lift(1.5, STEP_S, 1.2),
-    lift(1.4, STEP_S, 1.2),
-    lift(1.3, STEP_S, 1.2),
-    lift(1.2, STEP_S, 1.2),
-    lift(1.1, STEP_S, 1.2),
+static LIFT_STAIRS: [SegmentTemplate; 10] = [
+    lift(-0.012, STEP_S, 1.2),
+    lift(0.035, STEP_S, 1.2),
+    lift(0.082, STEP_S, 1.2),
+    lift(0.129, STEP_S, 1.2),
+    lift(0.176, STEP_S, 1.2),
+    lift(0.129, STEP_S, 1.2),
+    lift(0.082, STEP_S, 1.2),
+    lift(0.035, STEP_S, 1.2),
+    lift(-0.012, STEP_S, 1.2),
     off(STEP_S, 1.0),
 ];
 
-static LOWER_STAIRS: [Segment; 14] = [
-    lower(1.1, STEP_S, 1.0),
-    lower(1.2, STEP_S, 1.0),
-    lower(1.3, STEP_S, 1.0),
-    lower(1.4, STEP_S, 1.0),
-    lower(1.5, STEP_S, 1.0),
-    lower(1.6, STEP_S, 1.0),
-    lower(1.7, STEP_S, 1.0),
-    lower(1.6, STEP_S, 1.0),
-    lower(1.5, STEP_S, 1.0),
-    lower(1.4, STEP_S, 1.0),
-    lower(1.3, STEP_S, 1.0),
-    lower(1.2, STEP_S, 1.0),
-    lower(1.1, STEP_S, 1.0),
+static LOWER_STAIRS: [SegmentTemplate; 14] = [
+    lower(0.048, STEP_S, 1.0),
+    lower(0.095, STEP_S, 1.0),
+    lower(0.142, STEP_S, 1.0),
+    lower(0.189, STEP_S, 1.0),
+    lower(0.236, STEP_S, 1.0),
+    lower(0.283, STEP_S, 1.0),
+    lower(0.331, STEP_S, 1.0),
+    lower(0.283, STEP_S, 1.0),
+    lower(0.236, STEP_S, 1.0),
+    lower(0.189, STEP_S, 1.0),
+    lower(0.142, STEP_S, 1.0),
+    lower(0.095, STEP_S, 1.0),
+    lower(0.048, STEP_S, 1.0),
     off(STEP_S, 1.0),
 ];
 
-static LIFT_REVERSALS: [Segment; 8] = [
-    lift(1.5, RAMP_S, 0.5),
-    lift(1.45, 0.3, 0.5),
-    lift(1.5, 0.3, 0.5),
-    lift(1.4, 0.3, 0.5),
-    lift(1.5, 0.3, 0.5),
-    lift(1.3, 0.3, 0.5),
-    lift(1.5, 0.3, 0.5),
+static LIFT_REVERSALS: [SegmentTemplate; 8] = [
+    lift(0.176, RAMP_S, 0.5),
+    lift(0.152, 0.3, 0.5),
+    lift(0.176, 0.3, 0.5),
+    lift(0.129, 0.3, 0.5),
+    lift(0.176, 0.3, 0.5),
+    lift(0.082, 0.3, 0.5),
+    lift(0.176, 0.3, 0.5),
     off(RAMP_S, 1.0),
 ];
 
-static LOWER_REVERSALS: [Segment; 8] = [
-    lower(1.7, RAMP_S, 0.5),
-    lower(1.65, 0.3, 0.5),
-    lower(1.7, 0.3, 0.5),
-    lower(1.6, 0.3, 0.5),
-    lower(1.7, 0.3, 0.5),
-    lower(1.5, 0.3, 0.5),
-    lower(1.7, 0.3, 0.5),
+static LOWER_REVERSALS: [SegmentTemplate; 8] = [
+    lower(0.331, RAMP_S, 0.5),
+    lower(0.307, 0.3, 0.5),
+    lower(0.331, 0.3, 0.5),
+    lower(0.283, 0.3, 0.5),
+    lower(0.331, 0.3, 0.5),
+    lower(0.236, 0.3, 0.5),
+    lower(0.331, 0.3, 0.5),
     off(RAMP_S, 1.0),
 ];
 
-static DEAD_BAND: [Segment; 9] = [
-    lift(1.35, 0.6, 0.0),
+static DEAD_BAND: [SegmentTemplate; 9] = [
+    lift(0.105, 0.6, 0.0),
     off(0.6, 0.0),
-    lower(1.4, 0.6, 0.0),
+    lower(0.189, 0.6, 0.0),
     off(0.6, 0.0),
-    lift(1.45, 0.6, 0.0),
+    lift(0.152, 0.6, 0.0),
     off(0.6, 0.0),
-    lower(1.6, 0.6, 0.0),
+    lower(0.283, 0.6, 0.0),
     off(0.6, 0.0),
     off(0.1, 1.0),
 ];
 
-static LIFT_STEPS: [Segment; 6] = [
-    lift(1.5, STEP_S, 1.0),
+static LIFT_STEPS: [SegmentTemplate; 6] = [
+    lift(0.176, STEP_S, 1.0),
     off(STEP_S, 1.0),
-    lift(2.0, STEP_S, 0.6),
+    lift(0.411, STEP_S, 0.6),
     off(STEP_S, 1.0),
-    lift(3.0, STEP_S, 0.3),
-    off(STEP_S, 1.0),
-];
-
-static LOWER_STEPS: [Segment; 6] = [
-    lower(1.6, STEP_S, 1.0),
-    off(STEP_S, 1.0),
-    lower(2.0, STEP_S, 0.6),
-    off(STEP_S, 1.0),
-    lower(2.8, STEP_S, 0.3),
+    lift(0.881, STEP_S, 0.3),
     off(STEP_S, 1.0),
 ];
 
-static HOLD: [Segment; 1] = [off(STEP_S, 60.0)];
+static LOWER_STEPS: [SegmentTemplate; 6] = [
+    lower(0.283, STEP_S, 1.0),
+    off(STEP_S, 1.0),
+    lower(0.472, STEP_S, 0.6),
+    off(STEP_S, 1.0),
+    lower(0.850, STEP_S, 0.3),
+    off(STEP_S, 1.0),
+];
 
-static IDLE: [Segment; 1] = [off(STEP_S, 10.0)];
+static HOLD: [SegmentTemplate; 1] = [off(STEP_S, 60.0)];
 
-static DEAD_HEAD: [Segment; 2] = [lift(2.0, RAMP_S, 4.0), off(RAMP_S, 2.0)];
+static IDLE: [SegmentTemplate; 1] = [off(STEP_S, 10.0)];
 
-static TO_THE_GROUND: [Segment; 4] = [
-    lower(1.7, RAMP_S, 5.0),
+static DEAD_HEAD: [SegmentTemplate; 2] = [lift(0.411, RAMP_S, 4.0), off(RAMP_S, 2.0)];
+
+static TO_THE_GROUND: [SegmentTemplate; 4] = [
+    lower(0.331, RAMP_S, 5.0),
     off(RAMP_S, 1.0),
-    lift(1.4, RAMP_S, 2.0),
+    lift(0.129, RAMP_S, 2.0),
     off(RAMP_S, 1.0),
 ];
 
-static TWO_LIFTS: [Segment; 4] = [
-    lift(1.5, RAMP_S, 2.0),
+static TWO_LIFTS: [SegmentTemplate; 4] = [
+    lift(0.176, RAMP_S, 2.0),
     off(RAMP_S, 1.0),
-    lift(2.2, RAMP_S, 1.0),
-    off(RAMP_S, 1.0),
-];
-
-static TWO_LOWERINGS: [Segment; 4] = [
-    lower(1.6, RAMP_S, 1.5),
-    off(RAMP_S, 1.0),
-    lower(2.2, RAMP_S, 0.8),
+    lift(0.505, RAMP_S, 1.0),
     off(RAMP_S, 1.0),
 ];
 
-static CREEP: [Segment; 8] = [
-    lift(1.25, RAMP_S, 3.0),
+static TWO_LOWERINGS: [SegmentTemplate; 4] = [
+    lower(0.283, RAMP_S, 1.5),
+    off(RAMP_S, 1.0),
+    lower(0.567, RAMP_S, 0.8),
+    off(RAMP_S, 1.0),
+];
+
+static CREEP: [SegmentTemplate; 8] = [
+    lift(0.058, RAMP_S, 3.0),
     off(RAMP_S, 1.5),
-    lower(1.5, RAMP_S, 3.0),
+    lower(0.236, RAMP_S, 3.0),
     off(RAMP_S, 1.5),
-    lift(1.25, RAMP_S, 3.0),
+    lift(0.058, RAMP_S, 3.0),
     off(RAMP_S, 1.5),
-    lower(1.5, RAMP_S, 3.0),
+    lower(0.236, RAMP_S, 3.0),
     off(RAMP_S, 1.5),
 ];
 
-static FULL_LIFT: [Segment; 2] = [lift(3.3, RAMP_S, 0.7), off(RAMP_S, 1.0)];
+static FULL_LIFT: [SegmentTemplate; 2] = [lift(1.023, RAMP_S, 0.7), off(RAMP_S, 1.0)];
 
-static FULL_LOWERING: [Segment; 2] = [lower(3.1, RAMP_S, 0.5), off(RAMP_S, 1.0)];
+static FULL_LOWERING: [SegmentTemplate; 2] = [lower(0.991, RAMP_S, 0.5), off(RAMP_S, 1.0)];
 
-static UP_AND_DOWN: [Segment; 4] = [
-    lift(1.5, 2.5, 0.0),
+static UP_AND_DOWN: [SegmentTemplate; 4] = [
+    lift(0.176, 2.5, 0.0),
     off(2.5, 0.5),
-    lower(1.7, 2.5, 0.0),
+    lower(0.331, 2.5, 0.0),
     off(2.5, 1.0),
 ];
 
-static BENCH_LIFT: [Segment; 2] = [lift(3.4, 6.0, 0.0), off(6.0, 1.0)];
+static BENCH_LIFT: [SegmentTemplate; 2] = [lift(1.070, 6.0, 0.0), off(6.0, 1.0)];
 
-static BENCH_LOWER: [Segment; 2] = [lower(3.2, 6.0, 0.0), off(6.0, 1.0)];
+static BENCH_LOWER: [SegmentTemplate; 2] = [lower(1.038, 6.0, 0.0), off(6.0, 1.0)];
 
-/// Every manoeuvre.
-pub static MANOEUVRES: &[Manoeuvre] = &[
-    Manoeuvre {
+/// Every manoeuvre, relative to the machine.
+pub static TEMPLATES: &[Template] = &[
+    Template {
         name: "slow-lift-triangle",
-        instruction: "with 150 kg from near the bottom, sweep the lift current up from 1.0 to 1.6 A and back down in 5 s each way",
-        runs: &[hitch(MIDDLE_KG, LOW, &SLOW_LIFT)],
+        instruction: "with {middle} kg from near the bottom, sweep the lift current up from {lift -0.059} to {lift 0.223} A and back down in 5 s each way",
+        runs: &[hitch(Load::Middle, LOW, &SLOW_LIFT)],
     },
-    Manoeuvre {
+    Template {
         name: "fast-lift-triangle",
-        instruction: "with 150 kg from near the bottom, sweep the lift current from 0 to 2.2 A and back in 0.5 s each way, four times",
-        runs: &[hitch(MIDDLE_KG, LOW, &FAST_LIFT)],
+        instruction: "with {middle} kg from near the bottom, sweep the lift current from 0 to {lift 0.505} A and back in 0.5 s each way, four times",
+        runs: &[hitch(Load::Middle, LOW, &FAST_LIFT)],
     },
-    Manoeuvre {
+    Template {
         name: "slow-lowering-triangle",
-        instruction: "with 150 kg from near the top, sweep the lowering current up from 0.9 to 1.8 A and back down in 4.5 s each way",
-        runs: &[hitch(MIDDLE_KG, HIGH, &SLOW_LOWER)],
+        instruction: "with {middle} kg from near the top, sweep the lowering current up from {lower -0.047} to {lower 0.378} A and back down in 4.5 s each way",
+        runs: &[hitch(Load::Middle, HIGH, &SLOW_LOWER)],
     },
-    Manoeuvre {
+    Template {
         name: "fast-lowering-triangle",
-        instruction: "with 150 kg from near the top, sweep the lowering current from 0 to 2.2 A and back in 0.5 s each way, four times",
-        runs: &[hitch(MIDDLE_KG, HIGH, &FAST_LOWER)],
+        instruction: "with {middle} kg from near the top, sweep the lowering current from 0 to {lower 0.567} A and back in 0.5 s each way, four times",
+        runs: &[hitch(Load::Middle, HIGH, &FAST_LOWER)],
     },
-    Manoeuvre {
+    Template {
         name: "lift-staircase",
-        instruction: "with 150 kg from near the bottom, step the lift current from 1.1 to 1.5 A and back down in stairs of 0.1 A, 1.2 s each",
-        runs: &[hitch(MIDDLE_KG, LOW, &LIFT_STAIRS)],
+        instruction: "with {middle} kg from near the bottom, step the lift current from {lift -0.012} to {lift 0.176} A and back down in stairs of {lift-span 0.047} A, 1.2 s each",
+        runs: &[hitch(Load::Middle, LOW, &LIFT_STAIRS)],
     },
-    Manoeuvre {
+    Template {
         name: "lowering-staircase",
-        instruction: "with 150 kg from near the top, step the lowering current from 1.1 to 1.7 A and back down in stairs of 0.1 A, 1 s each",
-        runs: &[hitch(MIDDLE_KG, HIGH, &LOWER_STAIRS)],
+        instruction: "with {middle} kg from near the top, step the lowering current from {lower 0.048} to {lower 0.331} A and back down in stairs of {lower-span 0.047} A, 1 s each",
+        runs: &[hitch(Load::Middle, HIGH, &LOWER_STAIRS)],
     },
-    Manoeuvre {
+    Template {
         name: "lift-reversals",
-        instruction: "with 150 kg from near the bottom, hold the lift current at 1.5 A and reverse it by 0.05, 0.1 and 0.2 A and back, 0.5 s on each level",
-        runs: &[hitch(MIDDLE_KG, LOW, &LIFT_REVERSALS)],
+        instruction: "with {middle} kg from near the bottom, hold the lift current at {lift 0.176} A and reverse it by {lift-span 0.024}, {lift-span 0.047} and {lift-span 0.094} A and back, 0.5 s on each level",
+        runs: &[hitch(Load::Middle, LOW, &LIFT_REVERSALS)],
     },
-    Manoeuvre {
+    Template {
         name: "lowering-reversals",
-        instruction: "with 150 kg from near the top, hold the lowering current at 1.7 A and reverse it by 0.05, 0.1 and 0.2 A and back, 0.5 s on each level",
-        runs: &[hitch(MIDDLE_KG, HIGH, &LOWER_REVERSALS)],
+        instruction: "with {middle} kg from near the top, hold the lowering current at {lower 0.331} A and reverse it by {lower-span 0.024}, {lower-span 0.047} and {lower-span 0.094} A and back, 0.5 s on each level",
+        runs: &[hitch(Load::Middle, HIGH, &LOWER_REVERSALS)],
     },
-    Manoeuvre {
+    Template {
         name: "dead-band-reversals",
-        instruction: "with 150 kg at mid-stroke, sweep through the dead band from one valve to the other and back twice: lift current to 1.35 A, lowering current to 1.4 A, then 1.45 and 1.6 A, 0.6 s each way",
-        runs: &[hitch(MIDDLE_KG, MIDDLE, &DEAD_BAND)],
+        instruction: "with {middle} kg at mid-stroke, sweep through the dead band from one valve to the other and back twice: lift current to {lift 0.105} A, lowering current to {lower 0.189} A, then {lift 0.152} and {lower 0.283} A, 0.6 s each way",
+        runs: &[hitch(Load::Middle, MIDDLE, &DEAD_BAND)],
     },
-    Manoeuvre {
+    Template {
         name: "lift-steps",
-        instruction: "with 150 kg from near the bottom, step the lift current within 10 ms to 1.5, 2.0 and 3.0 A and back to 0 for 1 s after each",
-        runs: &[hitch(MIDDLE_KG, LOW, &LIFT_STEPS)],
+        instruction: "with {middle} kg from near the bottom, step the lift current within 10 ms to {lift 0.176}, {lift 0.411} and {lift 0.881} A and back to 0 for 1 s after each",
+        runs: &[hitch(Load::Middle, LOW, &LIFT_STEPS)],
     },
-    Manoeuvre {
+    Template {
         name: "lowering-steps",
-        instruction: "with 150 kg from near the top, step the lowering current within 10 ms to 1.6, 2.0 and 2.8 A and back to 0 for 1 s after each",
-        runs: &[hitch(MIDDLE_KG, HIGH, &LOWER_STEPS)],
+        instruction: "with {middle} kg from near the top, step the lowering current within 10 ms to {lower 0.283}, {lower 0.472} and {lower 0.850} A and back to 0 for 1 s after each",
+        runs: &[hitch(Load::Middle, HIGH, &LOWER_STEPS)],
     },
-    Manoeuvre {
+    Template {
         name: "hold-at-two-loads",
-        instruction: "hold at mid-stroke for 60 s with both valves off, once with 50 kg and once with 250 kg",
+        instruction: "hold at mid-stroke for 60 s with both valves off, once with {light} kg and once with {heavy} kg",
         runs: &[
-            hitch(LIGHT_KG, MIDDLE, &HOLD),
-            hitch(HEAVY_KG, MIDDLE, &HOLD),
+            hitch(Load::Light, MIDDLE, &HOLD),
+            hitch(Load::Heavy, MIDDLE, &HOLD),
         ],
     },
-    Manoeuvre {
+    Template {
         name: "idle",
-        instruction: "log 10 s at mid-stroke with both valves off, the pump running and 150 kg on the hitch",
-        runs: &[hitch(MIDDLE_KG, MIDDLE, &IDLE)],
+        instruction: "log 10 s at mid-stroke with both valves off, the pump running and {middle} kg on the hitch",
+        runs: &[hitch(Load::Middle, MIDDLE, &IDLE)],
     },
-    Manoeuvre {
+    Template {
         name: "dead-head",
-        instruction: "with 150 kg lift at 2.0 A into the upper stop, keep the current on for 4 s, and let go",
-        runs: &[hitch(MIDDLE_KG, 0.85, &DEAD_HEAD)],
+        instruction: "with {middle} kg lift at {lift 0.411} A into the upper stop, keep the current on for 4 s, and let go",
+        runs: &[hitch(Load::Middle, 0.85, &DEAD_HEAD)],
     },
-    Manoeuvre {
+    Template {
         name: "down-to-the-ground",
-        instruction: "with 150 kg lower at 1.7 A onto the ground or the lower stop, stay there for 1 s and lift off again at 1.4 A",
-        runs: &[hitch(MIDDLE_KG, 0.3, &TO_THE_GROUND)],
+        instruction: "with {middle} kg lower at {lower 0.331} A onto the ground or the lower stop, stay there for 1 s and lift off again at {lift 0.129} A",
+        runs: &[hitch(Load::Middle, 0.3, &TO_THE_GROUND)],
     },
-    Manoeuvre {
+    Template {
         name: "light-and-heavy-lift",
-        instruction: "lift from near the bottom at 1.5 A and at 2.2 A with 50 kg, and the same with 250 kg",
+        instruction: "lift from near the bottom at {lift 0.176} A and at {lift 0.505} A with {light} kg, and the same with {heavy} kg",
         runs: &[
-            hitch(LIGHT_KG, LOW, &TWO_LIFTS),
-            hitch(HEAVY_KG, LOW, &TWO_LIFTS),
+            hitch(Load::Light, LOW, &TWO_LIFTS),
+            hitch(Load::Heavy, LOW, &TWO_LIFTS),
         ],
     },
-    Manoeuvre {
+    Template {
         name: "light-and-heavy-lowering",
-        instruction: "lower from near the top at 1.6 A and at 2.2 A with 50 kg, and the same with 250 kg",
+        instruction: "lower from near the top at {lower 0.283} A and at {lower 0.567} A with {light} kg, and the same with {heavy} kg",
         runs: &[
-            hitch(LIGHT_KG, HIGH, &TWO_LOWERINGS),
-            hitch(HEAVY_KG, HIGH, &TWO_LOWERINGS),
+            hitch(Load::Light, HIGH, &TWO_LOWERINGS),
+            hitch(Load::Heavy, HIGH, &TWO_LOWERINGS),
         ],
     },
-    Manoeuvre {
+    Template {
         name: "creep-and-stop",
-        instruction: "at mid-stroke creep up at 1.25 A, stop, creep down at 1.5 A and stop, twice, 3 s each, with 50 kg and with 250 kg",
+        instruction: "at mid-stroke creep up at {lift 0.058} A, stop, creep down at {lower 0.236} A and stop, twice, 3 s each, with {light} kg and with {heavy} kg",
         runs: &[
-            hitch(LIGHT_KG, MIDDLE, &CREEP),
-            hitch(HEAVY_KG, MIDDLE, &CREEP),
+            hitch(Load::Light, MIDDLE, &CREEP),
+            hitch(Load::Heavy, MIDDLE, &CREEP),
         ],
     },
-    Manoeuvre {
+    Template {
         name: "full-opening",
-        instruction: "with 50 kg open the lift valve fully (3.3 A) for 0.7 s from near the bottom, then the lowering valve (3.1 A) for 0.5 s from near the top",
+        instruction: "with {light} kg open the lift valve fully ({lift 1.023} A) for 0.7 s from near the bottom, then the lowering valve ({lower 0.991} A) for 0.5 s from near the top",
         runs: &[
-            hitch(LIGHT_KG, LOW, &FULL_LIFT),
-            hitch(LIGHT_KG, HIGH, &FULL_LOWERING),
+            hitch(Load::Light, LOW, &FULL_LIFT),
+            hitch(Load::Light, HIGH, &FULL_LOWERING),
         ],
     },
-    Manoeuvre {
+    Template {
         name: "cold-and-warm",
-        instruction: "with 150 kg at mid-stroke sweep the lift current to 1.5 A and back and the lowering current to 1.7 A and back in 2.5 s each way, with the oil at 18 C and again at 60 C",
+        instruction: "with {middle} kg at mid-stroke sweep the lift current to {lift 0.176} A and back and the lowering current to {lower 0.331} A and back in 2.5 s each way, with the oil at 18 C and again at 60 C",
         runs: &[
-            hitch_at(COLD_C, MIDDLE_KG, MIDDLE, &UP_AND_DOWN),
-            hitch_at(WARM_C, MIDDLE_KG, MIDDLE, &UP_AND_DOWN),
+            hitch_at(COLD_C, Load::Middle, MIDDLE, &UP_AND_DOWN),
+            hitch_at(WARM_C, Load::Middle, MIDDLE, &UP_AND_DOWN),
         ],
     },
-    Manoeuvre {
+    Template {
         name: "flow-bench-lift",
-        instruction: "on the flow bench sweep the lift current from 0 to 3.4 A and back in 6 s each way, at port pressures of 20 and 140 bar",
-        runs: &[bench(20.0, &BENCH_LIFT), bench(140.0, &BENCH_LIFT)],
+        instruction: "on the flow bench sweep the lift current from 0 to {lift 1.070} A and back in 6 s each way, at port pressures of {port 0.13} and {port 0.91} bar",
+        runs: &[bench(0.13, &BENCH_LIFT), bench(0.91, &BENCH_LIFT)],
     },
-    Manoeuvre {
+    Template {
         name: "flow-bench-lowering",
-        instruction: "on the flow bench sweep the lowering current from 0 to 3.2 A and back in 6 s each way, at port pressures of 5, 15 and 40 bar",
+        instruction: "on the flow bench sweep the lowering current from 0 to {lower 1.038} A and back in 6 s each way, at port pressures of {port 0.0325}, {port 0.0975} and {port 0.26} bar",
         runs: &[
-            bench(5.0, &BENCH_LOWER),
-            bench(15.0, &BENCH_LOWER),
-            bench(40.0, &BENCH_LOWER),
+            bench(0.0325, &BENCH_LOWER),
+            bench(0.0975, &BENCH_LOWER),
+            bench(0.26, &BENCH_LOWER),
         ],
     },
 ];

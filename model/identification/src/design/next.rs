@@ -2,11 +2,13 @@
 
 use std::fmt;
 
-use hitch_plant::Effect;
+use hitch_plant::{Effect, Model};
 use rayon::prelude::*;
 
 use crate::data::problem::Problem;
-use crate::design::manoeuvre::MANOEUVRES;
+use crate::design::feasibility::is_feasible;
+use crate::design::levels::Levels;
+use crate::design::manoeuvre::TEMPLATES;
 use crate::design::plan::Manoeuvre;
 use crate::design::sensor::additional_instrument;
 use crate::design::separation::{Pair, PairPrior, TestBench};
@@ -55,6 +57,18 @@ impl NextExperiment {
         }
     }
 
+    /// A manoeuvre for a reason other than the separation of effects.
+    #[must_use]
+    pub fn exploring(manoeuvre: &Manoeuvre, why: String) -> Self {
+        Self {
+            manoeuvre: manoeuvre.instruction.clone(),
+            why: format!("{why} (about {} minutes)", rounded(manoeuvre.minutes())),
+            separates: Vec::new(),
+            expected_likelihood_ratio: f64::NAN,
+            minutes: manoeuvre.minutes(),
+        }
+    }
+
     fn of(
         manoeuvre: &Manoeuvre,
         judged: &Judged,
@@ -82,7 +96,7 @@ impl NextExperiment {
             why += &format!("; that is little, {name} would show more");
         }
         Self {
-            manoeuvre: manoeuvre.instruction.to_owned(),
+            manoeuvre: manoeuvre.instruction.clone(),
             why,
             separates: distinguished(true).collect(),
             expected_likelihood_ratio: ratio,
@@ -132,13 +146,14 @@ impl Judged {
 }
 
 /// The manoeuvre that distinguishes the most pairs, and of these the one with the largest value of smallest likelihood
-/// ratio per minute. If none distinguishes any pair, the result names an additional sensor instead. `None` without
-/// pairs.
+/// ratio per minute. Only manoeuvres that the machine can carry out are proposed. If none distinguishes any pair, the
+/// result names an additional sensor instead. `None` without pairs.
 #[must_use]
 pub fn next_experiment(problem: Problem<'_>, pairs: &[Pair]) -> Option<NextExperiment> {
     let bench = TestBench::new(problem, pairs.first()?.named.fit);
     let known: Vec<PairPrior> = pairs.iter().map(|pair| bench.known(*pair)).collect();
-    let judged: Vec<Judged> = MANOEUVRES
+    let manoeuvres = feasible(problem, &bench.with(pairs[0].named), bench.rate_hz());
+    let judged: Vec<Judged> = manoeuvres
         .par_iter()
         .map(|manoeuvre| Judged {
             likelihood_ratios: bench.likelihood_ratios(manoeuvre, &known),
@@ -146,7 +161,7 @@ pub fn next_experiment(problem: Problem<'_>, pairs: &[Pair]) -> Option<NextExper
         .collect();
     let best = judged.iter().map(Judged::largest).fold(0.0, f64::max);
     let instrument = (best < DECISIVE)
-        .then(|| additional_instrument(&bench, MANOEUVRES, pairs[0]))
+        .then(|| additional_instrument(&bench, &manoeuvres, pairs[0]))
         .flatten();
     if best < DISTINGUISHABLE {
         return Some(NextExperiment::none(best, pairs, instrument));
@@ -162,7 +177,7 @@ pub fn next_experiment(problem: Problem<'_>, pairs: &[Pair]) -> Option<NextExper
             judged.smallest(bar) / manoeuvre.minutes(),
         )
     };
-    MANOEUVRES
+    manoeuvres
         .iter()
         .zip(&judged)
         .filter(|(_, judged)| judged.distinguished(bar).count() > 0)
@@ -171,6 +186,15 @@ pub fn next_experiment(problem: Problem<'_>, pairs: &[Pair]) -> Option<NextExper
             a_count.cmp(&b_count).then(a_rate.total_cmp(&b_rate))
         })
         .map(|(manoeuvre, judged)| NextExperiment::of(manoeuvre, judged, pairs, bar, instrument))
+}
+
+/// The manoeuvres that a machine can carry out; `machine` is the best model of it.
+fn feasible(problem: Problem<'_>, machine: &Model, rate_hz: f64) -> Vec<Manoeuvre> {
+    let levels = Levels::new(problem.experiment, problem.model);
+    let manoeuvres = TEMPLATES.iter().map(|template| template.on(&levels));
+    manoeuvres
+        .filter(|manoeuvre| is_feasible(manoeuvre, &levels, machine, rate_hz))
+        .collect()
 }
 
 /// Texts without duplicates: two forms of an effect have the same name.

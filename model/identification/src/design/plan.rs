@@ -1,4 +1,4 @@
-//! A manoeuvre as data: benches, loads, temperatures and current profiles; and its simulated log.
+//! A manoeuvre of one machine: benches, loads, temperatures and current profiles; and its simulated log.
 
 use hitch_campaign::{Bench, Run};
 use hitch_plant::simulation::simulate;
@@ -51,25 +51,25 @@ pub enum Stand {
 }
 
 /// One run of a manoeuvre.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct RunPlan {
     /// Test stand.
     pub stand: Stand,
     /// Oil temperature, degree Celsius.
     pub oil_temperature_c: f64,
     /// Current profile.
-    pub course: &'static [Segment],
+    pub course: Vec<Segment>,
 }
 
 /// A manoeuvre that an engineer can carry out.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Manoeuvre {
     /// Short name.
     pub name: &'static str,
     /// Instruction, one sentence without its full stop.
-    pub instruction: &'static str,
+    pub instruction: String,
     /// The runs to log.
-    pub runs: &'static [RunPlan],
+    pub runs: Vec<RunPlan>,
 }
 
 impl Manoeuvre {
@@ -77,7 +77,7 @@ impl Manoeuvre {
     #[must_use]
     pub fn minutes(&self) -> f64 {
         let (mut minutes, mut load_kg, mut oil_c) = (0.0, f64::NAN, USUAL_OIL_C);
-        for run in self.runs {
+        for run in &self.runs {
             minutes += RUN_MIN + run.duration_s() / 60.0;
             match run.stand {
                 Stand::Hitch { load_kg: kg, .. } if kg == load_kg => {}
@@ -127,7 +127,7 @@ impl RunPlan {
     #[must_use]
     pub fn currents(&self, time_s: f64) -> Currents {
         let (mut start_s, mut from) = (REST_S, Currents::default());
-        for segment in self.course {
+        for segment in &self.course {
             if time_s <= start_s + segment.ramp_s {
                 let share = ((time_s - start_s) / segment.ramp_s).clamp(0.0, 1.0);
                 let between = |from_a: f64, to_a: f64| from_a + (to_a - from_a) * share;
@@ -185,6 +185,7 @@ impl RunPlan {
             file: String::new(),
             bench: self.bench(),
             oil_temperature_c: self.oil_temperature_c,
+            oil_temperature_known: true,
             time_s,
             lift_current_a: currents.iter().map(|c| c.lift_a).collect(),
             lower_current_a: currents.iter().map(|c| c.lower_a).collect(),

@@ -63,7 +63,7 @@ pub fn additional_instrument(
     pair: Pair,
 ) -> Option<&'static str> {
     let [named, other] = pair.rivals().map(|rival| bench.with(rival));
-    let runs: Vec<&RunPlan> = manoeuvres.iter().flat_map(|m| m.runs).collect();
+    let runs: Vec<&RunPlan> = manoeuvres.iter().flat_map(|m| &m.runs).collect();
     let largest: Vec<[f64; INSTRUMENTS.len()]> = runs
         .par_iter()
         .map(|run| differences(run, &named, &other, bench.rate_hz()))

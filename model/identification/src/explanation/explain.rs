@@ -13,6 +13,7 @@ use crate::adequacy::lack_of_fit::{Cell, adequate, cells, cells_since};
 use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
 use crate::data::regime::Regime;
+use crate::design::exploration::exploring;
 use crate::design::{Alternative, NextExperiment, Pair, Replacement, Rival, next_experiment};
 use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, evaluate, fit, refine};
@@ -108,7 +109,8 @@ pub struct Explanation {
     pub cells: Vec<Cell>,
     /// Signals on which the remaining error depends; empty unless the verdict is [`Verdict::Unexplained`].
     pub rest: Attribution,
-    /// The experiment to do next if the campaign cannot decide, or not between two effects.
+    /// The experiment to do next if the campaign cannot decide, or not between two effects, or leaves an error
+    /// unexplained.
     pub next_experiment: Option<NextExperiment>,
     /// Effects that the campaign could not detect; empty if the verdict is [`Verdict::Unexplained`].
     pub undetected: Vec<Undetected>,
@@ -349,7 +351,8 @@ fn concluded(
     let next_experiment = match verdict {
         Verdict::Ambiguous => next_experiment(problem, &pairs(&after, &steps)),
         Verdict::NotEnoughData => missing.map(NextExperiment::missing),
-        _ => None,
+        Verdict::Unexplained => Some(exploring(problem, &after, &rest.depends_on)),
+        Verdict::NothingMissing | Verdict::Explained => None,
     };
     let undetected = match verdict {
         Verdict::Unexplained => Vec::new(),
@@ -414,7 +417,8 @@ fn enough(fit: &Fit) -> bool {
 }
 
 /// The manoeuvre that a campaign lacks to conclude that nothing is missing, if any.
-fn missing_manoeuvre(experiment: &Experiment, fit: &Fit) -> Option<&'static str> {
+#[must_use]
+pub fn missing_manoeuvre(experiment: &Experiment, fit: &Fit) -> Option<&'static str> {
     let seen = |wanted: Regime| {
         let regimes = experiment.runs.iter().flat_map(|run| &run.regimes);
         regimes.filter(|&&regime| regime == wanted).count() >= FEWEST_SAMPLES

@@ -48,6 +48,8 @@ pub struct RunWeights {
     pub scale: Vec<f64>,
     /// Gain of the angle's filter at every sample.
     gain: Vec<f64>,
+    /// Samples that count; the others only update the angle's filter.
+    kept: Vec<bool>,
 }
 
 /// Whitening of all differences.
@@ -76,6 +78,18 @@ impl Weights {
     #[must_use]
     pub fn of_runs(&self, picked: &[usize]) -> Self {
         let runs = picked.iter().map(|&run| self.runs[run].clone()).collect();
+        Self::counted(runs)
+    }
+
+    /// The same weights, for some samples only, chosen by their index in the run.
+    #[must_use]
+    pub fn of_samples(&self, chosen: impl Fn(usize) -> bool) -> Self {
+        let mut runs = self.runs.clone();
+        for run in &mut runs {
+            for (sample, kept) in run.kept.iter_mut().enumerate() {
+                *kept = chosen(sample);
+            }
+        }
         Self::counted(runs)
     }
 
@@ -128,6 +142,7 @@ impl RunWeights {
         let mut weights = Self {
             scale: vec![0.0; 4 * run.len()],
             gain: vec![0.0; run.len()],
+            kept: vec![true; run.len()],
         };
         let at_an_edge = |sample: usize| edges.as_ref().is_some_and(|edges| edges[sample]);
         let stops = at_a_stop(run, model, [&below, &above]);
@@ -200,7 +215,10 @@ impl RunWeights {
     pub fn compared(&self, channel: usize) -> usize {
         let samples = self.gain.len();
         let part = &self.scale[channel * samples..(channel + 1) * samples];
-        part.iter().filter(|&&scale| scale > 0.0).count()
+        let counts = part.iter().zip(&self.kept);
+        counts
+            .filter(|(scale, kept)| **scale > 0.0 && **kept)
+            .count()
     }
 
     /// Whitened residuals of the run, channel after channel; zero for samples that are left out.
@@ -218,7 +236,9 @@ impl RunWeights {
                 let scale = self.scale[offset + sample];
                 if scale > 0.0 {
                     let innovation = measured[sample] - simulated[sample] - walk;
-                    residual[offset + sample] = innovation * scale;
+                    if self.kept[sample] {
+                        residual[offset + sample] = innovation * scale;
+                    }
                     if channel == Channel::RockerAngle {
                         walk += self.gain[sample] * innovation;
                     }

@@ -280,7 +280,7 @@ impl Search<'_> {
             let its = held_out(self.problem, fit);
             let fewer = key(fit).len() < key(&self.present).len();
             let gain = self.left.excess() - its.excess();
-            // A campaign of one run has no held-out runs; the test is then skipped.
+            // NaN without compared samples; the test is then skipped.
             (fewer || gain.is_nan() || gain > 0.0).then(|| (fit.clone(), its))
         });
         let found = admitted.is_some();

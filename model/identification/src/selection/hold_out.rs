@@ -1,4 +1,4 @@
-//! Cross-validation: error in held-out runs.
+//! Cross-validation: error in held-out runs, or in held-out blocks of the only run.
 
 use rayon::prelude::*;
 
@@ -10,6 +10,9 @@ use crate::residuals::whitening::Weights;
 
 /// Number of folds.
 const FOLDS: usize = 4;
+
+/// Blocks of time per fold of a campaign of one run: each fold then has parts from both halves of the run.
+const BLOCKS: usize = 2;
 
 /// Ratio of the other fit's cost under the weights of this fit to that under its own, above which the two fits are
 /// compared under the same weights.
@@ -26,7 +29,7 @@ pub struct HeldOut {
 }
 
 impl HeldOut {
-    /// No runs were held out.
+    /// Nothing was held out.
     pub const NONE: Self = Self {
         error: f64::NAN,
         loss: f64::NAN,
@@ -39,35 +42,26 @@ impl HeldOut {
     }
 }
 
-/// Error of a model in held-out runs after a fit to all runs.
+/// Error of a model in held-out data after a fit to all of it.
 ///
 /// Whole runs are assigned to the folds in turn, so samples of one run are never on both sides. Shared parameters come
 /// from the other runs; for a held-out run only its load error is fitted, within its prior. The weights are those of
-/// the fit to all runs. [`HeldOut::NONE`] with fewer than two runs.
+/// the fit to all runs.
+///
+/// The only run of a campaign is divided into blocks of time instead. The simulation passes through all of them, and the
+/// angle's filter predicts a sample from the measured ones before it also where they are held out; all parameters and the
+/// load come from the other blocks.
 #[must_use]
 pub fn held_out(problem: Problem<'_>, fit: &Fit) -> HeldOut {
-    let Problem { experiment, .. } = problem;
-    let folds = FOLDS.min(experiment.runs.len());
-    if folds < 2 {
-        return HeldOut::NONE;
-    }
+    let runs = problem.experiment.runs.len();
+    let folds = if runs == 1 { FOLDS } else { FOLDS.min(runs) };
     let parts: Vec<(ErrorSums, ErrorSums)> = (0..folds)
         .into_par_iter()
         .map(|fold| {
-            let outside = |run: usize| run % folds != fold;
-            let (train, weights, start) = part(experiment, fit, outside);
-            let trained = refine_once(problem.on(&train), &weights, start);
-            let (test, weights, test_start) = part(experiment, fit, |run| !outside(run));
-            let start = Estimate {
-                effects: trained.effects,
-                adopted: trained.adopted,
-                clocks: trained.clocks,
-                nuisances: test_start.nuisances,
-                clocks_within_s: test_start.clocks_within_s,
+            let tested = match runs {
+                1 => held_out_blocks(problem, fit, fold),
+                _ => held_out_runs(problem, fit, fold, folds),
             };
-            let test = problem.on(&test);
-            let loaded = fit_loads(test, &weights, start);
-            let tested = evaluate_weighted(test, loaded, weights);
             (ErrorSums::of(&tested), ErrorSums::with_huber_loss(&tested))
         })
         .collect();
@@ -76,6 +70,34 @@ pub fn held_out(problem: Problem<'_>, fit: &Fit) -> HeldOut {
         error: ErrorSums::total(&errors).error(),
         loss: ErrorSums::total(&losses).error(),
     }
+}
+
+/// The fit to the runs outside a fold, evaluated on those of the fold.
+fn held_out_runs(problem: Problem<'_>, fit: &Fit, fold: usize, folds: usize) -> Fit {
+    let experiment = problem.experiment;
+    let outside = |run: usize| run % folds != fold;
+    let (train, weights, start) = part(experiment, fit, outside);
+    let trained = refine_once(problem.on(&train), &weights, start);
+    let (test, weights, test_start) = part(experiment, fit, |run| !outside(run));
+    let start = Estimate {
+        effects: trained.effects,
+        adopted: trained.adopted,
+        clocks: trained.clocks,
+        nuisances: test_start.nuisances,
+        clocks_within_s: test_start.clocks_within_s,
+    };
+    let test = problem.on(&test);
+    let loaded = fit_loads(test, &weights, start);
+    evaluate_weighted(test, loaded, weights)
+}
+
+/// The fit to the blocks of the only run outside a fold, evaluated on those of the fold.
+fn held_out_blocks(problem: Problem<'_>, fit: &Fit, fold: usize) -> Fit {
+    let samples = problem.experiment.runs[0].len();
+    let inside = |sample: usize| sample * FOLDS * BLOCKS / samples % FOLDS == fold;
+    let train = fit.weights.of_samples(|sample| !inside(sample));
+    let trained = refine_once(problem, &train, fit.estimate.clone());
+    evaluate_weighted(problem, trained, fit.weights.of_samples(inside))
 }
 
 /// Held-out error of `fit` under the weights of `other`, if its own weights are so different that the two are not

@@ -3,6 +3,7 @@
 use hitch_effects::expression::{ParameterDefinition, TermDefinition};
 use hitch_plant::Place;
 
+use crate::adequacy::signal::Signal;
 use crate::data::problem::Problem;
 use crate::estimation::fit::Fit;
 use crate::suggestion::spread;
@@ -126,15 +127,15 @@ fn unit(signal: &str) -> (&'static str, f64) {
 }
 
 /// Signals of formulas for a signal of the attribution.
-fn signals_of(name: &str) -> &'static [&'static str] {
-    match name {
-        "rocker_angle_deg" => &["x", "rocker_angle"],
-        "cylinder_pressure_bar" | "load_kg" => &["p_cyl"],
-        "flow_lpm" => &["q_lift", "q_lower", "v"],
-        "lift_current_a" => &["i_lift", "q_lift"],
-        "lower_current_a" => &["i_lower", "q_lower"],
-        "oil_temperature_c" => &["t_oil"],
-        _ => &[],
+fn signals_of(signal: Signal) -> &'static [&'static str] {
+    match signal {
+        Signal::RockerAngle => &["x", "rocker_angle"],
+        Signal::CylinderPressure | Signal::Load => &["p_cyl"],
+        Signal::Flow => &["q_lift", "q_lower", "v"],
+        Signal::LiftCurrent => &["i_lift", "q_lift"],
+        Signal::LowerCurrent => &["i_lower", "q_lower"],
+        Signal::OilTemperature => &["t_oil"],
+        Signal::Time => &[],
     }
 }
 
@@ -146,11 +147,11 @@ const OFF: f64 = 1.05;
 
 /// Terms to screen on a fitted model; `depends_on` lists the attribution's signals, the most important first.
 #[must_use]
-pub fn definitions(problem: Problem<'_>, fit: &Fit, depends_on: &[String]) -> Vec<TermDefinition> {
+pub fn definitions(problem: Problem<'_>, fit: &Fit, depends_on: &[Signal]) -> Vec<TermDefinition> {
     let wanted: Vec<&str> = depends_on
         .iter()
         .take(FIRST_NAMES)
-        .flat_map(|name| signals_of(name).iter().copied())
+        .flat_map(|signal| signals_of(*signal).iter().copied())
         .collect();
     let off = |place: Place| {
         let mut channels = place.channels().iter();

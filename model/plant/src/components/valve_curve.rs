@@ -112,6 +112,16 @@ impl ValveCurve {
         self.threshold_a
     }
 
+    /// Smallest tabulated current with the largest flow, A.
+    #[must_use]
+    pub fn full_opening_a(&self) -> f64 {
+        let saturation_m3_s = self.saturation_m3_s();
+        let points = self.current_a.iter().zip(&self.flow_m3_s);
+        let full = points.filter(|(_, flow_m3_s)| **flow_m3_s >= saturation_m3_s);
+        full.map(|(current_a, _)| *current_a)
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// Largest flow at the reference drop, m3/s.
     #[must_use]
     pub fn saturation_m3_s(&self) -> f64 {

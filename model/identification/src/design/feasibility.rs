@@ -1,0 +1,34 @@
+//! Whether a machine can carry out a manoeuvre.
+
+use hitch_plant::{Channel, Model};
+use rayon::prelude::*;
+
+use crate::design::levels::Levels;
+use crate::design::plan::{Manoeuvre, RunPlan, Stand};
+
+/// Largest pressure over the relief setting: the proof pressure of hydraulic components over their rated pressure
+/// (ISO 10771-1).
+const PROOF: f64 = 1.5;
+
+/// Whether the loads can be lifted all over the swing, and the simulated pressures stay below the proof pressure with
+/// `model` as the machine. Currents are within the flow curves by construction.
+#[must_use]
+pub fn is_feasible(manoeuvre: &Manoeuvre, levels: &Levels, model: &Model, rate_hz: f64) -> bool {
+    let liftable = |run: &RunPlan| match run.stand {
+        Stand::Hitch { load_kg, .. } => load_kg <= levels.capacity_kg,
+        Stand::Flow { .. } => true,
+    };
+    let peak_bar = |run: &RunPlan| {
+        let log = run.log(model, rate_hz, Channel::ALL.map(|_| true));
+        let pressures = [Channel::PumpPressure, Channel::CylinderPressure];
+        let samples = pressures
+            .into_iter()
+            .filter_map(|channel| log.channel(channel).map(<[f64]>::to_vec));
+        samples.flatten().fold(0.0, f64::max)
+    };
+    let runs = &manoeuvre.runs;
+    runs.iter().all(liftable)
+        && runs
+            .par_iter()
+            .all(|run| peak_bar(run) <= PROOF * levels.relief_bar)
+}
