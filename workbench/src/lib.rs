@@ -17,6 +17,7 @@ pub mod heat_table;
 pub mod import;
 pub mod input_stream;
 pub mod model_arg;
+pub mod next_command;
 pub mod output;
 pub mod outputs;
 pub mod paper;

@@ -21,6 +21,12 @@ impl ModelArg {
         PathBuf::from(&self.name)
     }
 
+    /// The name as given.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
     /// The option as written on a command line; empty for the default model.
     #[must_use]
     pub fn written(&self) -> String {

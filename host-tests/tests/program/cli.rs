@@ -64,6 +64,7 @@ fn explain_tells_what_scripts_read() {
         &out["channels"]["rocker_angle_deg"],
         &["before", "after", "noise", "late_s"],
     );
+    assert_same_errors(&dir, &out["channels"]);
     assert_keys(
         &out["unexplained"],
         &["share", "depends_on", "suggested_term"],
@@ -100,6 +101,54 @@ fn explain_tells_what_scripts_read() {
     assert!(report.contains("lower-threshold-shift"));
 }
 
+/// The initial errors by channel are those of `compare`: the weighted one, in sigma times the noise, and the raw one.
+/// `explain` also fits the clocks, which changes both a little.
+fn assert_same_errors(dir: &TempDir, channels: &Value) {
+    let compared = json(dir, &["compare", ".", "--json", "-"]);
+    for channel in compared["channels"].as_array().unwrap() {
+        let number = |of: &Value, key: &str| of[key].as_f64().unwrap();
+        let name = channel["channel"].as_str().unwrap();
+        let explained = &channels[name];
+        let weighted = number(channel, "error") * number(channel, "noise");
+        for (key, compared) in [("before", weighted), ("rms_before", number(channel, "rms"))] {
+            let ratio = number(explained, key) / compared;
+            assert!((ratio - 1.0).abs() < 0.1, "{name} {key}: {ratio}");
+        }
+    }
+}
+
+/// The command that a text proposes in its last line.
+fn proposed(text: &str) -> Vec<String> {
+    let last = text.lines().last().unwrap();
+    let command = last.strip_prefix("  hitch ").expect("a command");
+    command.split(' ').map(str::to_owned).collect()
+}
+
+#[test]
+fn the_proposed_commands_lead_to_a_valve_map() {
+    let dir = campaign();
+    let mut command = vec!["compare".to_owned(), ".".to_owned()];
+    let mut commands = Vec::new();
+    while command[0] != "calibrate" {
+        let arguments: Vec<&str> = command.iter().map(String::as_str).collect();
+        let output = run(dir.path(), &arguments);
+        assert!(output.status.success(), "{command:?}");
+        commands.push(command[0].clone());
+        command = proposed(&String::from_utf8(output.stdout).unwrap());
+    }
+    assert_eq!(commands, ["compare", "explain"]);
+    let arguments: Vec<&str> = command.iter().map(String::as_str).collect();
+    assert!(run(dir.path(), &arguments).status.success());
+    assert!(dir.path().join("calibration.toml").exists());
+}
+
+#[test]
+fn a_diagnosis_proposes_to_explain() {
+    let output = run(campaign().path(), &["diagnose", ".", "--model", "nominal"]);
+    let command = proposed(&String::from_utf8(output.stdout).unwrap());
+    assert_eq!(command[..2], ["explain", "."]);
+}
+
 /// A report may point nowhere: it has to open offline.
 fn assert_self_contained(html: &str) {
     assert!(html.starts_with("<!DOCTYPE html>") && html.ends_with("</html>"));
@@ -111,7 +160,14 @@ fn assert_self_contained(html: &str) {
 
 #[test]
 fn diagnose_ranks_candidates() {
-    let out = json(&campaign(), &["diagnose", ".", "--json", "-"]);
+    let dir = campaign();
+    let out = json(
+        &dir,
+        &["diagnose", ".", "--json", "-", "--report", "r.html"],
+    );
+    let report = fs::read_to_string(dir.path().join("r.html")).unwrap();
+    assert_self_contained(&report);
+    assert!(report.contains("+ lower-threshold-shift"));
     assert_keys(&out, &HEAD);
     let candidates = out["candidates"].as_array().unwrap();
     assert_eq!(candidates[0]["effect"], "lower-threshold-shift");
@@ -218,6 +274,20 @@ fn one_duty_cycle() -> TempDir {
     let log = "duty_150kg_18C.csv";
     fs::copy(known.join(log), dir.path().join(log)).unwrap();
     dir
+}
+
+#[test]
+fn the_only_run_is_validated_by_blocks_of_time() {
+    let out = json(&one_duty_cycle(), &["explain", ".", "--json", "-"]);
+    let steps = out["steps"].as_array().unwrap();
+    assert!(!steps.is_empty(), "{out}");
+    let first = &steps[0];
+    let [before, after] =
+        ["held_out_before", "held_out_after"].map(|key| first[key].as_f64().unwrap());
+    assert!(after < before, "{before} to {after}");
+    // A perfect model has an error of 1 on data that it was not fitted to.
+    let last = steps.last().unwrap()["held_out_after"].as_f64().unwrap();
+    assert!((0.8..1.3).contains(&last), "{last}");
 }
 
 #[test]

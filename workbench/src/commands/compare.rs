@@ -8,6 +8,7 @@ use crate::commands::fleet::FleetArgs;
 use crate::comparison::Comparison;
 use crate::error::Error;
 use crate::model_arg::ModelArg;
+use crate::next_command;
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
@@ -70,5 +71,9 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
         let page = comparison_page::page(&comparison, &evaluated, &model);
         output::write_file(path, page.as_bytes())?;
     }
-    outputs.tell(&args.json, &comparison, || comparison.to_string())
+    let adequate = comparison.worst_cells().is_empty();
+    outputs.tell(&args.json, &comparison, || {
+        let next = next_command::after_comparison(adequate, folder, &args.model);
+        format!("{comparison}\n{next}")
+    })
 }

@@ -8,15 +8,17 @@ use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{diagnose, fit_base};
 
 use crate::error::Error;
-use crate::explanation::Diagnosis;
+use crate::explanation::{Diagnosis, Head};
 use crate::model_arg::ModelArg;
-use crate::output::JsonArg;
+use crate::next_command;
+use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
+use crate::report::diagnosis_page;
 
 /// Arguments of `hitch diagnose`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: hitch diagnose lab-a --model dynamic")]
+#[command(after_help = "Example: hitch diagnose lab-a --model dynamic --report lab-a.html")]
 pub struct Args {
     /// Folder of the campaign
     campaign: PathBuf,
@@ -24,6 +26,9 @@ pub struct Args {
     model: ModelArg,
     #[command(flatten)]
     json: JsonArg,
+    /// Write a report to this file: self-contained HTML
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -33,7 +38,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Error> {
     let mut inputs = campaign_files(&args.campaign);
     inputs.push(args.model.file());
-    let outputs = Outputs::check([args.json.target()], &inputs)?;
+    let outputs = Outputs::check([args.json.target(), args.report.as_deref()], &inputs)?;
     let model = args.model.load()?;
     let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
@@ -44,5 +49,18 @@ pub fn run(args: &Args) -> Result<(), Error> {
     });
     let shown = Diagnosis::new(&experiment, &model, &found);
     drop(progress);
-    outputs.tell(&args.json, &shown, || shown.to_string())
+    if let Some(path) = &args.report {
+        let page = diagnosis_page::page(&shown, &found, &experiment, &model);
+        output::write_file(path, page.as_bytes())?;
+    }
+    outputs.tell(&args.json, &shown, || {
+        let Head {
+            hopeless_base,
+            verdict,
+            ..
+        } = shown.head;
+        let next =
+            next_command::after_diagnosis(hopeless_base, verdict, &args.campaign, &args.model);
+        format!("{shown}\n{next}")
+    })
 }

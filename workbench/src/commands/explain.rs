@@ -9,6 +9,7 @@ use crate::commands::fleet::FleetArgs;
 use crate::error::Error;
 use crate::explanation::{Found, rebuilt};
 use crate::model_arg::ModelArg;
+use crate::next_command;
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
@@ -100,5 +101,8 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
     if let Some(path) = &args.report {
         output::write_file(path, explanation_page::page(&found).as_bytes())?;
     }
-    outputs.tell(&args.json, &found.shown, || found.shown.to_string())
+    outputs.tell(&args.json, &found.shown, || {
+        let next = next_command::after_explanation(out, folder, &args.model);
+        format!("{}\n{next}", found.shown)
+    })
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use hitch_identification::estimation::fit::Fit;
+use hitch_plant::Model;
 use maud::{Markup, html};
 
 use super::rest_figure::{picture, suggestion};
@@ -11,7 +12,7 @@ use super::runs::runs;
 use super::staircase::staircase;
 use super::{page, staircase};
 use crate::comparison::{Comparison, Evaluated, Grouping};
-use crate::explanation::{ChannelFigures, Explanation, Found, Step};
+use crate::explanation::{ChannelFigures, Explanation, Found, Head, Step};
 use crate::text::known;
 
 /// Groupings shown before and after.
@@ -57,8 +58,8 @@ pub fn details(found: &Found) -> Markup {
     let changed = (!found.shown.steps.is_empty()).then_some(&after);
     html! {
         h2 { "By channel" }
-        (channels(&found.shown))
-        (grids(found, &before, changed))
+        (channels(&found.shown.head))
+        (grids(&found.model, &before, changed))
         h2 { "Measured against simulated" }
         (runs(&run_views(&found.model, &before, changed)))
     }
@@ -137,35 +138,23 @@ fn steps(steps: &[Step]) -> Markup {
     }
 }
 
-fn channels(shown: &Explanation) -> Markup {
+/// Table of the errors by channel.
+pub fn channels(head: &Head) -> Markup {
     let row = |(channel, values): (&&str, &ChannelFigures)| {
-        let number = |value: f64| match value.is_finite() {
-            true => format!("{value:.3}"),
-            false => "–".to_owned(),
-        };
-        vec![
-            (*channel).to_owned(),
-            number(values.before),
-            number(values.after),
-            number(values.noise),
-            values.late_ms(),
-        ]
+        let names = [(*channel).to_owned()].into_iter();
+        names.chain(values.cells()).collect()
     };
-    let rows: Vec<Vec<String>> = shown.head.channels.iter().map(row).collect();
-    page::table(
-        &[
-            "channel",
-            "error before",
-            "error after",
-            "noise of the instrument",
-            "clock offset, ms",
-        ],
-        &rows,
-    )
+    let rows: Vec<Vec<String>> = head.channels.iter().map(row).collect();
+    let header: Vec<&str> = ["channel"]
+        .into_iter()
+        .chain(ChannelFigures::HEADINGS)
+        .collect();
+    page::table(&header, &rows)
 }
 
-fn grids(found: &Found, before: &Evaluated, after: Option<&Evaluated>) -> Markup {
-    let compared = |evaluated: &Evaluated| Comparison::of(evaluated, &found.model);
+/// Tables of the errors in sigma by condition, before and after.
+pub fn grids(model: &Model, before: &Evaluated, after: Option<&Evaluated>) -> Markup {
+    let compared = |evaluated: &Evaluated| Comparison::of(evaluated, model);
     let before = compared(before);
     let after = after.map(compared);
     html! { @for by in GROUPINGS {

@@ -1,6 +1,7 @@
 //! Reports: self-contained HTML files that need no network and are printable.
 pub mod chart;
 pub mod comparison_page;
+pub mod diagnosis_page;
 pub mod explanation_page;
 pub mod loop_page;
 pub mod main_page;

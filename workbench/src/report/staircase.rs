@@ -1,4 +1,4 @@
-//! Bar chart of the error after each step, with the noise as lower limit.
+//! Bar chart of errors from zero, with the noise as lower limit.
 use maud::{Markup, html};
 
 use super::scale::Scale;
@@ -18,27 +18,23 @@ pub struct Step {
     pub error: f64,
 }
 
-/// The bars, with a line at one sigma. The scale is logarithmic, so that a factor in the error has the same length
-/// everywhere.
+/// The bars, from zero on a linear scale, with a line at one sigma.
 pub fn staircase(steps: &[Step]) -> Markup {
     let greatest = steps.iter().map(|step| step.error).fold(2.0, f64::max);
-    let scale = Scale::new(
-        (0.5_f64.log10(), greatest.log10()),
-        (NAME_PX, WIDTH_PX - VALUE_PX),
-    );
+    let scale = Scale::new((0.0, greatest), (NAME_PX, WIDTH_PX - VALUE_PX));
     let height = ROW_PX * steps.len() as f64 + 26.0;
-    let floor = scale.px(0.0);
+    let floor = scale.px(1.0);
     html! { figure {
         svg viewBox=(format!("0 0 {WIDTH_PX} {height}")) role="img" aria-label=(spoken(steps)) style="max-width:42rem" {
             @for (i, step) in steps.iter().enumerate() { (bar(step, i as f64 * ROW_PX, &scale)) }
             line x1=(floor) x2=(floor) y1="0" y2=(height - 20.0) stroke=(FLOOR_COLOUR) stroke-width="1.5" {}
-            text x=(floor) y=(height - 5.0) text-anchor="middle" { "1 = noise of the instruments" }
+            text x=(NAME_PX) y=(height - 5.0) { "error in sigma, from zero; line: 1, the noise of the instruments" }
         }
     } }
 }
 
 fn bar(step: &Step, top: f64, scale: &Scale) -> Markup {
-    let length = (scale.px(step.error.max(0.5).log10()) - NAME_PX).max(1.0);
+    let length = (scale.px(step.error) - NAME_PX).max(1.0);
     let middle = top + ROW_PX / 2.0;
     html! {
         text x=(NAME_PX - 8.0) y=(middle) text-anchor="end" dominant-baseline="middle" { (step.name) }
@@ -67,6 +63,15 @@ mod tests {
             error,
         });
         let text = staircase(&steps).into_string();
+        let lengths = text.split("<rect ").skip(1).map(|bar| {
+            let (_, rest) = bar.split_once(" width=\"").unwrap();
+            rest.split_once('"').unwrap().0.parse::<f64>().unwrap()
+        });
+        let lengths: Vec<f64> = lengths.collect();
+        assert!(
+            (lengths[0] / lengths[1] - 9.8 / 1.02).abs() < 1e-6,
+            "{lengths:?}"
+        );
         assert_eq!(text.matches("<rect").count(), 2);
         assert!(text.contains("9.80") && text.contains("1.02"));
     }

@@ -1,0 +1,126 @@
+//! The report of `hitch diagnose`.
+
+use std::sync::Arc;
+
+use hitch_identification::data::experiment::Experiment;
+use hitch_identification::estimation::fit::Fit;
+use hitch_identification::explanation::explain;
+use hitch_identification::selection::candidate;
+use hitch_identification::selection::evidence::SIGNIFICANT;
+use hitch_plant::Model;
+use maud::{Markup, html};
+
+use super::explanation_page::{channels, grids};
+use super::run_views::run_views;
+use super::runs::runs;
+use super::staircase::staircase;
+use super::{page, staircase};
+use crate::comparison::Evaluated;
+use crate::explanation::{Candidate, Diagnosis, HOPELESS_BASE};
+
+/// Number of candidates that are shown as bars, and in the unfolded table.
+const BARS: usize = 8;
+
+/// The report as one HTML document.
+pub fn page(
+    shown: &Diagnosis,
+    found: &explain::Diagnosis,
+    experiment: &Experiment,
+    model: &Model,
+) -> String {
+    let title = format!(
+        "Single effects that {} may lack on {}",
+        shown.head.model, shown.head.campaign
+    );
+    let evaluated = |fit: &Fit| Evaluated {
+        experiment: Arc::new(experiment.clone()),
+        fit: fit.clone(),
+    };
+    let before = evaluated(&found.base);
+    let accepted = |best: &&candidate::Candidate| best.likelihood_ratio >= SIGNIFICANT;
+    let after = found.candidates.first().filter(accepted);
+    let after = after.map(|best| evaluated(&best.fit));
+    let content = html! {
+        h1 { (title) }
+        (verdict(shown))
+        h2 { "Error with each effect added alone" }
+        (staircase(&bars(shown)))
+        (candidates(&shown.candidates))
+        h2 { "By channel" }
+        (channels(&shown.head))
+        (grids(model, &before, after.as_ref()))
+        h2 { "Measured against simulated" }
+        (runs(&run_views(model, &before, after.as_ref())))
+    };
+    page::page(&title, &content)
+}
+
+fn verdict(shown: &Diagnosis) -> Markup {
+    let head = &shown.head;
+    html! {
+        @if head.hopeless_base { p { strong { (HOPELESS_BASE) } } }
+        p.lead {
+            "Verdict with the best effect alone: " strong { (head.verdict) } ". Error "
+            strong { (format!("{:.2}", head.error_before)) } " → " strong { (format!("{:.2}", head.error_after)) }
+            " sigma; a perfect model has 1.00, the noise of the instruments."
+        }
+        @if let Some(next) = &shown.next.next_experiment {
+            p { strong { "Next experiment: " } (next) "." }
+        }
+    }
+}
+
+fn bars(shown: &Diagnosis) -> Vec<staircase::Step> {
+    let none = staircase::Step {
+        name: shown.head.model.clone(),
+        error: shown.head.error_before,
+    };
+    let added = shown.candidates.iter().take(BARS);
+    let added = added.map(|candidate| staircase::Step {
+        name: format!("+ {}", candidate.name()),
+        error: candidate.error_after,
+    });
+    [none].into_iter().chain(added).collect()
+}
+
+fn candidates(candidates: &[Candidate]) -> Markup {
+    let row = |candidate: &Candidate| {
+        let parameters: Vec<String> = candidate
+            .parameters
+            .iter()
+            .map(ToString::to_string)
+            .collect();
+        let others = match candidate.indistinguishable.is_empty() {
+            true => "–".to_owned(),
+            false => candidate.indistinguishable.join(", "),
+        };
+        vec![
+            candidate.name(),
+            parameters.join("; "),
+            format!("{:.1} %", 100.0 * candidate.explains),
+            format!("{:.2}", candidate.error_after),
+            format!("{:.2}", candidate.confidence),
+            format!("{:.2}", candidate.detectability),
+            others,
+        ]
+    };
+    let header = [
+        "effect",
+        "parameters, 95 %",
+        "explains",
+        "error after",
+        "confidence",
+        "detectability",
+        "indistinguishable from",
+    ];
+    let rows: Vec<Vec<String>> = candidates.iter().map(row).collect();
+    let (first, others) = rows.split_at(BARS.min(rows.len()));
+    html! {
+        (page::table(&header, first))
+        @if !others.is_empty() {
+            details { summary { (others.len()) " other effects" } (page::table(&header, others)) }
+        }
+        p.note { "Explains: share of the squared error above the noise. Confidence: probability among the single effects and \
+                 none. Detectability: root mean square, in sigma, of the signature, all other effects projected out." }
+    }
+}
