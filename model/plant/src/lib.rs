@@ -32,7 +32,7 @@ pub use channel::Channel;
 pub use components::check_valve::CheckValve;
 pub use components::compensator::Compensator;
 pub use components::cylinder::Cylinder;
-pub use components::linkage::{Linkage, LinkageDimensions, Posture};
+pub use components::linkage::{Joints, Linkage, LinkageDimensions, Posture};
 pub use components::linkage_error::LinkageError;
 pub use components::load::Masses;
 pub use components::oil::Oil;

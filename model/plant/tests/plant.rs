@@ -43,6 +43,76 @@ const KINEMATICS: [[f64; 5]; 5] = [
 ];
 
 #[test]
+fn the_joints_keep_the_dimensions_and_carry_the_hitch_point() {
+    let model = hitch_model_file::nominal();
+    let dimensions = &model.constants().linkage;
+    for [_, angle_deg, ..] in KINEMATICS {
+        let joints = dimensions.joints(angle_deg.to_radians()).unwrap();
+        let lengths = [
+            (
+                joints.rocker_end - joints.piston_pin,
+                dimensions.connecting_rod_m,
+            ),
+            (joints.rocker_end.coords, dimensions.rocker_arm_m),
+            (joints.lift_arm_end.coords, dimensions.lift_arm_m),
+            (
+                joints.rod_joint - joints.lift_arm_end,
+                dimensions.lift_rod_m,
+            ),
+            (joints.rod_joint - joints.pivot, dimensions.lift_rod_joint_m),
+            (joints.hitch_point - joints.pivot, dimensions.lower_link_m),
+        ];
+        for (bar, length_m) in lengths {
+            assert!((bar.norm() - length_m).abs() < 1e-12);
+        }
+        let piston_m = model.linkage().piston_m(angle_deg.to_radians());
+        let height_m = model.linkage().at(piston_m).height_m;
+        assert!((joints.hitch_point.y - height_m).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn another_load_during_a_run_comes_to_the_rest_of_a_run_with_it() {
+    for model in [hitch_model_file::nominal(), hitch_model_file::dynamic()] {
+        let mut plant = Plant::new(&model, hitch(50.0, 90.0), 40.0, Currents::default());
+        plant.set_load_kg(250.0);
+        (0..2000).for_each(|_| plant.step(Currents::default(), STEP_S));
+        let changed = plant.reading();
+        let own = Plant::new(
+            &model,
+            hitch(250.0, changed.rocker_angle_deg),
+            40.0,
+            Currents::default(),
+        );
+        let own_bar = own.reading().cylinder_pressure_bar;
+        assert!((changed.cylinder_pressure_bar - own_bar).abs() < 0.05);
+        // The oil is compressed by 18 bar.
+        let sunk_deg = 90.0 - changed.rocker_angle_deg;
+        assert!((-0.01..0.6).contains(&sunk_deg), "{sunk_deg}");
+    }
+}
+
+#[test]
+fn another_oil_temperature_during_a_run_flows_as_in_a_run_with_it() {
+    let viscosity = AddedEffect::typical(find("oil-viscosity").unwrap());
+    let model = hitch_model_file::dynamic().with_effects(vec![viscosity]);
+    let lowered_deg = |plant: &mut Plant<'_>| {
+        (0..500).for_each(|_| plant.step(currents(0.0, 2.0), STEP_S));
+        plant.reading().rocker_angle_deg
+    };
+    let plant = |oil_c: f64| Plant::new(&model, hitch(150.0, 110.0), oil_c, Currents::default());
+    let (mut cold, mut warm, mut cooled) = (plant(10.0), plant(60.0), plant(60.0));
+    cooled.set_oil_temperature_c(10.0);
+    let (cold, warm, cooled) = (
+        lowered_deg(&mut cold),
+        lowered_deg(&mut warm),
+        lowered_deg(&mut cooled),
+    );
+    assert!((cold - cooled).abs() < 1e-6, "{cold} {cooled}");
+    assert!((cold - warm).abs() > 0.5, "{cold} {warm}");
+}
+
+#[test]
 fn the_linkage_moves_as_the_rig_is_dimensioned() {
     let model = hitch_model_file::nominal();
     for [piston_mm, angle_deg, height_m, dh_dx, d2h_dx2] in KINEMATICS {

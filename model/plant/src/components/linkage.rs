@@ -30,6 +30,23 @@ pub struct LinkageDimensions {
     pub cylinder_axis_y_m: f64,
 }
 
+/// Joints of the linkage in one position, m; the rocker shaft C is the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Joints {
+    /// Piston pin A.
+    pub piston_pin: Point2<f64>,
+    /// End B of the rocker arm.
+    pub rocker_end: Point2<f64>,
+    /// End D of the lift arm.
+    pub lift_arm_end: Point2<f64>,
+    /// Joint E of lift rod and lower link.
+    pub rod_joint: Point2<f64>,
+    /// Pivot F of the lower link.
+    pub pivot: Point2<f64>,
+    /// Hitch point G.
+    pub hitch_point: Point2<f64>,
+}
+
 /// One position of the linkage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Posture {
@@ -56,8 +73,32 @@ pub struct Linkage {
 const CELLS: usize = 1024;
 
 impl LinkageDimensions {
-    /// Travel coordinate of the piston pin A, m, at a rocker angle.
-    fn pin_m(&self, angle_rad: f64) -> Result<f64, LinkageError> {
+    /// The joints at a rocker angle.
+    ///
+    /// # Errors
+    /// [`LinkageError`] if the dimensions cannot be assembled at this angle.
+    pub fn joints(&self, rocker_angle_rad: f64) -> Result<Joints, LinkageError> {
+        let (piston_pin, rocker_end) = self.pin_and_rocker_end(rocker_angle_rad)?;
+        let [lift_arm_end, rod_joint, hitch_point] = self.lift_joints(rocker_angle_rad)?;
+        Ok(Joints {
+            piston_pin,
+            rocker_end,
+            lift_arm_end,
+            rod_joint,
+            pivot: self.pivot(),
+            hitch_point,
+        })
+    }
+
+    fn pivot(&self) -> Point2<f64> {
+        Point2::new(self.pivot_x_m, self.pivot_y_m)
+    }
+
+    /// Piston pin A and end B of the rocker arm at a rocker angle.
+    fn pin_and_rocker_end(
+        &self,
+        angle_rad: f64,
+    ) -> Result<(Point2<f64>, Point2<f64>), LinkageError> {
         let rocker = Point2::from(self.rocker_arm_m * direction(angle_rad - std::f64::consts::PI));
         let rise = rocker.y - self.cylinder_axis_y_m;
         let along = square_root(self.connecting_rod_m.powi(2) - rise * rise);
@@ -66,14 +107,15 @@ impl LinkageDimensions {
             rise_m: rise.abs(),
             rocker_angle_deg: angle_rad.to_degrees(),
         })?;
-        Ok(rocker.x - along)
+        let pin = Point2::new(rocker.x - along, self.cylinder_axis_y_m);
+        Ok((pin, rocker))
     }
 
-    /// Height of G, m, at a rocker angle.
-    fn height_m(&self, angle_rad: f64) -> Result<f64, LinkageError> {
+    /// End D of the lift arm, joint E of the lift rod and hitch point G at a rocker angle.
+    fn lift_joints(&self, angle_rad: f64) -> Result<[Point2<f64>; 3], LinkageError> {
         let arm_end =
             Point2::from(self.lift_arm_m * direction(angle_rad - std::f64::consts::FRAC_PI_2));
-        let pivot = Point2::new(self.pivot_x_m, self.pivot_y_m);
+        let pivot = self.pivot();
         let span = arm_end - pivot;
         let reach = span.norm();
         let along = (reach * reach + self.lift_rod_joint_m.powi(2) - self.lift_rod_m.powi(2))
@@ -89,12 +131,18 @@ impl LinkageDimensions {
         // The triangle F-D-E closes in two ways; E is below the lift arm.
         let joint = along * unit - across * Vector2::new(-unit.y, unit.x);
         let hitch = pivot + joint * (self.lower_link_m / self.lift_rod_joint_m);
-        Ok(hitch.y)
+        Ok([arm_end, pivot + joint, hitch])
+    }
+
+    /// Travel coordinate of the piston pin A, m, at a rocker angle.
+    fn pin_m(&self, angle_rad: f64) -> Result<f64, LinkageError> {
+        Ok(self.pin_and_rocker_end(angle_rad)?.0.x)
     }
 
     /// Travel coordinate of the piston pin A, m, and height of G, m, at a rocker angle.
     fn pin_and_height_m(&self, angle_rad: f64) -> Result<(f64, f64), LinkageError> {
-        Ok((self.pin_m(angle_rad)?, self.height_m(angle_rad)?))
+        let [.., hitch] = self.lift_joints(angle_rad)?;
+        Ok((self.pin_m(angle_rad)?, hitch.y))
     }
 }
 

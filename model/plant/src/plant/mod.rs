@@ -1,5 +1,6 @@
 //! The plant in motion.
 
+mod conditions;
 mod instruments;
 mod rest;
 
@@ -47,15 +48,7 @@ impl<'m> Plant<'m> {
     /// A plant at rest with the currents `at_rest`, with the model's effects attached.
     #[must_use]
     pub fn new(model: &'m Model, rig: Rig, oil_temperature_c: f64, at_rest: Currents) -> Self {
-        let mut hooks = EffectHooks::default();
-        for effect in ordered_by_rank(&model.effects) {
-            let conditions = RunConditions {
-                oil_temperature_c,
-                constants: model.constants(),
-                linkage: model.linkage(),
-            };
-            effect.attach(conditions, &mut hooks);
-        }
+        let mut hooks = attached(model, oil_temperature_c);
         let effective = hooks
             .currents
             .iter_mut()
@@ -375,6 +368,20 @@ impl<'m> Plant<'m> {
             _ => self.flows = self.circuit().solve(self.openings, &self.state),
         }
     }
+}
+
+/// The hooks with the effects of a model, at an oil temperature, C.
+fn attached(model: &Model, oil_temperature_c: f64) -> EffectHooks {
+    let mut hooks = EffectHooks::default();
+    for effect in ordered_by_rank(&model.effects) {
+        let conditions = RunConditions {
+            oil_temperature_c,
+            constants: model.constants(),
+            linkage: model.linkage(),
+        };
+        effect.attach(conditions, &mut hooks);
+    }
+    hooks
 }
 
 /// Effects in the order of the machine, from the coil to the instruments, then user-defined terms, regardless of the
