@@ -1,8 +1,10 @@
-"""The page of `hitch serve` in a headless Chromium: open, find the worst place, rank, add, drag, undo, save.
+"""The page of `hitch serve` in a headless Chromium: open, find the worst place, rank, add, drag, undo, save, and drive the
+closed loop.
 
 Called with the page's address, the address of a page with a broken campaign, the browser, and a folder for pictures.
 """
 
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -113,6 +115,7 @@ def whole_story(page: Page, pictures: Path) -> None:
     assert abs(error_of(page) - before) < 0.02
     own_term(page, pictures)
     automatic(page, pictures)
+    drive(page, pictures, "desktop")
 
 
 def drag(page: Page) -> None:
@@ -171,6 +174,72 @@ def automatic(page: Page, pictures: Path) -> None:
     assert error_of(page) < 1.1
 
 
+def about(angle_deg: int) -> re.Pattern:
+    """Matches an angle within half a degree."""
+    return re.compile(rf"^({angle_deg - 1}\.[5-9]|{angle_deg}\.[0-4])")
+
+
+def both_in(page: Page, state: str) -> None:
+    """Waits until both hitches are in a state."""
+    for hitch in range(2):
+        expect(page.locator(f"#loop-state-{hitch}")).to_have_text(state)
+
+
+def assert_charts(page: Page) -> None:
+    """The strip charts follow the simulation, and no other panel covers them."""
+    drawn = page.evaluate(
+        "[...document.querySelectorAll('#loop-chart .scatterlayer path.js-line')].map((path) => path.getBBox().width)"
+    )
+    axis = page.evaluate("document.querySelector('#loop-chart .gridlayer').getBBox().width")
+    assert max(drawn) > 0.1 * axis, (drawn, axis)
+    loop, runs = (page.locator(name).bounding_box() for name in ("#loop", "#runs"))
+    assert runs["y"] + runs["height"] <= loop["y"], (runs, loop)
+
+
+def drive(page: Page, pictures: Path, view: str) -> None:
+    """Drives the closed loop: the hitch follows the lever, and a broken sensor is a fault."""
+    page.locator("#loop").scroll_into_view_if_needed()
+    page.wait_for_selector("#loop[data-ready]")
+    page.click("#loop-start")
+    expect(page.locator("#loop-start")).to_have_text("Pause")
+    lever = page.locator("#loop-lever")
+    lever.fill("110")
+    for hitch in range(2):
+        expect(page.locator(f"#loop-angle-{hitch}")).to_have_text(about(110))
+        expect(page.locator(f"#loop-error-{hitch}")).to_contain_text("0.")
+    both_in(page, "holding")
+    page.locator("#loop-raise").focus()
+    page.keyboard.down("Space")
+    expect(page.locator("#loop-angle-1")).to_have_text(re.compile("^11[2-9]"))
+    page.keyboard.up("Space")
+    both_in(page, "locked")
+    # The lever picks the hitch up.
+    for lever_deg in ("135", "100", "60"):
+        lever.fill(lever_deg)
+        page.wait_for_timeout(150)
+    expect(page.locator("#loop-angle-1")).to_have_text(about(60))
+    page.locator("#loop").screenshot(path=pictures / f"loop_{view}.png")
+    assert_charts(page)
+    lever.fill("120")
+    page.wait_for_timeout(300)
+    page.select_option("#loop-kind", "frozen")
+    expect(page.locator("#loop-state-1")).to_contain_text("fault: ")
+    expect(page.locator("#loop-events")).to_contain_text("Cause: ")
+    page.locator("#loop").screenshot(path=pictures / f"loop_fault_{view}.png")
+    assert_accessible(page)
+    assert_fits(page)
+    page.select_option("#loop-kind", "none")
+    both_in(page, "locked")
+    page.click("#loop-start")
+    expect(page.locator("#loop-start")).to_have_text("Start")
+    with page.expect_download() as saving:
+        page.click("#save-calibration")
+    text = Path(saving.value.path()).read_text(encoding="utf-8")
+    assert "[lower]" in text, text[-400:]
+    times = page.evaluate("performance.getEntriesByName('strip chart').map((entry) => entry.duration)")
+    print(f"{view}: strip charts drawn within {sorted(times)[len(times) // 2]:.0f} ms (median of {len(times)})")
+
+
 def main() -> None:
     address, broken, name, folder = sys.argv[1:5]
     program = shutil.which(name)
@@ -189,6 +258,7 @@ def main() -> None:
             page.screenshot(path=pictures / f"{view}.png", full_page=view == "phone")
             assert_fits(page)
             assert_accessible(page)
+            drive(page, pictures, view)
         assert not faults, faults
         page = opened(browser, broken, DESKTOP, [])
         expect(page.locator("#fault-text")).to_contain_text("lift.csv:2:18")

@@ -2,6 +2,7 @@
 //! images, the emulator and the browser that the ignored ones need.
 
 mod board_bench;
+mod closed_loop_page;
 mod ecu_tools;
 mod emulated;
 mod emulated_ecu;

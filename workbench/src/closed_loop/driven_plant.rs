@@ -66,6 +66,16 @@ impl<'m> DrivenPlant<'m> {
         self.plant.step(self.currents, STEP_S);
     }
 
+    /// Changes the load of the hitch, kg.
+    pub fn set_load_kg(&mut self, load_kg: f64) {
+        self.plant.set_load_kg(load_kg);
+    }
+
+    /// Changes the oil temperature, C.
+    pub fn set_oil_temperature_c(&mut self, oil_temperature_c: f64) {
+        self.plant.set_oil_temperature_c(oil_temperature_c);
+    }
+
     /// Currents in the coils.
     #[must_use]
     pub const fn currents(&self) -> Currents {

@@ -49,6 +49,11 @@ impl Instruments {
         }
     }
 
+    /// Changes the oil temperature, C.
+    pub fn set_oil_temperature_c(&mut self, oil_temperature_c: f64) {
+        self.oil_temperature_c = oil_temperature_c;
+    }
+
     /// The controller's inputs for the state `truth` and the coil `currents`, with the lever at `lever_deg`.
     pub fn read(&mut self, truth: &Reading, currents: Currents, lever_deg: f64) -> Inputs {
         let mut ampere = |true_a: f64| {

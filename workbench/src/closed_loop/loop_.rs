@@ -91,6 +91,17 @@ impl<'m> ClosedLoop<'m> {
         sample
     }
 
+    /// Changes the load of the hitch, kg, while it runs.
+    pub fn set_load_kg(&mut self, load_kg: f64) {
+        self.plant.set_load_kg(load_kg);
+    }
+
+    /// Changes the oil temperature, C, while it runs.
+    pub fn set_oil_temperature_c(&mut self, oil_temperature_c: f64) {
+        self.plant.set_oil_temperature_c(oil_temperature_c);
+        self.instruments.set_oil_temperature_c(oil_temperature_c);
+    }
+
     /// The controller.
     #[must_use]
     pub const fn controller(&self) -> &Controller {

@@ -17,6 +17,6 @@ pub use instruments::{
     ANGLE_NOISE_DEG, CURRENT_NOISE_A, CYLINDER_NOISE_BAR, Instruments, PUMP_NOISE_BAR, SUPPLY_V,
 };
 pub use loop_::{ClosedLoop, Sample};
-pub use metrics::{MoveResult, Summary};
+pub use metrics::{ARRIVED_DEG, MoveResult, Summary};
 pub use moves::{Course, LoopRun, MoveTrace, courses, figures, run};
 pub use scenario::{Move, Scenario};

@@ -28,6 +28,23 @@ const FILES: &[(&str, &str, &str)] = &[
     ("dom.js", SCRIPT, include_str!("assets/dom.js")),
     ("error_map.js", SCRIPT, include_str!("assets/error_map.js")),
     ("own_term.js", SCRIPT, include_str!("assets/own_term.js")),
+    (
+        "closed_loop.js",
+        SCRIPT,
+        include_str!("assets/closed_loop.js"),
+    ),
+    (
+        "loop_orders.js",
+        SCRIPT,
+        include_str!("assets/loop_orders.js"),
+    ),
+    ("linkage.js", SCRIPT, include_str!("assets/linkage.js")),
+    (
+        "strip_chart.js",
+        SCRIPT,
+        include_str!("assets/strip_chart.js"),
+    ),
+    ("valve_map.js", SCRIPT, include_str!("assets/valve_map.js")),
     ("missing.js", SCRIPT, include_str!("assets/missing.js")),
     (
         "model_panel.js",

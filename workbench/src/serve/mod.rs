@@ -5,6 +5,7 @@
 mod assets;
 mod guard;
 mod jobs;
+mod live;
 mod own_term;
 mod routes;
 mod server;

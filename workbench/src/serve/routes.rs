@@ -18,12 +18,14 @@ use super::own_term::TermForm;
 use super::session::Session;
 use super::sessions::{Sessions, Shared};
 use super::tasks::{Task, moved};
-use super::{assets, jobs, own_term, views};
+use super::{assets, jobs, live, own_term, views};
 use crate::comparison::{Grouping, worst_in_part};
 use crate::error::Error;
 
-type Known = State<Arc<Sessions>>;
-type Answer = Result<Json<Value>, Refusal>;
+/// The sessions of all tabs.
+pub(super) type Known = State<Arc<Sessions>>;
+/// A view, or the refusal of a request.
+pub(super) type Answer = Result<Json<Value>, Refusal>;
 
 /// All routes, protected by the token.
 pub fn routes() -> Router<Arc<Sessions>> {
@@ -43,6 +45,7 @@ pub fn routes() -> Router<Arc<Sessions>> {
         .route("/{token}/api/go", post(go))
         .route("/{token}/api/events", get(events))
         .route("/{token}/api/model", get(model))
+        .merge(live::routes())
 }
 
 /// Refusal of a request, with the fault that the page shows.
@@ -91,8 +94,9 @@ impl IntoResponse for Refusal {
 
 /// The session of a request.
 #[derive(Debug, Deserialize)]
-struct Of {
-    session: String,
+pub(super) struct Of {
+    /// Its id.
+    pub(super) session: String,
 }
 
 async fn page() -> Response {

@@ -12,6 +12,7 @@ use hitch_plant::{Effect, Model, full_name};
 use serde_json::Value;
 use tokio::sync::broadcast;
 
+use super::live::Bench;
 use super::source::Subject;
 use crate::comparison::Evaluated;
 use crate::explanation;
@@ -93,6 +94,8 @@ pub struct Session {
     pub explained: Option<Arc<Explained>>,
     /// The running computation.
     pub job: Option<Job>,
+    /// The closed loop.
+    pub bench: Option<Bench>,
     /// Sends messages to the tab.
     pub messages: broadcast::Sender<Value>,
 }
@@ -113,6 +116,7 @@ impl Session {
             ranking: None,
             explained: None,
             job: None,
+            bench: None,
             messages: broadcast::Sender::new(KEPT_MESSAGES),
         }
     }

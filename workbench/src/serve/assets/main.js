@@ -1,5 +1,6 @@
 // @ts-check
 /** State of the page, and handlers of its controls. */
+import { connectLoop, followModel, redrawLoop } from "./closed_loop.js";
 import { byId, element, sigmas } from "./dom.js";
 import { drawMap, worstCell } from "./error_map.js";
 import { drawMissing, drawRanking, insert } from "./missing.js";
@@ -65,6 +66,7 @@ function draw() {
   drawMap(state, guarded(visit));
   drawModel(state, acts);
   drawMissing(state, { ...acts, signed: signed?.name });
+  followModel(state);
 }
 
 /** Actions of the panels. */
@@ -195,6 +197,12 @@ function say(text) {
   setTimeout(() => { message.hidden = true; }, 8000);
 }
 
+/** Shows an error for some seconds.
+ * @param {unknown} error */
+function sayError(error) {
+  say(error instanceof Refused ? [error.fault.what, error.fault.mend].filter(Boolean).join(" ") : String(error));
+}
+
 /** Wraps a function so that its errors are shown on the page.
  * @template {any[]} A
  * @param {(...args: A) => Promise<void>} work */
@@ -203,7 +211,7 @@ function guarded(work) {
     try {
       await work(...args);
     } catch (error) {
-      say(error instanceof Refused ? [error.fault.what, error.fault.mend].filter(Boolean).join(" ") : String(error));
+      sayError(error);
     }
   };
 }
@@ -263,6 +271,8 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   if (!view) return;
   draw();
   drawRun(view, undefined);
+  redrawLoop();
 });
 
+connectLoop(sayError);
 open();

@@ -1,0 +1,197 @@
+// @ts-check
+/** The closed loop in real time: requests steps of the simulation, and shows both hitches. */
+import { byId, element } from "./dom.js";
+import { drawLinkage } from "./linkage.js";
+import { connectOrders, limitLever, orders } from "./loop_orders.js";
+import { Refused, address, post } from "./server.js";
+import { addSamples, clearChart, drawChart } from "./strip_chart.js";
+import { drawMaps } from "./valve_map.js";
+
+/** Time between two requests, ms. */
+const REQUEST_MS = 60;
+
+/** Longest advance of a request, ms: after a pause of the page, the simulation does not catch up. */
+const LONGEST_MS = 250;
+
+/** Events that are kept. */
+const EVENTS = 12;
+
+/** Simulated time over the time of the answer, below which the page states it. */
+const SLOW = 0.9;
+
+/** Begin of the refusal of a step after a change of the model. */
+const CHANGED = "the model has changed";
+
+/** The model of the simulation; another one needs a new simulation. */
+let model = "";
+/** Description of the machine.
+ * @type {any} */
+let machine = null;
+/** @type {ReturnType<typeof drawLinkage> | null} */
+let move = null;
+let running = false;
+let visible = false;
+/** Shows an error.
+ * @type {(error: unknown) => void} */
+let say = () => {};
+/** State and fault of each hitch, as last reported. */
+let reported = ["", ""];
+/** The simulation that answers belong to: those of an older one are ignored. */
+let generation = 0;
+
+/** Connects the section.
+ * @param {(error: unknown) => void} show shows an error */
+export function connectLoop(show) {
+  say = show;
+  connectOrders();
+  byId("loop-start").addEventListener("click", () => (running ? pause() : start()));
+  byId("loop-restart").addEventListener("click", () => reopen());
+  new IntersectionObserver(([entry]) => {
+    visible = entry.isIntersecting;
+    if (visible && !machine) reopen();
+  }, { rootMargin: "200px" }).observe(byId("loop"));
+}
+
+/** Follows the model of the page.
+ * @param {any} state */
+export function followModel(state) {
+  const now = JSON.stringify([state.at, state.effects]);
+  /** @type {HTMLAnchorElement} */ (byId("save-calibration")).href = address("calibration");
+  const changed = now !== model;
+  model = now;
+  if (changed && machine) reopen();
+}
+
+/** Draws everything in the colours of the theme. */
+export function redrawLoop() {
+  if (!machine) return;
+  drawMaps(machine.maps);
+  drawChart(true);
+}
+
+/** Starts a new simulation at rest, with the hitch at the lever. */
+async function reopen() {
+  generation += 1;
+  const own = generation;
+  try {
+    const opened = await post("loop/open", { orders: { ...orders(), button: null, fault: null } });
+    if (own !== generation) return;
+    machine = opened;
+  } catch (error) {
+    pause();
+    say(error);
+    return;
+  }
+  limitLever(machine.swing_deg);
+  move = drawLinkage(/** @type {any} */ (byId("linkage")), machine.linkage);
+  move(machine.angle_deg, machine.angle_deg, machine.angle_deg, orders().load_kg);
+  byId("loop-equal").hidden = !machine.equal;
+  reported = ["", ""];
+  byId("loop-events").replaceChildren();
+  clearChart();
+  drawMaps(machine.maps);
+  drawChart(true);
+  byId("loop").dataset.ready = "";
+}
+
+async function start() {
+  if (running) return;
+  if (!machine) await reopen();
+  if (!machine) return;
+  running = true;
+  showRunning();
+  let last = performance.now();
+  while (running) {
+    await new Promise((resolve) => { setTimeout(resolve, REQUEST_MS); });
+    const now = performance.now();
+    const elapsed = Math.min(LONGEST_MS, Math.round(now - last));
+    last = now;
+    if (document.hidden || !running || elapsed < 1) continue;
+    await step(elapsed);
+  }
+}
+
+function pause() {
+  running = false;
+  showRunning();
+}
+
+function showRunning() {
+  byId("loop-start").textContent = running ? "Pause" : "Start";
+  byId("loop").toggleAttribute("data-running", running);
+}
+
+/** Advances the simulation.
+ * @param {number} milliseconds */
+async function step(milliseconds) {
+  const own = generation;
+  const given = orders();
+  const began = performance.now();
+  try {
+    const answer = await post("loop/step", { orders: given, milliseconds });
+    if (own !== generation) return;
+    show(answer, given);
+    const pace = milliseconds / (performance.now() - began);
+    byId("loop-pace").textContent = pace < SLOW ? `slower than real time: ${pace.toFixed(2)}` : "";
+  } catch (error) {
+    if (own !== generation) return;
+    // The page follows the change of the model with a new simulation.
+    if (error instanceof Refused && error.fault.what.startsWith(CHANGED)) return;
+    pause();
+    say(error);
+  }
+}
+
+/** Shows an answer.
+ * @param {any} answer
+ * @param {any} given */
+function show(answer, given) {
+  const { loops } = answer;
+  addSamples(loops, given.lever_deg);
+  const last = (/** @type {any} */ loop) => loop.angle_deg[loop.angle_deg.length - 1];
+  if (loops[0].angle_deg.length > 0 && move) move(given.lever_deg, last(loops[0]), last(loops[1]), given.load_kg);
+  showFigures(loops, given.lever_deg);
+  loops.forEach(report);
+  if (visible) drawChart();
+}
+
+/** @param {any[]} loops
+ * @param {number} lever_deg */
+function showFigures(loops, lever_deg) {
+  const signed = (/** @type {number} */ value) => `${value > 0 ? "+" : ""}${value.toFixed(2)} deg`;
+  loops.forEach((loop, index) => {
+    const set = (/** @type {string} */ key, /** @type {string} */ text) => {
+      const cell = byId(`loop-${key}-${index}`);
+      if (cell.textContent !== text) cell.textContent = text;
+    };
+    const angle = loop.angle_deg[loop.angle_deg.length - 1];
+    set("state", loop.fault ? `${loop.state}: ${loop.fault}` : loop.state);
+    if (angle !== undefined) set("angle", `${angle.toFixed(2)} deg`);
+    const figures = loop.move;
+    set("overshoot", figures ? `${figures.overshoot_deg.toFixed(2)} deg` : "–");
+    set("arrived", figures && figures.arrived_s !== null ? `${figures.arrived_s.toFixed(2)} s` : "–");
+    set("error", !figures ? "–" : figures.error_deg === null ? "moving" : signed(figures.error_deg));
+    byId(`loop-state-${index}`).toggleAttribute("data-fault", Boolean(loop.fault));
+  });
+  const text = `${lever_deg.toFixed(1)} deg`;
+  if (byId("loop-set-point").textContent !== text) byId("loop-set-point").textContent = text;
+}
+
+/** Adds a change of state or fault to the list of events. Changes of the moving states are not listed.
+ * @param {any} loop
+ * @param {number} index */
+function report(loop, index) {
+  const moves = ["holding", "lifting", "lowering", "settling"].includes(loop.state);
+  const key = loop.fault ?? (moves ? "" : loop.state);
+  if (reported[index] === key) return;
+  const first = reported[index] === "" && key === "";
+  reported[index] = key;
+  if (first) return;
+  const cause = [loop.fault_text, loop.trip_text && `safety envelope: ${loop.trip_text}`].filter(Boolean).join("; ");
+  const time = loop.time_s.length ? `${loop.time_s[loop.time_s.length - 1].toFixed(1)} s` : "";
+  const whose = index === 0 ? "first calibration" : "rebuilt calibration";
+  const text = [loop.state_text, cause && `Cause: ${cause}.`].filter(Boolean).join(" ");
+  const events = byId("loop-events");
+  events.prepend(element("p", { class: loop.fault ? "fault" : null }, `${time}, ${whose}: ${text}`));
+  while (events.children.length > EVENTS) events.lastElementChild?.remove();
+}

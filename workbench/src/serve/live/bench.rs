@@ -1,0 +1,105 @@
+//! The thread in which both hitches run.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, SyncSender, TrySendError, channel, sync_channel};
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use super::hitch::Hitch;
+use super::machine::Machine;
+use super::orders::Orders;
+use crate::comparison::Evaluated;
+
+/// An advance of both hitches.
+struct Advance {
+    orders: Orders,
+    steps: u32,
+    answer: Sender<Value>,
+}
+
+/// Both hitches of a tab; the thread ends when this is dropped.
+#[derive(Debug)]
+pub struct Bench {
+    /// The present model at the start.
+    pub of: Arc<Evaluated>,
+    orders: SyncSender<Advance>,
+}
+
+/// Reason why an advance has no result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoAnswer {
+    /// An earlier advance has not ended.
+    Busy,
+    /// The simulation has failed.
+    Failed,
+}
+
+/// The result of an advance, when it is ready.
+pub struct Pending(Receiver<Value>);
+
+impl Pending {
+    /// Waits for the result.
+    ///
+    /// # Errors
+    /// If the simulation has failed.
+    pub fn wait(self) -> Result<Value, NoAnswer> {
+        self.0.recv().map_err(|_| NoAnswer::Failed)
+    }
+}
+
+impl Bench {
+    /// Starts both hitches at rest at an angle, degree.
+    ///
+    /// # Errors
+    /// If no thread can be started.
+    pub fn start(
+        of: Arc<Evaluated>,
+        machine: Machine,
+        orders: Orders,
+        angle_deg: f64,
+    ) -> std::io::Result<Self> {
+        let (sender, advances) = sync_channel(1);
+        std::thread::Builder::new()
+            .name("closed loop".to_owned())
+            .spawn(move || run(&machine, &orders, angle_deg, &advances))?;
+        Ok(Self { of, orders: sender })
+    }
+
+    /// Requests an advance by `steps` milliseconds.
+    ///
+    /// # Errors
+    /// If the previous one has not ended, or the simulation has failed.
+    pub fn advance(&self, orders: Orders, steps: u32) -> Result<Pending, NoAnswer> {
+        let (answer, pending) = channel();
+        let advance = Advance {
+            orders,
+            steps,
+            answer,
+        };
+        match self.orders.try_send(advance) {
+            Ok(()) => Ok(Pending(pending)),
+            Err(TrySendError::Full(_)) => Err(NoAnswer::Busy),
+            Err(TrySendError::Disconnected(_)) => Err(NoAnswer::Failed),
+        }
+    }
+}
+
+/// Advances both hitches until the sender is dropped.
+fn run(machine: &Machine, orders: &Orders, angle_deg: f64, advances: &Receiver<Advance>) {
+    let calibrations = [&machine.initial, &machine.rebuilt];
+    let mut hitches =
+        calibrations.map(|calibration| Hitch::new(&machine.plant, calibration, orders, angle_deg));
+    while let Ok(advance) = advances.recv() {
+        let began = Instant::now();
+        let loops = hitches
+            .each_mut()
+            .map(|hitch| hitch.advance(&advance.orders, advance.steps));
+        let took_s = began.elapsed().as_secs_f64().max(1e-6);
+        // The request may have been abandoned.
+        let _ = advance.answer.send(json!({
+            "loops": loops,
+            "speed": f64::from(advance.steps) * 1e-3 / took_s,
+        }));
+    }
+}

@@ -1,0 +1,91 @@
+//! What the page needs to draw the closed loop: linkage, ranges and valve maps.
+
+use hitch_plant::{LinkageError, Model};
+use hitch_quantities::ValidCalibration;
+use hitch_quantities::calibration::valve_table::ValveTable;
+use serde_json::{Value, json};
+
+use super::machine::Machine;
+use super::orders::{LOADS_KG, LONGEST_MS, OILS_C};
+use crate::error::Error;
+
+/// Drawn positions of the linkage over its swing; the page interpolates between them with less than 0.2 mm of error.
+const POSITIONS: u32 = 64;
+/// Largest current of a drawn valve map, A.
+const LARGEST_CURRENT_A: f64 = 3.5;
+
+/// The description of a machine whose hitches begin at an angle, degree.
+///
+/// # Errors
+/// If the linkage cannot be assembled.
+pub fn described(machine: &Machine, angle_deg: f64) -> Result<Value, Error> {
+    let failed =
+        |error: LinkageError| Error::Failed(format!("the linkage cannot be drawn: {error}"));
+    let (low_rad, high_rad) = machine.plant.linkage().swing_rad();
+    let (initial, rebuilt) = (&machine.initial, &machine.rebuilt);
+    Ok(json!({
+        "angle_deg": angle_deg,
+        "swing_deg": [low_rad.to_degrees(), high_rad.to_degrees()],
+        "loads_kg": [LOADS_KG.start(), LOADS_KG.end()],
+        "oils_c": [OILS_C.start(), OILS_C.end()],
+        "longest_ms": LONGEST_MS,
+        "linkage": linkage(&machine.plant).map_err(failed)?,
+        "equal": initial == rebuilt,
+        "maps": [valve_maps(initial), valve_maps(rebuilt)],
+    }))
+}
+
+/// Joints at equally spaced angles, in m; x to the rear, y up.
+fn linkage(model: &Model) -> Result<Value, LinkageError> {
+    let (low_rad, high_rad) = model.linkage().swing_rad();
+    let dimensions = &model.constants().linkage;
+    let position = |index: u32| {
+        let angle_rad = low_rad + (high_rad - low_rad) * f64::from(index) / f64::from(POSITIONS);
+        let joints = dimensions.joints(angle_rad)?;
+        let points = [
+            joints.piston_pin,
+            joints.rocker_end,
+            joints.lift_arm_end,
+            joints.rod_joint,
+            joints.pivot,
+            joints.hitch_point,
+        ];
+        Ok(json!({
+            "angle_deg": angle_rad.to_degrees(),
+            "joints": points.map(|point| [point.x, point.y]),
+        }))
+    };
+    let positions = (0..=POSITIONS)
+        .map(position)
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(json!({
+        "joints": ["A", "B", "D", "E", "F", "G"],
+        "stroke_m": model.constants().cylinder.stroke_m,
+        "positions": positions,
+    }))
+}
+
+/// Flow over current of both valves.
+fn valve_maps(calibration: &ValidCalibration) -> Value {
+    let map = |table: &ValveTable| {
+        let points = table.used().iter();
+        let pairs = points.map(|point| {
+            let flow_lpm = f64::from(point.flow.0) * 60e-6;
+            [f64::from(point.current.0) * 1e-3, flow_lpm]
+        });
+        let saturated_lpm = f64::from(table.saturation().0) * 60e-6;
+        let ends = [[LARGEST_CURRENT_A, saturated_lpm]];
+        let threshold_a = f64::from(table.threshold().0) * 1e-3;
+        let all: Vec<[f64; 2]> = std::iter::once([0.0, 0.0])
+            .chain(pairs)
+            .chain(ends)
+            .collect();
+        json!({
+            "current_a": all.iter().map(|pair| pair[0]).collect::<Vec<_>>(),
+            "flow_lpm": all.iter().map(|pair| pair[1]).collect::<Vec<_>>(),
+            "threshold_a": threshold_a,
+            "saturation_lpm": saturated_lpm,
+        })
+    };
+    json!({ "lift": map(&calibration.lift), "lower": map(&calibration.lower) })
+}

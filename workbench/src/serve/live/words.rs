@@ -1,0 +1,64 @@
+//! States and faults of the controller in words.
+
+use hitch_quantities::{Fault, State, Trip};
+
+/// A state, and what the operator can do in it.
+pub const fn state(state: State) -> &'static str {
+    match state {
+        State::Locked => "Locked: move the lever through the position of the hitch.",
+        State::Holding => "Holding: both coils are off.",
+        State::Lifting => "Lifting.",
+        State::Lowering => "Lowering.",
+        State::Settling => "Settling: the check valve closes.",
+        State::Stalled => "Stalled: the hitch did not move; the next attempt follows.",
+        State::Fault => "Fault: both coils are off.",
+        State::TransportLock => "Transport lock: both coils are off.",
+        State::Floating => "Floating: the hitch follows the ground.",
+        State::Teaching => "Teaching.",
+    }
+}
+
+/// A fault.
+pub const fn fault(fault: Fault) -> &'static str {
+    match fault {
+        Fault::Lever => "the lever signal is missing or out of range",
+        Fault::Angle => "the angle signal is missing, out of range, jumps or is frozen",
+        Fault::Sinking => "the hitch sinks",
+        Fault::NotMoving => "flow is demanded, and the hitch does not move",
+        Fault::Envelope => "the safety envelope found a forbidden command or motion",
+        Fault::NotFollowing => "the angle shows less travel than the current must have caused",
+        Fault::Coil => "a coil, its wire or its driver is faulty",
+        Fault::Supply => "the supply voltage is out of range",
+        Fault::Overrun => "the controller is called too late, or its clock is wrong",
+        Fault::Reference => "the reference of the converters is wrong",
+        Fault::SensorSupply => "the supply of the sensors is out of range",
+        Fault::EnableLine => "the enable line of the drivers is faulty",
+        Fault::Memory => "the calibration in memory has changed",
+    }
+}
+
+/// A row of the safety envelope.
+pub const fn trip(trip: Trip) -> &'static str {
+    match trip {
+        Trip::Stale => "no fresh command",
+        Trip::BothCoils => "both coils requested",
+        Trip::Overrun => "step too late or too early",
+        Trip::Supply => "supply out of range",
+        Trip::Lever => "lever signal missing or out of range",
+        Trip::AngleMissing => "angle signal missing or out of range",
+        Trip::AngleJumps => "angle signal jumps",
+        Trip::AngleFrozen => "angle signal frozen",
+        Trip::AngleNoisy => "angle signal noisy",
+        Trip::NotFollowing => "travel too small for the current",
+        Trip::Against => "motion against the energised coil",
+        Trip::CoilOpen => "coil open",
+        Trip::CoilShort => "coil shorted",
+        Trip::CoilStuck => "driver stuck",
+        Trip::Reference => "reference wrong",
+        Trip::SensorSupply => "sensor supply out of range",
+        Trip::AngleTracks => "tracks of the angle sensor disagree",
+        Trip::Clock => "clock wrong",
+        Trip::EnableLine => "enable line faulty",
+        Trip::Memory => "calibration memory damaged",
+    }
+}
