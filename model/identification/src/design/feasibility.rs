@@ -6,8 +6,7 @@ use rayon::prelude::*;
 use crate::design::levels::Levels;
 use crate::design::plan::{Manoeuvre, RunPlan, Stand};
 
-/// Largest pressure over the relief setting: the proof pressure of hydraulic components over their rated pressure
-/// (ISO 10771-1).
+/// Largest pressure over the relief setting: the usual proof pressure of hydraulic components over their rated pressure.
 const PROOF: f64 = 1.5;
 
 /// Whether the loads can be lifted all over the swing, and the simulated pressures stay below the proof pressure with
