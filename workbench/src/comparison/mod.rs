@@ -9,9 +9,8 @@ use std::sync::Arc;
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::{Experiment, ReadyRun};
 use hitch_identification::data::problem::Problem;
-use hitch_identification::estimate::Estimate;
-use hitch_identification::estimation::fit::{ErrorSums, Fit, evaluate, fit_loads};
-use hitch_identification::residuals::whitening::Weights;
+use hitch_identification::estimation::fit::{ErrorSums, Fit};
+use hitch_identification::explanation::explain::fit_base;
 use hitch_plant::simulation::Trace;
 use hitch_plant::{Channel, Model};
 use schemars::JsonSchema;
@@ -102,14 +101,11 @@ pub struct Evaluated {
 }
 
 impl Evaluated {
-    /// Evaluates a model without changing it, except that each run's load is estimated within the tolerance of its
-    /// weighing.
+    /// Evaluates a model without changing it. The loads are estimated within the tolerance of their weighing, and the clock
+    /// offsets within theirs, as before a search for effects: the error is the one that `explain` starts from.
     pub fn new(campaign: &Campaign, model: &Model) -> Self {
         let experiment = Experiment::new(campaign, model);
-        let start = Estimate::new(&experiment, model.effects.clone());
-        let weights = Weights::new(Problem::new(&experiment, model), &start);
-        let loaded = fit_loads(Problem::new(&experiment, model), &weights, start);
-        let fit = evaluate(Problem::new(&experiment, model), loaded);
+        let fit = fit_base(Problem::new(&experiment, model));
         Self {
             experiment: Arc::new(experiment),
             fit,
