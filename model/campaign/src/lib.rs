@@ -27,7 +27,7 @@ mod table;
 
 use std::path::{Path, PathBuf};
 
-pub use csv_log::flow_curve;
+pub use csv_log::{flow_curve, linkage_table};
 
 use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;

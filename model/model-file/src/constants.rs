@@ -5,12 +5,26 @@ use std::ops::RangeInclusive;
 use hitch_plant::units::{M3_S_PER_LPM, PA_PER_BAR};
 use hitch_plant::{
     CheckValve, Compensator, Constants, Cylinder, Dynamics, LinkageDimensions, Masses, Oil,
-    OrificeValve, Pump, ReliefValve, ValveCurve,
+    OrificeValve, Pump, PumpKind, ReliefValve, ValveCurve,
 };
 
 const M3_PER_L: f64 = 1e-3;
 const S_PER_MS: f64 = 1e-3;
-const M_PER_MM: f64 = 1e-3;
+/// Metre in a millimetre.
+pub const M_PER_MM: f64 = 1e-3;
+/// Radian in a degree.
+pub const RAD_PER_DEG: f64 = std::f64::consts::PI / 180.0;
+
+/// The machines that have a constant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Had {
+    /// All.
+    Always,
+    /// Those with a load-sensing pump.
+    LoadSensing,
+    /// Those whose linkage is not measured.
+    Dimensions,
+}
 
 /// A constant of a model file.
 pub struct Constant {
@@ -24,7 +38,87 @@ pub struct Constant {
     pub range: RangeInclusive<f64>,
     /// Accessor in the model, in SI.
     pub place: fn(&mut Constants) -> &mut f64,
+    /// The machines that have it.
+    pub had: Had,
 }
+
+/// The variants of a machine, on which its constants depend.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Variant {
+    /// Whether its pump is load-sensing.
+    pub load_sensing: bool,
+    /// Whether its linkage is measured.
+    pub measured_linkage: bool,
+}
+
+impl Variant {
+    /// The variant of a machine.
+    pub fn of(constants: &Constants) -> Self {
+        Self {
+            load_sensing: constants.pump.kind == PumpKind::LoadSensing,
+            measured_linkage: constants.linkage_table.is_some(),
+        }
+    }
+
+    /// Whether the machine has a constant.
+    pub fn has(self, constant: &Constant) -> bool {
+        match constant.had {
+            Had::Always => true,
+            Had::LoadSensing => self.load_sensing,
+            Had::Dimensions => !self.measured_linkage,
+        }
+    }
+
+    /// Its constants, in the order of the file.
+    pub fn constants(self) -> impl Iterator<Item = &'static Constant> {
+        CONSTANTS.iter().filter(move |constant| self.has(constant))
+    }
+
+    /// The constants of a table.
+    pub fn constants_of(self, table: &str) -> impl Iterator<Item = &'static Constant> {
+        self.constants()
+            .filter(move |constant| constant.table == table)
+    }
+
+    /// The keys of a table, with those that choose a variant.
+    pub fn keys(self, table: &str) -> Vec<&'static str> {
+        let curve = CURVES.iter().any(|curve| curve.table == table);
+        let more: &[&'static str] = match table {
+            "pump" => &[KIND],
+            "cylinder" => &[CYLINDERS],
+            "linkage" if self.measured_linkage => &LINKAGE_COLUMNS,
+            _ if curve => &[CURRENT, FLOW],
+            _ => &[],
+        };
+        let numbers = self.constants_of(table).map(|constant| constant.key);
+        match table {
+            "pump" | "cylinder" => more.iter().copied().chain(numbers).collect(),
+            _ => numbers.chain(more.iter().copied()).collect(),
+        }
+    }
+}
+
+/// Sets constants that the machine does not have to zero.
+pub fn clear_others(constants: &mut Constants) {
+    let variant = Variant::of(constants);
+    for constant in CONSTANTS.iter().filter(|constant| !variant.has(constant)) {
+        *(constant.place)(constants) = 0.0;
+    }
+}
+
+/// Key of the kind of a pump.
+pub const KIND: &str = "kind";
+/// The kinds of pumps, as written.
+pub const KINDS: [(&str, PumpKind); 2] = [
+    ("fixed-displacement", PumpKind::FixedDisplacement),
+    ("load-sensing", PumpKind::LoadSensing),
+];
+/// Key of the number of cylinders.
+pub const CYLINDERS: &str = "cylinders";
+/// Range of the number of cylinders.
+pub const CYLINDER_COUNT: RangeInclusive<f64> = 1.0..=4.0;
+/// Keys of a measured linkage: travel, angle, height.
+pub const LINKAGE_COLUMNS: [&str; 3] = ["stroke_mm", "angle_deg", "height_mm"];
 
 /// A valve's flow curve.
 pub struct Curve {
@@ -78,14 +172,23 @@ const fn constant(
         unit,
         range,
         place,
+        had: Had::Always,
+    }
+}
+
+impl Constant {
+    const fn only(self, had: Had) -> Self {
+        Self { had, ..self }
     }
 }
 
 /// All constants except the flow curves.
 #[rustfmt::skip]
-pub static CONSTANTS: [Constant; 27] = [
+pub static CONSTANTS: [Constant; 29] = [
     constant(("pump", "theoretical_flow_lpm"), M3_S_PER_LPM, 0.1..=1000.0, |c| &mut c.pump.theoretical_flow_m3_s),
     constant(("pump", "volumetric_efficiency"), 1.0, 0.01..=1.0, |c| &mut c.pump.volumetric_efficiency),
+    constant(("pump", "standby_pressure_bar"), PA_PER_BAR, 0.1..=300.0, |c| &mut c.pump.standby_pressure_pa).only(Had::LoadSensing),
+    constant(("pump", "response_time_ms"), S_PER_MS, 0.0..=1000.0, |c| &mut c.pump.response_time_s).only(Had::LoadSensing),
     constant(("relief_valve", "set_pressure_bar"), PA_PER_BAR, 1.0..=1000.0, |c| &mut c.relief_valve.set_pressure_pa),
     constant(("compensator", "margin_bar"), PA_PER_BAR, 0.1..=100.0, |c| &mut c.compensator.margin_pa),
     constant(("check_valve", "cracking_pressure_bar"), PA_PER_BAR, 0.0..=100.0, |c| &mut c.check_valve.cracking_pressure_pa),
@@ -100,30 +203,18 @@ pub static CONSTANTS: [Constant; 27] = [
     constant(("cylinder", "viscous_friction_n_s_m"), 1.0, 0.0..=1e7, |c| &mut c.cylinder.viscous_friction_n_s_m),
     constant(("oil", "density_kg_m3"), 1.0, 500.0..=1500.0, |c| &mut c.oil.density_kg_m3),
     constant(("oil", "bulk_modulus_pa"), 1.0, 1e7..=1e10, |c| &mut c.oil.bulk_modulus_pa),
-    constant(("linkage", "rocker_arm_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.rocker_arm_m),
-    constant(("linkage", "lift_arm_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lift_arm_m),
-    constant(("linkage", "lift_rod_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lift_rod_m),
-    constant(("linkage", "lower_link_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lower_link_m),
-    constant(("linkage", "lift_rod_joint_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lift_rod_joint_m),
-    constant(("linkage", "connecting_rod_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.connecting_rod_m),
-    constant(("linkage", "pivot_x_m"), 1.0, -10.0..=10.0, |c| &mut c.linkage.pivot_x_m),
-    constant(("linkage", "pivot_y_m"), 1.0, -10.0..=10.0, |c| &mut c.linkage.pivot_y_m),
-    constant(("linkage", "cylinder_axis_y_m"), 1.0, -10.0..=10.0, |c| &mut c.linkage.cylinder_axis_y_m),
+    constant(("linkage", "rocker_arm_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.rocker_arm_m).only(Had::Dimensions),
+    constant(("linkage", "lift_arm_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lift_arm_m).only(Had::Dimensions),
+    constant(("linkage", "lift_rod_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lift_rod_m).only(Had::Dimensions),
+    constant(("linkage", "lower_link_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lower_link_m).only(Had::Dimensions),
+    constant(("linkage", "lift_rod_joint_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.lift_rod_joint_m).only(Had::Dimensions),
+    constant(("linkage", "connecting_rod_m"), 1.0, 0.01..=10.0, |c| &mut c.linkage.connecting_rod_m).only(Had::Dimensions),
+    constant(("linkage", "pivot_x_m"), 1.0, -10.0..=10.0, |c| &mut c.linkage.pivot_x_m).only(Had::Dimensions),
+    constant(("linkage", "pivot_y_m"), 1.0, -10.0..=10.0, |c| &mut c.linkage.pivot_y_m).only(Had::Dimensions),
+    constant(("linkage", "cylinder_axis_y_m"), 1.0, -10.0..=10.0, |c| &mut c.linkage.cylinder_axis_y_m).only(Had::Dimensions),
     constant(("masses", "dead_weight_kg"), 1.0, 0.0..=10_000.0, |c| &mut c.masses.dead_weight_kg),
     constant(("masses", "piston_kg"), 1.0, 0.1..=10_000.0, |c| &mut c.masses.piston_kg),
 ];
-
-/// The keys of a table.
-pub fn keys(table: &str) -> Vec<&'static str> {
-    let numbers = CONSTANTS
-        .iter()
-        .filter(|constant| constant.table == table)
-        .map(|constant| constant.key);
-    let is_curve = CURVES.iter().any(|curve| curve.table == table);
-    numbers
-        .chain([CURRENT, FLOW].into_iter().filter(|_| is_curve))
-        .collect()
-}
 
 /// Constants before reading: all NaN, so that a forgotten one is detected.
 pub fn unset() -> Constants {
@@ -138,6 +229,9 @@ pub fn unset() -> Constants {
         pump: Pump {
             theoretical_flow_m3_s: UNSET,
             volumetric_efficiency: UNSET,
+            kind: PumpKind::FixedDisplacement,
+            standby_pressure_pa: UNSET,
+            response_time_s: UNSET,
         },
         relief_valve: ReliefValve {
             set_pressure_pa: UNSET,
@@ -150,6 +244,7 @@ pub fn unset() -> Constants {
         lower_valve: valve(),
         spool_time_constant_s: UNSET,
         cylinder: Cylinder {
+            count: 1,
             bore_m: UNSET,
             stroke_m: UNSET,
             dead_volume_m3: UNSET,
@@ -170,6 +265,7 @@ pub fn unset() -> Constants {
             pivot_y_m: UNSET,
             cylinder_axis_y_m: UNSET,
         },
+        linkage_table: None,
         masses: Masses {
             dead_weight_kg: UNSET,
             piston_kg: UNSET,

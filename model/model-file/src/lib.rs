@@ -56,6 +56,7 @@ mod scalars;
 mod starting_points;
 mod template;
 mod terms;
+mod variant;
 mod write;
 
 pub use scalars::{Scalar, scalars, with_scalars};

@@ -27,13 +27,16 @@ const fn meaning(
 
 /// Tables and constants, in the order of the file.
 #[rustfmt::skip]
-static MEANINGS: [Meaning; 42] = [
-    meaning(("pump", ""), "Fixed-displacement pump with an open-centre bypass compensator.", ""),
-    meaning(("pump", "theoretical_flow_lpm"), "Displacement times speed, l/min", "Pump data sheet: displacement in cm3/rev times rev/min over 1000"),
+static MEANINGS: [Meaning; 49] = [
+    meaning(("pump", ""), "Pump at constant speed.", ""),
+    meaning(("pump", "kind"), "\"fixed-displacement\" with a bypass compensator, or \"load-sensing\": of variable displacement", "Circuit diagram: a pump with an arrow through it and a load-sensing line is load-sensing"),
+    meaning(("pump", "theoretical_flow_lpm"), "Largest displacement times speed, l/min", "Pump data sheet: displacement in cm3/rev times rev/min over 1000"),
     meaning(("pump", "volumetric_efficiency"), "Delivered over theoretical flow, no unit", "Pump data sheet: efficiency curve at working pressure; 0.85 to 0.95 is usual"),
-    meaning(("relief_valve", ""), "Relief valve at the pump, ideal: no override.", ""),
+    meaning(("pump", "standby_pressure_bar"), "Pump pressure while no valve asks for oil, bar", "Pump data sheet: standby pressure; a gauge shows it at idle"),
+    meaning(("pump", "response_time_ms"), "Time constant of the pump pressure, ms", "Pump data sheet: time to 63 % of the stroke, 30 to 100 ms; only a dynamic model uses it"),
+    meaning(("relief_valve", ""), "Relief valve at the pump, or pressure limiter of a load-sensing pump.", ""),
     meaning(("relief_valve", "set_pressure_bar"), "Setting, bar", "Circuit diagram or the tag of the valve; check with a gauge at the end of the stroke"),
-    meaning(("compensator", ""), "Bypass pressure compensator.", ""),
+    meaning(("compensator", ""), "Bypass pressure compensator, or controller of a load-sensing pump.", ""),
     meaning(("compensator", "margin_bar"), "Pump pressure over the load pressure, bar", "Valve block data sheet: margin, spring setting or standby pressure"),
     meaning(("check_valve", ""), "Load-holding check valve between lift valve and cylinder.", ""),
     meaning(("check_valve", "cracking_pressure_bar"), "Pressure at which it opens, bar", "Check valve data sheet: cracking pressure, or the type code of the spring"),
@@ -49,11 +52,12 @@ static MEANINGS: [Meaning; 42] = [
     meaning(("lower_valve", "flow_lpm"), "Flows at these currents, l/min, not falling; 0 where it is shut", "The same curve"),
     meaning(("spool", ""), "Both spools; only a dynamic model uses it.", ""),
     meaning(("spool", "time_constant_ms"), "First-order lag behind the current, ms", "Valve data sheet: step response, time to 63 % of the stroke"),
-    meaning(("cylinder", ""), "Single-acting lift cylinder; of two, the one with the same total area.", ""),
-    meaning(("cylinder", "bore_mm"), "Bore, mm", "Cylinder data sheet; of two alike cylinders 1.414 times the bore"),
+    meaning(("cylinder", ""), "Single-acting lift cylinders.", ""),
+    meaning(("cylinder", "cylinders"), "Number of cylinders in parallel", "Drawing of the hitch; most tractors from category III on have 2"),
+    meaning(("cylinder", "bore_mm"), "Bore, mm", "Cylinder data sheet; that of each"),
     meaning(("cylinder", "stroke_mm"), "Stroke, mm", "Cylinder data sheet"),
-    meaning(("cylinder", "dead_volume_l"), "Oil in line and cylinder with the piston in, l", "Length and bore of line and hose; only a dynamic model uses it"),
-    meaning(("cylinder", "viscous_friction_n_s_m"), "Viscous friction at the piston, N s/m", "Rarely stated; hitch model fit estimates it; only a dynamic model uses it"),
+    meaning(("cylinder", "dead_volume_l"), "Oil in lines and cylinders with the pistons in, l", "Length and bore of line and hose; only a dynamic model uses it"),
+    meaning(("cylinder", "viscous_friction_n_s_m"), "Viscous friction at all pistons, N s/m", "Rarely stated; hitch model fit estimates it; only a dynamic model uses it"),
     meaning(("oil", ""), "Oil.", ""),
     meaning(("oil", "density_kg_m3"), "Density, kg/m3", "Oil data sheet, at 15 degC"),
     meaning(("oil", "bulk_modulus_pa"), "Bulk modulus of oil and line, Pa", "Oil data sheet, less for hoses and air: 1e9 to 1.5e9; only a dynamic model uses it"),
@@ -67,9 +71,12 @@ static MEANINGS: [Meaning; 42] = [
     meaning(("linkage", "pivot_x_m"), "Pivot of the lower link, x, m", "Drawing of the hitch"),
     meaning(("linkage", "pivot_y_m"), "Pivot of the lower link, y, m", "Drawing of the hitch"),
     meaning(("linkage", "cylinder_axis_y_m"), "Height of the cylinder axis, y, m", "Drawing of the hitch"),
+    meaning(("linkage", "stroke_mm"), "Travels of the piston, mm, from 0 to the stroke, rising", "Measured on the machine"),
+    meaning(("linkage", "angle_deg"), "Angles of the rocker shaft at these travels, degree, rising", "Measured with the angle sensor"),
+    meaning(("linkage", "height_mm"), "Heights of the hitch point at these travels, mm, rising", "Measured from the ground"),
     meaning(("masses", ""), "Moving masses without the load.", ""),
     meaning(("masses", "dead_weight_kg"), "Links and frame, as mass at the hitch point, kg", "Weigh the empty hitch at the hitch point"),
-    meaning(("masses", "piston_kg"), "Piston and rod, kg", "Cylinder data sheet"),
+    meaning(("masses", "piston_kg"), "All pistons and rods, kg", "Cylinder data sheet"),
 ];
 
 /// The documentation of a constant, or of a table if the key is empty.

@@ -11,8 +11,10 @@ use hitch_plant::{
     AddedEffect, Constants, Dynamics, Effect, LinkageError, Model, Parameter, ValveCurve,
 };
 
-use crate::constants::{CONSTANTS, CURRENT, CURVES, Constant, Curve, FLOW, TABLES, keys, unset};
-use crate::{FORMAT, starting_point, terms};
+use crate::constants::{
+    CURRENT, CURVES, Constant, Curve, FLOW, TABLES, Variant, clear_others, unset,
+};
+use crate::{FORMAT, starting_point, terms, variant};
 
 /// Range of the currents of a flow curve, A.
 const CURRENT_A: std::ops::RangeInclusive<f64> = 0.0..=20.0;
@@ -38,9 +40,11 @@ pub fn model(source: &SourceFile) -> Result<Model, InputError> {
     let complete = base.is_some();
     let mut constants = base.map_or_else(unset, |base| base.constants().clone());
     constants.dynamics = dynamics(&top, complete.then_some(constants.dynamics))?;
+    variant::read(&top, &mut constants)?;
     for table in TABLES {
         read_table(&top, table, &mut constants, complete)?;
     }
+    clear_others(&mut constants);
     let name = top
         .text("name")?
         .map_or_else(|| file_stem(source), str::to_owned);
@@ -89,11 +93,12 @@ fn read_table(
         return if complete {
             Ok(())
         } else {
-            Err(missing_table(top, name))
+            Err(missing_table(top, name, Variant::of(constants)))
         };
     };
-    table.only(&keys(name))?;
-    for constant in CONSTANTS.iter().filter(|constant| constant.table == name) {
+    let variant = Variant::of(constants);
+    table.only(&variant.keys(name))?;
+    for constant in variant.constants_of(name) {
         read_constant(&table, constant, constants, complete)?;
     }
     for curve in CURVES.iter().filter(|curve| curve.table == name) {
@@ -102,10 +107,10 @@ fn read_table(
     Ok(())
 }
 
-fn missing_table(top: &TomlTable<'_>, name: &str) -> InputError {
+fn missing_table(top: &TomlTable<'_>, name: &str, variant: Variant) -> InputError {
     let mend = format!(
         "add it, or a line base = \"nominal\" to use the nominal values for missing keys: {}",
-        keys(name).join(", ")
+        variant.keys(name).join(", ")
     );
     top.error(format!("table [{name}] is missing"), mend)
 }
@@ -118,7 +123,8 @@ fn read_constant(
 ) -> Result<(), InputError> {
     match table.number(constant.key, constant.range.clone())? {
         Some(value) => *(constant.place)(constants) = value * constant.unit,
-        None if complete => {}
+        // The base has no value for a variant that it is not.
+        None if complete && !(constant.place)(constants).is_nan() => {}
         None => return Err(table.missing(constant.key)),
     }
     Ok(())

@@ -2,7 +2,7 @@
 
 use hitch_plant::{LinkageError, Model};
 
-use crate::constants::{CONSTANTS, Constant};
+use crate::constants::{Constant, Variant};
 use crate::meaning::meaning_of;
 
 /// Ends of keys, and the unit that each stands for.
@@ -40,8 +40,8 @@ pub struct Scalar {
 #[must_use]
 pub fn scalars(model: &Model) -> Vec<Scalar> {
     let mut constants = model.constants().clone();
-    let mut scalars: Vec<Scalar> = CONSTANTS
-        .iter()
+    let mut scalars: Vec<Scalar> = Variant::of(&constants)
+        .constants()
         .map(|constant| of_constant(constant, *(constant.place)(&mut constants)))
         .collect();
     for added in &model.effects {
@@ -79,14 +79,16 @@ pub fn with_scalars(model: &Model, values: &[f64]) -> Result<Model, LinkageError
     let before = scalars(model);
     let mut changes = before.iter().zip(values);
     let mut constants = model.constants().clone();
-    for (constant, (scalar, &value)) in CONSTANTS.iter().zip(&mut changes) {
+    let variant = Variant::of(&constants);
+    let count = variant.constants().count();
+    for (constant, (scalar, &value)) in variant.constants().zip(&mut changes) {
         if value != scalar.value {
             *(constant.place)(&mut constants) = value * constant.unit;
         }
     }
     let mut effects = model.effects.clone();
     let places = effects.iter_mut().flat_map(|added| &mut added.values);
-    for (place, &value) in places.zip(&values[CONSTANTS.len().min(values.len())..]) {
+    for (place, &value) in places.zip(&values[count.min(values.len())..]) {
         *place = value;
     }
     Ok(model.with_constants(constants)?.with_effects(effects))

@@ -5,12 +5,23 @@ use std::fmt::Write as _;
 use hitch_input::input_error::InputError;
 use hitch_input::naming::offer_names;
 use hitch_input::source_file::SourceFile;
-use hitch_plant::{Constants, Dynamics, Model, OrificeValve, ValveCurve};
+use hitch_plant::{Constants, Dynamics, LinkageTable, Model, OrificeValve, PumpKind, ValveCurve};
 
-use crate::constants::{CONSTANTS, CURVES, Constant, TABLES};
+use crate::constants::{
+    CONSTANTS, CURVES, CYLINDER_COUNT, Constant, Had, KINDS, TABLES, Variant, clear_others,
+};
 use crate::meaning::meaning_of;
 use crate::round_trip::decimal;
-use crate::write::{curve_lines, quoted};
+use crate::write::{curve_lines, quoted, variant_lines};
+
+/// Name of the pump's kind.
+const PUMP_KIND: &str = "pump.kind";
+/// Name of the number of cylinders.
+const CYLINDER_NUMBER: &str = "cylinder.cylinders";
+/// Usual standby pressure of a load-sensing pump, Pa.
+const USUAL_STANDBY_PA: f64 = 20e5;
+/// Usual time constant of a load-sensing pump, s.
+const USUAL_RESPONSE_S: f64 = 0.05;
 
 const HEAD: &str = "\
 # Model of an electro-hydraulic tractor hitch. Replace the values by those of your data sheets.
@@ -77,7 +88,17 @@ impl Template {
     /// # Errors
     /// There is no such constant: the fault and a suggested correction.
     pub fn get(&self, name: &str) -> Result<String, String> {
-        let constant = find(name)?;
+        match name {
+            PUMP_KIND => {
+                let kind = KINDS
+                    .iter()
+                    .find(|(_, kind)| *kind == self.constants.pump.kind);
+                return Ok(kind.map_or("", |(written, _)| *written).to_owned());
+            }
+            CYLINDER_NUMBER => return Ok(self.constants.cylinder.count.to_string()),
+            _ => {}
+        }
+        let constant = self.find(name)?;
         let value = *(constant.place)(&mut self.constants.clone());
         Ok(decimal(value, constant.unit))
     }
@@ -87,7 +108,12 @@ impl Template {
     /// # Errors
     /// There is no such constant, or the value is out of range: the fault and a suggested correction.
     pub fn set(&mut self, name: &str, value: &str) -> Result<(), String> {
-        let constant = find(name)?;
+        match name {
+            PUMP_KIND => return self.set_pump_kind(value.trim()),
+            CYLINDER_NUMBER => return self.set_cylinders(value.trim()),
+            _ => {}
+        }
+        let constant = self.find(name)?;
         let number = value.trim().replace(',', ".").parse::<f64>().ok();
         match number.filter(|number| constant.range.contains(number)) {
             Some(number) => {
@@ -100,6 +126,50 @@ impl Template {
                     "{name} is {value:?}; it is a number from {low} to {high}"
                 ))
             }
+        }
+    }
+
+    /// Chooses the kind of the pump; a load-sensing one starts with usual values.
+    fn set_pump_kind(&mut self, value: &str) -> Result<(), String> {
+        let Some((_, kind)) = KINDS.iter().find(|(written, _)| *written == value) else {
+            return Err(format!(
+                "{PUMP_KIND} is {value:?}; it is fixed-displacement or load-sensing"
+            ));
+        };
+        let pump = &mut self.constants.pump;
+        if *kind == PumpKind::LoadSensing && pump.kind != *kind {
+            pump.standby_pressure_pa = USUAL_STANDBY_PA;
+            pump.response_time_s = USUAL_RESPONSE_S;
+        }
+        pump.kind = *kind;
+        clear_others(&mut self.constants);
+        Ok(())
+    }
+
+    fn set_cylinders(&mut self, value: &str) -> Result<(), String> {
+        let number = value.parse::<u8>().ok();
+        let known = number.filter(|count| CYLINDER_COUNT.contains(&f64::from(*count)));
+        self.constants.cylinder.count =
+            known.ok_or_else(|| format!("{CYLINDER_NUMBER} is {value:?}; it is 1 to 4"))?;
+        Ok(())
+    }
+
+    /// Replaces the dimensions of the linkage by a measured one, whose travel ends at the stroke.
+    pub fn set_linkage(&mut self, linkage: LinkageTable) {
+        self.constants.cylinder.stroke_m = linkage.span_m().1;
+        self.constants.linkage_table = Some(linkage);
+        clear_others(&mut self.constants);
+    }
+
+    /// The constant with the name `table.key`, if the machine has it.
+    fn find(&self, name: &str) -> Result<&'static Constant, String> {
+        let constant = find(name)?;
+        match (constant.had, Variant::of(&self.constants).has(constant)) {
+            (_, true) => Ok(constant),
+            (Had::LoadSensing, _) => Err(format!(
+                "{name} is of a load-sensing pump; set {PUMP_KIND}=load-sensing first"
+            )),
+            _ => Err(format!("{name} is replaced by the measured linkage")),
         }
     }
 
@@ -143,7 +213,11 @@ impl Template {
                 let _ = write!(text, "\n# {}", meaning.what);
             }
             let _ = write!(text, "\n[{table}]\n");
-            for constant in CONSTANTS.iter().filter(|constant| constant.table == table) {
+            for (key, line) in variant_lines(&constants, table, true) {
+                comment(&mut text, table, key);
+                text += &line;
+            }
+            for constant in Variant::of(&constants).constants_of(table) {
                 comment(&mut text, table, constant.key);
                 let value = decimal(*(constant.place)(&mut constants), constant.unit);
                 let _ = writeln!(text, "{} = {value}", constant.key);
@@ -171,7 +245,8 @@ fn find(name: &str) -> Result<&'static Constant, String> {
     let mut all = CONSTANTS.iter();
     all.find(|constant| named(constant) == name).ok_or_else(|| {
         let known: Vec<String> = CONSTANTS.iter().map(named).collect();
-        let known: Vec<&str> = known.iter().map(String::as_str).collect();
+        let known = known.iter().map(String::as_str);
+        let known: Vec<&str> = known.chain([PUMP_KIND, CYLINDER_NUMBER]).collect();
         format!(
             "there is no constant {name:?}; {}",
             offer_names(name, &known)
@@ -182,14 +257,18 @@ fn find(name: &str) -> Result<&'static Constant, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::constants::keys;
-
     #[test]
     fn every_constant_has_a_meaning() {
         for table in TABLES {
             assert!(meaning_of(table, "").is_some(), "{table}");
-            for key in keys(table) {
-                assert!(meaning_of(table, key).is_some(), "{table}.{key}");
+            for measured_linkage in [false, true] {
+                let variant = Variant {
+                    load_sensing: true,
+                    measured_linkage,
+                };
+                for key in variant.keys(table) {
+                    assert!(meaning_of(table, key).is_some(), "{table}.{key}");
+                }
             }
         }
     }

@@ -4,9 +4,12 @@ use std::fmt::Write as _;
 
 use hitch_effects::TermEffect;
 use hitch_plant::units::M3_S_PER_LPM;
-use hitch_plant::{AddedEffect, Constants, Dynamics, Model, ValveCurve};
+use hitch_plant::{AddedEffect, Constants, Dynamics, Model, PumpKind, ValveCurve};
 
-use crate::constants::{CONSTANTS, CURRENT, CURVES, Curve, FLOW, TABLES};
+use crate::constants::{
+    CURRENT, CURVES, CYLINDERS, Curve, FLOW, KIND, KINDS, LINKAGE_COLUMNS, M_PER_MM, RAD_PER_DEG,
+    TABLES, Variant,
+};
 use crate::round_trip::decimal;
 use crate::terms;
 
@@ -23,7 +26,10 @@ pub fn model(model: &Model) -> String {
     );
     for table in TABLES {
         let _ = write!(text, "\n[{table}]\n");
-        for constant in CONSTANTS.iter().filter(|constant| constant.table == table) {
+        for (_, line) in variant_lines(&constants, table, false) {
+            text += &line;
+        }
+        for constant in Variant::of(&constants).constants_of(table) {
             let value = decimal(*(constant.place)(&mut constants), constant.unit);
             let _ = writeln!(text, "{} = {value}", constant.key);
         }
@@ -38,6 +44,33 @@ pub fn model(model: &Model) -> String {
         write_effect(&mut text, effect);
     }
     text
+}
+
+/// The lines of a table that choose a variant of the machine, each with its key; those with the default only if `all`.
+pub fn variant_lines(constants: &Constants, table: &str, all: bool) -> Vec<(&'static str, String)> {
+    match (table, &constants.linkage_table) {
+        ("pump", _) if all || constants.pump.kind != PumpKind::FixedDisplacement => {
+            let kind = KINDS.iter().find(|(_, kind)| *kind == constants.pump.kind);
+            let kind = kind.map_or("", |(written, _)| written);
+            vec![(KIND, format!("{KIND} = \"{kind}\"\n"))]
+        }
+        ("cylinder", _) if all || constants.cylinder.count != 1 => {
+            let count = constants.cylinder.count;
+            vec![(CYLINDERS, format!("{CYLINDERS} = {count}\n"))]
+        }
+        ("linkage", Some(linkage)) => {
+            let columns = [
+                list(linkage.travel_m(), M_PER_MM),
+                list(linkage.angle_rad(), RAD_PER_DEG),
+                list(linkage.height_m(), M_PER_MM),
+            ];
+            let keys = LINKAGE_COLUMNS.into_iter();
+            keys.zip(columns)
+                .map(|(key, column)| (key, format!("{key} = {column}\n")))
+                .collect()
+        }
+        _ => Vec::new(),
+    }
 }
 
 fn write_curve(text: &mut String, curve: &Curve, constants: &mut Constants) {

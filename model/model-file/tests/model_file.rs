@@ -375,3 +375,47 @@ fn faults_of_a_term_in_a_model_file_have_a_place() {
         );
     }
 }
+
+const LOAD_SENSING: &str = "format = 1\nbase = \"dynamic\"\n[pump]\nkind = \"load-sensing\"\n\
+    standby_pressure_bar = 22\nresponse_time_ms = 40\n[cylinder]\ncylinders = 2\nstroke_mm = 160\n[linkage]\n\
+    stroke_mm = [0, 50, 100, 160]\nangle_deg = [45, 72.5, 101, 136]\nheight_mm = [-855.6, -640, -425, -170]\n";
+
+#[test]
+fn another_machine_comes_back_bit_for_bit() {
+    let model = read(LOAD_SENSING.as_bytes()).unwrap();
+    let constants = model.constants();
+    assert_eq!(constants.cylinder.count, 2);
+    assert_eq!(constants.pump.kind, hitch_plant::PumpKind::LoadSensing);
+    assert!((constants.pump.standby_pressure_pa - 22e5).abs() < 1e-6);
+    assert!((model.linkage().at(0.05).rocker_angle_rad.to_degrees() - 72.5).abs() < 0.01);
+    let back = read(to_toml(&model).as_bytes()).unwrap();
+    assert_eq!(back.constants(), constants);
+    assert_eq!(to_toml(&back), to_toml(&model));
+    let template = hitch_model_file::Template::of("copy", &model)
+        .text()
+        .unwrap();
+    assert_eq!(read(template.as_bytes()).unwrap().constants(), constants);
+}
+
+#[test]
+fn faults_of_another_machine_are_told() {
+    for (from, to, said) in [
+        ("load-sensing", "axial", "kind \"axial\" is not known"),
+        ("standby_pressure_bar = 22\n", "", "standby_pressure_bar"),
+        ("cylinders = 2", "cylinders = 1.5", "not a whole number"),
+        ("cylinders = 2", "cylinders = 9", "m.toml:8:13"),
+        ("101", "70", "point 3 does not"),
+        ("101, ", "", "same number"),
+        ("height_mm", "rocker_arm_m = 1\nheight_mm", "rocker_arm_m"),
+        ("height_mm = [-855.6, -640, -425, -170]", "", "height_mm"),
+        (
+            "stroke_mm = 160",
+            "stroke_mm = 170",
+            "covers 0.0 to 160.0 mm",
+        ),
+        ("kind = \"load-sensing\"\n", "", "standby_pressure_bar"),
+    ] {
+        let fault = fault(&LOAD_SENSING.replacen(from, to, 1));
+        assert!(fault.contains(said), "{to}: {fault}");
+    }
+}

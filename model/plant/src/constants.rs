@@ -4,6 +4,7 @@ use crate::components::check_valve::CheckValve;
 use crate::components::compensator::Compensator;
 use crate::components::cylinder::Cylinder;
 use crate::components::linkage::LinkageDimensions;
+use crate::components::linkage_table::LinkageTable;
 use crate::components::load::Masses;
 use crate::components::oil::Oil;
 use crate::components::orifice_valve::OrificeValve;
@@ -42,8 +43,10 @@ pub struct Constants {
     pub cylinder: Cylinder,
     /// The oil.
     pub oil: Oil,
-    /// The linkage.
+    /// The linkage; zero if it is measured.
     pub linkage: LinkageDimensions,
+    /// The measured linkage, which replaces the dimensions.
+    pub linkage_table: Option<LinkageTable>,
     /// The moving masses without the load.
     pub masses: Masses,
 }

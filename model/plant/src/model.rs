@@ -6,6 +6,10 @@ use crate::components::linkage::Linkage;
 use crate::components::linkage_error::LinkageError;
 use crate::constants::{Constants, Dynamics};
 use crate::hooks::effect::{AddedEffect, Effect};
+use crate::units::GRAVITY_M_S2;
+
+/// Smallest usual load as a share of the largest possible one.
+const LIGHT_SHARE: f64 = 0.03;
 
 /// A model of the hitch: constants, the linkage solved from them, and the added effects.
 #[derive(Debug, Clone)]
@@ -27,7 +31,7 @@ impl Model {
     /// # Errors
     /// [`LinkageError`] when the dimensions make no linkage.
     pub fn new(name: impl Into<String>, constants: Constants) -> Result<Self, LinkageError> {
-        let linkage = Linkage::new(&constants.linkage, constants.cylinder.stroke_m)?;
+        let linkage = linkage_of(&constants)?;
         Ok(Self {
             name: name.into(),
             effects: Vec::new(),
@@ -44,13 +48,11 @@ impl Model {
     /// [`LinkageError`] when the dimensions make no linkage.
     pub fn with_constants(&self, constants: Constants) -> Result<Self, LinkageError> {
         let same_linkage = constants.linkage == self.constants.linkage
+            && constants.linkage_table == self.constants.linkage_table
             && constants.cylinder.stroke_m == self.constants.cylinder.stroke_m;
         let linkage = match same_linkage {
             true => Arc::clone(&self.linkage),
-            false => Arc::new(Linkage::new(
-                &constants.linkage,
-                constants.cylinder.stroke_m,
-            )?),
+            false => Arc::new(linkage_of(&constants)?),
         };
         Ok(Self {
             spool_lag_s: spool_lag_s(&constants),
@@ -78,10 +80,33 @@ impl Model {
         self.spool_lag_s
     }
 
+    /// Time constant of the pump pressure, s; zero in a quasi-static plant.
+    #[must_use]
+    pub fn pump_response_s(&self) -> f64 {
+        match self.constants.dynamics {
+            Dynamics::Steady => 0.0,
+            Dynamics::Dynamic => self.constants.pump.response_time_s,
+        }
+    }
+
     /// The linkage.
     #[must_use]
     pub fn linkage(&self) -> &Arc<Linkage> {
         &self.linkage
+    }
+
+    /// Three usual loads, kg: 3, 9 and 15 % of the load that the relief valve just permits in the middle of the
+    /// stroke, with the first rounded to one digit. The paper's rig, whose loads are 50, 150 and 250 kg, sets the shares.
+    #[must_use]
+    pub fn usual_loads_kg(&self) -> [f64; 3] {
+        let constants = &self.constants;
+        let force_n = constants.relief_valve.set_pressure_pa * constants.cylinder.area_m2();
+        let middle_m = 0.5 * constants.cylinder.stroke_m;
+        let most_kg = force_n / (self.linkage.dh_dx(middle_m) * GRAVITY_M_S2);
+        let light_kg = LIGHT_SHARE * most_kg;
+        let digit = 10f64.powf(light_kg.log10().floor());
+        let light_kg = (light_kg / digit).round() * digit;
+        [1.0, 3.0, 5.0].map(|factor| factor * light_kg)
     }
 
     /// The same model with other effects.
@@ -113,6 +138,15 @@ impl Model {
             terms,
             ..self.clone()
         }
+    }
+}
+
+/// The linkage of a plant: measured, or solved from its dimensions.
+fn linkage_of(constants: &Constants) -> Result<Linkage, LinkageError> {
+    let stroke_m = constants.cylinder.stroke_m;
+    match &constants.linkage_table {
+        Some(table) => Linkage::tabulated(table, stroke_m),
+        None => Linkage::new(&constants.linkage, stroke_m),
     }
 }
 

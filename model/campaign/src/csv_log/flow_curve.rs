@@ -2,51 +2,52 @@
 
 use std::path::Path;
 
-use csv::StringRecord;
-use hitch_input::input_error::{InputError, quote};
+use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 use hitch_plant::units::M3_S_PER_LPM;
 use hitch_plant::{ValveCurve, ValveCurveError};
 
-use crate::csv_log::dialect::{Decimals, Header, HeaderCell, rows};
+use crate::csv_log::number_table::{NumberTable, Wanted};
 
-/// Units of current, in A.
-const CURRENT: [(&str, f64); 2] = [("a", 1.0), ("ma", 1e-3)];
+const EXAMPLE: &str = "Current [A];Flow [l/min] or current_a,flow_lpm";
 
-/// Units of flow, in m3/s.
-const FLOW: [(&str, f64); 5] = [
-    ("lpm", M3_S_PER_LPM),
-    ("l/min", M3_S_PER_LPM),
-    ("l_min", M3_S_PER_LPM),
-    ("m3/s", 1.0),
-    ("m3_s", 1.0),
+const COLUMNS: [Wanted; 2] = [
+    Wanted {
+        quantity: "current",
+        words: &[],
+        units: &[("a", 1.0), ("ma", 1e-3)],
+        offered: "A or mA",
+        example: EXAMPLE,
+    },
+    Wanted {
+        quantity: "flow",
+        words: &[],
+        units: &[
+            ("lpm", M3_S_PER_LPM),
+            ("l/min", M3_S_PER_LPM),
+            ("l_min", M3_S_PER_LPM),
+            ("l/s", 1e-3),
+            ("l_s", 1e-3),
+            ("gpm", M3_S_PER_GPM),
+            ("m3/s", 1.0),
+            ("m3_s", 1.0),
+        ],
+        offered: "l/min, l/s, gpm or m3/s",
+        example: EXAMPLE,
+    },
 ];
 
-/// Reads a flow curve: a header with a current in A or mA and a flow in l/min or m3/s, and one row per point.
+/// A US gallon a minute, m3/s.
+const M3_S_PER_GPM: f64 = 3.785_411_784e-3 / 60.0;
+
+/// Reads a flow curve: a header with a current in A or mA and a flow in l/min, l/s, gpm or m3/s, and one row per point.
 ///
 /// # Errors
 /// A fault in the table, by line and column.
 pub fn read(path: &Path) -> Result<ValveCurve, InputError> {
     let source = SourceFile::read_any(path)?;
-    let header = Header::guessed(&source.text).ok_or_else(|| {
-        let mend = "write a header such as current_a,flow_lpm above the numbers, and one row for each point";
-        source.error("is not a table with a header", mend)
-    })?;
-    let (current, ampere) = column(&source, &header, &CURRENT, "current", "A or mA")?;
-    let (flow, m3_s) = column(&source, &header, &FLOW, "flow", "l/min or m3/s")?;
-    let decimals = Decimals::in_columns(&source.text, &header, &[current, flow]);
-    let (mut currents, mut flows, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
-    for (byte, row) in rows(&source.text, header.data_byte, header.mark) {
-        if row
-            .iter()
-            .all(|cell| cell.is_empty() || cell.starts_with('#'))
-        {
-            continue;
-        }
-        currents.push(ampere * number(&source, byte, &row, current, decimals)?);
-        flows.push(m3_s * number(&source, byte, &row, flow, decimals)?);
-        bytes.push(byte);
-    }
+    let table = NumberTable::read(&source, &COLUMNS)?;
+    let ([currents, flows], bytes) = (table.columns, table.bytes);
     let passes_at_rest = flows.first().is_some_and(|&flow| flow > 0.0);
     if passes_at_rest {
         let mend = "insert a first row with the opening current and flow 0";
@@ -62,53 +63,6 @@ pub fn read(path: &Path) -> Result<ValveCurve, InputError> {
             )
         }
         ValveCurveError::Length { .. } => source.error(error.to_string(), "add points"),
-    })
-}
-
-/// Index and unit of the column of a quantity.
-fn column(
-    source: &SourceFile,
-    header: &Header,
-    units: &[(&str, f64)],
-    quantity: &str,
-    offered: &str,
-) -> Result<(usize, f64), InputError> {
-    let cells = header.cells.iter().enumerate();
-    let mut found = cells.filter_map(|(index, cell)| Some((index, unit(cell, units)?)));
-    found.next().ok_or_else(|| {
-        source.error_at(
-            header.byte,
-            format!("no column is a {quantity} in {offered}"),
-            "write the unit in the header, as in Current [A];Flow [l/min] or current_a,flow_lpm",
-        )
-    })
-}
-
-/// Size of a column's unit in SI; `None` for unknown units.
-fn unit(cell: &HeaderCell, units: &[(&str, f64)]) -> Option<f64> {
-    let written = cell.unit.as_ref().map(|unit| unit.to_lowercase());
-    let name = cell.name.to_lowercase();
-    let is_of = |unit: &str| match &written {
-        Some(written) => written == unit,
-        None => name.ends_with(&format!("_{unit}")),
-    };
-    units
-        .iter()
-        .find(|(unit, _)| is_of(unit))
-        .map(|(_, si)| *si)
-}
-
-fn number(
-    source: &SourceFile,
-    byte: usize,
-    row: &StringRecord,
-    cell: usize,
-    decimals: Decimals,
-) -> Result<f64, InputError> {
-    let text = row.get(cell).unwrap_or_default();
-    decimals.number(text).ok_or_else(|| {
-        let what = format!("{} is not a number", quote(text));
-        source.error_at(byte, what, "write a number, or delete the row")
     })
 }
 

@@ -2,8 +2,10 @@
 mod clock;
 mod dialect;
 pub mod flow_curve;
+pub mod linkage_table;
 mod mapped;
 mod native;
+mod number_table;
 
 use std::sync::Arc;
 

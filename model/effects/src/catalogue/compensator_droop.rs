@@ -49,9 +49,9 @@ pub static WITH_LOAD: Described = Described {
     id: "compensator-droop",
     form: None,
     title: "Droop of the pressure compensator",
-    equation: "p_P - p_C = 4 bar - slope p_C; Q = Q_table(I) sqrt((p_P - p_C - 2.5 bar) / 1.5 bar)",
+    equation: "p_P - p_C = margin - slope p_C; Q = Q_table(I) sqrt((p_P - p_C - p_crack) / dp_ref)",
     source: "spool force balance of a three-way compensator; up to 0.02 bar/bar either way",
-    shows: "heavy loads lift slower than light ones, and the pump pressure stands less than 4 bar \
+    shows: "heavy loads lift slower than light ones, and the pump pressure stands less than its margin \
          over the load",
     parameters: &[SLOPE],
     channels: CHANNELS,
@@ -66,7 +66,7 @@ pub static WITH_FLOW: Described = Described {
     id: "compensator-droop",
     form: Some("flow"),
     title: "Droop of the pressure compensator with flow and load",
-    equation: "p_P - p_C = 4 bar (1 - flow Q / Q_pump) - slope p_C",
+    equation: "p_P - p_C = margin (1 - flow Q / Q_pump) - slope p_C",
     source: "spool force balance of a three-way compensator; 0.05 to 0.2 of the margin over the \
          pump's flow",
     shows: "slow lifts are relatively faster than fast ones, and the pump pressure stands the less \
@@ -93,7 +93,7 @@ pub static LAGGING: Described = Described {
     id: "compensator-droop",
     form: Some("lagging"),
     title: "Lag of the pressure compensator, with droop over load and flow",
-    equation: "lag p_P' = p_C + 4 bar (1 - flow Q / Q_pump) - slope p_C - p_P",
+    equation: "lag p_P' = p_C + margin (1 - flow Q / Q_pump) - slope p_C - p_P",
     source: "spool behind the orifice of its load-sensing line: 5 to 20 ms",
     shows: "the pump pressure follows every start and stop of a lift late; the lift flow gives way to a cylinder \
          pressure that rings, which dies away the faster for it",
@@ -124,7 +124,7 @@ pub static LAGGING: Described = Described {
     refines: true,
     attach: |values, conditions, hooks| {
         if values[0] >= SHORTEST_LAG_S {
-            hooks.compensator_lag_s = values[0];
+            hooks.compensator_lag_s += values[0];
             hooks.limit_step(STEP_S);
         }
         fall_with_load(values[1], hooks);

@@ -31,8 +31,10 @@ pub struct Scalar {
 ///
 /// The cracking pressure only affects the flow of the lift valve, whose flow curve can compensate any value.
 #[rustfmt::skip]
-pub static SCALARS: [Scalar; 11] = [
+pub static SCALARS: [Scalar; 13] = [
     Scalar { name: "pump.theoretical_flow_lpm", unit: "l/min", si: M3_S_PER_LPM, tolerance: 0.05, dynamic: false, separable: true, place: |c| &mut c.pump.theoretical_flow_m3_s },
+    Scalar { name: "pump.standby_pressure_bar", unit: "bar", si: PA_PER_BAR, tolerance: 0.1, dynamic: false, separable: true, place: |c| &mut c.pump.standby_pressure_pa },
+    Scalar { name: "pump.response_time_ms", unit: "ms", si: 1e-3, tolerance: 0.3, dynamic: true, separable: true, place: |c| &mut c.pump.response_time_s },
     Scalar { name: "relief_valve.set_pressure_bar", unit: "bar", si: PA_PER_BAR, tolerance: 0.1, dynamic: false, separable: true, place: |c| &mut c.relief_valve.set_pressure_pa },
     Scalar { name: "compensator.margin_bar", unit: "bar", si: PA_PER_BAR, tolerance: 0.15, dynamic: false, separable: true, place: |c| &mut c.compensator.margin_pa },
     Scalar { name: "check_valve.cracking_pressure_bar", unit: "bar", si: PA_PER_BAR, tolerance: 0.2, dynamic: false, separable: false, place: |c| &mut c.check_valve.cracking_pressure_pa },

@@ -1,23 +1,25 @@
-//! The single-acting lift cylinder.
+//! The single-acting lift cylinders.
 
-/// Single-acting cylinder (paper, Tables 1 and 4: bore 76 mm, stroke 158 mm).
+/// Single-acting cylinder, or several alike in parallel (paper, Tables 1 and 4: one, bore 76 mm, stroke 158 mm).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cylinder {
-    /// Bore, m.
+    /// Number of cylinders in parallel.
+    pub count: u8,
+    /// Bore of each, m.
     pub bore_m: f64,
     /// Stroke, m.
     pub stroke_m: f64,
-    /// Volume of line and cylinder with the piston fully retracted, m3.
+    /// Volume of lines and cylinders with the pistons fully retracted, m3.
     pub dead_volume_m3: f64,
-    /// Viscous friction at the piston, N s/m; used by the dynamic plant.
+    /// Viscous friction at all pistons, N s/m; used by the dynamic plant.
     pub viscous_friction_n_s_m: f64,
 }
 
 impl Cylinder {
-    /// Piston area, m2.
+    /// Area of all pistons, m2.
     #[must_use]
     pub fn area_m2(&self) -> f64 {
-        std::f64::consts::FRAC_PI_4 * self.bore_m * self.bore_m
+        f64::from(self.count) * std::f64::consts::FRAC_PI_4 * self.bore_m * self.bore_m
     }
 
     /// Oil volume at piston travel `piston_m`, m3.

@@ -6,6 +6,7 @@
 use nalgebra::{Point2, Vector2};
 
 use crate::components::linkage_error::LinkageError;
+use crate::components::linkage_table::{LinkageTable, RisingCurve};
 
 /// Dimensions of the linkage, m.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,6 +72,9 @@ pub struct Linkage {
 }
 
 const CELLS: usize = 1024;
+
+/// Distance within which the ends of a measured linkage are those of the stroke, m.
+const SAME_TRAVEL_M: f64 = 0.5e-3;
 
 impl LinkageDimensions {
     /// The joints at a rocker angle.
@@ -155,6 +159,41 @@ fn square_root(value: f64) -> Option<f64> {
 }
 
 impl Linkage {
+    /// A measured linkage over a stroke. Between its points angle and height are interpolated by rising cubic pieces,
+    /// whose derivative is the transmission.
+    ///
+    /// # Errors
+    /// [`LinkageError::Table`] if it does not cover the stroke.
+    pub fn tabulated(table: &LinkageTable, stroke_m: f64) -> Result<Self, LinkageError> {
+        let (first_m, last_m) = table.span_m();
+        if first_m > SAME_TRAVEL_M || last_m < stroke_m - SAME_TRAVEL_M {
+            return Err(LinkageError::Table {
+                first_m,
+                last_m,
+                stroke_m,
+            });
+        }
+        let angle = RisingCurve::through(table.travel_m(), table.angle_rad());
+        let height = RisingCurve::through(table.travel_m(), table.height_m());
+        let step_m = stroke_m / CELLS as f64;
+        let nodes = (0..=CELLS).map(|node| {
+            let node = node as f64;
+            let (height_m, dh_dx) = height.at(step_m * node);
+            let [below, above] = [node - 0.5, node + 0.5].map(|at| height.at(step_m * at).1);
+            Posture {
+                rocker_angle_rad: angle.at(step_m * node).0,
+                height_m,
+                dh_dx,
+                d2h_dx2_1_m: (above - below) / step_m,
+            }
+        });
+        Ok(Self {
+            step_m,
+            cells_per_m: step_m.recip(),
+            nodes: nodes.collect(),
+        })
+    }
+
     /// Solves the linkage over a stroke whose rocker swing is symmetric about straight down.
     ///
     /// # Errors

@@ -46,6 +46,19 @@ pub enum LinkageError {
         /// Rocker angle at which it does not join, degrees.
         rocker_angle_deg: f64,
     },
+    /// The measured linkage does not cover the stroke.
+    #[error(
+        "the measured linkage covers {:.1} to {:.1} mm, not the stroke of 0 to {:.1} mm",
+        1e3 * .first_m, 1e3 * .last_m, 1e3 * .stroke_m
+    )]
+    Table {
+        /// First travel, m.
+        first_m: f64,
+        /// Last travel, m.
+        last_m: f64,
+        /// Stroke, m.
+        stroke_m: f64,
+    },
 }
 
 /// A constant of a model file: its table and its key.
@@ -74,6 +87,7 @@ impl LinkageError {
                 ("linkage", "pivot_x_m"),
                 ("linkage", "pivot_y_m"),
             ],
+            Self::Table { .. } => &[("linkage", "stroke_mm"), ("cylinder", "stroke_mm")],
         }
     }
 
@@ -94,6 +108,9 @@ impl LinkageError {
                 "let lift_rod_m of [linkage] be between {least_m:.3} and {most_m:.3}, or check its joints: \
                  lift_rod_joint_m, lift_arm_m, pivot_x_m, pivot_y_m"
             ),
+            Self::Table { .. } => {
+                "measure from the retracted piston to the end of its stroke, or correct stroke_mm of [cylinder]".to_owned()
+            }
         }
     }
 }

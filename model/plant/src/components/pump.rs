@@ -1,18 +1,34 @@
-//! The pump: fixed displacement, driven at constant speed.
+//! The pump, driven at constant speed: of fixed displacement, or load-sensing.
 
-/// Fixed-displacement pump.
+/// How the pump's delivery is controlled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PumpKind {
+    /// Fixed displacement; a bypass compensator returns the flow that the lift valve does not take to tank.
+    FixedDisplacement,
+    /// Variable displacement; the controller of the pump delivers the flow that the lift valve takes.
+    LoadSensing,
+}
+
+/// The pump.
 ///
-/// `Q = Q_theoretical * eta_v` (paper, Table 4: 54.5 l/min, 88 %, 1500 rev/min). Pressure-dependent slip is an effect.
+/// Either kind delivers at most `Q = Q_theoretical * eta_v` (paper, Table 4: 54.5 l/min, 88 %, 1500 rev/min).
+/// Pressure-dependent slip is an effect.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pump {
-    /// Displacement times speed, m3/s.
+    /// Control of its delivery.
+    pub kind: PumpKind,
+    /// Largest displacement times speed, m3/s.
     pub theoretical_flow_m3_s: f64,
     /// Volumetric efficiency, 0 to 1.
     pub volumetric_efficiency: f64,
+    /// Pump pressure of a load-sensing pump with the lift valve closed, Pa; zero for the other kind.
+    pub standby_pressure_pa: f64,
+    /// Time constant of the pressure of a load-sensing pump, s; used by the dynamic plant, zero for the other kind.
+    pub response_time_s: f64,
 }
 
 impl Pump {
-    /// Net delivery, m3/s.
+    /// Largest net delivery, m3/s.
     #[must_use]
     pub fn flow_m3_s(&self) -> f64 {
         self.theoretical_flow_m3_s * self.volumetric_efficiency

@@ -372,7 +372,10 @@ impl<'m> Plant<'m> {
 
 /// The hooks with the effects of a model, at an oil temperature, C.
 fn attached(model: &Model, oil_temperature_c: f64) -> EffectHooks {
-    let mut hooks = EffectHooks::default();
+    let mut hooks = EffectHooks {
+        compensator_lag_s: model.pump_response_s(),
+        ..EffectHooks::default()
+    };
     for effect in ordered_by_rank(&model.effects) {
         let conditions = RunConditions {
             oil_temperature_c,

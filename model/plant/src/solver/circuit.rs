@@ -1,6 +1,7 @@
 //! The hydraulic circuit at one instant: flows and pump pressure for a cylinder pressure.
 
 use crate::components::orifice_valve::OrificeValve;
+use crate::components::pump::PumpKind;
 use crate::components::valve_curve::ValveCurve;
 use crate::constants::Constants;
 use crate::hooks::effect_hooks::{EffectHooks, FlowFactor};
@@ -307,7 +308,11 @@ impl Circuit<'_> {
     /// Pump pressure with the lift valve closed, Pa.
     #[must_use]
     pub fn idle_pressure_pa(&self) -> f64 {
-        self.constants.compensator.idle_pressure_pa() + self.hooks.idle_extra_pa
+        let idle_pa = match self.constants.pump.kind {
+            PumpKind::FixedDisplacement => self.constants.compensator.idle_pressure_pa(),
+            PumpKind::LoadSensing => self.constants.pump.standby_pressure_pa,
+        };
+        idle_pa + self.hooks.idle_extra_pa
     }
 
     /// Rate of the pump pressure of a lagging compensator, Pa/s; zero without a lag.
@@ -369,7 +374,10 @@ impl Circuit<'_> {
     /// The pump pressure, Pa, limited by the relief valve, where the compensator would set `wanted_pa`; `flow_at` is
     /// the lift flow as a function of it.
     fn relieved_pa(&self, wanted_pa: f64, flow_at: &impl Fn(f64) -> f64) -> f64 {
-        let Some(relief) = &self.hooks.relief else {
+        let limit = self.hooks.relief.as_ref();
+        // A load-sensing pump reduces its displacement at the limit, so no flow passes a valve that has an override.
+        let limit = limit.filter(|_| self.constants.pump.kind == PumpKind::FixedDisplacement);
+        let Some(relief) = limit else {
             return self.constants.relief_valve.limit_pa(wanted_pa);
         };
         let crack_pa = self.constants.relief_valve.set_pressure_pa - relief.below_setting_pa;

@@ -4,7 +4,7 @@ use std::io;
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
-use hitch_campaign::flow_curve;
+use hitch_campaign::{flow_curve, linkage_table};
 use hitch_model_file::{Template, Valve};
 use hitch_plant::ValveCurve;
 
@@ -16,8 +16,10 @@ use crate::outputs::Outputs;
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Examples:\n  hitch model new --out my-hitch.toml --lift-curve lift.csv\n  \
-    hitch model new --set cylinder.bore_mm=80 --set relief_valve.set_pressure_bar=180 --out my-hitch.toml\n\n\
-    A curve is a table with a header, a current in A or mA and a flow in l/min or m3/s: current_a,flow_lpm. \
+    hitch model new --set cylinder.bore_mm=80 --set relief_valve.set_pressure_bar=180 --out my-hitch.toml\n  \
+    hitch model new --pump load-sensing --set cylinder.cylinders=2 --linkage-table linkage.csv --out my-hitch.toml\n\n\
+    A curve is a table with a header, a current in A or mA and a flow in l/min, l/s, gpm or m3/s: current_a,flow_lpm. A measured \
+    linkage has a travel and a height in mm, cm or m and an angle in degrees or rad: travel_mm,angle_deg,height_mm. \
     What is not given is as in the model named with --from. On a terminal it asks for the values of the data sheets."
 )]
 pub struct Args {
@@ -27,6 +29,12 @@ pub struct Args {
     /// Flow of the lowering valve over current, CSV
     #[arg(long, value_name = "CSV")]
     lower_curve: Option<PathBuf>,
+    /// Measured linkage instead of its dimensions, CSV: travel of the piston, rocker angle, height of the hitch point
+    #[arg(long, value_name = "CSV")]
+    linkage_table: Option<PathBuf>,
+    /// Kind of the pump
+    #[arg(long, value_name = "KIND", value_parser = ["fixed-displacement", "load-sensing"])]
+    pump: Option<String>,
     /// A constant, in the unit of its key; may be given several times
     #[arg(long = "set", value_name = "TABLE.KEY=VALUE")]
     set: Vec<String>,
@@ -42,13 +50,16 @@ pub struct Args {
 }
 
 /// Questions on a terminal: constant and text.
-const QUESTIONS: [(&str, &str); 8] = [
-    ("cylinder.bore_mm", "Cylinder bore, mm"),
+const QUESTIONS: [(&str, &str); 11] = [
+    ("pump.kind", "Pump, fixed-displacement or load-sensing"),
+    ("cylinder.cylinders", "Number of lift cylinders"),
+    ("cylinder.bore_mm", "Bore of each cylinder, mm"),
     ("cylinder.stroke_mm", "Cylinder stroke, mm"),
     (
         "pump.theoretical_flow_lpm",
-        "Pump, displacement times speed, l/min",
+        "Pump, largest displacement times speed, l/min",
     ),
+    ("pump.standby_pressure_bar", "Pump, standby pressure, bar"),
     ("compensator.margin_bar", "Compensator margin, bar"),
     (
         "check_valve.cracking_pressure_bar",
@@ -72,6 +83,7 @@ const QUESTIONS: [(&str, &str); 8] = [
 pub fn run(args: &Args) -> Result<(), Error> {
     let curves = [&args.lift_curve, &args.lower_curve];
     let mut inputs: Vec<PathBuf> = curves.into_iter().flatten().cloned().collect();
+    inputs.extend(args.linkage_table.clone());
     inputs.push(PathBuf::from(&args.from));
     let outputs = Outputs::check([args.out.as_deref()], &inputs)?;
     let name = args
@@ -79,6 +91,12 @@ pub fn run(args: &Args) -> Result<(), Error> {
         .as_deref()
         .map_or_else(|| "my-hitch".to_owned(), output::stem);
     let mut template = Template::of(&name, &hitch_model_file::named(&args.from)?);
+    if let Some(kind) = &args.pump {
+        template.set("pump.kind", kind).map_err(Error::Usage)?;
+    }
+    if let Some(path) = &args.linkage_table {
+        template.set_linkage(linkage_table::read(path)?);
+    }
     for set in &args.set {
         let (name, value) = set.split_once('=').ok_or_else(|| {
             Error::Usage(format!("--set {set}: write it as --set TABLE.KEY=VALUE"))
@@ -116,9 +134,16 @@ fn told(path: &Path) -> String {
 /// Asks for values that were not given.
 fn ask_all(template: &mut Template, args: &Args) -> Result<(), Error> {
     eprintln!("Data sheet values; Enter accepts the value in brackets.");
-    let given = |name: &str| args.set.iter().any(|set| set.starts_with(name));
+    let given = |name: &str| {
+        args.set.iter().any(|set| set.starts_with(name))
+            || (name == "pump.kind" && args.pump.is_some())
+            || (name == "cylinder.stroke_mm" && args.linkage_table.is_some())
+    };
     for (name, question) in QUESTIONS.iter().filter(|(name, _)| !given(name)) {
-        let default = template.get(name).map_err(Error::Usage)?;
+        // A machine does not have every constant.
+        let Ok(default) = template.get(name) else {
+            continue;
+        };
         ask(question, &default, |answer| template.set(name, answer))?;
     }
     for (valve, path, title) in [
