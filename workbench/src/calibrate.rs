@@ -2,11 +2,12 @@
 
 use hitch_controller::Controller;
 use hitch_plant::units::{bar_from_pa, lpm_from_m3_s, m3_s_from_lpm};
-use hitch_plant::{Dynamics, Model, Valve};
+use hitch_plant::{Constants, Dynamics, Model, OrificeValve, Valve};
 use hitch_quantities::calibration::linkage::LINKAGE_POINTS;
 use hitch_quantities::calibration::valve_table::{VALVE_POINTS, ValvePoint, ValveTable};
 use hitch_quantities::units::{
-    MicroLitrePerSecond, Micrometre, MilliAmp, MilliBar, MilliDegree, Millisecond, SquareMillimetre,
+    AmperePerSecond, MicroLitrePerSecond, Micrometre, MilliAmp, MilliBar, MilliDegree, Millisecond,
+    SquareMillimetre,
 };
 use hitch_quantities::{Calibration, CalibrationError, ValidCalibration};
 
@@ -14,6 +15,15 @@ use crate::valve_survey::{CurvePoint, LOWERING_PORT_BAR, survey};
 
 /// Tolerance of a valve table relative to the surveyed curve, A.
 const TOLERANCE_A: f64 = 0.5e-3;
+
+/// A current may start at once up to this far beyond the larger threshold.
+const FREE_BEYOND_THRESHOLD: MilliAmp = MilliAmp(400);
+
+/// Shortest time for the opening of a valve, ms.
+const FULL_OPENING_MS: i32 = 50;
+
+/// Dither over the largest current.
+const DITHER_SHARE: f64 = 0.03;
 
 /// Distance of the travel limits from the mechanical ends.
 const END_DISTANCE: MilliDegree = MilliDegree(500);
@@ -47,6 +57,7 @@ pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, 
     calibration.lift = valve_table("lift", &survey(model, Valve::Lift))?;
     calibration.lower = valve_table("lower", &survey(model, Valve::Lowering))?;
     linkage(model, &mut calibration);
+    currents(constants, &mut calibration);
     let hydraulics = &mut calibration.hydraulics;
     hydraulics.reference_drop = MilliBar((LOWERING_PORT_BAR * 1e3) as i32);
     hydraulics.piston_area = SquareMillimetre((constants.cylinder.area_m2() * 1e6).round() as i32);
@@ -71,6 +82,30 @@ pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, 
         .sealed()
         .validate()
         .map_err(CalibrateError::Refused)
+}
+
+/// Limits of the currents, which the coils and the range of the valves set: those of the base are for valves that open
+/// at 1.1 A and end at 3.5 A, and are kept where they are stricter.
+fn currents(constants: &Constants, calibration: &mut Calibration) {
+    let last_ma = |valve: &OrificeValve| {
+        let last_a = valve.curve.currents_a().last().copied();
+        MilliAmp((last_a.unwrap_or(0.0) * 1e3).round() as i32)
+    };
+    let (lift, lower) = (
+        last_ma(&constants.lift_valve),
+        last_ma(&constants.lower_valve),
+    );
+    let (lift_table, lower_table) = (&calibration.lift, &calibration.lower);
+    let threshold = lift_table.threshold().max(lower_table.threshold());
+    let range = (lift.max(lower) - threshold).0.max(1);
+    let safety = &mut calibration.safety;
+    (safety.lift_current_limit, safety.lower_current_limit) = (lift, lower);
+    safety.free_current = safety.free_current.min(threshold + FREE_BEYOND_THRESHOLD);
+    let slope = AmperePerSecond((range / FULL_OPENING_MS).max(1));
+    safety.current_slope = safety.current_slope.min(slope);
+    let dither = MilliAmp((DITHER_SHARE * f64::from(lift.max(lower).0)).round() as i32);
+    let current = &mut calibration.current;
+    current.dither_amplitude = current.dither_amplitude.min(dither);
 }
 
 /// First parameter of an effect of the model.

@@ -159,7 +159,7 @@ mod tests {
         ]);
         assert_eq!(
             value,
-            "invalid value '-5' for '--load <KG>': the range is 0 to 2000; see --help"
+            "invalid value '-5' for '--load <KG>': the range is 0 to 20000; see --help"
         );
         assert!(fault(&["papr"]).starts_with("unrecognized subcommand 'papr'; "));
     }

@@ -49,7 +49,7 @@ impl Rebuild {
         let nominal = base
             .validate()
             .map_err(|error| failed(&format!("{error:?}")))?;
-        let moves = scenario.moves(None);
+        let moves = scenario.moves(&rig, None);
         let drive = |calibration: &ValidCalibration| {
             closed_loop::run(&rig, calibration, &moves)
                 .ok_or_else(|| failed(&"the scenario has no moves"))

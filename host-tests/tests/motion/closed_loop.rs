@@ -26,7 +26,7 @@ fn with_effect(id: &str, values: &[f64]) -> Model {
 }
 
 fn driven(model: &Model, calibration: &ValidCalibration, scenario: Scenario) -> LoopRun {
-    let run = run(model, calibration, &scenario.moves(None)).unwrap();
+    let run = run(model, calibration, &scenario.moves(model, None)).unwrap();
     println!(
         "{} with effects {:?}: {:?}",
         model.name, model.effects, run.summary
@@ -94,8 +94,9 @@ fn a_move_that_never_arrives_has_no_time_and_counts_for_no_ratio() {
 
 #[test]
 fn a_lift_that_the_relief_valve_forbids_has_no_shortest_time() {
-    let moves = Scenario::Quick.moves(Some(2_000.0));
-    let run = run(&hitch_model_file::dynamic(), &nominal(), &moves).unwrap();
+    let model = hitch_model_file::dynamic();
+    let moves = Scenario::Quick.moves(&model, Some(&[2_000.0]));
+    let run = run(&model, &nominal(), &moves).unwrap();
     let lift = run.results.iter().find(|r| r.to_deg > r.from_deg);
     let lift = lift.unwrap();
     assert!(!lift.arrived && lift.shortest_s.is_nan(), "{lift:?}");

@@ -70,7 +70,7 @@ fn several_deviations_of_the_valves_are_found_and_the_motion_is_better_by_them()
     let identified = nominal_model.with_effects(found.after.estimate.effects.clone());
     let driven_rig = hitch_model_file::dynamic().with_effects(hidden());
     let driven = |calibration: &ValidCalibration, scenario: Scenario| {
-        let run = run(&driven_rig, calibration, &scenario.moves(None)).unwrap();
+        let run = run(&driven_rig, calibration, &scenario.moves(&driven_rig, None)).unwrap();
         println!("{:?}", run.summary);
         run
     };

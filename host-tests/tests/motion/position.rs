@@ -33,7 +33,7 @@ fn motion_is_close_to_what_the_plant_allows() {
     for (lift_a, lower_a) in SHIFTS_A {
         let model = typical(lift_a, lower_a);
         let calibration = taught_calibration(&model, 150.0).unwrap();
-        let driven = run(&model, &calibration, &Scenario::Limits.moves(None)).unwrap();
+        let driven = run(&model, &calibration, &Scenario::Limits.moves(&model, None)).unwrap();
         println!("{lift_a:5.2} {lower_a:5.2} A: {:?}", driven.summary);
         all.extend(driven.results);
     }

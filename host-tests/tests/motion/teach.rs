@@ -55,10 +55,15 @@ fn thresholds_that_are_off_by_a_quarter_ampere_are_found() {
             let right = run(
                 &hitch_model_file::dynamic(),
                 &nominal(),
-                &Scenario::Moves.moves(Some(load_kg)),
+                &Scenario::Moves.moves(&model, Some(&[load_kg])),
             )
             .unwrap();
-            let moves = run(&model, &calibration, &Scenario::Moves.moves(Some(load_kg))).unwrap();
+            let moves = run(
+                &model,
+                &calibration,
+                &Scenario::Moves.moves(&model, Some(&[load_kg])),
+            )
+            .unwrap();
             let [lower_end_deg, upper_end_deg] =
                 [found.lower_end, found.upper_end].map(|end| f64::from(end.0) * 1e-3);
             println!(

@@ -350,7 +350,7 @@ fn bad_command_lines_are_refused() {
             &[
                 "simulate", "--inputs", "log.csv", "--load", "-5", "--out", "out.csv",
             ],
-            "the range is 0 to 2000",
+            "the range is 0 to 20000",
         ),
         (
             &["simulate", "--inputs", "gone.csv", "--out", "out.csv"],
@@ -373,7 +373,7 @@ fn a_start_beyond_the_stroke_is_refused() {
 fn an_ecu_without_what_it_needs() {
     let dir = folder();
     let folder = dir.path();
-    refused(folder, &["ecu", "--load", "-5"], "0 to 2000");
+    refused(folder, &["ecu", "--load", "-5"], "0 to 20000");
     refused(folder, &["ecu", "--model", "no.toml"], "no.toml");
     refused(folder, &["ecu", "--can", "nowhere"], "127.0.0.1:7701");
     refused(

@@ -17,7 +17,7 @@ use crate::{Bench, Campaign, CampaignError, Noise, Run, run_log};
 /// The supported format version.
 const FORMAT: f64 = 1.0;
 /// Range of loads that the cylinder can hold below the relief pressure, with a margin, kg.
-const LOAD_KG: std::ops::RangeInclusive<f64> = 0.0..=2000.0;
+const LOAD_KG: std::ops::RangeInclusive<f64> = 0.0..=20_000.0;
 /// Range of pressures of hydraulics of this class, bar.
 const PORT_PRESSURE_BAR: std::ops::RangeInclusive<f64> = 0.0..=400.0;
 /// Range of oil temperatures, degrees Celsius: limited by the oil's pour point and the seals.

@@ -136,8 +136,8 @@ fn conditions(model: &Model) -> Vec<Variable> {
     vec![
         parameter(
             "load_kg",
-            (150.0, "kg"),
-            (0.0, 2000.0),
+            (model.usual_loads_kg()[1], "kg"),
+            (0.0, 20_000.0),
             "load at the hitch point",
         ),
         parameter(

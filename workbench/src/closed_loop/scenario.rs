@@ -1,5 +1,7 @@
 //! Scenarios: sets of moves.
 
+use hitch_plant::Model;
+
 /// A move of the lever from one rest to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Move {
@@ -16,7 +18,7 @@ pub struct Move {
 /// A named set of moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Scenario {
-    /// Moves of 5 to 60 degrees about the middle, both ways, at 50, 150 and 250 kg
+    /// Moves of 5 to 60 degrees about the middle, both ways, at three loads
     Moves,
     /// A subset of them, for a quick check
     Quick,
@@ -30,26 +32,43 @@ pub enum Scenario {
     Limits,
 }
 
-/// Loads of the rig, kg.
-const LOADS_KG: [f64; 3] = [50.0, 150.0, 250.0];
-/// Oil temperature of the rig's data, C.
+/// Usual oil temperature, C.
 const OIL_TEMPERATURE_C: f64 = 40.0;
 /// Oil from a cold morning to a hot afternoon, C.
 const COLD_TO_HOT_C: [f64; 3] = [10.0, OIL_TEMPERATURE_C, 70.0];
-/// Angle at which the rocker points straight down, degree: the middle of the travel.
-const MIDDLE_DEG: f64 = 90.0;
+/// Distance of moves to the ends from a mechanical end, degree.
+const END_DEG: f64 = 0.9;
+/// Largest move of a scenario, and the distance that it keeps from the ends of travel in total, degree.
+const LARGEST_DEG: f64 = 80.0;
+const CLEAR_DEG: f64 = 10.0;
+
+/// An angle, rad, in tenths of a degree.
+fn tenth_deg(angle_rad: f64) -> f64 {
+    (10.0 * angle_rad.to_degrees()).round() / 10.0
+}
 
 impl Scenario {
-    /// The moves of the scenario, restricted to `load_kg` if given.
+    /// The moves of the scenario for a machine, about the middle of its travel, with the given loads, kg; without them,
+    /// with its [usual ones](Model::usual_loads_kg). A machine with a short travel has shorter moves.
     #[must_use]
-    pub fn moves(self, load_kg: Option<f64>) -> Vec<Move> {
-        let about_middle =
-            |span_deg: f64| (MIDDLE_DEG - span_deg / 2.0, MIDDLE_DEG + span_deg / 2.0);
+    pub fn moves(self, model: &Model, loads_kg: Option<&[f64]>) -> Vec<Move> {
+        let (low_rad, high_rad) = model.linkage().swing_rad();
+        let middle_deg = tenth_deg(0.5 * (low_rad + high_rad));
+        let room_deg = (high_rad - low_rad).to_degrees() - CLEAR_DEG;
+        let scale = (room_deg / LARGEST_DEG).min(1.0);
+        let about_middle = |span_deg: f64| {
+            let half_deg = 0.5 * scale * span_deg;
+            (middle_deg - half_deg, middle_deg + half_deg)
+        };
         let pairs: Vec<(f64, f64)> = match self {
             Self::Moves => [5.0, 10.0, 20.0, 40.0, 60.0].map(about_middle).to_vec(),
             Self::Quick => [5.0, 30.0].map(about_middle).to_vec(),
             Self::Fine => [1.0, 2.0, 3.0].map(about_middle).to_vec(),
-            Self::Ends => vec![(45.0, 65.0), (115.0, 135.0)],
+            Self::Ends => {
+                let end_rad = END_DEG.to_radians();
+                let (low, high) = (tenth_deg(low_rad + end_rad), tenth_deg(high_rad - end_rad));
+                vec![(low, low + 20.0 * scale), (high - 20.0 * scale, high)]
+            }
             Self::Tuning => [2.0, 8.0, 25.0, 80.0].map(about_middle).to_vec(),
             Self::Limits => [2.0, 5.0, 10.0, 20.0, 40.0, 60.0, 80.0]
                 .map(about_middle)
@@ -59,9 +78,9 @@ impl Scenario {
             Self::Limits | Self::Tuning => &COLD_TO_HOT_C,
             _ => &[OIL_TEMPERATURE_C],
         };
-        let loads = load_kg.map_or(LOADS_KG.to_vec(), |load| vec![load]);
+        let usual_kg = model.usual_loads_kg();
         let mut moves = Vec::new();
-        for load_kg in loads {
+        for &load_kg in loads_kg.unwrap_or(&usual_kg) {
             for &oil_temperature_c in temperatures_c {
                 for &(low, high) in &pairs {
                     for (from_deg, to_deg) in [(low, high), (high, low)] {
@@ -76,5 +95,35 @@ impl Scenario {
             }
         }
         moves
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_papers_rig_has_its_own_loads_and_angles() {
+        let model = hitch_model_file::dynamic();
+        assert_eq!(model.usual_loads_kg(), [50.0, 150.0, 250.0]);
+        let ends = Scenario::Ends.moves(&model, None);
+        assert_eq!((ends[0].from_deg, ends[0].to_deg), (45.0, 65.0));
+        assert_eq!((ends[2].from_deg, ends[2].to_deg), (115.0, 135.0));
+        let largest = Scenario::Limits.moves(&model, Some(&[70.0]));
+        let largest = largest.iter().map(|of| (of.load_kg, of.from_deg));
+        assert_eq!(
+            largest.fold((0.0, 180.0), |a: (f64, f64), b| (b.0, a.1.min(b.1))),
+            (70.0, 50.0)
+        );
+    }
+
+    #[test]
+    fn two_larger_cylinders_have_larger_loads() {
+        let nominal = hitch_model_file::nominal();
+        let mut constants = nominal.constants().clone();
+        constants.cylinder.count = 2;
+        constants.cylinder.bore_m = 0.1;
+        let model = nominal.with_constants(constants).expect("a linkage");
+        assert_eq!(model.usual_loads_kg(), [200.0, 600.0, 1000.0]);
     }
 }

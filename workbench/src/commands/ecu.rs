@@ -21,8 +21,6 @@ use crate::output::{check_writable, no_stdout, write_file};
 use crate::slcan_server::SlcanServer;
 use crate::status_line::StatusLine;
 
-/// Angle of the hitch at the start, degree.
-const START_DEG: f64 = 90.0;
 /// Time of the lever capture by the operator, ms: after the first address claim.
 const PICK_UP_MS: u64 = 500;
 /// Maximum lag behind real time; beyond it the schedule restarts (slow host, or suspend).
@@ -44,9 +42,9 @@ pub struct Args {
     /// The plant: nominal, dynamic, or the name of a model file
     #[arg(long, value_name = "MODEL", default_value = "dynamic")]
     model: String,
-    /// Load at the hitch, kg
-    #[arg(long, value_name = "KG", default_value = "150", allow_negative_numbers = true, value_parser = load_kg)]
-    load: f64,
+    /// Load at the hitch, kg; without this option, 9 % of what the model can lift, 150 for the paper's
+    #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = load_kg)]
+    load: Option<f64>,
     /// Calibration of the ECU as delivered; without this option, the nominal one
     #[arg(long, value_name = "C.toml")]
     calibration: Option<PathBuf>,
@@ -185,6 +183,8 @@ struct Session<'m> {
     bus: Option<Bus>,
     status: StatusLine,
     last_ms: u64,
+    /// Angle of the hitch at the start, the middle of its travel, degree.
+    start_deg: f64,
 }
 
 impl<'m> Session<'m> {
@@ -192,9 +192,13 @@ impl<'m> Session<'m> {
         /// Oil temperature of the rig's data, C.
         const OIL_TEMPERATURE_C: f64 = 40.0;
         let address = server.as_ref().and_then(|server| server.address().ok());
+        let (low_rad, high_rad) = model.linkage().swing_rad();
+        let start_deg = (0.5 * (low_rad + high_rad)).to_degrees().round();
+        let load_kg = args.load.unwrap_or(model.usual_loads_kg()[1]);
         Self {
             address,
-            bench: Bench::new(model, args.load, OIL_TEMPERATURE_C, START_DEG, 1),
+            start_deg,
+            bench: Bench::new(model, load_kg, OIL_TEMPERATURE_C, start_deg, 1),
             bus: server.map(Bus::served_by),
             status: StatusLine::start(),
             last_ms: args
@@ -214,7 +218,7 @@ impl<'m> Session<'m> {
         let mut due = Instant::now();
         for time_ms in 0..self.last_ms {
             if time_ms == PICK_UP_MS {
-                self.bench.operator.apply(Order::Lever(START_DEG));
+                self.bench.operator.apply(Order::Lever(self.start_deg));
             }
             if !self.take_orders(&orders, machine)? {
                 break;

@@ -30,9 +30,9 @@ pub struct Args {
     /// Write the result to this file, in the format of a log; `-` is standard output
     #[arg(long, value_name = "OUT.csv")]
     out: PathBuf,
-    /// Load at the hitch, kg
-    #[arg(long, value_name = "KG", allow_negative_numbers = true, default_value_t = 150.0, value_parser = within::<0, 2000>)]
-    load: f64,
+    /// Load at the hitch, kg; without this option, 9 % of what the model can lift, 150 for the paper's
+    #[arg(long, value_name = "KG", allow_negative_numbers = true, value_parser = within::<0, 20_000>)]
+    load: Option<f64>,
     /// Flow bench instead of the hitch: pressure at the cylinder port, bar
     #[arg(long, value_name = "BAR", allow_negative_numbers = true, conflicts_with_all = ["load", "start_angle"], value_parser = within::<0, 400>)]
     port_pressure: Option<f64>,
@@ -54,7 +54,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         &[args.inputs.clone(), args.model.file()],
     )?;
     let model = args.model.load()?;
-    let log = Run::read(&args.inputs, args.bench(), args.oil_temperature)?;
+    let log = Run::read(&args.inputs, args.bench(&model), args.oil_temperature)?;
     let progress = Progress::start(format!("simulating {}", log.file));
     let rig = args.rig(&model, &log)?;
     let text = simulated(&model, rig, &log);
@@ -63,15 +63,17 @@ pub fn run(args: &Args) -> Result<(), Error> {
 }
 
 impl Args {
-    fn bench(&self) -> Bench {
+    fn bench(&self, model: &Model) -> Bench {
         match self.port_pressure {
             Some(port_pressure_bar) => Bench::Flow { port_pressure_bar },
-            None => Bench::Hitch { load_kg: self.load },
+            None => Bench::Hitch {
+                load_kg: self.load.unwrap_or(model.usual_loads_kg()[1]),
+            },
         }
     }
 
     fn rig(&self, model: &Model, log: &Run) -> Result<Rig, Error> {
-        Ok(match self.bench() {
+        Ok(match self.bench(model) {
             Bench::Flow { port_pressure_bar } => Rig::Flow {
                 port_pressure_pa: pa_from_bar(port_pressure_bar),
             },

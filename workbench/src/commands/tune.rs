@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::calibrate::calibrate;
 use crate::closed_loop::{Scenario, Summary};
-use crate::commands::loop_::{changed, read_files};
+use crate::commands::loop_::{changed, load_kg, read_files};
 use crate::error::Error;
 use crate::output::{self, JsonArg};
 use crate::outputs::Outputs;
@@ -48,6 +48,9 @@ pub struct Args {
     /// Moves to drive
     #[arg(long, value_enum, default_value_t = Scenario::Tuning)]
     scenario: Scenario,
+    /// Loads at the hitch, kg; without this option, 3, 9 and 15 % of what the model can lift
+    #[arg(long, value_name = "KG,KG", value_delimiter = ',', value_parser = load_kg)]
+    loads: Option<Vec<f64>>,
     #[command(flatten)]
     json: JsonArg,
 }
@@ -106,7 +109,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
         .filter_map(|setting| calibration_file::set(&mut (*base).clone(), setting).ok())
         .collect();
     let progress = Progress::start("computing the ideal manoeuvres");
-    let trial = Trial::new(&model, &args.scenario.moves(None));
+    let trial = Trial::new(&model, &args.scenario.moves(&model, args.loads.as_deref()));
     let failed = || Error::Failed("the search found no valid calibration".to_owned());
     let before = trial.judge(&base).ok_or_else(failed)?;
     drop(progress);

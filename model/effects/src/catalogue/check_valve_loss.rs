@@ -20,7 +20,7 @@ const LOSS: Parameter = Parameter {
     unit: "bar",
     kind: ParameterKind::Other,
     key: "loss_bar",
-    meaning: "pressure loss at 40 l/min beyond 2.5 bar",
+    meaning: "pressure loss at 40 l/min beyond the cracking pressure",
     null: 0.0,
     typical: 0.4,
     low: 0.0,
@@ -44,8 +44,8 @@ pub static THROTTLING: Described = Described {
     id: "check-valve-loss",
     form: None,
     title: "Pressure loss of the check valve",
-    equation: "dp_orifice = p_P - p_C - 2.5 bar - loss [steady + (1 - steady) (Q / 40 l/min)^2]; Q = \
-         Q_table(I) sqrt(dp_orifice / 1.5 bar)",
+    equation: "dp_orifice = p_P - p_C - p_crack - loss [steady + (1 - steady) (Q / 40 l/min)^2]; Q = \
+         Q_table(I) sqrt(dp_orifice / dp_ref)",
     source: "orifice law of an open poppet; 0.3 to 1 bar at rated flow in data sheets of cartridge \
          check valves",
     shows: "large lift flows are too small while small ones fit, equally at every load; the pump pressure \
@@ -66,8 +66,8 @@ pub static THROTTLING: Described = Described {
 pub static LIFTING: Described = Described {
     form: Some("lifting"),
     title: "Pressure loss of the check valve, with flow-dependent poppet lift",
-    equation: "dp_orifice = p_P - p_C - 2.5 bar - loss [steady + (1 - steady) Q / 40 l/min]; Q = \
-         Q_table(I) sqrt(dp_orifice / 1.5 bar)",
+    equation: "dp_orifice = p_P - p_C - p_crack - loss [steady + (1 - steady) Q / 40 l/min]; Q = \
+         Q_table(I) sqrt(dp_orifice / dp_ref)",
     source: "force balance of a poppet on its spring; 0.3 to 1 bar at rated flow in data sheets of \
          cartridge check valves",
     refines: true,

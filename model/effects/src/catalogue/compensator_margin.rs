@@ -1,6 +1,6 @@
 //! `compensator-margin`: deviation of the compensator's margin from the declared value.
 //!
-//! `p_P - p_C = 4 bar + excess` while lifting. The preload of the spring is set by shims and settles with age; 10 to 30
+//! `p_P - p_C = margin + excess` while lifting. The preload of the spring is set by shims and settles with age; 10 to 30
 //! % deviation from the data sheet is typical. The margin less the check valve's 2.5 bar drives the lift orifice, so
 //! one bar more on 1.5 bar gives 29 % more lift flow. The same spring sets the idle pressure. In blocks with a bypass
 //! orifice, the idle pressure is the drop of that orifice at the pump's flow: the form `bypass` has a separate
@@ -33,7 +33,7 @@ pub static PRELOAD: Described = Described {
     id: "compensator-margin",
     form: None,
     title: "Deviation of the compensator margin",
-    equation: "p_P - p_C = 4 bar + excess; p_idle = 4 bar + excess; Q = Q_table(I) sqrt((p_P - p_C - 2.5 bar) / 1.5 bar)",
+    equation: "p_P - p_C = margin + excess; p_idle = p_0 + excess; Q = Q_table(I) sqrt((p_P - p_C - p_crack) / dp_ref)",
     source: "preload of the compensator's spring: 10 to 30 % off the data sheet",
     shows: "the pump pressure is higher or lower than declared by the same amount at idle and over every load, and the lift \
          flow with it; without a pump pressure it is the lift valve's flow scale",
@@ -50,7 +50,7 @@ pub static BYPASS: Described = Described {
     id: "compensator-margin",
     form: Some("bypass"),
     title: "Deviation of the compensator margin and the idle pressure",
-    equation: "p_P - p_C = 4 bar + excess; p_idle = 4 bar + idle excess",
+    equation: "p_P - p_C = margin + excess; p_idle = p_0 + idle excess",
     source: "drop of the bypass at the pump's flow: 2 to 15 bar",
     shows: "the deviations of the pump pressure at idle and under load differ",
     parameters: &[

@@ -17,7 +17,7 @@ pub static ON_FLOW: Described = Described {
     id: "flow-force",
     form: None,
     title: "Flow force on the lowering spool",
-    equation: "Q = Q_table(I) sqrt(dp/dp_ref) (1 + s) / (1 + s dp/dp_ref), dp_ref = 15 bar",
+    equation: "Q = Q_table(I) sqrt(dp/dp_ref) (1 + s) / (1 + s dp/dp_ref), dp_ref: that of the valve's curve",
     source: "Merritt 5.2: F = 2 Cd Cv A dp cos 69 deg; springs of 8 to 20 N/mm give 0.12 to 0.30 at \
          15 bar",
     shows: "lowering flow increases less than with the square root of the pressure: light loads sink \
@@ -44,7 +44,7 @@ pub static ON_FLOW: Described = Described {
 pub static ON_TRAVEL: Described = Described {
     form: Some("travel"),
     title: "Flow force on the travel of the lowering spool",
-    equation: "Q = Q_table(I_0 + (I - I_0) (1 + s) / (1 + s dp/dp_ref)) sqrt(dp/dp_ref), dp_ref = 15 bar",
+    equation: "Q = Q_table(I_0 + (I - I_0) (1 + s) / (1 + s dp/dp_ref)) sqrt(dp/dp_ref), dp_ref: that of the valve's curve",
     attach: attach_to_travel,
     ..ON_FLOW
 };

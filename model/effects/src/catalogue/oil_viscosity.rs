@@ -26,7 +26,7 @@ pub static SERIES: Described = Described {
     id: "oil-viscosity",
     form: None,
     title: "Laminar flow in the lowering valve",
-    equation: "Q = Q_table(I) [(1 - share) sqrt(r) + share r exp(fall (T - 40 C))], r = dp / 15 bar",
+    equation: "Q = Q_table(I) [(1 - share) sqrt(r) + share r exp(fall (T - 40 C))], r = dp / dp_ref",
     source: "laminar-turbulent transition, McCloy & Martin; SAE 30 loses 4 to 6 % of its viscosity a \
          kelvin",
     shows: "lowering slower when cold and faster when warm, and more than with the square root of \
@@ -37,7 +37,7 @@ pub static SERIES: Described = Described {
             unit: "",
             kind: ParameterKind::Ratio,
             key: "share",
-            meaning: "laminar share of the flow at 15 bar and 40 C",
+            meaning: "laminar share of the flow at the drop of its curve and 40 C",
             null: 0.0,
             typical: 0.2,
             low: 0.0,

@@ -12,7 +12,7 @@ pub static PUMP_FLOW: Described = Described {
     id: "pump-flow",
     form: None,
     title: "Deviation of the pump flow",
-    equation: "Q_pump = (1 + change) 48 l/min",
+    equation: "Q_pump = (1 + change) Q_max",
     source: "engine speed and displacement; a deviation below 20 % rarely affects a lift",
     shows: "lifting at high currents, equally at all pressures; invisible while the compensator has surplus flow",
     parameters: &[Parameter {

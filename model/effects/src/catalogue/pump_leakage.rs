@@ -14,7 +14,7 @@ pub static PUMP_LEAKAGE: Described = Described {
     id: "pump-leakage",
     form: None,
     title: "Slip of the pump",
-    equation: "Q_pump = 48 l/min - slip p_P",
+    equation: "Q_pump = Q_max - slip p_P",
     source: "Wilson's slip flow, Merritt 4.2: efficiency 0.88 at 150 bar is 0.044 l/min/bar",
     shows: "lifting fast against high pressure, where demand exceeds delivery; invisible while the \
          compensator has flow to spare",

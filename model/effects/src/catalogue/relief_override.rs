@@ -16,7 +16,7 @@ pub static RELIEF_OVERRIDE: Described = Described {
     id: "relief-override",
     form: None,
     title: "Override of the relief valve",
-    equation: "p_P = 154 bar + override (Q_relief / 48 l/min - 1 + above)",
+    equation: "p_P = p_set + override (Q_relief / Q_pump - 1 + above)",
     source: "Merritt 5.6; 10 to 25 bar over the range of a direct-acting valve, Hopsan's example 15 \
          bar at 42 l/min",
     shows: "lifting against more than 130 bar and pump pressure at the upper end of the stroke: only \
