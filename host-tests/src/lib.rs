@@ -1,6 +1,7 @@
 //! Common parts of the tests across the crates; see `tests/`.
 
 pub mod board;
+pub mod category_three;
 pub mod drawn_hitches;
 pub mod ecu_day;
 pub mod ecu_tool;

@@ -13,3 +13,4 @@ mod schema;
 mod shell;
 mod small_campaign;
 mod tune;
+mod your_own_hitch;

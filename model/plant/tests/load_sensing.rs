@@ -76,6 +76,18 @@ fn the_pump_pressure_rises_with_its_time_constant() {
     assert!((reached_bar - 4.0).abs() < 0.05, "{reached_bar}");
 }
 
+/// A plant at rest with an open valve has the pump pressure of this opening, whatever the lag of the pump.
+#[test]
+fn a_flow_bench_at_rest_is_settled() {
+    let dynamic = hitch_model_file::dynamic();
+    let flows = [0.0, 0.1].map(|response_s| {
+        let model = load_sensing(&dynamic, response_s);
+        Plant::new(&model, bench(60.0), 40.0, lift(2.0)).flows()
+    });
+    assert!(flows[0].lift_m3_s > 2e-4);
+    assert_eq!(flows[0], flows[1]);
+}
+
 fn measured(model: &Model, points: u32) -> LinkageTable {
     let stroke_m = model.constants().cylinder.stroke_m;
     let travel_m = (0..=points).map(|k| stroke_m * f64::from(k) / f64::from(points));

@@ -79,7 +79,13 @@ impl<'m> Plant<'m> {
             plant.place_on_ground(&rig);
         }
         plant.store_signals();
-        plant.shift(effective.lift_a, effective.lower_a);
+        let openings = plant.shift(effective.lift_a, effective.lower_a);
+        if plant.hooks.compensator_lag_s > 0.0 {
+            let steady_pa = plant
+                .circuit()
+                .steady_pressure_pa(openings.lift, &plant.state);
+            plant.state.compensator_pa = steady_pa;
+        }
         plant.refresh();
         plant.store_signals();
         let mut reading = plant.truth();

@@ -290,7 +290,8 @@ impl Circuit<'_> {
     }
 
     /// Steady pump pressure, Pa, of compensator and relief valve for an opening of the lift valve.
-    fn steady_pressure_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
+    #[must_use]
+    pub fn steady_pressure_pa(&self, opening: Opening, state: &MechanicalState) -> f64 {
         if opening.shut() {
             return self.idle_pressure_pa();
         }
