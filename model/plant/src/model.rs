@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::components::linkage::Linkage;
+use crate::components::linkage::{Joints, Linkage};
 use crate::components::linkage_error::LinkageError;
+use crate::components::linkage_sketch::sketched;
 use crate::constants::{Constants, Dynamics};
 use crate::hooks::effect::{AddedEffect, Effect};
 use crate::units::GRAVITY_M_S2;
@@ -93,6 +94,17 @@ impl Model {
     #[must_use]
     pub fn linkage(&self) -> &Arc<Linkage> {
         &self.linkage
+    }
+
+    /// The joints of the linkage at a rocker angle, rad; a sketch with the right height if it is measured.
+    ///
+    /// # Errors
+    /// [`LinkageError`] if the dimensions cannot be assembled at this angle.
+    pub fn joints(&self, rocker_angle_rad: f64) -> Result<Joints, LinkageError> {
+        match self.constants.linkage_table {
+            Some(_) => Ok(sketched(&self.linkage, rocker_angle_rad)),
+            None => self.constants.linkage.joints(rocker_angle_rad),
+        }
     }
 
     /// Three usual loads, kg: 3, 9 and 15 % of the load that the relief valve just permits in the middle of the

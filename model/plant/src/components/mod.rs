@@ -6,6 +6,7 @@ pub mod cylinder;
 pub mod lag;
 pub mod linkage;
 pub mod linkage_error;
+pub mod linkage_sketch;
 pub mod linkage_table;
 pub mod load;
 pub mod oil;

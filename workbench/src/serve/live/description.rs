@@ -38,10 +38,9 @@ pub fn described(machine: &Machine, angle_deg: f64) -> Result<Value, Error> {
 /// Joints at equally spaced angles, in m; x to the rear, y up.
 fn linkage(model: &Model) -> Result<Value, LinkageError> {
     let (low_rad, high_rad) = model.linkage().swing_rad();
-    let dimensions = &model.constants().linkage;
     let position = |index: u32| {
         let angle_rad = low_rad + (high_rad - low_rad) * f64::from(index) / f64::from(POSITIONS);
-        let joints = dimensions.joints(angle_rad)?;
+        let joints = model.joints(angle_rad)?;
         let points = [
             joints.piston_pin,
             joints.rocker_end,
@@ -88,4 +87,25 @@ fn valve_maps(calibration: &ValidCalibration) -> Value {
         })
     };
     json!({ "lift": map(&calibration.lift), "lower": map(&calibration.lower) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hitch_plant::LinkageTable;
+
+    #[test]
+    fn a_measured_linkage_is_sketched_with_its_heights() {
+        let nominal = hitch_model_file::nominal();
+        let mut constants = nominal.constants().clone();
+        let travel_m = vec![0.0, 0.08, constants.cylinder.stroke_m];
+        let table = LinkageTable::new(travel_m, vec![0.5, 1.5, 2.2], vec![0.1, 0.6, 1.2]);
+        constants.linkage_table = Some(table.expect("a table"));
+        let model = nominal.with_constants(constants).expect("a linkage");
+        let drawn = linkage(&model).expect("a sketch");
+        let positions = drawn["positions"].as_array().expect("positions");
+        let height_m = |at: usize| positions[at]["joints"][5][1].as_f64().expect("a height");
+        let risen_m = height_m(positions.len() - 1) - height_m(0);
+        assert!((risen_m - 1.1).abs() < 1e-6, "{risen_m}");
+    }
 }
