@@ -109,7 +109,7 @@ const CRATES: [Layers; 8] = [
                 "input_stream",
                 "heat_table",
             ],
-            &["demonstration", "valve_survey", "base_fit"],
+            &["demonstration", "valve_survey", "base_fit", "next_command"],
             &[
                 "calibrate",
                 "closed_loop",
