@@ -49,7 +49,8 @@ fn value(text: &str, key: &str) -> f64 {
 fn the_documents_commands_find_what_is_hidden_in_a_second_machine() {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path();
-    let document = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/your-own-hitch.md");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let document = root.join("docs/your-own-hitch.md");
     let commands = commands(&fs::read_to_string(document).unwrap());
     assert!(commands.len() >= 9, "{commands:?}");
     for command in &commands {
