@@ -16,13 +16,13 @@ use host_tests::second_rig::hideable::Fidelity;
 use host_tests::second_rig::manoeuvres::Plan;
 use host_tests::second_rig::test_stand::Family;
 
-/// Error of a fitted model that is noise.
+/// Largest error of a fitted model, sigma: noise.
 const NOISE: f64 = 1.1;
 
 /// Seeds of the campaigns.
 const SEEDS: std::ops::Range<u64> = 700..710;
 
-/// How far off a declared model is.
+/// Relative errors of a declared model.
 #[derive(Clone, Copy)]
 struct Off {
     /// Flow curves at the current limit, growing from nothing at the threshold.
@@ -102,7 +102,7 @@ fn true_value(name: &str, truth: &Model) -> f64 {
     }
 }
 
-/// For everything that is determined: its name and whether its interval holds the truth.
+/// Every determined quantity: its name, and whether its interval contains the truth.
 fn covered(truth: &Model, fit: &BaseFit) -> Vec<(String, bool)> {
     let holds = |(low, high): (f64, f64), value: f64| low <= value && value <= high;
     let constants = fit.constants.iter().filter(|constant| constant.determined);
@@ -123,7 +123,7 @@ fn covered(truth: &Model, fit: &BaseFit) -> Vec<(String, bool)> {
     constants.chain(points).collect()
 }
 
-/// Fits one campaign a seed; returns the share of intervals that hold the truth.
+/// Fits one campaign for each seed; returns the share of intervals that contain the truth.
 fn coverage(family: Family, plan: Plan, off: Off) -> f64 {
     let (mut held, mut all) = (0, 0);
     for seed in SEEDS {
@@ -197,7 +197,7 @@ fn a_dynamic_model_that_is_off_leaves_noise() {
     assert!(margin.determined && (margin.fitted - 4.0).abs() < 0.1);
 }
 
-/// Another machine: bore, curves, margin and weights are far from those of the rig.
+/// Another machine: bore, curves, margin and weights differ widely from those of the rig.
 fn another_machine() -> Model {
     let mut constants = declared(
         &hitch_model_file::nominal(),

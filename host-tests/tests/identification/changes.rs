@@ -22,7 +22,7 @@ fn campaigns() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("campaigns")
 }
 
-/// `known-friction` explained from the paper's machine with so much friction adopted.
+/// `known-friction` explained from the paper's machine with this adopted friction.
 fn from_adopted(friction_n: f64, changes: bool) -> Explanation {
     let effect = find("coulomb-friction").expect("in the catalogue");
     let mut adopted = AddedEffect::typical(effect);

@@ -12,8 +12,8 @@ use hitch_identification::explanation::explain::fit_base;
 use hitch_identification::residuals::whitening::Weights;
 use hitch_plant::{AddedEffect, Effect, Model};
 
-/// Largest part of what an effect changes that a draft may have otherwise, root mean square: a signature 14 degrees
-/// off, where those within 37 are worth a fit.
+/// Largest error of a coarse signature relative to the fine one, root mean square: an angle of 14 degrees, where
+/// signatures within 37 degrees are fitted.
 const BAR: f64 = 0.25;
 
 /// Size below which a change is not a signature, sigma root mean square.
@@ -96,7 +96,7 @@ fn a_coarse_simulation_shows_the_change_of_an_effect() {
     assert!(otherwise.is_empty(), "{otherwise:?}");
 }
 
-/// Least and largest part of an effect's signature that a condensed experiment may show of it, as the sum of squares.
+/// Range of the sum of squares of a signature in a condensed experiment, relative to that of all samples.
 const SHOWN: std::ops::RangeInclusive<f64> = 0.8..=1.2;
 
 /// Sum of squares of the signature of an effect of typical size, in the sigmas of some runs.

@@ -10,7 +10,7 @@ use hitch_identification::data::experiment::{Experiment, Nuisance};
 use hitch_plant::simulation::{Trace, simulate};
 use hitch_plant::{AddedEffect, Channel, Currents, Effect, Model};
 
-/// Pieces that a sample is cut into for the converged solution: steps of half a millisecond.
+/// Steps per sample of the converged solution: half a millisecond each.
 const FINER: usize = 40;
 
 /// Largest root mean square deviation of a channel, relative to its own.
@@ -19,10 +19,10 @@ const BAR: f64 = 0.001;
 /// The same with an effect of typical size.
 const BAR_WITH_AN_EFFECT: f64 = 0.002;
 
-/// The peak of an accelerated load is as high as the last piece before a sample is short.
+/// The peak pressure of an accelerated load depends on the length of the last step before a sample.
 const BAR_OF_PEAKS: f64 = 0.004;
 
-/// The same currents in `FINER` pieces a sample.
+/// The same currents in `FINER` steps per sample.
 fn finely(time_s: &[f64], currents: &[Currents]) -> (Vec<f64>, Vec<Currents>) {
     let between =
         |from: f64, to: f64, piece: usize| from + (to - from) * piece as f64 / FINER as f64;
@@ -47,7 +47,7 @@ fn logged(run: &Run) -> Vec<Currents> {
         .collect()
 }
 
-/// Of each channel the root mean square of the difference over its own, over all runs.
+/// For each channel: root mean square of the difference over that of the channel, over all runs.
 fn shares(pairs: &[(Trace, Trace)]) -> [f64; 4] {
     Channel::ALL.map(|channel| {
         let (mut off, mut all) = (0.0, 0.0);

@@ -140,7 +140,7 @@ fn nothing_is_named_where_nothing_is_hidden_and_pressures_ring() {
     nothing_is_named("clean-dynamic", &hitch_model_file::dynamic());
 }
 
-/// The wrong starting point is not adequate, and no effect of the catalogue is made to stand for inertia.
+/// The quasi-static model is not adequate for a dynamic rig, and no effect of the catalogue replaces inertia.
 #[test]
 fn the_wrong_starting_point_is_not_called_adequate() {
     let explanation = explained("clean-dynamic", &hitch_model_file::nominal());

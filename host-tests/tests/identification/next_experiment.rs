@@ -134,7 +134,7 @@ fn changes_pressure(manoeuvre: &Manoeuvre) -> bool {
     manoeuvre.runs.iter().any(new)
 }
 
-/// At one load, and without a sensor at the pump, a compensator that droops and a smaller orifice are one.
+/// At one load and without a pump pressure sensor, compensator droop and a smaller orifice are indistinguishable.
 #[test]
 fn a_drooping_compensator_is_told_from_a_scaled_flow_by_another_load() {
     for (hidden, size, twin) in [
@@ -247,7 +247,7 @@ fn a_ringing_plant_is_designed_for_as_well() {
     assert!(next.expected_likelihood_ratio >= DISTINGUISHABLE, "{next}");
 }
 
-/// Without a pressure sensor a little friction in the pins is a little less flow, whatever is done.
+/// Without a pressure sensor, pin friction and a reduced flow are indistinguishable in every manoeuvre.
 #[test]
 fn a_sensor_is_asked_for_where_no_manoeuvre_helps() {
     let ids = ["pin-friction", "lower-flow-scale"];

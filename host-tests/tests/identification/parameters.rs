@@ -29,7 +29,7 @@ fn shipped(name: &str) -> Campaign {
     Campaign::load(&folder).expect("a shipped campaign")
 }
 
-/// A trace that was kept is the one that would be made anew, and never another model's.
+/// A cached trace equals a new simulation, and is never that of another model.
 #[test]
 fn cached_traces_belong_to_their_model() {
     let campaign = shipped("clean-dynamic");
@@ -142,8 +142,8 @@ fn autocorrelation_is_counted() {
     assert!((7.5..10.0).contains(&slow), "slow: {slow}, not 9");
 }
 
-/// A campaign as the dynamic rig would give it with one more effect: the currents of a measured one, simulated with
-/// the model's own plant, another load and noise of its own. Proves the search on ringing pressures, not the plant.
+/// A campaign of the dynamic plant with one more effect: the currents of a measured campaign, simulated with the model's
+/// own plant, another load and new noise. It tests the search on ringing pressures, not the plant.
 fn ringing_campaign(hidden: &AddedEffect, seed: u64) -> Campaign {
     let mut campaign = shipped("clean-dynamic");
     let model = hitch_model_file::dynamic();

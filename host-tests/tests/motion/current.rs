@@ -70,7 +70,7 @@ impl Bench {
         last.iter().sum::<f64>() / period as f64
     }
 
-    /// Whether supply and resistance let this current and its dither through at all.
+    /// Whether supply voltage and resistance permit this current with its dither.
     fn can(&self, asked_ma: i32) -> bool {
         let most_ma = f64::from(asked_ma + PARAMETERS.dither_amplitude.0);
         most_ma * 1e-3 * self.coil.resistance_ohm <= 0.97 * self.supply_v

@@ -20,7 +20,7 @@ struct Bars {
     overshooting: f64,
     /// Largest overshoot, degree.
     overshoot_deg: f64,
-    /// Share of the moves that end further off than 0.3 degree.
+    /// Share of the moves with a final error above 0.3 degree.
     off: f64,
 }
 
@@ -47,8 +47,8 @@ fn a_load_that_oscillates_on_its_compensator_is_lifted_gently() {
     drive_all("structured machines", true, &bars);
 }
 
-/// The estimate takes every spool for one of first order. What it gets wrong of such a one mustn't make a hitch go to and
-/// fro about its set point until that looks like a leak.
+/// The estimate assumes spools of first order. Its error with a spool of second order must not cause oscillation about the
+/// set point, which would be reported as a leak.
 #[test]
 fn a_slow_second_order_spool_causes_no_limit_cycle() {
     let machines: Vec<Drawn> = (1..=MACHINES as u64)

@@ -41,7 +41,7 @@ impl<'m> Machine<'m> {
             .unwrap()
     }
 
-    /// Drifts until the end and a second longer: largest way, the fault, and when it was reported, ms.
+    /// Drifts to the final value and holds it for a second: largest travel, the fault, and its time, ms.
     fn drift(&mut self, tamper: fn(&mut Samples, f64)) -> (f64, Option<(Fault, u64)>) {
         let from_deg = self.bench.angle_deg();
         let (mut way_deg, mut reported) = (0.0_f64, None);
@@ -61,12 +61,12 @@ fn times(code: AdcCode, factor: f64) -> AdcCode {
     AdcCode::new(code.min(f64::from(AdcCode::MAX.get())) as u16)
 }
 
-/// Every code is measured against the reference.
+/// All converter codes are relative to the reference.
 fn reference(samples: &mut Samples, share: f64) {
     *samples = Samples::from_codes(samples.codes().map(|code| times(code, 1.0 / share)));
 }
 
-/// Every sensor's signal goes with its supply.
+/// Every sensor signal is proportional to its supply.
 fn sensor_supply(samples: &mut Samples, share: f64) {
     for code in [
         &mut samples.sensor_supply,

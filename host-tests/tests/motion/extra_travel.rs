@@ -9,7 +9,7 @@ use hitch_workbench::closed_loop::{ClosedLoop, Sample};
 /// Faults of a moving hitch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Trouble {
-    /// Not a fault: the yardstick.
+    /// No fault: the reference.
     CutAtOnce,
     AngleLost,
     AngleShortedLow,
@@ -38,7 +38,7 @@ enum Trouble {
 
 use Trouble::*;
 
-/// Troubles with the extra travel that each may cause, degree.
+/// Faults with the permitted extra travel of each, degree.
 const ELECTRICAL_DEG: f64 = 2.0;
 const ANGLE_DEG: f64 = 5.0;
 const TROUBLES: [(Trouble, f64); 21] = [
@@ -67,10 +67,10 @@ const TROUBLES: [(Trouble, f64); 21] = [
 
 const LOADS_KG: [f64; 3] = [50.0, 150.0, 250.0];
 const MOVES_DEG: [(f64, f64); 2] = [(60.0, 120.0), (120.0, 60.0)];
-/// Instants of a move at which the trouble begins, ms: from before the start to after the end.
+/// Times in a move at which the fault begins, ms: from before the start to after the end.
 const INSTANTS_MS: std::ops::Range<usize> = 20..1_000;
 const EVERY_MS: usize = 35;
-/// How long the hitch is watched afterwards, ms.
+/// Duration of the observation afterwards, ms.
 const WATCHED_MS: usize = 600;
 
 /// Last readings of the sensors.
@@ -79,16 +79,16 @@ struct Memory {
     inputs: Inputs,
 }
 
-/// One run: trouble at `instant_ms` of the move.
+/// One run: a fault at `instant_ms` of the move.
 struct Run {
-    /// Way from where the hitch was, at most, either way, degree.
+    /// Largest distance from the position at the fault in either direction, degree.
     travel_deg: f64,
-    /// From the trouble until both coils are off, ms.
+    /// Time from the fault until both coils are off, ms.
     off_after_ms: Option<usize>,
     fault: Option<Fault>,
 }
 
-/// A number between `-most` and `most` that looks random.
+/// A pseudo-random number between `-most` and `most`.
 fn scattered(step: usize, most: i32) -> i32 {
     fastrand::Rng::with_seed(step as u64).i32(-most..=most)
 }
@@ -208,7 +208,7 @@ fn run(
     result
 }
 
-/// The worst of all instants, loads and ways.
+/// The worst case over all instants, loads and directions.
 #[derive(Default)]
 struct Worst {
     extra_deg: f64,
@@ -344,8 +344,8 @@ fn drift(rate_deg_per_s: f64, watched_s: u32) -> Drift {
     drift
 }
 
-/// The controller brings the hitch back to where it seems to have been, a few times and a few degrees in all. One
-/// sensor can't tell a drift from a leak, and needn't.
+/// The controller corrects the apparent motion a few times, by a few degrees in all. One sensor alone cannot distinguish
+/// a drift from a leak.
 #[test]
 fn a_drifting_angle_is_followed_by_a_few_degrees_at_most() {
     for rate_deg_per_s in [
@@ -357,8 +357,7 @@ fn a_drifting_angle_is_followed_by_a_few_degrees_at_most() {
     }
 }
 
-/// A correction is forgotten after 12 minutes, and five within them are too many: a drift that asks for fewer is
-/// followed for as long as it lasts.
+/// Five corrections within 12 minutes are a fault; a drift that causes fewer is followed as long as it lasts.
 #[test]
 fn the_slowest_drift_that_is_noticed() {
     for rate_deg_per_s in [0.0004, -0.0004] {

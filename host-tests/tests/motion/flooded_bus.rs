@@ -12,8 +12,8 @@ const DURATION_MS: u32 = 20_000;
 /// Twice the capacity of 250 kbit/s for the shortest frames.
 const FRAMES_A_MS: usize = 8;
 
-/// A frame of nonsense; half of them look like something that the ECU knows. Proper commands to the hitch aren't
-/// among them: they would be obeyed.
+/// A frame with random content; half of them have an identifier that the ECU receives. Valid commands to the hitch are
+/// excluded.
 fn nonsense(random: &mut Rng) -> Frame {
     let groups = [
         Pgn::REQUEST,

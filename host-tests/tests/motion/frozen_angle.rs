@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 /// Seeds of the freezes.
 const FREEZES: std::ops::RangeInclusive<u64> = 1..=300;
-/// Most extra travel of half of them, of 95 % and of all, degree.
+/// Limits of the extra travel: median, 95 % quantile and maximum, degree.
 const MOST_DEG: [f64; 3] = [3.5, 11.0, 18.0];
 /// Seeds of healthy machines, a minute each.
 const HEALTHY: std::ops::RangeInclusive<u64> = 1..=20;

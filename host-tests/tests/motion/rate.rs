@@ -9,12 +9,12 @@ use host_tests::teaching::{taught_calibration, typical};
 use rayon::prelude::*;
 
 const SHIFTS_A: [(f64, f64); 4] = [(0.1, 0.1), (-0.1, -0.1), (0.1, -0.1), (-0.1, 0.1)];
-/// Loads that the bar is about, and others that are only looked at.
+/// Loads to which the limit applies, and others that are only printed.
 const LOADS_KG: [f64; 3] = [50.0, 150.0, 250.0];
 const OTHER_LOADS_KG: [f64; 2] = [0.0, 500.0];
 const TEMPERATURES_C: [f64; 3] = [10.0, 40.0, 70.0];
 const RATES_DEG_PER_S: [f64; 8] = [-15.0, -10.0, -5.0, -2.0, 2.0, 5.0, 10.0, 15.0];
-/// How far the speed may be off the set one.
+/// Largest relative error of the speed.
 const BAR: f64 = 0.05;
 
 /// Error of the speed.
@@ -43,7 +43,7 @@ fn cases(loads_kg: &[f64]) -> Vec<Case> {
     cases
 }
 
-/// Mean speed over a second once the button has been held for a second, over the set one.
+/// Mean speed from the first to the second second of holding the button, over the set speed.
 fn speed_ratio(model: &Model, calibration: &ValidCalibration, case: &Case) -> f64 {
     let start_deg = 90.0 - case.rate_deg_per_s;
     let (load_kg, oil_c) = (case.load_kg, case.oil_temperature_c);
@@ -66,7 +66,7 @@ fn speed_ratio(model: &Model, calibration: &ValidCalibration, case: &Case) -> f6
     (after(1_000, Some(rate)) - before_deg) / case.rate_deg_per_s
 }
 
-/// Drives all of it at these loads and prints the worst; how many speeds are further off than they may be.
+/// Runs all cases at these loads and prints the worst; returns the number of speeds beyond the limit.
 fn beyond_bar(plants: &[(String, Model, ValidCalibration)], loads_kg: &[f64]) -> usize {
     let cases = cases(loads_kg);
     let mut errors: Vec<(f64, &str, &Case)> = plants

@@ -112,8 +112,8 @@ fn the_lags_of_the_spools_are_found() {
     }
 }
 
-/// At the upper end the pump presses until its relief valve opens, and oil with air in it keeps much of that: a light
-/// load doesn't leave before the lowering valve has drained it. That is no lower end.
+/// At the upper end the pump pressure rises to the relief setting, and aerated oil stores volume at that pressure: a light
+/// load does not move before the lowering valve has drained it. This must not be identified as the lower end.
 #[test]
 fn a_light_load_on_aerated_oil_is_given_time_to_leave_the_upper_end() {
     let model = dynamic_with(&[

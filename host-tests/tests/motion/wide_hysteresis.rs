@@ -1,6 +1,6 @@
-//! Valves whose spools stick to where they were by 0.12 to 0.2 A: taught, they move a hitch as well as others.
+//! Valves with a hysteresis of 0.12 to 0.2 A: after teaching, motion is as accurate as with other valves.
 //!
-//! The machines are the second rig's: no dither takes their hysteresis away.
+//! The machines are those of the second rig, whose hysteresis is not reduced by dither.
 
 use hitch_quantities::{Calibration, ValidCalibration};
 use host_tests::drawn_hitches::draw::{Drawn, draw};
