@@ -18,6 +18,7 @@ pub mod recording;
 pub mod refusal;
 pub mod replay;
 pub mod second_rig;
+pub mod seeds;
 pub mod simulated_lab;
 pub mod teaching;
 pub mod trace;

@@ -2,8 +2,7 @@
 //!
 //! The truth is the project's own plant, so that every parameter has the meaning of the catalogue. Currents vary
 //! between samples, loads have weighing errors, instruments have noise and finite resolution.
-//! `HITCH_COVERAGE_SEEDS=100` tests every effect with a hundred campaigns, `HITCH_COVERAGE_EFFECT=spool-lag` that
-//! effect alone.
+//! `HITCH_SEEDS=100` tests every effect with a hundred campaigns, `HITCH_COVERAGE_EFFECT=spool-lag` that effect alone.
 
 use hitch_effects::CATALOGUE;
 use hitch_identification::data::experiment::Experiment;
@@ -11,13 +10,14 @@ use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::fit_base;
 use hitch_identification::search::single_effects::try_effects;
 use hitch_plant::{AddedEffect, Dynamics, Effect, Model};
+use host_tests::seeds::seeds;
 use host_tests::simulated_lab::campaign;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 /// Default number of seeds of an effect.
-const FEW_SEEDS: u64 = 3;
+const FEW_SEEDS: u64 = 2;
 
 /// Standard deviations by which an estimate may miss, were its interval a normal distribution's.
 const WIDTH: f64 = 1.96;
@@ -28,10 +28,7 @@ type Distances = Vec<f64>;
 // REQ-DIAG-05
 #[test]
 fn intervals_hold_the_truth() {
-    let seeds = std::env::var("HITCH_COVERAGE_SEEDS")
-        .ok()
-        .and_then(|text| text.parse().ok())
-        .unwrap_or(FEW_SEEDS);
+    let seeds = seeds(FEW_SEEDS);
     let (mut held, mut judged, mut too_few) = (0, 0, Vec::new());
     println!("effect                    parameters held  rms distance, sigmas");
     let only = std::env::var("HITCH_COVERAGE_EFFECT").ok();

@@ -1,0 +1,11 @@
+//! Number of drawn cases of a test.
+
+/// Environment variable with the number of seeds of every test that draws its cases.
+const VARIABLE: &str = "HITCH_SEEDS";
+
+/// Number of seeds: that of the environment variable `HITCH_SEEDS`, or a small number, which keeps the whole suite short.
+#[must_use]
+pub fn seeds(few: u64) -> u64 {
+    let text = std::env::var(VARIABLE).ok();
+    text.and_then(|text| text.parse().ok()).unwrap_or(few)
+}
