@@ -31,4 +31,5 @@ pub mod status_line;
 pub mod text;
 pub mod tuning;
 pub mod valve_survey;
+pub mod web;
 pub mod xcp_tool;

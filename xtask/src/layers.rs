@@ -108,6 +108,7 @@ const CRATES: [Layers; 8] = [
                 "search_args",
                 "input_stream",
                 "heat_table",
+                "web",
             ],
             &["demonstration", "valve_survey", "base_fit", "next_command"],
             &[

@@ -3,6 +3,7 @@ mod groups;
 mod raw_error;
 mod show;
 mod tally;
+mod worst;
 
 use std::sync::Arc;
 
@@ -19,9 +20,7 @@ use tally::Tally;
 
 pub use groups::Grouping;
 pub use raw_error::{RawError, raw_errors};
-
-/// Length of the worst stretch of a run, s.
-const WORST_STRETCH_S: f64 = 1.0;
+pub use worst::{WorstStretch, worst_by_part, worst_in_part};
 
 /// Result of `hitch compare`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
@@ -74,21 +73,6 @@ pub struct Cell {
     pub bias: f64,
     /// Compared samples.
     pub samples: usize,
-}
-
-/// The stretch of time in which a channel has its largest error.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-pub struct WorstStretch {
-    /// Key of the channel.
-    pub channel: &'static str,
-    /// File of the run.
-    pub run: String,
-    /// Start, s.
-    pub from_s: f64,
-    /// End, s.
-    pub to_s: f64,
-    /// Root mean square in sigma.
-    pub error: f64,
 }
 
 /// A model evaluated on a campaign.
@@ -160,8 +144,7 @@ impl Comparison {
             cells: cells(evaluated),
             worst: Channel::ALL
                 .into_iter()
-                .filter_map(|channel| worst_stretch(evaluated, channel, |_, _| true))
-                .map(|(_, stretch)| stretch)
+                .filter_map(|channel| worst::worst(evaluated, channel))
                 .collect(),
         }
     }
@@ -227,64 +210,4 @@ fn tally(
             parts.push((part, tally));
         }
     }
-}
-
-/// The stretch in which a group of samples has its largest error in a channel: index of the run, and the stretch.
-pub fn worst_in_part(
-    evaluated: &Evaluated,
-    by: Grouping,
-    part: &str,
-    channel: Channel,
-) -> Option<(usize, WorstStretch)> {
-    worst_stretch(evaluated, channel, |run, sample| {
-        by.part(run, sample).is_some_and(|own| own.name == part)
-    })
-}
-
-fn worst_stretch(
-    evaluated: &Evaluated,
-    channel: Channel,
-    counts: impl Fn(&ReadyRun, usize) -> bool,
-) -> Option<(usize, WorstStretch)> {
-    let of_run = |(index, run): (usize, &ReadyRun)| {
-        let mut residuals = evaluated.residuals(index, channel);
-        for (sample, residual) in residuals.iter_mut().enumerate() {
-            if !counts(run, sample) {
-                *residual = f64::NAN;
-            }
-        }
-        let stretches = stretches(&run.drive.time_s, &residuals);
-        let (from_s, to_s, error) = stretches.into_iter().max_by(|a, b| a.2.total_cmp(&b.2))?;
-        let stretch = WorstStretch {
-            channel: channel.key(),
-            run: run.file.clone(),
-            from_s,
-            to_s,
-            error,
-        };
-        Some((index, stretch))
-    };
-    let runs = evaluated.experiment.runs.iter().enumerate();
-    let worst = runs.filter_map(of_run);
-    worst.max_by(|(_, a), (_, b)| a.error.total_cmp(&b.error))
-}
-
-/// Consecutive stretches of a run with the root mean square in each.
-fn stretches(time_s: &[f64], residuals: &[f64]) -> Vec<(f64, f64, f64)> {
-    let mut found = Vec::new();
-    let mut start = 0;
-    for end in 1..=time_s.len() {
-        if end < time_s.len() && time_s[end] - time_s[start] < WORST_STRETCH_S {
-            continue;
-        }
-        let mut tally = Tally::default();
-        residuals[start..end]
-            .iter()
-            .for_each(|residual| tally.add(*residual));
-        if tally.samples > 0 {
-            found.push((time_s[start], time_s[end - 1], tally.rms()));
-        }
-        start = end;
-    }
-    found
 }

@@ -1,17 +1,13 @@
 //! The files of the page, compiled into the program.
-use std::sync::OnceLock;
-
 use axum::body::Bytes;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 
-/// The tag that precedes each script of the plotting library.
-const TAG: &str = "<script type=\"text/javascript\">";
-const END_TAG: &str = "</script>";
+use crate::web;
 
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 
-/// Name, media type and text of every file except the plotting library.
+/// Name, media type and text of every file that the page does not share.
 const FILES: &[(&str, &str, &str)] = &[
     (
         "",
@@ -25,8 +21,6 @@ const FILES: &[(&str, &str, &str)] = &[
     ),
     ("main.js", SCRIPT, include_str!("assets/main.js")),
     ("server.js", SCRIPT, include_str!("assets/server.js")),
-    ("dom.js", SCRIPT, include_str!("assets/dom.js")),
-    ("error_map.js", SCRIPT, include_str!("assets/error_map.js")),
     ("own_term.js", SCRIPT, include_str!("assets/own_term.js")),
     (
         "closed_loop.js",
@@ -51,31 +45,24 @@ const FILES: &[(&str, &str, &str)] = &[
         SCRIPT,
         include_str!("assets/model_panel.js"),
     ),
-    ("run_plot.js", SCRIPT, include_str!("assets/run_plot.js")),
 ];
 
 /// A file of the page by its name; the name of the page itself is empty.
 pub fn file(name: &str) -> Option<Response> {
     let answer = |kind: &'static str, text: Bytes| ([(header::CONTENT_TYPE, kind)], text);
     if name == "plotly.js" {
-        return Some(answer(SCRIPT, plotly()).into_response());
+        return Some(answer(SCRIPT, Bytes::from_static(web::plotly().as_bytes())).into_response());
     }
-    let (_, kind, text) = FILES.iter().find(|(known, ..)| *known == name)?;
+    if name == "colours.css" {
+        let text = Bytes::from_static(web::COLOURS.as_bytes());
+        return Some(answer("text/css; charset=utf-8", text).into_response());
+    }
+    let shared = web::MODULES
+        .iter()
+        .map(|(name, text)| (*name, SCRIPT, *text));
+    let mut files = FILES.iter().copied().chain(shared);
+    let (_, kind, text) = files.find(|(known, ..)| *known == name)?;
     Some(answer(kind, Bytes::from_static(text.as_bytes())).into_response())
-}
-
-/// The plotting library without the formula renderer that its crate includes.
-fn plotly() -> Bytes {
-    static PLOTLY: OnceLock<Bytes> = OnceLock::new();
-    let script = || {
-        let both = plotly::Plot::offline_js_sources();
-        let first = both
-            .rsplit_once(TAG)
-            .map_or(both.as_str(), |(first, _)| first);
-        let inner = first.trim().trim_start_matches(TAG);
-        Bytes::from(inner.trim_end_matches(END_TAG).to_owned())
-    };
-    PLOTLY.get_or_init(script).clone()
 }
 
 #[cfg(test)]
@@ -83,17 +70,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_plotting_library_is_one_script() {
-        let script = String::from_utf8(plotly().to_vec()).unwrap();
-        assert!(script.starts_with("/**\n* plotly.js v"));
-        assert!(script.contains("Licensed under the MIT license"));
-        assert!(!script.contains(TAG) && !script.contains("MathJax.js"));
-        assert!(script.len() > 1_000_000);
-    }
-
-    #[test]
     fn only_known_files_are_served() {
-        assert!(file("").is_some() && file("main.js").is_some());
+        assert!(file("").is_some() && file("main.js").is_some() && file("dom.js").is_some());
         assert!(file("../Cargo.toml").is_none());
     }
 }

@@ -53,7 +53,7 @@ async function refresh() {
   if (view) {
     view = await look(view.run);
     byId("place").textContent = "";
-    await drawRun(view, undefined);
+    await drawRun(byId("plot"), view, undefined);
   }
 }
 
@@ -98,7 +98,7 @@ const acts = {
     draw();
     /** @type {HTMLElement | null} */ (document.querySelector(`#ranking [aria-label="Signature of ${effect.title}"]`))?.focus();
     byId("place").textContent = signed ? `Signature of: ${signed.title}` : "";
-    await drawRun(view, undefined);
+    await drawRun(byId("plot"), view, undefined);
   }),
 };
 
@@ -137,7 +137,7 @@ async function preview(trial) {
       if (tried.run !== view.run) continue;
       const channels = view.channels.map((/** @type {any} */ channel, /** @type {number} */ index) =>
         ({ ...channel, ...tried.channels[index] }));
-      await redrawRun({ ...view, channels });
+      await redrawRun(byId("plot"), { ...view, channels });
       performance.measure("redraw", { start: began });
       const errors = channels.map((/** @type {any} */ one) => `${one.title} ${sigmas(one.error)} σ`);
       byId("place").textContent = `This run: ${errors.join(", ")}`;
@@ -240,7 +240,7 @@ async function show(index, place) {
   view = await look(index);
   /** @type {HTMLSelectElement} */ (byId("run")).value = String(index);
   byId("place").textContent = "";
-  await drawRun(view, place);
+  await drawRun(byId("plot"), view, place);
 }
 
 /** @param {unknown} error */
@@ -254,7 +254,7 @@ function showFault(error) {
 }
 
 byId("again").addEventListener("click", () => location.reload());
-byId("whole").addEventListener("click", () => view && drawRun(view, null));
+byId("whole").addEventListener("click", () => view && drawRun(byId("plot"), view, null));
 byId("run").addEventListener("change", guarded((event) =>
   show(Number(/** @type {HTMLSelectElement} */ (event.target).value), null)));
 byId("undo").addEventListener("click", () => acts.go(state.at - 1));
@@ -270,7 +270,7 @@ byId("cancel").addEventListener("click", guarded(async () => {
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   if (!view) return;
   draw();
-  drawRun(view, undefined);
+  drawRun(byId("plot"), view, undefined);
   redrawLoop();
 });
 

@@ -26,47 +26,49 @@ export const library = new Promise((resolve, reject) => {
   script.addEventListener("error", () => reject(new Error("the plotting library cannot be loaded")));
 });
 
-/** Draws a run. `place` is the stretch to look at, its channel first; `null` is the whole run, and `undefined` leaves the
- * zoom as it is.
+/** Draws a run, or a view with its own rows. `place` is the stretch to look at, its channel first; `null` is the whole run, and
+ * `undefined` leaves the zoom as it is.
+ * @param {HTMLElement} at
  * @param {any} view
  * @param {Place | null | undefined} place */
-export async function drawRun(view, place) {
-  if (place?.channel) leading = place.channel;
+export async function drawRun(at, view, place) {
+  const plot = /** @type {any} */ (at);
+  const shown = looks.get(plot) ?? { marked: null, leading: "" };
+  looks.set(plot, shown);
+  if (place?.channel) shown.leading = place.channel;
   const plotly = await library;
-  const plot = /** @type {any} */ (byId("plot"));
   const kept = place === undefined && plot.layout ? plot.layout.xaxis.range.slice() : null;
-  const { traces, layout } = figure(view);
+  const { traces, layout } = figure(view, shown.leading);
   layout.xaxis.range = kept ?? range(view, place);
-  layout.shapes.push(...mark(place === undefined ? marked : place));
-  if (place !== undefined) marked = place;
+  if (place !== undefined) shown.marked = place;
+  layout.shapes.push(...mark(shown.marked));
   await plotly.react(plot, traces, layout, { displaylogo: false, responsive: true,
     modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] });
 }
 
 /** Redraws the parts that depend on a parameter: simulated curves and residuals.
+ * @param {HTMLElement} plot
  * @param {any} view */
-export async function redrawRun(view) {
+export async function redrawRun(plot, view) {
   const plotly = await library;
-  const { traces } = figure(view);
+  const { traces } = figure(view, looks.get(plot)?.leading ?? "");
   const changed = traces.flatMap((trace, index) => (trace.meta ? [index] : []));
-  await plotly.animate(byId("plot"), { data: changed.map((index) => ({ y: traces[index].y })), traces: changed },
+  await plotly.animate(plot, { data: changed.map((index) => ({ y: traces[index].y })), traces: changed },
     { mode: "immediate", transition: { duration: 0 }, frame: { duration: 0, redraw: false } });
 }
 
 /** @typedef {{from_s: number, to_s: number, channel?: string}} Place */
 
-/** @type {Place | null} */
-let marked = null;
-
-/** The channel that is drawn first. */
-let leading = "";
+/** The marked stretch of each plot, and its first channel.
+ * @type {WeakMap<HTMLElement, {marked: Place | null, leading: string}>} */
+const looks = new WeakMap();
 
 /** @param {any} view
  * @param {Place | null | undefined} place */
 function range(view, place) {
-  const last = view.time_s[view.time_s.length - 1];
-  if (!place) return [view.time_s[0], last];
-  return [Math.max(view.time_s[0], place.from_s - AROUND_S), Math.min(last, place.to_s + AROUND_S)];
+  const [first, last] = view.span ?? [view.time_s[0], view.time_s[view.time_s.length - 1]];
+  if (!place) return [first, last];
+  return [Math.max(first, place.from_s - AROUND_S), Math.min(last, place.to_s + AROUND_S)];
 }
 
 /** @param {Place | null} place */
@@ -76,24 +78,15 @@ function mark(place) {
     fillcolor: colour("mark"), opacity: 0.18, line: { width: 0 }, layer: "below" }];
 }
 
-/** Traces and layout of a run.
- * @param {any} view */
-function figure(view) {
+/** Traces and layout of a view.
+ * @param {any} view
+ * @param {string} leading key of the channel that is drawn first */
+function figure(view, leading) {
   /** @type {any[]} */
   const traces = [];
   const layout = frame();
-  const channels = [...view.channels].sort((a, b) => Number(b.key === leading) - Number(a.key === leading));
-  const share = shrink(channels.length);
   /** @type {any[]} */
-  const rows = channels.flatMap((/** @type {any} */ channel) => [
-    /** @type {any} */ ({ height: share * SIGNAL, title: `${channel.title}, error ${sigmas(channel.error)} σ`, unit: channel.unit, ticks: 5,
-      lines: signals(channel) }),
-    { height: share * RESIDUAL, title: `${channel.title}: measured − simulated`, unit: "σ",
-      band: true, lines: residuals(channel) },
-  ]);
-  rows.push({ height: share * CURRENTS, title: "currents of the valves", unit: "A", lines: [
-    { name: "lift current", y: view.lift_current_a, colour: "lift", key: "lift", unit: "A" },
-    { name: "lowering current", y: view.lower_current_a, colour: "lower", key: "lower", dash: "dash", unit: "A" }] });
+  const rows = view.rows?.map((/** @type {any} */ row) => ({ height: SIGNAL, ticks: 5, ...row })) ?? rowsOfRun(view, leading);
   const inner = rows.reduce((/** @type {number} */ sum, /** @type {any} */ row) => sum + row.height + GAP, 0);
   layout.height = inner + layout.margin.b + TOP;
   let top = inner;
@@ -108,30 +101,55 @@ function figure(view) {
     if (row.band) layout.shapes.push({ type: "rect", xref: "paper", yref: axis, x0: 0, x1: 1, y0: -BAND, y1: BAND,
       fillcolor: colour("band"), opacity: 0.35, line: { width: 0 }, layer: "below" });
     for (const line of row.lines) {
-      traces.push({ type: "scatter", mode: "lines", x: view.time_s, y: line.y, yaxis: axis, name: line.name,
+      traces.push({ type: "scatter", mode: "lines", x: line.x ?? view.time_s, y: line.y, yaxis: axis, name: line.name,
         meta: line.changes, legendgroup: line.key, showlegend: !shown.has(line.key),
         line: { color: colour(line.colour), width: line.width ?? 1.4, dash: line.dash },
-        hovertemplate: `%{y:.4~g} ${line.unit}${line.of ? ` (${line.of})` : ""}` });
+        hovertemplate: `%{y:.4~g} ${line.unit ?? row.unit}${line.of ? ` (${line.of})` : ""}` });
       shown.add(line.key);
     }
   });
+  if (view.x_title) layout.xaxis.title.text = view.x_title;
   layout.xaxis.anchor = rows.length === 1 ? "y" : `y${rows.length}`;
   return { traces, layout };
 }
 
-/** @param {any} channel */
-function signals(channel) {
+/** The rows of a run: each channel with its residual below it, and the currents.
+ * @param {any} view
+ * @param {string} leading */
+function rowsOfRun(view, leading) {
+  const channels = [...view.channels].sort((a, b) => Number(b.key === leading) - Number(a.key === leading));
+  const share = shrink(channels.length);
+  const names = { first: "first model", simulated: "simulated", ...view.names };
+  /** @type {any[]} */
+  const rows = channels.flatMap((/** @type {any} */ channel) => [
+    /** @type {any} */ ({ height: share * SIGNAL, title: `${channel.title}, error ${sigmas(channel.error)} σ`, unit: channel.unit, ticks: 5,
+      lines: signals(channel, names) }),
+    { height: share * RESIDUAL, title: `${channel.title}: measured − simulated`, unit: "σ",
+      band: true, lines: residuals(channel, names) },
+  ]);
+  rows.push({ height: share * CURRENTS, title: "currents of the valves", unit: "A", lines: [
+    { name: "lift current", y: view.lift_current_a, colour: "lift", key: "lift", unit: "A" },
+    { name: "lowering current", y: view.lower_current_a, colour: "lower", key: "lower", dash: "dash", unit: "A" }] });
+  return rows;
+}
+
+/** @param {any} channel
+ * @param {{first: string, simulated: string}} names */
+function signals(channel, names) {
   /** @type {any[]} */
   const lines = [{ name: "measured", y: channel.measured, colour: "measured", key: "measured", width: 1 }];
-  if (channel.first) lines.push({ name: "first model", y: channel.first, colour: "first", key: "first", dash: "dot" });
-  lines.push({ name: "simulated", y: channel.simulated, colour: "simulated", key: "simulated", width: 1.8, changes: true });
+  if (channel.first) lines.push({ name: names.first, y: channel.first, colour: "first", key: "first", dash: "dot" });
+  lines.push({ name: names.simulated, y: channel.simulated, colour: "simulated", key: "simulated", width: 1.8, changes: true });
   return lines.map((line) => ({ ...line, unit: channel.unit, of: channel.title }));
 }
 
-/** @param {any} channel */
-function residuals(channel) {
+/** @param {any} channel
+ * @param {{first: string}} names */
+function residuals(channel, names) {
   /** @type {any[]} */
-  const lines = [{ name: "residual", y: channel.residual, colour: "residual", key: "residual", changes: true }];
+  const lines = [];
+  if (channel.first_residual) lines.push({ name: names.first, y: channel.first_residual, colour: "first", key: "first", dash: "dot" });
+  lines.push({ name: "residual", y: channel.residual, colour: "residual", key: "residual", changes: true });
   if (channel.signature) lines.push({ name: "signature of the effect", y: channel.signature, colour: "signature", key: "signature",
     width: 2, dash: "dash" });
   return lines.map((line) => ({ ...line, unit: "σ", of: channel.title }));
