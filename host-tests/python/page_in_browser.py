@@ -5,33 +5,16 @@ Called with the page's address, the address of a page with a broken campaign, th
 """
 
 import re
-import shutil
 import sys
 from pathlib import Path
 
-from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, expect, sync_playwright
 
-DESKTOP = {"viewport": {"width": 1440, "height": 900}}
-PHONE = {"viewport": {"width": 390, "height": 844}, "device_scale_factor": 2, "has_touch": True, "is_mobile": True}
-DARK = {**DESKTOP, "color_scheme": "dark"}
-
-# Computations may share the machine with others.
-PATIENCE_MS = 180_000
+from browser_view import DARK, DESKTOP, PATIENCE_MS, PHONE, assert_accessible, assert_fits, launched, opened
 
 # What a user feels as at once, on a machine of one's own; measured and printed.
 FIRST_VIEW_MS = 1000
 REDRAW_MS = 100
-
-
-def opened(browser, address: str, options: dict, faults: list) -> Page:
-    """A page whose console messages count as faults."""
-    page = browser.new_context(**options).new_page()
-    page.set_default_timeout(PATIENCE_MS)
-    page.on("pageerror", lambda error: faults.append(f"error: {error}"))
-    page.on("console", lambda said: faults.append(f"console: {said.type}: {said.text}"))
-    page.goto(address)
-    return page
 
 
 def wait_for_first_view(page: Page) -> float:
@@ -48,18 +31,6 @@ def settled(page: Page) -> None:
 def error_of(page: Page) -> float:
     """The error in the heading."""
     return float(page.locator("#title").inner_text().split("error ")[1].split(" ")[0])
-
-
-def assert_fits(page: Page) -> None:
-    """Nothing is wider than the window."""
-    width = page.evaluate("document.documentElement.scrollWidth")
-    assert width <= page.viewport_size["width"], f"the page is {width} px wide"
-
-
-def assert_accessible(page: Page) -> None:
-    """The accessibility check finds nothing."""
-    found = Axe().run(page).response["violations"]
-    assert not found, [(rule["id"], rule["help"], rule["nodes"][0]["html"]) for rule in found]
 
 
 def whole_story(page: Page, pictures: Path) -> None:
@@ -242,14 +213,12 @@ def drive(page: Page, pictures: Path, view: str) -> None:
 
 def main() -> None:
     address, broken, name, folder = sys.argv[1:5]
-    program = shutil.which(name)
-    assert program, f"no {name} is installed"
     pictures = Path(folder)
     pictures.mkdir(parents=True, exist_ok=True)
     faults: list = []
     expect.set_options(timeout=PATIENCE_MS)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        browser = launched(playwright, name)
         whole_story(opened(browser, address, DESKTOP, faults), pictures)
         for view, options in {"phone": PHONE, "dark": DARK}.items():
             page = opened(browser, address, options, faults)

@@ -8,6 +8,7 @@ pub mod ecu_tool;
 pub mod emulator;
 pub mod frozen_angle;
 pub mod hidden_effects;
+pub mod html_report;
 pub mod instruction_counts;
 pub mod lab;
 pub mod live_ecu;

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 /// Colour scale of a table.
 #[derive(Debug, Clone, Copy, Default)]
 pub enum Shade {
-    /// An error in sigma: white at one (noise), orange at ten and above.
+    /// An error in sigma: without colour at one (noise), darkest at thirty and above, as on the page of `hitch serve`.
     #[default]
     Sigmas,
     /// A figure with a limit: white at the ideal value, yellow at the limit, orange as far above it.
@@ -17,15 +17,30 @@ pub enum Shade {
 }
 
 impl Shade {
-    /// From 0 (white) over a half (yellow) to 1 (orange).
+    /// From 0 (ideal) to 1.
     fn heat(self, value: f64) -> f64 {
         let heat = match self {
-            Self::Sigmas => (value.max(1e-9).log10() - 0.04) / 0.96,
+            Self::Sigmas => value.max(1e-9).ln() / DARKEST_SIGMA.ln(),
             Self::Bar { best, bar } => 0.5 * (value - best) / (bar - best),
         };
         heat.clamp(0.0, 1.0)
     }
+
+    /// Style of a cell; its text is legible in both themes.
+    fn style(self, value: f64) -> String {
+        let heat = self.heat(value);
+        match self {
+            Self::Sigmas => format!("background:rgba(var(--heat), {:.2})", OPAQUE * heat),
+            Self::Bar { .. } => format!("background:{};color:#1b1f24", colour(heat)),
+        }
+    }
 }
+
+/// Error with the darkest colour, sigma.
+const DARKEST_SIGMA: f64 = 30.0;
+
+/// Opacity of the darkest colour.
+const OPAQUE: f64 = 0.5;
 
 /// Figures by row and column.
 #[derive(Debug, Clone, Default)]
@@ -43,7 +58,7 @@ pub struct HeatTable {
 impl HeatTable {
     /// The table as HTML. Every cell has its value as text; the colour is redundant.
     pub fn table(&self) -> Markup {
-        html! { div.scroll { table {
+        html! { div.scroll tabindex="0" role="group" aria-label="Table" { table {
             thead { tr {
                 th scope="col" { (self.corner) }
                 @for name in &self.columns { th scope="col" { (name) } }
@@ -60,12 +75,12 @@ fn heat_cell(value: Option<f64>, shade: Shade) -> Markup {
     match value.filter(|value| value.is_finite()) {
         None => html! { td.none { "–" } },
         Some(value) => {
-            html! { td style=(format!("background:{}", colour(shade.heat(value)))) { (number(value)) } }
+            html! { td style=(shade.style(value)) { (number(value)) } }
         }
     }
 }
 
-/// Colours are light enough for dark text.
+/// From white over yellow (a half) to orange; light enough for dark text.
 fn colour(heat: f64) -> String {
     const WHITE: [f64; 3] = [255.0, 255.0, 255.0];
     const YELLOW: [f64; 3] = [255.0, 236.0, 170.0];
@@ -97,12 +112,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn noise_is_white_and_errors_are_not() {
-        let colour = |sigmas| colour(Shade::Sigmas.heat(sigmas));
-        assert_eq!(colour(0.9), "#ffffff");
-        assert_eq!(colour(1.0), "#ffffff");
-        assert_eq!(colour(10.0), colour(1e6));
-        assert_ne!(colour(3.0), "#ffffff");
+    fn noise_has_no_colour_and_errors_are_not() {
+        let style = |sigmas| Shade::Sigmas.style(sigmas);
+        assert_eq!(style(0.9), style(1.0));
+        assert!(style(1.0).ends_with(" 0.00)"));
+        assert_eq!(style(30.0), style(1e6));
+        assert_ne!(style(3.0), style(1.0));
     }
 
     #[test]

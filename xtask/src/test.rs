@@ -24,12 +24,13 @@ const IMAGES_VARIABLE: &str = "HITCH_BOARD_IMAGES";
 const PROGRAM_VARIABLE: &str = "HITCH_PROGRAM";
 
 /// Modules of the test program `live` with tests that need images or a browser. Each runs alone: some are in real time.
-const ON_TARGET: [&str; 5] = [
+const ON_TARGET: [&str; 6] = [
     "board_bench::",
     "emulated::",
     "emulated_ecu::",
     "page_in_browser::",
     "python_clients::",
+    "report_in_browser::",
 ];
 
 /// Numbers of tests by result.

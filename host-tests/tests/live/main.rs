@@ -8,4 +8,5 @@ mod emulated;
 mod emulated_ecu;
 mod page_in_browser;
 mod python_clients;
+mod report_in_browser;
 mod serve;

@@ -3,6 +3,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
+use host_tests::html_report::assert_self_contained;
 use host_tests::program::{hitch, run};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -146,15 +147,6 @@ fn a_diagnosis_proposes_to_explain() {
     let output = run(campaign().path(), &["diagnose", ".", "--model", "nominal"]);
     let command = proposed(&String::from_utf8(output.stdout).unwrap());
     assert_eq!(command[..2], ["explain", "."]);
-}
-
-/// A report may point nowhere: it has to open offline.
-fn assert_self_contained(html: &str) {
-    assert!(html.starts_with("<!DOCTYPE html>") && html.ends_with("</html>"));
-    assert!(html.contains("<svg"));
-    for reference in ["http:", "https:", " src=", " href=", "@import", "url("] {
-        assert!(!html.contains(reference), "{reference}");
-    }
 }
 
 #[test]

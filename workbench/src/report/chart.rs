@@ -16,7 +16,7 @@ const Y_TICKS: usize = 4;
 /// Number of columns to which a long log is reduced; each keeps its minimum and maximum, so no peak is lost.
 const BUCKETS: usize = 250;
 
-/// Style of a line. Colours also differ in lightness, for grey print.
+/// Style of a line; the colours are those of the page of `hitch serve`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stroke {
     /// Measured.
@@ -30,29 +30,37 @@ pub enum Stroke {
 }
 
 impl Stroke {
-    const fn colour(self) -> &'static str {
+    /// Name of the colour in both themes.
+    pub const fn colour(self) -> &'static str {
         match self {
-            Self::Measured => "#8c959f",
-            Self::Before => "#d55e00",
-            Self::After => "#0058a3",
-            Self::Other => "#00795b",
+            Self::Measured => "measured",
+            Self::Before => "first",
+            Self::After => "simulated",
+            Self::Other => "good",
         }
     }
 
-    const fn width(self) -> &'static str {
+    /// Width, px.
+    pub const fn width(self) -> f64 {
         if matches!(self, Self::Measured) {
-            "2.6"
+            1.0
         } else {
-            "1.4"
+            1.8
         }
     }
 
-    const fn dashes(self) -> &'static str {
-        if matches!(self, Self::Before) {
-            "5 3"
-        } else {
-            "none"
+    /// Dashes of an interactive plot.
+    pub const fn dashes(self) -> &'static str {
+        match self {
+            Self::Measured | Self::After => "solid",
+            Self::Before => "dot",
+            Self::Other => "dash",
         }
+    }
+
+    /// Class of a line in the style sheet.
+    fn class(self) -> String {
+        format!("line {} {}", self.colour(), self.dashes())
     }
 }
 
@@ -69,6 +77,19 @@ pub struct Line<'a> {
     pub y: &'a [f64],
 }
 
+/// A filled band between two lines.
+#[derive(Debug, Clone)]
+pub struct Band<'a> {
+    /// Name, for screen readers.
+    pub name: &'a str,
+    /// Values along the axis.
+    pub x: &'a [f64],
+    /// Lower limit; finite.
+    pub low: &'a [f64],
+    /// Upper limit; finite.
+    pub high: &'a [f64],
+}
+
 /// A chart of lines over a common axis.
 #[derive(Debug, Clone)]
 pub struct Chart<'a> {
@@ -78,6 +99,8 @@ pub struct Chart<'a> {
     pub x_title: &'a str,
     /// Axis titles with unit.
     pub y_title: &'a str,
+    /// Bands behind the lines.
+    pub bands: Vec<Band<'a>>,
     /// The lines, in drawing order.
     pub lines: Vec<Line<'a>>,
 }
@@ -86,17 +109,26 @@ impl Chart<'_> {
     /// The chart as a figure; empty if no line has a value.
     pub fn figure(&self) -> Markup {
         let xs = extent(self.lines.iter().flat_map(|line| line.x.iter().copied()));
-        let ys = extent(self.lines.iter().flat_map(|line| line.y.iter().copied()));
+        let limits = self.bands.iter().flat_map(|band| [band.low, band.high]);
+        let values = self.lines.iter().map(|line| line.y).chain(limits);
+        let ys = extent(values.flatten().copied());
         let (Some(xs), Some(ys)) = (xs, ys) else {
             return html! { figure { figcaption { (self.caption) ": no values" } } };
         };
         let x = Scale::new(xs, (LEFT_PX, WIDTH_PX - RIGHT_PX));
         let y = Scale::new(ys, (HEIGHT_PX - BOTTOM_PX, TOP_PX));
-        let names: Vec<&str> = self.lines.iter().map(|line| line.name).collect();
+        let bands = self.bands.iter().map(|band| band.name);
+        let names: Vec<&str> = self
+            .lines
+            .iter()
+            .map(|line| line.name)
+            .chain(bands)
+            .collect();
         html! { figure {
             svg viewBox=(format!("0 0 {WIDTH_PX} {HEIGHT_PX}")) role="img"
                 aria-label=(format!("{}: {}", self.caption, names.join(", "))) {
                 (self.axes(&x, &y))
+                @for band in &self.bands { path.band d=(area(band, &x, &y)) {} }
                 @for line in &self.lines { (draw(line, &x, &y)) }
             }
             figcaption { (self.caption) }
@@ -108,16 +140,16 @@ impl Chart<'_> {
         let middle = (TOP_PX + base) / 2.0;
         html! {
             @for tick in y.ticks(Y_TICKS) { @let at = px(y.px(tick));
-                line x1=(LEFT_PX) x2=(right) y1=(at) y2=(at) stroke="#e6e9ed" {}
+                line.grid-line x1=(LEFT_PX) x2=(right) y1=(at) y2=(at) {}
                 text.soft x=(LEFT_PX - 6.0) y=(at) text-anchor="end" dominant-baseline="middle" {
                     (y.label(tick, Y_TICKS))
                 }
             }
             @for tick in x.ticks(X_TICKS) { @let at = px(x.px(tick));
-                line x1=(at) x2=(at) y1=(base) y2=(base + 4.0) stroke="#8c959f" {}
+                line.axis x1=(at) x2=(at) y1=(base) y2=(base + 4.0) {}
                 text.soft x=(at) y=(base + 17.0) text-anchor="middle" { (x.label(tick, X_TICKS)) }
             }
-            line x1=(LEFT_PX) x2=(right) y1=(base) y2=(base) stroke="#8c959f" {}
+            line.axis x1=(LEFT_PX) x2=(right) y1=(base) y2=(base) {}
             text x=((LEFT_PX + right) / 2.0) y=(HEIGHT_PX - 4.0) text-anchor="middle" { (self.x_title) }
             text x="12" y=(middle) text-anchor="middle" transform=(format!("rotate(-90 12 {middle})")) {
                 (self.y_title)
@@ -130,8 +162,7 @@ impl Chart<'_> {
 pub fn legend(entries: &[(Stroke, &str)]) -> Markup {
     html! { div.legend { @for (stroke, name) in entries { span {
         svg viewBox="0 0 28 10" aria-hidden="true" {
-            line x1="0" x2="28" y1="5" y2="5" stroke=(stroke.colour()) stroke-width=(stroke.width())
-                stroke-dasharray=(stroke.dashes()) {}
+            line class=(stroke.class()) x1="0" x2="28" y1="5" y2="5" stroke-width=(stroke.width()) {}
         }
         (name)
     } } } }
@@ -139,8 +170,20 @@ pub fn legend(entries: &[(Stroke, &str)]) -> Markup {
 
 fn draw(line: &Line<'_>, x: &Scale, y: &Scale) -> Markup {
     html! {
-        path d=(path(line, x, y)) fill="none" stroke=(line.stroke.colour()) stroke-width=(line.stroke.width())
-            stroke-dasharray=(line.stroke.dashes()) stroke-linejoin="round" {}
+        path class=(line.stroke.class()) d=(path(line, x, y)) stroke-width=(line.stroke.width()) {}
+    }
+}
+
+/// The outline of a band as SVG path data.
+fn area(band: &Band<'_>, x: &Scale, y: &Scale) -> String {
+    let upper = band.x.iter().zip(band.high);
+    let lower = band.x.iter().zip(band.low).rev();
+    let points = upper.chain(lower);
+    let points = points.map(|(at, value)| format!("{} {}", px(x.px(*at)), px(y.px(*value))));
+    let points: Vec<String> = points.collect();
+    match points.is_empty() {
+        true => String::new(),
+        false => format!("M{}Z", points.join("L")),
     }
 }
 
@@ -226,6 +269,21 @@ mod tests {
     }
 
     #[test]
+    fn a_band_is_closed() {
+        let band = Band {
+            name: "scatter",
+            x: &[0.0, 1.0],
+            low: &[0.0, 0.5],
+            high: &[1.0, 1.0],
+        };
+        let (sx, sy) = (
+            Scale::new((0.0, 1.0), (0.0, 10.0)),
+            Scale::new((0.0, 1.0), (10.0, 0.0)),
+        );
+        assert_eq!(area(&band, &sx, &sy), "M0 0L10 0L10 5L0 10Z");
+    }
+
+    #[test]
     fn a_chart_of_nothing_says_so() {
         let line = Line {
             name: "flow",
@@ -237,6 +295,7 @@ mod tests {
             caption: "c".into(),
             x_title: "t",
             y_title: "q",
+            bands: Vec::new(),
             lines: vec![line],
         };
         assert!(chart.figure().into_string().contains("no values"));

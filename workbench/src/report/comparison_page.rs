@@ -3,10 +3,11 @@
 use hitch_plant::Model;
 use maud::{Markup, html};
 
+use super::error_map::error_map;
 use super::page;
 use super::run_views::run_views;
 use super::runs::runs;
-use crate::comparison::{Comparison, Evaluated, Grouping};
+use crate::comparison::{Comparison, Evaluated};
 
 /// The report as one HTML document.
 pub fn page(comparison: &Comparison, evaluated: &Evaluated, model: &Model) -> String {
@@ -15,21 +16,13 @@ pub fn page(comparison: &Comparison, evaluated: &Evaluated, model: &Model) -> St
     let content = html! {
         h1 { (title) }
         p.lead { "Error " strong { (format!("{:.2}", comparison.error)) } " sigma; a perfect model has 1.00, the noise of the instruments." }
-        h2 { "By channel" }
-        (channels(comparison))
-        (grids(comparison))
+        (error_map(model, evaluated, None))
         h2 { "Measured against simulated" }
         (runs(&views))
+        h2 { "By channel" }
+        (channels(comparison))
     };
     page::page(&title, &content)
-}
-
-/// Tables of the error in sigma, one for each grouping.
-pub fn grids(comparison: &Comparison) -> Markup {
-    html! { @for by in Grouping::ALL {
-        h2 { "Error in sigma " (by.title()) }
-        (comparison.grid(by).table())
-    } }
 }
 
 fn channels(comparison: &Comparison) -> Markup {

@@ -10,7 +10,8 @@ use hitch_identification::selection::evidence::SIGNIFICANT;
 use hitch_plant::Model;
 use maud::{Markup, html};
 
-use super::explanation_page::{channels, grids};
+use super::error_map::error_map;
+use super::explanation_page::channels;
 use super::run_views::run_views;
 use super::runs::runs;
 use super::staircase::staircase;
@@ -46,11 +47,11 @@ pub fn page(
         h2 { "Error with each effect added alone" }
         (staircase(&bars(shown)))
         (candidates(&shown.candidates))
-        h2 { "By channel" }
-        (channels(&shown.head))
-        (grids(model, &before, after.as_ref()))
+        (error_map(model, &before, after.as_ref()))
         h2 { "Measured against simulated" }
         (runs(&run_views(model, &before, after.as_ref())))
+        h2 { "By channel" }
+        (channels(&shown.head))
     };
     page::page(&title, &content)
 }

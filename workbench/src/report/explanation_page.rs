@@ -3,25 +3,17 @@
 use std::sync::Arc;
 
 use hitch_identification::estimation::fit::Fit;
-use hitch_plant::Model;
 use maud::{Markup, html};
 
+use super::error_map::error_map;
 use super::rest_figure::{picture, suggestion};
 use super::run_views::run_views;
 use super::runs::runs;
 use super::staircase::staircase;
 use super::{page, staircase};
-use crate::comparison::{Comparison, Evaluated, Grouping};
+use crate::comparison::Evaluated;
 use crate::explanation::{ChannelFigures, Explanation, Found, Head, Step};
 use crate::text::known;
-
-/// Groupings shown before and after.
-const GROUPINGS: [Grouping; 4] = [
-    Grouping::Regime,
-    Grouping::Current,
-    Grouping::Load,
-    Grouping::Temperature,
-];
 
 /// The report as one HTML document.
 pub fn page(found: &Found) -> String {
@@ -45,7 +37,7 @@ pub fn findings(found: &Found) -> Markup {
     }
 }
 
-/// The evidence: errors by channel and regime, and all runs.
+/// The evidence: error map, all runs, and errors by channel.
 pub fn details(found: &Found) -> Markup {
     let evaluated = |fit: &Fit| Evaluated {
         experiment: Arc::new(found.experiment.clone()),
@@ -57,11 +49,11 @@ pub fn details(found: &Found) -> Markup {
     );
     let changed = (!found.shown.steps.is_empty()).then_some(&after);
     html! {
-        h2 { "By channel" }
-        (channels(&found.shown.head))
-        (grids(&found.model, &before, changed))
+        (error_map(&found.model, &before, changed))
         h2 { "Measured against simulated" }
         (runs(&run_views(&found.model, &before, changed)))
+        h2 { "By channel" }
+        (channels(&found.shown.head))
     }
 }
 
@@ -81,8 +73,10 @@ fn verdict(shown: &Explanation) -> Markup {
             p { strong { "Next experiment: " } (next) "." }
         }
         @if !shown.not_visible.is_empty() {
-            p { (shown.blind_spots()) ":" }
-            ul { @for effect in &shown.not_visible { li { (effect) } } }
+            details {
+                summary { (shown.blind_spots()) }
+                ul { @for effect in &shown.not_visible { li { (effect) } } }
+            }
         }
     }
 }
@@ -150,18 +144,4 @@ pub fn channels(head: &Head) -> Markup {
         .chain(ChannelFigures::HEADINGS)
         .collect();
     page::table(&header, &rows)
-}
-
-/// Tables of the errors in sigma by condition, before and after.
-pub fn grids(model: &Model, before: &Evaluated, after: Option<&Evaluated>) -> Markup {
-    let compared = |evaluated: &Evaluated| Comparison::of(evaluated, model);
-    let before = compared(before);
-    let after = after.map(compared);
-    html! { @for by in GROUPINGS {
-        h2 { "Error in sigma " (by.title()) }
-        div.grid {
-            div { @if after.is_some() { h3 { "Before" } } (before.grid(by).table()) }
-            @if let Some(after) = &after { div { h3 { "After" } (after.grid(by).table()) } }
-        }
-    } }
 }

@@ -1,7 +1,7 @@
 //! The report of `hitch loop`: settings, worst cases, step responses, and traces of moves.
-mod course;
+pub mod course;
 mod steps;
-mod worst;
+pub mod worst;
 
 use hitch_plant::Model;
 use maud::{Markup, html};

@@ -1,14 +1,20 @@
-//! Reports: self-contained HTML files that need no network and are printable.
+//! Reports: self-contained HTML files that need no network. Without scripts, and in print, they show static pictures and
+//! tables; on a screen, the plots of the page of `hitch serve`.
 pub mod chart;
+mod columns;
 pub mod comparison_page;
 pub mod diagnosis_page;
+mod drawn;
+mod error_map;
 pub mod explanation_page;
 pub mod loop_page;
 pub mod main_page;
 pub mod page;
+mod plotted;
 pub mod rebuild_page;
 mod rest_figure;
 pub mod run_views;
 pub mod runs;
 pub mod scale;
 pub mod staircase;
+mod two_runs;

@@ -1,35 +1,61 @@
 //! Page frame of a report.
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-/// Style of every report: dark on white; wide tables scroll; sections are not split in print.
+use crate::web;
+
+/// Style of every report: wide tables scroll; sections are not split in print.
 const STYLE: &str = include_str!("page.css");
 
-/// A complete HTML document.
+/// Script of every report.
+const SCRIPT: (&str, &str) = ("report.js", include_str!("report.js"));
+
+/// Forbids the document to load anything, whatever its scripts do.
+const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
+
+/// Maximum number of rows of a table that is not folded.
+const UNFOLDED_ROWS: usize = 12;
+
+/// A complete HTML document, with the plotting library.
 pub fn page(title: &str, content: &Markup) -> String {
+    let script = web::bundle(web::MODULES.into_iter().chain([SCRIPT]));
     let document = html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (title) }
-                style { (PreEscaped(STYLE)) }
+                style { (PreEscaped(web::COLOURS)) (PreEscaped(STYLE)) }
             }
-            body { main { (content) } }
+            body {
+                main { (content) }
+                script id="plotly" { (PreEscaped(web::plotly())) }
+                script type="module" { (PreEscaped(script)) }
+            }
         }
     };
     document.into_string()
 }
 
-/// A table of text cells with a header row; the first column has the names of the rows.
+/// A table of text cells with a header row; the first column has the names of the rows. A long one is folded.
 pub fn table(header: &[&str], rows: &[Vec<String>]) -> Markup {
-    html! {
-        div.scroll { table {
+    let table = html! {
+        div.scroll tabindex="0" role="group" aria-label="Table" { table {
             thead { tr { @for name in header { th scope="col" { (name) } } } }
             tbody { @for row in rows { tr { @for (i, cell) in row.iter().enumerate() {
                 @if i == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
             } } } }
         } }
+    };
+    folded(&table, rows.len())
+}
+
+/// A table, folded if it has many rows.
+pub fn folded(table: &Markup, rows: usize) -> Markup {
+    match rows > UNFOLDED_ROWS {
+        true => html! { details { summary { "Table of " (rows) " rows" } (table) } },
+        false => table.clone(),
     }
 }
 
@@ -41,8 +67,23 @@ mod tests {
     fn text_is_escaped_and_nothing_is_fetched() {
         let text = page("a < b", &table(&["run"], &[vec!["<script>".to_owned()]]));
         assert!(text.contains("<title>a &lt; b</title>") && text.contains("&lt;script&gt;"));
-        for reference in ["http:", "https:", "src=", "@import", "url("] {
-            assert!(!text.contains(reference), "{reference}");
+        let own = text.replacen(web::plotly(), "", 1);
+        assert!(
+            own.len() + 1_000_000 < text.len(),
+            "the library is embedded"
+        );
+        assert!(own.contains("default-src 'none'"));
+        for reference in [
+            "http:", "https:", "src=", "href=", "@import", "url(", "import ",
+        ] {
+            assert!(!own.contains(reference), "{reference}");
         }
+    }
+
+    #[test]
+    fn only_long_tables_are_folded() {
+        let of = |rows: usize| table(&["run"], &vec![vec!["a".to_owned()]; rows]).into_string();
+        assert!(!of(12).contains("<details>"));
+        assert!(of(13).contains("<summary>Table of 13 rows</summary>"));
     }
 }

@@ -1,9 +1,10 @@
 //! The remaining error: residuals over the signal that they correlate with, and a suggested term.
 
 use hitch_identification::adequacy::localization::{Bin, ErrorProfile};
+use hitch_identification::adequacy::signal::Signal;
 use maud::{Markup, html};
 
-use super::chart::{Chart, Line, Stroke};
+use super::chart::{Band, Chart, Line, Stroke};
 use crate::explanation::Suggested;
 use crate::text::known;
 
@@ -16,29 +17,44 @@ pub fn picture(profile: &ErrorProfile) -> Markup {
         column(|bin| bin.mean + bin.deviation),
         column(|bin| bin.mean - bin.deviation),
     );
-    let line = |name, stroke, y| Line {
-        name,
-        stroke,
-        x: &x,
-        y,
-    };
     let chart = Chart {
         caption: format!(
-            "Remaining error of the {}: mean and scatter",
+            "Remaining error of the {}: mean; band: plus and minus the scatter",
             profile.channel.title().to_lowercase()
         ),
-        x_title: profile.signal.key(),
+        x_title: axis_title(profile.signal),
         y_title: "measured - simulated, sigma",
-        lines: vec![
-            line("mean + scatter", Stroke::Measured, &above),
-            line("mean - scatter", Stroke::Measured, &below),
-            line("mean", Stroke::After, &mean),
-        ],
+        bands: vec![Band {
+            name: "mean plus and minus scatter",
+            x: &x,
+            low: &below,
+            high: &above,
+        }],
+        lines: vec![Line {
+            name: "mean",
+            stroke: Stroke::After,
+            x: &x,
+            y: &mean,
+        }],
     };
     html! {
         h2 { "Remaining error" }
         p { "It is largest at " strong { (profile.to_string()) } "." }
         (chart.figure())
+    }
+}
+
+/// Title of a signal's axis, with its unit.
+fn axis_title(signal: Signal) -> &'static str {
+    match signal {
+        Signal::RockerAngle => "rocker angle, deg",
+        Signal::CylinderPressure => "cylinder pressure, bar",
+        Signal::Flow => "flow, l/min",
+        Signal::LiftCurrent => "current of the lift valve, A",
+        Signal::LowerCurrent => "current of the lowering valve, A",
+        Signal::Load => "load, kg",
+        Signal::OilTemperature => "oil temperature, °C",
+        Signal::Time => "time, s",
     }
 }
 
@@ -61,7 +77,6 @@ pub fn suggestion(term: &Suggested) -> Markup {
 
 #[cfg(test)]
 mod tests {
-    use hitch_identification::adequacy::signal::Signal;
     use hitch_plant::Channel;
 
     use super::*;
@@ -84,6 +99,6 @@ mod tests {
         };
         let text = picture(&profile).into_string();
         assert!(text.contains("rocker_angle_deg 45 to 65, near the bottom while lowering"));
-        assert_eq!(text.matches("<path").count(), 3);
+        assert_eq!(text.matches("<path").count(), 2);
     }
 }

@@ -2,19 +2,24 @@
 
 use hitch_campaign::Bench;
 use hitch_identification::data::experiment::ReadyRun;
+use hitch_plant::simulation::Trace;
 use hitch_plant::{Channel, Model};
 
-use super::runs::{ChannelView, RunView};
+use super::runs::{ChannelView, RunView, Simulated};
 use crate::comparison::Evaluated;
 
 /// The runs of a campaign: measured, simulated by the initial model, and simulated by the final model.
 pub fn run_views(model: &Model, before: &Evaluated, after: Option<&Evaluated>) -> Vec<RunView> {
     let view = |index: usize| {
         let run = &before.experiment.runs[index];
+        let currents = &run.drive.currents;
         RunView {
+            index,
             file: run.file.clone(),
             conditions: conditions(run),
             time_s: run.drive.time_s.clone(),
+            lift_current_a: currents.iter().map(|current| current.lift_a).collect(),
+            lower_current_a: currents.iter().map(|current| current.lower_a).collect(),
             channels: channel_views(model, index, before, after),
         }
     };
@@ -27,18 +32,25 @@ fn channel_views(
     before: &Evaluated,
     after: Option<&Evaluated>,
 ) -> Vec<ChannelView> {
-    let simulated = before.simulated(model, run);
-    let simulated_after = after.map(|after| after.simulated(model, run));
+    let traces = [Some(before), after].map(|evaluated| {
+        let evaluated = evaluated?;
+        Some((evaluated, evaluated.simulated(model, run)))
+    });
+    let simulated = |of: &Option<(&Evaluated, Trace)>, channel: Channel| {
+        let (evaluated, trace) = of.as_ref()?;
+        Some(Simulated {
+            samples: trace.channel(channel).to_vec(),
+            residuals: evaluated.residuals(run, channel),
+            error: evaluated.error(run, channel),
+        })
+    };
     let view = |channel: Channel| {
         Some(ChannelView {
             channel,
+            noise: before.experiment.noise[channel.index()],
             measured: before.experiment.runs[run].measured[channel.index()].clone()?,
-            before: simulated.channel(channel).to_vec(),
-            after: simulated_after
-                .as_ref()
-                .map(|trace| trace.channel(channel).to_vec()),
-            error_before: before.error(run, channel),
-            error_after: after.map(|after| after.error(run, channel)),
+            before: simulated(&traces[0], channel)?,
+            after: simulated(&traces[1], channel),
         })
     };
     Channel::ALL.into_iter().filter_map(view).collect()

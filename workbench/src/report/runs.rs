@@ -1,24 +1,52 @@
-//! Charts of measured and simulated channels, run by run.
+//! Measured and simulated channels, run by run.
 
 use hitch_plant::Channel;
 use maud::{Markup, html};
+use serde_json::{Value, json};
 
 use super::chart::{Chart, Line, Stroke, legend};
+use super::columns::{TIME_S, column};
+use super::plotted::plotted;
 
 /// Number of runs that are initially unfolded.
 const OPEN_RUNS: usize = 2;
+/// Number of samples of all runs with an interactive plot, which bounds the size of the file. Further runs have pictures.
+const MOST_SAMPLES: usize = 150_000;
+/// Resolution of the samples relative to the noise.
+const OF_NOISE: f64 = 0.1;
+/// Resolution of residuals, sigma.
+const RESIDUAL: f64 = 0.01;
+/// Resolution of currents, A.
+const CURRENT_A: f64 = 1e-3;
 
 /// One run as the report draws it.
 #[derive(Debug, Clone)]
 pub struct RunView {
+    /// Index in the campaign.
+    pub index: usize,
     /// File of the log.
     pub file: String,
     /// Load or port pressure, and oil temperature, as text.
     pub conditions: String,
     /// Time stamps, s.
     pub time_s: Vec<f64>,
+    /// Current of the lift valve, A.
+    pub lift_current_a: Vec<f64>,
+    /// Current of the lowering valve, A.
+    pub lower_current_a: Vec<f64>,
     /// The measured channels.
     pub channels: Vec<ChannelView>,
+}
+
+/// A simulated channel.
+#[derive(Debug, Clone)]
+pub struct Simulated {
+    /// Samples, in the channel's unit.
+    pub samples: Vec<f64>,
+    /// Residuals, sigma; NaN where not compared.
+    pub residuals: Vec<f64>,
+    /// Error, sigma.
+    pub error: f64,
 }
 
 /// One channel of a run.
@@ -26,54 +54,104 @@ pub struct RunView {
 pub struct ChannelView {
     /// The channel.
     pub channel: Channel,
+    /// One sigma of the instrument, in the channel's unit.
+    pub noise: f64,
     /// Measured, in the channel's unit.
     pub measured: Vec<f64>,
     /// Simulated by the initial model.
-    pub before: Vec<f64>,
+    pub before: Simulated,
     /// Simulated by the final model, if it differs.
-    pub after: Option<Vec<f64>>,
-    /// Error before, in sigma.
-    pub error_before: f64,
-    /// Error after, in sigma.
-    pub error_after: Option<f64>,
+    pub after: Option<Simulated>,
 }
 
 /// All runs, in descending order of error; the first ones unfolded.
 pub fn runs(views: &[RunView]) -> Markup {
-    let changed = views
-        .iter()
-        .flat_map(|view| &view.channels)
-        .any(|channel| channel.after.is_some());
-    let mut entries = vec![
-        (Stroke::Measured, "measured"),
-        (Stroke::Before, "model before"),
-    ];
-    if changed {
-        entries.push((Stroke::After, "model after"));
-    }
+    let mut samples = 0;
+    let sorted = by_error(views).into_iter().map(|view| {
+        samples += view.time_s.len();
+        (view, samples <= MOST_SAMPLES)
+    });
+    let sorted: Vec<(&RunView, bool)> = sorted.collect();
     html! {
-        (legend(&entries))
-        @for (place, view) in by_error(views).into_iter().enumerate() { (run(view, place < OPEN_RUNS)) }
+        p.note.live-only { "Grey: 95 % of the noise. Yellow: largest error. Drag over a plot to zoom in time; press an entry of \
+            the legend to hide its lines." }
+        @for (place, (view, plots)) in sorted.into_iter().enumerate() { (run(view, place < OPEN_RUNS, plots)) }
     }
 }
 
 fn by_error(views: &[RunView]) -> Vec<&RunView> {
     let worst = |view: &RunView| {
-        view.channels
-            .iter()
-            .map(|channel| channel.error_before)
-            .fold(0.0, f64::max)
+        let errors = view.channels.iter().map(|channel| channel.before.error);
+        errors.fold(0.0, f64::max)
     };
     let mut sorted: Vec<&RunView> = views.iter().collect();
     sorted.sort_by(|a, b| worst(b).total_cmp(&worst(a)));
     sorted
 }
 
-fn run(view: &RunView, open: bool) -> Markup {
-    html! { details open[open] {
-        summary { (view.file) " " span.note { (view.conditions) } }
+fn run(view: &RunView, open: bool, plots: bool) -> Markup {
+    let data = plots.then(|| data(view));
+    let picture = html! {
+        (legend(&entries(view)))
         div.grid { @for channel in &view.channels { (figure(view, channel)) } }
+    };
+    let label = format!(
+        "Measured and simulated channels of {} over time, with residuals",
+        view.file
+    );
+    html! { details.run open[open] id=(format!("run-{}", view.index)) {
+        summary { (view.file) " " span.note { (view.conditions) } }
+        output {}
+        (plotted(&label, data.as_ref(), &picture))
     } }
+}
+
+fn is_changed(view: &RunView) -> bool {
+    view.channels.iter().any(|channel| channel.after.is_some())
+}
+
+fn entries(view: &RunView) -> Vec<(Stroke, &'static str)> {
+    let measured = (Stroke::Measured, "measured");
+    match is_changed(view) {
+        true => vec![
+            measured,
+            (Stroke::Before, "model before"),
+            (Stroke::After, "model after"),
+        ],
+        false => vec![measured, (Stroke::After, "simulated")],
+    }
+}
+
+/// The run in the form of the page of `hitch serve`.
+fn data(view: &RunView) -> Value {
+    let names = match is_changed(view) {
+        true => json!({ "first": "model before", "simulated": "model after" }),
+        false => json!({}),
+    };
+    json!({
+        "names": names,
+        "time_s": column(&view.time_s, TIME_S),
+        "lift_current_a": column(&view.lift_current_a, CURRENT_A),
+        "lower_current_a": column(&view.lower_current_a, CURRENT_A),
+        "channels": view.channels.iter().map(channel_data).collect::<Vec<_>>(),
+    })
+}
+
+fn channel_data(view: &ChannelView) -> Value {
+    let samples = |samples: &[f64]| column(samples, OF_NOISE * view.noise);
+    let last = view.after.as_ref().unwrap_or(&view.before);
+    let first = view.after.as_ref().map(|_| &view.before);
+    json!({
+        "key": view.channel.key(),
+        "title": view.channel.title(),
+        "unit": view.channel.unit(),
+        "error": last.error,
+        "measured": samples(&view.measured),
+        "simulated": samples(&last.samples),
+        "residual": column(&last.residuals, RESIDUAL),
+        "first": first.map(|first| samples(&first.samples)),
+        "first_residual": first.map(|first| column(&first.residuals, RESIDUAL)),
+    })
 }
 
 fn figure(view: &RunView, channel: &ChannelView) -> Markup {
@@ -83,26 +161,91 @@ fn figure(view: &RunView, channel: &ChannelView) -> Markup {
         x: &view.time_s,
         y,
     };
-    let mut lines = vec![
-        line("measured", Stroke::Measured, &channel.measured),
-        line("before", Stroke::Before, &channel.before),
-    ];
-    if let Some(after) = &channel.after {
-        lines.push(line("after", Stroke::After, after));
+    let mut lines = vec![line("measured", Stroke::Measured, &channel.measured)];
+    let before = &channel.before;
+    let mut error = format!("{:.2}", before.error);
+    match &channel.after {
+        None => lines.push(line("simulated", Stroke::After, &before.samples)),
+        Some(after) => {
+            lines.push(line("before", Stroke::Before, &before.samples));
+            lines.push(line("after", Stroke::After, &after.samples));
+            error += &format!(" → {:.2}", after.error);
+        }
     }
-    let after = channel
-        .error_after
-        .map_or(String::new(), |error| format!(" → {error:.2}"));
     let title = format!("{}, {}", channel.channel.title(), channel.channel.unit());
     Chart {
-        caption: format!(
-            "{}: error {:.2}{after} sigma",
-            channel.channel.title(),
-            channel.error_before
-        ),
+        caption: format!("{}: error {error} sigma", channel.channel.title()),
         x_title: "time, s",
         y_title: &title,
+        bands: Vec::new(),
         lines,
     }
     .figure()
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{Rng, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    use super::*;
+
+    /// A run of 30 s at 50 Hz with four channels, noise, and simulations of two models.
+    fn long_run(random: &mut Pcg64, index: usize) -> RunView {
+        let samples = 1500;
+        let time_s: Vec<f64> = (0..samples).map(|i| f64::from(i) * 0.02).collect();
+        let noise = 0.1;
+        let curve = |size: f64| -> Vec<f64> {
+            let value = |time_s: &f64| 90.0 + size * (0.7 * time_s).sin();
+            time_s.iter().map(value).collect()
+        };
+        let mut noisy = |curve: Vec<f64>, noise: f64| -> Vec<f64> {
+            let value = |value: f64| value + noise * random.random_range(-2.0..2.0);
+            curve.into_iter().map(value).collect()
+        };
+        let channel = |channel| {
+            let mut simulated = |size: f64| Simulated {
+                samples: curve(size),
+                residuals: noisy(vec![0.0; time_s.len()], 1.0),
+                error: 1.0,
+            };
+            let (before, after) = (simulated(20.0), Some(simulated(22.0)));
+            ChannelView {
+                channel,
+                noise,
+                measured: noisy(curve(22.0), noise),
+                before,
+                after,
+            }
+        };
+        RunView {
+            index,
+            file: format!("run-{index}.csv"),
+            conditions: String::new(),
+            channels: Channel::ALL.into_iter().map(channel).collect(),
+            lift_current_a: curve(1.0),
+            lower_current_a: curve(1.0),
+            time_s,
+        }
+    }
+
+    #[test]
+    fn twenty_long_runs_have_less_than_three_megabytes_of_data() {
+        let mut random = Pcg64::seed_from_u64(7);
+        let views: Vec<RunView> = (0..20).map(|index| long_run(&mut random, index)).collect();
+        assert_eq!(views[0].channels.len(), 4);
+        let bytes: usize = views.iter().map(|view| data(view).to_string().len()).sum();
+        println!("{bytes} bytes");
+        assert!(bytes < 3_000_000, "{bytes}");
+    }
+
+    #[test]
+    fn the_data_of_very_long_campaigns_are_bounded() {
+        let mut random = Pcg64::seed_from_u64(8);
+        let mut views = vec![long_run(&mut random, 0); 2];
+        views[1].time_s = vec![0.0; MOST_SAMPLES];
+        let text = runs(&views).into_string();
+        assert_eq!(text.matches("application/json").count(), 1);
+        assert_eq!(text.matches("<details").count(), 2);
+    }
 }

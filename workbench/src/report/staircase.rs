@@ -3,11 +3,11 @@ use maud::{Markup, html};
 
 use super::scale::Scale;
 
-const WIDTH_PX: f64 = 640.0;
-const ROW_PX: f64 = 30.0;
-const NAME_PX: f64 = 210.0;
+const WIDTH_PX: f64 = 480.0;
+const ROW_PX: f64 = 44.0;
+const NAME_PX: f64 = 20.0;
+const BAR_PX: f64 = 18.0;
 const VALUE_PX: f64 = 60.0;
-const FLOOR_COLOUR: &str = "#00795b";
 
 /// One bar: a step, and the error after it, in sigma.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,25 +21,26 @@ pub struct Step {
 /// The bars, from zero on a linear scale, with a line at one sigma.
 pub fn staircase(steps: &[Step]) -> Markup {
     let greatest = steps.iter().map(|step| step.error).fold(2.0, f64::max);
-    let scale = Scale::new((0.0, greatest), (NAME_PX, WIDTH_PX - VALUE_PX));
+    let scale = Scale::new((0.0, greatest), (0.0, WIDTH_PX - VALUE_PX));
     let height = ROW_PX * steps.len() as f64 + 26.0;
-    let floor = scale.px(1.0);
-    html! { figure {
-        svg viewBox=(format!("0 0 {WIDTH_PX} {height}")) role="img" aria-label=(spoken(steps)) style="max-width:42rem" {
+    html! { figure.staircase {
+        svg viewBox=(format!("0 0 {WIDTH_PX} {height}")) role="img" aria-label=(spoken(steps)) {
             @for (i, step) in steps.iter().enumerate() { (bar(step, i as f64 * ROW_PX, &scale)) }
-            line x1=(floor) x2=(floor) y1="0" y2=(height - 20.0) stroke=(FLOOR_COLOUR) stroke-width="1.5" {}
-            text x=(NAME_PX) y=(height - 5.0) { "error in sigma, from zero; line: 1, the noise of the instruments" }
+            text x="0" y=(height - 5.0) { "error in sigma, from zero; line: 1, the noise" }
         }
     } }
 }
 
 fn bar(step: &Step, top: f64, scale: &Scale) -> Markup {
-    let length = (scale.px(step.error) - NAME_PX).max(1.0);
-    let middle = top + ROW_PX / 2.0;
+    let length = scale.px(step.error).max(1.0);
+    let (high, low) = (top + NAME_PX, top + NAME_PX + BAR_PX);
+    let middle = (high + low) / 2.0;
+    let floor = scale.px(1.0);
     html! {
-        text x=(NAME_PX - 8.0) y=(middle) text-anchor="end" dominant-baseline="middle" { (step.name) }
-        rect x=(NAME_PX) y=(top + 4.0) width=(length) height=(ROW_PX - 8.0) fill="#9ec3e6" {}
-        text x=(NAME_PX + length + 6.0) y=(middle) dominant-baseline="middle" { (format!("{:.2}", step.error)) }
+        text x="0" y=(high - 5.0) { (step.name) }
+        rect x="0" y=(high) width=(length) height=(BAR_PX) {}
+        line.floor x1=(floor) x2=(floor) y1=(high - 3.0) y2=(low + 3.0) {}
+        text x=(length + 6.0) y=(middle) dominant-baseline="middle" { (format!("{:.2}", step.error)) }
     }
 }
 

@@ -3,7 +3,8 @@ use maud::{Markup, html};
 
 use crate::closed_loop::show::name;
 use crate::closed_loop::{LoopRun, MoveResult, MoveTrace, Sample};
-use crate::report::chart::{Chart, Line, Stroke, legend};
+use crate::report::chart::Stroke;
+use crate::report::drawn::{Drawn, Points, drawn};
 use crate::text::known;
 
 /// Time shown after arrival, s.
@@ -21,12 +22,12 @@ pub fn section(run: &LoopRun) -> Markup {
         @if shown.len() < run.results.len() {
             p { "The " (WORST) " worst by time ratio, by overshoot, by final error and by pressure swing." }
         }
-        (legend(&[(Stroke::Measured, "set point, pump"), (Stroke::After, "hitch, lift coil, cylinder"), (Stroke::Before, "lowering coil")]))
         @for index in shown { (course(&run.results[index], &run.traces[index])) }
     }
 }
 
-fn shown(results: &[MoveResult]) -> Vec<usize> {
+/// Indices of all moves if they are few, else of the worst.
+pub fn shown(results: &[MoveResult]) -> Vec<usize> {
     if results.len() <= MOST {
         return (0..results.len()).collect();
     }
@@ -53,68 +54,55 @@ fn shown(results: &[MoveResult]) -> Vec<usize> {
 
 fn course(result: &MoveResult, trace: &MoveTrace) -> Markup {
     let end_s = result.took_s() + AFTER_S;
-    let column = |value: fn(&Sample) -> f64| -> Vec<f64> {
+    let points = |value: fn(&Sample) -> f64| -> Points {
         let samples = trace.samples.iter();
-        samples
-            .take_while(|sample| sample.time_s <= end_s)
-            .map(value)
-            .collect()
+        let shown = samples.take_while(|sample| sample.time_s <= end_s);
+        shown.map(|sample| (sample.time_s, value(sample))).unzip()
     };
-    let time = column(|sample| sample.time_s);
-    let chart = |caption: &str, y_title, lines: [(&'static str, Stroke, Vec<f64>); 2]| {
-        let lines = lines.iter().map(|(name, stroke, y)| Line {
-            name,
-            stroke: *stroke,
-            x: &time,
-            y,
-        });
-        Chart {
-            caption: caption.to_owned(),
-            x_title: "time, s",
-            y_title,
-            lines: lines.collect(),
-        }
-        .figure()
+    let line = |name: &str, stroke, value| (name.to_owned(), stroke, points(value));
+    let chart = |caption: &str, y_title, lines: [(String, Stroke, Points); 2]| Drawn {
+        caption: caption.to_owned(),
+        axes: ["time, s", y_title],
+        lines: lines.into(),
     };
     let angles = [
-        (
-            "set point",
-            Stroke::Measured,
-            column(|sample| sample.lever_deg),
-        ),
-        ("hitch", Stroke::After, column(|sample| sample.angle_deg)),
+        line("set point", Stroke::Measured, |sample| sample.lever_deg),
+        line("hitch", Stroke::After, |sample| sample.angle_deg),
     ];
     let currents = [
-        (
-            "lift",
-            Stroke::After,
-            column(|sample| f64::from(sample.outputs.lift_current.0) * 1e-3),
-        ),
-        (
-            "lower",
-            Stroke::Before,
-            column(|sample| f64::from(sample.outputs.lower_current.0) * 1e-3),
-        ),
+        line("lift coil", Stroke::After, |sample| {
+            f64::from(sample.outputs.lift_current.0) * 1e-3
+        }),
+        line("lowering coil", Stroke::Before, |sample| {
+            f64::from(sample.outputs.lower_current.0) * 1e-3
+        }),
     ];
     let pressures = [
-        (
-            "pump",
-            Stroke::Measured,
-            column(|sample| sample.pump_pressure_bar),
-        ),
-        (
-            "cylinder",
-            Stroke::After,
-            column(|sample| sample.cylinder_pressure_bar),
-        ),
+        line("pump", Stroke::Measured, |sample| sample.pump_pressure_bar),
+        line("cylinder", Stroke::After, |sample| {
+            sample.cylinder_pressure_bar
+        }),
     ];
+    let charts = [
+        chart("Rocker angle", "angle, deg", angles),
+        chart("Coil currents", "current, A", currents),
+        chart("Pressures of pump and cylinder", "pressure, bar", pressures),
+    ];
+    let label = format!("Angle, currents and pressures over time, {}", name(result));
     html! {
-        h3 { (name(result)) " degrees, " (format!("{:.0} kg, {:.0} °C", result.load_kg, result.oil_temperature_c))
-            ": ratio " (known(result.ratio, 2)) ", overshoot " (format!("{:.2}", result.overshoot_deg)) " deg" }
-        div.grid {
-            (chart("Rocker angle", "angle, deg", angles))
-            (chart("Coil currents", "current, A", currents))
-            (chart("Pressures of pump and cylinder", "pressure, bar", pressures))
-        }
+        h3 { (heading(result)) }
+        (drawn(&label, &charts))
     }
+}
+
+/// The move with its figures.
+pub fn heading(result: &MoveResult) -> String {
+    format!(
+        "{} degrees, {:.0} kg, {:.0} °C: ratio {}, overshoot {:.2} deg",
+        name(result),
+        result.load_kg,
+        result.oil_temperature_c,
+        known(result.ratio, 2),
+        result.overshoot_deg
+    )
 }

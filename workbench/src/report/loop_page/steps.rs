@@ -2,8 +2,9 @@
 use maud::{Markup, html};
 
 use super::occurring;
-use crate::closed_loop::{LoopRun, MoveResult, MoveTrace};
-use crate::report::chart::{Chart, Line, Stroke, legend};
+use crate::closed_loop::{LoopRun, MoveResult, MoveTrace, Sample};
+use crate::report::chart::Stroke;
+use crate::report::drawn::{Drawn, Points, drawn};
 
 /// Time shown after the slowest arrival, s.
 const AFTER_S: f64 = 0.4;
@@ -56,9 +57,10 @@ fn overlaid(run: &LoopRun, over: &Over) -> Markup {
         .iter()
         .map(|value| format!("{value:.0} {}", over.unit))
         .collect();
-    let entries: Vec<(Stroke, &str)> = [(Stroke::Measured, "set point")]
+    let ways = occurring(&run.results, |result| (result.from_deg, result.to_deg));
+    let charts: Vec<Drawn> = ways
         .into_iter()
-        .chain(STROKES.into_iter().zip(names.iter().map(String::as_str)))
+        .map(|way| chart(&lines_of(run, over, fixed, way), &names))
         .collect();
     html! {
         h2 { (over.title) }
@@ -66,12 +68,7 @@ fn overlaid(run: &LoopRun, over: &Over) -> Markup {
             p { "All moves have " (names[0]) "; " (over.more.0) code { (over.more.1) } "." }
         } @else {
             p { "At " (format!("{fixed:.0}")) " " (over.stays_unit) "." }
-            (legend(&entries))
-            div.grid {
-                @for way in occurring(&run.results, |result| (result.from_deg, result.to_deg)) {
-                    (chart(&lines_of(run, over, fixed, way), &names))
-                }
-            }
+            (drawn(over.title, &charts))
         }
     }
 }
@@ -89,41 +86,29 @@ fn lines_of<'a>(run: &'a LoopRun, over: &Over, fixed: f64, way: (f64, f64)) -> V
         .collect()
 }
 
-fn chart(driven: &[Driven], names: &[String]) -> Markup {
-    let slowest_s = driven
-        .iter()
-        .map(|(result, _)| result.took_s())
-        .fold(0.0, f64::max);
-    let columns: Vec<[Vec<f64>; 3]> = driven
-        .iter()
-        .map(|(_, trace)| {
-            let shown = || {
-                let samples = trace.samples.iter();
-                samples.take_while(|sample| sample.time_s <= slowest_s + AFTER_S)
-            };
-            [
-                shown().map(|sample| sample.time_s).collect(),
-                shown().map(|sample| sample.angle_deg).collect(),
-                shown().map(|sample| sample.lever_deg).collect(),
-            ]
-        })
-        .collect();
-    let hitches = columns.iter().zip(STROKES).zip(names);
-    let hitches = hitches.map(|(([x, y, _], stroke), name)| Line { name, stroke, x, y });
-    let set_point = columns.first().map(|[x, _, y]| Line {
-        name: "set point",
-        stroke: Stroke::Measured,
-        x,
-        y,
+fn chart(driven: &[Driven], names: &[String]) -> Drawn {
+    let times = driven.iter().map(|(result, _)| result.took_s());
+    let end_s = times.fold(0.0, f64::max) + AFTER_S;
+    let points = |trace: &MoveTrace, value: fn(&Sample) -> f64| -> Points {
+        let samples = trace.samples.iter();
+        let shown = samples.take_while(|sample| sample.time_s <= end_s);
+        shown.map(|sample| (sample.time_s, value(sample))).unzip()
+    };
+    let set_point = driven.first().map(|(_, trace)| {
+        let points = points(trace, |sample| sample.lever_deg);
+        ("set point".to_owned(), Stroke::Measured, points)
+    });
+    let hitches = driven.iter().zip(STROKES).zip(names);
+    let hitches = hitches.map(|(((_, trace), stroke), name)| {
+        let points = points(trace, |sample| sample.angle_deg);
+        (name.clone(), stroke, points)
     });
     let caption = driven.first().map_or_else(String::new, |(result, _)| {
         format!("{:.1} to {:.1} degrees", result.from_deg, result.to_deg)
     });
-    Chart {
+    Drawn {
         caption,
-        x_title: "time, s",
-        y_title: "angle, deg",
+        axes: ["time, s", "angle, deg"],
         lines: set_point.into_iter().chain(hitches).collect(),
     }
-    .figure()
 }

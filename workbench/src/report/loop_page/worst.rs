@@ -4,6 +4,7 @@ use maud::{Markup, html};
 use super::occurring;
 use crate::closed_loop::MoveResult;
 use crate::heat_table::{HeatTable, Shade};
+use crate::report::page::folded;
 
 /// A figure of a move with its colour scale.
 struct Figure {
@@ -51,9 +52,14 @@ pub fn section(results: &[MoveResult]) -> Markup {
              or is impossible."  }
         @for figure in &FIGURES {
             h3 { (figure.name) }
-            (table(results, figure).table())
+            (shown(results, figure))
         }
     }
+}
+
+fn shown(results: &[MoveResult], figure: &Figure) -> Markup {
+    let table = table(results, figure);
+    folded(&table.table(), table.rows.len())
 }
 
 fn table(results: &[MoveResult], figure: &Figure) -> HeatTable {

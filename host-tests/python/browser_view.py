@@ -1,0 +1,42 @@
+"""Pages in a headless Chromium: windows, and what holds for every page."""
+
+import shutil
+
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Page
+
+DESKTOP = {"viewport": {"width": 1440, "height": 900}}
+PHONE = {"viewport": {"width": 390, "height": 844}, "device_scale_factor": 2, "has_touch": True, "is_mobile": True}
+DARK = {**DESKTOP, "color_scheme": "dark"}
+
+# Computations may share the machine with others.
+PATIENCE_MS = 180_000
+
+
+def launched(playwright, name: str):
+    """The browser with that name."""
+    program = shutil.which(name)
+    assert program, f"no {name} is installed"
+    return playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+
+
+def opened(browser, address: str, options: dict, faults: list) -> Page:
+    """A page whose console messages count as faults."""
+    page = browser.new_context(**options).new_page()
+    page.set_default_timeout(PATIENCE_MS)
+    page.on("pageerror", lambda error: faults.append(f"error: {error}"))
+    page.on("console", lambda said: faults.append(f"console: {said.type}: {said.text}"))
+    page.goto(address)
+    return page
+
+
+def assert_fits(page: Page) -> None:
+    """Nothing is wider than the window."""
+    width = page.evaluate("document.documentElement.scrollWidth")
+    assert width <= page.viewport_size["width"], f"the page is {width} px wide"
+
+
+def assert_accessible(page: Page) -> None:
+    """The accessibility check finds nothing."""
+    found = Axe().run(page).response["violations"]
+    assert not found, [(rule["id"], rule["help"], rule["nodes"][0]["html"]) for rule in found]

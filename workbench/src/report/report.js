@@ -1,0 +1,106 @@
+// @ts-check
+/** A report on a screen: error map and plots in place of tables and pictures. */
+import { byId, element, sigmas } from "./dom.js";
+import { drawMap } from "./error_map.js";
+import { drawRun } from "./run_plot.js";
+
+/** Distance below the window at which a plot is drawn, px. */
+const AHEAD = 300;
+
+/** As in run_plot.js.
+ * @typedef {{from_s: number, to_s: number, channel?: string}} Place */
+
+/** The drawn plots with their data.
+ * @type {Map<HTMLElement, any>} */
+const drawn = new Map();
+
+let printing = false;
+
+/** Replaces the picture by the plot; `place` as in the plot.
+ * @param {HTMLElement} plotted
+ * @param {Place | null | undefined} place */
+async function show(plotted, place) {
+  const at = /** @type {HTMLElement} */ (plotted.querySelector(".plot"));
+  if (!drawn.has(plotted)) {
+    drawn.set(plotted, read(plotted));
+    plotted.classList.add("drawn");
+    if (plotted.closest(".run")) {
+      at.before(element("button", { type: "button", class: "interactive", onclick: () => show(plotted, null) }, "Whole run"));
+    }
+  }
+  await drawRun(at, drawn.get(plotted), place);
+}
+
+/** The data of an element.
+ * @param {HTMLElement} parent */
+function read(parent) {
+  const text = parent.querySelector('script[type="application/json"]')?.textContent ?? "null";
+  return JSON.parse(text, (_, value) => (value?.differences ? samples(value) : value));
+}
+
+/** Samples from their differences.
+ * @param {{step: number, differences: (number | null)[]}} column */
+function samples({ step, differences }) {
+  let sum = 0;
+  return differences.map((difference) => (difference === null ? null : (sum += difference) * step));
+}
+
+/** Draws the map of a model, and the buttons for the models.
+ * @param {any[]} models
+ * @param {any} shown */
+function drawModels(models, shown) {
+  const button = (/** @type {any} */ model) => element("button", { type: "button", "aria-pressed": model === shown,
+    onclick: () => drawModels(models, model) }, `Model ${model.name}`);
+  byId("models").replaceChildren(...(models.length > 1 ? models.map(button) : []));
+  drawMap(shown, (cell) => visit(shown, cell));
+}
+
+/** Shows the run and the second in which a cell is worst.
+ * @param {any} model
+ * @param {any} cell */
+async function visit(model, cell) {
+  if (!cell.worst) return;
+  const run = /** @type {HTMLDetailsElement} */ (byId(`run-${cell.worst.run}`));
+  run.open = true;
+  const channel = model.channels.find((/** @type {any} */ one) => one.key === cell.channel);
+  const { from_s, to_s, error } = cell.worst;
+  /** @type {HTMLElement} */ (run.querySelector("output")).textContent =
+    `Worst for ${channel.title}, ${cell.part}: ${from_s.toFixed(1)} to ${to_s.toFixed(1)} s, ${sigmas(error)} σ`;
+  const plotted = /** @type {HTMLElement} */ (run.querySelector(".plotted"));
+  if (plotted.querySelector(".plot")) await show(plotted, cell.worst);
+  run.scrollIntoView();
+  /** @type {HTMLElement} */ (run.querySelector("summary")).focus({ preventScroll: true });
+}
+
+/** Unfolds everything for printing, and folds it again. */
+function followPrinting() {
+  /** @type {HTMLDetailsElement[]} */
+  let unfolded = [];
+  addEventListener("beforeprint", () => {
+    printing = true;
+    unfolded = [...document.querySelectorAll("details")].filter((one) => !one.open);
+    unfolded.forEach((one) => { one.open = true; });
+  });
+  addEventListener("afterprint", () => {
+    unfolded.forEach((one) => { one.open = false; });
+    printing = false;
+  });
+}
+
+document.documentElement.classList.add("live");
+const map = document.getElementById("map");
+if (map) {
+  const models = read(map);
+  drawModels(models, models[0]);
+}
+const observer = new IntersectionObserver((entries) => {
+  for (const { isIntersecting, target } of entries) {
+    const plotted = /** @type {HTMLElement} */ (target);
+    if (isIntersecting && !printing && !drawn.has(plotted)) show(plotted, null);
+  }
+}, { rootMargin: `0px 0px ${AHEAD}px 0px` });
+document.querySelectorAll(".plotted:has(> .plot)").forEach((plotted) => observer.observe(plotted));
+followPrinting();
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  drawn.forEach((_, plotted) => show(plotted, undefined));
+});
