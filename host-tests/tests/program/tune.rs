@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use host_tests::html_report::{assert_self_contained, without_library};
 use host_tests::program::run;
 
 fn text(bytes: &[u8]) -> String {
@@ -24,7 +25,8 @@ fn tuning_makes_a_bad_calibration_better_and_writes_one_that_can_be_driven() {
     let bad =
         "format = 1\n[position]\nlower_deceleration_mm_per_s2 = 400\ncreep_speed_mm_per_s = 30\n";
     std::fs::write(folder.path().join("bad.toml"), bad).unwrap();
-    let arguments = "tune --calibration bad.toml --scenario quick --trials 60 --out tuned.toml";
+    let arguments =
+        "tune --calibration bad.toml --scenario quick --trials 60 --out tuned.toml --report r.html";
     let output = run(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
     let said = text(&output.stdout);
     println!("{said}");
@@ -47,6 +49,28 @@ fn tuning_makes_a_bad_calibration_better_and_writes_one_that_can_be_driven() {
         })
         .unwrap();
     assert!(costs[1] < costs[0], "{costs:?}");
+    assert_shows_both(&std::fs::read_to_string(folder.path().join("r.html")).unwrap());
+}
+
+/// The report has each of the twelve quick moves with both calibrations, and the changed values.
+fn assert_shows_both(html: &str) {
+    assert_self_contained(html);
+    let own = without_library(html);
+    let views = own.split("<script type=\"application/json\">").skip(1);
+    let views: Vec<serde_json::Value> = views
+        .map(|text| serde_json::from_str(text.split_once("</script>").unwrap().0).unwrap())
+        .collect();
+    assert_eq!(views.len(), 12);
+    for view in &views {
+        let angles = view["rows"][0]["lines"].as_array().unwrap();
+        let names: Vec<&str> = angles
+            .iter()
+            .map(|line| line["name"].as_str().unwrap())
+            .collect();
+        assert_eq!(names, ["set point", "before", "after"]);
+        assert_ne!(angles[1]["y"], angles[2]["y"]);
+    }
+    assert!(own.contains("position.lower_deceleration"));
 }
 
 #[test]

@@ -8,12 +8,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::calibrate::calibrate;
-use crate::closed_loop::{Scenario, Summary};
+use crate::closed_loop::{self, Scenario, Summary};
 use crate::commands::loop_::{changed, load_kg, read_files};
 use crate::error::Error;
 use crate::output::{self, JsonArg};
 use crate::outputs::Outputs;
 use crate::progress::Progress;
+use crate::report::tuning_page;
 use crate::text::{Table, known};
 use crate::tuning::{Change, Judged, Trial, changes};
 
@@ -53,6 +54,9 @@ pub struct Args {
     loads: Option<Vec<f64>>,
     #[command(flatten)]
     json: JsonArg,
+    /// Write a report to this file: moves with both calibrations, changed values, figures
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
 }
 
 /// Result of `hitch tune`.
@@ -95,7 +99,12 @@ impl Tuned {
 /// If the model or the calibration is invalid, or the result cannot be written.
 pub fn run(args: &Args) -> Result<(), Error> {
     let inputs = read_files(&args.model, args.calibration.as_ref());
-    let outputs = Outputs::check([Some(args.out.as_path()), args.json.target()], &inputs)?;
+    let wanted = [
+        Some(args.out.as_path()),
+        args.report.as_deref(),
+        args.json.target(),
+    ];
+    let outputs = Outputs::check(wanted, &inputs)?;
     let model = hitch_model_file::named(&args.model)?;
     let base = match &args.calibration {
         Some(path) => calibration_file::read(path)?,
@@ -109,7 +118,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
         .filter_map(|setting| calibration_file::set(&mut (*base).clone(), setting).ok())
         .collect();
     let progress = Progress::start("computing the ideal manoeuvres");
-    let trial = Trial::new(&model, &args.scenario.moves(&model, args.loads.as_deref()));
+    let moves = args.scenario.moves(&model, args.loads.as_deref());
+    let trial = Trial::new(&model, &moves);
     let failed = || Error::Failed("the search found no valid calibration".to_owned());
     let before = trial.judge(&base).ok_or_else(failed)?;
     drop(progress);
@@ -123,12 +133,27 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let text = calibration_file::write_tuned(&after.calibration, &base);
     output::write_file(&args.out, text.as_bytes())?;
     let tuned = Tuned::new(&before, &after);
+    if let Some(path) = &args.report {
+        let progress = Progress::start("driving the moves with both calibrations");
+        let driven = |judged: &Judged| {
+            closed_loop::run(&model, &judged.calibration, &moves)
+                .ok_or_else(|| Error::Usage("the scenario has no moves".to_owned()))
+        };
+        let page = tuning_page::page(&tuning_page::Shown {
+            model: &model,
+            changes: &tuned.changes,
+            figures: &figures(&tuned),
+            before: &driven(&before)?,
+            after: &driven(&after)?,
+        });
+        drop(progress);
+        output::write_file(path, page.as_bytes())?;
+    }
     outputs.tell(&args.json, &tuned, || told(&tuned))
 }
 
 /// Values and figures before and after.
 fn told(tuned: &Tuned) -> String {
-    let (before, after) = (&tuned.before, &tuned.after);
     let mut values = Table::new(["value", "before", "after"]);
     for change in &tuned.changes {
         values.row([
@@ -137,23 +162,37 @@ fn told(tuned: &Tuned) -> String {
             format!("{:.3}", change.after),
         ]);
     }
-    let mut figures = Table::new(["figure", "limit", "before", "after"]);
-    let (old, new) = (&before.summary, &after.summary);
-    let mut figure = |name: &str, bar: Option<f64>, old: f64, new: f64| {
+    let mut table = Table::new(["figure", "limit", "before", "after"]);
+    for row in figures(tuned) {
+        table.row(row);
+    }
+    format!("{values}\n{table}")
+}
+
+/// Name, limit, value before and after of each figure.
+fn figures(tuned: &Tuned) -> Vec<[String; 4]> {
+    let (before, after) = (&tuned.before, &tuned.after);
+    let row = |name: &str, bar: Option<f64>, old: f64, new: f64| {
         let bar = bar.map_or_else(String::new, |bar| format!("{bar:.2}"));
-        figures.row([name.to_owned(), bar, known(old, 3), known(new, 3)]);
+        [name.to_owned(), bar, known(old, 3), known(new, 3)]
     };
-    let mut of = |name: &str, bar: f64, value: fn(&Summary) -> f64| {
-        figure(name, Some(bar), value(old), value(new));
+    let of = |name: &str, bar: f64, value: fn(&Summary) -> f64| {
+        row(
+            name,
+            Some(bar),
+            value(&before.summary),
+            value(&after.summary),
+        )
     };
-    of("time ratio, median", 1.15, |all| all.ratio_median);
-    of("time ratio, 95 %", 1.4, |all| all.ratio_p95);
-    of("overshoot, deg", 0.3, |all| all.overshoot_max_deg);
-    of("final error, deg", 0.3, |all| all.final_error_max_deg);
-    of("pressure swing", 1.5, |all| all.pressure_swing_ratio_max);
-    of("coil activations after arrival", 0.0, |all| {
-        f64::from(all.switched_on_after)
-    });
-    figure("cost", None, before.cost, after.cost);
-    format!("{values}\n{figures}")
+    vec![
+        of("time ratio, median", 1.15, |all| all.ratio_median),
+        of("time ratio, 95 %", 1.4, |all| all.ratio_p95),
+        of("overshoot, deg", 0.3, |all| all.overshoot_max_deg),
+        of("final error, deg", 0.3, |all| all.final_error_max_deg),
+        of("pressure swing", 1.5, |all| all.pressure_swing_ratio_max),
+        of("coil activations after arrival", 0.0, |all| {
+            f64::from(all.switched_on_after)
+        }),
+        row("cost", None, before.cost, after.cost),
+    ]
 }

@@ -17,4 +17,5 @@ pub mod run_views;
 pub mod runs;
 pub mod scale;
 pub mod staircase;
+pub mod tuning_page;
 mod two_runs;
