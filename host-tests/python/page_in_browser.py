@@ -181,11 +181,14 @@ def drive(page: Page, pictures: Path, view: str) -> None:
     both_in(page, "holding")
     page.locator("#loop-raise").focus()
     page.keyboard.down("Space")
-    expect(page.locator("#loop-angle-1")).to_have_text(re.compile("^11[2-9]"))
+    # On a busy machine the hitch may be at its end stop before the key is released.
+    expect(page.locator("#loop-angle-1")).to_have_text(re.compile("^1(1[2-9]|2|3)"))
     page.keyboard.up("Space")
     both_in(page, "locked")
     # The lever picks the hitch up.
-    for lever_deg in ("135", "100", "60"):
+    lever.press("End")
+    page.wait_for_timeout(150)
+    for lever_deg in ("100", "60"):
         lever.fill(lever_deg)
         page.wait_for_timeout(150)
     expect(page.locator("#loop-angle-1")).to_have_text(about(60))
