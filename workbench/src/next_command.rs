@@ -10,31 +10,28 @@ const MODEL: &str = "better.toml";
 const REPORT: &str = "better.html";
 const CALIBRATION: &str = "calibration.toml";
 
-/// After `hitch compare`: the valve map if the model is adequate, otherwise the missing effects.
-#[must_use]
-pub fn after_comparison(adequate: bool, campaign: &Path, model: &ModelArg) -> String {
-    match adequate {
-        true => calibrate(model.name()),
-        false => explain(campaign, model),
-    }
+/// What a campaign shows of a model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Standing {
+    /// The error is noise.
+    Adequate,
+    /// Effects are missing.
+    Inadequate,
+    /// The constants are those of another machine.
+    UnsuitableBase,
 }
 
-/// After `hitch diagnose`: the base if it does not match the machine, the valve map if nothing is missing, otherwise the
-/// complete set of effects.
+/// After `hitch compare` and `hitch diagnose`: the valve map of an adequate model, the missing effects of an inadequate one,
+/// or the fit of its base.
 #[must_use]
-pub fn after_diagnosis(
-    hopeless_base: bool,
-    verdict: &str,
-    campaign: &Path,
-    model: &ModelArg,
-) -> String {
-    match (hopeless_base, verdict) {
-        (true, _) => {
+pub fn next(standing: Standing, campaign: &Path, model: &ModelArg) -> String {
+    match standing {
+        Standing::Adequate => calibrate(model.name()),
+        Standing::Inadequate => explain(campaign, model),
+        Standing::UnsuitableBase => {
             let fit = format!("hitch model fit {}{}", path(campaign), model.written());
             line("fit the base model", &format!("{fit} --out {MODEL}"))
         }
-        (false, "nothing-missing") => calibrate(model.name()),
-        (false, _) => explain(campaign, model),
     }
 }
 

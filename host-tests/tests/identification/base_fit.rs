@@ -254,17 +254,22 @@ fn diagnose_first_reports_an_unsuitable_base() {
     let file = folder.path().join("another.toml");
     std::fs::write(&file, hitch_model_file::to_toml(&another_machine())).expect("a file");
     let campaign = format!("{}/campaigns/clean-steady", env!("CARGO_MANIFEST_DIR"));
-    let said = |json: bool| {
+    let said = |name: &str, json: bool| {
         let mut command = host_tests::program::hitch();
-        command.args(["diagnose", &campaign, "--model"]).arg(&file);
+        command.args([name, &campaign, "--model"]).arg(&file);
         if json {
             command.args(["--json", "-"]);
         }
         let output = command.output().expect("it runs");
         String::from_utf8_lossy(&output.stdout).into_owned()
     };
-    assert!(said(false).starts_with("The base model does not match this machine"));
-    assert!(said(true).contains("\"hopeless_base\": true"));
+    let diagnosis = said("diagnose", false);
+    assert!(diagnosis.starts_with("The base model does not match this machine"));
+    assert!(said("diagnose", true).contains("\"hopeless_base\": true"));
+    for text in [diagnosis, said("compare", false)] {
+        let last = text.lines().last().expect("a proposal");
+        assert!(last.starts_with("  hitch model fit "), "{last}");
+    }
 }
 
 #[test]

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use hitch_campaign::Campaign;
+use hitch_identification::adequacy::unsuitable_base::is_unsuitable;
 
 use crate::commands::fleet::FleetArgs;
 use crate::comparison::Comparison;
 use crate::error::Error;
 use crate::model_arg::ModelArg;
-use crate::next_command;
+use crate::next_command::{self, Standing};
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
@@ -71,9 +72,14 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
         let page = comparison_page::page(&comparison, &evaluated, &model);
         output::write_file(path, page.as_bytes())?;
     }
-    let adequate = comparison.worst_cells().is_empty();
+    let fit = &evaluated.fit;
+    let standing = match comparison.worst_cells().is_empty() {
+        true => Standing::Adequate,
+        false if is_unsuitable(&evaluated.experiment, fit, fit) => Standing::UnsuitableBase,
+        false => Standing::Inadequate,
+    };
     outputs.tell(&args.json, &comparison, || {
-        let next = next_command::after_comparison(adequate, folder, &args.model);
+        let next = next_command::next(standing, folder, &args.model);
         format!("{comparison}\n{next}")
     })
 }

@@ -10,7 +10,7 @@ use hitch_identification::explanation::explain::{diagnose, fit_base};
 use crate::error::Error;
 use crate::explanation::{Diagnosis, Head};
 use crate::model_arg::ModelArg;
-use crate::next_command;
+use crate::next_command::{self, Standing};
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
@@ -59,8 +59,12 @@ pub fn run(args: &Args) -> Result<(), Error> {
             verdict,
             ..
         } = shown.head;
-        let next =
-            next_command::after_diagnosis(hopeless_base, verdict, &args.campaign, &args.model);
+        let standing = match (hopeless_base, verdict) {
+            (true, _) => Standing::UnsuitableBase,
+            (false, "nothing-missing") => Standing::Adequate,
+            (false, _) => Standing::Inadequate,
+        };
+        let next = next_command::next(standing, &args.campaign, &args.model);
         format!("{shown}\n{next}")
     })
 }
