@@ -1,8 +1,7 @@
 //! Recording from the ECU and writing calibrations to it, with the commands of the program.
 
-use std::io::{BufRead, BufReader, Write};
-use std::path::Path;
-use std::process::{Child, ChildStdin, Stdio};
+use std::io::Write;
+use std::process::Stdio;
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -11,58 +10,7 @@ use hitch_protocols::storage::CalibrationStore;
 use hitch_workbench::ecu::CutFlash;
 use host_tests::program::{hitch, run};
 
-/// A running ECU, which ends with the test.
-struct LiveEcu {
-    child: Child,
-    orders: ChildStdin,
-    /// HOST:PORT of its bus.
-    bus: String,
-}
-
-impl LiveEcu {
-    fn start(folder: &Path) -> Self {
-        let mut child = hitch()
-            .args(["ecu", "--host", "--can", "127.0.0.1:0", "--seconds", "60"])
-            .args(["--flash", "flash.bin"])
-            .current_dir(folder)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut line = String::new();
-        let said = child.stderr.take().unwrap();
-        BufReader::new(said).read_line(&mut line).unwrap();
-        let bus = line.split_whitespace().last().unwrap().to_owned();
-        Self {
-            orders: child.stdin.take().unwrap(),
-            child,
-            bus,
-        }
-    }
-
-    fn order(&mut self, order: &str) {
-        writeln!(self.orders, "{order}").unwrap();
-    }
-
-    /// Ends it as an operator does, so that it keeps its flash.
-    fn quit(&mut self) {
-        self.order("quit");
-        assert!(self.child.wait().unwrap().success());
-    }
-}
-
-impl Drop for LiveEcu {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-fn said(output: &std::process::Output) -> String {
-    let text = [output.stdout.clone(), output.stderr.clone()].concat();
-    String::from_utf8(text).unwrap()
-}
+use crate::running_ecu::{RunningEcu, said};
 
 #[test]
 fn a_campaign_is_recorded_and_a_calibration_comes_back_from_flash() {
@@ -73,7 +21,7 @@ fn a_campaign_is_recorded_and_a_calibration_comes_back_from_flash() {
         "format = 1\n[position]\napproach_gain_per_s = 33\n",
     )
     .unwrap();
-    let mut ecu = LiveEcu::start(folder);
+    let mut ecu = RunningEcu::start(folder);
     let bus = ecu.bus.clone();
     // Picked up after half a second, and then at rest.
     sleep(Duration::from_millis(1_200));

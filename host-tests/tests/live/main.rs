@@ -9,4 +9,7 @@ mod emulated_ecu;
 mod page_in_browser;
 mod python_clients;
 mod report_in_browser;
+mod running_ecu;
+#[cfg(unix)]
+mod serial_adapter;
 mod serve;

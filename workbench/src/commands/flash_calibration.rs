@@ -1,5 +1,4 @@
 //! `hitch flash-calibration`: writes a calibration to a running ECU, over XCP.
-use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use hitch_controller_host::calibration_file;
@@ -7,7 +6,7 @@ use hitch_controller_host::calibration_file;
 use crate::error::Error;
 use crate::output;
 use crate::progress::Progress;
-use crate::xcp_tool::{Session, SlcanClient, ToolError, write_calibration};
+use crate::xcp_tool::{BusAddress, CanClient, Session, ToolError, write_calibration};
 
 /// Arguments of `hitch flash-calibration`.
 #[derive(Debug, clap::Args)]
@@ -20,9 +19,10 @@ pub struct Args {
     /// Calibration file, as written by `hitch calibrate` and `hitch tune`
     #[arg(value_name = "C.toml")]
     calibration: PathBuf,
-    /// The ECU's bus: an slcan adapter on TCP, such as `hitch ecu --can`
-    #[arg(long, value_name = "HOST:PORT")]
-    can: String,
+    /// The ECU's bus: HOST:PORT of an slcan adapter such as `hitch ecu --can`, a CAN interface of Linux (can0), or the serial
+    /// port of an slcan adapter (/dev/ttyACM0, COM3)
+    #[arg(long, value_name = "BUS")]
+    can: BusAddress,
 }
 
 /// Runs the command.
@@ -33,7 +33,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let calibration = calibration_file::read(&args.calibration)?;
     let progress = Progress::start("writing the calibration");
     let mut session = connect(&args.can)?;
-    let written = write_calibration(&mut session, &calibration).map_err(tool_error)?;
+    let written = write_calibration(&mut session, &calibration).map_err(interrupted)?;
     session.close().map_err(tool_error)?;
     drop(progress);
     output::print(&format!(
@@ -42,20 +42,34 @@ pub fn run(args: &Args) -> Result<(), Error> {
     ))
 }
 
+/// The error of a write; after a lost connection, values may have been written without having been stored.
+fn interrupted(error: ToolError) -> Error {
+    match error {
+        ToolError::Bus(_) | ToolError::Silent => Error::Usage(format!(
+            "{error}; the write is incomplete: write again, or switch the ECU off and on to return to the stored calibration"
+        )),
+        other => tool_error(other),
+    }
+}
+
 /// Connects to the ECU at an address.
 ///
 /// # Errors
 /// If there is no ECU.
-pub fn connect(address: &str) -> Result<Session, Error> {
-    let client = SlcanClient::connect(address).map_err(|error| {
-        Error::Usage(match error.kind() {
-            ErrorKind::InvalidInput => {
-                format!("--can {address}: {error}; give a host and a port, as in 127.0.0.1:7701")
+pub fn connect(address: &BusAddress) -> Result<Session, Error> {
+    let client = CanClient::open(address).map_err(|error| {
+        let advice = match address {
+            BusAddress::Tcp(_) => {
+                format!("start `hitch ecu --can {address}` or give the address of an slcan adapter")
             }
-            _ => format!(
-                "--can {address}: no answer: {error}; start `hitch ecu --can {address}` or give the address of an slcan adapter"
-            ),
-        })
+            BusAddress::Serial(_) => {
+                "give the port of an slcan adapter that no other program uses".to_owned()
+            }
+            BusAddress::Interface(_) => {
+                format!("start it with `ip link set {address} up type can bitrate 250000`")
+            }
+        };
+        Error::Usage(format!("--can {address}: no answer: {error}; {advice}"))
     })?;
     Session::open(client).map_err(tool_error)
 }
@@ -63,7 +77,9 @@ pub fn connect(address: &str) -> Result<Session, Error> {
 /// A fault that the user can correct is an input error; others are failures.
 pub fn tool_error(error: ToolError) -> Error {
     match error {
-        ToolError::Locked
+        ToolError::Bus(_)
+        | ToolError::Silent
+        | ToolError::Locked
         | ToolError::NotAtRest
         | ToolError::OutOfRange(_)
         | ToolError::NoHitch

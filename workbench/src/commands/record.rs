@@ -8,7 +8,7 @@ use super::loop_::load_kg;
 use crate::error::Error;
 use crate::output;
 use crate::progress::Progress;
-use crate::xcp_tool::{CHANNELS, PERIOD_MS, Row, record};
+use crate::xcp_tool::{BusAddress, CHANNELS, PERIOD_MS, Row, record};
 
 /// Arguments of `hitch record`.
 #[derive(Debug, clap::Args)]
@@ -18,9 +18,10 @@ use crate::xcp_tool::{CHANNELS, PERIOD_MS, Row, record};
     existing campaign, so that it can cover several loads. `hitch explain` reads the campaign."
 )]
 pub struct Args {
-    /// The ECU's bus: an slcan adapter on TCP, such as `hitch ecu --can`
-    #[arg(long, value_name = "HOST:PORT")]
-    can: String,
+    /// The ECU's bus: HOST:PORT of an slcan adapter such as `hitch ecu --can`, a CAN interface of Linux (can0), or the serial
+    /// port of an slcan adapter (/dev/ttyACM0, COM3)
+    #[arg(long, value_name = "BUS")]
+    can: BusAddress,
     /// Folder of the campaign
     #[arg(long, value_name = "CAMPAIGN")]
     out: PathBuf,

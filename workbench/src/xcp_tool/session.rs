@@ -7,7 +7,7 @@ use hitch_protocols::can::Frame;
 use hitch_protocols::j1939::{Id, Pgn};
 use hitch_protocols::xcp::map::{IDENTITY, IDENTITY_BASE};
 
-use super::slcan_client::SlcanClient;
+use super::can_client::CanClient;
 
 /// The address of an off-board tool.
 const TOOL_ADDRESS: u8 = 249;
@@ -24,11 +24,15 @@ const EVENT: u8 = 0xFD;
 /// Faults of a session, with suggested correction.
 #[derive(Debug, thiserror::Error)]
 pub enum ToolError {
-    /// The adapter cannot be reached.
-    #[error("the bus cannot be reached: {0}; is `hitch ecu --can` or an slcan adapter running?")]
+    /// The adapter is disconnected.
+    #[error(
+        "the connection to the bus was lost: {0}; check the adapter and its cable, and try again"
+    )]
     Bus(#[from] io::Error),
     /// No hitch on the bus.
-    #[error("no hitch sent its status on the bus within 2 s; is the ECU running?")]
+    #[error(
+        "no hitch sent its status on the bus within 2 s; is the ECU running, and the bus up at 250 kbit/s?"
+    )]
     NoHitch,
     /// The ECU has different tables.
     #[error(
@@ -36,7 +40,7 @@ pub enum ToolError {
     )]
     OtherEcu(String),
     /// No answer.
-    #[error("the ECU does not answer; is another tool connected?")]
+    #[error("the ECU does not answer; check the cable, and that no other tool is connected")]
     Silent,
     /// Tuning isn't enabled.
     #[error("write access is disabled; close the service switch (`service on`)")]
@@ -58,7 +62,7 @@ pub enum ToolError {
 /// The session.
 #[derive(Debug)]
 pub struct Session {
-    client: SlcanClient,
+    client: CanClient,
     ecu: u8,
 }
 
@@ -67,7 +71,7 @@ impl Session {
     ///
     /// # Errors
     /// If there is no hitch, or its tables differ.
-    pub fn open(mut client: SlcanClient) -> Result<Self, ToolError> {
+    pub fn open(mut client: CanClient) -> Result<Self, ToolError> {
         let ecu = find(&mut client)?;
         let mut session = Self { client, ecu };
         session.command(&[0xFF, 0])?;
@@ -180,7 +184,7 @@ fn refusal(code: u8) -> ToolError {
 }
 
 /// The address of the hitch that sends its status.
-fn find(client: &mut SlcanClient) -> Result<u8, ToolError> {
+fn find(client: &mut CanClient) -> Result<u8, ToolError> {
     let deadline = Instant::now() + APPEARS_WITHIN;
     while let Some(frame) = client.receive(deadline)? {
         let id = frame.extended_data_id().map(Id::unpack);

@@ -1,0 +1,81 @@
+//! A node on the CAN bus, through any adapter.
+
+use std::io;
+use std::time::{Duration, Instant};
+
+use hitch_protocols::can::Frame;
+
+use super::bus_address::BusAddress;
+#[cfg(target_os = "linux")]
+use super::can_interface::CanInterface;
+use super::slcan_client::SlcanClient;
+
+/// Timeout of one read, after which the deadline is checked.
+pub(super) const PATIENCE: Duration = Duration::from_millis(20);
+/// Timeout for sending a frame: an adapter that takes longer is stuck.
+pub(super) const SENDS_WITHIN: Duration = Duration::from_secs(1);
+
+/// The node.
+#[derive(Debug)]
+pub struct CanClient(Adapter);
+
+#[derive(Debug)]
+enum Adapter {
+    Slcan(SlcanClient),
+    #[cfg(target_os = "linux")]
+    Interface(CanInterface),
+}
+
+impl CanClient {
+    /// Opens the bus at 250 kbit/s; the bit rate of a CAN interface is that of its configuration.
+    ///
+    /// # Errors
+    /// If the adapter cannot be opened.
+    pub fn open(address: &BusAddress) -> io::Result<Self> {
+        Ok(Self(match address {
+            BusAddress::Tcp(address) => Adapter::Slcan(SlcanClient::connect(address)?),
+            BusAddress::Serial(port) => Adapter::Slcan(SlcanClient::open_serial(port)?),
+            #[cfg(target_os = "linux")]
+            BusAddress::Interface(name) => Adapter::Interface(CanInterface::open(name)?),
+            #[cfg(not(target_os = "linux"))]
+            BusAddress::Interface(_) => {
+                return Err(io::Error::new(
+                    io::ErrorKind::Unsupported,
+                    "CAN interfaces need Linux",
+                ));
+            }
+        }))
+    }
+
+    /// Sends a frame.
+    ///
+    /// # Errors
+    /// If the adapter is disconnected or does not accept the frame.
+    pub fn send(&mut self, frame: &Frame) -> io::Result<()> {
+        match &mut self.0 {
+            Adapter::Slcan(client) => client.send(frame),
+            #[cfg(target_os = "linux")]
+            Adapter::Interface(interface) => interface.send(frame),
+        }
+    }
+
+    /// The next data frame; `None` if none arrives before `deadline`.
+    ///
+    /// # Errors
+    /// If the adapter is disconnected.
+    pub fn receive(&mut self, deadline: Instant) -> io::Result<Option<Frame>> {
+        match &mut self.0 {
+            Adapter::Slcan(client) => client.receive(deadline),
+            #[cfg(target_os = "linux")]
+            Adapter::Interface(interface) => interface.receive(deadline),
+        }
+    }
+}
+
+/// Whether the operation only took too long.
+pub(super) fn is_timeout(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
+    )
+}
