@@ -6,7 +6,7 @@ use std::time::Duration;
 use hitch_quantities::{Fault, State};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::ecu::Moment;
+use crate::ecu::{Moment, PaceChange};
 
 /// Interval between updates of the line, ms.
 const LIVE_MS: u64 = 100;
@@ -18,6 +18,7 @@ const ROW_MS: u64 = 1_000;
 pub struct StatusLine {
     bar: Option<ProgressBar>,
     last: Option<(u8, u8)>,
+    behind: bool,
 }
 
 impl StatusLine {
@@ -31,7 +32,11 @@ impl StatusLine {
             bar.enable_steady_tick(Duration::from_millis(120));
             bar
         });
-        Self { bar, last: None }
+        Self {
+            bar,
+            last: None,
+            behind: false,
+        }
     }
 
     /// Shows a millisecond if the interval has passed or the state has changed.
@@ -48,7 +53,10 @@ impl StatusLine {
         if !changed && !moment.time_ms.is_multiple_of(period_ms) {
             return Ok(());
         }
-        let line = line(moment, clients);
+        let mut line = line(moment, clients);
+        if self.behind {
+            line.push_str("  behind real time");
+        }
         match bar {
             Some(bar) => bar.set_message(line),
             None => {
@@ -58,6 +66,22 @@ impl StatusLine {
             }
         }
         Ok(())
+    }
+
+    /// Shows from now on whether the bench is behind real time; standard error gets a line if there is no terminal.
+    pub fn tell(&mut self, change: PaceChange) {
+        self.behind = change == PaceChange::FallsBehind;
+        if self.bar.is_none() {
+            eprintln!(
+                "{}",
+                match change {
+                    PaceChange::FallsBehind => {
+                        "behind real time: this computer is too slow or busy; times on the bus are too long"
+                    }
+                    PaceChange::KeepsUp => "in real time again",
+                }
+            );
+        }
     }
 
     /// Prints a message beside the state.

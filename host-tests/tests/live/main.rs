@@ -3,6 +3,8 @@
 
 mod board_bench;
 mod closed_loop_page;
+#[cfg(target_os = "linux")]
+mod ecu_process;
 mod ecu_tools;
 mod emulated;
 mod emulated_ecu;

@@ -5,7 +5,7 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use std::{io, thread};
 
 use hitch_plant::Model;
@@ -13,8 +13,8 @@ use hitch_protocols::can::Frame;
 
 use super::loop_::{calibration, load_kg};
 use crate::ecu::{
-    Bench, Bus, CutFlash, EcuMachine, Emulator, FLASH_BYTES, MachineError, OnHost, Order, QEMU,
-    delivered, find_image,
+    Bench, Bus, CutFlash, EcuMachine, Emulator, FLASH_BYTES, MachineError, OnHost, Order, Pace,
+    QEMU, delivered, find_image,
 };
 use crate::error::Error;
 use crate::output::{check_writable, no_stdout, write_file};
@@ -23,9 +23,6 @@ use crate::status_line::StatusLine;
 
 /// Time of the lever capture by the operator, ms: after the first address claim.
 const PICK_UP_MS: u64 = 500;
-/// Maximum lag behind real time; beyond it the schedule restarts (slow host, or suspend).
-const MOST_BEHIND: Duration = Duration::from_millis(200);
-const MILLISECOND: Duration = Duration::from_millis(1);
 
 /// Arguments of `hitch ecu`.
 #[derive(Debug, clap::Args)]
@@ -33,7 +30,7 @@ const MILLISECOND: Duration = Duration::from_millis(1);
     The real firmware image runs on an emulated Cortex-M4 with the plant attached, in lock step and in real time. The \
     operator moves the lever through the hitch position (lever capture) after half a second. Standard input then takes \
     operator commands, one in each line: lever DEG, up, down, stop, quick on|off, hold on|off, lock on|off, \
-    service on|off, limit DEG, dial PERCENT, power, quit. With --can, the bus accepts slcan clients: python-can with \
+    service on|off, limit DEG, dial PERCENT, power, quit. The status shows when the computer is too slow for real time. With --can, the bus accepts slcan clients: python-can with \
     interface slcan and channel socket://HOST:PORT. Writing the calibration over XCP requires `service on`.")]
 pub struct Args {
     /// Offer the CAN bus as slcan on this TCP port
@@ -215,7 +212,7 @@ impl<'m> Session<'m> {
         }
         let orders = orders();
         let mut said: Vec<Frame> = Vec::new();
-        let mut due = Instant::now();
+        let mut pace = None;
         for time_ms in 0..self.last_ms {
             if time_ms == PICK_UP_MS {
                 self.bench.operator.apply(Order::Lever(self.start_deg));
@@ -232,7 +229,14 @@ impl<'m> Session<'m> {
                 bus.connected()
             });
             self.status.show(&moment, clients).map_err(Error::Stdout)?;
-            due = wait_until(due + MILLISECOND);
+            // The first millisecond includes the start of the emulator.
+            let now = Instant::now();
+            let pace = pace.get_or_insert_with(|| Pace::starting(now));
+            let (wait, change) = pace.tick(now);
+            change
+                .into_iter()
+                .for_each(|change| self.status.tell(change));
+            thread::sleep(wait);
         }
         Ok(())
     }
@@ -257,18 +261,5 @@ impl<'m> Session<'m> {
                 Err(what) => self.status.say(&what),
             }
         }
-    }
-}
-
-/// Waits until `due`; returns the reference time of the next wait.
-fn wait_until(due: Instant) -> Instant {
-    let now = Instant::now();
-    match due.checked_duration_since(now) {
-        Some(left) => {
-            thread::sleep(left);
-            due
-        }
-        None if now - due > MOST_BEHIND => now,
-        None => due,
     }
 }

@@ -46,7 +46,7 @@ pub fn command(image: &Path, folder: &Path, mode: Mode) -> Command {
     command
 }
 
-/// The running emulator; it is ended on drop.
+/// The running emulator; it is ended on drop. If this program is killed, the image ends with its requests.
 #[derive(Debug)]
 pub struct Emulator {
     child: Child,

@@ -8,6 +8,7 @@ mod flash;
 mod image;
 mod machine;
 mod operator;
+mod pace;
 
 pub use bench::{Bench, Moment};
 pub use bus::Bus;
@@ -17,3 +18,4 @@ pub use flash::{CALIBRATION_BYTES, CutFlash, FLASH_BYTES, delivered};
 pub use image::{IMAGE_VARIABLE, find as find_image};
 pub use machine::{EcuMachine, MachineError, OnHost};
 pub use operator::{Operator, Order};
+pub use pace::{Pace, PaceChange};
