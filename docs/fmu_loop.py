@@ -4,8 +4,13 @@ usage: python3 fmu_loop.py PLANT.fmu CONTROLLER.fmu     (needs FMPy: pip install
 """
 import sys
 
-from fmpy import extract, read_model_description
-from fmpy.fmi2 import FMU2Slave
+try:
+    from fmpy import extract, read_model_description
+    from fmpy.fmi2 import FMU2Slave
+except ModuleNotFoundError as missing:
+    sys.exit(f"the Python package {missing.name} is missing: pip install fmpy")
+if len(sys.argv) != 3:
+    sys.exit("give the units: python3 fmu_loop.py PLANT.fmu CONTROLLER.fmu (from `hitch export-fmu`)")
 
 
 def unit(path, **parameters):

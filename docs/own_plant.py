@@ -1,14 +1,14 @@
 """Closes the loop around the firmware's controller with a plant of one's own.
 
-usage: python3 own_plant.py [PATH_TO_HITCH]     (without it, target/release/hitch)
+usage: python3 own_plant.py [PATH_TO_HITCH]     (without it, hitch_program.py finds the program)
 
 The plant is a toy: linear valves with a threshold, a lag of 60 ms, and an angle straight from the flow. `hitch controller`
 answers each line (one a millisecond) with the coil currents it asks for.
 A machine can be taught first where its valves open and where its ends are: `hitch controller --help` says how.
 """
-import subprocess, sys
+import subprocess, sys, hitch_program
 
-hitch = (sys.argv[1:] or ["target/release/hitch"])[0]
+hitch = hitch_program.find(*sys.argv[1:2])
 controller = subprocess.Popen([hitch, "controller"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 print("time_s,lever_deg,rocker_angle_deg", file=controller.stdin, flush=True)
 assert controller.stdout.readline() == "lift_current_a,lower_current_a,state\n"

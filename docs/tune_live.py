@@ -7,21 +7,30 @@ of the moves is written to tuning.svg.
 """
 import pathlib, re, struct, subprocess, sys, threading, time
 
-import can, cantools
-from pyxcp.config import create_application_from_config, set_application
-from pyxcp.master import Master
+import hitch_program
+
+try:
+    import can, cantools
+    from pyxcp.config import create_application_from_config, set_application
+    from pyxcp.master import Master
+except ModuleNotFoundError as missing:
+    sys.exit(f'the Python package {missing.name} is missing: pip install pyxcp cantools "python-can[serial]"')
 
 FIRMWARE = pathlib.Path(__file__).resolve().parent.parent / "firmware"
 LOW_DEG, HIGH_DEG = 80.0, 105.0
 GAINS_PER_S = [60, 4, 60]
 MOVE_S = 2.0
 
-hitch, *options = sys.argv[1:] or ["target/release/hitch"]
+hitch, options = hitch_program.find(*sys.argv[1:2]), sys.argv[2:]
 ecu = subprocess.Popen(
     [hitch, "ecu", "--can", "127.0.0.1:0", *options],
     stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
 )
-port = "socket://" + next(line for line in ecu.stderr if "CAN is open" in line).split()[-1]
+line = ""
+while "CAN is open" not in line:
+    before, line = line, ecu.stderr.readline()
+    line or sys.exit(before.strip() or "hitch ecu has ended")
+port = "socket://" + line.split()[-1]
 threading.Thread(target=ecu.stderr.read, daemon=True).start()
 
 

@@ -5,6 +5,7 @@ mod bad_input;
 mod bad_output;
 mod cli;
 mod controller_stdio;
+mod examples;
 mod fleet;
 mod fmu;
 mod from_bus_to_model;
