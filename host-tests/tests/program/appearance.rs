@@ -47,8 +47,8 @@ fn texts_of_the_closed_loop_and_the_paper_fit_80_columns() {
     let dir = tempfile::tempdir().unwrap();
     for arguments in [
         "loop --scenario quick",
-        "loop --scenario ends --load 2000",
-        "tune --scenario quick --trials 10 --out tuned.toml",
+        "loop --scenario rate --load 150",
+        "tune --scenario quick --trials 10 --out tuned.toml --force",
         "calibrate nominal --out calibration.toml",
         "paper",
         "effects",
@@ -57,6 +57,13 @@ fn texts_of_the_closed_loop_and_the_paper_fit_80_columns() {
     ] {
         assert_fits(&text(dir.path(), arguments));
     }
+    // Too heavy to lift: an error, after the table.
+    let missed = run(
+        dir.path(),
+        &["loop", "--scenario", "ends", "--load", "2000"],
+    );
+    assert_eq!(missed.status.code(), Some(2));
+    assert_fits(&String::from_utf8(missed.stdout).unwrap());
 }
 
 /// Output of `hitch compare` with an environment in place of that of the test.

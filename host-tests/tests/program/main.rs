@@ -10,6 +10,7 @@ mod fleet;
 mod fmu;
 mod from_bus_to_model;
 mod import;
+mod loop_scenarios;
 mod schema;
 mod shell;
 mod small_campaign;

@@ -33,10 +33,15 @@ fn close(schema: &mut Value) {
 
 /// Validates the document of a command against its schema, and against the closed schema.
 fn assert_valid(folder: &Path, command: &str, more: &str) {
+    assert_valid_with(folder, command, more, 0);
+}
+
+/// The same of a command that ends with this exit code.
+fn assert_valid_with(folder: &Path, command: &str, more: &str, code: i32) {
     let arguments = format!("{command} {more} --json -");
     let output = run(folder, &arguments.split_whitespace().collect::<Vec<_>>());
     let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments}: {said}");
+    assert_eq!(output.status.code(), Some(code), "{arguments}: {said}");
     assert!(
         output.stdout.starts_with(b"{\n  \"format\": 1,\n"),
         "{arguments}: the version is first"
@@ -80,12 +85,13 @@ fn documents_of_the_closed_loop_follow_their_schemas() {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path();
     assert_valid(folder, "loop", "--scenario quick");
+    assert_valid(folder, "loop", "--scenario rate --load 150");
     // Too heavy to lift: times without a value.
-    assert_valid(folder, "loop", "--scenario ends --load 2000");
+    assert_valid_with(folder, "loop", "--scenario ends --load 2000", 2);
     assert_valid(
         folder,
         "tune",
-        "--scenario quick --trials 10 --out tuned.toml",
+        "--scenario quick --trials 10 --out tuned.toml --force",
     );
 }
 

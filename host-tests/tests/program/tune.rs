@@ -102,7 +102,7 @@ fn a_value_set_by_hand_is_driven_and_a_wrong_one_is_refused_in_one_line() {
 fn a_value_set_by_hand_is_left_alone_by_the_search() {
     let folder = tempfile::tempdir().unwrap();
     let arguments =
-        "tune --scenario quick --trials 20 --out tuned.toml --set position.creep_speed=9";
+        "tune --scenario quick --trials 20 --out tuned.toml --force --set position.creep_speed=9";
     let output = run(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
     assert!(output.status.success(), "{}", text(&output.stderr));
     let tuned = std::fs::read_to_string(folder.path().join("tuned.toml")).unwrap();
@@ -130,4 +130,50 @@ fn a_value_set_by_hand_is_left_alone_by_the_search() {
     );
     assert!(!above("restart_band_mm").contains("default"), "as it was");
     assert!(value("hysteresis_a").parse::<f64>().unwrap() >= 0.12);
+}
+
+#[test]
+fn a_calibration_that_became_worse_is_written_only_by_force() {
+    let folder = tempfile::tempdir().unwrap();
+    // Only the hysteresis is searched, from far less than a real valve has: less of it is faster on these plants.
+    let mut arguments = vec![
+        "tune",
+        "--scenario",
+        "quick",
+        "--trials",
+        "10",
+        "--out",
+        "tuned.toml",
+    ];
+    let fixed: Vec<String> = hitch_workbench::tuning::KNOBS
+        .iter()
+        .filter(|knob| **knob != "hydraulics.hysteresis")
+        .map(|knob| {
+            let nominal = hitch_quantities::Calibration::nominal();
+            let scalar = hitch_controller_host::calibration_file::scalar(&nominal, knob).unwrap();
+            format!("{knob}={}", scalar.value)
+        })
+        .collect();
+    std::fs::write(
+        folder.path().join("low.toml"),
+        "format = 1\n[hydraulics]\nhysteresis_a = 0.02\n",
+    )
+    .unwrap();
+    arguments.extend(["--calibration", "low.toml"]);
+    for setting in &fixed {
+        arguments.extend(["--set", setting]);
+    }
+    let output = run(folder.path(), &arguments);
+    let error = text(&output.stderr);
+    println!("{}{error}", text(&output.stdout));
+    assert_eq!(output.status.code(), Some(1), "{error}");
+    assert!(
+        error.contains("tuned.toml is not written") && error.lines().count() == 1,
+        "{error}"
+    );
+    assert!(!folder.path().join("tuned.toml").exists());
+    arguments.push("--force");
+    let forced = run(folder.path(), &arguments);
+    assert!(forced.status.success(), "{}", text(&forced.stderr));
+    assert!(folder.path().join("tuned.toml").exists());
 }

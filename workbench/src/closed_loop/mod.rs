@@ -6,7 +6,9 @@ mod ideal_ramp;
 mod instruments;
 mod loop_;
 mod metrics;
+mod missed;
 mod moves;
+mod rate;
 mod scenario;
 pub mod show;
 
@@ -18,5 +20,7 @@ pub use instruments::{
 };
 pub use loop_::{ClosedLoop, Sample};
 pub use metrics::{ARRIVED_DEG, MoveResult, Summary};
-pub use moves::{Course, LoopRun, MoveTrace, courses, figures, run};
-pub use scenario::{Move, Scenario};
+pub use missed::first_missed;
+pub use moves::{Course, LoopRun, MoveTrace, courses, figures, run, run_quick_lift};
+pub use rate::{Press, PressResult, drive_presses, presses};
+pub use scenario::{Move, OIL_TEMPERATURE_C, Scenario};

@@ -33,7 +33,7 @@ pub enum Scenario {
 }
 
 /// Usual oil temperature, C.
-const OIL_TEMPERATURE_C: f64 = 40.0;
+pub const OIL_TEMPERATURE_C: f64 = 40.0;
 /// Oil from a cold morning to a hot afternoon, C.
 const COLD_TO_HOT_C: [f64; 3] = [10.0, OIL_TEMPERATURE_C, 70.0];
 /// Distance of moves to the ends from a mechanical end, degree.
@@ -47,14 +47,31 @@ fn tenth_deg(angle_rad: f64) -> f64 {
     (10.0 * angle_rad.to_degrees()).round() / 10.0
 }
 
+/// Middle of the travel, and the part of the travel that is clear of its ends, degree.
+pub fn middle_and_room_deg(model: &Model) -> (f64, f64) {
+    let (low_rad, high_rad) = model.linkage().swing_rad();
+    let middle_deg = tenth_deg(0.5 * (low_rad + high_rad));
+    (middle_deg, (high_rad - low_rad).to_degrees() - CLEAR_DEG)
+}
+
 impl Scenario {
     /// The moves of the scenario for a machine, about the middle of its travel, with the given loads, kg; without them,
     /// with its [usual ones](Model::usual_loads_kg). A machine with a short travel has shorter moves.
     #[must_use]
     pub fn moves(self, model: &Model, loads_kg: Option<&[f64]>) -> Vec<Move> {
+        self.moves_with_oil(model, loads_kg, None)
+    }
+
+    /// The same with oil at these temperatures, C; without them, with those of the scenario.
+    #[must_use]
+    pub fn moves_with_oil(
+        self,
+        model: &Model,
+        loads_kg: Option<&[f64]>,
+        oil_temperatures_c: Option<&[f64]>,
+    ) -> Vec<Move> {
         let (low_rad, high_rad) = model.linkage().swing_rad();
-        let middle_deg = tenth_deg(0.5 * (low_rad + high_rad));
-        let room_deg = (high_rad - low_rad).to_degrees() - CLEAR_DEG;
+        let (middle_deg, room_deg) = middle_and_room_deg(model);
         let scale = (room_deg / LARGEST_DEG).min(1.0);
         let about_middle = |span_deg: f64| {
             let half_deg = 0.5 * scale * span_deg;
@@ -74,28 +91,36 @@ impl Scenario {
                 .map(about_middle)
                 .to_vec(),
         };
-        let temperatures_c: &[f64] = match self {
+        let temperatures_c = oil_temperatures_c.unwrap_or(match self {
             Self::Limits | Self::Tuning => &COLD_TO_HOT_C,
             _ => &[OIL_TEMPERATURE_C],
-        };
-        let usual_kg = model.usual_loads_kg();
-        let mut moves = Vec::new();
-        for &load_kg in loads_kg.unwrap_or(&usual_kg) {
-            for &oil_temperature_c in temperatures_c {
-                for &(low, high) in &pairs {
-                    for (from_deg, to_deg) in [(low, high), (high, low)] {
-                        moves.push(Move {
-                            from_deg,
-                            to_deg,
-                            load_kg,
-                            oil_temperature_c,
-                        });
-                    }
+        });
+        both_ways(
+            &pairs,
+            loads_kg.unwrap_or(&model.usual_loads_kg()),
+            temperatures_c,
+        )
+    }
+}
+
+/// Moves between two angles, degree, in both directions, for each load and oil temperature.
+pub fn both_ways(pairs: &[(f64, f64)], loads_kg: &[f64], oil_temperatures_c: &[f64]) -> Vec<Move> {
+    let mut moves = Vec::new();
+    for &load_kg in loads_kg {
+        for &oil_temperature_c in oil_temperatures_c {
+            for &(low, high) in pairs {
+                for (from_deg, to_deg) in [(low, high), (high, low)] {
+                    moves.push(Move {
+                        from_deg,
+                        to_deg,
+                        load_kg,
+                        oil_temperature_c,
+                    });
                 }
             }
         }
-        moves
     }
+    moves
 }
 
 #[cfg(test)]

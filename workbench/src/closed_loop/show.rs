@@ -1,6 +1,7 @@
 //! Moves as tables and text, for terminal and report.
 
 use super::metrics::{MoveResult, Summary};
+use super::rate::PressResult;
 use crate::text::{Table, known, wrapped};
 
 /// Header of the table of moves, for terminal and report.
@@ -56,6 +57,43 @@ pub fn text(moves: &[MoveResult], summary: &Summary) -> String {
     let lines = summed_up(summary);
     let lines: Vec<String> = lines.lines().map(wrapped).collect();
     format!("{table}\n{}\n", lines.join("\n"))
+}
+
+/// Presses of the external button as a table for a terminal, with the worst figures.
+#[must_use]
+pub fn presses_text(presses: &[PressResult]) -> String {
+    let mut table = Table::new([
+        "button, deg/s",
+        "load, kg",
+        "oil, C",
+        "speed ratio",
+        "start, s",
+        "stop, s",
+        "overshoot, %",
+        "travel after, deg",
+    ]);
+    for press in presses {
+        table.row([
+            format!("{:+.1}", press.rate_deg_per_s),
+            format!("{:.0}", press.load_kg),
+            format!("{:.0}", press.oil_temperature_c),
+            known(press.speed_ratio, 3),
+            known(press.start_delay_s, 3),
+            known(press.stop_delay_s, 3),
+            format!("{:.1}", 100.0 * press.speed_overshoot),
+            format!("{:.2}", press.travel_after_deg),
+        ]);
+    }
+    let largest = |of: fn(&PressResult) -> f64| presses.iter().map(of).fold(0.0, f64::max);
+    let summary = format!(
+        "Steady speed: at most {:.1} % off the requested one; largest overshoot {:.1} %. \
+         Latest start {:.3} s, latest stop {:.3} s.",
+        100.0 * largest(|press| (press.speed_ratio - 1.0).abs()),
+        100.0 * largest(|press| press.speed_overshoot),
+        largest(|press| press.start_delay_s),
+        largest(|press| press.stop_delay_s),
+    );
+    format!("{table}\n{}\n", wrapped(&summary))
 }
 
 /// The summary in two lines, and a third one if a move did not arrive.

@@ -14,6 +14,7 @@ pub mod flash_calibration;
 pub mod fleet;
 pub mod import;
 pub mod loop_;
+pub mod loop_scenario;
 pub mod main_job;
 pub mod man;
 pub mod model;

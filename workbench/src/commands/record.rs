@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::flash_calibration::{connect, tool_error};
-use super::loop_::load_kg;
+use super::loop_::{load_kg, temperature_c};
 use crate::error::Error;
 use crate::output;
 use crate::progress::Progress;
@@ -101,13 +101,6 @@ fn log(rows: &[Row]) -> String {
         let _ = writeln!(text, "{time_s:.3},{}", values.join(","));
     }
     text
-}
-
-fn temperature_c(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(temperature_c) if (-40.0..=120.0).contains(&temperature_c) => Ok(temperature_c),
-        _ => Err("it has to be a number from -40 to 120".to_owned()),
-    }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use hitch_controller_host::calibration_file;
+use hitch_plant::Model;
 use hitch_quantities::Calibration;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::calibrate::calibrate;
-use crate::closed_loop::{self, Scenario, Summary};
+use crate::closed_loop::{self, Move, Scenario, Summary};
 use crate::commands::loop_::{changed, load_kg, read_files};
 use crate::error::Error;
 use crate::output::{self, JsonArg};
@@ -57,6 +58,9 @@ pub struct Args {
     /// Write a report to this file: moves with both calibrations, changed values, figures
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
+    /// Write the calibration even if it is worse than the initial one
+    #[arg(long)]
+    force: bool,
 }
 
 /// Result of `hitch tune`.
@@ -96,7 +100,7 @@ impl Tuned {
 /// Runs the command.
 ///
 /// # Errors
-/// If the model or the calibration is invalid, or the result cannot be written.
+/// If the model or the calibration is invalid, the result cannot be written, or it is worse than the initial calibration.
 pub fn run(args: &Args) -> Result<(), Error> {
     let inputs = read_files(&args.model, args.calibration.as_ref());
     let wanted = [
@@ -130,26 +134,55 @@ pub fn run(args: &Args) -> Result<(), Error> {
         })
         .ok_or_else(failed)?;
     drop(progress);
-    let text = calibration_file::write_tuned(&after.calibration, &base);
-    output::write_file(&args.out, text.as_bytes())?;
+    let is_worse = after.cost > before.cost;
+    if !is_worse || args.force {
+        let text = calibration_file::write_tuned(&after.calibration, &base);
+        output::write_file(&args.out, text.as_bytes())?;
+    }
     let tuned = Tuned::new(&before, &after);
     if let Some(path) = &args.report {
-        let progress = Progress::start("driving the moves with both calibrations");
-        let driven = |judged: &Judged| {
-            closed_loop::run(&model, &judged.calibration, &moves)
-                .ok_or_else(|| Error::Usage("the scenario has no moves".to_owned()))
-        };
-        let page = tuning_page::page(&tuning_page::Shown {
-            model: &model,
-            changes: &tuned.changes,
-            figures: &figures(&tuned),
-            before: &driven(&before)?,
-            after: &driven(&after)?,
-        });
-        drop(progress);
+        let page = report(&model, &moves, &tuned, [&before, &after])?;
         output::write_file(path, page.as_bytes())?;
     }
-    outputs.tell(&args.json, &tuned, || told(&tuned))
+    outputs.tell(&args.json, &tuned, || told(&tuned))?;
+    match is_worse && !args.force {
+        true => Err(worse(args, &before, &after)),
+        false => Ok(()),
+    }
+}
+
+/// The report: the moves with both calibrations, the initial one first.
+fn report(
+    model: &Model,
+    moves: &[Move],
+    tuned: &Tuned,
+    judged: [&Judged; 2],
+) -> Result<String, Error> {
+    let progress = Progress::start("driving the moves with both calibrations");
+    let driven = |judged: &Judged| {
+        closed_loop::run(model, &judged.calibration, moves)
+            .ok_or_else(|| Error::Usage("the scenario has no moves".to_owned()))
+    };
+    let page = tuning_page::page(&tuning_page::Shown {
+        model,
+        changes: &tuned.changes,
+        figures: &figures(tuned),
+        before: &driven(judged[0])?,
+        after: &driven(judged[1])?,
+    });
+    drop(progress);
+    Ok(page)
+}
+
+/// The search starts with the hysteresis of a real valve, which can cost more than the initial calibration.
+fn worse(args: &Args, before: &Judged, after: &Judged) -> Error {
+    Error::Failed(format!(
+        "the best calibration found is worse than the initial one (cost {:.3} after {:.3}; the search keeps the hysteresis \
+         of a real valve): {} is not written; try more --trials, keep the initial one, or write it with --force",
+        after.cost,
+        before.cost,
+        args.out.display()
+    ))
 }
 
 /// Values and figures before and after.
