@@ -27,6 +27,12 @@ pub enum Stroke {
     After,
     /// A further line.
     Other,
+    /// Of the lift valve.
+    Lift,
+    /// Of the lowering valve.
+    Lower,
+    /// Of the pump.
+    Pump,
 }
 
 impl Stroke {
@@ -37,6 +43,9 @@ impl Stroke {
             Self::Before => "first",
             Self::After => "simulated",
             Self::Other => "good",
+            Self::Lift => "lift",
+            Self::Lower => "lower",
+            Self::Pump => "signature",
         }
     }
 
@@ -52,9 +61,9 @@ impl Stroke {
     /// Dashes of an interactive plot.
     pub const fn dashes(self) -> &'static str {
         match self {
-            Self::Measured | Self::After => "solid",
+            Self::Measured | Self::After | Self::Lift | Self::Pump => "solid",
             Self::Before => "dot",
-            Self::Other => "dash",
+            Self::Other | Self::Lower => "dash",
         }
     }
 

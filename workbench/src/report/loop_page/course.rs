@@ -70,15 +70,15 @@ fn course(result: &MoveResult, trace: &MoveTrace) -> Markup {
         line("hitch", Stroke::After, |sample| sample.angle_deg),
     ];
     let currents = [
-        line("lift coil", Stroke::After, |sample| {
+        line("lift coil", Stroke::Lift, |sample| {
             f64::from(sample.outputs.lift_current.0) * 1e-3
         }),
-        line("lowering coil", Stroke::Before, |sample| {
+        line("lowering coil", Stroke::Lower, |sample| {
             f64::from(sample.outputs.lower_current.0) * 1e-3
         }),
     ];
     let pressures = [
-        line("pump", Stroke::Measured, |sample| sample.pump_pressure_bar),
+        line("pump", Stroke::Pump, |sample| sample.pump_pressure_bar),
         line("cylinder", Stroke::After, |sample| {
             sample.cylinder_pressure_bar
         }),
