@@ -22,12 +22,23 @@ fn a_move_that_never_arrives_is_an_error_with_its_cause_after_the_table() {
     let folder = tempfile::tempdir().unwrap();
     let map = "format = 1\n[position]\nupper_limit_deg = 95\n";
     std::fs::write(folder.path().join("limited.toml"), map).unwrap();
+    let leak = hitch_effects::find("lowering-leakage").expect("in the catalogue");
+    let mut leak = hitch_plant::AddedEffect::typical(leak);
+    leak.values[0] = 0.03;
+    let leaking = hitch_model_file::dynamic().with_effects(vec![leak]);
+    std::fs::write(
+        folder.path().join("leaking.toml"),
+        hitch_model_file::to_toml(&leaking),
+    )
+    .unwrap();
     for (more, cause) in [
         ("--load 2000", "the pump cannot lift this load"),
         (
             "--load 150 --calibration limited.toml",
             "limits the set point to 95.0 deg",
         ),
+        // The fault is over at the end: the controller is locked.
+        ("--load 250 --model leaking.toml", "reports `sinking`"),
     ] {
         let arguments = format!("loop --scenario quick {more}");
         let output = run(folder.path(), &arguments.split(' ').collect::<Vec<_>>());

@@ -2,9 +2,8 @@
 
 use hitch_quantities::Fault;
 
-use super::loop_::Sample;
 use super::metrics::{ARRIVED_DEG, MoveResult};
-use super::moves::LoopRun;
+use super::moves::{LoopRun, MoveTrace};
 use super::show::name;
 
 /// Describes the first move that never arrived, with its likely cause; `None` if all arrived.
@@ -28,19 +27,20 @@ pub fn first_missed(run: &LoopRun) -> Option<String> {
         name(result),
         result.load_kg,
         result.oil_temperature_c,
-        cause(result, &trace.end),
+        cause(result, trace),
     ))
 }
 
-/// The likely cause, from the figures of the move and its last sample.
-fn cause(result: &MoveResult, end: &Sample) -> String {
+/// The likely cause, from the figures of the move, its first fault and its last sample.
+fn cause(result: &MoveResult, trace: &MoveTrace) -> String {
+    let end = &trace.end;
     if result.shortest_s.is_nan() {
         return match result.to_deg > result.from_deg {
             true => "the pump cannot lift this load there, as even the ideal manoeuvre shows; take a smaller one".to_owned(),
             false => "this load does not lower the hitch there, as even the ideal manoeuvre shows; take a larger one".to_owned(),
         };
     }
-    if let Some(fault) = end.outputs.fault {
+    if let Some(fault) = trace.fault {
         return of_fault(fault);
     }
     let target_deg = f64::from(end.outputs.target.0) * 1e-3;

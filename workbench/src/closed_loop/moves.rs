@@ -1,7 +1,7 @@
 //! Drives and evaluates moves, on all cores.
 
 use hitch_plant::Model;
-use hitch_quantities::{Inputs, ValidCalibration};
+use hitch_quantities::{Fault, Inputs, ValidCalibration};
 use rayon::prelude::*;
 
 use super::ideal_ramp::IdealRamp;
@@ -32,6 +32,8 @@ pub struct MoveTrace {
     pub samples: Vec<Sample>,
     /// The last sample of the run, about a minute later.
     pub end: Sample,
+    /// The first fault of the run; it may be over at the end.
+    pub fault: Option<Fault>,
 }
 
 /// A set of moves.
@@ -152,12 +154,14 @@ fn drive(
     let mut samples = samples(model, calibration, course, RUN_STEPS);
     let result = judge(&course.order, &samples, &course.ideal);
     let end = samples[samples.len() - 1];
+    let fault = samples.iter().find_map(|sample| sample.outputs.fault);
     samples.truncate(KEPT_STEPS);
     let order = course.order;
     let trace = MoveTrace {
         order,
         samples,
         end,
+        fault,
     };
     (result, trace)
 }
