@@ -1,9 +1,11 @@
 """Pages in a headless Chromium: windows, and what holds for every page."""
 
 import shutil
+from contextlib import contextmanager
+from pathlib import Path
 
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Page
+from playwright.sync_api import Page, expect, sync_playwright
 
 DESKTOP = {"viewport": {"width": 1440, "height": 900}}
 PHONE = {"viewport": {"width": 390, "height": 844}, "device_scale_factor": 2, "has_touch": True, "is_mobile": True}
@@ -18,6 +20,20 @@ def launched(playwright, name: str):
     program = shutil.which(name)
     assert program, f"no {name} is installed"
     return playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+
+
+@contextmanager
+def story(name: str, folder: str):
+    """The browser with that name, the folder for pictures, and a list of faults, which has to stay empty."""
+    pictures = Path(folder)
+    pictures.mkdir(parents=True, exist_ok=True)
+    faults: list = []
+    expect.set_options(timeout=PATIENCE_MS)
+    with sync_playwright() as playwright:
+        browser = launched(playwright, name)
+        yield browser, pictures, faults
+        assert not faults, faults
+        browser.close()
 
 
 def opened(browser, address: str, options: dict, faults: list) -> Page:

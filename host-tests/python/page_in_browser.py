@@ -8,9 +8,9 @@ import re
 import sys
 from pathlib import Path
 
-from playwright.sync_api import Page, expect, sync_playwright
+from playwright.sync_api import Page, expect
 
-from browser_view import DARK, DESKTOP, PATIENCE_MS, PHONE, assert_accessible, assert_fits, launched, opened
+from browser_view import DARK, DESKTOP, PATIENCE_MS, PHONE, assert_accessible, assert_fits, opened, story
 
 # What a user feels as at once, on a machine of one's own; measured and printed.
 FIRST_VIEW_MS = 1000
@@ -216,12 +216,7 @@ def drive(page: Page, pictures: Path, view: str) -> None:
 
 def main() -> None:
     address, broken, name, folder = sys.argv[1:5]
-    pictures = Path(folder)
-    pictures.mkdir(parents=True, exist_ok=True)
-    faults: list = []
-    expect.set_options(timeout=PATIENCE_MS)
-    with sync_playwright() as playwright:
-        browser = launched(playwright, name)
+    with story(name, folder) as (browser, pictures, faults):
         whole_story(opened(browser, address, DESKTOP, faults), pictures)
         for view, options in {"phone": PHONE, "dark": DARK}.items():
             page = opened(browser, address, options, faults)
@@ -231,12 +226,10 @@ def main() -> None:
             assert_fits(page)
             assert_accessible(page)
             drive(page, pictures, view)
-        assert not faults, faults
         page = opened(browser, broken, DESKTOP, [])
         expect(page.locator("#fault-text")).to_contain_text("lift.csv:2:18")
         page.screenshot(path=pictures / "broken.png")
         assert_accessible(page)
-        browser.close()
     print("the whole story went well")
 
 

@@ -7,9 +7,9 @@ import sys
 import time
 from pathlib import Path
 
-from playwright.sync_api import Page, expect, sync_playwright
+from playwright.sync_api import Page, expect
 
-from browser_view import DARK, DESKTOP, PATIENCE_MS, PHONE, assert_accessible, assert_fits, launched, opened
+from browser_view import DARK, DESKTOP, PATIENCE_MS, PHONE, assert_accessible, assert_fits, opened, story
 
 # Whether the element is laid out and not in a folded part.
 VISIBLE = "(selector) => [...document.querySelectorAll(selector)].map((one) => one.checkVisibility())"
@@ -154,18 +154,11 @@ def closed_loop(browser, address: str, pictures: Path, faults: list) -> None:
 
 def main() -> None:
     explained, loop, name, folder = sys.argv[1:5]
-    pictures = Path(folder)
-    pictures.mkdir(parents=True, exist_ok=True)
-    faults: list = []
-    expect.set_options(timeout=PATIENCE_MS)
-    with sync_playwright() as playwright:
-        browser = launched(playwright, name)
+    with story(name, folder) as (browser, pictures, faults):
         address = Path(explained).as_uri()
         explanation(browser, address, pictures, faults)
         closed_loop(browser, Path(loop).as_uri(), pictures, faults)
         without_scripts(browser, address, pictures)
-        assert not faults, faults
-        browser.close()
     print("the reports went well")
 
 

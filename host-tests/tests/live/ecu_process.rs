@@ -1,13 +1,15 @@
 //! `hitch ecu` as a process: real time, and the end of the emulator.
 
 use std::fs;
-use std::io::{BufRead, BufReader, Read};
+use std::io::Read;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use hitch_workbench::ecu::find_image;
 use host_tests::program::hitch;
+
+use crate::running_ecu::started;
 
 fn signal(child: &Child, name: &str) {
     let sent = Command::new("kill")
@@ -81,17 +83,11 @@ fn the_emulator_ends_with_a_program_that_is_killed() {
     let image = find_image(None).unwrap();
     // Amid the emulated steps, and while the emulator starts.
     for after in [Duration::from_millis(1_000), Duration::ZERO] {
-        let mut child = hitch()
+        let mut command = hitch();
+        command
             .args(["ecu", "--can", "127.0.0.1:0", "--image"])
-            .arg(&image)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut line = String::new();
-        let errors = child.stderr.take().unwrap();
-        BufReader::new(errors).read_line(&mut line).unwrap();
+            .arg(&image);
+        let (mut child, line) = started(&mut command);
         assert!(line.starts_with("CAN is open"), "{line}");
         sleep(after);
         let emulators = children(&child);

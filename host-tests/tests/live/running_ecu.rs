@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
-use std::process::{Child, ChildStdin, Output, Stdio};
+use std::process::{Child, ChildStdin, Command, Output, Stdio};
 
 use host_tests::program::hitch;
 
@@ -17,18 +17,12 @@ pub struct RunningEcu {
 impl RunningEcu {
     /// Starts the application on the host, with its flash in `flash.bin`.
     pub fn start(folder: &Path) -> Self {
-        let mut child = hitch()
+        let mut command = hitch();
+        command
             .args(["ecu", "--host", "--can", "127.0.0.1:0", "--seconds", "60"])
             .args(["--flash", "flash.bin"])
-            .current_dir(folder)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut line = String::new();
-        let said = child.stderr.take().unwrap();
-        BufReader::new(said).read_line(&mut line).unwrap();
+            .current_dir(folder);
+        let (mut child, line) = started(&mut command);
         let bus = line.split_whitespace().last().unwrap().to_owned();
         Self {
             orders: child.stdin.take().unwrap(),
@@ -54,6 +48,20 @@ impl Drop for RunningEcu {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+/// Starts a command, and waits for the first line of its standard error.
+pub fn started(command: &mut Command) -> (Child, String) {
+    let mut child = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    let said = child.stderr.take().unwrap();
+    BufReader::new(said).read_line(&mut line).unwrap();
+    (child, line)
 }
 
 /// Both outputs of a command.

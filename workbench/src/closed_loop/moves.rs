@@ -56,7 +56,7 @@ pub struct Course {
     seed: u64,
 }
 
-/// What commands a move.
+/// The operator's control that commands a move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum By {
     Lever,

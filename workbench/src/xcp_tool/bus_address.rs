@@ -35,7 +35,7 @@ impl fmt::Display for BusAddress {
 }
 
 impl BusAddress {
-    /// Reads an address; `link_type` tells the kind of a network interface, if there is one of that name.
+    /// Reads an address; `link_type` returns the type of the network interface with a name, `None` without one.
     fn parse(text: &str, link_type: impl Fn(&str) -> Option<Link>) -> Result<Self, String> {
         if let Some(address) = text.strip_prefix("tcp:") {
             return match is_host_and_port(address) {
