@@ -24,8 +24,9 @@ const IMAGES_VARIABLE: &str = "HITCH_BOARD_IMAGES";
 const PROGRAM_VARIABLE: &str = "HITCH_PROGRAM";
 
 /// Modules of the test program `live` with tests that need images or a browser. Each runs alone: some are in real time.
-const ON_TARGET: [&str; 6] = [
+const ON_TARGET: [&str; 7] = [
     "board_bench::",
+    "ecu_process::",
     "emulated::",
     "emulated_ecu::",
     "page_in_browser::",
