@@ -1,6 +1,6 @@
-"""Reports of `hitch explain` and `hitch loop` in a headless Chromium: the worst cell, zoom, print, and no scripts.
+"""Reports of `hitch explain`, `loop` and `model fit` in a headless Chromium: the worst cell, zoom, print, and no scripts.
 
-Called with the files of both reports, the browser, and a folder for pictures.
+Called with the files of the reports, the browser, and a folder for pictures.
 """
 
 import sys
@@ -152,12 +152,32 @@ def closed_loop(browser, address: str, pictures: Path, faults: list) -> None:
         assert_accessible(page)
 
 
+def base_fit(browser, address: str, pictures: Path, faults: list) -> None:
+    """The report of `hitch model fit`: a plot for each valve with declared and fitted curve, and a bar for each interval."""
+    for view, options in {"desktop": DESKTOP, "phone": PHONE}.items():
+        page = loads_nothing(browser, address, options, faults)
+        for valve in ["Lift valve", "Lowering valve"]:
+            plot = page.get_by_role("img", name=f"{valve}: declared and fitted flow over the current")
+            plot.scroll_into_view_if_needed()
+            expect(plot).to_be_visible()
+            expect(plot.locator("path.js-line")).not_to_have_count(0)
+            names = plot.evaluate("({data}) => data.map((line) => line.name)")
+            assert names[:2] == ["declared", "fitted"] and len(names) > 2, names
+            page.wait_for_timeout(300)
+            page.screenshot(path=pictures / f"report_fit_{valve.split()[0].lower()}_{view}.png")
+        page.get_by_role("heading", name="Constants", exact=True).scroll_into_view_if_needed()
+        page.screenshot(path=pictures / f"report_fit_{view}.png", full_page=True)
+        assert_fits(page)
+        assert_accessible(page)
+
+
 def main() -> None:
-    explained, loop, name, folder = sys.argv[1:5]
+    explained, loop, fitted, name, folder = sys.argv[1:6]
     with story(name, folder) as (browser, pictures, faults):
         address = Path(explained).as_uri()
         explanation(browser, address, pictures, faults)
         closed_loop(browser, Path(loop).as_uri(), pictures, faults)
+        base_fit(browser, Path(fitted).as_uri(), pictures, faults)
         without_scripts(browser, address, pictures)
     print("the reports went well")
 

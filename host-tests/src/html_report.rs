@@ -19,6 +19,40 @@ pub fn without_library(html: &str) -> String {
     format!("{before}{after}")
 }
 
+/// The data of the plots of a report, in its order.
+///
+/// # Panics
+/// If an element is not JSON.
+#[must_use]
+pub fn plots(html: &str) -> Vec<serde_json::Value> {
+    let own = without_library(html);
+    let elements = own.split("<script type=\"application/json\">").skip(1);
+    elements
+        .map(|text| {
+            let (text, _) = text.split_once(END).expect("the end of an element");
+            serde_json::from_str(text).expect("JSON")
+        })
+        .collect()
+}
+
+/// The samples of a column of a plot; NaN where missing.
+///
+/// # Panics
+/// If it is not a column.
+#[must_use]
+pub fn samples(column: &serde_json::Value) -> Vec<f64> {
+    let step = column["step"].as_f64().expect("a step");
+    let mut sum = 0.0;
+    let differences = column["differences"].as_array().expect("differences");
+    let sample = |difference: &serde_json::Value| {
+        difference.as_f64().map_or(f64::NAN, |difference| {
+            sum += difference;
+            step * sum
+        })
+    };
+    differences.iter().map(sample).collect()
+}
+
 /// Checks that a report loads nothing, so that it opens offline: it forbids the browser to load anything, and has no
 /// reference to anything outside.
 ///

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use hitch_identification::base::parameter::{SCALARS, THRESHOLD_SIGMA_A};
 use hitch_identification::base::{BaseFit, CurvePoint, FittedConstant};
 use hitch_identification::data::experiment::Experiment;
 use hitch_plant::Model;
@@ -45,6 +46,8 @@ pub struct ShownConstant {
     pub declared: f64,
     /// Fitted value, in the unit.
     pub fitted: f64,
+    /// Tolerance of the declared value before the fit: one sigma, in the unit.
+    pub tolerance: f64,
     /// Lower end of the 95 % interval, in the unit; `null` if it is unknown.
     #[schemars(with = "Option<f64>")]
     pub low: f64,
@@ -111,10 +114,20 @@ fn constant(fitted: &FittedConstant) -> ShownConstant {
         unit: fitted.unit,
         declared: fitted.declared,
         fitted: fitted.fitted,
+        tolerance: tolerance(fitted),
         low: fitted.interval.0,
         high: fitted.interval.1,
         determined: fitted.determined,
     }
+}
+
+/// One sigma of the prior of a constant, in its unit; that of a threshold is a current.
+fn tolerance(fitted: &FittedConstant) -> f64 {
+    let mut scalars = SCALARS.iter();
+    let scalar = scalars.find(|scalar| scalar.name == fitted.name);
+    scalar.map_or(THRESHOLD_SIGMA_A, |scalar| {
+        scalar.tolerance * fitted.declared
+    })
 }
 
 fn point(fitted: &CurvePoint) -> ShownPoint {
@@ -196,7 +209,8 @@ impl fmt::Display for ShownBaseFit {
 }
 
 /// A number with four significant digits.
-fn digits(value: f64) -> String {
+#[must_use]
+pub fn digits(value: f64) -> String {
     let size = value.abs().log10().floor();
     match size.is_finite() {
         true if size > 5.0 => format!("{value:.3e}"),

@@ -21,6 +21,9 @@ fn a_report_shows_its_data_on_a_screen_and_on_paper() {
             "explain", campaign, "--model", "nominal", "--report", "e.html",
         ][..],
         &["loop", "--scenario", "quick", "--report", "l.html"],
+        &[
+            "model", "fit", campaign, "--model", "nominal", "--out", "f.toml", "--report", "f.html",
+        ],
     ] {
         let output = program::run(dir.path(), arguments);
         assert!(output.status.success(), "{output:?}");
@@ -28,7 +31,7 @@ fn a_report_shows_its_data_on_a_screen_and_on_paper() {
     let mut command = Command::new(python);
     command
         .arg(scripts().join("report_in_browser.py"))
-        .args(["e.html", "l.html"].map(|name| dir.path().join(name)))
+        .args(["e.html", "l.html", "f.html"].map(|name| dir.path().join(name)))
         .arg("chromium")
         .arg(folder.join("pictures"))
         .env("PYTHONPYCACHEPREFIX", folder.join("python-cache"));

@@ -6,6 +6,7 @@ mod bad_output;
 mod cli;
 mod controller_stdio;
 mod examples;
+mod fit_report;
 mod fleet;
 mod fmu;
 mod from_bus_to_model;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use host_tests::html_report::{assert_self_contained, without_library};
+use host_tests::html_report::{assert_self_contained, plots, without_library};
 use host_tests::program::run;
 
 fn text(bytes: &[u8]) -> String {
@@ -56,10 +56,7 @@ fn tuning_makes_a_bad_calibration_better_and_writes_one_that_can_be_driven() {
 fn assert_shows_both(html: &str) {
     assert_self_contained(html);
     let own = without_library(html);
-    let views = own.split("<script type=\"application/json\">").skip(1);
-    let views: Vec<serde_json::Value> = views
-        .map(|text| serde_json::from_str(text.split_once("</script>").unwrap().0).unwrap())
-        .collect();
+    let views = plots(html);
     assert_eq!(views.len(), 12);
     for view in &views {
         let angles = view["rows"][0]["lines"].as_array().unwrap();

@@ -41,15 +41,16 @@ pub fn page(
     let accepted = |best: &&candidate::Candidate| best.likelihood_ratio >= SIGNIFICANT;
     let after = found.candidates.first().filter(accepted);
     let after = after.map(|best| evaluated(&best.fit));
+    let (before, after) = ((model, &before), after.as_ref().map(|after| (model, after)));
     let content = html! {
         h1 { (title) }
         (verdict(shown))
         h2 { "Error with each effect added alone" }
         (staircase(&bars(shown)))
         (candidates(&shown.candidates))
-        (error_map(model, &before, after.as_ref()))
+        (error_map(before, after))
         h2 { "Measured against simulated" }
-        (runs(&run_views(model, &before, after.as_ref())))
+        (runs(&run_views(before, after)))
         h2 { "By channel" }
         (channels(&shown.head))
     };

@@ -1,20 +1,21 @@
 //! The error map: on the screen, a cell leads to the run and the second in which it is worst; in print, tables.
 
-use hitch_plant::{Channel, Model};
+use hitch_plant::Channel;
 use maud::{Markup, html};
 use serde_json::{Value, json};
 
 use super::page::folded;
 use super::plotted::embedded;
+use super::run_views::State;
 use crate::comparison::{Cell, Comparison, Evaluated, Grouping, WorstStretch, worst_by_part};
 
 /// The map of the initial model, and of the final one if it differs.
-pub fn error_map(model: &Model, before: &Evaluated, after: Option<&Evaluated>) -> Markup {
-    let compared = |evaluated: &Evaluated| Comparison::of(evaluated, model);
+pub fn error_map(before: State<'_>, after: Option<State<'_>>) -> Markup {
+    let compared = |(model, evaluated): State<'_>| Comparison::of(evaluated, model);
     let of_after = after.map(compared);
     let of_before = compared(before);
-    let mut models = vec![state("before", &of_before, before)];
-    if let (Some(comparison), Some(evaluated)) = (&of_after, after) {
+    let mut models = vec![state("before", &of_before, before.1)];
+    if let (Some(comparison), Some((_, evaluated))) = (&of_after, after) {
         models.push(state("after", comparison, evaluated));
     }
     html! {

@@ -47,11 +47,12 @@ pub fn details(found: &Found) -> Markup {
         evaluated(&found.explanation.before),
         evaluated(&found.explanation.after),
     );
-    let changed = (!found.shown.steps.is_empty()).then_some(&after);
+    let changed = (!found.shown.steps.is_empty()).then_some((&found.model, &after));
+    let before = (&found.model, &before);
     html! {
-        (error_map(&found.model, &before, changed))
+        (error_map(before, changed))
         h2 { "Measured against simulated" }
-        (runs(&run_views(&found.model, &before, changed)))
+        (runs(&run_views(before, changed)))
         h2 { "By channel" }
         (channels(&found.shown.head))
     }

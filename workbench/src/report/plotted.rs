@@ -18,6 +18,9 @@ pub fn plotted(label: &str, data: Option<&Value>, picture: &Markup) -> Markup {
     } }
 }
 
+/// Height of a chart that is a plot of its own, px. Charts in a common plot have the height of a channel of a run.
+const ALONE_PX: f64 = 260.0;
+
 /// Charts with a common abscissa: side by side as pictures, one below the other as a plot.
 pub fn charts(label: &str, legend: &Markup, charts: &[Chart<'_>]) -> Markup {
     let picture = html! { (legend) div.grid { @for chart in charts { (chart.figure()) } } };
@@ -35,7 +38,10 @@ fn view(charts: &[Chart<'_>]) -> Option<Value> {
     let lines = || charts.iter().flat_map(|chart| &chart.lines);
     let span = extent(lines().flat_map(|line| line.x.iter().copied()))?;
     let common = lines().next()?.x;
-    let rows: Vec<Value> = charts.iter().map(|chart| row(chart, common)).collect();
+    let mut rows: Vec<Value> = charts.iter().map(|chart| row(chart, common)).collect();
+    if let [alone] = rows.as_mut_slice() {
+        alone["height"] = json!(ALONE_PX);
+    }
     Some(json!({
         "x_title": charts.first()?.x_title,
         "span": [span.0, span.1],

@@ -8,10 +8,14 @@ use hitch_plant::{Channel, Model};
 use super::runs::{ChannelView, RunView, Simulated};
 use crate::comparison::Evaluated;
 
+/// A model, and its evaluation.
+pub type State<'a> = (&'a Model, &'a Evaluated);
+
 /// The runs of a campaign: measured, simulated by the initial model, and simulated by the final model.
-pub fn run_views(model: &Model, before: &Evaluated, after: Option<&Evaluated>) -> Vec<RunView> {
+pub fn run_views(before: State<'_>, after: Option<State<'_>>) -> Vec<RunView> {
+    let experiment = &before.1.experiment;
     let view = |index: usize| {
-        let run = &before.experiment.runs[index];
+        let run = &experiment.runs[index];
         let currents = &run.drive.currents;
         RunView {
             index,
@@ -20,20 +24,16 @@ pub fn run_views(model: &Model, before: &Evaluated, after: Option<&Evaluated>) -
             time_s: run.drive.time_s.clone(),
             lift_current_a: currents.iter().map(|current| current.lift_a).collect(),
             lower_current_a: currents.iter().map(|current| current.lower_a).collect(),
-            channels: channel_views(model, index, before, after),
+            channels: channel_views(index, before, after),
         }
     };
-    (0..before.experiment.runs.len()).map(view).collect()
+    (0..experiment.runs.len()).map(view).collect()
 }
 
-fn channel_views(
-    model: &Model,
-    run: usize,
-    before: &Evaluated,
-    after: Option<&Evaluated>,
-) -> Vec<ChannelView> {
-    let traces = [Some(before), after].map(|evaluated| {
-        let evaluated = evaluated?;
+fn channel_views(run: usize, before: State<'_>, after: Option<State<'_>>) -> Vec<ChannelView> {
+    let experiment = &before.1.experiment;
+    let traces = [Some(before), after].map(|state| {
+        let (model, evaluated) = state?;
         Some((evaluated, evaluated.simulated(model, run)))
     });
     let simulated = |of: &Option<(&Evaluated, Trace)>, channel: Channel| {
@@ -47,8 +47,8 @@ fn channel_views(
     let view = |channel: Channel| {
         Some(ChannelView {
             channel,
-            noise: before.experiment.noise[channel.index()],
-            measured: before.experiment.runs[run].measured[channel.index()].clone()?,
+            noise: experiment.noise[channel.index()],
+            measured: experiment.runs[run].measured[channel.index()].clone()?,
             before: simulated(&traces[0], channel)?,
             after: simulated(&traces[1], channel),
         })

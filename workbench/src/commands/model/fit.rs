@@ -12,11 +12,12 @@ use crate::model_arg::ModelArg;
 use crate::output::{self, JsonArg};
 use crate::outputs::{Outputs, campaign_files};
 use crate::progress::Progress;
+use crate::report::fit_page;
 
 /// Arguments of `hitch model fit`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Example: hitch model fit lab-a --model my-hitch.toml --out fitted.toml\n\n\
+    after_help = "Example: hitch model fit lab-a --model my-hitch.toml --out fitted.toml --report fit.html\n\n\
     Every constant has a prior: the declared value with the tolerance of data sheets (flow curves 20 %, pressures 10 % \
     to 20 %, bore 2 %, masses 10 %). What the campaign does not determine stays at its declared value and is named."
 )]
@@ -30,6 +31,9 @@ pub struct Args {
     out: PathBuf,
     #[command(flatten)]
     json: JsonArg,
+    /// Write a report to this file: flow curves and constants with intervals, runs before and after
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -39,7 +43,12 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Error> {
     let mut inputs = campaign_files(&args.campaign);
     inputs.push(args.model.file());
-    let outputs = Outputs::check([Some(args.out.as_path()), args.json.target()], &inputs)?;
+    let wanted = [
+        Some(args.out.as_path()),
+        args.report.as_deref(),
+        args.json.target(),
+    ];
+    let outputs = Outputs::check(wanted, &inputs)?;
     let model = args.model.load()?;
     let campaign = Campaign::load_with(&args.campaign, model.linkage())?;
     let progress = Progress::start(format!("fitting {} to {}", model.name, campaign.name));
@@ -54,5 +63,14 @@ pub fn run(args: &Args) -> Result<(), Error> {
         args.out.display()
     );
     let shown = ShownBaseFit::new(&experiment, &model, &fit, next);
+    if let Some(path) = &args.report {
+        let page = fit_page::page(&fit_page::Shown {
+            experiment: &experiment,
+            declared: &model,
+            fit: &fit,
+            told: &shown,
+        });
+        output::write_file(path, page.as_bytes())?;
+    }
     outputs.tell(&args.json, &shown, || shown.to_string())
 }
