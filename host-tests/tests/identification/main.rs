@@ -10,6 +10,7 @@ mod estimation;
 mod hidden_effects;
 mod independent_plant;
 mod known_campaigns;
+mod mixed_rates;
 mod next_experiment;
 mod odd_campaigns;
 mod own_terms;

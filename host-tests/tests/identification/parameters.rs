@@ -76,7 +76,8 @@ fn noise_is_seen_through_a_manoeuvre() {
             30.0 * (4.0 * phase - 1.0).clamp(0.0, 1.0) + 0.1 * normal(&mut rng)
         })
         .collect();
-    let sigma = from_second_differences(&record).expect("enough samples");
+    let time_s: Vec<f64> = (0..record.len()).map(|k| 0.02 * k as f64).collect();
+    let sigma = from_second_differences(&time_s, &record).expect("enough samples");
     assert!((sigma / 0.1 - 1.0).abs() < 0.06, "{sigma}, not 0.1");
 }
 

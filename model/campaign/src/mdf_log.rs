@@ -1,6 +1,6 @@
 //! Logs of measurement tools in MDF, versions 3 and 4 (ASAM): CANape, INCA, CANedge, asammdf and others.
 //!
-//! A row is a sample of the lift current; channels with another rate are interpolated to its times, as in bus logs.
+//! A row is a sample of the lift current; other channels are moved to its times, as in bus logs.
 
 use std::fs::File;
 use std::io::Read as _;
@@ -17,7 +17,7 @@ use hitch_plant::Linkage;
 use crate::CampaignError;
 use crate::columns::{ColumnSettings, Source, offer_columns};
 use crate::scale::Scale;
-use crate::series::Series;
+use crate::series::{Series, values};
 use crate::table::{Cells, Column, LIFT, Samples, TIME, Table};
 
 /// Byte offset of the version in a file.
@@ -251,7 +251,7 @@ pub fn read(
     columns.extend(
         taken
             .iter()
-            .map(|(name, series)| samples(name, series.at(&times_s, within_s))),
+            .map(|(name, series)| samples(name, values(name, series, &times_s, within_s))),
     );
     let bytes = vec![0; times_s.len()];
     Table::new(Arc::new(file.source), columns, bytes, Cells::Nowhere)

@@ -25,7 +25,7 @@ pub use settings::BusSettings;
 pub use survey::{Signals, signals};
 
 use crate::CampaignError;
-use crate::series::Series;
+use crate::series::{Series, values};
 use crate::table::{Cells, LIFT, LOWER, Samples, TIME, Table};
 use frame_sink::FrameSink;
 use hitch_input::input_error::InputError;
@@ -91,7 +91,8 @@ pub fn read(
     };
     let mut columns = vec![samples(TIME, rows.times_s.clone())];
     for (column, series) in listener.series() {
-        columns.push(samples(column.name, series.at(&rows.times_s, within_s)));
+        let values = values(column.name, series, &rows.times_s, within_s);
+        columns.push(samples(column.name, values));
     }
     let bytes = rows.bytes.clone();
     Table::new(Arc::clone(source), columns, bytes, Cells::OneALine)

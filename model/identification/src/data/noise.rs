@@ -1,18 +1,24 @@
 //! Noise of instruments and currents: as declared, or estimated from their records.
 
-use hitch_campaign::Campaign;
+use hitch_campaign::{Campaign, Run};
 use hitch_plant::{Channel, Currents};
 
 /// Standard deviation of the noise of a record, in its unit, from the median of its second differences.
 ///
-/// Second differences remove level and drift, the median ignores the manoeuvres; the variance of `1 - 2 + 1` is six.
-/// The model's residuals are not used, as they contain the missing effect. `None` for fewer than ten samples.
+/// Each sample is compared with the line between its neighbours, which removes level and drift; the median ignores the
+/// manoeuvres. Neighbours are the next measured samples, however many rows of the log are between them: a slow channel in
+/// a fast log has its own rate. The model's residuals are not used, as they contain the missing effect. `None` for fewer
+/// than ten samples.
 #[must_use]
-pub fn from_second_differences(record: &[f64]) -> Option<f64> {
-    let mut bends: Vec<f64> = record
+pub fn from_second_differences(time_s: &[f64], record: &[f64]) -> Option<f64> {
+    let rows = time_s.iter().zip(record);
+    let measured: Vec<(f64, f64)> = rows
+        .filter(|(_, value)| value.is_finite())
+        .map(|(time_s, value)| (*time_s, *value))
+        .collect();
+    let mut bends: Vec<f64> = measured
         .windows(3)
-        .map(|w| (w[0] - 2.0 * w[1] + w[2]).abs())
-        .filter(|bend| bend.is_finite())
+        .map(|w| bend(w[0], w[1], w[2]))
         .collect();
     if bends.len() < 10 {
         return None;
@@ -20,7 +26,16 @@ pub fn from_second_differences(record: &[f64]) -> Option<f64> {
     let middle = bends.len() / 2;
     let (_, median, _) = bends.select_nth_unstable_by(middle, f64::total_cmp);
     const MEDIAN_OF_ABSOLUTE_NORMAL: f64 = 0.674_489_75;
-    Some(*median / (MEDIAN_OF_ABSOLUTE_NORMAL * 6.0_f64.sqrt()))
+    Some(*median / MEDIAN_OF_ABSOLUTE_NORMAL)
+}
+
+/// Distance of a sample, given by time and value, from the line between its neighbours, in standard deviations of unit
+/// noise.
+fn bend(before: (f64, f64), sample: (f64, f64), after: (f64, f64)) -> f64 {
+    let share = (sample.0 - before.0) / (after.0 - before.0);
+    let line = (1.0 - share) * before.1 + share * after.1;
+    let variance = 1.0 + share * share + (1.0 - share) * (1.0 - share);
+    (sample.1 - line).abs() / variance.sqrt()
 }
 
 /// Smallest accepted noise of each channel, in its unit, by [`Channel::index`]: a logger's last digit.
@@ -31,49 +46,40 @@ const CURRENT_NOISE_FLOOR_A: f64 = 1e-4;
 
 /// Declared noise of a channel, else the median of the estimates from its runs; NaN without the channel.
 pub(crate) fn channel_noise(campaign: &Campaign, channel: Channel) -> f64 {
-    let records = || campaign.runs.iter().filter_map(|run| run.channel(channel));
+    let records = || {
+        let runs = campaign.runs.iter();
+        runs.filter_map(|run| Some((run.time_s.as_slice(), run.channel(channel)?)))
+    };
     if records().next().is_none() {
         return f64::NAN;
     }
     let sigma = campaign
         .noise
         .of(channel)
-        .or_else(|| median(records().filter_map(from_second_differences).collect()))
+        .or_else(|| {
+            let of = |(time_s, record)| from_second_differences(time_s, record);
+            median(records().filter_map(of).collect())
+        })
         .unwrap_or(0.0);
     sigma.max(NOISE_FLOOR[channel.index()])
 }
 
 pub(crate) fn current_noise(campaign: &Campaign) -> Currents {
-    let estimate = |records: Vec<&[f64]>| {
-        median(
-            records
-                .into_iter()
-                .filter_map(from_second_differences)
-                .collect(),
-        )
-        .unwrap_or(0.0)
+    let estimate = |record: fn(&Run) -> &[f64]| {
+        let runs = campaign.runs.iter();
+        let of = |run: &Run| from_second_differences(&run.time_s, record(run));
+        let estimated_a = median(runs.filter_map(of).collect()).unwrap_or(0.0);
+        estimated_a.max(CURRENT_NOISE_FLOOR_A)
     };
-    let lift_a = campaign.noise.lift_current_a.unwrap_or_else(|| {
-        estimate(
-            campaign
-                .runs
-                .iter()
-                .map(|run| run.lift_current_a.as_slice())
-                .collect(),
-        )
-    });
-    let lower_a = campaign.noise.lower_current_a.unwrap_or_else(|| {
-        estimate(
-            campaign
-                .runs
-                .iter()
-                .map(|run| run.lower_current_a.as_slice())
-                .collect(),
-        )
-    });
+    let declared = &campaign.noise;
+    let at_least = |declared_a: f64| declared_a.max(CURRENT_NOISE_FLOOR_A);
     Currents {
-        lift_a: lift_a.max(CURRENT_NOISE_FLOOR_A),
-        lower_a: lower_a.max(CURRENT_NOISE_FLOOR_A),
+        lift_a: declared
+            .lift_current_a
+            .map_or_else(|| estimate(|run| &run.lift_current_a), at_least),
+        lower_a: declared
+            .lower_current_a
+            .map_or_else(|| estimate(|run| &run.lower_current_a), at_least),
     }
 }
 

@@ -57,6 +57,7 @@ pub fn regimes(model: &Model, drive: &Drive, rocker_angle_deg: Option<&[f64]>) -
     let (low_rad, high_rad) = model.linkage().swing_rad();
     let mut before = Regime::Holding;
     let mut switched_s = f64::NEG_INFINITY;
+    let mut angle_rad = f64::NAN;
     drive
         .currents
         .iter()
@@ -73,7 +74,13 @@ pub fn regimes(model: &Model, drive: &Drive, rocker_angle_deg: Option<&[f64]>) -
                 switched_s = drive.time_s[sample];
                 before = now;
             }
-            let angle_rad = rocker_angle_deg.map_or(f64::NAN, |deg| deg[sample].to_radians());
+            // A row without an angle has the last measured one.
+            if let Some(deg) = rocker_angle_deg
+                .map(|deg| deg[sample])
+                .filter(|deg| !deg.is_nan())
+            {
+                angle_rad = deg.to_radians();
+            }
             if angle_rad < low_rad + NEAR_END_RAD || angle_rad > high_rad - NEAR_END_RAD {
                 Regime::NearEnd
             } else if drive.time_s[sample] - switched_s < SWITCHING_S {
