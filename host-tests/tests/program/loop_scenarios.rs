@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use host_tests::html_report::{assert_self_contained, plots, samples};
 use host_tests::program::run;
 use serde_json::Value;
 
@@ -120,12 +121,111 @@ fn the_button_is_driven_in_both_directions_at_its_speeds() {
     let slow_s = start_s("loop --scenario rate --load 150 --set rate.rate_slope=10 --json -");
     println!("half of 15 deg/s after {usual_s} s; with a third of the slope after {slow_s} s");
     assert!(slow_s > usual_s + 0.3);
-    let refused = run(
+}
+
+/// The lines of the first row of a plot, by name.
+fn lines(plot: &Value) -> Vec<(&str, Vec<f64>)> {
+    let lines = plot["rows"][0]["lines"].as_array().unwrap().iter();
+    lines
+        .map(|line| (line["name"].as_str().unwrap(), samples(&line["y"])))
+        .collect()
+}
+
+#[test]
+fn variants_of_a_calibration_are_driven_and_shown_side_by_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let variants = "--variant soft:position.approach_gain=15 \
+                    --variant slow:position.lift_speed=30,position.lower_speed=30";
+    let options = format!("--scenario quick --load 150 {variants} --report v.html");
+    let document = document(folder.path(), &options);
+    let own = &document["variants"];
+    assert_eq!(own[0]["name"], "soft");
+    assert_eq!(own[1]["settings"][1], "position.lower_speed=30");
+    let ratio = |of: &Value| of["summary"]["ratio_p95"].as_f64().unwrap();
+    let [base, soft, slow] = [&document, &own[0], &own[1]].map(ratio);
+    println!("time ratio, 95 %: {base:.2}, soft {soft:.2}, slow {slow:.2}");
+    assert!(soft > base && slow > base + 0.5);
+    let alone = self::document(
         folder.path(),
-        &["loop", "--scenario", "rate", "--report", "r.html"],
+        "--scenario quick --load 150 --set position.approach_gain=15",
     );
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(!folder.path().join("r.html").exists());
+    assert_eq!(alone["moves"], own[0]["moves"], "as set by hand");
+
+    let html = std::fs::read_to_string(folder.path().join("v.html")).unwrap();
+    assert_self_contained(&html);
+    let plots = plots(&html);
+    assert_eq!(plots.len(), document["moves"].as_array().unwrap().len());
+    for plot in &plots {
+        let lines = lines(plot);
+        let names: Vec<&str> = lines.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["set point", "base", "soft", "slow"]);
+        assert!(lines[1].1 != lines[2].1 && lines[2].1 != lines[3].1);
+    }
+    let arguments = format!("loop --scenario quick --load 150 {variants}");
+    let output = run(
+        folder.path(),
+        &arguments.split_whitespace().collect::<Vec<_>>(),
+    );
+    let said = text(&output.stdout);
+    let head = said.lines().find(|line| line.contains("figure")).unwrap();
+    let names: Vec<&str> = head.split_whitespace().collect();
+    assert_eq!(names, ["figure", "base", "soft", "slow"], "{said}");
+    assert!(
+        said.lines().all(|line| line.chars().count() <= 80),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_wrong_variant_is_refused_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    for (bad, why) in [
+        (&["soft"][..], "give a name and settings"),
+        (&["base:position.creep_speed=3"], "choose another name"),
+        (&["soft:position.kd=1"], "--variant soft: "),
+        (&["soft:position.approach_gain=1e6"], "--variant soft: "),
+        (
+            &["a:position.creep_speed=3", "a:position.creep_speed=4"],
+            "used twice",
+        ),
+    ] {
+        let mut arguments = vec!["loop", "--scenario", "quick"];
+        arguments.extend(bad.iter().flat_map(|variant| ["--variant", *variant]));
+        let output = run(folder.path(), &arguments);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(why) && said.lines().count() == 1, "{said}");
+        assert!(output.stdout.is_empty());
+    }
+}
+
+#[test]
+fn the_report_of_the_button_has_its_speed_with_each_calibration() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = "--scenario rate --load 150 --variant late:rate.rate_slope=10 --report r.html";
+    let document = document(folder.path(), options);
+    let html = std::fs::read_to_string(folder.path().join("r.html")).unwrap();
+    assert_self_contained(&html);
+    let plots = plots(&html);
+    let presses = document["presses"].as_array().unwrap();
+    assert_eq!(plots.len(), presses.len());
+    for (plot, press) in plots.iter().zip(presses) {
+        let lines = lines(plot);
+        let names: Vec<&str> = lines.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["requested", "base", "late"]);
+        // The largest drawn speed is the overshoot of the document.
+        let rate = press["rate_deg_per_s"].as_f64().unwrap();
+        let share = lines[1]
+            .1
+            .iter()
+            .map(|speed| speed / rate)
+            .fold(0.0, f64::max);
+        let told = 1.0 + press["speed_overshoot"].as_f64().unwrap();
+        assert!(
+            told == 1.0 || (share - told).abs() < 0.02,
+            "{share} {press}"
+        );
+    }
 }
 
 // REQ-MODE-10

@@ -85,13 +85,28 @@ fn documents_of_the_closed_loop_follow_their_schemas() {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path();
     assert_valid(folder, "loop", "--scenario quick");
-    assert_valid(folder, "loop", "--scenario rate --load 150");
+    let variant = "--variant soft:position.approach_gain=30";
+    assert_valid(
+        folder,
+        "loop",
+        &format!("--scenario rate --load 150 {variant}"),
+    );
+    assert_valid(
+        folder,
+        "loop",
+        &format!("--scenario quick --load 150 {variant}"),
+    );
     // Too heavy to lift: times without a value.
     assert_valid_with(folder, "loop", "--scenario ends --load 2000", 2);
     assert_valid(
         folder,
         "tune",
         "--scenario quick --trials 10 --out tuned.toml --force",
+    );
+    assert_valid(
+        folder,
+        "tune",
+        "--scenario rate --loads 150 --trials 10 --out tuned.toml --force",
     );
 }
 

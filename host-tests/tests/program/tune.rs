@@ -71,6 +71,34 @@ fn assert_shows_both(html: &str) {
 }
 
 #[test]
+fn tuning_the_button_reduces_the_overshoot_of_its_speed() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments =
+        "tune --scenario rate --loads 50,250 --trials 40 --out tuned.toml --report r.html --json -";
+    let output = run(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let changes = document["changes"].as_array().unwrap();
+    let keys = changes.iter().map(|change| change["key"].as_str().unwrap());
+    assert!(
+        keys.clone().all(|key| key.starts_with("rate.")),
+        "{document}"
+    );
+    assert_eq!(keys.count(), 3);
+    let figure = |when: &str, name: &str| document[when]["presses"][name].as_f64().unwrap();
+    let [before, after] = ["before", "after"].map(|when| figure(when, "speed_overshoot_max"));
+    let [earlier, later] = ["before", "after"].map(|when| figure(when, "start_delay_max_s"));
+    println!("overshoot {before:.3} -> {after:.3}, latest start {earlier:.3} -> {later:.3} s");
+    assert!(after < 0.75 * before, "{before} {after}");
+    assert!(figure("after", "speed_error_max") < 0.05);
+    assert!(document["before"]["summary"].is_null(), "no moves");
+    let html = std::fs::read_to_string(folder.path().join("r.html")).unwrap();
+    assert_self_contained(&html);
+    // Two loads, three speeds, both directions.
+    assert_eq!(plots(&html).len(), 12);
+}
+
+#[test]
 fn a_value_set_by_hand_is_driven_and_a_wrong_one_is_refused_in_one_line() {
     let folder = tempfile::tempdir().unwrap();
     let swift = summary(folder.path(), &[]);

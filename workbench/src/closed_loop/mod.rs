@@ -11,6 +11,8 @@ mod moves;
 mod rate;
 mod scenario;
 pub mod show;
+pub mod show_variants;
+pub mod variant;
 
 pub use coil::Coil;
 pub use driven_plant::DrivenPlant;
@@ -22,5 +24,5 @@ pub use loop_::{ClosedLoop, Sample};
 pub use metrics::{ARRIVED_DEG, MoveResult, Summary};
 pub use missed::first_missed;
 pub use moves::{Course, LoopRun, MoveTrace, courses, figures, run, run_quick_lift};
-pub use rate::{Press, PressResult, drive_presses, presses};
+pub use rate::{Press, PressResult, PressRun, PressSummary, PressTrace, presses, run_presses};
 pub use scenario::{Move, OIL_TEMPERATURE_C, Scenario};

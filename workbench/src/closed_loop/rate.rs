@@ -63,6 +63,83 @@ pub struct PressResult {
     pub travel_after_deg: f64,
 }
 
+/// Figures of a set of presses: the worst of each.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+pub struct PressSummary {
+    /// Number of presses.
+    pub presses: usize,
+    /// Largest error of the steady speed, as a share of the requested one.
+    pub speed_error_max: f64,
+    /// Largest speed beyond the requested one, as a share of it.
+    pub speed_overshoot_max: f64,
+    /// Latest start, s; `null` if a press never reaches half of its speed.
+    #[schemars(with = "Option<f64>")]
+    pub start_delay_max_s: f64,
+    /// Latest stop, s; `null` if a hitch is not at rest after three seconds.
+    #[schemars(with = "Option<f64>")]
+    pub stop_delay_max_s: f64,
+}
+
+impl PressSummary {
+    /// Summarises presses; `None` if there are none.
+    #[must_use]
+    pub fn of(presses: &[PressResult]) -> Option<Self> {
+        let largest = |of: fn(&PressResult) -> f64| presses.iter().map(of).fold(0.0, larger);
+        (!presses.is_empty()).then(|| Self {
+            presses: presses.len(),
+            speed_error_max: largest(|press| (press.speed_ratio - 1.0).abs()),
+            speed_overshoot_max: largest(|press| press.speed_overshoot),
+            start_delay_max_s: largest(|press| press.start_delay_s),
+            stop_delay_max_s: largest(|press| press.stop_delay_s),
+        })
+    }
+}
+
+/// The larger one; NaN if one of them is.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() {
+        f64::NAN
+    } else {
+        a.max(b)
+    }
+}
+
+/// The course of a press.
+#[derive(Debug, Clone)]
+pub struct PressTrace {
+    /// The press.
+    pub press: Press,
+    /// True angle in each millisecond from the press on, degree.
+    pub angles_deg: Vec<f64>,
+}
+
+impl PressTrace {
+    /// Time, s, and speed of the rocker, degree/s, as means over 100 ms, every so many milliseconds.
+    #[must_use]
+    pub fn speeds_deg_per_s(&self, every_ms: usize) -> (Vec<f64>, Vec<f64>) {
+        let means = self.angles_deg.windows(MEAN_MS + 1).enumerate();
+        let means = means.step_by(every_ms.max(1));
+        means
+            .map(|(first, window)| {
+                let middle_s = (first + MEAN_MS / 2) as f64 * STEP_S;
+                let speed = (window[MEAN_MS] - window[0]) / (MEAN_MS as f64 * STEP_S);
+                (middle_s, speed)
+            })
+            .unzip()
+    }
+}
+
+/// A set of presses.
+#[derive(Debug, Clone)]
+pub struct PressRun {
+    /// Figures of each press, in the order of the presses.
+    pub results: Vec<PressResult>,
+    /// Figures of all.
+    pub summary: PressSummary,
+    /// Course of each press.
+    pub traces: Vec<PressTrace>,
+}
+
 /// The presses of the scenario: both directions, about the middle of the travel.
 #[must_use]
 pub fn presses(
@@ -93,21 +170,29 @@ pub fn presses(
     presses
 }
 
-/// Drives presses, on all cores.
+/// Drives presses, on all cores; `None` if there are none.
 #[must_use]
-pub fn drive_presses(
+pub fn run_presses(
     model: &Model,
     calibration: &ValidCalibration,
     presses: &[Press],
-) -> Vec<PressResult> {
-    presses
+) -> Option<PressRun> {
+    let driven: Vec<(PressResult, PressTrace)> = presses
         .par_iter()
         .enumerate()
         .map(|(index, press)| {
             let angles_deg = angles_deg(model, calibration, press, SEED + index as u64);
-            judge(press, &angles_deg)
+            let result = judge(press, &angles_deg);
+            let press = *press;
+            (result, PressTrace { press, angles_deg })
         })
-        .collect()
+        .collect();
+    let (results, traces): (Vec<_>, Vec<_>) = driven.into_iter().unzip();
+    Some(PressRun {
+        summary: PressSummary::of(&results)?,
+        results,
+        traces,
+    })
 }
 
 /// The true angle in each millisecond from the press on.

@@ -1,7 +1,7 @@
 //! Moves as tables and text, for terminal and report.
 
 use super::metrics::{MoveResult, Summary};
-use super::rate::PressResult;
+use super::rate::{PressResult, PressSummary};
 use crate::text::{Table, known, wrapped};
 
 /// Header of the table of moves, for terminal and report.
@@ -61,7 +61,7 @@ pub fn text(moves: &[MoveResult], summary: &Summary) -> String {
 
 /// Presses of the external button as a table for a terminal, with the worst figures.
 #[must_use]
-pub fn presses_text(presses: &[PressResult]) -> String {
+pub fn presses_text(presses: &[PressResult], summary: &PressSummary) -> String {
     let mut table = Table::new([
         "button, deg/s",
         "load, kg",
@@ -84,14 +84,13 @@ pub fn presses_text(presses: &[PressResult]) -> String {
             format!("{:.2}", press.travel_after_deg),
         ]);
     }
-    let largest = |of: fn(&PressResult) -> f64| presses.iter().map(of).fold(0.0, f64::max);
     let summary = format!(
-        "Steady speed: at most {:.1} % off the requested one; largest overshoot {:.1} %. \
-         Latest start {:.3} s, latest stop {:.3} s.",
-        100.0 * largest(|press| (press.speed_ratio - 1.0).abs()),
-        100.0 * largest(|press| press.speed_overshoot),
-        largest(|press| press.start_delay_s),
-        largest(|press| press.stop_delay_s),
+        "Steady speed: at most {} % off the requested one; largest overshoot {} %. \
+         Latest start {} s, latest stop {} s.",
+        known(100.0 * summary.speed_error_max, 1),
+        known(100.0 * summary.speed_overshoot_max, 1),
+        known(summary.start_delay_max_s, 3),
+        known(summary.stop_delay_max_s, 3),
     );
     format!("{table}\n{}\n", wrapped(&summary))
 }

@@ -9,22 +9,26 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::closed_loop::show::{presses_text, text};
+use crate::closed_loop::show_variants;
+use crate::closed_loop::variant::{self, BASE, Variant};
 use crate::closed_loop::{
-    LoopRun, MoveResult, OIL_TEMPERATURE_C, PressResult, Summary, drive_presses, presses,
-    run_quick_lift,
+    LoopRun, MoveResult, OIL_TEMPERATURE_C, PressResult, PressRun, PressSummary, Summary, presses,
+    run_presses, run_quick_lift,
 };
 use crate::commands::loop_scenario::LoopScenario;
 use crate::error::Error;
 use crate::output::JsonArg;
 use crate::outputs::Outputs;
 use crate::progress::Progress;
-use crate::report::loop_page;
+use crate::report::{loop_page, variants_page};
 use crate::{closed_loop, output};
 
 /// Arguments of `hitch loop`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Example: hitch loop --model explained.toml --calibration calibration.toml --report loop.html\n\n\
+    after_help = "Example: hitch loop --model explained.toml --calibration calibration.toml --report loop.html\n\
+    Variants side by side: hitch loop --scenario quick --variant soft:position.approach_gain=30 \
+    --variant slow:position.creep_speed=2 --report variants.html\n\n\
     The shortest time is that of an ideal manoeuvre: the valve opens fully in an edge of 100 ms, stays open, and \
     closes with the same edge, so that the hitch comes to rest at the set point. Times end within half a degree of it. \
     A controller with steeper edges can be faster, at the cost of a larger pressure swing; its time ratio is below 1. \
@@ -41,6 +45,10 @@ pub struct Args {
     /// Change a value of the calibration, as in position.approach_gain=30; may be given several times
     #[arg(long, value_name = "GROUP.KEY=VALUE")]
     set: Vec<String>,
+    /// Drive the same scenario with this variant of the calibration too, and show all side by side; may be given up to
+    /// five times, as in soft:position.approach_gain=30,position.creep_speed=3
+    #[arg(long = "variant", value_name = "NAME:GROUP.KEY=VALUE,...")]
+    variants: Vec<Variant>,
     /// Moves to drive
     #[arg(long, value_enum, default_value_t)]
     scenario: LoopScenario,
@@ -71,6 +79,32 @@ pub struct Driven<'a> {
     /// Figures of each press of the button; absent for scenarios of moves.
     #[serde(skip_serializing_if = "Option::is_none")]
     presses: Option<&'a [PressResult]>,
+    /// Figures of all presses; absent for scenarios of moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    press_summary: Option<PressSummary>,
+    /// The same scenario with the variants of the calibration, in their order; absent without variants.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    variants: Vec<DrivenVariant<'a>>,
+}
+
+/// A variant of the calibration with its figures, as for the calibration without it.
+#[derive(Debug, Serialize, JsonSchema)]
+struct DrivenVariant<'a> {
+    /// Its name.
+    name: &'a str,
+    /// Its settings, as `group.key=value`.
+    settings: &'a [String],
+    /// Figures of each move, in the order of the scenario.
+    moves: &'a [MoveResult],
+    /// Figures of all moves; absent for rate control.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    summary: Option<Summary>,
+    /// Figures of each press of the button; absent for scenarios of moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    presses: Option<&'a [PressResult]>,
+    /// Figures of all presses; absent for scenarios of moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    press_summary: Option<PressSummary>,
 }
 
 /// Runs the command.
@@ -80,41 +114,212 @@ pub struct Driven<'a> {
 pub fn run(args: &Args) -> Result<(), Error> {
     let inputs = read_files(&args.model, args.calibration.as_ref());
     let outputs = Outputs::check([args.report.as_deref(), args.json.target()], &inputs)?;
+    variant::check(&args.variants).map_err(|what| Error::Usage(format!("--variant: {what}")))?;
     let model = hitch_model_file::named(&args.model)?;
-    let calibration = changed(&calibration(args.calibration.as_ref())?, &args.set)?;
-    let only = args.load.map(|load| vec![load]);
-    let loads = only.or_else(|| args.loads.clone());
-    let oil_c = args.oil_temperatures.as_deref();
-    if args.scenario == LoopScenario::Rate {
-        return run_rate(args, &outputs, &model, &calibration, loads.as_deref());
-    }
-    let progress = Progress::start("driving the moves");
-    let driven = drive(args.scenario, &model, &calibration, loads.as_deref(), oil_c)
-        .ok_or_else(|| Error::Usage("the scenario has no moves".to_owned()))?;
-    drop(progress);
-    if let Some(path) = &args.report {
-        let source = args
-            .calibration
-            .as_ref()
-            .map(|path| path.display().to_string());
-        let page = loop_page::page(&loop_page::Shown {
-            model: &model,
-            calibration: source.as_deref().unwrap_or("nominal"),
-            settings: &args.set,
-            run: &driven,
-        });
-        output::write_file(path, page.as_bytes())?;
-    }
-    let document = Driven {
-        moves: &driven.results,
-        summary: Some(driven.summary),
-        presses: None,
+    let base = changed(&calibration(args.calibration.as_ref())?, &args.set)?;
+    let job = Job {
+        args,
+        outputs: &outputs,
+        calibrations: calibrations(&base, &args.variants)?,
+        model: &model,
+        loads_kg: args.load.map(|load| vec![load]).or(args.loads.clone()),
     };
-    outputs.tell(&args.json, &document, || {
-        text(&driven.results, &driven.summary)
-    })?;
-    // The results are complete, but they do not have what was asked for.
-    closed_loop::first_missed(&driven).map_or(Ok(()), |what| Err(Error::Usage(what)))
+    match args.scenario {
+        LoopScenario::Rate => job.run_rate(),
+        _ => job.run_moves(),
+    }
+}
+
+/// The calibration and its variants.
+fn calibrations(
+    base: &ValidCalibration,
+    variants: &[Variant],
+) -> Result<Vec<ValidCalibration>, Error> {
+    let mut all = vec![base.clone()];
+    for variant in variants {
+        let varied = calibration_file::with_settings(base, &variant.settings)
+            .map_err(|what| Error::Usage(format!("--variant {}: {what}", variant.name)))?;
+        all.push(varied);
+    }
+    Ok(all)
+}
+
+/// A scenario, and what it is driven with.
+struct Job<'a> {
+    args: &'a Args,
+    outputs: &'a Outputs<'a>,
+    model: &'a Model,
+    /// The calibration, and its variants.
+    calibrations: Vec<ValidCalibration>,
+    loads_kg: Option<Vec<f64>>,
+}
+
+impl Job<'_> {
+    /// Drives moves.
+    fn run_moves(&self) -> Result<(), Error> {
+        let progress = Progress::start("driving the moves");
+        let runs: Vec<LoopRun> = self
+            .calibrations
+            .iter()
+            .filter_map(|calibration| self.drive(calibration))
+            .collect();
+        drop(progress);
+        let named = self.named(&runs);
+        let Some((base, varied)) = runs.split_first() else {
+            return Err(Error::Usage("the scenario has no moves".to_owned()));
+        };
+        if let Some(path) = &self.args.report {
+            let page = match varied.is_empty() {
+                true => self.page(base),
+                false => variants_page::of_moves(&self.setup(), &named),
+            };
+            output::write_file(path, page.as_bytes())?;
+        }
+        let varied = self.args.variants.iter().zip(varied);
+        let document = Driven {
+            moves: &base.results,
+            summary: Some(base.summary),
+            presses: None,
+            press_summary: None,
+            variants: varied
+                .map(|(variant, run)| DrivenVariant {
+                    name: &variant.name,
+                    settings: &variant.settings,
+                    moves: &run.results,
+                    summary: Some(run.summary),
+                    presses: None,
+                    press_summary: None,
+                })
+                .collect(),
+        };
+        self.outputs.tell(&self.args.json, &document, || {
+            match document.variants.is_empty() {
+                true => text(&base.results, &base.summary),
+                false => show_variants::moves_text(&named),
+            }
+        })?;
+        // The results are complete, but they do not have what was asked for.
+        let mut missed = named.iter().filter_map(|(name, run)| {
+            let what = closed_loop::first_missed(run)?;
+            Some(self.of_variant(name, what))
+        });
+        missed.next().map_or(Ok(()), |what| Err(Error::Usage(what)))
+    }
+
+    /// Drives the presses of the button.
+    fn run_rate(&self) -> Result<(), Error> {
+        let oil_c = self.args.oil_temperatures.as_deref();
+        let oil_c = oil_c.unwrap_or(&[OIL_TEMPERATURE_C]);
+        let base = self.calibrations.first();
+        let presses = base.map_or_else(Vec::new, |base| {
+            presses(self.model, base, self.loads_kg.as_deref(), oil_c)
+        });
+        let progress = Progress::start(format!("driving {} presses", presses.len()));
+        let runs: Vec<PressRun> = self
+            .calibrations
+            .iter()
+            .filter_map(|calibration| run_presses(self.model, calibration, &presses))
+            .collect();
+        drop(progress);
+        let named = self.named(&runs);
+        let Some((base, varied)) = runs.split_first() else {
+            return Err(Error::Usage("the scenario has no presses".to_owned()));
+        };
+        if let Some(path) = &self.args.report {
+            let page = variants_page::of_presses(&self.setup(), &named);
+            output::write_file(path, page.as_bytes())?;
+        }
+        let varied = self.args.variants.iter().zip(varied);
+        let document = Driven {
+            moves: &[],
+            summary: None,
+            presses: Some(&base.results),
+            press_summary: Some(base.summary),
+            variants: varied
+                .map(|(variant, run)| DrivenVariant {
+                    name: &variant.name,
+                    settings: &variant.settings,
+                    moves: &[],
+                    summary: None,
+                    presses: Some(&run.results),
+                    press_summary: Some(run.summary),
+                })
+                .collect(),
+        };
+        self.outputs.tell(&self.args.json, &document, || {
+            match document.variants.is_empty() {
+                true => presses_text(&base.results, &base.summary),
+                false => show_variants::presses_text(&named),
+            }
+        })?;
+        let mut stuck = named.iter().filter_map(|(name, run)| {
+            let mut presses = run.results.iter();
+            let index = presses.position(|press| press.start_delay_s.is_nan())?;
+            Some(self.of_variant(name, format!(
+                "press {} never reaches half of its speed: the load is too heavy, or the valve map does not fit the \
+                 plant; build it with `hitch calibrate`",
+                index + 1
+            )))
+        });
+        stuck.next().map_or(Ok(()), |what| Err(Error::Usage(what)))
+    }
+
+    /// A fault of a run; with variants, after the name of its calibration.
+    fn of_variant(&self, name: &str, what: String) -> String {
+        match self.args.variants.is_empty() {
+            true => what,
+            false => format!("{name}: {what}"),
+        }
+    }
+
+    /// The runs with the names of their calibrations.
+    fn named<'r, Run>(&'r self, runs: &'r [Run]) -> Vec<(&'r str, &'r Run)> {
+        let variants = self
+            .args
+            .variants
+            .iter()
+            .map(|variant| variant.name.as_str());
+        let base = match self.args.variants.is_empty() {
+            true => "hitch",
+            false => BASE,
+        };
+        [base].into_iter().chain(variants).zip(runs).collect()
+    }
+
+    /// Drives a scenario of moves.
+    fn drive(&self, calibration: &ValidCalibration) -> Option<LoopRun> {
+        let (loads_kg, oil_c) = (
+            self.loads_kg.as_deref(),
+            self.args.oil_temperatures.as_deref(),
+        );
+        drive(self.args.scenario, self.model, calibration, loads_kg, oil_c)
+    }
+
+    /// Source of the calibration.
+    fn source(&self) -> String {
+        let path = self.args.calibration.as_ref();
+        path.map_or_else(|| "nominal".to_owned(), |path| path.display().to_string())
+    }
+
+    /// The report of a single calibration.
+    fn page(&self, run: &LoopRun) -> String {
+        loop_page::page(&loop_page::Shown {
+            model: self.model,
+            calibration: &self.source(),
+            settings: &self.args.set,
+            run,
+        })
+    }
+
+    /// The head of a report of several calibrations.
+    fn setup(&self) -> variants_page::Setup<'_> {
+        variants_page::Setup {
+            model: self.model,
+            calibration: self.args.calibration.as_deref(),
+            settings: &self.args.set,
+            variants: &self.args.variants,
+        }
+    }
 }
 
 /// Drives a scenario of moves.
@@ -137,47 +342,6 @@ fn drive(
             oil_c.unwrap_or(&[OIL_TEMPERATURE_C]),
         ),
     }
-}
-
-/// Drives the presses of the button.
-fn run_rate(
-    args: &Args,
-    outputs: &Outputs,
-    model: &Model,
-    calibration: &ValidCalibration,
-    loads_kg: Option<&[f64]>,
-) -> Result<(), Error> {
-    if args.report.is_some() {
-        return Err(Error::Usage(
-            "--report: has no page for rate control; take --json, or another --scenario".to_owned(),
-        ));
-    }
-    let oil_c = args.oil_temperatures.as_deref();
-    let presses = presses(
-        model,
-        calibration,
-        loads_kg,
-        oil_c.unwrap_or(&[OIL_TEMPERATURE_C]),
-    );
-    let progress = Progress::start(format!("driving {} presses", presses.len()));
-    let results = drive_presses(model, calibration, &presses);
-    drop(progress);
-    let document = Driven {
-        moves: &[],
-        summary: None,
-        presses: Some(&results),
-    };
-    outputs.tell(&args.json, &document, || presses_text(&results))?;
-    let stuck = results
-        .iter()
-        .position(|press| press.start_delay_s.is_nan());
-    stuck.map_or(Ok(()), |index| {
-        Err(Error::Usage(format!(
-            "press {} never reaches half of its speed: the load is too heavy, or the valve map does not fit the plant; \
-             build it with `hitch calibrate`",
-            index + 1
-        )))
-    })
 }
 
 /// Names of the model and calibration files, as given on the command line.

@@ -24,3 +24,4 @@ pub mod schema;
 pub mod serve;
 pub mod simulate;
 pub mod tune;
+pub mod tune_scenario;

@@ -9,15 +9,18 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::calibrate::calibrate;
-use crate::closed_loop::{self, Move, Scenario, Summary};
+use crate::closed_loop::{
+    self, LoopRun, Move, Press, PressRun, PressSummary, Scenario, Summary, run_presses,
+};
 use crate::commands::loop_::{changed, load_kg, read_files};
+use crate::commands::tune_scenario::TuneScenario;
 use crate::error::Error;
 use crate::output::{self, JsonArg};
 use crate::outputs::Outputs;
 use crate::progress::Progress;
 use crate::report::tuning_page;
 use crate::text::{Table, known};
-use crate::tuning::{Change, Judged, Trial, changes};
+use crate::tuning::{Change, Judged, Trial};
 
 /// Arguments of `hitch tune`.
 #[derive(Debug, clap::Args)]
@@ -26,7 +29,8 @@ use crate::tuning::{Change, Judged, Trial, changes};
     The valve map is that of the model. The search varies ramps (position.lift_acceleration, lift_deceleration, \
     lower_acceleration, lower_deceleration), approach and cut-off (position.approach_gain, creep_speed, stop_band), \
     filters (motion.position_time, hydraulics.pressure_filter) and hydraulics.hysteresis (at least that of the model, \
-    or 0.12 A without one). Each candidate drives moves in both directions at three loads and temperatures, on the \
+    or 0.12 A without one). With the scenarios tuning and rate it also varies the button's ramp and trim (rate.rate_slope, \
+    trim_time, trim_limit), and drives presses of the external button. Each candidate drives moves in both directions at three loads and temperatures, on the \
     model and on two neighbours with thresholds shifted by 0.02 A, and with typical hysteresis, friction, air and \
     cold oil where the model has none. Values given with --set are not changed. For manual tuning: hitch loop --set \
     position.approach_gain=30"
@@ -48,8 +52,8 @@ pub struct Args {
     #[arg(long, value_name = "COUNT", default_value_t = 400, value_parser = clap::value_parser!(u32).range(10..=100_000))]
     trials: u32,
     /// Moves to drive
-    #[arg(long, value_enum, default_value_t = Scenario::Tuning)]
-    scenario: Scenario,
+    #[arg(long, value_enum, default_value_t = TuneScenario::Moves(Scenario::Tuning))]
+    scenario: TuneScenario,
     /// Loads at the hitch, kg; without this option, 3, 9 and 15 % of what the model can lift
     #[arg(long, value_name = "KG,KG", value_delimiter = ',', value_parser = load_kg)]
     loads: Option<Vec<f64>>,
@@ -79,18 +83,23 @@ pub struct Tuned {
 struct Figures {
     /// Cost, the objective of the search; a smaller one is better.
     cost: f64,
-    /// Figures of all moves.
-    summary: Summary,
+    /// Figures of all moves; absent without moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    summary: Option<Summary>,
+    /// Figures of all presses of the button; absent without presses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    presses: Option<PressSummary>,
 }
 
 impl Tuned {
-    fn new(before: &Judged, after: &Judged) -> Self {
+    fn new(trial: &Trial, before: &Judged, after: &Judged) -> Self {
         let figures = |judged: &Judged| Figures {
             cost: judged.cost,
             summary: judged.summary,
+            presses: judged.presses,
         };
         Self {
-            changes: changes(&before.calibration, &after.calibration),
+            changes: trial.changes(&before.calibration, &after.calibration),
             before: figures(before),
             after: figures(after),
         }
@@ -123,7 +132,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
         .collect();
     let progress = Progress::start("computing the ideal manoeuvres");
     let moves = args.scenario.moves(&model, args.loads.as_deref());
-    let trial = Trial::new(&model, &moves);
+    let presses = args.scenario.presses(&model, &base, args.loads.as_deref());
+    let trial = Trial::new(&model, &moves, &presses);
     let failed = || Error::Failed("the search found no valid calibration".to_owned());
     let before = trial.judge(&base).ok_or_else(failed)?;
     drop(progress);
@@ -139,9 +149,9 @@ pub fn run(args: &Args) -> Result<(), Error> {
         let text = calibration_file::write_tuned(&after.calibration, &base);
         output::write_file(&args.out, text.as_bytes())?;
     }
-    let tuned = Tuned::new(&before, &after);
+    let tuned = Tuned::new(&trial, &before, &after);
     if let Some(path) = &args.report {
-        let page = report(&model, &moves, &tuned, [&before, &after])?;
+        let page = report(&model, (&moves, &presses), &tuned, [&before, &after]);
         output::write_file(path, page.as_bytes())?;
     }
     outputs.tell(&args.json, &tuned, || told(&tuned))?;
@@ -151,27 +161,31 @@ pub fn run(args: &Args) -> Result<(), Error> {
     }
 }
 
-/// The report: the moves with both calibrations, the initial one first.
+/// The report: moves and presses with both calibrations, the initial one first.
 fn report(
     model: &Model,
-    moves: &[Move],
+    (moves, presses): (&[Move], &[Press]),
     tuned: &Tuned,
     judged: [&Judged; 2],
-) -> Result<String, Error> {
+) -> String {
     let progress = Progress::start("driving the moves with both calibrations");
-    let driven = |judged: &Judged| {
-        closed_loop::run(model, &judged.calibration, moves)
-            .ok_or_else(|| Error::Usage("the scenario has no moves".to_owned()))
-    };
+    let moved = judged.map(|judged| closed_loop::run(model, &judged.calibration, moves));
+    let pressed = judged.map(|judged| run_presses(model, &judged.calibration, presses));
     let page = tuning_page::page(&tuning_page::Shown {
         model,
         changes: &tuned.changes,
         figures: &figures(tuned),
-        before: &driven(judged[0])?,
-        after: &driven(judged[1])?,
+        moves: both::<LoopRun>(&moved),
+        presses: both::<PressRun>(&pressed),
     });
     drop(progress);
-    Ok(page)
+    page
+}
+
+/// Both, if both are there.
+fn both<T>(pair: &[Option<T>; 2]) -> Option<[&T; 2]> {
+    let [before, after] = pair;
+    Some([before.as_ref()?, after.as_ref()?])
 }
 
 /// The search starts with the hysteresis of a real valve, which can cost more than the initial calibration.
@@ -205,19 +219,27 @@ fn told(tuned: &Tuned) -> String {
 /// Name, limit, value before and after of each figure.
 fn figures(tuned: &Tuned) -> Vec<[String; 4]> {
     let (before, after) = (&tuned.before, &tuned.after);
-    let row = |name: &str, bar: Option<f64>, old: f64, new: f64| {
-        let bar = bar.map_or_else(String::new, |bar| format!("{bar:.2}"));
-        [name.to_owned(), bar, known(old, 3), known(new, 3)]
-    };
+    let mut rows = Vec::new();
+    if let (Some(before), Some(after)) = (&before.summary, &after.summary) {
+        rows.extend(move_figures(before, after));
+    }
+    if let (Some(before), Some(after)) = (&before.presses, &after.presses) {
+        rows.extend(press_figures(before, after));
+    }
+    rows.push(figure("cost", None, before.cost, after.cost));
+    rows
+}
+
+fn figure(name: &str, bar: Option<f64>, old: f64, new: f64) -> [String; 4] {
+    let bar = bar.map_or_else(String::new, |bar| format!("{bar:.2}"));
+    [name.to_owned(), bar, known(old, 3), known(new, 3)]
+}
+
+fn move_figures(before: &Summary, after: &Summary) -> [[String; 4]; 6] {
     let of = |name: &str, bar: f64, value: fn(&Summary) -> f64| {
-        row(
-            name,
-            Some(bar),
-            value(&before.summary),
-            value(&after.summary),
-        )
+        figure(name, Some(bar), value(before), value(after))
     };
-    vec![
+    [
         of("time ratio, median", 1.15, |all| all.ratio_median),
         of("time ratio, 95 %", 1.4, |all| all.ratio_p95),
         of("overshoot, deg", 0.3, |all| all.overshoot_max_deg),
@@ -226,6 +248,21 @@ fn figures(tuned: &Tuned) -> Vec<[String; 4]> {
         of("coil activations after arrival", 0.0, |all| {
             f64::from(all.switched_on_after)
         }),
-        row("cost", None, before.cost, after.cost),
+    ]
+}
+
+fn press_figures(before: &PressSummary, after: &PressSummary) -> [[String; 4]; 4] {
+    let of = |name: &str, bar: Option<f64>, value: fn(&PressSummary) -> f64| {
+        figure(name, bar, value(before), value(after))
+    };
+    [
+        of("button: error of the steady speed", Some(0.05), |all| {
+            all.speed_error_max
+        }),
+        of("button: overshoot of the speed", None, |all| {
+            all.speed_overshoot_max
+        }),
+        of("button: latest start, s", None, |all| all.start_delay_max_s),
+        of("button: latest stop, s", None, |all| all.stop_delay_max_s),
     ]
 }

@@ -36,6 +36,16 @@ pub enum Stroke {
 }
 
 impl Stroke {
+    /// Styles of runs with several calibrations, in their order.
+    pub const SERIES: [Self; 6] = [
+        Self::Before,
+        Self::After,
+        Self::Other,
+        Self::Lift,
+        Self::Lower,
+        Self::Pump,
+    ];
+
     /// Name of the colour in both themes.
     pub const fn colour(self) -> &'static str {
         match self {

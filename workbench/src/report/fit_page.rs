@@ -125,7 +125,7 @@ fn deviation(told: &ShownBaseFit, valve: Valve, title: &str) -> Markup {
     let fitted = points.map(|point| (point.current_a, of(point, point.fitted_lpm)));
     let curves = vec![("fitted", Stroke::After, fitted.unzip())];
     let chart = Drawn {
-        caption: format!("{title}, deviation of the points from their declared flow"),
+        caption: format!("{title}, deviation of the points"),
         axes: ["current, A", "deviation, %"],
         lines: lines(curves, told, valve, of),
     };

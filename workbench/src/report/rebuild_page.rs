@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use super::chart::Stroke;
 use super::drawn::{Drawn, drawn};
 use super::page;
-use super::two_runs::compared;
+use super::same_move::compared;
 use crate::rebuild::Rebuild;
 use crate::text::known;
 
@@ -60,7 +60,7 @@ fn course(rebuild: &Rebuild, index: usize) -> Markup {
     let order = &rebuild.before.results[index];
     html! {
         h3 { (format!("{:.1} to {:.1} degrees at {:.0} kg", order.from_deg, order.to_deg, order.load_kg)) }
-        (compared(&rebuild.before, &rebuild.after, index, ["nominal map", "rebuilt map"]))
+        (compared(&[("nominal map", &rebuild.before), ("rebuilt map", &rebuild.after)], index))
     }
 }
 

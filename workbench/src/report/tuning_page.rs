@@ -5,8 +5,9 @@ use maud::{Markup, html};
 
 use super::loop_page::{course, worst};
 use super::page;
-use super::two_runs::compared;
-use crate::closed_loop::LoopRun;
+use super::same_move::compared;
+use super::variants_page::every_press;
+use crate::closed_loop::{LoopRun, PressRun};
 use crate::text::known;
 use crate::tuning::Change;
 
@@ -19,10 +20,10 @@ pub struct Shown<'a> {
     pub changes: &'a [Change],
     /// Name, limit, value before and after of each figure of the search, as text.
     pub figures: &'a [[String; 4]],
-    /// Moves with the initial calibration.
-    pub before: &'a LoopRun,
-    /// The same moves with the tuned one.
-    pub after: &'a LoopRun,
+    /// Moves with the initial calibration, and with the tuned one; `None` without moves.
+    pub moves: Option<[&'a LoopRun; 2]>,
+    /// Presses of the button with both; `None` without presses.
+    pub presses: Option<[&'a PressRun; 2]>,
 }
 
 /// The report as one HTML document.
@@ -34,9 +35,6 @@ pub fn page(shown: &Shown) -> String {
 }
 
 fn sections(shown: &Shown) -> Markup {
-    let (before, after) = (shown.before, shown.after);
-    let pair = |old: f64, new: f64| format!("{} → {}", known(old, 2), known(new, 2));
-    let moves = course::shown(&after.results);
     let figures: Vec<Vec<String>> = shown.figures.iter().map(|row| row.to_vec()).collect();
     let change = |change: &Change| {
         let values = [change.before, change.after].map(|value| format!("{value:.3}"));
@@ -44,23 +42,46 @@ fn sections(shown: &Shown) -> Markup {
     };
     let changes: Vec<Vec<String>> = shown.changes.iter().map(change).collect();
     html! {
-        p.lead {
-            "Time over the shortest time, median: "
-            strong { (pair(before.summary.ratio_median, after.summary.ratio_median)) }
-            ". Largest overshoot: "
-            strong { (pair(before.summary.overshoot_max_deg, after.summary.overshoot_max_deg)) } " deg."
+        (lead(shown))
+        @if let Some([before, after]) = shown.moves { (moves(before, after)) }
+        @if let Some([before, after]) = shown.presses {
+            (every_press(&[("before", before), ("after", after)]))
         }
-        h2 { @if moves.len() == after.results.len() { "Every move" } @else { "The worst moves" } " with both calibrations" }
-        p { "The headings have the figures of the tuned calibration." }
-        @for index in moves {
-            h3 { (course::heading(&after.results[index])) }
-            (compared(before, after, index, ["before", "after"]))
-        }
-        (worst::section(&after.results))
         h2 { "Changed values" }
         (page::table(&["value", "before", "after"], &changes))
         h2 { "Figures of the search" }
         p { "On the plant and its neighbours, with typical effects where the model has none." }
         (page::table(&["figure", "limit", "before", "after"], &figures))
+    }
+}
+
+fn lead(shown: &Shown) -> Markup {
+    let pair =
+        |old: f64, new: f64, digits| format!("{} → {}", known(old, digits), known(new, digits));
+    html! {
+        @if let Some([before, after]) = shown.moves { p.lead {
+            "Time over the shortest time, median: "
+            strong { (pair(before.summary.ratio_median, after.summary.ratio_median, 2)) }
+            ". Largest overshoot: "
+            strong { (pair(before.summary.overshoot_max_deg, after.summary.overshoot_max_deg, 2)) } " deg."
+        } }
+        @if let Some([before, after]) = shown.presses.map(|both| both.map(|run| run.summary)) { p.lead {
+            "Button: largest overshoot of the speed: "
+            strong { (pair(100.0 * before.speed_overshoot_max, 100.0 * after.speed_overshoot_max, 1)) }
+            " %. Latest start: " strong { (pair(before.start_delay_max_s, after.start_delay_max_s, 3)) } " s."
+        } }
+    }
+}
+
+fn moves(before: &LoopRun, after: &LoopRun) -> Markup {
+    let moves = course::shown(&after.results);
+    html! {
+        h2 { @if moves.len() == after.results.len() { "Every move" } @else { "The worst moves" } " with both calibrations" }
+        p { "The headings have the figures of the tuned calibration." }
+        @for index in moves {
+            h3 { (course::heading(&after.results[index])) }
+            (compared(&[("before", before), ("after", after)], index))
+        }
+        (worst::section(&after.results))
     }
 }

@@ -5,8 +5,8 @@ use hitch_quantities::{Calibration, ValidCalibration};
 
 use super::Change;
 
-/// `group.name` of the tuned values.
-pub const KNOBS: [&str; 10] = [
+/// `group.name` of the tuned values. The fastest speed of the button is not one of them: it is chosen for safety.
+pub const KNOBS: [&str; 13] = [
     "position.lift_acceleration",
     "position.lift_deceleration",
     "position.lower_acceleration",
@@ -17,16 +17,33 @@ pub const KNOBS: [&str; 10] = [
     "motion.position_time",
     "hydraulics.hysteresis",
     "hydraulics.pressure_filter",
+    "rate.rate_slope",
+    "rate.trim_time",
+    "rate.trim_limit",
 ];
+
+/// Group of the values that only act while a button is held.
+const RATE: &str = "rate.";
 
 /// Largest factor by which a value may change: beyond it the stated reason of the value does not hold.
 const MOST_DOUBLINGS: f64 = 2.0;
 
-/// The tuned values, without those of `fixed`.
+/// The values that a set of moves, and of presses of the button, can tune; each only if it is not empty.
 #[must_use]
-pub fn without(fixed: &[String]) -> Vec<&'static str> {
+pub fn tuned_by(moves: bool, presses: bool) -> Vec<&'static str> {
+    let acts = |knob: &&str| match knob.starts_with(RATE) {
+        true => presses,
+        false => moves,
+    };
+    KNOBS.into_iter().filter(acts).collect()
+}
+
+/// `knobs` without those of `fixed`.
+#[must_use]
+pub fn without(knobs: &[&'static str], fixed: &[String]) -> Vec<&'static str> {
     let is_fixed = |knob: &str| fixed.iter().any(|name| name == knob);
-    KNOBS.into_iter().filter(|knob| !is_fixed(knob)).collect()
+    let knobs = knobs.iter().copied();
+    knobs.filter(|knob| !is_fixed(knob)).collect()
 }
 
 /// Lower bound of a tuned value.
@@ -60,9 +77,9 @@ pub fn with_values(
     calibration.sealed().validate().ok()
 }
 
-/// The values before and after.
-pub fn changes(before: &Calibration, after: &Calibration) -> Vec<Change> {
-    KNOBS
+/// The values of `knobs` before and after.
+pub fn changes(knobs: &[&str], before: &Calibration, after: &Calibration) -> Vec<Change> {
+    knobs
         .iter()
         .filter_map(|key| {
             let (old, new) = (scalar(before, key)?, scalar(after, key)?);
@@ -78,6 +95,23 @@ pub fn changes(before: &Calibration, after: &Calibration) -> Vec<Change> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_button_tunes_its_own_values() {
+        let button = tuned_by(false, true);
+        assert_eq!(
+            button,
+            ["rate.rate_slope", "rate.trim_time", "rate.trim_limit"]
+        );
+        assert_eq!(tuned_by(true, true).len(), KNOBS.len());
+        assert!(
+            tuned_by(true, false)
+                .iter()
+                .all(|knob| !button.contains(knob))
+        );
+        assert_eq!(without(&button, &["rate.trim_time".to_owned()]).len(), 2);
+        assert!(tuned_by(false, false).is_empty());
+    }
 
     #[test]
     fn a_knob_is_not_turned_below_its_least_value() {

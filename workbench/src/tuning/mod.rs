@@ -1,4 +1,4 @@
-//! Tunes gains, ramps and limits with CMA-ES over a set of moves.
+//! Tunes gains, ramps and limits with CMA-ES over a set of moves, and of presses of the external button.
 //!
 //! Each candidate is driven on the model and on two neighbours. Their thresholds are shifted up and down by the
 //! residual error of teaching, and they have typical hysteresis, friction, entrained air and cold-oil viscosity where
@@ -14,11 +14,14 @@ use hitch_quantities::{Calibration, ValidCalibration};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use knobs::{Least, with_values, without};
+use knobs::{Least, tuned_by, with_values, without};
 
-use crate::closed_loop::{Course, Move, MoveResult, Summary, courses, figures};
+use crate::closed_loop::{
+    Course, Move, MoveResult, Press, PressResult, PressSummary, Summary, courses, figures,
+    run_presses,
+};
 
-pub use cost::cost;
+pub use cost::{cost, press_cost};
 pub use knobs::KNOBS;
 
 /// Residual error of a threshold after teaching, A.
@@ -39,12 +42,15 @@ const AFTER_S: f64 = 1.5;
 /// Initial standard deviation in octaves of each value: 0.3 is about 20 %.
 const START_SIGMA: f64 = 0.3;
 
-/// Plants with the moves that are driven on them.
+/// Plants with the moves and presses that are driven on them.
 pub struct Trial {
     /// Lower bound for the hysteresis of the calibration. Dither hides hysteresis in these plants, so the search would
     /// reduce it for speed; on a real valve, which closes later, the hitch would then overshoot.
     least: Least,
     plants: Vec<(Model, Vec<Course>)>,
+    presses: Vec<Press>,
+    /// The values that the moves and presses can tune.
+    knobs: Vec<&'static str>,
 }
 
 /// A calibration with its figures.
@@ -52,8 +58,10 @@ pub struct Trial {
 pub struct Judged {
     /// The calibration.
     pub calibration: ValidCalibration,
-    /// Figures of all moves on all plants.
-    pub summary: Summary,
+    /// Figures of all moves on all plants; `None` without moves.
+    pub summary: Option<Summary>,
+    /// Figures of all presses on all plants; `None` without presses.
+    pub presses: Option<PressSummary>,
     /// Cost, the objective of the search.
     pub cost: f64,
 }
@@ -70,9 +78,9 @@ pub struct Change {
 }
 
 impl Trial {
-    /// Prepares `moves` on `model` and its neighbours.
+    /// Prepares `moves` and `presses` on `model` and its neighbours.
     #[must_use]
-    pub fn new(model: &Model, moves: &[Move]) -> Self {
+    pub fn new(model: &Model, moves: &[Move], presses: &[Press]) -> Self {
         let plants = [
             model.clone(),
             neighbour(model, SPREAD_A),
@@ -93,10 +101,12 @@ impl Trial {
                 value: own_a.unwrap_or(USUAL_HYSTERESIS_A),
             },
             plants: plants.into(),
+            presses: presses.to_vec(),
+            knobs: tuned_by(!moves.is_empty(), !presses.is_empty()),
         }
     }
 
-    /// Drives all moves.
+    /// Drives all moves and presses; `None` if there are none.
     #[must_use]
     pub fn judge(&self, calibration: &ValidCalibration) -> Option<Judged> {
         let results: Vec<MoveResult> = self
@@ -104,10 +114,18 @@ impl Trial {
             .iter()
             .flat_map(|(plant, courses)| figures(plant, calibration, courses, AFTER_S))
             .collect();
-        Some(Judged {
+        let pressed: Vec<PressResult> = self
+            .plants
+            .iter()
+            .filter_map(|(plant, _)| run_presses(plant, calibration, &self.presses))
+            .flat_map(|run| run.results)
+            .collect();
+        let (summary, presses) = (Summary::of(&results), PressSummary::of(&pressed));
+        (summary.is_some() || presses.is_some()).then(|| Judged {
             calibration: calibration.clone(),
-            summary: Summary::of(&results)?,
-            cost: cost(&results),
+            summary,
+            presses,
+            cost: cost(&results) + press_cost(&pressed),
         })
     }
 
@@ -121,7 +139,7 @@ impl Trial {
         trials: usize,
         tell: impl Fn(usize, f64) + Sync,
     ) -> Option<Judged> {
-        let knobs = without(fixed);
+        let knobs = without(&self.knobs, fixed);
         let state = std::sync::Mutex::new((0, None::<Judged>));
         let objective = |point: &DVector<f64>| {
             let judged = with_values(base, &knobs, self.least, point.as_slice())
@@ -148,12 +166,12 @@ impl Trial {
         drop(search);
         state.into_inner().ok()?.1
     }
-}
 
-/// The values that a search changed.
-#[must_use]
-pub fn changes(before: &Calibration, after: &Calibration) -> Vec<Change> {
-    knobs::changes(before, after)
+    /// The values that are tuned, before and after.
+    #[must_use]
+    pub fn changes(&self, before: &Calibration, after: &Calibration) -> Vec<Change> {
+        knobs::changes(&self.knobs, before, after)
+    }
 }
 
 /// The model with both thresholds shifted, and with the typical effects that it lacks.

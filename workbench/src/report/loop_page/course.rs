@@ -98,11 +98,19 @@ fn course(result: &MoveResult, trace: &MoveTrace) -> Markup {
 /// The move with its figures.
 pub fn heading(result: &MoveResult) -> String {
     format!(
-        "{} degrees, {:.0} kg, {:.0} °C: ratio {}, overshoot {:.2} deg",
-        name(result),
-        result.load_kg,
-        result.oil_temperature_c,
+        "{}: ratio {}, overshoot {:.2} deg",
+        conditions(result),
         known(result.ratio, 2),
         result.overshoot_deg
+    )
+}
+
+/// The move with its load and oil temperature.
+pub fn conditions(result: &MoveResult) -> String {
+    format!(
+        "{} degrees, {:.0} kg, {:.0} °C",
+        name(result),
+        result.load_kg,
+        result.oil_temperature_c
     )
 }

@@ -1,0 +1,118 @@
+//! One move of the lever, or one press of the button, driven with several calibrations.
+
+use maud::{Markup, html};
+
+use super::chart::Stroke;
+use super::drawn::{Drawn, Points, drawn};
+use crate::closed_loop::show_variants::Named;
+use crate::closed_loop::{LoopRun, PressRun, PressTrace, Sample};
+
+/// Time shown after the last arrival, s.
+const AFTER_S: f64 = 0.5;
+/// Step of the points of a press, ms.
+const EVERY_MS: usize = 10;
+
+/// Angle and coil current of a move, given by its index, with each calibration.
+pub fn compared(runs: Named<'_, LoopRun>, index: usize) -> Markup {
+    let Some((_, first)) = runs.first() else {
+        return html! {};
+    };
+    let order = &first.results[index];
+    let arrivals = runs.iter().map(|(_, run)| run.results[index].took_s());
+    let end_s = arrivals.fold(0.0, f64::max) + AFTER_S;
+    let points = |run: &LoopRun, value: fn(&Sample) -> f64| -> Points {
+        let samples = run.traces[index].samples.iter();
+        let shown = samples.take_while(|sample| sample.time_s <= end_s);
+        shown.map(|sample| (sample.time_s, value(sample))).unzip()
+    };
+    let each = |value: fn(&Sample) -> f64| {
+        let runs = runs.iter().enumerate();
+        runs.map(move |(place, (name, run))| {
+            (
+                (*name).to_owned(),
+                Stroke::SERIES[place % Stroke::SERIES.len()],
+                points(run, value),
+            )
+        })
+    };
+    let set_point = (
+        "set point".to_owned(),
+        Stroke::Measured,
+        points(first, |sample| sample.lever_deg),
+    );
+    let charts = [
+        Drawn {
+            caption: "Rocker angle".to_owned(),
+            axes: ["time, s", "angle, deg"],
+            lines: [set_point]
+                .into_iter()
+                .chain(each(|sample| sample.angle_deg))
+                .collect(),
+        },
+        Drawn {
+            caption: "Coil current".to_owned(),
+            axes: ["time, s", "current, A"],
+            lines: each(|sample| {
+                let outputs = &sample.outputs;
+                f64::from(outputs.lower_current.0.max(outputs.lift_current.0)) * 1e-3
+            })
+            .collect(),
+        },
+    ];
+    let label = format!(
+        "Angle and coil current from {:.1} to {:.1} degrees with each calibration",
+        order.from_deg, order.to_deg
+    );
+    drawn(&label, &charts)
+}
+
+/// Speed and angle of the rocker in a press, given by its index, with each calibration.
+pub fn pressed(runs: Named<'_, PressRun>, index: usize) -> Markup {
+    let Some((_, first)) = runs.first() else {
+        return html! {};
+    };
+    let press = &first.traces[index].press;
+    let stops = runs.iter().map(|(_, run)| run.results[index].stop_delay_s);
+    let end_s = press.held_s + stops.fold(0.0, f64::max) + AFTER_S;
+    let each = |points: fn(&PressTrace) -> Points| {
+        let runs = runs.iter().enumerate();
+        runs.map(move |(place, (name, run))| {
+            let (x, y) = points(&run.traces[index]);
+            let shown = x.iter().take_while(|time_s| **time_s <= end_s).count();
+            let points = (x[..shown].to_vec(), y[..shown].to_vec());
+            (
+                (*name).to_owned(),
+                Stroke::SERIES[place % Stroke::SERIES.len()],
+                points,
+            )
+        })
+    };
+    let rate = press.rate_deg_per_s;
+    let requested = (
+        vec![0.0, press.held_s, press.held_s, end_s],
+        vec![rate, rate, 0.0, 0.0],
+    );
+    let requested = ("requested".to_owned(), Stroke::Measured, requested);
+    let speeds = each(|trace| trace.speeds_deg_per_s(EVERY_MS));
+    let charts = [
+        Drawn {
+            caption: "Speed of the rocker, mean over 100 ms".to_owned(),
+            axes: ["time, s", "speed, deg/s"],
+            lines: [requested].into_iter().chain(speeds).collect(),
+        },
+        Drawn {
+            caption: "Rocker angle".to_owned(),
+            axes: ["time, s", "angle, deg"],
+            lines: each(|trace| {
+                let angles = trace.angles_deg.iter().enumerate().step_by(EVERY_MS);
+                angles
+                    .map(|(ms, angle_deg)| (ms as f64 * 1e-3, *angle_deg))
+                    .unzip()
+            })
+            .collect(),
+        },
+    ];
+    let label =
+        format!("Speed and angle of the rocker at {rate:+.1} degrees/s with each calibration");
+    drawn(&label, &charts)
+}
