@@ -11,7 +11,7 @@ use hitch_quantities::units::{
 };
 use hitch_quantities::{Calibration, CalibrationError, ValidCalibration};
 
-use crate::valve_survey::{CurvePoint, LOWERING_PORT_BAR, survey};
+use crate::valve_survey::{CurvePoint, LOWERING_PORT_BAR, largest_current_a, survey};
 
 /// Tolerance of a valve table relative to the surveyed curve, A.
 const TOLERANCE_A: f64 = 0.5e-3;
@@ -36,11 +36,13 @@ const SAME_END: MilliDegree = MilliDegree(20);
 pub enum CalibrateError {
     /// A valve of the model never opens.
     #[error(
-        "the {valve} valve of the model never opens up to 3.5 A; check its curve and threshold effects"
+        "the {valve} valve of the model never opens up to {largest_a} A, where its curve ends; check its curve and threshold effects"
     )]
     Shut {
         /// `lift` or `lower`.
         valve: &'static str,
+        /// Largest current of its curve, A.
+        largest_a: f64,
     },
     /// The firmware rejects the result.
     #[error("the firmware refuses the calibration of this model: {0:?}")]
@@ -54,8 +56,15 @@ pub enum CalibrateError {
 pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, CalibrateError> {
     let constants = model.constants();
     let mut calibration = base.clone();
-    calibration.lift = valve_table("lift", &survey(model, Valve::Lift))?;
-    calibration.lower = valve_table("lower", &survey(model, Valve::Lowering))?;
+    for (name, valve, table) in [
+        ("lift", Valve::Lift, &mut calibration.lift),
+        ("lower", Valve::Lowering, &mut calibration.lower),
+    ] {
+        *table = valve_table(&survey(model, valve)).ok_or_else(|| CalibrateError::Shut {
+            valve: name,
+            largest_a: largest_current_a(model, valve),
+        })?;
+    }
     linkage(model, &mut calibration);
     currents(constants, &mut calibration);
     let hydraulics = &mut calibration.hydraulics;
@@ -180,8 +189,9 @@ fn follow(calibration: &mut Calibration, before: [MilliDegree; 2], after: [Milli
     }
 }
 
-/// The table of a surveyed curve with the minimum number of points within its tolerance, limited by the table size.
-fn valve_table(valve: &'static str, curve: &[CurvePoint]) -> Result<ValveTable, CalibrateError> {
+/// The table of a surveyed curve with the minimum number of points within its tolerance, limited by the table size;
+/// `None` for a valve that never opens.
+fn valve_table(curve: &[CurvePoint]) -> Option<ValveTable> {
     let gap_lpm = least_gap_lpm(curve);
     let mut tolerance_a = TOLERANCE_A;
     let mut points = thinned(curve, tolerance_a, gap_lpm);
@@ -190,7 +200,7 @@ fn valve_table(valve: &'static str, curve: &[CurvePoint]) -> Result<ValveTable, 
         points = thinned(curve, tolerance_a, gap_lpm);
     }
     if points.len() < 2 {
-        return Err(CalibrateError::Shut { valve });
+        return None;
     }
     let mut table = ValveTable {
         count: points.len() as u32,
@@ -202,7 +212,7 @@ fn valve_table(valve: &'static str, curve: &[CurvePoint]) -> Result<ValveTable, 
             current: MilliAmp((point.current_a * 1e3).round() as i32),
         };
     }
-    Ok(table)
+    Some(table)
 }
 
 /// Flow of a surveyed point, rounded to the resolution of the table.
@@ -311,9 +321,29 @@ mod tests {
     }
 
     #[test]
+    fn a_valve_that_never_opens_is_named_with_the_end_of_its_curve() {
+        let dynamic = hitch_model_file::dynamic();
+        let mut constants = dynamic.constants().clone();
+        let curve = &mut constants.lift_valve.curve;
+        let currents = curve.currents_a().iter().map(|current| 0.04 * current);
+        let flows = curve.flows_m3_s().to_vec();
+        *curve = hitch_plant::ValveCurve::new(currents.collect(), flows).unwrap();
+        let shift = hitch_effects::find("lift-threshold-shift").unwrap();
+        let mut shift = hitch_plant::AddedEffect::typical(shift);
+        shift.values[0] = 0.2;
+        let model = dynamic.with_constants(constants).unwrap();
+        let shut = calibrate(&model.with_effects(vec![shift]), &Calibration::nominal());
+        let said = shut.unwrap_err().to_string();
+        assert!(
+            said.contains("lift valve") && said.contains("up to 0.14 A"),
+            "{said}"
+        );
+    }
+
+    #[test]
     fn points_are_as_far_apart_as_the_firmware_wants_them() {
         let curve = bent();
-        let table = valve_table("lift", &curve).unwrap();
+        let table = valve_table(&curve).unwrap();
         let points = table.used();
         assert!(points.len() > 10);
         for pair in points.windows(2) {

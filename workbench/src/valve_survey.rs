@@ -6,10 +6,8 @@
 use hitch_plant::units::{lpm_from_m3_s, pa_from_bar};
 use hitch_plant::{Currents, Model, Plant, Rig, Valve};
 
-/// Largest current of the survey, A.
-pub const LARGEST_CURRENT_A: f64 = 3.5;
-/// Steps of the survey: 1 mA each.
-const STEPS: u32 = 3500;
+/// Steps of the survey in one ampere.
+const STEPS_PER_A: f64 = 1e3;
 /// Port pressure for the survey of the lift valve, bar: between cracking pressure and relief pressure the flow does not
 /// depend on it.
 const LIFT_PORT_BAR: f64 = 20.0;
@@ -60,20 +58,33 @@ pub fn static_flow_lpm(model: &Model, valve: Valve, current_a: f64) -> f64 {
     })
 }
 
+/// Largest current of a model's valve, A: that of its curve.
+#[must_use]
+pub fn largest_current_a(model: &Model, valve: Valve) -> f64 {
+    let constants = model.constants();
+    let curve = match valve {
+        Valve::Lift => &constants.lift_valve.curve,
+        Valve::Lowering => &constants.lower_valve.curve,
+    };
+    curve.currents_a().last().copied().unwrap_or(0.0)
+}
+
 /// The section of a valve's curve between threshold and saturation, in steps of 1 mA.
 ///
 /// The first point is the last one without flow (set to zero), the last point the first one with full flow. Fewer than
 /// two points: the valve never opens.
 #[must_use]
 pub fn survey(model: &Model, valve: Valve) -> Vec<CurvePoint> {
+    let largest_a = largest_current_a(model, valve);
+    let steps = (largest_a * STEPS_PER_A).ceil() as u32;
     let point = |step: u32| {
-        let current_a = f64::from(step) * LARGEST_CURRENT_A / f64::from(STEPS);
+        let current_a = largest_a.min(f64::from(step) / STEPS_PER_A);
         CurvePoint {
             current_a,
             flow_lpm: static_flow_lpm(model, valve, current_a),
         }
     };
-    let mut points: Vec<CurvePoint> = (0..=STEPS).map(point).collect();
+    let mut points: Vec<CurvePoint> = (0..=steps).map(point).collect();
     let largest_lpm = points
         .iter()
         .map(|point| point.flow_lpm)

@@ -12,6 +12,7 @@ mod fmu;
 mod from_bus_to_model;
 mod import;
 mod loop_scenarios;
+mod other_valves;
 mod schema;
 mod shell;
 mod small_campaign;

@@ -2,6 +2,7 @@
 
 use std::io::BufRead;
 use std::net::SocketAddr;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
@@ -14,7 +15,7 @@ use hitch_protocols::can::Frame;
 use super::loop_::{calibration, load_kg};
 use crate::ecu::{
     Bench, Bus, CutFlash, EcuMachine, Emulator, FLASH_BYTES, MachineError, OnHost, Order, Pace,
-    QEMU, delivered, find_image,
+    QEMU, delivered, find_image, reach_deg,
 };
 use crate::error::Error;
 use crate::output::{check_writable, no_stdout, write_file};
@@ -30,7 +31,8 @@ const PICK_UP_MS: u64 = 500;
     The real firmware image runs on an emulated Cortex-M4 with the plant attached, in lock step and in real time. The \
     operator moves the lever through the hitch position (lever capture) after half a second. Standard input then takes \
     operator commands, one in each line: lever DEG, up, down, stop, quick on|off, hold on|off, lock on|off, \
-    service on|off, limit DEG, dial PERCENT, power, quit. The status shows when the computer is too slow for real time. With --can, the bus accepts slcan clients: python-can with \
+    service on|off, limit DEG, dial PERCENT, power, quit. Lever and limit move over the travel of the model's hitch and \
+    10 degrees more, as far as the board's sensors measure it (35 to 145 degrees). The status shows when the computer is too slow for real time. With --can, the bus accepts slcan clients: python-can with \
     interface slcan and channel socket://HOST:PORT. Writing the calibration over XCP requires `service on`.")]
 pub struct Args {
     /// Offer the CAN bus as slcan on this TCP port
@@ -182,6 +184,8 @@ struct Session<'m> {
     last_ms: u64,
     /// Angle of the hitch at the start, the middle of its travel, degree.
     start_deg: f64,
+    /// Range of lever and upper-limit dial, degree.
+    reach_deg: RangeInclusive<f64>,
 }
 
 impl<'m> Session<'m> {
@@ -195,6 +199,7 @@ impl<'m> Session<'m> {
         Self {
             address,
             start_deg,
+            reach_deg: reach_deg(model),
             bench: Bench::new(model, load_kg, OIL_TEMPERATURE_C, start_deg, 1),
             bus: server.map(Bus::served_by),
             status: StatusLine::start(),
@@ -252,7 +257,7 @@ impl<'m> Session<'m> {
                 Ok(line) => line,
                 Err(TryRecvError::Empty | TryRecvError::Disconnected) => return Ok(true),
             };
-            match line.parse::<Order>() {
+            match Order::parse(&line, &self.reach_deg) {
                 _ if line.trim().is_empty() => {}
                 Ok(Order::Quit) => return Ok(false),
                 Ok(Order::Power) => machine.power_cycle().map_err(failed)?,

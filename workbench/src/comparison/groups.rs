@@ -6,10 +6,8 @@ use hitch_identification::data::regime::Regime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Current below which a valve counts as off, A.
-const OFF_BELOW_A: f64 = 0.2;
-/// Limits between the current groups, A: below the thresholds, small opening, partly open, fully open.
-const EDGES_A: [f64; 4] = [1.0, 1.6, 2.2, 2.8];
+use super::current_groups::CurrentGroups;
+
 /// Width of the oil temperature groups, degrees Celsius.
 const TEMPERATURE_STEP_C: f64 = 10.0;
 
@@ -59,10 +57,10 @@ impl Grouping {
     }
 
     /// The group of a sample.
-    pub fn part(self, run: &ReadyRun, sample: usize) -> Option<Part> {
+    pub fn part(self, groups: &CurrentGroups, run: &ReadyRun, sample: usize) -> Option<Part> {
         match self {
             Self::Regime => regime(run, sample),
-            Self::Current => Some(current(run, sample)),
+            Self::Current => Some(current(groups, run, sample)),
             Self::Load => Some(load(run.bench)),
             Self::Temperature => Some(temperature(run)),
             Self::Run => Some(Part {
@@ -82,24 +80,27 @@ fn regime(run: &ReadyRun, sample: usize) -> Option<Part> {
     })
 }
 
-fn current(run: &ReadyRun, sample: usize) -> Part {
+fn current(groups: &CurrentGroups, run: &ReadyRun, sample: usize) -> Part {
     let currents = run.drive.currents[sample];
-    let (valve, amperes, place) = if currents.lift_a >= currents.lower_a {
-        ("lift", currents.lift_a, 0.0)
-    } else {
-        ("lower", currents.lower_a, 10.0)
+    let is_lift = currents.lift_a >= currents.lower_a;
+    let (valve, amperes, place) = match is_lift {
+        true => ("lift", currents.lift_a, 0.0),
+        false => ("lower", currents.lower_a, 10.0),
     };
-    if amperes < OFF_BELOW_A {
+    if amperes < groups.off_below_a {
         return Part {
             place: -1.0,
             name: "both off".to_owned(),
         };
     }
-    let step = EDGES_A.iter().filter(|edge| amperes >= **edge).count();
-    let name = match step {
-        0 => format!("{valve} under {} A", EDGES_A[0]),
-        step if step == EDGES_A.len() => format!("{valve} over {} A", EDGES_A[step - 1]),
-        step => format!("{valve} {} to {} A", EDGES_A[step - 1], EDGES_A[step]),
+    let limits_a = groups.limits_a(is_lift);
+    let step = limits_a.iter().filter(|limit| amperes >= **limit).count();
+    let below = step.checked_sub(1).map(|before| limits_a[before]);
+    let name = match (below, limits_a.get(step)) {
+        (Some(low), Some(high)) => format!("{valve} {low} to {high} A"),
+        (Some(low), None) => format!("{valve} over {low} A"),
+        (None, Some(high)) => format!("{valve} under {high} A"),
+        (None, None) => valve.to_owned(),
     };
     Part {
         place: place + step as f64,

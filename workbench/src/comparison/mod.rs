@@ -1,4 +1,5 @@
 //! Comparison of a model with measurements by condition, time and channel, in units of the instruments' noise.
+mod current_groups;
 mod groups;
 mod raw_error;
 mod show;
@@ -8,7 +9,7 @@ mod worst;
 use std::sync::Arc;
 
 use hitch_campaign::Campaign;
-use hitch_identification::data::experiment::{Experiment, ReadyRun};
+use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::estimation::fit::{ErrorSums, Fit};
 use hitch_identification::explanation::explain::fit_base;
@@ -18,6 +19,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tally::Tally;
 
+pub use current_groups::CurrentGroups;
 pub use groups::Grouping;
 pub use raw_error::{RawError, raw_errors};
 pub use worst::{WorstStretch, worst_by_part, worst_in_part};
@@ -82,6 +84,8 @@ pub struct Evaluated {
     pub experiment: Arc<Experiment>,
     /// The model's simulation and residuals, each run's weighed load corrected within its tolerance.
     pub fit: Fit,
+    /// Groups of the currents of the model's valves.
+    pub groups: CurrentGroups,
 }
 
 impl Evaluated {
@@ -90,9 +94,15 @@ impl Evaluated {
     pub fn new(campaign: &Campaign, model: &Model) -> Self {
         let experiment = Experiment::new(campaign, model);
         let fit = fit_base(Problem::new(&experiment, model));
+        Self::fitted(Arc::new(experiment), fit, model)
+    }
+
+    /// A fit of a model.
+    pub fn fitted(experiment: Arc<Experiment>, fit: Fit, model: &Model) -> Self {
         Self {
-            experiment: Arc::new(experiment),
+            experiment,
             fit,
+            groups: CurrentGroups::of(model),
         }
     }
 
@@ -175,7 +185,8 @@ fn cells(evaluated: &Evaluated) -> Vec<Cell> {
                 for (sample, residual) in
                     evaluated.residuals(index, channel).into_iter().enumerate()
                 {
-                    tally(&mut parts, by, run, sample, residual);
+                    let part = by.part(&evaluated.groups, run, sample);
+                    tally(&mut parts, part, residual);
                 }
             }
             parts.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
@@ -192,14 +203,8 @@ fn cells(evaluated: &Evaluated) -> Vec<Cell> {
     cells
 }
 
-fn tally(
-    parts: &mut Vec<(groups::Part, Tally)>,
-    by: Grouping,
-    run: &ReadyRun,
-    sample: usize,
-    residual: f64,
-) {
-    let Some(part) = residual.is_finite().then(|| by.part(run, sample)).flatten() else {
+fn tally(parts: &mut Vec<(groups::Part, Tally)>, part: Option<groups::Part>, residual: f64) {
+    let Some(part) = part.filter(|_| residual.is_finite()) else {
         return;
     };
     match parts.iter_mut().find(|(known, _)| *known == part) {

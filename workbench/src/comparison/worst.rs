@@ -43,7 +43,9 @@ pub fn worst_by_part(
     by: Grouping,
     channel: Channel,
 ) -> Vec<(String, usize, WorstStretch)> {
-    let located = worst_by(evaluated, channel, |run, sample| by.part(run, sample));
+    let located = worst_by(evaluated, channel, |run, sample| {
+        by.part(&evaluated.groups, run, sample)
+    });
     let named = |(part, run, stretch): Located<Part>| (part.name, run, stretch);
     located.into_iter().map(named).collect()
 }

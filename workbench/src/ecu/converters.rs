@@ -1,5 +1,7 @@
 //! Converts quantities into converter codes, with the noise of sensors and wiring.
 
+use std::ops::RangeInclusive;
+
 use hitch_ecu::{AdcCode, BoardScaling, Samples};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -7,6 +9,8 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::closed_loop::{ANGLE_NOISE_DEG, CURRENT_NOISE_A, CYLINDER_NOISE_BAR, PUMP_NOISE_BAR};
 
+/// Range of the sensors of rocker, lever and upper-limit dial of the board, degree.
+pub const SENSORS_DEG: RangeInclusive<f64> = 35.0..=145.0;
 /// Number of codes of 12 bits.
 const CODES: f64 = 4096.0;
 /// One sigma of the noise of lever and dials: one code.
@@ -62,10 +66,12 @@ impl Converters {
         let code = |of_full_scale: f64| code(of_full_scale / signals.reference);
         let full_scale = |millivolts: i32| f64::from(millivolts) * 1e-3;
         let full_scale_a = f64::from(BoardScaling::NOMINAL.current.0) * 1e-3;
-        // 10 % to 90 % of the sensor supply: 35 to 145 degrees, 0 to 250 bar, closed to open.
+        // 10 % to 90 % of the sensor supply: the range of the angle, 0 to 250 bar, closed to open.
         let signal = signals.sensor_supply_v / full_scale(BoardScaling::NOMINAL.signal.0);
         let ratiometric = |share: f64| code((0.1 + 0.8 * share) * signal);
-        let angle_deg = |angle_deg: f64| ratiometric((angle_deg - 35.0) / 110.0);
+        let (first_deg, last_deg) = (*SENSORS_DEG.start(), *SENSORS_DEG.end());
+        let angle_deg =
+            |angle_deg: f64| ratiometric((angle_deg - first_deg) / (last_deg - first_deg));
         Samples {
             rocker_angle: angle_deg(noisy(signals.rocker_angle_deg, ANGLE_NOISE_DEG)),
             lever: angle_deg(noisy(signals.lever_deg, 110.0 * POTENTIOMETER_NOISE)),

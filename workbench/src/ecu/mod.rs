@@ -17,5 +17,5 @@ pub use emulator::{Emulator, Mode, QEMU, command as emulator_command};
 pub use flash::{CALIBRATION_BYTES, CutFlash, FLASH_BYTES, delivered};
 pub use image::{IMAGE_VARIABLE, find as find_image};
 pub use machine::{EcuMachine, MachineError, OnHost};
-pub use operator::{Operator, Order};
+pub use operator::{Operator, Order, reach_deg};
 pub use pace::{Pace, PaceChange};

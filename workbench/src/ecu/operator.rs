@@ -1,11 +1,27 @@
 //! The operator: lever, dials and switches, and the commands that move them.
 
-use std::str::FromStr;
+use std::ops::RangeInclusive;
 
 use hitch_ecu::{Contact, Panel};
+use hitch_plant::Model;
+
+use super::converters::SENSORS_DEG;
 
 /// Speed of a lever moved by hand, degrees per second.
 const HAND_DEG_PER_S: f64 = 60.0;
+
+/// Travel of the lever beyond both ends of the hitch's, degree.
+const BEYOND_DEG: f64 = 10.0;
+
+/// Range of lever and upper-limit dial of a machine on the scale of the rocker angle, in whole degrees: the travel of the
+/// hitch and some degrees more, as far as the board's sensors measure it.
+#[must_use]
+pub fn reach_deg(model: &Model) -> RangeInclusive<f64> {
+    let (low_rad, high_rad) = model.linkage().swing_rad();
+    let low_deg = (low_rad.to_degrees() - BEYOND_DEG).ceil();
+    let high_deg = (high_rad.to_degrees() + BEYOND_DEG).floor();
+    low_deg.max(*SENSORS_DEG.start())..=high_deg.min(*SENSORS_DEG.end())
+}
 
 /// A command to the operator.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,10 +48,12 @@ impl Order {
         service on|off, limit DEG, dial PERCENT, power, quit";
 }
 
-impl FromStr for Order {
-    type Err = String;
-
-    fn from_str(line: &str) -> Result<Self, String> {
+impl Order {
+    /// The command in a line; `reach_deg` is the range of lever and upper-limit dial, degree.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn parse(line: &str, reach_deg: &RangeInclusive<f64>) -> Result<Self, String> {
         let unknown = || {
             format!(
                 "unknown command `{}`; commands: {}",
@@ -56,8 +74,10 @@ impl FromStr for Order {
             _ => Err(unknown()),
         };
         Ok(match *words.as_slice() {
-            ["lever", angle] => Self::Lever(number(angle, 35.0, 145.0)?),
-            ["limit", angle] => Self::UpperLimit(number(angle, 35.0, 145.0)?),
+            ["lever", angle] => Self::Lever(number(angle, *reach_deg.start(), *reach_deg.end())?),
+            ["limit", angle] => {
+                Self::UpperLimit(number(angle, *reach_deg.start(), *reach_deg.end())?)
+            }
             ["dial", percent] => Self::LoweringDial(number(percent, 0.0, 100.0)? / 100.0),
             ["up"] => Self::Contact(Contact::Up, true),
             ["down"] => Self::Contact(Contact::Down, true),
@@ -94,7 +114,7 @@ impl Operator {
         Self {
             lever_deg,
             lever_target_deg: lever_deg,
-            upper_limit_deg: 145.0,
+            upper_limit_deg: *SENSORS_DEG.end(),
             lowering_dial: 1.0,
             panel: Panel::FIELD,
         }
@@ -129,17 +149,34 @@ mod tests {
 
     #[test]
     fn orders_are_words() {
-        assert_eq!("lever 80".parse(), Ok(Order::Lever(80.0)));
+        let parse = |line| Order::parse(line, &(35.0..=145.0));
+        assert_eq!(parse("lever 80"), Ok(Order::Lever(80.0)));
         assert_eq!(
-            " lock  on ".parse(),
+            parse(" lock  on "),
             Ok(Order::Contact(Contact::FieldMode, false))
         );
+        assert!(parse("lever 300").unwrap_err().contains("35 to 145"));
+        assert!(parse("jump").unwrap_err().contains("lever DEG"));
+    }
+
+    #[test]
+    fn the_lever_reaches_as_far_as_the_hitch_and_its_sensor() {
+        let nominal = hitch_model_file::nominal();
+        assert_eq!(reach_deg(&nominal), 35.0..=145.0);
+        let mut constants = nominal.constants().clone();
+        constants.cylinder.stroke_m = 0.1;
+        let short = nominal.with_constants(constants).expect("a linkage");
+        let (low_rad, high_rad) = short.linkage().swing_rad();
+        let reach = reach_deg(&short);
+        let beyond_deg = [
+            low_rad.to_degrees() - reach.start(),
+            reach.end() - high_rad.to_degrees(),
+        ];
         assert!(
-            "lever 300"
-                .parse::<Order>()
-                .unwrap_err()
-                .contains("35 to 145")
+            beyond_deg
+                .iter()
+                .all(|beyond| (9.0..=10.0).contains(beyond))
         );
-        assert!("jump".parse::<Order>().unwrap_err().contains("lever DEG"));
+        assert!(*reach.end() < 145.0 && *reach.start() > 35.0, "{reach:?}");
     }
 }

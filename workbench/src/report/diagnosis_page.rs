@@ -33,10 +33,7 @@ pub fn page(
         "Single effects that {} may lack on {}",
         shown.head.model, shown.head.campaign
     );
-    let evaluated = |fit: &Fit| Evaluated {
-        experiment: Arc::new(experiment.clone()),
-        fit: fit.clone(),
-    };
+    let evaluated = |fit: &Fit| Evaluated::fitted(Arc::new(experiment.clone()), fit.clone(), model);
     let before = evaluated(&found.base);
     let accepted = |best: &&candidate::Candidate| best.likelihood_ratio >= SIGNIFICANT;
     let after = found.candidates.first().filter(accepted);

@@ -39,9 +39,12 @@ pub fn findings(found: &Found) -> Markup {
 
 /// The evidence: error map, all runs, and errors by channel.
 pub fn details(found: &Found) -> Markup {
-    let evaluated = |fit: &Fit| Evaluated {
-        experiment: Arc::new(found.experiment.clone()),
-        fit: fit.clone(),
+    let evaluated = |fit: &Fit| {
+        Evaluated::fitted(
+            Arc::new(found.experiment.clone()),
+            fit.clone(),
+            &found.model,
+        )
     };
     let (before, after) = (
         evaluated(&found.explanation.before),

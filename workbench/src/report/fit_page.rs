@@ -45,9 +45,12 @@ pub fn page(shown: &Shown<'_>) -> String {
 
 fn sections(shown: &Shown<'_>) -> Markup {
     let told = shown.told;
-    let evaluated = |fit: &Fit| Evaluated {
-        experiment: Arc::new(shown.experiment.clone()),
-        fit: fit.clone(),
+    let evaluated = |fit: &Fit| {
+        Evaluated::fitted(
+            Arc::new(shown.experiment.clone()),
+            fit.clone(),
+            shown.declared,
+        )
     };
     let (before, after) = (evaluated(&shown.fit.before), evaluated(&shown.fit.after));
     let before = (shown.declared, &before);

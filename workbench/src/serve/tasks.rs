@@ -358,7 +358,7 @@ impl Ready {
         let experiment = Arc::clone(&self.subject.start.experiment);
         Step {
             title,
-            evaluated: Arc::new(Evaluated { experiment, fit }),
+            evaluated: Arc::new(Evaluated::fitted(experiment, fit, &self.subject.model)),
             held_out: held_out.filter(|error| error.is_finite()),
             terms: self.present.terms.clone(),
         }

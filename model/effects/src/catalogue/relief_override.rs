@@ -19,8 +19,8 @@ pub static RELIEF_OVERRIDE: Described = Described {
     equation: "p_P = p_set + override (Q_relief / Q_pump - 1 + above)",
     source: "Merritt 5.6; 10 to 25 bar over the range of a direct-acting valve, Hopsan's example 15 \
          bar at 42 l/min",
-    shows: "lifting against more than 130 bar and pump pressure at the upper end of the stroke: only \
-         there does the relief valve work",
+    shows: "lifting against a pressure near the setting of the relief valve, and pump pressure at the upper end of the \
+         stroke: only there does the relief valve work",
     parameters: &[
         Parameter {
             name: "override",

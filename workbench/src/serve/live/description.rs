@@ -3,6 +3,7 @@
 use hitch_plant::{LinkageError, Model};
 use hitch_quantities::ValidCalibration;
 use hitch_quantities::calibration::valve_table::ValveTable;
+use hitch_quantities::units::MilliAmp;
 use serde_json::{Value, json};
 
 use super::machine::Machine;
@@ -11,8 +12,6 @@ use crate::error::Error;
 
 /// Drawn positions of the linkage over its swing; the page interpolates between them with less than 0.2 mm of error.
 const POSITIONS: u32 = 64;
-/// Largest current of a drawn valve map, A.
-const LARGEST_CURRENT_A: f64 = 3.5;
 
 /// The description of a machine whose hitches begin at an angle, degree.
 ///
@@ -64,16 +63,20 @@ fn linkage(model: &Model) -> Result<Value, LinkageError> {
     }))
 }
 
-/// Flow over current of both valves.
+/// Flow over current of both valves, up to the largest current of each.
 fn valve_maps(calibration: &ValidCalibration) -> Value {
-    let map = |table: &ValveTable| {
+    let map = |table: &ValveTable, limit: MilliAmp| {
         let points = table.used().iter();
         let pairs = points.map(|point| {
             let flow_lpm = f64::from(point.flow.0) * 60e-6;
             [f64::from(point.current.0) * 1e-3, flow_lpm]
         });
         let saturated_lpm = f64::from(table.saturation().0) * 60e-6;
-        let ends = [[LARGEST_CURRENT_A, saturated_lpm]];
+        let last = table
+            .used()
+            .last()
+            .map_or(limit, |last| limit.max(last.current));
+        let ends = [[f64::from(last.0) * 1e-3, saturated_lpm]];
         let threshold_a = f64::from(table.threshold().0) * 1e-3;
         let all: Vec<[f64; 2]> = std::iter::once([0.0, 0.0])
             .chain(pairs)
@@ -86,13 +89,36 @@ fn valve_maps(calibration: &ValidCalibration) -> Value {
             "saturation_lpm": saturated_lpm,
         })
     };
-    json!({ "lift": map(&calibration.lift), "lower": map(&calibration.lower) })
+    let safety = &calibration.safety;
+    json!({
+        "lift": map(&calibration.lift, safety.lift_current_limit),
+        "lower": map(&calibration.lower, safety.lower_current_limit),
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use hitch_plant::LinkageTable;
+
+    #[test]
+    fn a_valve_map_ends_at_the_largest_current_of_its_valve() {
+        let mut calibration = hitch_quantities::Calibration::nominal();
+        let last_a = |calibration: &hitch_quantities::Calibration, valve: &str| {
+            let valid = calibration.clone().sealed().validate().expect("valid");
+            let maps = valve_maps(&valid);
+            let currents = maps[valve]["current_a"].as_array().expect("currents");
+            currents[currents.len() - 1].as_f64().expect("a current")
+        };
+        assert_eq!(last_a(&calibration, "lift"), 3.5);
+        calibration.safety.lower_current_limit = MilliAmp(4_000);
+        assert_eq!(last_a(&calibration, "lower"), 4.0);
+        for point in &mut calibration.lift.points {
+            point.current = MilliAmp(point.current.0 * 2 / 5);
+        }
+        calibration.safety.lift_current_limit = MilliAmp(1_600);
+        assert_eq!(last_a(&calibration, "lift"), 1.6);
+    }
 
     #[test]
     fn a_measured_linkage_is_sketched_with_its_heights() {
