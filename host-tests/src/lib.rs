@@ -7,6 +7,7 @@ pub mod ecu_day;
 pub mod ecu_tool;
 pub mod emulator;
 pub mod frozen_angle;
+pub mod german_log;
 pub mod hidden_effects;
 pub mod html_report;
 pub mod instruction_counts;

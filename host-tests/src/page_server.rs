@@ -53,7 +53,17 @@ impl PageServer {
     /// If it does not start.
     #[must_use]
     pub fn start(folder: &Path, arguments: &[&str]) -> Self {
+        Self::start_with(folder, arguments, &[])
+    }
+
+    /// Starts it in a folder with arguments and paths in environment variables.
+    ///
+    /// # Panics
+    /// If it does not start.
+    #[must_use]
+    pub fn start_with(folder: &Path, arguments: &[&str], variables: &[(&str, &Path)]) -> Self {
         let mut command = hitch();
+        command.envs(variables.iter().copied());
         command.arg("serve").arg("--no-browser").args(arguments);
         command.current_dir(folder).stdout(Stdio::piped());
         let mut program = command.spawn().expect("hitch starts");
@@ -122,6 +132,13 @@ impl PageServer {
             ("Content-Type", "application/json"),
         ];
         self.request(&line, &headers, &body.to_string())
+    }
+
+    /// Posts the bytes of a file to a path of the page.
+    #[must_use]
+    pub fn send(&self, path: &str, text: &str) -> Answer {
+        let line = format!("POST {}{path}", self.path);
+        self.request(&line, &[("Host", &self.host)], text)
     }
 
     /// Begins a session; its id.

@@ -8,6 +8,7 @@ mod ecu_process;
 mod ecu_tools;
 mod emulated;
 mod emulated_ecu;
+mod files_in_browser;
 mod page_in_browser;
 mod python_clients;
 mod report_in_browser;
@@ -15,3 +16,4 @@ mod running_ecu;
 #[cfg(unix)]
 mod serial_adapter;
 mod serve;
+mod upload;

@@ -113,6 +113,21 @@ pub fn fits(unit: &str, name: &str) -> bool {
     column(name).is_some_and(|column| is_unit_of(unit, column))
 }
 
+/// The usual units of a column of a run, the one of the format first.
+pub fn usual_units(name: &str) -> impl Iterator<Item = &'static str> {
+    const USUAL: [&str; 26] = [
+        "s", "ms", "us", "min", "h", "A", "mA", "bar", "mbar", "kPa", "MPa", "Pa", "psi", "l/min",
+        "l/s", "ml/min", "gpm", "deg", "rad", "mm", "cm", "m", "degC", "K", "degF", "uA",
+    ];
+    let column = column(name);
+    let own = column.map(|column| column.unit);
+    let others = USUAL.into_iter().filter(move |unit| {
+        let fits = column.is_some_and(|column| is_unit_of(unit, column));
+        fits && Some(*unit) != own
+    });
+    own.into_iter().chain(others)
+}
+
 /// Validates a value of `name =` under `[columns]`: the name in the log, with an optional unit.
 ///
 /// # Errors
@@ -125,3 +140,25 @@ pub fn check_source(name: &str, text: &str) -> Result<(String, Option<String>), 
 
 /// Name of the time column.
 pub const TIMES: &str = TIME;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn usual_units_are_those_of_the_quantity() {
+        for (name, own) in run_columns() {
+            let units: Vec<&str> = usual_units(name).collect();
+            assert_eq!(units.first(), Some(&own), "{name}");
+            assert!(
+                units.iter().all(|unit| fits(unit, name)),
+                "{name} {units:?}"
+            );
+        }
+        let of = |name| usual_units(name).collect::<Vec<_>>();
+        assert_eq!(of("lift_current_a"), ["A", "mA", "uA"]);
+        assert!(of("rocker_angle_deg").contains(&"mm"));
+        assert_eq!(of("oil_temperature_c"), ["degC", "K", "degF"]);
+        assert!(of("moon").is_empty());
+    }
+}

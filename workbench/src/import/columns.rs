@@ -33,6 +33,8 @@ pub struct Taken {
     pub source: String,
     /// Reason.
     pub reason: String,
+    /// Whether name or unit is an assumption, which the user should check.
+    pub is_assumed: bool,
 }
 
 /// Assignment for a log.
@@ -57,6 +59,8 @@ struct Candidate<'c> {
     score: i32,
     /// Evidence.
     by: &'static str,
+    /// Whether the evidence is weak.
+    is_weak: bool,
 }
 
 impl Mapping {
@@ -69,52 +73,116 @@ impl Mapping {
         kind: Kind,
         named: &[(String, String)],
     ) -> Result<Self, Untold> {
+        match Self::draft(columns, kind, named) {
+            (mapping, None) => Ok(mapping),
+            (_, Some(untold)) => Err(untold),
+        }
+    }
+
+    /// An assignment of the columns that can be determined, and the first one that cannot.
+    #[must_use]
+    pub fn draft(
+        columns: &[LogColumn],
+        kind: Kind,
+        named: &[(String, String)],
+    ) -> (Self, Option<Untold>) {
         let mut mapping = Self::default();
+        let mut untold: Option<Untold> = None;
         let mut used: Vec<String> = Vec::new();
         for (channel, source) in named {
-            let (name, _) = check_source(channel, source).map_err(|what| Untold {
-                what: format!("--map {channel}={source}: {what}"),
-                mend: "write it as --map CHANNEL=\"NAME:UNIT\"".to_owned(),
-            })?;
-            let known = run_columns().find(|(known, _)| known == channel);
-            if let Some((channel, _)) = known {
-                used.push(name);
-                mapping.take(channel, source.clone(), "given by --map".to_owned());
+            match mapping.name(channel, source, "given by --map") {
+                Ok(name) => used.push(name),
+                Err(what) => {
+                    untold.get_or_insert(Untold {
+                        what: format!("--map {channel}={source}: {what}"),
+                        mend: "write it as --map CHANNEL=\"NAME:UNIT\"".to_owned(),
+                    });
+                }
             }
         }
         if kind == Kind::Table && !mapping.has(TIMES) {
-            let (column, source, reason) = time(columns)
-                .ok_or_else(|| missing(TIMES, "times have to rise from row to row", columns))?;
-            used.push(column.name.clone());
-            mapping.take(TIMES, source, reason);
+            match time(columns) {
+                Some((column, taken)) => {
+                    used.push(column.name.clone());
+                    mapping.taken.push(taken);
+                }
+                None => {
+                    untold.get_or_insert_with(|| no_times(columns));
+                }
+            }
         }
         for words in &CHANNELS {
             if mapping.has(words.channel) {
                 continue;
             }
             let free = columns.iter().filter(|column| !used.contains(&column.name));
-            if let Some((column, source, reason)) = proposal(words, free)? {
-                used.push(column.name.clone());
-                let source = match kind {
-                    Kind::Signals => column.name.clone(),
-                    Kind::Table | Kind::Channels => source,
-                };
-                mapping.take(words.channel, source, reason);
+            match proposal(words, kind, free) {
+                Ok(Some((column, taken))) => {
+                    used.push(column.name.clone());
+                    mapping.taken.push(taken);
+                }
+                Ok(None) => {}
+                Err(unclear) => {
+                    untold.get_or_insert(unclear);
+                }
             }
         }
+        let complete = mapping.check(columns);
+        mapping.order();
+        (mapping, untold.or(complete.err()))
+    }
+
+    /// The assignment that the user gives, and nothing else.
+    ///
+    /// # Errors
+    /// If a column is not in the log, its unit is not one of the quantity, or a required column is missing.
+    pub fn given(
+        columns: &[LogColumn],
+        kind: Kind,
+        named: &[(String, String)],
+    ) -> Result<Self, Untold> {
+        let mut mapping = Self::default();
+        let wrong = |what: String| Untold {
+            what,
+            mend: "choose another column or unit".to_owned(),
+        };
+        for (channel, source) in named {
+            if mapping.has(channel) {
+                return Err(wrong(format!("{channel} is assigned twice")));
+            }
+            let name = mapping
+                .name(channel, source, "given by the user")
+                .map_err(wrong)?;
+            if columns.iter().all(|column| column.name != name) {
+                return Err(wrong(format!("there is no column \"{name}\"")));
+            }
+        }
+        if kind == Kind::Table && !mapping.has(TIMES) {
+            return Err(no_times(columns));
+        }
         mapping.check(columns)?;
-        mapping
-            .taken
-            .sort_by_key(|taken| run_columns().position(|(name, _)| name == taken.channel));
+        mapping.order();
         Ok(mapping)
     }
 
-    fn take(&mut self, channel: &'static str, source: String, reason: String) {
-        self.taken.push(Taken {
-            channel,
-            source,
-            reason,
-        });
+    /// Assigns a column as named by the user; returns its name in the log.
+    fn name(&mut self, channel: &str, source: &str, reason: &str) -> Result<String, String> {
+        let (name, _) = check_source(channel, source)?;
+        if let Some((channel, _)) = run_columns().find(|(known, _)| *known == channel) {
+            self.taken.push(Taken {
+                channel,
+                source: source.to_owned(),
+                reason: reason.to_owned(),
+                is_assumed: false,
+            });
+        }
+        Ok(name)
+    }
+
+    /// Sorts the columns as those of a run.
+    fn order(&mut self) {
+        self.taken
+            .sort_by_key(|taken| run_columns().position(|(name, _)| name == taken.channel));
     }
 
     fn has(&self, channel: &str) -> bool {
@@ -140,6 +208,10 @@ impl Mapping {
     }
 }
 
+fn no_times(columns: &[LogColumn]) -> Untold {
+    missing(TIMES, "times have to rise from row to row", columns)
+}
+
 fn missing(channel: &str, why: &str, columns: &[LogColumn]) -> Untold {
     const MOST: usize = 16;
     let names: Vec<&str> = columns
@@ -157,8 +229,14 @@ fn missing(channel: &str, why: &str, columns: &[LogColumn]) -> Untold {
     }
 }
 
-/// The column of the times, as in `[columns]`.
-fn time(columns: &[LogColumn]) -> Option<(&LogColumn, String, String)> {
+/// The column of the times.
+fn time(columns: &[LogColumn]) -> Option<(&LogColumn, Taken)> {
+    let taken = |source: String, reason: &str, is_assumed| Taken {
+        channel: TIMES,
+        source,
+        reason: reason.to_owned(),
+        is_assumed,
+    };
     let rises = |column: &&LogColumn| {
         let known: Vec<f64> = column
             .values
@@ -185,14 +263,12 @@ fn time(columns: &[LogColumn]) -> Option<(&LogColumn, String, String)> {
             // Without a unit it is in seconds, or since an epoch that the reader determines by magnitude.
             None => column.name.clone(),
         };
-        return Some((column, source, "rises from row to row".to_owned()));
+        let is_assumed = unit_of_time(column).is_none();
+        return Some((column, taken(source, "rises from row to row", is_assumed)));
     }
     clock.map(|column| {
-        (
-            column,
-            column.name.clone(),
-            "dates or times of day".to_owned(),
-        )
+        let source = column.name.clone();
+        (column, taken(source, "dates or times of day", false))
     })
 }
 
@@ -203,11 +279,12 @@ fn unit_of_time(column: &LogColumn) -> Option<&str> {
         .filter(|unit| *unit != "V" && fits(unit, TIMES))
 }
 
-/// Assignment of a log's column: column, source, reason.
-type Proposal<'c> = Option<(&'c LogColumn, String, String)>;
+/// Assignment of a log's column.
+type Proposal<'c> = Option<(&'c LogColumn, Taken)>;
 
 fn proposal<'c>(
     words: &Words,
+    kind: Kind,
     columns: impl Iterator<Item = &'c LogColumn>,
 ) -> Result<Proposal<'c>, Untold> {
     let mut candidates: Vec<Candidate<'c>> = columns
@@ -238,8 +315,18 @@ fn proposal<'c>(
     let Some((unit, by_unit)) = unit(words.channel, column) else {
         return Ok(None);
     };
-    let reason = format!("{}; {by_unit}", best.by);
-    Ok(Some((column, format!("{}:{unit}", column.name), reason)))
+    let is_stated = column.unit.as_ref() == Some(&unit);
+    let source = match kind {
+        Kind::Signals => column.name.clone(),
+        Kind::Table | Kind::Channels => format!("{}:{unit}", column.name),
+    };
+    let taken = Taken {
+        channel: words.channel,
+        source,
+        reason: format!("{}; {by_unit}", best.by),
+        is_assumed: best.is_weak || !is_stated,
+    };
+    Ok(Some((column, taken)))
 }
 
 fn candidate<'c>(words: &Words, column: &'c LogColumn) -> Option<Candidate<'c>> {
@@ -255,16 +342,17 @@ fn candidate<'c>(words: &Words, column: &'c LogColumn) -> Option<Candidate<'c>> 
     // For a quantity with a single channel, unit or name suffices; for others the name has to identify the channel.
     let least = if words.is_only_one() { 1 } else { 2 };
     let (by_name, by_comment) = (words.score(&column.name), words.score(&column.comment));
-    let (by_words, by) = match by_name {
-        name if name >= least => (name, "by its name"),
-        0.. if by_comment >= least => (by_comment, "by its comment"),
-        0 if words.is_only_one() && by_unit > 0 => (0, "the only one in that unit"),
+    let (by_words, by, is_weak) = match by_name {
+        name if name >= least => (name, "by its name", false),
+        0.. if by_comment >= least => (by_comment, "by its comment", false),
+        0 if words.is_only_one() && by_unit > 0 => (0, "the only one in that unit", true),
         _ => return None,
     };
     Some(Candidate {
         column,
         score: by_words * 2 + by_unit,
         by,
+        is_weak,
     })
 }
 

@@ -5,28 +5,31 @@ use std::io::IsTerminal as _;
 
 use hitch_campaign::survey::{LogColumn, check_source};
 
-use super::{Kind, Mapping, Untold};
+use super::{Columns, Mapping, Untold};
 use crate::error::Error;
 use crate::output;
 
-/// Assigns the columns below a heading. Asks if allowed, and if standard input and output are a terminal.
+/// Assigns the columns of a log. Asks if allowed, and if standard input and output are a terminal.
 ///
 /// # Errors
 /// If a required column cannot be determined without an answer, or the user stops.
 pub fn agreed(
-    heading: &str,
-    columns: &[LogColumn],
-    kind: Kind,
+    found: &Columns,
     named: &[(String, String)],
     may_ask: bool,
 ) -> Result<Mapping, Error> {
+    let Columns {
+        heading,
+        kind,
+        columns,
+    } = found;
     let asks = may_ask && io::stdin().is_terminal() && io::stdout().is_terminal();
     let mut named = named.to_vec();
     if asks {
         output::print(&format!("{heading} has\n{}", listed(columns)))?;
     }
     loop {
-        let proposal = Mapping::propose(columns, kind, &named);
+        let proposal = Mapping::propose(columns, *kind, &named);
         match &proposal {
             Ok(mapping) => output::print(&shown(heading, columns, mapping))?,
             Err(Untold { what, .. }) if asks => output::print(&format!("{what}\n"))?,

@@ -3,9 +3,14 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use hitch_campaign::Campaign;
 use hitch_model_file::quoted;
+use hitch_plant::Linkage;
 
 use super::columns::Mapping;
+use super::conditions::Conditions;
+use super::cuts::cuts;
+use crate::error::Error;
 
 /// A log of a campaign.
 #[derive(Debug, Clone)]
@@ -14,15 +19,34 @@ pub struct Log {
     pub file: String,
     /// Column assignment; `None` if the default applies.
     pub mapping: Option<Mapping>,
-    /// Bench, with load or pressure.
-    pub bench: String,
+    /// Test stand.
+    pub conditions: Conditions,
     /// Times of its runs, s; empty for a single run.
     pub cuts: Vec<(f64, f64)>,
 }
 
+/// The manifest of a campaign in `folder`, and the campaign itself; long logs are split into runs.
+///
+/// # Errors
+/// If a log does not contain what its mapping states.
+pub fn campaign(
+    folder: &Path,
+    name: &str,
+    can: Option<&str>,
+    mut logs: Vec<Log>,
+    linkage: &Linkage,
+) -> Result<(String, Campaign), Error> {
+    let whole = Campaign::of_manifest(folder, &text(name, can, &logs), linkage)?;
+    for (log, run) in logs.iter_mut().zip(&whole.runs) {
+        log.cuts = cuts(run);
+    }
+    let text = text(name, can, &logs);
+    let campaign = Campaign::of_manifest(folder, &text, linkage)?;
+    Ok((text, campaign))
+}
+
 /// The text of the manifest.
-#[must_use]
-pub fn text(name: &str, can: Option<&str>, logs: &[Log]) -> String {
+fn text(name: &str, can: Option<&str>, logs: &[Log]) -> String {
     let mut text = format!("format = 1\nname = {}\n", quoted(name));
     if let Some(can) = can {
         text += can;
@@ -46,7 +70,7 @@ pub fn text(name: &str, can: Option<&str>, logs: &[Log]) -> String {
                 text,
                 "\n[[run]]\nfile = {}\n{}",
                 quoted(&log.file),
-                log.bench
+                log.conditions.lines()
             );
             if to_s.is_finite() {
                 let _ = write!(text, "from_s = {from_s}\nto_s = {to_s}\n");

@@ -21,6 +21,9 @@ const FILES: &[(&str, &str, &str)] = &[
     ),
     ("main.js", SCRIPT, include_str!("assets/main.js")),
     ("server.js", SCRIPT, include_str!("assets/server.js")),
+    ("fault.js", SCRIPT, include_str!("assets/fault.js")),
+    ("files.js", SCRIPT, include_str!("assets/files.js")),
+    ("mapping.js", SCRIPT, include_str!("assets/mapping.js")),
     ("own_term.js", SCRIPT, include_str!("assets/own_term.js")),
     (
         "closed_loop.js",

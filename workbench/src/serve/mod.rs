@@ -13,6 +13,7 @@ mod session;
 mod sessions;
 mod source;
 mod tasks;
+mod upload;
 mod views;
 
 pub use server::run;

@@ -31,14 +31,33 @@ pub fn run(source: Source, port: u16, open_browser: bool) -> Result<(), Error> {
         eprintln!("hitch: the browser could not be opened ({error}); open the address above");
     }
     // Reads the campaign in advance, so that the first page loads faster.
-    runtime.spawn_blocking(move || match sessions.subject() {
+    let early = Arc::clone(&sessions);
+    runtime.spawn_blocking(move || match early.subject() {
         Ok(_) => {}
         Err(error) => eprintln!("hitch: {error}"),
     });
-    let stopped = runtime.block_on(tokio::signal::ctrl_c());
+    let stopped = runtime.block_on(stopped());
     // Running computations and open pages do not delay the exit.
     runtime.shutdown_background();
+    sessions.folders.close();
     stopped.map_err(cannot_start)
+}
+
+/// Waits until the server is to stop: Ctrl-C, or the signal to terminate.
+async fn stopped() -> std::io::Result<()> {
+    let (send, mut receive) = tokio::sync::mpsc::channel(1);
+    #[cfg(unix)]
+    {
+        use tokio::signal::unix::{SignalKind, signal};
+        let mut terminated = signal(SignalKind::terminate())?;
+        let send = send.clone();
+        tokio::spawn(async move {
+            terminated.recv().await;
+            send.send(Ok(())).await
+        });
+    }
+    tokio::spawn(async move { send.send(tokio::signal::ctrl_c().await).await });
+    receive.recv().await.unwrap_or(Ok(()))
 }
 
 /// Starts the server in the background of the current runtime; returns the address of the page.

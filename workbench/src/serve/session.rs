@@ -14,6 +14,7 @@ use tokio::sync::broadcast;
 
 use super::live::Bench;
 use super::source::Subject;
+use super::upload::Upload;
 use crate::comparison::Evaluated;
 use crate::explanation;
 
@@ -96,6 +97,8 @@ pub struct Session {
     pub job: Option<Job>,
     /// The closed loop.
     pub bench: Option<Bench>,
+    /// The files that are being opened.
+    pub upload: Option<Arc<Upload>>,
     /// Sends messages to the tab.
     pub messages: broadcast::Sender<Value>,
 }
@@ -103,22 +106,26 @@ pub struct Session {
 impl Session {
     /// The session of a tab that was just opened.
     pub fn new(subject: Arc<Subject>) -> Self {
-        let first = Step {
-            title: format!("Model {}", subject.model.name),
-            evaluated: Arc::clone(&subject.start),
-            held_out: None,
-            terms: subject.model.terms.clone(),
-        };
         Self {
+            steps: vec![first(&subject)],
             subject,
-            steps: vec![first],
             at: 0,
             ranking: None,
             explained: None,
             job: None,
             bench: None,
+            upload: None,
             messages: broadcast::Sender::new(KEPT_MESSAGES),
         }
+    }
+
+    /// Opens another campaign; the steps of the present one are lost.
+    pub fn open(&mut self, subject: Arc<Subject>) {
+        self.cancel();
+        self.steps = vec![first(&subject)];
+        self.at = 0;
+        self.subject = subject;
+        (self.ranking, self.explained, self.bench) = (None, None, None);
     }
 
     /// The campaign and the initial model.
@@ -179,6 +186,16 @@ impl Session {
         if let Some(job) = self.job.take() {
             job.cancelled.store(true, Ordering::Relaxed);
         }
+    }
+}
+
+/// The step of the initial model.
+fn first(subject: &Subject) -> Step {
+    Step {
+        title: format!("Model {}", subject.model.name),
+        evaluated: Arc::clone(&subject.start),
+        held_out: None,
+        terms: subject.model.terms.clone(),
     }
 }
 

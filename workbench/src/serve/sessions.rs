@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::guard::random_token;
 use super::session::Session;
 use super::source::{Source, Subject};
+use super::upload::Folders;
 use crate::error::Error;
 
 /// Maximum number of sessions; the oldest is dropped, and its tab starts a new one.
@@ -18,6 +19,8 @@ pub type Shared = Arc<Mutex<Session>>;
 pub struct Sessions {
     source: Source,
     subject: Mutex<Option<Arc<Subject>>>,
+    /// Temporary folders of the tabs.
+    pub folders: Folders,
     /// Sessions, the newest last.
     known: Mutex<VecDeque<(String, Shared)>>,
 }
@@ -28,6 +31,7 @@ impl Sessions {
         Self {
             source,
             subject: Mutex::default(),
+            folders: Folders::default(),
             known: Mutex::default(),
         }
     }

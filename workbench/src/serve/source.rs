@@ -41,15 +41,20 @@ impl Source {
             Some(folder) => Campaign::load_with(folder, self.model.linkage())?,
             None => demonstration::campaign()?,
         };
-        Ok(Subject {
-            description: campaign.description.clone(),
-            start: Arc::new(Evaluated::new(&campaign, &self.model)),
-            model: self.model.clone(),
-        })
+        Ok(Subject::new(&campaign, self.model.clone()))
     }
 }
 
 impl Subject {
+    /// Evaluates a model on a campaign.
+    pub fn new(campaign: &Campaign, model: Model) -> Self {
+        Self {
+            description: campaign.description.clone(),
+            start: Arc::new(Evaluated::new(campaign, &model)),
+            model,
+        }
+    }
+
     /// The prepared campaign.
     pub fn experiment(&self) -> &Experiment {
         &self.start.experiment

@@ -3,6 +3,8 @@
 import { connectLoop, followModel, redrawLoop } from "./closed_loop.js";
 import { byId, element, sigmas } from "./dom.js";
 import { drawMap, worstCell } from "./error_map.js";
+import { faultLines } from "./fault.js";
+import { connectFiles } from "./files.js";
 import { drawMissing, drawRanking, insert } from "./missing.js";
 import { drawCourse, drawModel } from "./model_panel.js";
 import { openForm } from "./own_term.js";
@@ -30,18 +32,32 @@ async function open() {
     return showFault(error);
   }
   byId("views").hidden = false;
+  connectFiles(another);
   listRuns();
   draw();
   await openForm(acts.run);
-  const worst = worstCell(state);
-  if (worst) await visit(worst);
-  else await show(0, null);
+  await showWorst();
   performance.mark("first view");
   byId("views").dataset.ready = "";
   if (state.job) {
     await follow(hear, guarded(refresh));
     await refresh();
   }
+}
+
+/** Shows the campaign that was just opened. */
+async function another() {
+  state = await ask("state");
+  signed = null;
+  listRuns();
+  draw();
+  await showWorst();
+}
+
+async function showWorst() {
+  const worst = worstCell(state);
+  if (worst) await visit(worst);
+  else await show(0, null);
 }
 
 /** Requests the state again, and keeps the zoom. */
@@ -61,7 +77,7 @@ async function refresh() {
 function draw() {
   byId("title").textContent = `${state.campaign}: error ${sigmas(state.error)} σ`;
   byId("subtitle").textContent = [state.description, `model ${state.model}`,
-    `${state.runs.length} runs`].filter(Boolean).join(" · ");
+    `${state.runs.length} ${state.runs.length === 1 ? "run" : "runs"}`].filter(Boolean).join(" · ");
   document.title = `${state.campaign} – hitch`;
   drawMap(state, guarded(visit));
   drawModel(state, acts);
@@ -245,11 +261,7 @@ async function show(index, place) {
 
 /** @param {unknown} error */
 function showFault(error) {
-  const fault = error instanceof Refused ? error.fault : { what: String(error) };
-  const where = fault.file && [fault.file, fault.line, fault.column].filter((part) => part != null).join(":");
-  const lines = [where && element("p", {}, element("code", {}, where)), element("p", {}, fault.what),
-    fault.mend && element("p", {}, `Suggested correction: ${fault.mend}.`)];
-  byId("fault-text").replaceChildren(...lines.filter((line) => line instanceof Node));
+  byId("fault-text").replaceChildren(...faultLines(error));
   byId("fault").hidden = false;
 }
 

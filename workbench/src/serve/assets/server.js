@@ -45,6 +45,14 @@ export function post(path, body) {
   return answer(fetch(`api/${path}`, { method: "POST", headers, body: JSON.stringify({ session, ...body }) }));
 }
 
+/** Sends a file.
+ * @param {string} path
+ * @param {Record<string, string>} query
+ * @param {Blob} file */
+export function send(path, query, file) {
+  return answer(fetch(address(path, query), { method: "POST", body: file }));
+}
+
 /** The address of a view of this tab.
  * @param {string} path
  * @param {Record<string, string | number>} [query] */

@@ -1,0 +1,77 @@
+"""Files opened in the page of `hitch serve`, in a headless Chromium: a log of another logger is assigned and opened.
+
+Called with the page's address, a log, a broken log, the browser, and a folder for pictures.
+"""
+
+import sys
+from pathlib import Path
+
+from playwright.sync_api import Page, expect
+
+from browser_view import DARK, DESKTOP, PHONE, assert_accessible, assert_fits, opened, story
+
+# Drops a file on the page, as a user does from a folder.
+DROP = """([name, text]) => {
+  const data = new DataTransfer();
+  data.items.add(new File([text], name));
+  for (const kind of ["dragover", "drop"])
+    document.body.dispatchEvent(new DragEvent(kind, { dataTransfer: data, bubbles: true, cancelable: true }));
+}"""
+
+
+def open_log(page: Page, log: Path, pictures: Path, view: str) -> None:
+    """Chooses a log, edits its assignment, and opens it."""
+    page.wait_for_selector("#views[data-ready]")
+    with page.expect_file_chooser() as choosing:
+        page.locator("#files-choose").press("Enter")
+    choosing.value.set_files(log)
+    expect(page.locator("#files-form")).to_be_visible()
+    column = page.get_by_label("Column for lowering current")
+    expect(column).to_have_value("Ventil Senken Strom")
+    unit = page.get_by_label("Unit of lowering current")
+    expect(unit).to_have_value("mA")
+    page.get_by_label("Column for flow").select_option("")
+    page.locator("#files").screenshot(path=pictures / f"files_{view}.png")
+    assert_fits(page)
+    assert_accessible(page)
+    page.click("#files-open")
+    expect(page.locator("#title")).to_contain_text(log.stem)
+    expect(page.locator("#files-form")).to_be_hidden()
+    expect(page.locator("#run option")).to_have_count(1)
+    heads = page.locator("#cells thead th").all_inner_texts()
+    assert "rocker angle" in heads and "flow" not in heads, heads
+    page.wait_for_timeout(300)
+    page.screenshot(path=pictures / f"files_opened_{view}.png")
+    assert_fits(page)
+    assert_accessible(page)
+
+
+def refused(page: Page, broken: Path, pictures: Path) -> None:
+    """Drops a broken log, and mends its assignment; the campaign stays."""
+    page.wait_for_selector("#views[data-ready]")
+    page.evaluate(DROP, [broken.name, broken.read_text(encoding="utf-8")])
+    expect(page.locator("#files-form")).to_be_visible()
+    page.click("#files-open")
+    expect(page.locator("#files-fault")).to_contain_text("the load at the hitch is missing")
+    page.get_by_label(f"Load of {broken.name}, kg").fill("150")
+    page.click("#files-open")
+    expect(page.locator("#files-fault")).to_contain_text(f"{broken.name}:2:18")
+    page.locator("#files").screenshot(path=pictures / "files_fault.png")
+    assert_accessible(page)
+    page.click("#files-discard")
+    expect(page.locator("#files-form")).to_be_hidden()
+    expect(page.locator("#title")).to_contain_text("demonstration")
+
+
+def main() -> None:
+    address, log, broken, name, folder = sys.argv[1:6]
+    with story(name, folder) as (browser, pictures, faults):
+        for view, options in {"desktop": DESKTOP, "phone": PHONE, "dark": DARK}.items():
+            open_log(opened(browser, address, options, faults), Path(log), pictures, view)
+        # A refused request is a message of the console.
+        refused(opened(browser, address, DESKTOP, []), Path(broken), pictures)
+    print("the files went well")
+
+
+if __name__ == "__main__":
+    main()

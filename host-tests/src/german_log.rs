@@ -1,0 +1,35 @@
+//! A log as a German logger writes it: semicolons, decimal commas, currents in mA.
+
+/// Header of the log, in the order of the format's columns.
+const HEADER: &str = "Zeit [s];Ventil Heben Strom [mA];Ventil Senken Strom [mA];Pumpendruck [bar];Zylinderdruck [bar];\
+     Volumenstrom [l/min];Winkel Hubwelle [°]";
+
+/// The shipped log of a lowering move with 150 kg, as such a log.
+///
+/// # Panics
+/// If the shipped log has other columns.
+#[must_use]
+pub fn german_log() -> String {
+    let own = include_str!("../../workbench/data/demonstration/lower_2.2A_150kg.csv");
+    let mut lines = own.lines();
+    let names: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    assert_eq!(names.len(), HEADER.split(';').count(), "{names:?}");
+    assert_eq!(names[1..3], ["lift_current_a", "lower_current_a"]);
+    let mut text = format!("{HEADER}\n");
+    for line in lines {
+        let cells = line.split(',').enumerate().map(|(column, cell)| {
+            let value: Option<f64> = cell.parse().ok();
+            let scaled = value.map(|value| {
+                if column == 1 || column == 2 {
+                    1000.0 * value
+                } else {
+                    value
+                }
+            });
+            scaled.map_or_else(String::new, |value| format!("{value:.4}").replace('.', ","))
+        });
+        text += &cells.collect::<Vec<_>>().join(";");
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,142 @@
+// @ts-check
+/** The proposed assignment of logs as an editable table. */
+import { element } from "./dom.js";
+
+/** Titles of a run's columns.
+ * @type {Record<string, string>} */
+const TITLES = { time_s: "time", lift_current_a: "lift current", lower_current_a: "lowering current",
+  pump_pressure_bar: "pump pressure", cylinder_pressure_bar: "cylinder pressure", flow_lpm: "flow",
+  rocker_angle_deg: "rocker angle", oil_temperature_c: "oil temperature" };
+
+/** Content of the table: functions that read it.
+ * @type {() => any} */
+let read = () => ({});
+
+/** The edited assignment. */
+export function assignment() {
+  return read();
+}
+
+/** Draws a proposal.
+ * @param {HTMLElement} at
+ * @param {any} proposal */
+export function drawProposal(at, proposal) {
+  if (proposal.campaign !== undefined) {
+    read = () => ({});
+    at.replaceChildren(element("p", {}, `Campaign ${proposal.campaign} with ${count(proposal.runs, "run")}.`));
+    return;
+  }
+  const name = input({ value: proposal.name, autocomplete: "off" });
+  const groups = proposal.groups.map((/** @type {any} */ group) => table(group, proposal.signals));
+  const logs = proposal.logs.map(stand);
+  read = () => ({
+    name: name.value,
+    groups: groups.map((/** @type {any} */ group) => group.read()),
+    logs: logs.map((/** @type {any} */ log) => log.read()),
+  });
+  at.replaceChildren(element("div", { class: "row" }, element("label", {}, "Name of the campaign ", name)),
+    ...groups.map((/** @type {any} */ group) => group.shown), element("h3", {}, "Logs"),
+    element("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": "Test stand of each log" },
+      element("table", {}, head(["log", "bench", "load or pressure"]),
+        element("tbody", {}, ...logs.map((/** @type {any} */ log) => log.shown)))));
+}
+
+/** @param {number} number
+ * @param {string} what */
+function count(number, what) {
+  return `${number} ${what}${number === 1 ? "" : "s"}`;
+}
+
+/** @param {string[]} titles */
+function head(titles) {
+  return element("thead", {}, element("tr", {}, ...titles.map((title) => element("th", { scope: "col" }, title))));
+}
+
+/** @param {Record<string, unknown>} attributes
+ * @returns {HTMLInputElement} */
+function input(attributes) {
+  return /** @type {HTMLInputElement} */ (element("input", attributes));
+}
+
+/** @param {[string, string][]} options value and text
+ * @param {string} chosen
+ * @param {string} label
+ * @returns {HTMLSelectElement} */
+function select(options, chosen, label) {
+  const made = /** @type {HTMLSelectElement} */ (element("select", { "aria-label": label },
+    ...options.map(([value, text]) => element("option", { value }, text))));
+  made.value = chosen;
+  return made;
+}
+
+/** The table of logs with equal columns.
+ * @param {any} group
+ * @param {any[]} signals */
+function table(group, signals) {
+  const wanted = signals.filter((signal) => group.times || signal.key !== "time_s");
+  const rows = wanted.map((signal) => row(group, signal));
+  const used = group.taken.length;
+  const others = group.columns.length - used;
+  const shown = element("div", {},
+    element("h3", {}, group.files.length > 3 ? `${group.files.slice(0, 2).join(", ")} and ${group.files.length - 2} more` : group.files.join(", ")),
+    group.untold ? element("p", { class: "untold" }, `${group.untold}. Choose its column.`) : "",
+    element("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": `Columns of ${group.files[0]}` },
+      element("table", {}, head(["signal", "column of the log", "unit", "confidence", "reason"]),
+        element("tbody", {}, ...rows.map((one) => one.shown)))),
+    element("p", { class: "note" }, others > 0 ? `${count(others, "other column")} ${others === 1 ? "is" : "are"} ignored.` : ""));
+  return { shown, read: () => rows.flatMap((one) => one.read()) };
+}
+
+/** The row of a signal.
+ * @param {any} group
+ * @param {any} signal */
+function row(group, signal) {
+  const taken = group.taken.find((/** @type {any} */ one) => one.channel === signal.key);
+  const title = TITLES[signal.key] ?? signal.key;
+  const named = (/** @type {any} */ column) => /** @type {[string, string]} */ (
+    [column.name, column.unit ? `${column.name} (${column.unit})` : column.name]);
+  const column = select([["", "– none –"], ...group.columns.map(named)], taken?.column ?? "", `Column for ${title}`);
+  const units = [...new Set([...signal.units, ...(taken?.unit ? [taken.unit] : [])])];
+  const stated = /** @type {[string, string]} */ (["", group.own_units ? "of the DBC" : "of the log"]);
+  const unit = select([stated, ...units.map((one) => /** @type {[string, string]} */ ([one, one]))], taken?.unit ?? "",
+    `Unit of ${title}`);
+  unit.disabled = group.own_units;
+  const confidence = element("td", taken?.assumed ? { class: "check" } : {}, taken ? (taken.assumed ? "check" : "certain") : "");
+  const reason = element("td", { class: "reason" }, taken?.reason ?? "");
+  const edited = () => {
+    confidence.className = "";
+    confidence.textContent = column.value ? "yours" : "";
+    reason.textContent = column.value ? "chosen by you" : "";
+  };
+  column.addEventListener("change", () => {
+    // The unit that the log states for this column, if it is one of the signal.
+    const own = group.columns.find((/** @type {any} */ one) => one.name === column.value)?.unit;
+    unit.value = !group.own_units && units.includes(own) ? own : own || group.own_units || signal.key === "time_s" ? "" : signal.unit;
+    edited();
+  });
+  unit.addEventListener("change", edited);
+  const shown = element("tr", {}, element("th", { scope: "row" }, title), element("td", {}, column), element("td", {}, unit),
+    confidence, reason);
+  const read = () => (column.value ? [{ channel: signal.key, column: column.value, unit: unit.value || null }] : []);
+  return { shown, read };
+}
+
+/** The row of a log's test stand.
+ * @param {any} log */
+function stand(log) {
+  const bench = select([["hitch", "hitch"], ["flow", "flow bench"]], "hitch", `Bench of ${log.file}`);
+  const value = input({ type: "number", step: "any", min: 0, value: log.load_kg ?? "", "aria-label": `Load of ${log.file}, kg` });
+  const unit = element("span", {}, "kg");
+  bench.addEventListener("change", () => {
+    const isHitch = bench.value === "hitch";
+    unit.textContent = isHitch ? "kg" : "bar";
+    value.setAttribute("aria-label", isHitch ? `Load of ${log.file}, kg` : `Port pressure of ${log.file}, bar`);
+    value.value = isHitch ? log.load_kg ?? "" : "";
+  });
+  const shown = element("tr", {}, element("th", { scope: "row" }, log.file), element("td", {}, bench),
+    element("td", {}, value, " ", unit));
+  const number = () => (value.value === "" ? null : Number(value.value));
+  const read = () => (bench.value === "hitch" ? { bench: "hitch", load_kg: number() }
+    : { bench: "flow", port_pressure_bar: number() });
+  return { shown, read };
+}

@@ -1,0 +1,136 @@
+//! The assignment as edited by the user, and the campaign that it makes.
+
+use std::path::Path;
+
+use hitch_campaign::{Campaign, CampaignError};
+use hitch_plant::Linkage;
+use serde::Deserialize;
+
+use super::proposal::{Group, MANIFEST, Proposal};
+use crate::error::Error;
+use crate::import::manifest::{Log, campaign, path_from};
+use crate::import::{Conditions, Kind, Mapping};
+
+/// The edited assignment; its lists are those of the proposal.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default)]
+pub struct Assignment {
+    /// Name of the campaign.
+    name: String,
+    groups: Vec<Vec<Source>>,
+    logs: Vec<Stand>,
+}
+
+/// The source of a column of a run.
+#[derive(Debug, Clone, Deserialize)]
+struct Source {
+    channel: String,
+    column: String,
+    /// `None` if the log states it.
+    unit: Option<String>,
+}
+
+/// The test stand of a log.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(tag = "bench", rename_all = "lowercase")]
+enum Stand {
+    Hitch { load_kg: Option<f64> },
+    Flow { port_pressure_bar: Option<f64> },
+}
+
+impl Assignment {
+    /// Reads the campaign.
+    ///
+    /// # Errors
+    /// If the assignment or a file is invalid.
+    pub fn campaign(
+        &self,
+        folder: &Path,
+        proposal: &Proposal,
+        linkage: &Linkage,
+    ) -> Result<Campaign, Error> {
+        let (files, groups) = match proposal {
+            Proposal::Campaign { .. } => return Ok(Campaign::load_with(folder, linkage)?),
+            Proposal::Logs { files, groups } => (files, groups),
+        };
+        if groups.len() != self.groups.len() || files.logs.len() != self.logs.len() {
+            let what = "the assignment is not that of these files; open them again";
+            return Err(Error::Usage(what.to_owned()));
+        }
+        let mut mappings: Vec<Option<Mapping>> = vec![None; files.logs.len()];
+        let mut signals = None;
+        for (group, given) in groups.iter().zip(&self.groups) {
+            let mapping = mapping(group, given)?;
+            if group.kind == Kind::Signals {
+                signals = Some(mapping);
+                continue;
+            }
+            for &log in &group.logs {
+                mappings[log] = Some(mapping.clone());
+            }
+        }
+        let mut logs = Vec::with_capacity(files.logs.len());
+        for ((file, mapping), stand) in files.logs.iter().zip(mappings).zip(&self.logs) {
+            logs.push(Log {
+                file: path_from(folder, file),
+                mapping,
+                conditions: stand.conditions(file)?,
+                cuts: Vec::new(),
+            });
+        }
+        let can = files.can(folder, signals.as_ref());
+        let read = campaign(folder, self.name(), can.as_deref(), logs, linkage);
+        read.map(|(_, campaign)| campaign)
+            .map_err(|error| unplaced(folder, error))
+    }
+
+    fn name(&self) -> &str {
+        let name = self.name.trim();
+        if name.is_empty() { "campaign" } else { name }
+    }
+}
+
+/// A fault without its position in the manifest, which the user does not see.
+fn unplaced(folder: &Path, error: Error) -> Error {
+    match error {
+        Error::Input(input) if input.file == folder.join(MANIFEST) => {
+            Error::Usage(format!("{}; {}", input.what, input.mend))
+        }
+        other => other,
+    }
+}
+
+fn mapping(group: &Group, given: &[Source]) -> Result<Mapping, Error> {
+    let source = |source: &Source| match &source.unit {
+        Some(unit) => format!("{}:{unit}", source.column),
+        None => source.column.clone(),
+    };
+    let named = given
+        .iter()
+        .map(|given| (given.channel.clone(), source(given)));
+    let named: Vec<(String, String)> = named.collect();
+    Mapping::given(&group.columns, group.kind, &named).map_err(|untold| {
+        let heading = group.headings.first().map_or("", String::as_str);
+        CampaignError::of_file(Path::new(heading), untold.what, "assign it in the table").into()
+    })
+}
+
+impl Stand {
+    fn conditions(self, log: &Path) -> Result<Conditions, Error> {
+        let missing = |what: &str, mend: &str| CampaignError::of_file(log, what, mend);
+        Ok(match self {
+            Self::Hitch { load_kg } => Conditions::Hitch {
+                load_kg: load_kg
+                    .ok_or_else(|| missing("the load at the hitch is missing", "enter it in kg"))?,
+            },
+            Self::Flow { port_pressure_bar } => Conditions::Flow {
+                port_pressure_bar: port_pressure_bar.ok_or_else(|| {
+                    missing(
+                        "the port pressure of the flow bench is missing",
+                        "enter it in bar",
+                    )
+                })?,
+            },
+        })
+    }
+}

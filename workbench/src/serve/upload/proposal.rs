@@ -1,0 +1,192 @@
+//! The proposed assignment of an upload's files.
+
+use std::path::{Path, PathBuf};
+
+use hitch_campaign::survey::{LogColumn, check_source, is_bus, run_columns, usual_units};
+use hitch_campaign::{Campaign, CampaignError};
+use hitch_plant::Linkage;
+use serde_json::{Value, json};
+
+use crate::error::Error;
+use crate::import::files::columns;
+use crate::import::{Files, Kind, Mapping, Taken, Untold, load_in_name};
+
+/// Name of a campaign's manifest.
+pub const MANIFEST: &str = "campaign.toml";
+
+/// What the files are.
+#[derive(Debug)]
+pub enum Proposal {
+    /// A campaign with its logs.
+    Campaign {
+        /// Its name, and the number of its runs.
+        name: String,
+        /// Number of runs.
+        runs: usize,
+    },
+    /// Logs to import.
+    Logs {
+        /// The files.
+        files: Files,
+        /// Logs with equal columns and equal assignment.
+        groups: Vec<Group>,
+    },
+}
+
+/// Logs with equal columns and equal assignment.
+#[derive(Debug)]
+pub struct Group {
+    /// Names of the files, for a heading.
+    pub headings: Vec<String>,
+    /// Indices of its logs.
+    pub logs: Vec<usize>,
+    /// Kind of the logs.
+    pub kind: Kind,
+    /// The columns, without their values.
+    pub columns: Vec<LogColumn>,
+    /// What could be determined.
+    pub mapping: Mapping,
+    /// What could not be determined.
+    pub untold: Option<Untold>,
+}
+
+impl Proposal {
+    /// Surveys the files in a folder.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or is not a log.
+    pub fn new(folder: &Path, files: &[PathBuf], linkage: &Linkage) -> Result<Self, Error> {
+        if files.iter().any(|file| file.ends_with(MANIFEST)) {
+            check_files(folder)?;
+            let campaign = Campaign::load_with(folder, linkage)?;
+            return Ok(Self::Campaign {
+                name: campaign.name,
+                runs: campaign.runs.len(),
+            });
+        }
+        let is_toml = |file: &&PathBuf| file.extension().is_some_and(|end| end == "toml");
+        if let Some(file) = files.iter().find(is_toml) {
+            let mend =
+                "a campaign's manifest is named campaign.toml; delete other files of this kind";
+            return Err(CampaignError::of_file(file, "is not a log", mend).into());
+        }
+        let files = Files::sort(files)?;
+        let mut groups = Vec::new();
+        if let Some(signals) = files.signals()? {
+            let logs = files.logs.iter().enumerate();
+            let buses = logs.filter(|(_, log)| is_bus(log));
+            let logs = buses.map(|(index, _)| index).collect();
+            add(
+                &mut groups,
+                Group::new(signals.heading, logs, signals.kind, signals.columns),
+            );
+        }
+        for (index, log) in files.logs.iter().enumerate() {
+            if let Some(found) = columns(log)? {
+                let group = Group::new(found.heading, vec![index], found.kind, found.columns);
+                add(&mut groups, group);
+            }
+        }
+        Ok(Self::Logs { files, groups })
+    }
+
+    /// The proposal as the page shows it.
+    pub fn view(&self) -> Value {
+        let (files, groups) = match self {
+            Self::Campaign { name, runs } => return json!({ "campaign": name, "runs": runs }),
+            Self::Logs { files, groups } => (files, groups),
+        };
+        let name = files.logs.first().and_then(|log| log.file_stem());
+        let name = name.map_or_else(|| "campaign".into(), |name| name.to_string_lossy());
+        let log = |log: &PathBuf| json!({ "file": file_name(log), "load_kg": load_in_name(log) });
+        let signal = |(name, unit): (&'static str, &'static str)| {
+            let units: Vec<&str> = usual_units(name).collect();
+            json!({ "key": name, "unit": unit, "units": units })
+        };
+        json!({
+            "name": name,
+            "logs": files.logs.iter().map(log).collect::<Vec<_>>(),
+            "groups": groups.iter().map(Group::view).collect::<Vec<_>>(),
+            "signals": run_columns().map(signal).collect::<Vec<_>>(),
+        })
+    }
+}
+
+/// Checks that a campaign has no files outside its folder: nothing but the upload is read.
+fn check_files(folder: &Path) -> Result<(), Error> {
+    let outside = |file: &&PathBuf| file.parent() != Some(folder) || file.ends_with("..");
+    match Campaign::files(folder)?.iter().find(outside) {
+        None => Ok(()),
+        Some(file) => {
+            let named = file.strip_prefix(folder).unwrap_or(file);
+            let what = format!("names the file {:?} in another folder", named.display());
+            let mend = "open that file together with it, and name it without its folder";
+            Err(CampaignError::of_file(&folder.join(MANIFEST), what, mend).into())
+        }
+    }
+}
+
+fn add(groups: &mut Vec<Group>, group: Group) {
+    let alike = |known: &&mut Group| {
+        (known.kind, &known.columns, &known.mapping) == (group.kind, &group.columns, &group.mapping)
+            && known.untold == group.untold
+    };
+    match groups.iter_mut().find(alike) {
+        Some(known) => {
+            known.headings.extend(group.headings);
+            known.logs.extend(group.logs);
+        }
+        None => groups.push(group),
+    }
+}
+
+impl Group {
+    fn new(heading: String, logs: Vec<usize>, kind: Kind, mut columns: Vec<LogColumn>) -> Self {
+        let (mapping, untold) = Mapping::draft(&columns, kind, &[]);
+        columns
+            .iter_mut()
+            .for_each(|column| column.values = Vec::new());
+        Self {
+            headings: vec![heading],
+            logs,
+            kind,
+            columns,
+            mapping,
+            untold,
+        }
+    }
+
+    fn view(&self) -> Value {
+        let column = |column: &LogColumn| json!({ "name": column.name, "unit": column.unit });
+        let taken = |taken: &Taken| {
+            let parts = check_source(taken.channel, &taken.source);
+            let (name, unit) = parts.unwrap_or_else(|_| (taken.source.clone(), None));
+            json!({
+                "channel": taken.channel,
+                "column": name,
+                "unit": unit,
+                "reason": taken.reason,
+                "assumed": taken.is_assumed,
+            })
+        };
+        let headings = self
+            .headings
+            .iter()
+            .map(|heading| file_name(Path::new(heading)));
+        json!({
+            "files": headings.collect::<Vec<_>>(),
+            "times": self.kind == Kind::Table,
+            "own_units": self.kind == Kind::Signals,
+            "columns": self.columns.iter().map(column).collect::<Vec<_>>(),
+            "taken": self.mapping.taken.iter().map(taken).collect::<Vec<_>>(),
+            "untold": self.untold.as_ref().map(|untold| &untold.what),
+        })
+    }
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
+}

@@ -1,0 +1,227 @@
+//! HTTP routes of uploads.
+
+use std::path::Path;
+use std::sync::{Arc, PoisonError};
+
+use axum::body::Body;
+use axum::extract::{DefaultBodyLimit, Query, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::routing::post;
+use axum::{Json, Router};
+use hitch_input::input_error::InputError;
+use serde::Deserialize;
+use serde_json::json;
+
+use super::assignment::Assignment;
+use super::folder::{Unacceptable, Upload, plain_name, too_much};
+use super::incoming::{Lost, receive};
+use super::limits::{LARGEST_ASSIGNMENT, LIFETIME, LONGEST, MOST_BYTES, MOST_FILES};
+use super::proposal::Proposal;
+use crate::error::Error;
+use crate::serve::routes::{Answer, Known, Of, Refusal, blocking, find, lock};
+use crate::serve::sessions::{Sessions, Shared};
+use crate::serve::source::Subject;
+
+/// All routes of uploads.
+pub fn routes() -> Router<Arc<Sessions>> {
+    let open = post(open).layer(DefaultBodyLimit::max(LARGEST_ASSIGNMENT));
+    Router::new()
+        .route("/{token}/api/upload/begin", post(begin))
+        .route("/{token}/api/upload/file", post(file))
+        .route("/{token}/api/upload/survey", post(survey))
+        .route("/{token}/api/upload/discard", post(discard))
+        .route("/{token}/api/upload/open", open)
+}
+
+/// Number and size of the files to come.
+#[derive(Debug, Deserialize)]
+struct Begin {
+    session: String,
+    files: usize,
+    bytes: u64,
+}
+
+/// Starts an upload; deletes the files of an earlier one.
+async fn begin(State(sessions): Known, Json(wanted): Json<Begin>) -> Answer {
+    let session = find(&sessions, &wanted.session)?;
+    if wanted.files == 0 {
+        return Err(Refusal::wrong(json!({ "what": "there is no file" })));
+    }
+    if wanted.files > MOST_FILES || wanted.bytes > MOST_BYTES {
+        return Err(too_much().into());
+    }
+    let upload = Arc::new(sessions.folders.begin()?);
+    let id = upload.id.clone();
+    let (late, of) = (Arc::downgrade(&session), id.clone());
+    tokio::spawn(async move {
+        tokio::time::sleep(LIFETIME).await;
+        if let Some(session) = late.upgrade() {
+            lock(&session).upload.take_if(|upload| upload.id == of);
+        }
+    });
+    lock(&session).upload = Some(upload);
+    Ok(Json(json!({ "upload": id })))
+}
+
+/// An upload of a tab.
+#[derive(Debug, Deserialize)]
+struct OfUpload {
+    session: String,
+    upload: String,
+}
+
+/// A file of an upload.
+#[derive(Debug, Deserialize)]
+struct OfFile {
+    session: String,
+    upload: String,
+    name: String,
+}
+
+async fn file(
+    State(sessions): Known,
+    Query(of): Query<OfFile>,
+    headers: HeaderMap,
+    body: Body,
+) -> Answer {
+    let upload = upload(&find(&sessions, &of.session)?, &of.upload)?;
+    let name = plain_name(&of.name)?;
+    let length = headers.get(header::CONTENT_LENGTH);
+    let length: Option<u64> = length.and_then(|length| length.to_str().ok()?.parse().ok());
+    if length.is_some_and(|length| length > MOST_BYTES) {
+        return Err(too_much().into());
+    }
+    receive(&upload, name, body.into_data_stream(), LONGEST).await?;
+    Ok(Json(json!({ "file": name })))
+}
+
+/// The proposed assignment.
+async fn survey(State(sessions): Known, Json(of): Json<OfUpload>) -> Answer {
+    let session = find(&sessions, &of.session)?;
+    let upload = upload(&session, &of.upload)?;
+    let subject = Arc::clone(lock(&session).subject());
+    let view = blocking(move || {
+        let incomplete = || Refusal::conflict("a file is still being received");
+        let files = upload.files().ok_or_else(incomplete)?;
+        let proposal = Proposal::new(upload.path(), &files, subject.model.linkage());
+        let proposal = proposal.map_err(|error| named(&upload, error))?;
+        let view = proposal.view();
+        let mut known = upload
+            .proposal
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        *known = Some(proposal);
+        Ok::<_, Refusal>(view)
+    });
+    Ok(Json(view.await??))
+}
+
+/// Deletes the files.
+async fn discard(State(sessions): Known, Json(of): Json<Of>) -> Answer {
+    lock(&find(&sessions, &of.session)?).upload = None;
+    Ok(Json(json!({})))
+}
+
+/// The edited assignment of an upload.
+#[derive(Debug, Deserialize)]
+struct Open {
+    session: String,
+    upload: String,
+    #[serde(flatten)]
+    assignment: Assignment,
+}
+
+/// Opens the campaign in the session, and deletes the files.
+async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
+    let session = find(&sessions, &wanted.session)?;
+    let upload = upload(&session, &wanted.upload)?;
+    let (model, is_busy) = {
+        let session = lock(&session);
+        (session.subject().model.clone(), session.job.is_some())
+    };
+    let busy = || Refusal::conflict("a computation is running; wait for it or cancel it");
+    if is_busy {
+        return Err(busy());
+    }
+    let from = Arc::clone(&upload);
+    let subject = blocking(move || {
+        let proposal = from.proposal.lock().unwrap_or_else(PoisonError::into_inner);
+        let unknown = || Refusal::conflict("the files have not been surveyed");
+        let proposal = proposal.as_ref().ok_or_else(unknown)?;
+        let campaign = wanted
+            .assignment
+            .campaign(from.path(), proposal, model.linkage());
+        let campaign = campaign.map_err(|error| named(&from, error))?;
+        Ok::<_, Refusal>(Subject::new(&campaign, model))
+    });
+    let subject = Arc::new(subject.await??);
+    let mut session = lock(&session);
+    if session.job.is_some() {
+        return Err(busy());
+    }
+    session.open(subject);
+    session.upload.take_if(|known| known.id == upload.id);
+    Ok(Json(json!({})))
+}
+
+fn upload(session: &Shared, id: &str) -> Result<Arc<Upload>, Refusal> {
+    let session = lock(session);
+    let known = session.upload.as_ref().filter(|upload| upload.id == id);
+    let unknown = || Refusal::of(StatusCode::GONE, "the files are deleted; open them again");
+    known.cloned().ok_or_else(unknown)
+}
+
+/// An error with the names of files as the user knows them.
+fn named(upload: &Upload, error: Error) -> Error {
+    let within = |text: &str| {
+        let mut text = text.to_owned();
+        for folder in [
+            Some(upload.path().to_path_buf()),
+            upload.path().canonicalize().ok(),
+        ] {
+            let folder = folder.unwrap_or_default().join("");
+            text = text.replace(&*folder.to_string_lossy(), "");
+        }
+        text
+    };
+    match error {
+        Error::Input(input) => Error::Input(InputError {
+            file: Path::new(&within(&input.file.to_string_lossy())).to_path_buf(),
+            what: within(&input.what),
+            mend: within(&input.mend),
+            ..input
+        }),
+        Error::Usage(text) => Error::Usage(within(&text)),
+        other => other,
+    }
+}
+
+impl From<Unacceptable> for Refusal {
+    fn from(reason: Unacceptable) -> Self {
+        match reason {
+            Unacceptable::Name(what) => Self::wrong(json!({ "what": what })),
+            Unacceptable::TooMuch(what) => Self::of(StatusCode::PAYLOAD_TOO_LARGE, &what),
+        }
+    }
+}
+
+impl From<Lost> for Refusal {
+    fn from(lost: Lost) -> Self {
+        match lost {
+            Lost::Unacceptable(reason) => reason.into(),
+            Lost::Late => {
+                let seconds = LONGEST.as_secs();
+                let what = format!("the file was not received within {seconds} s; try it again");
+                Self::of(StatusCode::REQUEST_TIMEOUT, &what)
+            }
+            Lost::Broken(why) => {
+                let what = format!("the file was not received: {why}");
+                Self::of(StatusCode::BAD_REQUEST, &what)
+            }
+            Lost::Disk(why) => {
+                let what = format!("the file cannot be stored: {why}; make room on the disk");
+                Self::of(StatusCode::INSUFFICIENT_STORAGE, &what)
+            }
+        }
+    }
+}
