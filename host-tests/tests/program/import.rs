@@ -34,7 +34,7 @@ fn samples() -> Vec<[f64; 5]> {
     (0..=(LASTS_S / 0.02) as u32).map(sample).collect()
 }
 
-fn own() -> String {
+pub fn own() -> String {
     let row = |[t, a, b, p, w]: [f64; 5]| format!("{t:.2},{a:.4},{b:.4},{p:.4},{w:.4}\n");
     let rows: String = samples().into_iter().map(row).collect();
     format!("time_s,lift_current_a,lower_current_a,cylinder_pressure_bar,rocker_angle_deg\n{rows}")
@@ -68,7 +68,7 @@ fn english() -> String {
     format!("Timestamp,LiftCurrent,LowerCurrent,Cylinder Pressure [psi],Rocker Angle\n{rows}")
 }
 
-fn imported(dir: &Path, arguments: &str) -> (String, Vec<Run>) {
+pub fn imported(dir: &Path, arguments: &str) -> (String, Vec<Run>) {
     let arguments: Vec<&str> = arguments.split(' ').collect();
     let Output {
         status,
@@ -85,7 +85,7 @@ fn imported(dir: &Path, arguments: &str) -> (String, Vec<Run>) {
     (said, campaign.runs)
 }
 
-fn assert_same(case: &str, runs: &[Run], expected: &[Run]) {
+pub fn assert_same(case: &str, runs: &[Run], expected: &[Run]) {
     assert_eq!(runs.len(), expected.len(), "{case}");
     for (run, expected) in runs.iter().zip(expected) {
         assert_eq!(run.time_s.len(), expected.time_s.len(), "{case}");
@@ -151,26 +151,28 @@ fn candump() -> String {
     samples().into_iter().map(frame).collect()
 }
 
-// REQ-INPUT-03
-#[test]
-fn signals_of_a_bus_are_recognised_by_names_comments_and_units() {
+/// The description of the bus, in Windows-1252, as most tools write it.
+pub fn dbc() -> Vec<u8> {
     let dbc = "VERSION \"\"\nBU_: Rig\n\
         BO_ 257 Valves: 4 Rig\n SG_ Y1 : 0|16@1+ (1,0) [0|0] \"mA\" Rig\n SG_ Y2 : 16|16@1+ (1,0) [0|0] \"mA\" Rig\n\
         BO_ 258 Hitch: 4 Rig\n SG_ Winkel : 0|16@1+ (0.01,0) [0|0] \"\u{b0}\" Rig\n \
         SG_ ZylDruck : 16|16@1+ (1,0) [0|0] \"kPa\" Rig\n\
         BO_ 259 Wanted: 4 Rig\n SG_ LiftCurrent : 0|16@1+ (1,0) [0|0] \"mA\" Rig\n\
         CM_ SG_ 257 Y1 \"Magnetstrom Heben\";\nCM_ SG_ 257 Y2 \"Magnetstrom Senken\";\n";
+    dbc.chars()
+        .map(|c| u8::try_from(u32::from(c)).unwrap())
+        .collect()
+}
+
+// REQ-INPUT-03
+#[test]
+fn signals_of_a_bus_are_recognised_by_names_comments_and_units() {
     let dir = TempDir::new().unwrap();
     fs::write(dir.path().join("own.csv"), own()).unwrap();
     let (_, expected) = imported(dir.path(), "import own.csv --out c --load 150");
     fs::remove_dir_all(dir.path().join("c")).unwrap();
     fs::write(dir.path().join("bus.log"), candump()).unwrap();
-    // Windows-1252, as most tools write it.
-    let bytes: Vec<u8> = dbc
-        .chars()
-        .map(|c| u8::try_from(u32::from(c)).unwrap())
-        .collect();
-    fs::write(dir.path().join("rig.dbc"), bytes).unwrap();
+    fs::write(dir.path().join("rig.dbc"), dbc()).unwrap();
     let (text, runs) = imported(dir.path(), "import bus.log rig.dbc --out c --load 150");
     for said in [
         "Valves.Y1",
@@ -286,7 +288,7 @@ fn what_cannot_be_told_is_asked_for() {
         ),
         (
             "import log.blf --out c --load 150",
-            "log.blf: is a binary log of a CAN bus (BLF), not text",
+            "log.blf: ends within its header",
         ),
         (
             "import log.trc --out c --load 150",

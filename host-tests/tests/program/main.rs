@@ -3,6 +3,7 @@
 mod appearance;
 mod bad_input;
 mod bad_output;
+mod binary_logs;
 mod cli;
 mod controller_stdio;
 mod examples;

@@ -3,8 +3,8 @@
 //! ```text
 //! campaign.toml        format, name, noise of the instruments, and a [[run]] block a log
 //! lift_1.5A_050kg.csv  time_s, lift_current_a, lower_current_a and the measured channels; or
-//! monday.log, .asc      log of the ECU's bus by candump or a tool of Vector's; or
-//! bench.csv, .mf4       log of any other logger, mapped by `[columns]`
+//! monday.log, .asc, .blf  log of the ECU's bus by candump or a tool of Vector's; or
+//! bench.csv, .mf4, .mat, .parquet  log of any other logger, mapped by `[columns]`
 //! ```
 //!
 //! Reading validates everything that does not need a model, so that later code need not: every number is finite and
@@ -12,13 +12,16 @@
 #![forbid(unsafe_code)]
 
 mod bus_log;
+mod channel_log;
 mod columns;
 mod csv_log;
 mod cut;
 mod dropout;
 mod files;
+mod little_endian;
 mod manifest;
 mod mdf_log;
+mod number_log;
 mod run_log;
 mod scale;
 mod series;

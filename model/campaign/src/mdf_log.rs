@@ -1,24 +1,19 @@
 //! Logs of measurement tools in MDF, versions 3 and 4 (ASAM): CANape, INCA, CANedge, asammdf and others.
-//!
-//! A row is a sample of the lift current; other channels are moved to its times, as in bus logs.
 
 use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
-use std::sync::Arc;
 
 use falcon_mdf::mdf3::Mdf3File;
 use falcon_mdf::{Channel, Mf4File};
 use hitch_input::file_kind;
 use hitch_input::input_error::{InputError, quote};
 use hitch_input::source_file::SourceFile;
-use hitch_plant::Linkage;
 
 use crate::CampaignError;
-use crate::columns::{ColumnSettings, Source, offer_columns};
-use crate::scale::Scale;
-use crate::series::{Series, values};
-use crate::table::{Cells, Column, LIFT, Samples, TIME, Table};
+use crate::channel_log::{ChannelFile, LogChannel};
+use crate::columns::Source;
+use crate::series::Series;
 
 /// Byte offset of the version in a file.
 const VERSION: std::ops::Range<usize> = 8..16;
@@ -38,26 +33,15 @@ fn first_bytes(path: &Path) -> Option<[u8; 16]> {
     Some(bytes)
 }
 
-/// A channel and its position.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct MdfChannel {
-    /// Its name.
-    pub name: String,
-    /// Its unit; `None` without one.
-    pub unit: Option<String>,
-    /// Number of samples.
-    pub samples: usize,
-    /// Data group, channel group and index in it.
-    place: [usize; 3],
-}
-
 /// An open file.
 #[derive(Debug)]
 pub struct MdfFile {
     source: SourceFile,
     reader: Reader,
     /// Its channels other than times.
-    pub channels: Vec<MdfChannel>,
+    channels: Vec<LogChannel>,
+    /// Data group, channel group and index in it, of each channel.
+    places: Vec<[usize; 3]>,
 }
 
 enum Reader {
@@ -84,29 +68,39 @@ impl MdfFile {
         let version = first_bytes(path).unwrap_or_default();
         let is_v4 = version[VERSION].starts_with(b"4");
         let fault = |error: falcon_mdf::Mf4Error| unreadable(&source, "", &error);
-        let (reader, channels) = if is_v4 {
+        let (reader, placed) = if is_v4 {
             let file = Mf4File::open(path).map_err(fault)?;
-            let channels = channels_of_v4(&file);
-            (Reader::V4(Box::new(file)), channels)
+            let placed = channels_of_v4(&file);
+            (Reader::V4(Box::new(file)), placed)
         } else {
             let file = Mdf3File::open(path).map_err(fault)?;
-            let channels = channels_of_v3(&file);
-            (Reader::V3(Box::new(file)), channels)
+            let placed = channels_of_v3(&file);
+            (Reader::V3(Box::new(file)), placed)
         };
+        let (channels, places) = placed.into_iter().unzip();
         Ok(Self {
             source,
             reader,
             channels,
+            places,
         })
+    }
+}
+
+impl ChannelFile for MdfFile {
+    fn source(&self) -> &SourceFile {
+        &self.source
+    }
+
+    fn channels(&self) -> &[LogChannel] {
+        &self.channels
     }
 
     /// The samples of a channel; NaN where marked as invalid.
-    ///
-    /// # Errors
-    /// The samples cannot be read.
-    pub fn series(&self, channel: &MdfChannel) -> Result<Series, CampaignError> {
-        let fault = |error| unreadable(&self.source, &channel.name, &error);
-        let [data_group, group, index] = channel.place;
+    fn series(&self, channel: usize, _time: Option<&Source>) -> Result<Series, CampaignError> {
+        let name = &self.channels[channel].name;
+        let fault = |error| unreadable(&self.source, name, &error);
+        let [data_group, group, index] = self.places[channel];
         let (times_s, values) = match &self.reader {
             Reader::V4(file) => {
                 let place = file.data_groups().get(data_group);
@@ -137,7 +131,7 @@ impl MdfFile {
             }
         };
         if times_s.len() != values.len() {
-            let what = format!("channel {} has no time stamps", quote(&channel.name));
+            let what = format!("channel {} has no time stamps", quote(name));
             let mend = "export it together with the time channel of its group";
             return Err(self.source.error(what, mend));
         }
@@ -148,116 +142,9 @@ impl MdfFile {
             bytes,
         })
     }
-
-    /// The channel of a column; `None` if it is missing and optional.
-    fn find(&self, wanted: &Source) -> Result<Option<&MdfChannel>, CampaignError> {
-        let named = self
-            .channels
-            .iter()
-            .filter(|channel| channel.name == wanted.name);
-        // Tools create groups without samples for signals that were not sent.
-        match named.max_by_key(|channel| channel.samples) {
-            Some(channel) => Ok(Some(channel)),
-            None if !wanted.is_required => Ok(None),
-            None => {
-                let names: Vec<&str> = self
-                    .channels
-                    .iter()
-                    .map(|channel| channel.name.as_str())
-                    .collect();
-                let what = format!(
-                    "channel {} does not exist; [columns] assigns it to {}",
-                    quote(&wanted.name),
-                    wanted.column.name
-                );
-                Err(self.source.error(what, offer_columns(&wanted.name, &names)))
-            }
-        }
-    }
-
-    fn taken(
-        &self,
-        wanted: &Source,
-        channel: &MdfChannel,
-        linkage: &Linkage,
-    ) -> Result<Series, CampaignError> {
-        let fault = |(what, mend): (String, String)| self.source.error(what, mend);
-        let scale = wanted.scale(channel.unit.as_deref()).map_err(fault)?;
-        let mut series = self.series(channel)?;
-        for index in 0..series.values.len() {
-            let value = scaled(scale, linkage, series.values[index], wanted.column);
-            series.values[index] = value.map_err(|value| {
-                let what = format!(
-                    "{} of channel {} at {:.3} s would be {} = {value}",
-                    series.values[index],
-                    quote(&channel.name),
-                    series.times_s[index],
-                    wanted.column.name
-                );
-                let (low, high) = (wanted.column.range.start(), wanted.column.range.end());
-                let mend = format!("the range is {low} to {high}: check the unit under [columns]");
-                self.source.error(what, mend)
-            })?;
-        }
-        Ok(series)
-    }
 }
 
-/// The value in the column's unit; NaN is kept.
-///
-/// # Errors
-/// The value, if it is out of the column's range.
-fn scaled(scale: Scale, linkage: &Linkage, value: f64, column: &Column) -> Result<f64, f64> {
-    if !value.is_finite() {
-        return Ok(f64::NAN);
-    }
-    let value = scale.apply(value, linkage);
-    column.range.contains(&value).then_some(value).ok_or(value)
-}
-
-/// Reads a log for a hitch with this linkage.
-///
-/// # Errors
-/// The first fault.
-pub fn read(
-    path: &Path,
-    settings: Option<&ColumnSettings>,
-    linkage: &Linkage,
-) -> Result<Table, CampaignError> {
-    let file = MdfFile::open(path)?;
-    let own = ColumnSettings::by_own_names();
-    let mut taken: Vec<(&'static str, Series)> = Vec::new();
-    for wanted in &settings.unwrap_or(&own).sources {
-        if wanted.column.name == TIME {
-            continue;
-        }
-        if let Some(channel) = file.find(wanted)? {
-            taken.push((wanted.column.name, file.taken(wanted, channel, linkage)?));
-        }
-    }
-    let rows = taken.iter().find(|(name, _)| *name == LIFT);
-    let Some((_, rows)) = rows else {
-        let what = format!("no channel is assigned to {LIFT}");
-        let mend = format!("assign it under [columns]: {LIFT} = \"Name:A\"");
-        return Err(file.source.error(what, mend));
-    };
-    let (times_s, within_s) = (rows.times_s.clone(), rows.median_step_s() / 2.0);
-    let samples = |name, values| Samples {
-        name,
-        cell: 0,
-        values,
-    };
-    let mut columns = vec![samples(TIME, times_s.clone())];
-    columns.extend(
-        taken
-            .iter()
-            .map(|(name, series)| samples(name, values(name, series, &times_s, within_s))),
-    );
-    let bytes = vec![0; times_s.len()];
-    Table::new(Arc::new(file.source), columns, bytes, Cells::Nowhere)
-}
-
-fn channels_of_v4(file: &Mf4File) -> Vec<MdfChannel> {
+fn channels_of_v4(file: &Mf4File) -> Vec<(LogChannel, [usize; 3])> {
     let mut channels = Vec::new();
     for (data_group, data) in file.data_groups().iter().enumerate() {
         for (group_index, group) in data.channel_groups.iter().enumerate() {
@@ -265,29 +152,31 @@ fn channels_of_v4(file: &Mf4File) -> Vec<MdfChannel> {
                 if channel.is_master() || !channel.value_kind().is_numeric() || channel.is_array() {
                     continue;
                 }
-                channels.push(MdfChannel {
+                let found = LogChannel {
                     name: channel.name.clone(),
                     unit: unit(&channel.unit),
                     samples: group.sample_count as usize,
-                    place: [data_group, group_index, index],
-                });
+                };
+                channels.push((found, [data_group, group_index, index]));
             }
         }
     }
     channels
 }
 
-fn channels_of_v3(file: &Mdf3File) -> Vec<MdfChannel> {
+fn channels_of_v3(file: &Mdf3File) -> Vec<(LogChannel, [usize; 3])> {
     let mut channels = Vec::new();
     for (data_group, data) in file.data_groups().iter().enumerate() {
         for (group_index, group) in data.channel_groups.iter().enumerate() {
             let measured = group.channels.iter().enumerate();
             channels.extend(measured.filter(|(_, channel)| !channel.is_time()).map(
-                |(index, channel)| MdfChannel {
-                    name: channel.name.clone(),
-                    unit: unit(&channel.unit),
-                    samples: group.cycle_count as usize,
-                    place: [data_group, group_index, index],
+                |(index, channel)| {
+                    let found = LogChannel {
+                        name: channel.name.clone(),
+                        unit: unit(&channel.unit),
+                        samples: group.cycle_count as usize,
+                    };
+                    (found, [data_group, group_index, index])
                 },
             ));
         }

@@ -10,9 +10,11 @@ use hitch_plant::{Channel, Linkage};
 use crate::bus_log::{BusSettings, Format};
 use crate::columns::ColumnSettings;
 use crate::cut::Cut;
+use crate::mdf_log::MdfFile;
+use crate::number_log::NumberLog;
 use crate::scale::nominal_linkage;
 use crate::table::{LIFT, LOWER, OIL_TEMPERATURE, TIME, Table};
-use crate::{Bench, CampaignError, Run, bus_log, csv_log, mdf_log};
+use crate::{Bench, CampaignError, Run, bus_log, channel_log, csv_log, mdf_log};
 
 /// Oil temperature of a run without a stated or logged one, degrees Celsius: that of the paper's valve tables.
 const ASSUMED_OIL_TEMPERATURE_C: f64 = 40.0;
@@ -44,12 +46,16 @@ impl Default for Settings<'_> {
 /// The first fault, with file, line and column.
 pub fn table(path: &Path, settings: Settings<'_>) -> Result<Table, CampaignError> {
     if mdf_log::is_mdf(path) {
-        return mdf_log::read(path, settings.columns, settings.linkage);
+        let file = MdfFile::open(path)?;
+        return channel_log::read(&file, settings.columns, settings.linkage);
+    }
+    if let Some(log) = NumberLog::open(path)? {
+        return channel_log::read(&log, settings.columns, settings.linkage);
     }
     bus_log::check_known(path)?;
     match Format::of(path) {
         Some(format) => {
-            let source = Arc::new(SourceFile::read_any(path)?);
+            let source = Arc::new(format.source(path)?);
             let ecu = BusSettings::default();
             bus_log::read(&source, format, settings.bus.unwrap_or(&ecu))
         }

@@ -2,13 +2,15 @@
 
 use std::path::Path;
 
+use hitch_input::input_error::InputError;
 use hitch_input::source_file::SourceFile;
 
 use crate::bus_log::Format;
 use crate::mdf_log::MdfFile;
-use crate::scale::{is_unit_of, spelling};
+use crate::number_log::NumberLog;
+use crate::scale::is_unit_of;
 use crate::table::{COLUMNS, TIME, column};
-use crate::{CampaignError, bus_log, columns, csv_log, mdf_log};
+use crate::{CampaignError, bus_log, channel_log, columns, csv_log, mdf_log};
 
 pub use crate::bus_log::Signals;
 
@@ -47,13 +49,15 @@ impl Survey {
     /// The log cannot be read.
     pub fn of(path: &Path) -> Result<Self, CampaignError> {
         if mdf_log::is_mdf(path) {
-            return channels(path);
+            return Ok(Self::Channels(channel_log::survey(&MdfFile::open(path)?)));
         }
-        let source = SourceFile::read_any(path)?;
+        if let Some(log) = NumberLog::open(path)? {
+            return Ok(log.survey());
+        }
         bus_log::check_known(path)?;
         match Format::of(path) {
-            Some(_) => Ok(Self::Bus),
-            None => csv_log::survey(&source),
+            Some(format) => format.source(path).map(|_| Self::Bus),
+            None => csv_log::survey(&SourceFile::read_any(path)?),
         }
     }
 }
@@ -69,37 +73,14 @@ pub fn is_bus(path: &Path) -> bool {
 /// # Errors
 /// One of them cannot be read, the log is not a bus log, or it contains no signal of the description.
 pub fn bus_signals(path: &Path, dbc: &Path) -> Result<Signals, CampaignError> {
-    let source = SourceFile::read_any(path)?;
     let description = SourceFile::read_any(dbc)?;
     match Format::of(path) {
-        Some(format) => bus_log::signals(&source, format, &description),
-        None => Err(source.error("is not a log of a bus", "its name ends in .log or .asc")),
-    }
-}
-
-fn channels(path: &Path) -> Result<Survey, CampaignError> {
-    let file = MdfFile::open(path)?;
-    let mut columns: Vec<LogColumn> = Vec::new();
-    for channel in &file.channels {
-        // Unsupported signals are not offered; the reader reports the reason if one is named.
-        let Ok(series) = file.series(channel) else {
-            continue;
-        };
-        let known = columns.iter().any(|column| column.name == channel.name);
-        if !known && !series.values.is_empty() {
-            columns.push(LogColumn {
-                name: channel.name.clone(),
-                unit: channel
-                    .unit
-                    .as_deref()
-                    .map(|unit| spelling(unit).to_owned()),
-                comment: String::new(),
-                values: series.values,
-                is_clock: false,
-            });
+        Some(format) => bus_log::signals(&format.source(path)?, format, &description),
+        None => {
+            let mend = "its name ends in .log, .asc or .blf";
+            Err(InputError::of_file(path, "is not a log of a bus", mend))
         }
     }
-    Ok(Survey::Channels(columns))
 }
 
 /// The possible columns of a run, each with its unit; the times first.

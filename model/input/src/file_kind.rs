@@ -11,8 +11,11 @@ struct Kind {
 }
 
 const AS_CSV: &str = "export its channels as CSV or as MDF 4 (.mf4) with the tool that wrote it";
-const AS_ASC: &str =
-    "convert it to .asc, for example with python-can: python -m can.logconvert FILE.blf FILE.asc";
+const AS_BLF: &str = "give its name the extension .blf";
+const AS_MAT: &str = "give its name the extension .mat";
+const AS_MAT_7: &str =
+    "load it in MATLAB and write it as version 7: save('log.mat', '-struct', 's', '-v7')";
+const AS_PARQUET: &str = "give its name the extension .parquet";
 const UNPACK: &str = "unpack it first";
 const AS_MDF: &str = "give its name the extension .mf4";
 
@@ -20,13 +23,14 @@ const fn kind(magic: &'static [u8], name: &'static str, mend: &'static str) -> K
     Kind { magic, name, mend }
 }
 
-static KINDS: [Kind; 14] = [
+static KINDS: [Kind; 15] = [
     kind(b"MDF     ", "an MDF file", AS_MDF),
     kind(b"UnFinMF ", "an unfinalised MDF file", AS_MDF),
-    kind(b"LOGG", "a binary log of a CAN bus (BLF)", AS_ASC),
-    kind(b"MATLAB 5.0", "a MAT file of MATLAB", AS_CSV),
+    kind(b"LOGG", "a binary log of a CAN bus (BLF)", AS_BLF),
+    kind(b"MATLAB 5.0", "a MAT file of MATLAB", AS_MAT),
+    kind(b"MATLAB 7.3", "a MAT file of version 7.3 (HDF5)", AS_MAT_7),
     kind(b"\x89HDF\r\n\x1a\n", "an HDF5 file", AS_CSV),
-    kind(b"PAR1", "a Parquet file", AS_CSV),
+    kind(b"PAR1", "a Parquet file", AS_PARQUET),
     kind(b"TDSm", "a TDMS file of LabVIEW", AS_CSV),
     kind(
         b"PK\x03\x04",
@@ -57,6 +61,21 @@ pub fn of_binary(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
 pub fn of_magic(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     let known = KINDS.iter().find(|kind| bytes.starts_with(kind.magic));
     known.map(|kind| (kind.name, kind.mend))
+}
+
+/// Whether a file that begins with `bytes` is a binary log of a CAN bus (BLF).
+pub fn is_blf(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"LOGG")
+}
+
+/// Whether a file that begins with `bytes` is a MAT file of version 5, 6 or 7.
+pub fn is_mat(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"MATLAB 5.0")
+}
+
+/// Whether a file that begins with `bytes` is Parquet.
+pub fn is_parquet(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"PAR1")
 }
 
 /// Whether a file that begins with `bytes` is MDF.

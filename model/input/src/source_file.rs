@@ -65,7 +65,15 @@ impl SourceFile {
         }
     }
 
-    /// A file without its text, only the name.
+    /// The bytes of a regular file of at most 512 MiB.
+    ///
+    /// # Errors
+    /// The file is missing, not a regular file, too long or not readable.
+    pub fn bytes(path: &Path) -> Result<Vec<u8>, InputError> {
+        bytes_of(path)
+    }
+
+    /// A file without its text, only the name: its faults have no position.
     pub fn named(path: &Path) -> Self {
         Self {
             path: path.to_path_buf(),
@@ -78,13 +86,16 @@ impl SourceFile {
         place(&self.text, byte)
     }
 
-    /// A fault at a byte of the text.
+    /// A fault at a byte of the text; of the whole file if there is no text.
     pub fn error_at(
         &self,
         byte: usize,
         what: impl Into<String>,
         mend: impl Into<String>,
     ) -> InputError {
+        if self.text.is_empty() {
+            return self.error(what, mend);
+        }
         InputError::at(&self.path, self.place(byte), what, mend)
     }
 

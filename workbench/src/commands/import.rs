@@ -17,7 +17,8 @@ use crate::output;
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Example: hitch import monday.csv --out monday --load 150 --map lift_current_a=\"Ventil Heben Strom:mA\"\n\n\
-    Logs are tables (CSV of any dialect), MDF (.mf4, .mdf) or recordings of a CAN bus (.log, .asc). They are read in \
+    Logs are tables (CSV of any dialect, .parquet), MDF (.mf4, .mdf), MAT files of MATLAB up to -v7 (.mat: vectors, \
+    structs, time series as structs with Time and Data), or recordings of a CAN bus (.log, .asc, .blf). They are read in \
     place: only campaign.toml is written to the campaign's folder, with the assignment of columns in [columns]. For a \
     bus, give its DBC file together with the logs, and assign signals with --map lift_current_a=Message.Signal. An \
     angle in mm is the travel of the cylinder; the linkage of --model converts it into an angle. A log of more than a \

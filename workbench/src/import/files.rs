@@ -73,7 +73,7 @@ impl Files {
         let name = dbc.display();
         if columns.is_empty() {
             return Err(Error::Usage(format!(
-                "{name}: describes a bus, but no log of a bus (.log, .asc) is given"
+                "{name}: describes a bus, but no log of a bus (.log, .asc, .blf) is given"
             )));
         }
         let heading = match unknown_frames {

@@ -1,12 +1,13 @@
-//! Runs from logs of a CAN bus: candump's `.log` and Vector's `.asc`, decoded by a description of the bus (DBC).
+//! Runs from logs of a CAN bus: candump's `.log`, and Vector's `.asc` and `.blf`, decoded by a description of the bus (DBC).
 //!
 //! ```text
-//! log --(candump, asc)--> frames --(listener: signals of the DBC)--> series of each column --> rows of a run
+//! log --(candump, asc, blf)--> frames --(listener: signals of the DBC)--> series of each column --> rows of a run
 //! ```
 //!
 //! A row is a sample of the lift current. Signals of other messages are interpolated linearly to its time, if a sample
 //! is within half a row.
 mod asc;
+mod blf;
 mod candump;
 mod clock;
 mod description;
@@ -39,6 +40,8 @@ pub enum Format {
     Candump,
     /// Vector ASCII.
     Asc,
+    /// Vector binary.
+    Blf,
 }
 
 impl Format {
@@ -48,7 +51,19 @@ impl Format {
         match end.as_str() {
             "log" => Some(Self::Candump),
             "asc" => Some(Self::Asc),
+            "blf" => Some(Self::Blf),
             _ => None,
+        }
+    }
+
+    /// The file: with its text, if the format is one of text.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is not text.
+    pub fn source(self, path: &Path) -> Result<SourceFile, CampaignError> {
+        match self {
+            Self::Candump | Self::Asc => SourceFile::read_any(path),
+            Self::Blf => Ok(SourceFile::named(path)),
         }
     }
 }
@@ -95,7 +110,11 @@ pub fn read(
         columns.push(samples(column.name, values));
     }
     let bytes = rows.bytes.clone();
-    Table::new(Arc::clone(source), columns, bytes, Cells::OneALine)
+    let cells = match format {
+        Format::Candump | Format::Asc => Cells::OneALine,
+        Format::Blf => Cells::Nowhere,
+    };
+    Table::new(Arc::clone(source), columns, bytes, cells)
 }
 
 /// Passes the frames of a log to a sink.
@@ -107,6 +126,7 @@ fn read_frames(
     match format {
         Format::Candump => candump::read(source, sink),
         Format::Asc => asc::read(source, sink),
+        Format::Blf => blf::read(source, sink),
     }
 }
 

@@ -52,7 +52,8 @@ impl Times {
         }
     }
 
-    fn of_number(&mut self, number: f64) -> Option<f64> {
+    /// The time of a number, s; epoch times are relative to the first one. `None` after a clock time.
+    pub fn of_number(&mut self, number: f64) -> Option<f64> {
         let begin = self.begin.unwrap_or_else(|| {
             let unit_s = self.unit_s.unwrap_or_else(|| guessed_unit_s(number));
             let counts_from_epoch = number * unit_s >= EPOCH_FROM_S;

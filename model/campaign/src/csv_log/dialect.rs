@@ -62,7 +62,8 @@ fn row_start(text: &str, byte: usize) -> usize {
 }
 
 impl HeaderCell {
-    fn new(text: &str) -> Self {
+    /// Splits a name from a unit in brackets behind it.
+    pub fn new(text: &str) -> Self {
         let text = text.trim();
         let (name, unit) = match in_brackets(text) {
             Some((name, unit)) => (name, Some(unit.to_owned())),

@@ -1,6 +1,6 @@
 //! Text tables: the project's own format, whose header has the columns' names, and any other by `[columns]`.
-mod clock;
-mod dialect;
+pub mod clock;
+pub mod dialect;
 pub mod flow_curve;
 pub mod linkage_table;
 mod mapped;

@@ -1,0 +1,180 @@
+//! Logs of channels, each with its own times.
+//!
+//! A row is a sample of the lift current; other channels are moved to its times, as in bus logs.
+
+use std::sync::Arc;
+
+use hitch_input::input_error::quote;
+use hitch_input::source_file::SourceFile;
+use hitch_plant::Linkage;
+
+use crate::CampaignError;
+use crate::columns::{ColumnSettings, Source, offer_columns};
+use crate::scale::{Scale, spelling};
+use crate::series::{Series, values};
+use crate::survey::LogColumn;
+use crate::table::{Cells, Column, LIFT, Samples, TIME, Table};
+
+/// A channel of a log.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LogChannel {
+    /// Its name.
+    pub name: String,
+    /// Its unit; `None` without one.
+    pub unit: Option<String>,
+    /// Number of samples.
+    pub samples: usize,
+}
+
+/// A log of channels.
+pub trait ChannelFile {
+    /// The file, without its text.
+    fn source(&self) -> &SourceFile;
+
+    /// Its channels other than times.
+    fn channels(&self) -> &[LogChannel];
+
+    /// The samples of a channel; NaN where there is no valid one. `time` is the assigned column of times, for a format
+    /// in which channels may lack times of their own.
+    ///
+    /// # Errors
+    /// The samples cannot be read, or have no times.
+    fn series(&self, channel: usize, time: Option<&Source>) -> Result<Series, CampaignError>;
+}
+
+/// Reads a log for a hitch with this linkage.
+///
+/// # Errors
+/// The first fault.
+pub fn read(
+    file: &dyn ChannelFile,
+    settings: Option<&ColumnSettings>,
+    linkage: &Linkage,
+) -> Result<Table, CampaignError> {
+    let own = ColumnSettings::by_own_names();
+    let sources = &settings.unwrap_or(&own).sources;
+    let time = sources.iter().find(|wanted| wanted.column.name == TIME);
+    let mut taken: Vec<(&'static str, Series)> = Vec::new();
+    for wanted in sources.iter().filter(|wanted| wanted.column.name != TIME) {
+        if let Some(channel) = find(file, wanted)? {
+            let series = scaled_series(file, channel, wanted, time, linkage)?;
+            taken.push((wanted.column.name, series));
+        }
+    }
+    let rows = taken.iter().find(|(name, _)| *name == LIFT);
+    let Some((_, rows)) = rows else {
+        let what = format!("no channel is assigned to {LIFT}");
+        let mend = format!("assign it under [columns]: {LIFT} = \"Name:A\"");
+        return Err(file.source().error(what, mend));
+    };
+    let (times_s, within_s) = (rows.times_s.clone(), rows.median_step_s() / 2.0);
+    let samples = |name, values| Samples {
+        name,
+        cell: 0,
+        values,
+    };
+    let mut columns = vec![samples(TIME, times_s.clone())];
+    columns.extend(
+        taken
+            .iter()
+            .map(|(name, series)| samples(name, values(name, series, &times_s, within_s))),
+    );
+    let bytes = vec![0; times_s.len()];
+    Table::new(
+        Arc::new(file.source().clone()),
+        columns,
+        bytes,
+        Cells::Nowhere,
+    )
+}
+
+/// The channels with samples, each name once.
+pub fn survey(file: &dyn ChannelFile) -> Vec<LogColumn> {
+    let mut columns: Vec<LogColumn> = Vec::new();
+    for (index, channel) in file.channels().iter().enumerate() {
+        // Unsupported signals are not offered; the reader reports the reason if one is named.
+        let Ok(series) = file.series(index, None) else {
+            continue;
+        };
+        let known = columns.iter().any(|column| column.name == channel.name);
+        if !known && !series.values.is_empty() {
+            columns.push(LogColumn {
+                name: channel.name.clone(),
+                unit: channel
+                    .unit
+                    .as_deref()
+                    .map(|unit| spelling(unit).to_owned()),
+                comment: String::new(),
+                values: series.values,
+                is_clock: false,
+            });
+        }
+    }
+    columns
+}
+
+/// Index of the channel of a column; `None` if it is missing and optional.
+fn find(file: &dyn ChannelFile, wanted: &Source) -> Result<Option<usize>, CampaignError> {
+    let channels = file.channels();
+    let named = (0..channels.len()).filter(|&index| channels[index].name == wanted.name);
+    // Tools create groups without samples for signals that were not sent.
+    match named.max_by_key(|&index| channels[index].samples) {
+        Some(channel) => Ok(Some(channel)),
+        None if !wanted.is_required => Ok(None),
+        None => Err(missing(file, wanted)),
+    }
+}
+
+/// A channel that does not exist.
+pub fn missing(file: &dyn ChannelFile, wanted: &Source) -> CampaignError {
+    let channels = file.channels().iter();
+    let names: Vec<&str> = channels.map(|channel| channel.name.as_str()).collect();
+    let what = format!(
+        "channel {} does not exist; [columns] assigns it to {}",
+        quote(&wanted.name),
+        wanted.column.name
+    );
+    file.source()
+        .error(what, offer_columns(&wanted.name, &names))
+}
+
+fn scaled_series(
+    file: &dyn ChannelFile,
+    index: usize,
+    wanted: &Source,
+    time: Option<&Source>,
+    linkage: &Linkage,
+) -> Result<Series, CampaignError> {
+    let channel = &file.channels()[index];
+    let fault = |(what, mend): (String, String)| file.source().error(what, mend);
+    let scale = wanted.scale(channel.unit.as_deref()).map_err(fault)?;
+    let mut series = file.series(index, time)?;
+    for index in 0..series.values.len() {
+        let value = scaled(scale, linkage, series.values[index], wanted.column);
+        series.values[index] = value.map_err(|value| {
+            let what = format!(
+                "{} of channel {} at {:.3} s would be {} = {value}",
+                series.values[index],
+                quote(&channel.name),
+                series.times_s[index],
+                wanted.column.name
+            );
+            let (low, high) = (wanted.column.range.start(), wanted.column.range.end());
+            let mend = format!("the range is {low} to {high}: check the unit under [columns]");
+            file.source().error(what, mend)
+        })?;
+    }
+    Ok(series)
+}
+
+/// The value in the column's unit; NaN is kept.
+///
+/// # Errors
+/// The value, if it is out of the column's range.
+fn scaled(scale: Scale, linkage: &Linkage, value: f64, column: &Column) -> Result<f64, f64> {
+    if !value.is_finite() {
+        return Ok(f64::NAN);
+    }
+    let value = scale.apply(value, linkage);
+    column.range.contains(&value).then_some(value).ok_or(value)
+}

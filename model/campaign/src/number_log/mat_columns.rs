@@ -1,0 +1,158 @@
+//! The columns of a MAT file: vectors, columns of matrices, fields of structs, and time series.
+//!
+//! ```text
+//! t, heben, ...                          vectors
+//! log.t, log.heben, ...                  a struct of vectors
+//! log(:,1), log(:,2), ...                a matrix, along its longer dimension
+//! heben.Time, heben.Data                 a time series: the channel `heben` with its own times
+//! out.time, out.signals(k).values        "structure with time" of Simulink, by the labels of its signals
+//! ```
+
+use super::mat::{Value, variables};
+use super::{Fault, NumberColumn};
+
+/// Most columns of a matrix: larger ones are no logs.
+const MOST_COLUMNS: usize = 64;
+const MEND: &str = "save it again: save('log.mat', 't', 'heben', ..., '-v7')";
+
+/// The fields of a struct.
+type Fields = [(String, Value)];
+
+/// Reads the columns of a file.
+///
+/// # Errors
+/// The file is broken, or contains no vectors.
+pub fn read(bytes: &[u8]) -> Result<Vec<NumberColumn>, Fault> {
+    let variables = variables(bytes).map_err(|what| (what, MEND))?;
+    let mut columns = Vec::new();
+    for (name, value) in &variables {
+        add(name, value, &mut columns);
+    }
+    let has_objects = variables
+        .iter()
+        .any(|(_, value)| matches!(value, Value::Object));
+    match columns.is_empty() {
+        true if has_objects => Err((
+            "contains timeseries, tables or other objects, which only MATLAB can read".to_owned(),
+            "save structs: heben = struct('Time', ts.Time, 'Data', ts.Data), or table2struct(t, 'ToScalar', true)",
+        )),
+        true => Err(("contains no vectors of numbers".to_owned(), MEND)),
+        false => Ok(columns),
+    }
+}
+
+/// Adds the columns of a value.
+fn add(name: &str, value: &Value, columns: &mut Vec<NumberColumn>) {
+    match value {
+        Value::Numbers { size, values } => columns.extend(of_matrix(name, *size, values)),
+        Value::Structs(structs) => {
+            for (index, fields) in structs.iter().enumerate() {
+                match structs.len() {
+                    1 => add_struct(name, fields, columns),
+                    _ => add_struct(&format!("{name}({})", index + 1), fields, columns),
+                }
+            }
+        }
+        Value::Text(_) | Value::Object | Value::Other => {}
+    }
+}
+
+fn add_struct(name: &str, fields: &Fields, columns: &mut Vec<NumberColumn>) {
+    if let Some(timed) = time_series(name, fields) {
+        columns.extend(timed);
+        return;
+    }
+    for (field, value) in fields {
+        add(&format!("{name}.{field}"), value, columns);
+    }
+}
+
+/// The columns of a struct with times and data; `None` for other structs.
+fn time_series(name: &str, fields: &Fields) -> Option<Vec<NumberColumn>> {
+    let times = vector(field(fields, &["time", "t"])?)?;
+    let mut columns = match field(fields, &["signals"]) {
+        Some(Value::Structs(signals)) => of_signals(name, signals),
+        _ => {
+            let mut columns = of_data(name, fields, &["data", "values", "value"])?;
+            for column in &mut columns {
+                column.unit = unit(fields);
+            }
+            columns
+        }
+    };
+    columns.retain(|column| column.values.len() == times.len());
+    for column in &mut columns {
+        column.times = Some(times.to_vec());
+    }
+    (!columns.is_empty()).then_some(columns)
+}
+
+fn of_signals(name: &str, signals: &[Vec<(String, Value)>]) -> Vec<NumberColumn> {
+    let signal = |(index, fields): (usize, &Vec<(String, Value)>)| {
+        let label = match field(fields, &["label"]) {
+            Some(Value::Text(label)) if !label.trim().is_empty() => label.trim().to_owned(),
+            _ => format!("{name}.signals({})", index + 1),
+        };
+        of_data(&label, fields, &["values"]).unwrap_or_default()
+    };
+    signals.iter().enumerate().flat_map(signal).collect()
+}
+
+fn of_data(name: &str, fields: &Fields, known: &[&str]) -> Option<Vec<NumberColumn>> {
+    match field(fields, known)? {
+        Value::Numbers { size, values } => Some(of_matrix(name, *size, values)),
+        _ => None,
+    }
+}
+
+/// The unit of a time series.
+fn unit(fields: &Fields) -> Option<String> {
+    if let Some(Value::Structs(about)) = field(fields, &["datainfo"]) {
+        return about.first().and_then(|fields| unit(fields));
+    }
+    match field(fields, &["units", "unit"])? {
+        Value::Text(unit) if !unit.trim().is_empty() => Some(unit.trim().to_owned()),
+        _ => None,
+    }
+}
+
+/// A field by its name in lower case.
+fn field<'f>(fields: &'f Fields, known: &[&str]) -> Option<&'f Value> {
+    let is_it = |name: &str| known.contains(&&*name.to_ascii_lowercase());
+    let found = fields.iter().find(|(name, _)| is_it(name));
+    found.map(|(_, value)| value)
+}
+
+fn vector(value: &Value) -> Option<&[f64]> {
+    match value {
+        Value::Numbers { size, values } if size.contains(&1) && values.len() > 1 => Some(values),
+        _ => None,
+    }
+}
+
+/// The vectors of a matrix along its longer dimension; none of a single number, which is a parameter.
+fn of_matrix(name: &str, [rows, columns]: [usize; 2], values: &[f64]) -> Vec<NumberColumn> {
+    let column = |name: String, values: Vec<f64>| NumberColumn {
+        name,
+        values,
+        ..NumberColumn::default()
+    };
+    let (length, count) = (rows.max(columns), rows.min(columns));
+    if length < 2 || count == 0 || count > MOST_COLUMNS {
+        return Vec::new();
+    }
+    if count == 1 {
+        return vec![column(name.to_owned(), values.to_vec())];
+    }
+    let part = |index: usize| match rows == length {
+        true => column(
+            format!("{name}(:,{})", index + 1),
+            values[index * rows..(index + 1) * rows].to_vec(),
+        ),
+        false => column(
+            format!("{name}({},:)", index + 1),
+            values.iter().skip(index).step_by(rows).copied().collect(),
+        ),
+    };
+    (0..count).map(part).collect()
+}
