@@ -7,11 +7,18 @@ use hitch_quantities::{Fault, State};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::ecu::{Moment, PaceChange};
+use crate::text::width;
 
 /// Interval between updates of the line, ms.
 const LIVE_MS: u64 = 100;
 /// Interval between rows of the table, ms; a row is also added when state or fault change.
 const ROW_MS: u64 = 1_000;
+
+/// Header of the rows.
+const HEAD: &str = "  time s    deg target  lever lift A low. A   bar  state";
+
+/// Indentation of the second line of a row that is too long.
+const SECOND: &str = "          ";
 
 /// Where the state is shown.
 #[derive(Debug)]
@@ -19,6 +26,7 @@ pub struct StatusLine {
     bar: Option<ProgressBar>,
     last: Option<(u8, u8)>,
     behind: bool,
+    has_head: bool,
 }
 
 impl StatusLine {
@@ -36,6 +44,7 @@ impl StatusLine {
             bar,
             last: None,
             behind: false,
+            has_head: false,
         }
     }
 
@@ -53,15 +62,22 @@ impl StatusLine {
         if !changed && !moment.time_ms.is_multiple_of(period_ms) {
             return Ok(());
         }
-        let mut line = line(moment, clients);
-        if self.behind {
-            line.push_str("  behind real time");
-        }
+        let notes = notes(moment, clients, self.behind);
+        let has_head = std::mem::replace(&mut self.has_head, true);
         match bar {
-            Some(bar) => bar.set_message(line),
+            Some(bar) => {
+                // The spinner takes two columns.
+                if !has_head {
+                    bar.println(format!("  {HEAD}"));
+                }
+                bar.set_message(row(moment) + &notes.concat());
+            }
             None => {
                 let mut output = io::stdout().lock();
-                writeln!(output, "{line}")?;
+                if !has_head {
+                    writeln!(output, "{HEAD}")?;
+                }
+                writeln!(output, "{}", fitted(row(moment), &notes, width()))?;
                 output.flush()?;
             }
         }
@@ -101,15 +117,11 @@ impl Drop for StatusLine {
     }
 }
 
-fn line(moment: &Moment, clients: Option<usize>) -> String {
+/// The figures and the state.
+fn row(moment: &Moment) -> String {
     let (signals, reply) = (&moment.signals, &moment.reply);
-    let fault = match Fault::from_code(reply.fault) {
-        Some(fault) => format!("  fault: {}", fault.name()),
-        None => String::new(),
-    };
-    let clients = clients.map_or(String::new(), |clients| format!("  clients {clients}"));
     format!(
-        "{:9.3} s  {:6.2} deg  target {:6.2}  lever {:6.2}  lift {:5.3} A  lower {:5.3} A  {:5.1} bar  {}{fault}{clients}",
+        "{:8.2} {:6.2} {:6.2} {:6.2} {:6.3} {:6.3} {:5.1}  {}",
         moment.time_ms as f64 * 1e-3,
         signals.rocker_angle_deg,
         f64::from(reply.target_mdeg) * 1e-3,
@@ -119,4 +131,46 @@ fn line(moment: &Moment, clients: Option<usize>) -> String {
         signals.cylinder_pressure_bar,
         State::from_code(reply.state).map_or("?", State::name),
     )
+}
+
+/// What follows the state, each with a distance before it.
+fn notes(moment: &Moment, clients: Option<usize>, is_behind: bool) -> Vec<String> {
+    let fault =
+        Fault::from_code(moment.reply.fault).map(|fault| format!("  fault: {}", fault.name()));
+    let clients = clients.map(|clients| format!("  clients {clients}"));
+    let behind = is_behind.then(|| "  behind real time".to_owned());
+    [fault, clients, behind].into_iter().flatten().collect()
+}
+
+/// A row with its notes, the last ones on a second line if it is too long.
+fn fitted(mut row: String, notes: &[String], width: usize) -> String {
+    let mut length = row.chars().count();
+    for note in notes {
+        if length + note.chars().count() > width {
+            row.push('\n');
+            row.push_str(SECOND);
+            length = SECOND.len();
+        }
+        row.push_str(note);
+        length += note.chars().count();
+    }
+    row
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fitted;
+
+    #[test]
+    fn notes_that_do_not_fit_are_on_a_second_line() {
+        let notes = ["  fault".to_owned(), "  clients 1".to_owned()];
+        assert_eq!(
+            fitted("row".to_owned(), &notes, 21),
+            "row  fault  clients 1"
+        );
+        assert_eq!(
+            fitted("row".to_owned(), &notes, 20),
+            "row  fault\n            clients 1"
+        );
+    }
 }

@@ -1,5 +1,6 @@
 //! Texts of the program: their width, and their colours.
 
+use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -64,6 +65,46 @@ fn texts_of_the_closed_loop_and_the_paper_fit_80_columns() {
     );
     assert_eq!(missed.status.code(), Some(2));
     assert_fits(&String::from_utf8(missed.stdout).unwrap());
+}
+
+#[test]
+fn texts_of_imports_models_and_the_ecu_fit_80_columns() {
+    let dir = campaign();
+    let log = fs::read_to_string(dir.path().join("lower_2.2A_150kg.csv")).unwrap();
+    // Names of a length that some loggers give.
+    let (_, rows) = log.split_once('\n').unwrap();
+    let names = log
+        .lines()
+        .next()
+        .unwrap()
+        .split(',')
+        .map(|name| match name {
+            "time_s" => "time [s]".to_owned(),
+            name => format!(
+                "Bench 7 / hydraulics / {} / filtered",
+                name.replace('_', " ")
+            ),
+        });
+    let names: Vec<String> = names.collect();
+    let long = "a log with a name of the length that loggers of whole days use 150kg.csv";
+    fs::write(
+        dir.path().join(long),
+        format!("{}\n{rows}", names.join(",")),
+    )
+    .unwrap();
+    let import = ["import", long, "--out", "i", "--yes"];
+    let output = run(dir.path(), &import);
+    assert!(output.status.success(), "{output:?}");
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("next: hitch compare i"), "{said}");
+    assert_fits(&said);
+    for arguments in [
+        "model new --yes --out new.toml",
+        "ecu --host --seconds 1.2",
+        "ecu --host --seconds 1.2 --can 127.0.0.1:0",
+    ] {
+        assert_fits(&text(dir.path(), arguments));
+    }
 }
 
 /// Output of `hitch compare` with an environment in place of that of the test.

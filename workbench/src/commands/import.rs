@@ -12,6 +12,7 @@ use crate::import::manifest::{Log, campaign, path_from};
 use crate::import::{Columns, Conditions, Files, dialogue, load_in_name};
 use crate::model_arg::ModelArg;
 use crate::output;
+use crate::text::wrapped;
 
 /// Arguments of `hitch import`.
 #[derive(Debug, clap::Args)]
@@ -125,14 +126,15 @@ fn told(args: &Args, runs: &[Run]) -> String {
     let mut text = String::new();
     for run in runs {
         let seconds = run.duration_s();
-        text += &format!(
-            "run {}: {} samples, {seconds:.1} s\n",
+        let run = format!(
+            "run {}: {} samples, {seconds:.1} s",
             run.file,
             run.time_s.len()
         );
+        text += &(wrapped(&run) + "\n");
     }
     text + &format!(
-        "{}: written; next: hitch compare {}{}\n",
+        "{}: written\nnext: hitch compare {}{}\n",
         args.out.join("campaign.toml").display(),
         args.out.display(),
         args.model.written()

@@ -8,6 +8,7 @@ use super::loop_::{load_kg, temperature_c};
 use crate::error::Error;
 use crate::output;
 use crate::progress::Progress;
+use crate::text::wrapped;
 use crate::xcp_tool::{BusAddress, CHANNELS, PERIOD_MS, Row, record};
 
 /// Arguments of `hitch record`.
@@ -64,11 +65,8 @@ pub fn run(args: &Args) -> Result<(), Error> {
         args.load, args.temperature
     );
     output::write_file(&manifest, (so_far + &run).as_bytes())?;
-    output::print(&format!(
-        "{} samples of {file} in {}\n",
-        rows.len(),
-        args.out.display()
-    ))
+    let said = format!("{} samples of {file} in {}", rows.len(), args.out.display());
+    output::print(&(wrapped(&said) + "\n"))
 }
 
 /// The existing manifest of the campaign, or the head of a new one.

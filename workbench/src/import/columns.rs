@@ -379,7 +379,7 @@ fn unit(channel: &str, column: &LogColumn) -> Option<(String, String)> {
         ("lift_current_a" | "lower_current_a", Some("mA")) if largest > 0.0 && largest <= 5.0 => {
             odd("A", "ampere")
         }
-        (_, Some(unit)) => Some((unit.to_owned(), format!("in {unit}, as stated in the log"))),
+        (_, Some(unit)) => Some((unit.to_owned(), format!("{unit} in the log"))),
         ("pump_pressure_bar" | "cylinder_pressure_bar", None) if largest > MOST_BAR => None,
         (_, None) => {
             let (_, unit) = run_columns().find(|(name, _)| *name == channel)?;

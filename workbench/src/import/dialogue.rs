@@ -5,9 +5,10 @@ use std::io::IsTerminal as _;
 
 use hitch_campaign::survey::{LogColumn, check_source};
 
-use super::{Columns, Mapping, Untold};
+use super::{Columns, Mapping, Taken, Untold};
 use crate::error::Error;
 use crate::output;
+use crate::text::{indented, wrapped};
 
 /// Assigns the columns of a log. Asks if allowed, and if standard input and output are a terminal.
 ///
@@ -131,17 +132,34 @@ fn shown(heading: &str, columns: &[LogColumn], mapping: &Mapping) -> String {
         .iter()
         .map(|taken| taken.source.chars().count());
     let width = widths.max().unwrap_or(0);
-    let mut text = format!("{heading}:\n");
+    let mut text = wrapped(&format!("{heading}:")) + "\n";
     for taken in &mapping.taken {
-        text += &format!(
-            "  {:<22} {:<width$}  {}\n",
-            taken.channel, taken.source, taken.reason
-        );
+        text += &line(taken, width);
     }
     match columns.len().saturating_sub(mapping.taken.len()) {
         0 => text,
         1 => text + "  1 other column is ignored\n",
         others => text + &format!("  {others} other columns are ignored\n"),
+    }
+}
+
+/// A column with its source and the reason, in several lines if it is too long.
+fn line(taken: &Taken, width: usize) -> String {
+    let Taken {
+        channel,
+        source,
+        reason,
+        ..
+    } = taken;
+    let named = format!("  {channel:<22} {source:<width$}");
+    let (named_length, most) = (named.chars().count(), crate::text::width());
+    if named_length + 2 + reason.chars().count() <= most {
+        return format!("{named}  {reason}\n");
+    }
+    let reason = indented(reason, 6);
+    match named_length <= most {
+        true => format!("{}\n{reason}\n", named.trim_end()),
+        false => format!("  {channel}\n    {source}\n{reason}\n"),
     }
 }
 
