@@ -4,21 +4,21 @@ use hitch_plant::Model;
 use hitch_quantities::{Calibration, ValidCalibration};
 
 use crate::calibrate::calibrate;
-use crate::closed_loop::{self, LoopRun, MoveResult, Scenario, Summary};
+use crate::closed_loop::{self, LoopRun, MoveResult, Scenario, Summary, with_dynamics};
 use crate::error::Error;
 use crate::explanation::Found;
 use crate::text::{Table, known};
 
-/// The same moves of the same rig under the nominal and under the rebuilt valve map.
+/// The same moves of the same rig under the valve map of the initial model and under the rebuilt one.
 #[derive(Debug, Clone)]
 pub struct Rebuild {
-    /// The rig: the dynamic model with the identified effects.
+    /// The rig: the identified model with dynamics.
     pub rig: Model,
-    /// The nominal calibration.
+    /// The calibration of the initial model.
     pub nominal: ValidCalibration,
     /// The calibration with the valves of the identified model.
     pub rebuilt: ValidCalibration,
-    /// The moves under the nominal calibration.
+    /// The moves under the calibration of the initial model.
     pub before: LoopRun,
     /// The moves under the rebuilt calibration.
     pub after: LoopRun,
@@ -36,19 +36,17 @@ impl Rebuild {
     /// Rebuilds the map from the identified effects, and drives the moves of `scenario` with both maps.
     ///
     /// # Errors
-    /// If the firmware rejects the map of this model.
+    /// If the firmware rejects the map of one of the models, or the identified one has no linkage.
     pub fn new(found: &Found, scenario: Scenario) -> Result<Self, Error> {
-        let rig = hitch_model_file::dynamic()
-            .with_effects(found.explanation.after.estimate.effects.clone());
         let identified = found.rebuilt("identified".to_owned());
-        let base = Calibration::nominal();
+        let rig = with_dynamics(&identified)?;
         let failed = |error: &dyn std::fmt::Display| {
             Error::Failed(format!("the valve map cannot be rebuilt: {error}"))
         };
-        let rebuilt = calibrate(&identified, &base).map_err(|error| failed(&error))?;
-        let nominal = base
-            .validate()
-            .map_err(|error| failed(&format!("{error:?}")))?;
+        let calibration = |model: &Model| {
+            calibrate(model, &Calibration::nominal()).map_err(|error| failed(&error))
+        };
+        let (nominal, rebuilt) = (calibration(&found.model)?, calibration(&identified)?);
         let moves = scenario.moves(&rig, None);
         let drive = |calibration: &ValidCalibration| {
             closed_loop::run(&rig, calibration, &moves)

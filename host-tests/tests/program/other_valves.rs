@@ -4,7 +4,14 @@ use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 use std::process::Stdio;
+use std::time::Instant;
 
+use hitch_campaign::Campaign;
+use hitch_identification::search::subset::Options;
+use hitch_plant::Dynamics;
+use hitch_workbench::closed_loop::{Scenario, first_missed};
+use hitch_workbench::explanation::Found;
+use hitch_workbench::rebuild::Rebuild;
 use host_tests::category_three::files::write;
 use host_tests::program::{hitch, run};
 use serde_json::Value;
@@ -79,6 +86,40 @@ fn the_valve_map_ends_where_the_curves_of_the_valves_end() {
             currents_a[0] > 0.35 && (last_a - LARGEST_A).abs() < 0.01,
             "{currents_a:?}"
         );
+    }
+}
+
+/// The closed loop after an explanation has this machine, and not the paper's: its cylinders, valves and loads.
+#[test]
+fn the_rebuilt_map_drives_the_machine_of_the_model() {
+    let dir = machine();
+    succeed(dir.path(), "import machine/new_400kg.mf4 --out c --yes");
+    let model = hitch_model_file::named(dir.path().join("sheet.toml").to_str().unwrap()).unwrap();
+    let campaign = Campaign::load_with(&dir.path().join("c"), model.linkage()).unwrap();
+    // Quasi-static, as a model from data sheets may be: the loop adds the dynamics that it declares.
+    let model = model.quasi_static();
+    // Without effects: only the machine counts here.
+    let options = Options {
+        deadline: Some(Instant::now()),
+        ..Options::default()
+    };
+    let found = Found::new(&campaign, model.clone(), options, &|_| {});
+    let rebuild = Rebuild::new(&found, Scenario::Quick).unwrap();
+    let (rig, own) = (rebuild.rig.constants(), model.constants());
+    assert_eq!(rig.dynamics, Dynamics::Dynamic);
+    assert_eq!(
+        (&rig.cylinder, &rig.pump, &rig.lift_valve.curve),
+        (&own.cylinder, &own.pump, &own.lift_valve.curve)
+    );
+    let piston_area = (own.cylinder.area_m2() * 1e6).round();
+    for calibration in [&rebuild.nominal, &rebuild.rebuilt] {
+        let hydraulics = &calibration.hydraulics;
+        assert_eq!(f64::from(hydraulics.piston_area.0), piston_area);
+    }
+    for run in [&rebuild.before, &rebuild.after] {
+        let is_usual = |load_kg: f64| model.usual_loads_kg().contains(&load_kg);
+        assert!(run.results.iter().all(|result| is_usual(result.load_kg)));
+        assert!(first_missed(run).is_none(), "{:?}", run.results);
     }
 }
 

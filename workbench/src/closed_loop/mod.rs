@@ -5,6 +5,7 @@ mod driven_plant;
 mod ideal_ramp;
 mod instruments;
 mod loop_;
+mod machine;
 mod metrics;
 mod missed;
 mod moves;
@@ -21,6 +22,7 @@ pub use instruments::{
     ANGLE_NOISE_DEG, CURRENT_NOISE_A, CYLINDER_NOISE_BAR, Instruments, PUMP_NOISE_BAR, SUPPLY_V,
 };
 pub use loop_::{ClosedLoop, Sample};
+pub use machine::with_dynamics;
 pub use metrics::{ARRIVED_DEG, MoveResult, Summary};
 pub use missed::first_missed;
 pub use moves::{Course, LoopRun, MoveTrace, courses, figures, run, run_quick_lift};

@@ -1,10 +1,10 @@
 //! The models and calibrations of the closed loop.
 
-use hitch_model_file::dynamic;
-use hitch_plant::{Constants, Dynamics, Model, OrificeValve};
+use hitch_plant::Model;
 use hitch_quantities::{Calibration, ValidCalibration};
 
 use crate::calibrate::calibrate;
+use crate::closed_loop::with_dynamics;
 use crate::error::Error;
 use crate::explanation::rebuilt;
 use crate::serve::session::Session;
@@ -63,29 +63,4 @@ impl Models {
 fn calibration(model: &Model) -> Result<ValidCalibration, Error> {
     calibrate(model, &Calibration::nominal())
         .map_err(|error| Error::Usage(format!("no calibration for {}: {error}", model.name)))
-}
-
-/// A quasi-static model with its declared inertia, compressibility and spool lag; a dynamic one unchanged.
-fn with_dynamics(model: &Model) -> Result<Model, Error> {
-    let constants = model.constants();
-    if constants.dynamics == Dynamics::Dynamic {
-        return Ok(model.clone());
-    }
-    let laminar = |valve: &OrificeValve, declared: &OrificeValve| OrificeValve {
-        transition_drop_pa: valve.transition_drop_pa.max(declared.transition_drop_pa),
-        ..valve.clone()
-    };
-    let declared = dynamic();
-    let (lift, lower) = (
-        &declared.constants().lift_valve,
-        &declared.constants().lower_valve,
-    );
-    let constants = Constants {
-        dynamics: Dynamics::Dynamic,
-        lift_valve: laminar(&constants.lift_valve, lift),
-        lower_valve: laminar(&constants.lower_valve, lower),
-        ..constants.clone()
-    };
-    let failed = |error| Error::Failed(format!("the model has no linkage: {error}"));
-    model.with_constants(constants).map_err(failed)
 }
