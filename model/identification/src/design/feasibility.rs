@@ -13,10 +13,26 @@ const PROOF: f64 = 1.5;
 /// `model` as the machine. Currents are within the flow curves by construction.
 #[must_use]
 pub fn is_feasible(manoeuvre: &Manoeuvre, levels: &Levels, model: &Model, rate_hz: f64) -> bool {
-    let liftable = |run: &RunPlan| match run.stand {
+    is_liftable(manoeuvre, levels) && is_within_proof(manoeuvre, levels, model, rate_hz)
+}
+
+/// Whether the loads can be lifted all over the swing; without a simulation.
+#[must_use]
+pub fn is_liftable(manoeuvre: &Manoeuvre, levels: &Levels) -> bool {
+    manoeuvre.runs.iter().all(|run| match run.stand {
         Stand::Hitch { load_kg, .. } => load_kg <= levels.capacity_kg,
         Stand::Flow { .. } => true,
-    };
+    })
+}
+
+/// Whether the simulated pressures stay below the proof pressure.
+#[must_use]
+pub fn is_within_proof(
+    manoeuvre: &Manoeuvre,
+    levels: &Levels,
+    model: &Model,
+    rate_hz: f64,
+) -> bool {
     let peak_bar = |run: &RunPlan| {
         let log = run.log(model, rate_hz, Channel::ALL.map(|_| true));
         let pressures = [Channel::PumpPressure, Channel::CylinderPressure];
@@ -26,8 +42,6 @@ pub fn is_feasible(manoeuvre: &Manoeuvre, levels: &Levels, model: &Model, rate_h
         samples.flatten().fold(0.0, f64::max)
     };
     let runs = &manoeuvre.runs;
-    runs.iter().all(liftable)
-        && runs
-            .par_iter()
-            .all(|run| peak_bar(run) <= PROOF * levels.relief_bar)
+    runs.par_iter()
+        .all(|run| peak_bar(run) <= PROOF * levels.relief_bar)
 }

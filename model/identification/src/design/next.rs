@@ -1,12 +1,14 @@
 //! Selection of the manoeuvre with the largest expected likelihood ratio per minute of rig time.
 
+use std::cmp::Ordering;
 use std::fmt;
+use std::sync::OnceLock;
 
 use hitch_plant::{Effect, Model};
 use rayon::prelude::*;
 
 use crate::data::problem::Problem;
-use crate::design::feasibility::is_feasible;
+use crate::design::feasibility::{is_liftable, is_within_proof};
 use crate::design::levels::Levels;
 use crate::design::manoeuvre::TEMPLATES;
 use crate::design::plan::Manoeuvre;
@@ -152,16 +154,18 @@ impl Judged {
 pub fn next_experiment(problem: Problem<'_>, pairs: &[Pair]) -> Option<NextExperiment> {
     let bench = TestBench::new(problem, pairs.first()?.named.fit);
     let known: Vec<PairPrior> = pairs.iter().map(|pair| bench.known(*pair)).collect();
-    let manoeuvres = feasible(problem, &bench.with(pairs[0].named), bench.rate_hz());
-    let judged: Vec<Judged> = manoeuvres
+    let listed = Listed::new(problem, bench.with(pairs[0].named), bench.rate_hz());
+    let judged: Vec<Judged> = listed
+        .manoeuvres
         .par_iter()
         .map(|manoeuvre| Judged {
             likelihood_ratios: bench.likelihood_ratios(manoeuvre, &known),
         })
         .collect();
-    let best = judged.iter().map(Judged::largest).fold(0.0, f64::max);
+    let largest = listed.first_possible(|a, b| judged[a].largest().total_cmp(&judged[b].largest()));
+    let best = largest.map_or(0.0, |index| judged[index].largest());
     let instrument = (best < DECISIVE)
-        .then(|| additional_instrument(&bench, &manoeuvres, pairs[0]))
+        .then(|| additional_instrument(&bench, &listed.all_possible(), pairs[0]))
         .flatten();
     if best < DISTINGUISHABLE {
         return Some(NextExperiment::none(best, pairs, instrument));
@@ -171,30 +175,74 @@ pub fn next_experiment(problem: Problem<'_>, pairs: &[Pair]) -> Option<NextExper
     } else {
         DISTINGUISHABLE
     };
-    let merit = |(manoeuvre, judged): &(&Manoeuvre, &Judged)| {
+    let merit = |index: usize| {
+        let (judged, minutes) = (&judged[index], listed.manoeuvres[index].minutes());
         (
             judged.distinguished(bar).count(),
-            judged.smallest(bar) / manoeuvre.minutes(),
+            judged.smallest(bar) / minutes,
         )
     };
-    manoeuvres
-        .iter()
-        .zip(&judged)
-        .filter(|(_, judged)| judged.distinguished(bar).count() > 0)
-        .max_by(|a, b| {
-            let ((a_count, a_rate), (b_count, b_rate)) = (merit(a), merit(b));
-            a_count.cmp(&b_count).then(a_rate.total_cmp(&b_rate))
-        })
-        .map(|(manoeuvre, judged)| NextExperiment::of(manoeuvre, judged, pairs, bar, instrument))
+    let chosen = listed.first_possible(|a, b| {
+        let ((a_count, a_rate), (b_count, b_rate)) = (merit(a), merit(b));
+        a_count.cmp(&b_count).then(a_rate.total_cmp(&b_rate))
+    });
+    // The one with the largest ratio distinguishes a pair, so that the one of most merit does.
+    chosen.map(|index| {
+        let (manoeuvre, judged) = (&listed.manoeuvres[index], &judged[index]);
+        NextExperiment::of(manoeuvre, judged, pairs, bar, instrument)
+    })
 }
 
-/// The manoeuvres that a machine can carry out; `machine` is the best model of it.
-fn feasible(problem: Problem<'_>, machine: &Model, rate_hz: f64) -> Vec<Manoeuvre> {
-    let levels = Levels::new(problem.experiment, problem.model);
-    let manoeuvres = TEMPLATES.iter().map(|template| template.on(&levels));
-    manoeuvres
-        .filter(|manoeuvre| is_feasible(manoeuvre, &levels, machine, rate_hz))
-        .collect()
+/// The listed manoeuvres with loads that the machine can lift. Their pressures are simulated only for those that are
+/// chosen.
+struct Listed {
+    levels: Levels,
+    manoeuvres: Vec<Manoeuvre>,
+    /// The best model of the machine.
+    machine: Model,
+    rate_hz: f64,
+    /// Whether the machine can carry out each manoeuvre.
+    possible: Vec<OnceLock<bool>>,
+}
+
+impl Listed {
+    fn new(problem: Problem<'_>, machine: Model, rate_hz: f64) -> Self {
+        let levels = Levels::new(problem.experiment, problem.model);
+        let manoeuvres = TEMPLATES.iter().map(|template| template.on(&levels));
+        let manoeuvres: Vec<Manoeuvre> = manoeuvres
+            .filter(|manoeuvre| is_liftable(manoeuvre, &levels))
+            .collect();
+        Self {
+            possible: manoeuvres.iter().map(|_| OnceLock::new()).collect(),
+            levels,
+            manoeuvres,
+            machine,
+            rate_hz,
+        }
+    }
+
+    fn is_possible(&self, index: usize) -> bool {
+        let manoeuvre = &self.manoeuvres[index];
+        *self.possible[index]
+            .get_or_init(|| is_within_proof(manoeuvre, &self.levels, &self.machine, self.rate_hz))
+    }
+
+    /// The greatest manoeuvre by an order that the machine can carry out; of equal ones the last.
+    fn first_possible(&self, order: impl Fn(usize, usize) -> Ordering) -> Option<usize> {
+        let mut indices: Vec<usize> = (0..self.manoeuvres.len()).rev().collect();
+        indices.sort_by(|&a, &b| order(b, a));
+        indices.into_iter().find(|&index| self.is_possible(index))
+    }
+
+    fn all_possible(&self) -> Vec<Manoeuvre> {
+        let possible: Vec<bool> = (0..self.manoeuvres.len())
+            .into_par_iter()
+            .map(|index| self.is_possible(index))
+            .collect();
+        let manoeuvres = self.manoeuvres.iter().zip(possible);
+        let kept = manoeuvres.filter(|(_, is_possible)| *is_possible);
+        kept.map(|(manoeuvre, _)| manoeuvre.clone()).collect()
+    }
 }
 
 /// Texts without duplicates: two forms of an effect have the same name.
