@@ -24,7 +24,7 @@ const IMAGES_VARIABLE: &str = "HITCH_BOARD_IMAGES";
 const PROGRAM_VARIABLE: &str = "HITCH_PROGRAM";
 
 /// Modules of the test program `live` with tests that need images or a browser. Each runs alone: some are in real time.
-const ON_TARGET: [&str; 8] = [
+const ON_TARGET: [&str; 9] = [
     "board_bench::",
     "ecu_process::",
     "emulated::",
@@ -33,6 +33,7 @@ const ON_TARGET: [&str; 8] = [
     "page_in_browser::",
     "python_clients::",
     "report_in_browser::",
+    "second_in_browser::",
 ];
 
 /// Numbers of tests by result.

@@ -13,6 +13,8 @@ mod page_in_browser;
 mod python_clients;
 mod report_in_browser;
 mod running_ecu;
+mod second_in_browser;
+mod second_model;
 #[cfg(unix)]
 mod serial_adapter;
 mod serve;

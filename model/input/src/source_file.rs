@@ -24,15 +24,22 @@ impl SourceFile {
     /// # Errors
     /// The file is missing, not a regular file, too long, not readable or not UTF-8.
     pub fn read(path: &Path) -> Result<Self, InputError> {
-        let bytes = bytes_of(path)?;
-        if is_utf16(&bytes) {
+        Self::of(path, &bytes_of(path)?)
+    }
+
+    /// The text of bytes that were already read, as [`SourceFile::read`] returns it; `path` is only named in faults.
+    ///
+    /// # Errors
+    /// The bytes are not UTF-8.
+    pub fn of(path: &Path, bytes: &[u8]) -> Result<Self, InputError> {
+        if is_utf16(bytes) {
             return Err(InputError::of_file(
                 path,
                 "is UTF-16 text",
                 "save it as UTF-8",
             ));
         }
-        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
+        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
         match std::str::from_utf8(bytes) {
             Ok(text) => Ok(Self {
                 path: path.to_path_buf(),

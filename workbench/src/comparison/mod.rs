@@ -1,4 +1,5 @@
 //! Comparison of a model with measurements by condition, time and channel, in units of the instruments' noise.
+mod change;
 mod current_groups;
 mod groups;
 mod raw_error;
@@ -19,6 +20,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tally::Tally;
 
+pub use change::{Change, changes, largest_change_in_part};
 pub use current_groups::CurrentGroups;
 pub use groups::Grouping;
 pub use raw_error::{RawError, raw_errors};

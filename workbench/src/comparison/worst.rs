@@ -114,7 +114,7 @@ fn errors<P: PartialEq>(
 }
 
 /// Consecutive stretches of a run, as ranges of samples.
-fn stretches(time_s: &[f64]) -> Vec<(usize, usize)> {
+pub(super) fn stretches(time_s: &[f64]) -> Vec<(usize, usize)> {
     let mut found = Vec::new();
     let mut start = 0;
     for end in 1..=time_s.len() {

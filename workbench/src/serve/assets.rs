@@ -23,6 +23,7 @@ const FILES: &[(&str, &str, &str)] = &[
     ("server.js", SCRIPT, include_str!("assets/server.js")),
     ("fault.js", SCRIPT, include_str!("assets/fault.js")),
     ("files.js", SCRIPT, include_str!("assets/files.js")),
+    ("second.js", SCRIPT, include_str!("assets/second.js")),
     ("mapping.js", SCRIPT, include_str!("assets/mapping.js")),
     ("own_term.js", SCRIPT, include_str!("assets/own_term.js")),
     (

@@ -8,6 +8,7 @@ mod jobs;
 mod live;
 mod own_term;
 mod routes;
+mod second;
 mod server;
 mod session;
 mod sessions;

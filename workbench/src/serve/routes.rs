@@ -18,7 +18,7 @@ use super::own_term::TermForm;
 use super::session::Session;
 use super::sessions::{Sessions, Shared};
 use super::tasks::{Task, moved};
-use super::{assets, jobs, live, own_term, upload, views};
+use super::{assets, jobs, live, own_term, second, upload, views};
 use crate::comparison::{Grouping, worst_in_part};
 use crate::error::Error;
 
@@ -46,6 +46,7 @@ pub fn routes() -> Router<Arc<Sessions>> {
         .route("/{token}/api/events", get(events))
         .route("/{token}/api/model", get(model))
         .merge(live::routes())
+        .merge(second::routes())
         .merge(upload::routes())
 }
 

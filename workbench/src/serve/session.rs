@@ -13,6 +13,7 @@ use serde_json::Value;
 use tokio::sync::broadcast;
 
 use super::live::Bench;
+use super::second::Second;
 use super::source::Subject;
 use super::upload::Upload;
 use crate::comparison::Evaluated;
@@ -97,6 +98,8 @@ pub struct Session {
     pub job: Option<Job>,
     /// The closed loop.
     pub bench: Option<Bench>,
+    /// The second model.
+    pub second: Option<Arc<Second>>,
     /// The files that are being opened.
     pub upload: Option<Arc<Upload>>,
     /// Sends messages to the tab.
@@ -114,6 +117,7 @@ impl Session {
             explained: None,
             job: None,
             bench: None,
+            second: None,
             upload: None,
             messages: broadcast::Sender::new(KEPT_MESSAGES),
         }
@@ -125,7 +129,8 @@ impl Session {
         self.steps = vec![first(&subject)];
         self.at = 0;
         self.subject = subject;
-        (self.ranking, self.explained, self.bench) = (None, None, None);
+        (self.ranking, self.explained) = (None, None);
+        (self.bench, self.second) = (None, None);
     }
 
     /// The campaign and the initial model.

@@ -19,6 +19,7 @@ use serde::Deserialize;
 use super::jobs::Reporter;
 use super::own_term::TermForm;
 use super::routes::Refusal;
+use super::second::Second;
 use super::session::{Explained, Ranking, Session, Step};
 use super::source::Subject;
 use super::views;
@@ -71,6 +72,14 @@ pub enum Task {
     },
     /// Accept the explanation together with its suggested term.
     Suggested,
+    /// Evaluate a second model; not requested by this name, but with a file.
+    #[serde(skip)]
+    Second {
+        /// Name of its file.
+        title: String,
+        /// The model.
+        model: Box<Model>,
+    },
 }
 
 /// A task with its inputs.
@@ -92,6 +101,7 @@ enum What {
     Fit,
     Adopt(Arc<Explained>, Vec<usize>),
     Suggested(Suggestion),
+    Second(String, Box<Model>),
 }
 
 /// Result of a task.
@@ -102,6 +112,8 @@ pub enum Outcome {
     Explained(Arc<Explained>),
     /// Steps of the session.
     Steps(Vec<Step>),
+    /// A second model.
+    Second(Arc<Second>),
 }
 
 impl Outcome {
@@ -111,6 +123,7 @@ impl Outcome {
             Self::Ranking(ranking) => session.ranking = Some(ranking),
             Self::Explained(explained) => session.explained = Some(explained),
             Self::Steps(steps) => steps.into_iter().for_each(|step| session.push(step)),
+            Self::Second(second) => session.second = Some(second),
         }
     }
 }
@@ -148,6 +161,7 @@ impl Ready {
                 let no_parameter = || Refusal::conflict("the effect does not have this parameter");
                 What::Set(estimate.ok_or_else(no_parameter)?, title)
             }
+            Task::Second { title, model } => What::Second(title, model),
             Task::Adopt { steps } => What::Adopt(present_explanation(session)?, steps),
             Task::Suggested => {
                 let suggestion = present_explanation(session)?.suggestion.clone();
@@ -177,6 +191,7 @@ impl Ready {
             What::Fit => "Fitting all effects".to_owned(),
             What::Adopt(..) => "Accepting the steps".to_owned(),
             What::Suggested(found) => format!("Adding {}", found.term.id()),
+            What::Second(title, _) => format!("Evaluating {title}"),
         }
     }
 
@@ -220,6 +235,11 @@ impl Ready {
                 let title = format!("Accepted the explanation with {}", found.term.id());
                 let start = found.fit.estimate.clone();
                 Outcome::Steps(vec![self.fitted(title, start, reporter)])
+            }
+            What::Second(title, model) => {
+                reporter.progress("fitting the clocks and loads", None, None);
+                let (title, model) = (title.clone(), (**model).clone());
+                Outcome::Second(Arc::new(Second::evaluate(&self.subject, title, model)))
             }
             What::Adopt(explained, steps) => {
                 Outcome::Steps(self.adopted(explained, steps, reporter))

@@ -1,5 +1,6 @@
 //! JSON views of a session.
 mod effects;
+mod second;
 
 use hitch_identification::data::experiment::{Experiment, ReadyRun};
 use hitch_identification::estimate::Estimate;
@@ -45,6 +46,7 @@ pub fn state(session: &Session) -> Value {
         "error": comparison.error,
         "noise_floor": comparison.noise_floor,
         "groupings": Grouping::ALL.map(grouping),
+        "second": second::compared(session, &comparison),
         "cells": comparison.cells,
         "steps": session.steps().iter().map(step).collect::<Vec<_>>(),
         "at": session.at(),
@@ -190,7 +192,10 @@ pub fn run(session: &Session, index: usize) -> Option<Value> {
     let ready = subject.experiment().runs.get(index)?;
     let evaluated = &session.present().evaluated;
     let simulated = evaluated.simulated(&subject.model, index);
-    let first = (session.at() > 0).then(|| subject.start.simulated(&subject.model, index));
+    let second = session.second.as_ref();
+    let other = second.map(|second| second::lines(second, index));
+    let shows_first = session.at() > 0 && second.is_none();
+    let first = shows_first.then(|| subject.start.simulated(&subject.model, index));
     let channel = |channel: Channel| {
         let measured = ready.measured[channel.index()].as_ref()?;
         Some(json!({
@@ -202,6 +207,7 @@ pub fn run(session: &Session, index: usize) -> Option<Value> {
             "first": first.as_ref().map(|trace: &Trace| trace.channel(channel)),
             "residual": evaluated.residuals(index, channel),
             "error": evaluated.error(index, channel),
+            "second": other.as_ref().map(|of| of(channel)),
         }))
     };
     let currents = &ready.drive.currents;
@@ -209,6 +215,7 @@ pub fn run(session: &Session, index: usize) -> Option<Value> {
         "run": index,
         "file": ready.file,
         "conditions": conditions(ready),
+        "names": second.map(|second| json!({ "second": second.title })),
         "time_s": ready.drive.time_s,
         "lift_current_a": currents.iter().map(|current| current.lift_a).collect::<Vec<_>>(),
         "lower_current_a": currents.iter().map(|current| current.lower_a).collect::<Vec<_>>(),

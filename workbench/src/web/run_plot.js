@@ -17,6 +17,9 @@ const AROUND_S = 1.5;
 /** Half width of the 95 % band of the noise, sigma. */
 const BAND = 2;
 
+/** Look of the lines of a second model. */
+const SECOND = { colour: "second", key: "second", dash: "dashdot", width: 1.6 };
+
 /** The plotting library, which loads while the campaign is read. */
 export const library = new Promise((resolve, reject) => {
   const global = /** @type {any} */ (window);
@@ -119,10 +122,10 @@ function figure(view, leading) {
 function rowsOfRun(view, leading) {
   const channels = [...view.channels].sort((a, b) => Number(b.key === leading) - Number(a.key === leading));
   const share = shrink(channels.length);
-  const names = { first: "first model", simulated: "simulated", ...view.names };
+  const names = { first: "first model", simulated: "simulated", second: "second model", ...view.names };
   /** @type {any[]} */
   const rows = channels.flatMap((/** @type {any} */ channel) => [
-    /** @type {any} */ ({ height: share * SIGNAL, title: `${channel.title}, error ${sigmas(channel.error)} σ`, unit: channel.unit, ticks: 5,
+    /** @type {any} */ ({ height: share * SIGNAL, title: heading(channel), unit: channel.unit, ticks: 5,
       lines: signals(channel, names) }),
     { height: share * RESIDUAL, title: `${channel.title}: measured − simulated`, unit: "σ",
       band: true, lines: residuals(channel, names) },
@@ -133,22 +136,30 @@ function rowsOfRun(view, leading) {
   return rows;
 }
 
+/** @param {any} channel */
+function heading(channel) {
+  const second = channel.second ? `, second model ${sigmas(channel.second.error)} σ` : "";
+  return `${channel.title}, error ${sigmas(channel.error)} σ${second}`;
+}
+
 /** @param {any} channel
- * @param {{first: string, simulated: string}} names */
+ * @param {{first: string, simulated: string, second: string}} names */
 function signals(channel, names) {
   /** @type {any[]} */
   const lines = [{ name: "measured", y: channel.measured, colour: "measured", key: "measured", width: 1 }];
   if (channel.first) lines.push({ name: names.first, y: channel.first, colour: "first", key: "first", dash: "dot" });
+  if (channel.second) lines.push({ name: names.second, y: channel.second.simulated, ...SECOND });
   lines.push({ name: names.simulated, y: channel.simulated, colour: "simulated", key: "simulated", width: 1.8, changes: true });
   return lines.map((line) => ({ ...line, unit: channel.unit, of: channel.title }));
 }
 
 /** @param {any} channel
- * @param {{first: string}} names */
+ * @param {{first: string, second: string}} names */
 function residuals(channel, names) {
   /** @type {any[]} */
   const lines = [];
   if (channel.first_residual) lines.push({ name: names.first, y: channel.first_residual, colour: "first", key: "first", dash: "dot" });
+  if (channel.second) lines.push({ name: names.second, y: channel.second.residual, ...SECOND });
   lines.push({ name: "residual", y: channel.residual, colour: "residual", key: "residual", changes: true });
   if (channel.signature) lines.push({ name: "signature of the effect", y: channel.signature, colour: "signature", key: "signature",
     width: 2, dash: "dash" });

@@ -2,13 +2,14 @@
 /** State of the page, and handlers of its controls. */
 import { connectLoop, followModel, redrawLoop } from "./closed_loop.js";
 import { byId, element, sigmas } from "./dom.js";
-import { drawMap, worstCell } from "./error_map.js";
+import { worstCell } from "./error_map.js";
 import { faultLines } from "./fault.js";
 import { connectFiles } from "./files.js";
 import { drawMissing, drawRanking, insert } from "./missing.js";
 import { drawCourse, drawModel } from "./model_panel.js";
 import { openForm } from "./own_term.js";
 import { drawRun, redrawRun } from "./run_plot.js";
+import { connectSecond, drawCompared } from "./second.js";
 import { Refused, ask, begin, follow, leave, post } from "./server.js";
 
 /** @type {any} */
@@ -79,7 +80,7 @@ function draw() {
   byId("subtitle").textContent = [state.description, `model ${state.model}`,
     `${state.runs.length} ${state.runs.length === 1 ? "run" : "runs"}`].filter(Boolean).join(" · ");
   document.title = `${state.campaign} – hitch`;
-  drawMap(state, guarded(visit));
+  drawCompared(state, { visit: guarded(visit), compare: guarded(compare) });
   drawModel(state, acts);
   drawMissing(state, { ...acts, signed: signed?.name });
   followModel(state);
@@ -92,20 +93,7 @@ const acts = {
     await refresh();
   }),
   run: guarded(async (/** @type {any} */ task) => {
-    if (!byId("job").hidden) return say("A computation is running; wait for it or cancel it.");
-    [tried, live] = [[], []];
-    showJob("Starting");
-    if (["add", "term", "adopt"].includes(task.task)) watch();
-    try {
-      await follow(hear, guarded(refresh));
-      const { title } = await post("start", task);
-      // The computation may have ended already.
-      if (title && !byId("job").hidden) byId("job").dataset.title = title;
-    } catch (error) {
-      leave();
-      showJob(null);
-      throw error;
-    }
+    await launch(() => post("start", task), ["add", "term", "adopt"].includes(task.task));
   }),
   preview: guarded(preview),
   sign: guarded(async (/** @type {any} */ effect) => {
@@ -117,6 +105,26 @@ const acts = {
     await drawRun(byId("plot"), view, undefined);
   }),
 };
+
+/** Starts a computation with a request, and follows it.
+ * @param {() => Promise<any>} request
+ * @param {boolean} [watched] whether to show the panel of the model */
+async function launch(request, watched = false) {
+  if (!byId("job").hidden) return say("A computation is running; wait for it or cancel it.");
+  [tried, live] = [[], []];
+  showJob("Starting");
+  if (watched) watch();
+  try {
+    await follow(hear, guarded(refresh));
+    const { title } = await request();
+    // The computation may have ended already.
+    if (title && !byId("job").hidden) byId("job").dataset.title = title;
+  } catch (error) {
+    leave();
+    showJob(null);
+    throw error;
+  }
+}
 
 /** A run, with the signature of the selected candidate.
  * @param {number} index */
@@ -249,6 +257,17 @@ async function visit(cell) {
     `${sigmas(stretch.error)} σ`;
 }
 
+/** Shows the stretch that contributes most to the change of a cell.
+ * @param {any} cell */
+async function compare(cell) {
+  const { run, stretch } = await ask("second/largest", { by: cell.by, part: cell.part, channel: cell.channel });
+  const channel = state.channels.find((/** @type {any} */ one) => one.key === cell.channel);
+  await show(run, stretch);
+  byId("place").textContent =
+    `Largest change for ${channel.title}, ${cell.part}: ${stretch.from_s.toFixed(1)} to ${stretch.to_s.toFixed(1)} s, ` +
+    `${sigmas(stretch.before)} → ${sigmas(stretch.after)} σ`;
+}
+
 /** Shows a run.
  * @param {number} index
  * @param {any} place */
@@ -286,5 +305,6 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   redrawLoop();
 });
 
+connectSecond(launch, refresh);
 connectLoop(sayError);
 open();
