@@ -24,12 +24,13 @@ const IMAGES_VARIABLE: &str = "HITCH_BOARD_IMAGES";
 const PROGRAM_VARIABLE: &str = "HITCH_PROGRAM";
 
 /// Modules of the test program `live` with tests that need images or a browser. Each runs alone: some are in real time.
-const ON_TARGET: [&str; 9] = [
+const ON_TARGET: [&str; 10] = [
     "board_bench::",
     "ecu_process::",
     "emulated::",
     "emulated_ecu::",
     "files_in_browser::",
+    "overlay_in_browser::",
     "page_in_browser::",
     "python_clients::",
     "report_in_browser::",

@@ -24,6 +24,7 @@ const FILES: &[(&str, &str, &str)] = &[
     ("fault.js", SCRIPT, include_str!("assets/fault.js")),
     ("files.js", SCRIPT, include_str!("assets/files.js")),
     ("second.js", SCRIPT, include_str!("assets/second.js")),
+    ("overlay.js", SCRIPT, include_str!("assets/overlay.js")),
     ("mapping.js", SCRIPT, include_str!("assets/mapping.js")),
     ("own_term.js", SCRIPT, include_str!("assets/own_term.js")),
     (

@@ -72,6 +72,6 @@ mod tests {
             .lines()
             .find(|line| line.starts_with("import ") || line.starts_with("export "));
         assert_eq!(remaining, None);
-        assert!(joined.contains("return { library, drawRun, redrawRun };"));
+        assert!(joined.contains("return { library, drawRun, redrawRun, frame, ordinate };"));
     }
 }

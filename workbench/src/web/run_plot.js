@@ -177,7 +177,7 @@ function shrink(channels) {
 
 /** Everything of the layout that does not depend on the run.
  * @returns {any} */
-function frame() {
+export function frame() {
   const touch = matchMedia("(pointer: coarse)").matches;
   const narrow = matchMedia("(max-width: 40rem)").matches;
   const legend = narrow ? { y: 0, yref: "container", yanchor: "bottom" } : { y: 1, yanchor: "bottom" };
@@ -194,11 +194,12 @@ function frame() {
   };
 }
 
-/** @param {string} unit
+/** The axis of a row.
+ * @param {string} unit
  * @param {number} low
  * @param {number} high
  * @param {number} nticks */
-function ordinate(unit, low, high, nticks) {
+export function ordinate(unit, low, high, nticks) {
   return { title: { text: unit, standoff: 4 }, domain: [Math.max(0, low), Math.min(1, high)], fixedrange: true,
     gridcolor: colour("line"), zerolinecolor: colour("band"), nticks };
 }

@@ -7,6 +7,7 @@ import { faultLines } from "./fault.js";
 import { connectFiles } from "./files.js";
 import { drawMissing, drawRanking, insert } from "./missing.js";
 import { drawCourse, drawModel } from "./model_panel.js";
+import { endOverlay, listOverlay, refreshOverlay } from "./overlay.js";
 import { openForm } from "./own_term.js";
 import { drawRun, redrawRun } from "./run_plot.js";
 import { connectSecond, drawCompared } from "./second.js";
@@ -72,6 +73,7 @@ async function refresh() {
     byId("place").textContent = "";
     await drawRun(byId("plot"), view, undefined);
   }
+  await refreshOverlay();
 }
 
 /** Draws everything except the run. */
@@ -244,6 +246,7 @@ function listRuns() {
   const option = (/** @type {any} */ run, /** @type {number} */ index) =>
     element("option", { value: index }, `${run.file}, ${run.conditions}`);
   byId("run").replaceChildren(...state.runs.map(option));
+  listOverlay(state, sayError);
 }
 
 /** Shows the stretch with the largest error of a cell.
@@ -272,6 +275,7 @@ async function compare(cell) {
  * @param {number} index
  * @param {any} place */
 async function show(index, place) {
+  endOverlay();
   view = await look(index);
   /** @type {HTMLSelectElement} */ (byId("run")).value = String(index);
   byId("place").textContent = "";
@@ -302,6 +306,7 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   if (!view) return;
   draw();
   drawRun(byId("plot"), view, undefined);
+  refreshOverlay().catch(sayError);
   redrawLoop();
 });
 
