@@ -86,6 +86,7 @@ def whole_story(page: Page, pictures: Path) -> None:
     assert abs(error_of(page) - before) < 0.02
     own_term(page, pictures)
     automatic(page, pictures)
+    fix(page, pictures)
     drive(page, pictures, "desktop")
 
 
@@ -143,6 +144,28 @@ def automatic(page: Page, pictures: Path) -> None:
     page.wait_for_selector("#effects .effect")
     settled(page)
     assert error_of(page) < 1.1
+
+
+def fix(page: Page, pictures: Path) -> None:
+    """Fixes a parameter: a fit keeps it. Undone afterwards."""
+    box = page.locator("#fix-0-0")
+    present = page.locator("#steps [aria-current]")
+    value = page.locator("#effects output").first.inner_text()
+    box.press("Space")
+    expect(present).to_contain_text("Fixed ")
+    settled(page)
+    expect(box).to_be_checked()
+    expect(box).to_be_focused()
+    page.click("#fit")
+    expect(present).to_contain_text("Fitted")
+    settled(page)
+    assert page.locator("#effects output").first.inner_text() == value
+    page.locator("#model").screenshot(path=pictures / "fixed.png")
+    assert_accessible(page)
+    for text in ("Fixed ", "Added "):
+        page.click("#undo")
+        expect(present).to_contain_text(text)
+    expect(box).not_to_be_checked()
 
 
 def about(angle_deg: int) -> re.Pattern:

@@ -9,6 +9,7 @@ mod ecu_tools;
 mod emulated;
 mod emulated_ecu;
 mod files_in_browser;
+mod fixed_parameter;
 mod overlay_in_browser;
 mod page_in_browser;
 mod python_clients;

@@ -1,5 +1,7 @@
 //! The free parameters of a fit, and their scaling.
 
+use std::collections::BTreeSet;
+
 use hitch_plant::{AddedEffect, Model, Parameter, SizeResponse};
 use nalgebra::DVector;
 
@@ -24,6 +26,8 @@ pub struct Estimate {
     pub clocks: Clocks,
     /// Effects that the model had before the search, with the sizes they had then.
     pub adopted: Vec<Adopted>,
+    /// Single parameters that a fit keeps: id of the effect, and index of the parameter.
+    pub fixed: BTreeSet<(&'static str, usize)>,
     /// Nuisance parameters of each run.
     pub nuisances: Vec<Nuisance>,
     /// Largest clock offset between a channel and the currents, s.
@@ -95,6 +99,7 @@ impl Estimate {
             effects,
             clocks: Clocks::default(),
             adopted: Vec::new(),
+            fixed: BTreeSet::new(),
             nuisances: vec![Nuisance::default(); experiment.runs.len()],
             clocks_within_s: experiment.clocks_within_s,
         }
@@ -106,12 +111,15 @@ impl Estimate {
         let effects = self.effects.iter().enumerate().flat_map(|(effect, added)| {
             let free = self.free_parameters(added.effect.id());
             let parameters = 0..added.values.len().min(free);
+            let parameters = parameters
+                .filter(|&parameter| !self.fixed.contains(&(added.effect.id(), parameter)));
             parameters.map(move |parameter| Shared::Effect(effect, parameter))
         });
         effects.chain(CLOCKS).collect()
     }
 
-    /// Number of free parameters of an effect, the size first; `usize::MAX` if all are free.
+    /// Number of free parameters of an effect, the size first; `usize::MAX` if all are free. Single fixed parameters count
+    /// as free.
     #[must_use]
     pub fn free_parameters(&self, id: &str) -> usize {
         match self.adopted_as(id).map(|adopted| adopted.held) {

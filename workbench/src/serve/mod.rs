@@ -7,6 +7,7 @@ mod guard;
 mod jobs;
 mod live;
 mod own_term;
+mod parameters;
 mod routes;
 mod second;
 mod server;

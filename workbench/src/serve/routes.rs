@@ -15,9 +15,10 @@ use tokio_stream::wrappers::BroadcastStream;
 use tokio_stream::{Stream, StreamExt};
 
 use super::own_term::TermForm;
+use super::parameters::moved;
 use super::session::Session;
 use super::sessions::{Sessions, Shared};
-use super::tasks::{Task, moved};
+use super::tasks::Task;
 use super::{assets, jobs, live, own_term, second, upload, views};
 use crate::comparison::{Grouping, worst_in_part};
 use crate::error::Error;

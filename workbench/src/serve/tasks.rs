@@ -18,6 +18,7 @@ use serde::Deserialize;
 
 use super::jobs::Reporter;
 use super::own_term::TermForm;
+use super::parameters::{held, keep_fixed, moved};
 use super::routes::Refusal;
 use super::second::Second;
 use super::session::{Explained, Ranking, Session, Step};
@@ -61,6 +62,15 @@ pub enum Task {
         /// Its value, in its unit.
         value: f64,
     },
+    /// Fix a parameter of an effect in later fits, or free it.
+    Fix {
+        /// Index of the effect.
+        effect: usize,
+        /// Index of the parameter.
+        parameter: usize,
+        /// Whether it is fixed.
+        fixed: bool,
+    },
     /// Fit all effects from their present values.
     Fit,
     /// Find all missing effects.
@@ -98,6 +108,7 @@ enum What {
     Add(&'static dyn Effect),
     Remove(usize),
     Set(Estimate, String),
+    Fix(Estimate, String),
     Fit,
     Adopt(Arc<Explained>, Vec<usize>),
     Suggested(Suggestion),
@@ -139,6 +150,7 @@ impl Ready {
             let added = effects.get(effect);
             added.ok_or_else(|| Refusal::conflict("the effect is no longer in the model"))
         };
+        let unknown = || Refusal::conflict("the effect does not have this parameter");
         let mut present = session.present().clone();
         let what = match task {
             Task::Rank => What::Rank,
@@ -158,8 +170,17 @@ impl Ready {
             } => {
                 let title = format!("{} set by hand", full_name(there(effect)?.effect));
                 let estimate = moved(&session.fit().estimate, effect, parameter, value);
-                let no_parameter = || Refusal::conflict("the effect does not have this parameter");
-                What::Set(estimate.ok_or_else(no_parameter)?, title)
+                What::Set(estimate.ok_or_else(unknown)?, title)
+            }
+            Task::Fix {
+                effect,
+                parameter,
+                fixed,
+            } => {
+                let estimate = &session.fit().estimate;
+                let (estimate, title) =
+                    held(estimate, there(effect)?.effect, parameter, fixed).ok_or_else(unknown)?;
+                What::Fix(estimate, title)
             }
             Task::Second { title, model } => What::Second(title, model),
             Task::Adopt { steps } => What::Adopt(present_explanation(session)?, steps),
@@ -188,6 +209,7 @@ impl Ready {
             What::Add(effect) => format!("Adding {}", full_name(*effect)),
             What::Remove(effect) => format!("Taking {} away", self.name(*effect)),
             What::Set(_, _) => "Evaluating all runs".to_owned(),
+            What::Fix(_, title) => title.clone(),
             What::Fit => "Fitting all effects".to_owned(),
             What::Adopt(..) => "Accepting the steps".to_owned(),
             What::Suggested(found) => format!("Adding {}", found.term.id()),
@@ -226,6 +248,13 @@ impl Ready {
                 );
                 let fit = evaluate(Problem::new(self.experiment(), self.model()), loaded);
                 Outcome::Steps(vec![self.step(title.clone(), fit, None)])
+            }
+            What::Fix(estimate, title) => {
+                let fit = Fit {
+                    estimate: estimate.clone(),
+                    ..before.clone()
+                };
+                Outcome::Steps(vec![self.step(title.clone(), fit, self.present.held_out)])
             }
             What::Fit => {
                 let start = before.estimate.clone();
@@ -327,6 +356,7 @@ impl Ready {
     fn fitted(&self, title: String, mut estimate: Estimate, reporter: &Reporter) -> Step {
         let (experiment, model) = (self.experiment(), self.model());
         estimate.adopted.clear();
+        keep_fixed(&self.present.evaluated.fit.estimate, &mut estimate);
         let whole = (ROUNDS + 3) as f64;
         let told = |round: usize, text: &str, fit: &Fit| {
             reporter.progress(text, Some(round as f64 / whole), Some(fit.error()));
@@ -356,7 +386,8 @@ impl Ready {
     /// The accepted steps of an explanation: step by step if all are accepted, else fitted together.
     fn adopted(&self, explained: &Explained, accepted: &[usize], reporter: &Reporter) -> Vec<Step> {
         let found = &explained.explanation;
-        if (0..found.steps.len()).all(|step| accepted.contains(&step)) {
+        let fixed = &self.present.evaluated.fit.estimate.fixed;
+        if fixed.is_empty() && (0..found.steps.len()).all(|step| accepted.contains(&step)) {
             let steps = found.steps.iter().map(|step| {
                 let title = format!("Added {}", full_name(step.effect));
                 self.step(title, step.fit.clone(), Some(step.held_out_after.error))
@@ -419,13 +450,4 @@ fn lacking(session: &Session, effect: &'static dyn Effect) -> Result<&'static dy
         true => Err(Refusal::conflict("the model has this effect already")),
         false => Ok(effect),
     }
-}
-
-/// An estimate with one parameter set manually, limited to its range; `None` if the parameter does not exist.
-pub fn moved(estimate: &Estimate, effect: usize, parameter: usize, value: f64) -> Option<Estimate> {
-    let mut moved = estimate.clone();
-    let added = moved.effects.get_mut(effect)?;
-    let range = added.effect.parameters().get(parameter)?;
-    *added.values.get_mut(parameter)? = value.max(range.low).min(range.high);
-    Some(moved)
 }

@@ -92,10 +92,12 @@ fn step(step: &Step) -> Value {
 
 /// The effects of the present model, with the range of each parameter.
 fn added(session: &Session) -> Vec<Value> {
+    let estimate = &session.fit().estimate;
     let effect = |added: &AddedEffect| {
         let parameters = added.effect.parameters().iter().zip(&added.values);
-        let parameter = |(own, value): (&Parameter, &f64)| {
+        let parameter = |(index, (own, value)): (usize, (&Parameter, &f64))| {
             json!({
+                "fixed": estimate.fixed.contains(&(added.effect.id(), index)),
                 "name": own.name,
                 "unit": own.unit,
                 "meaning": own.meaning,
@@ -108,10 +110,9 @@ fn added(session: &Session) -> Vec<Value> {
         };
         json!({
             "effect": effects::described(added.effect),
-            "parameters": parameters.map(parameter).collect::<Vec<_>>(),
+            "parameters": parameters.enumerate().map(parameter).collect::<Vec<_>>(),
         })
     };
-    let estimate = &session.fit().estimate;
     estimate.effects.iter().map(effect).collect()
 }
 

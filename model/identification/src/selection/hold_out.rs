@@ -82,6 +82,7 @@ fn held_out_runs(problem: Problem<'_>, fit: &Fit, fold: usize, folds: usize) -> 
     let start = Estimate {
         effects: trained.effects,
         adopted: trained.adopted,
+        fixed: trained.fixed,
         clocks: trained.clocks,
         nuisances: test_start.nuisances,
         clocks_within_s: test_start.clocks_within_s,

@@ -33,7 +33,7 @@ export function drawModel(state, acts) {
   const focused = document.activeElement?.id;
   byId("effects").replaceChildren(...state.effects.map((/** @type {any} */ added, /** @type {number} */ index) =>
     effect(added, index, acts)));
-  if (focused?.startsWith("slider")) document.getElementById(focused)?.focus();
+  if (focused && /^(slider|fix)-/.test(focused)) document.getElementById(focused)?.focus();
   drawCourse(state, []);
 }
 
@@ -109,7 +109,12 @@ function slider(added, parameter, where, acts) {
     resting = setTimeout(() => acts.run({ task: "set", ...where, value: value() }), REST_MS);
   });
   input.setAttribute("aria-valuetext", shown(parameter.value));
-  return element("label", { class: "parameter" }, element("span", {}, parameter.name), input, output);
+  const fix = /** @type {HTMLInputElement} */ (element("input", { type: "checkbox", id: `fix-${where.effect}-${where.parameter}`,
+    checked: parameter.fixed, "aria-label": `Fix ${parameter.name} of ${added.effect.title} in fits`,
+    onchange: () => acts.run({ task: "fix", ...where, fixed: fix.checked }) }));
+  return element("div", { class: "fixable" },
+    element("label", { class: "parameter" }, element("span", {}, parameter.name), input, output),
+    element("label", { class: "fix", title: "A fixed parameter keeps its value in fits" }, fix, " fixed"));
 }
 
 /** @param {any} parameter */
