@@ -9,7 +9,7 @@ const SIGNAL = 125, RESIDUAL = 70, CURRENTS = 80;
 const GAP = 22, BOTTOM = 42, TOP = 24, LEGEND = 64;
 
 /** Height above the plot, px, and minimum scale of its parts. */
-const ABOVE = 247, SMALLEST = 0.5;
+const ABOVE = 247, SMALLEST = 0.45;
 
 /** Time shown before and after the stretch with the largest error, s. */
 const AROUND_S = 1.5;
