@@ -106,8 +106,9 @@ mod tests {
 
     type Chunk = Result<&'static str, String>;
 
-    fn received(chunks: Vec<Chunk>, waits: bool) -> (Upload, Result<(), Lost>) {
-        let upload = Folders::default().begin().unwrap();
+    fn received(chunks: Vec<Chunk>, waits: bool) -> (Folders, Upload, Result<(), Lost>) {
+        let folders = Folders::default();
+        let upload = folders.begin().unwrap();
         let runtime = tokio::runtime::Runtime::new().unwrap();
         let chunks = tokio_stream::iter(chunks);
         let within = Duration::from_millis(50);
@@ -120,12 +121,12 @@ mod tests {
                 false => receive(&upload, "a.csv", chunks, within).await,
             }
         });
-        (upload, outcome)
+        (folders, upload, outcome)
     }
 
     #[test]
     fn a_file_is_stored_completely_or_not_at_all() {
-        let (upload, outcome) = received(vec![Ok("12"), Ok("3")], false);
+        let (_folders, upload, outcome) = received(vec![Ok("12"), Ok("3")], false);
         assert_eq!(outcome, Ok(()));
         let files = upload.files().unwrap();
         assert_eq!(fs::read_to_string(&files[0]).unwrap(), "123");
@@ -138,7 +139,7 @@ mod tests {
                 Lost::Broken("cut".to_owned()),
             ),
         ] {
-            let (upload, outcome) = received(chunks, waits);
+            let (_folders, upload, outcome) = received(chunks, waits);
             assert_eq!(outcome, Err(expected));
             assert_eq!(upload.files().unwrap().len(), 0);
             assert!(!upload.path().join("a.csv").exists());
