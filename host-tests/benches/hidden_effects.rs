@@ -13,8 +13,9 @@ use comfy_table::{Table, presets};
 use host_tests::hidden_effects::answer::Method;
 use host_tests::hidden_effects::foreign::Adopted;
 use host_tests::hidden_effects::grade::{Graded, Posed};
-use host_tests::hidden_effects::methods;
 use host_tests::hidden_effects::tally::{BINS, Tally, quantile};
+use host_tests::hidden_effects::wrong_base::declared;
+use host_tests::hidden_effects::{methods, starting_point};
 use host_tests::second_rig::draw::{Kind, draw};
 use host_tests::second_rig::manoeuvres::Plan;
 use host_tests::second_rig::test_stand::Family;
@@ -47,6 +48,9 @@ struct Arguments {
     /// between two campaigns?
     #[arg(long, conflicts_with_all = ["effect", "kind", "fidelity", "rough"])]
     foreign: bool,
+    /// Declared models that differ from the machine in every constant, as data sheets do
+    #[arg(long, conflicts_with = "foreign")]
+    wrong_base: bool,
     /// Methods, by a part of their name
     #[arg(long, value_delimiter = ',')]
     methods: Vec<String>,
@@ -105,15 +109,19 @@ fn answers(
     let mut answers: Vec<Vec<Graded>> = methods.iter().map(|_| Vec::new()).collect();
     for seed in arguments.seed..arguments.seed + arguments.count {
         let posed = Posed::new(draw(seed, &arguments.wish.wish(family, plan)));
+        let declared = match arguments.wrong_base {
+            true => declared(family, seed),
+            false => starting_point(family),
+        };
         for (method, answers) in methods.iter().zip(&mut answers) {
             bar.set_message(format!("{family:?} {plan:?} {seed} {}", method.name()));
-            let graded = posed.ask(method.as_ref());
+            let graded = posed.ask_about(method.as_ref(), &declared);
             bar.inc(1);
             let verdict = if graded.good() { "good" } else { "miss" };
             let line = format!(
-                "{family:?} {plan:?} {seed} {}: {verdict}, {:?} in {:.1} s",
+                "{family:?} {plan:?} {seed} {}: {verdict}, {:.2?} in {:.1} s",
                 method.name(),
-                graded.answer.named,
+                graded.answer.confidences,
                 graded.seconds
             );
             bar.suspend(|| eprintln!("{line}"));

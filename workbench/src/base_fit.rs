@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use hitch_identification::base::parameter::{SCALARS, THRESHOLD_SIGMA_A};
 use hitch_identification::base::{BaseFit, CurvePoint, FittedConstant};
+use hitch_identification::constants::parameter::{SCALARS, THRESHOLD_SIGMA_A};
 use hitch_identification::data::experiment::Experiment;
 use hitch_plant::Model;
 use schemars::JsonSchema;
@@ -83,8 +83,8 @@ impl ShownBaseFit {
     /// The result for display.
     #[must_use]
     pub fn new(experiment: &Experiment, declared: &Model, fit: &BaseFit, next: String) -> Self {
-        let constants: Vec<ShownConstant> = fit.constants.iter().map(constant).collect();
-        let curves: Vec<ShownPoint> = fit.curves.iter().map(point).collect();
+        let constants: Vec<ShownConstant> = fit.constants.iter().map(ShownConstant::new).collect();
+        let curves: Vec<ShownPoint> = fit.curves.iter().map(ShownPoint::new).collect();
         let unknown_constants = constants.iter().filter(|constant| !constant.determined);
         let unknown_points = curves.iter().filter(|point| !point.determined);
         let not_determined = unknown_constants
@@ -108,16 +108,20 @@ impl ShownBaseFit {
     }
 }
 
-fn constant(fitted: &FittedConstant) -> ShownConstant {
-    ShownConstant {
-        name: fitted.name.clone(),
-        unit: fitted.unit,
-        declared: fitted.declared,
-        fitted: fitted.fitted,
-        tolerance: tolerance(fitted),
-        low: fitted.interval.0,
-        high: fitted.interval.1,
-        determined: fitted.determined,
+impl ShownConstant {
+    /// The constant for display.
+    #[must_use]
+    pub fn new(fitted: &FittedConstant) -> Self {
+        Self {
+            name: fitted.name.clone(),
+            unit: fitted.unit,
+            declared: fitted.declared,
+            fitted: fitted.fitted,
+            tolerance: tolerance(fitted),
+            low: fitted.interval.0,
+            high: fitted.interval.1,
+            determined: fitted.determined,
+        }
     }
 }
 
@@ -130,15 +134,19 @@ fn tolerance(fitted: &FittedConstant) -> f64 {
     })
 }
 
-fn point(fitted: &CurvePoint) -> ShownPoint {
-    ShownPoint {
-        valve: fitted.valve.table(),
-        current_a: fitted.current_a,
-        declared_lpm: fitted.declared_lpm,
-        fitted_lpm: fitted.fitted_lpm,
-        low_lpm: fitted.interval_lpm.0,
-        high_lpm: fitted.interval_lpm.1,
-        determined: fitted.determined,
+impl ShownPoint {
+    /// The point for display.
+    #[must_use]
+    pub fn new(fitted: &CurvePoint) -> Self {
+        Self {
+            valve: fitted.valve.table(),
+            current_a: fitted.current_a,
+            declared_lpm: fitted.declared_lpm,
+            fitted_lpm: fitted.fitted_lpm,
+            low_lpm: fitted.interval_lpm.0,
+            high_lpm: fitted.interval_lpm.1,
+            determined: fitted.determined,
+        }
     }
 }
 

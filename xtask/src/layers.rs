@@ -73,7 +73,7 @@ const CRATES: [Layers; 8] = [
     Layers {
         sources: "model/identification/src",
         order: &[
-            &["data"],
+            &["data", "constants"],
             &["estimate"],
             &["residuals"],
             &["estimation"],

@@ -55,7 +55,7 @@ impl Method for Explaining {
                 |(first, last)| (first.held_out_before.error, last.held_out_after.error),
             )),
             error: Some(explanation.after.error()),
-            model: Some(model.with_effects(explanation.after.estimate.effects.clone())),
+            model: Some(explanation.after.estimate.applied_to(model)),
         }
     }
 }

@@ -53,10 +53,9 @@ impl Adopted {
         let first = campaign(&foreign.first);
         let experiment = Experiment::new(&first, &data_sheet);
         let explanation = explain(Problem::new(&experiment, &data_sheet), &|_| {});
-        let effects = explanation.after.estimate.effects.clone();
         let seconds = start.elapsed().as_secs_f64();
         Self {
-            model: data_sheet.with_effects(effects),
+            model: explanation.after.estimate.applied_to(&data_sheet),
             error: explanation.after.error(),
             seconds,
             posed: Posed::new(foreign.second.clone()),

@@ -11,6 +11,7 @@ pub mod localised_hold_out;
 pub mod residuals;
 pub mod sparse_regression;
 pub mod tally;
+pub mod wrong_base;
 
 use answer::Method;
 use hitch_plant::Model;

@@ -97,7 +97,7 @@ fn true_value(name: &str, truth: &Model) -> f64 {
             valve.of(&constants).curve.threshold_a()
         }
         _ => {
-            let scalars = hitch_identification::base::parameter::SCALARS.iter();
+            let scalars = hitch_identification::constants::parameter::SCALARS.iter();
             let mut scalars = scalars.filter(|scalar| scalar.name == name);
             let scalar = scalars.next().expect("a constant");
             *(scalar.place)(&mut constants) / scalar.si

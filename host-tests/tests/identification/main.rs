@@ -17,3 +17,4 @@ mod own_terms;
 mod paper;
 mod parameters;
 mod synchronous_clocks;
+mod wrong_base;

@@ -3,6 +3,7 @@
 
 mod board_bench;
 mod closed_loop_page;
+mod corrected_constants;
 #[cfg(target_os = "linux")]
 mod ecu_process;
 mod ecu_tools;

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use hitch_plant::{AddedEffect, Model, Parameter, SizeResponse};
 use nalgebra::DVector;
 
+use crate::constants::free::{FARTHEST_SIGMAS, FreeConstants};
 use crate::data::clocks::{Clocks, OFFSET_PRIOR_S};
 use crate::data::experiment::{Experiment, LOAD_PRIOR, Nuisance};
 
@@ -32,6 +33,8 @@ pub struct Estimate {
     pub nuisances: Vec<Nuisance>,
     /// Largest clock offset between a channel and the currents, s.
     pub clocks_within_s: f64,
+    /// Errors of the model's constants; `None` if the declared constants count as exact.
+    pub constants: Option<FreeConstants>,
 }
 
 /// Bound on a load error, in prior sigmas.
@@ -67,9 +70,11 @@ pub enum Shared {
     Effect(usize, usize),
     /// Clock offset of a channel, by its index, s; positive if stamped late.
     Offset(usize),
+    /// Error of the constants along a direction of their prior, by its index, in prior sigmas.
+    Constants(usize),
 }
 
-/// The shared nuisance parameters, in the order of their columns.
+/// The clock offsets, in the order of their columns.
 pub const CLOCKS: [Shared; 4] = [
     Shared::Offset(0),
     Shared::Offset(1),
@@ -86,10 +91,20 @@ impl Shared {
 }
 
 impl Estimate {
-    /// The model with these effects.
+    /// The model with these effects, and with the constants of this estimate.
     #[must_use]
     pub fn applied_to(&self, model: &Model) -> Model {
-        model.with_effects(self.effects.clone())
+        let corrected = self.constants.as_ref().map(FreeConstants::corrected);
+        corrected
+            .unwrap_or(model)
+            .with_effects(self.effects.clone())
+    }
+
+    /// The same estimate with all constants of a model free.
+    #[must_use]
+    pub fn with_free_constants(mut self, model: &Model) -> Self {
+        self.constants = Some(FreeConstants::of(model));
+        self
     }
 
     /// The given effects, with zero clock offsets and load errors.
@@ -102,10 +117,11 @@ impl Estimate {
             fixed: BTreeSet::new(),
             nuisances: vec![Nuisance::default(); experiment.runs.len()],
             clocks_within_s: experiment.clocks_within_s,
+            constants: None,
         }
     }
 
-    /// All free shared parameters: those of the effects, then [`CLOCKS`].
+    /// All free shared parameters: those of the effects, then [`CLOCKS`], then the errors of the constants.
     #[must_use]
     pub fn shared(&self) -> Vec<Shared> {
         let effects = self.effects.iter().enumerate().flat_map(|(effect, added)| {
@@ -115,7 +131,22 @@ impl Estimate {
                 .filter(|&parameter| !self.fixed.contains(&(added.effect.id(), parameter)));
             parameters.map(move |parameter| Shared::Effect(effect, parameter))
         });
-        effects.chain(CLOCKS).collect()
+        let constants = (0..self.constant_directions()).map(Shared::Constants);
+        effects.chain(CLOCKS).chain(constants).collect()
+    }
+
+    /// The same estimate, its constants held in a fit or, if they are not the declared ones, free again.
+    #[must_use]
+    pub fn with_held_constants(mut self, is_held: bool) -> Self {
+        self.constants = self.constants.map(|constants| constants.held(is_held));
+        self
+    }
+
+    /// Number of free directions of the constants.
+    #[must_use]
+    pub fn constant_directions(&self) -> usize {
+        let constants = self.constants.as_ref();
+        constants.map_or(0, FreeConstants::free)
     }
 
     /// Number of free parameters of an effect, the size first; `usize::MAX` if all are free. Single fixed parameters count
@@ -187,7 +218,7 @@ impl Estimate {
                     response => response,
                 }
             }
-            Shared::Offset(_) => SizeResponse::Smooth,
+            Shared::Offset(_) | Shared::Constants(_) => SizeResponse::Smooth,
         }
     }
 
@@ -197,6 +228,7 @@ impl Estimate {
         match shared {
             Shared::Effect(effect, parameter) => self.parameter(effect, parameter).scale(),
             Shared::Offset(_) => OFFSET_PRIOR_S,
+            Shared::Constants(_) => 1.0,
         }
     }
 
@@ -206,6 +238,10 @@ impl Estimate {
         match shared {
             Shared::Effect(effect, parameter) => self.effects[effect].values[parameter],
             Shared::Offset(channel) => self.clocks.offsets_s[channel],
+            Shared::Constants(direction) => {
+                let constants = self.constants.as_ref();
+                constants.map_or(0.0, |constants| constants.sigmas()[direction])
+            }
         }
     }
 
@@ -226,6 +262,7 @@ impl Estimate {
                 (range.low, range.high)
             }
             Shared::Offset(_) => (-self.clocks_within_s, self.clocks_within_s),
+            Shared::Constants(_) => (-FARTHEST_SIGMAS, FARTHEST_SIGMAS),
         }
     }
 
@@ -243,6 +280,11 @@ impl Estimate {
         match shared {
             Shared::Effect(effect, parameter) => self.effects[effect].values[parameter] = value,
             Shared::Offset(channel) => self.clocks.offsets_s[channel] = value,
+            Shared::Constants(direction) => {
+                if let Some(constants) = &mut self.constants {
+                    constants.set(direction, value);
+                }
+            }
         }
     }
 
@@ -250,8 +292,18 @@ impl Estimate {
     #[must_use]
     pub fn moved(&self, parameters: &[Shared], step: &Step) -> Self {
         let mut moved = self.clone();
+        let constants = self.constants.as_ref();
+        let mut sigmas = constants.map_or(Vec::new(), |constants| constants.sigmas().to_vec());
         for (&shared, &scales) in parameters.iter().zip(step.shared.iter()) {
-            moved.set(shared, self.get(shared) + scales * self.scale(shared));
+            match shared {
+                Shared::Constants(direction) => sigmas[direction] += scales,
+                Shared::Effect(..) | Shared::Offset(_) => {
+                    moved.set(shared, self.get(shared) + scales * self.scale(shared));
+                }
+            }
+        }
+        if let Some(constants) = &mut moved.constants {
+            constants.set_all(sigmas);
         }
         for (run, &sigmas) in step.loads.iter().enumerate() {
             moved.set_load(run, self.load(run) + sigmas);
@@ -321,6 +373,7 @@ impl Estimate {
             .iter()
             .map(|&clock| (self.get(clock) / self.scale(clock)).powi(2))
             .sum();
-        loads + clocks
+        let constants = self.constants.as_ref();
+        loads + clocks + constants.map_or(0.0, FreeConstants::prior_cost)
     }
 }

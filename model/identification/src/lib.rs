@@ -3,6 +3,7 @@
 //! Modules from the bottom layer to the top; none imports one above it:
 //!
 //! * [`data`]: prepares the logs of a campaign: an [`Experiment`];
+//! * [`constants`]: errors of the base model's constants, and their prior;
 //! * [`estimate`]: values of all free parameters;
 //! * [`residuals`]: measured minus simulated, whitened;
 //! * [`estimation`]: sensitivities, least squares, projection of nuisance parameters: a [`Fit`];
@@ -12,11 +13,12 @@
 //! * [`design`]: the experiment that discriminates between two effects;
 //! * [`explanation`]: the selected set of effects, as steps from the model to it;
 //! * [`suggestion`]: a formula for the remaining residuals;
-//! * [`base`]: constants of the base model, estimated from a campaign.
+//! * [`base`]: the constants of the base model, estimated from a campaign.
 #![forbid(unsafe_code)]
 
 pub mod adequacy;
 pub mod base;
+pub mod constants;
 pub mod data;
 pub mod design;
 pub mod estimate;
@@ -29,6 +31,7 @@ pub mod suggestion;
 
 pub use data::experiment::Experiment;
 pub use estimation::fit::Fit;
-pub use explanation::explain::{Explanation, Verdict, diagnose, explain, explain_with};
+pub use explanation::diagnosis::diagnose;
+pub use explanation::explain::{Explanation, Verdict, explain, explain_with};
 pub use search::candidates::Progress;
 pub use search::subset::Options;

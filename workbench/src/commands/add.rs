@@ -60,7 +60,7 @@ pub fn run(args: &Args) -> Result<(), Error> {
     progress.say("evaluating each effect with the others present");
     let weighed = leave_one_out(Problem::new(&experiment, &model), &fit, model.effects.len());
     drop(progress);
-    let rebuilt = rebuilt(&model, &fit.estimate.effects, output::stem(&args.out));
+    let rebuilt = rebuilt(&model, &fit.estimate, output::stem(&args.out));
     output::write_file(&args.out, hitch_model_file::to_toml(&rebuilt).as_bytes())?;
     let mut text = match is_unsuitable(&experiment, &base, &fit) {
         true => format!("{}\n\n", wrapped(HOPELESS_BASE)),

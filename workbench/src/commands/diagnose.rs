@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use hitch_campaign::Campaign;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
-use hitch_identification::explanation::explain::{diagnose, fit_base};
+use hitch_identification::explanation::diagnosis::diagnose;
+use hitch_identification::explanation::explain::fit_base;
 
 use crate::error::Error;
 use crate::explanation::{Diagnosis, Head};

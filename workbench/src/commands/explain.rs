@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use hitch_campaign::Campaign;
-use hitch_plant::AddedEffect;
+use hitch_identification::estimate::Estimate;
 
 use crate::commands::fleet::FleetArgs;
 use crate::error::Error;
@@ -84,9 +84,9 @@ fn one(args: &Args, folder: &Path) -> Result<(), Error> {
     // The best result so far is on disk if the search is interrupted.
     let out = args.out.as_deref().filter(|path| !output::is_stdout(path));
     let base = model.clone();
-    let improved = |effects: &[AddedEffect]| {
+    let improved = |estimate: &Estimate| {
         if let Some(path) = out {
-            let partial = rebuilt(&base, effects, output::stem(path));
+            let partial = rebuilt(&base, estimate, output::stem(path));
             // A fault is reported by the last write.
             let _ = output::write_file(path, hitch_model_file::to_toml(&partial).as_bytes());
         }

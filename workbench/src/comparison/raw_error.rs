@@ -38,7 +38,7 @@ pub fn raw_errors(experiment: &Experiment, fit: &Fit, model: &Model) -> [RawErro
 /// Simulated samples of every channel of a run, in the channels' units.
 pub fn simulated(experiment: &Experiment, fit: &Fit, model: &Model, run: usize) -> Trace {
     let nuisance = fit.estimate.nuisances[run];
-    let model = model.with_effects(fit.estimate.effects.clone());
+    let model = fit.estimate.applied_to(model);
     experiment.runs[run].simulate(&model, nuisance, &fit.estimate.clocks)
 }
 

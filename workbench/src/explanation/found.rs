@@ -4,6 +4,7 @@ use hitch_campaign::Campaign;
 use hitch_identification::adequacy::localization::ErrorProfile;
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
+use hitch_identification::estimate::Estimate;
 use hitch_identification::estimation::fit::Fit;
 use hitch_identification::explanation::explain;
 use hitch_identification::search::subset::Options;
@@ -37,7 +38,7 @@ impl Found {
         campaign: &Campaign,
         model: Model,
         options: Options<'_>,
-        improved: &(dyn Fn(&[AddedEffect]) + Sync),
+        improved: &(dyn Fn(&Estimate) + Sync),
     ) -> Self {
         let progress = Progress::start(format!("reading {}", campaign.name));
         Self::with_progress(campaign, model, options, improved, &progress)
@@ -48,13 +49,13 @@ impl Found {
         campaign: &Campaign,
         model: Model,
         options: Options<'_>,
-        improved: &(dyn Fn(&[AddedEffect]) + Sync),
+        improved: &(dyn Fn(&Estimate) + Sync),
         progress: &Progress,
     ) -> Self {
         let experiment = Experiment::new(campaign, &model);
         let better = |fit: &Fit| {
             progress.result(account(&model, fit));
-            improved(&fit.estimate.effects);
+            improved(&fit.estimate);
         };
         let options = Options {
             improved: &better,
@@ -86,7 +87,7 @@ impl Found {
 
     /// The model with the identified effects; a suggested term is defined in it, but not added.
     pub fn rebuilt(&self, name: String) -> Model {
-        let mut model = rebuilt(&self.model, &self.explanation.after.estimate.effects, name);
+        let mut model = rebuilt(&self.model, &self.explanation.after.estimate, name);
         let defined: Vec<&str> = model.terms.iter().map(|term| term.id()).collect();
         if let Some(suggestion) = &self.suggestion
             && !defined.contains(&suggestion.term.id())

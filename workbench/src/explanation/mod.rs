@@ -1,5 +1,6 @@
 //! Results of `hitch explain` and `hitch diagnose`, as JSON and as text.
 mod channel_figures;
+mod corrected;
 mod found;
 mod next;
 mod of_diagnosis;
@@ -9,6 +10,7 @@ mod rebuilt;
 mod show;
 
 pub use channel_figures::ChannelFigures;
+pub use corrected::Corrected;
 pub use found::{Explained, Found};
 pub use next::{Detail, Next};
 pub use of_diagnosis::explained;
@@ -27,6 +29,8 @@ pub struct Explanation {
     pub head: Head,
     /// Error of the model with its own effects refitted, in sigma; `None` if it has none.
     pub error_refitted: Option<f64>,
+    /// The constants of the base model, if the declared ones are off; `null` if they are not.
+    pub corrected_constants: Option<Corrected>,
     /// The effects added or changed, in order.
     pub steps: Vec<Step>,
     /// The remaining error.
@@ -50,6 +54,8 @@ pub struct Diagnosis {
     pub head: Head,
     /// Effects that may be missing, best first.
     pub candidates: Vec<Candidate>,
+    /// Probability that the declared constants are off, given the best candidate, 0 to 1.
+    pub constants_off: f64,
     /// The experiment that separates the best two candidates, if these data do not.
     #[serde(flatten)]
     pub next: Next,

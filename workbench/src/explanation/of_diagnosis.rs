@@ -10,7 +10,8 @@ use hitch_identification::data::problem::Problem;
 use hitch_identification::design::exploration::exploring;
 use hitch_identification::design::{NextExperiment, Pair, Rival, next_experiment};
 use hitch_identification::estimation::fit::Fit;
-use hitch_identification::explanation::explain::{self, Verdict, missing_manoeuvre};
+use hitch_identification::explanation::diagnosis;
+use hitch_identification::explanation::explain::{Verdict, missing_manoeuvre};
 use hitch_identification::selection::candidate;
 use hitch_identification::selection::evidence::{DISTINGUISHABLE, SIGNIFICANT};
 use hitch_plant::Model;
@@ -20,7 +21,7 @@ use super::{Candidate, Diagnosis, Head};
 
 impl Diagnosis {
     /// The display form of a diagnosis.
-    pub fn new(experiment: &Experiment, model: &Model, found: &explain::Diagnosis) -> Self {
+    pub fn new(experiment: &Experiment, model: &Model, found: &diagnosis::Diagnosis) -> Self {
         let believed = found
             .candidates
             .first()
@@ -46,6 +47,7 @@ impl Diagnosis {
                 hopeless_base: is_unsuitable(experiment, &found.base, after),
             },
             candidates,
+            constants_off: found.constants_off,
             next: next(Problem::new(experiment, model), found, believed, verdict).into(),
         }
     }
@@ -66,7 +68,7 @@ fn as_shown(a: &Candidate, b: &Candidate) -> Ordering {
 /// Result with one more effect.
 fn verdict(
     experiment: &Experiment,
-    found: &explain::Diagnosis,
+    found: &diagnosis::Diagnosis,
     believed: Option<&candidate::Candidate>,
 ) -> Verdict {
     let fit = believed.map_or(&found.base, |best| &best.fit);
@@ -85,7 +87,7 @@ fn verdict(
 /// The next experiment, unless the model is adequate with at most one effect.
 fn next(
     problem: Problem<'_>,
-    found: &explain::Diagnosis,
+    found: &diagnosis::Diagnosis,
     believed: Option<&candidate::Candidate>,
     verdict: Verdict,
 ) -> Option<NextExperiment> {
@@ -107,7 +109,7 @@ fn next(
 /// The experiment that separates the best candidate from the next best of those that fit equally well.
 fn separating(
     problem: Problem<'_>,
-    found: &explain::Diagnosis,
+    found: &diagnosis::Diagnosis,
     best: &candidate::Candidate,
 ) -> Option<NextExperiment> {
     let twin = *twins(found, best).first()?;
@@ -120,7 +122,7 @@ fn separating(
 }
 
 fn shown(
-    found: &explain::Diagnosis,
+    found: &diagnosis::Diagnosis,
     candidate: &candidate::Candidate,
     confidence: f64,
 ) -> Candidate {
@@ -151,7 +153,7 @@ pub fn explained(base: &Fit, with: &Fit) -> f64 {
 
 /// Other effects that fit these data as well as an accepted candidate.
 fn twins<'a>(
-    found: &'a explain::Diagnosis,
+    found: &'a diagnosis::Diagnosis,
     candidate: &candidate::Candidate,
 ) -> Vec<&'a candidate::Candidate> {
     if candidate.likelihood_ratio < SIGNIFICANT {

@@ -12,7 +12,8 @@ use indexmap::IndexMap;
 
 use super::channel_figures::{CLOCK, SUM};
 use super::{
-    Alternative, ChannelFigures, Explanation, Head, NotVisible, Parameter, Step, Unexplained,
+    Alternative, ChannelFigures, Corrected, Explanation, Head, NotVisible, Parameter, Step,
+    Unexplained,
 };
 use crate::comparison::raw_errors;
 
@@ -31,6 +32,7 @@ impl Explanation {
                 hopeless_base: is_unsuitable(experiment, &found.before, &found.after),
             },
             error_refitted: found.refitted.as_ref().map(Fit::error),
+            corrected_constants: found.corrected.as_ref().map(Corrected::new),
             steps: found.steps.iter().map(step).collect(),
             unexplained: Unexplained {
                 share: found.rest.share,

@@ -1,20 +1,22 @@
 //! A model with the estimated effects, as written to a file.
 
-use hitch_plant::{AddedEffect, Model};
+use hitch_identification::estimate::Estimate;
+use hitch_plant::Model;
 
 /// Significant digits of an estimate in a model file; estimates are never more accurate.
 const DIGITS: usize = 6;
 
-/// The model with other effects and another name, its estimates rounded to significant digits.
-pub fn rebuilt(model: &Model, effects: &[AddedEffect], name: String) -> Model {
-    let effects = effects.iter().cloned().map(|mut added| {
+/// The model with the effects and constants of an estimate and with another name; sizes of effects are rounded to
+/// significant digits.
+pub fn rebuilt(model: &Model, estimate: &Estimate, name: String) -> Model {
+    let effects = estimate.effects.iter().cloned().map(|mut added| {
         added
             .values
             .iter_mut()
             .for_each(|value| *value = rounded(*value));
         added
     });
-    let mut rebuilt = model.with_effects(effects.collect());
+    let mut rebuilt = estimate.applied_to(model).with_effects(effects.collect());
     rebuilt.name = name;
     rebuilt
 }

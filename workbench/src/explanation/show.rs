@@ -24,6 +24,10 @@ impl fmt::Display for Explanation {
                 "  error {error:.2} sigma with the effects of the model refitted\n"
             )?;
         }
+        if let Some(corrected) = &self.corrected_constants {
+            let head = corrected.sentence(self.head.error_before);
+            writeln!(f, "{}\n\n{corrected}", wrapped(&head))?;
+        }
         for (i, step) in self.steps.iter().enumerate() {
             write!(f, "  {}. {step}", i + 1)?;
         }
@@ -96,7 +100,11 @@ impl Explanation {
 
     /// The verdict as a sentence.
     pub fn meaning(&self) -> &'static str {
+        let by_constants = self.corrected_constants.is_some() && self.steps.is_empty();
         match (self.head.verdict, self.steps.is_empty()) {
+            ("explained", _) if by_constants => {
+                "With fitted constants the model explains the measurements to within the noise. No effect is missing."
+            }
             ("nothing-missing", _) => {
                 "The model explains the measurements to within the noise of the instruments."
             }
@@ -114,6 +122,22 @@ impl Explanation {
             }
             _ => "The campaign does not allow a decision.",
         }
+    }
+}
+
+/// Probability of constants that are off from which a diagnosis mentions them.
+const MENTIONED: f64 = 0.05;
+
+impl Diagnosis {
+    /// What is said about the constants, if they may be off.
+    pub fn constants_hint(&self) -> Option<String> {
+        (self.constants_off >= MENTIONED).then(|| {
+            format!(
+                "The declared constants are probably off (probability {:.2}); the confidences of the effects are lower for \
+                 that. Use hitch explain, which weighs both, or fit the constants with hitch model fit.",
+                self.constants_off
+            )
+        })
     }
 }
 
@@ -158,6 +182,9 @@ impl fmt::Display for Diagnosis {
             "Verdict with the best candidate alone: {}.",
             colour::verdict(self.head.verdict)
         )?;
+        if let Some(hint) = self.constants_hint() {
+            writeln!(f, "{}", wrapped(&hint))?;
+        }
         if self.head.verdict == Verdict::Unexplained.name() {
             let hint = "No single effect explains this campaign: several differences are likely, and the confidences, which \
                         compare single effects, do not apply. Use hitch explain, which searches sets of effects.";

@@ -91,7 +91,7 @@ impl Table5 {
         let found = explain(Problem::new(&experiment, model), &|what| {
             progress.say(format!("Table 5: trying {what}"))
         });
-        let rebuilt = model.with_effects(found.after.estimate.effects.clone());
+        let rebuilt = found.after.estimate.applied_to(model);
         Self {
             valves: [Valve::Lift, Valve::Lowering].map(|valve| valve_check(&rebuilt, valve)),
             effects: effect_checks(&found),

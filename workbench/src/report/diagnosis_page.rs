@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::estimation::fit::Fit;
-use hitch_identification::explanation::explain;
+use hitch_identification::explanation::diagnosis;
 use hitch_identification::selection::candidate;
 use hitch_identification::selection::evidence::SIGNIFICANT;
 use hitch_plant::Model;
@@ -25,7 +25,7 @@ const BARS: usize = 8;
 /// The report as one HTML document.
 pub fn page(
     shown: &Diagnosis,
-    found: &explain::Diagnosis,
+    found: &diagnosis::Diagnosis,
     experiment: &Experiment,
     model: &Model,
 ) -> String {
@@ -63,6 +63,7 @@ fn verdict(shown: &Diagnosis) -> Markup {
             strong { (format!("{:.2}", head.error_before)) } " → " strong { (format!("{:.2}", head.error_after)) }
             " sigma; a perfect model has 1.00, the noise of the instruments."
         }
+        @if let Some(hint) = shown.constants_hint() { p { (hint) } }
         @if let Some(next) = &shown.next.next_experiment {
             p { strong { "Next experiment: " } (next) "." }
         }

@@ -11,8 +11,9 @@ use super::run_views::run_views;
 use super::runs::runs;
 use super::staircase::staircase;
 use super::{page, staircase};
+use crate::base_fit::{ShownConstant, digits};
 use crate::comparison::Evaluated;
-use crate::explanation::{ChannelFigures, Explanation, Found, Head, Step};
+use crate::explanation::{ChannelFigures, Corrected, Explanation, Found, Head, Step};
 use crate::text::known;
 
 /// The report as one HTML document.
@@ -31,6 +32,9 @@ pub fn findings(found: &Found) -> Markup {
         (verdict(&found.shown))
         h2 { "The error, step by step" }
         (staircase(&stairs(&found.shown)))
+        @if let Some(corrected) = &found.shown.corrected_constants {
+            (corrected_constants(corrected, found.shown.head.error_before))
+        }
         @if !found.shown.steps.is_empty() { (steps(&found.shown.steps)) }
         @if let Some(rest) = &found.rest { (picture(rest)) }
         @if let Some(term) = &found.shown.unexplained.suggested { (suggestion(term)) }
@@ -50,7 +54,8 @@ pub fn details(found: &Found) -> Markup {
         evaluated(&found.explanation.before),
         evaluated(&found.explanation.after),
     );
-    let changed = (!found.shown.steps.is_empty()).then_some((&found.model, &after));
+    let is_changed = !found.shown.steps.is_empty() || found.shown.corrected_constants.is_some();
+    let changed = is_changed.then_some((&found.model, &after));
     let before = (&found.model, &before);
     html! {
         (error_map(before, changed))
@@ -94,7 +99,38 @@ fn stairs(shown: &Explanation) -> Vec<staircase::Step> {
         name: format!("+ {}", step.name()),
         error: step.error_after,
     });
-    [first].into_iter().chain(added).collect()
+    let corrected = shown.corrected_constants.iter();
+    let corrected = corrected.map(|corrected| staircase::Step {
+        name: "fitted constants".to_owned(),
+        error: corrected.error_after,
+    });
+    [first].into_iter().chain(corrected).chain(added).collect()
+}
+
+/// Constants that the explanation corrected.
+fn corrected_constants(corrected: &Corrected, error_before: f64) -> Markup {
+    let row = |constant: &ShownConstant| {
+        vec![
+            constant.name.clone(),
+            digits(constant.declared),
+            digits(constant.fitted),
+            format!("{} to {}", digits(constant.low), digits(constant.high)),
+            constant.unit.to_owned(),
+        ]
+    };
+    let rows: Vec<Vec<String>> = corrected.moved().map(row).collect();
+    let header = ["constant", "declared", "fitted", "95 % interval", "unit"];
+    html! {
+        p { (corrected.sentence(error_before)) }
+        ul {
+            @for (valve, low, high) in corrected.flow_changes() {
+                li { (valve) ": flow " (format!("{:+.1} to {:+.1}", 100.0 * low, 100.0 * high)) " % of the declared curve" }
+            }
+        }
+        @if !rows.is_empty() {
+            (page::table(&header, &rows))
+        }
+    }
 }
 
 fn steps(steps: &[Step]) -> Markup {

@@ -72,6 +72,7 @@ mod tests {
             clocks: Clocks::default(),
             adopted: Vec::new(),
             fixed: BTreeSet::new(),
+            constants: None,
             nuisances: Vec::new(),
             clocks_within_s: 0.0,
         }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use hitch_effects::TermEffect;
 use hitch_identification::estimation::fit::Fit;
-use hitch_identification::explanation::explain;
+use hitch_identification::explanation::{diagnosis, explain};
 use hitch_identification::selection::candidate::Candidate;
 use hitch_identification::suggestion::Suggestion;
 use hitch_plant::{Effect, Model, full_name};
@@ -49,7 +49,7 @@ pub struct Ranking {
     /// The model of the ranking.
     pub of: Arc<Evaluated>,
     /// The result.
-    pub diagnosis: explain::Diagnosis,
+    pub diagnosis: diagnosis::Diagnosis,
     /// The result in its display form.
     pub shown: explanation::Diagnosis,
 }

@@ -7,7 +7,7 @@ use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::estimate::Estimate;
 use hitch_identification::estimation::fit::{Fit, evaluate, fit_loads, refine, short_fit};
-use hitch_identification::explanation::explain::diagnose_each;
+use hitch_identification::explanation::diagnosis::diagnose_each;
 use hitch_identification::residuals::whitening::Weights;
 use hitch_identification::search::single_effects::try_effects;
 use hitch_identification::search::subset::Options;
@@ -304,8 +304,8 @@ impl Ready {
     }
 
     fn explain(&self, reporter: &Reporter) -> Explained {
-        let effects = self.present.evaluated.fit.estimate.effects.clone();
-        let model = self.model().with_effects(effects);
+        let estimate = &self.present.evaluated.fit.estimate;
+        let model = estimate.applied_to(self.model());
         reporter.progress("fitting the clocks and loads", None, None);
         let explained =
             explanation::Explained::new(self.experiment(), &model, Options::default(), &|what| {
@@ -388,11 +388,15 @@ impl Ready {
         let found = &explained.explanation;
         let fixed = &self.present.evaluated.fit.estimate.fixed;
         if fixed.is_empty() && (0..found.steps.len()).all(|step| accepted.contains(&step)) {
+            let constants = found.corrected.iter().map(|corrected| {
+                let title = "Fitted the constants".to_owned();
+                self.step(title, corrected.fit.clone(), None)
+            });
             let steps = found.steps.iter().map(|step| {
                 let title = format!("Added {}", full_name(step.effect));
                 self.step(title, step.fit.clone(), Some(step.held_out_after.error))
             });
-            return steps.collect();
+            return constants.chain(steps).collect();
         }
         let mut start = found.after.estimate.clone();
         for (index, step) in found.steps.iter().enumerate() {

@@ -120,7 +120,7 @@ fn added(session: &Session) -> Vec<Value> {
 pub fn preview(subject: &Subject, step: &Step, estimate: &Estimate, run: usize) -> Option<Value> {
     let ready = subject.experiment().runs.get(run)?;
     let weights = &step.evaluated.fit.weights.runs[run];
-    let model = subject.model.with_effects(estimate.effects.clone());
+    let model = estimate.applied_to(&subject.model);
     let trace = ready.simulate(&model, estimate.nuisances[run], &estimate.clocks);
     let residuals = weights.whiten(ready, &trace);
     let channel = |channel: Channel| {
@@ -154,12 +154,12 @@ pub fn signature(
     let ready = subject.experiment().runs.get(run)?;
     let candidate = ranking.candidate(effect)?;
     let fit = &step.evaluated.fit;
-    let mut effects = fit.estimate.effects.clone();
-    effects.push(AddedEffect {
+    let mut estimate = fit.estimate.clone();
+    estimate.effects.push(AddedEffect {
         effect: candidate.effect,
         values: candidate.values().to_vec(),
     });
-    let model = subject.model.with_effects(effects);
+    let model = estimate.applied_to(&subject.model);
     let trace = ready.simulate(&model, fit.estimate.nuisances[run], &fit.estimate.clocks);
     let with = fit.weights.runs[run].whiten(ready, &trace);
     let channel = |channel: Channel| {
@@ -183,8 +183,8 @@ pub fn model_file(session: &Session) -> String {
         text += &format!("# {number}. {title}: error {error:.2} sigma\n");
     }
     let name = format!("{}-{}", subject.model.name, subject.experiment().name);
-    let effects = &session.fit().estimate.effects;
-    text + &hitch_model_file::to_toml(&rebuilt(&session.model(), effects, name))
+    let estimate = &session.fit().estimate;
+    text + &hitch_model_file::to_toml(&rebuilt(&session.model(), estimate, name))
 }
 
 /// Measured and simulated channels of a run; `None` if there is no such run.

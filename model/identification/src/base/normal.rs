@@ -5,9 +5,9 @@ use hitch_plant::Model;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::base::correction::corrected;
-use crate::base::parameter::Parameter;
-use crate::base::prior::Prior;
+use crate::constants::correction::corrected;
+use crate::constants::parameter::Parameter;
+use crate::constants::prior::Prior;
 use crate::data::experiment::{Experiment, LOAD_PRIOR, Nuisance};
 use crate::data::problem::Problem;
 use crate::estimate::Estimate;

@@ -2,22 +2,19 @@
 
 use hitch_model_file::Valve;
 use hitch_plant::Model;
-use hitch_plant::units::lpm_from_m3_s;
 use nalgebra::{DMatrix, DVector};
 
 use crate::base::descent::descend;
 use crate::base::normal::{BaseProblem, Normal, Point, RunColumns};
-use crate::base::parameter::{Parameter, parameters};
-use crate::base::prior::Prior;
+use crate::constants::fitted::{CurvePoint, DETERMINED, Fitted, FittedConstant, MODEL_ERROR};
+use crate::constants::parameter::{Parameter, parameters};
+use crate::constants::prior::Prior;
 use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
 use crate::estimation::fit::{COARSE, Fit, evaluate_weighted, refine};
 use crate::explanation::explain::fit_base;
 use crate::residuals::whitening::Weights;
 use crate::selection::evidence::variance_inflation;
-
-/// Ratio of posterior to prior sigma below which a constant counts as determined.
-const DETERMINED: f64 = 0.7;
 
 /// Factor on the tolerances of all other constants in the test whether the campaign determines a constant: one that is
 /// determined only by the others' tolerances (a length that trades off against the bore) keeps its declared value.
@@ -27,48 +24,6 @@ const WIDER: f64 = 3.0;
 /// ringing pressures create local minima.
 const ROUNDS: usize = 3;
 const JACOBIANS: usize = 5;
-
-/// Relative standard deviation of a constant that no campaign can improve: errors of tables, areas and integration.
-const MODEL_ERROR: f64 = 0.002;
-
-/// Half width of a 95 % interval, in sigmas.
-const INTERVAL: f64 = 1.96;
-
-/// A constant with its estimate.
-#[derive(Debug, Clone)]
-pub struct FittedConstant {
-    /// `table.key` of a model file; for a threshold, the table and `threshold_a`.
-    pub name: String,
-    /// Unit.
-    pub unit: &'static str,
-    /// Declared value.
-    pub declared: f64,
-    /// Fitted value; the declared one if it is not determined.
-    pub fitted: f64,
-    /// 95 % interval, from data sheet and campaign.
-    pub interval: (f64, f64),
-    /// Whether the campaign determines it.
-    pub determined: bool,
-    /// Whether it is at the bound of its accepted range.
-    pub at_an_end: bool,
-}
-
-/// A point of a flow curve.
-#[derive(Debug, Clone)]
-pub struct CurvePoint {
-    /// The valve.
-    pub valve: Valve,
-    /// Fitted current, A.
-    pub current_a: f64,
-    /// Declared flow at the reference drop, l/min.
-    pub declared_lpm: f64,
-    /// Fitted flow, l/min.
-    pub fitted_lpm: f64,
-    /// 95 % interval of the flow, l/min.
-    pub interval_lpm: (f64, f64),
-    /// Whether the campaign determines it; if not, it follows its neighbours.
-    pub determined: bool,
-}
 
 /// The base model fitted to a campaign.
 #[derive(Debug, Clone)]
@@ -120,7 +75,7 @@ pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&s
     let model = problem.model(&point.theta);
     let model = model.unwrap_or_else(|| declared.clone());
     let after = refine(Problem::new(experiment, &model), point.estimate.clone());
-    let report = Report {
+    let report = Fitted {
         declared,
         model: &model,
         parameters: &parameters,
@@ -213,74 +168,4 @@ fn sigma_of(information: DMatrix<f64>, unknown: usize, largest: f64) -> f64 {
     let root = information.cholesky();
     let variance = root.map(|root| root.inverse()[(unknown, unknown)] + MODEL_ERROR * MODEL_ERROR);
     variance.map_or(largest, |variance| variance.sqrt().min(largest))
-}
-
-/// The result of a fit, for reporting.
-struct Report<'a> {
-    declared: &'a Model,
-    model: &'a Model,
-    parameters: &'a [Parameter],
-    theta: &'a DVector<f64>,
-    sigma: &'a [f64],
-    determined: &'a [bool],
-    prior: &'a Prior,
-}
-
-impl Report<'_> {
-    fn constants(&self) -> Vec<FittedConstant> {
-        let all = self.parameters.iter().enumerate();
-        all.filter_map(|(k, parameter)| self.constant(k, parameter))
-            .collect()
-    }
-
-    fn constant(&self, k: usize, parameter: &Parameter) -> Option<FittedConstant> {
-        let (value, half) = (self.theta[k], INTERVAL * self.sigma[k]);
-        let (name, unit, declared, at): (_, _, _, Box<dyn Fn(f64) -> f64>) = match parameter {
-            Parameter::Scalar(scalar) => {
-                let si = *(scalar.place)(&mut self.declared.constants().clone());
-                let declared = si / scalar.si;
-                let at = move |correction: f64| declared * correction.exp();
-                (scalar.name.to_owned(), scalar.unit, declared, Box::new(at))
-            }
-            Parameter::Threshold(valve) => {
-                let declared = valve.of(self.declared.constants()).curve.threshold_a();
-                let name = format!("{}.threshold_a", valve.table());
-                (name, "A", declared, Box::new(move |shift| declared + shift))
-            }
-            Parameter::Flow(..) => return None,
-        };
-        Some(FittedConstant {
-            name,
-            unit,
-            declared,
-            fitted: at(value),
-            interval: (at(value - half), at(value + half)),
-            determined: self.determined[k],
-            at_an_end: self.prior.is_at_an_end(self.theta, k),
-        })
-    }
-
-    fn curves(&self) -> Vec<CurvePoint> {
-        let all = self.parameters.iter().enumerate();
-        all.filter_map(|(k, parameter)| match *parameter {
-            Parameter::Flow(valve, point) => Some(self.curve_point(k, valve, point)),
-            Parameter::Scalar(_) | Parameter::Threshold(_) => None,
-        })
-        .collect()
-    }
-
-    fn curve_point(&self, k: usize, valve: Valve, point: usize) -> CurvePoint {
-        let curve = |model: &Model| valve.of(model.constants()).curve.clone();
-        let (declared, fitted) = (curve(self.declared), curve(self.model));
-        let fitted_lpm = lpm_from_m3_s(fitted.flows_m3_s()[point]);
-        let factor = (INTERVAL * self.sigma[k]).exp();
-        CurvePoint {
-            valve,
-            current_a: fitted.currents_a()[point],
-            declared_lpm: lpm_from_m3_s(declared.flows_m3_s()[point]),
-            fitted_lpm,
-            interval_lpm: (fitted_lpm / factor, fitted_lpm * factor),
-            determined: self.determined[k],
-        }
-    }
 }

@@ -25,6 +25,9 @@ const FINE_STEP: f64 = 0.002;
 /// Step of a channel's clock offset, in prior sigmas.
 const STEP_OF_OFFSET: f64 = 0.25;
 
+/// Step of the free constants, in prior sigmas.
+const STEP_OF_CONSTANTS: f64 = 0.02;
+
 /// One run's residuals and their sensitivities per step of one scale.
 #[derive(Debug, Clone)]
 pub struct RunJacobian {
@@ -233,11 +236,40 @@ fn offset_columns(
     std::array::from_fn(|channel| columns.iter().map(|run| run[channel].clone()).collect())
 }
 
-/// Columns that hardly change between iterations: those of the clocks and the loads.
+/// Sensitivities of all runs to the free constants, per step of one prior sigma; by direction, then by run. The
+/// quotients are central: the curvature error of a one-sided quotient would appear to determine a direction that the
+/// campaign does not show.
+fn constant_columns(
+    problem: Problem<'_>,
+    weights: &Weights,
+    estimate: &Estimate,
+) -> Vec<Vec<Vec<f64>>> {
+    let column = |direction: usize| {
+        let shared = Shared::Constants(direction);
+        let side = |step: f64| {
+            let mut moved = estimate.clone();
+            moved.set(shared, estimate.get(shared) + step);
+            let residuals = huber_residuals(problem, weights, &moved);
+            (moved.get(shared), residuals)
+        };
+        let ((low, below), (high, above)) =
+            rayon::join(|| side(-STEP_OF_CONSTANTS), || side(STEP_OF_CONSTANTS));
+        match high > low {
+            true => quotient(&below, above, high - low),
+            false => below.iter().map(|run| vec![0.0; run.len()]).collect(),
+        }
+    };
+    let directions = 0..estimate.constant_directions();
+    directions.into_par_iter().map(column).collect()
+}
+
+/// Columns that hardly change between iterations: those of the clocks, the loads and the free constants.
 #[derive(Debug, Clone)]
 pub struct SlowColumns {
     /// In the order of [`crate::estimate::CLOCKS`], by run.
     clocks: [Vec<Vec<f64>>; 4],
+    /// By direction of the free constants and by run.
+    constants: Vec<Vec<Vec<f64>>>,
     loads: Vec<Vec<f64>>,
 }
 
@@ -250,11 +282,20 @@ impl SlowColumns {
         estimate: &Estimate,
         base: &[Vec<f64>],
     ) -> Self {
-        let (clocks, loads) = rayon::join(
+        let (clocks, (loads, constants)) = rayon::join(
             || offset_columns(problem, weights, estimate),
-            || load_columns(problem, weights, estimate, base),
+            || {
+                rayon::join(
+                    || load_columns(problem, weights, estimate, base),
+                    || constant_columns(problem, weights, estimate),
+                )
+            },
         );
-        Self { clocks, loads }
+        Self {
+            clocks,
+            constants,
+            loads,
+        }
     }
 }
 
@@ -309,6 +350,7 @@ impl Jacobian {
                     .iter()
                     .map(|column| column[run].clone())
                     .chain(slow.clocks.iter().map(|clock| clock[run].clone()))
+                    .chain(slow.constants.iter().map(|column| column[run].clone()))
                     .collect(),
                 load: (experiment.runs[run].on_hitch()
                     && !estimate.load_would_leave(run, dot(&slow.loads[run], &base[run])))

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, Shared, Step};
 use crate::estimation::jacobian::{Jacobian, RunJacobian, dot, square_sum, subtract};
 
 /// The free columns of a Jacobian and each run's load, prepared for projection.
@@ -201,20 +201,20 @@ impl<J: Borrow<Jacobian>> NuisanceProjection<J> {
         self.cost(square_sum(residuals), &self.products(residuals))
     }
 
-    /// An estimate with residuals `residuals`, its clocks re-optimised to first order.
+    /// An estimate with residuals `residuals`, its clocks and free constants re-optimised to first order.
     #[must_use]
     pub fn synchronised(&self, estimate: &Estimate, residuals: &[Vec<f64>]) -> Estimate {
         let pull = self.pull(&self.products(residuals)) + &self.priors;
         let shares = self.shares(&pull);
-        let mut synchronised = estimate.clone();
-        for (&kept, &share) in self.kept.iter().zip(shares.iter()) {
-            let shared = self.jacobian().shared[kept];
-            if shared.has_prior() {
-                let moved = estimate.get(shared) + share * estimate.scale(shared);
-                synchronised.set(shared, moved);
-            }
-        }
-        synchronised
+        let columns = self.kept.iter().map(|&kept| self.jacobian().shared[kept]);
+        let moves = columns.zip(shares.iter().copied());
+        let (parameters, shares): (Vec<Shared>, Vec<f64>) =
+            moves.filter(|(shared, _)| shared.has_prior()).unzip();
+        let step = Step {
+            shared: DVector::from_vec(shares),
+            loads: Vec::new(),
+        };
+        estimate.moved(&parameters, &step)
     }
 
     /// [`NuisanceProjection::cost_after`] of the projection's own residuals.

@@ -17,14 +17,14 @@ use crate::design::exploration::exploring;
 use crate::design::{Alternative, NextExperiment, Pair, Replacement, Rival, next_experiment};
 use crate::estimate::Estimate;
 use crate::estimation::fit::{Fit, evaluate, fit, refine};
+use crate::explanation::constants::{CorrectedConstants, Searched, search_with_constants};
 use crate::explanation::undetected::{Undetected, undetected};
-use crate::search::candidates::{Progress, showing};
-use crate::search::single_effects::{confidences, try_each};
-use crate::search::subset::{Found, Options, search};
+use crate::search::candidates::Progress;
+use crate::search::subset::{Found, Options};
 use crate::selection::candidate::{Candidate, weigh};
 use crate::selection::evidence::DISTINGUISHABLE;
 use crate::selection::hold_out::{HeldOut, held_out};
-use crate::selection::posterior::{Weighed, key_of};
+use crate::selection::posterior::{Weighed, key_of, probability_of};
 
 /// Fewest compared samples for any conclusion.
 const FEWEST_SAMPLES: usize = 50;
@@ -34,7 +34,7 @@ const FEWEST_SAMPLES: usize = 50;
 pub enum Verdict {
     /// The model is adequate without any change.
     NothingMissing,
-    /// The model is adequate with the named effects.
+    /// The model is adequate with the named effects and, if they are off, with fitted constants.
     Explained,
     /// Adequate, but a named effect is confounded with another.
     Ambiguous,
@@ -99,6 +99,8 @@ pub struct Explanation {
     pub before: Fit,
     /// The given model with its effects refitted; `None` if it has none.
     pub refitted: Option<Fit>,
+    /// The fitted constants, if the declared ones are off.
+    pub corrected: Option<CorrectedConstants>,
     /// The model after the last step.
     pub after: Fit,
     /// The steps in order.
@@ -118,17 +120,6 @@ pub struct Explanation {
     pub unfinished: bool,
 }
 
-/// A campaign and a model with every effect of the catalogue added once.
-#[derive(Debug, Clone)]
-pub struct Diagnosis {
-    /// The given model, with its nuisance parameters fitted.
-    pub base: Fit,
-    /// The effects, by decreasing probability.
-    pub candidates: Vec<Candidate>,
-    /// Probability of each candidate among all and none.
-    pub confidences: Vec<f64>,
-}
-
 /// Fits loads and clocks of a model; its effects stay unchanged.
 #[must_use]
 pub fn fit_base(problem: Problem<'_>) -> Fit {
@@ -145,31 +136,6 @@ pub fn fit_freely(problem: Problem<'_>) -> Fit {
     fit(problem, start)
 }
 
-/// Adds each effect that the model lacks, one at a time.
-#[must_use]
-pub fn diagnose(problem: Problem<'_>, base: Fit, progress: Progress) -> Diagnosis {
-    diagnose_each(problem, base, progress, &|_, _| {})
-}
-
-/// [`diagnose`] with a callback for each form once it is weighed, in any order, with the number of forms.
-#[must_use]
-pub fn diagnose_each(
-    problem: Problem<'_>,
-    base: Fit,
-    progress: Progress,
-    weighed: &(dyn Fn(&Candidate, usize) + Sync),
-) -> Diagnosis {
-    let absent = showing(problem, &base.estimate);
-    let report = |candidate: &Candidate| weighed(candidate, absent.len());
-    let candidates = try_each(problem, &base, &absent, progress, &report);
-    let confidences = confidences(&candidates);
-    Diagnosis {
-        base,
-        candidates,
-        confidences,
-    }
-}
-
 /// Finds missing effects and changed ones of the model.
 #[must_use]
 pub fn explain(problem: Problem<'_>, progress: Progress) -> Explanation {
@@ -183,26 +149,22 @@ pub fn explain_with(problem: Problem<'_>, options: Options<'_>, progress: Progre
     let before = fit_base(problem);
     let adopted = !model.effects.is_empty();
     let refitted = adopted.then(|| fit_freely(problem));
-    let mut found = if enough(&before) {
-        search(problem, &before, options, progress)
-    } else {
-        Found::nothing(&before)
+    let mut searched = match enough(&before) {
+        true => search_with_constants(problem, &before, options, progress),
+        false => Searched::declared(Found::nothing(&before)),
     };
     progress("how sure that is");
-    let mut steps = steps(problem, &before, &found);
-    while let Some(insignificant) = steps.iter().position(may_be_absent) {
-        let effect = found.order[insignificant];
-        let reduced = found.fit.estimate.without(effect);
-        let removed = reduced.effects.len() < found.fit.estimate.effects.len();
-        found.fit = refine(problem, reduced);
-        found.held_out = held_out(problem, &found.fit);
-        found.order.remove(insignificant);
-        for other in &mut found.order {
-            *other -= usize::from(removed && *other > effect);
+    let mut steps = steps(problem, &before, &searched);
+    loop {
+        let fewer = steps.iter().rev().skip(1).map(|step| step.fit.clone());
+        if let Some(insignificant) = steps.iter().position(may_be_absent) {
+            searched.found.remove(problem, insignificant);
+        } else if !searched.found.moves_to_fewer(problem, fewer.collect()) {
+            break;
         }
-        steps = self::steps(problem, &before, &found);
+        steps = self::steps(problem, &before, &searched);
     }
-    concluded(problem, before, refitted, found, steps)
+    concluded(problem, before, refitted, searched, steps)
 }
 
 /// Whether the interval of a step's size contains its absent value. A single jump that the noise of a current decides
@@ -217,7 +179,9 @@ fn may_be_absent(step: &ExplanationStep) -> bool {
 }
 
 /// The members of the set as steps, in greedy order of the cost reduction that each adds.
-fn steps(problem: Problem<'_>, before: &Fit, found: &Found) -> Vec<ExplanationStep> {
+fn steps(problem: Problem<'_>, before: &Fit, searched: &Searched) -> Vec<ExplanationStep> {
+    let found = &searched.found;
+    let start = searched.corrected.as_ref().unwrap_or(before);
     let weighed = found.refitted.weighed(problem, &found.fit);
     let whole = evaluate(problem, found.fit.estimate.clone());
     let mut steps: Vec<ExplanationStep> = Vec::new();
@@ -229,7 +193,7 @@ fn steps(problem: Problem<'_>, before: &Fit, found: &Found) -> Vec<ExplanationSt
         };
         let (error_before, held_out_before) = match steps.last() {
             Some(step) => (step.error_after, step.held_out_after),
-            None => (before.error(), held_out(problem, before)),
+            None => (start.error(), held_out(problem, start)),
         };
         let held_out_after = match last {
             true => found.held_out,
@@ -238,16 +202,14 @@ fn steps(problem: Problem<'_>, before: &Fit, found: &Found) -> Vec<ExplanationSt
         let candidate = weighed_alone(problem, whole.clone(), effect);
         let estimate = &found.fit.estimate;
         let id = estimate.effects[effect].effect.id();
-        let with_it = weighed
-            .iter()
-            .filter(|set| set.key.ids().any(|own| own == id));
+        let probability = probability_of(&weighed, id) * candidate.plausibility();
         steps.push(ExplanationStep {
             effect: candidate.effect,
             error_before,
             error_after: fit.error(),
             held_out_before,
             held_out_after,
-            confidence: with_it.map(|set| set.probability).sum::<f64>() * candidate.plausibility(),
+            confidence: searched.averaged(problem, id, probability),
             detectability: candidate.detectability,
             explained_share: candidate.explained_share,
             other_forms: other_forms(&found.fit, id, &weighed),
@@ -335,11 +297,15 @@ fn concluded(
     problem: Problem<'_>,
     before: Fit,
     refitted: Option<Fit>,
-    found: Found,
+    searched: Searched,
     steps: Vec<ExplanationStep>,
 ) -> Explanation {
     let Problem { experiment, .. } = problem;
+    let Searched {
+        found, corrected, ..
+    } = searched;
     let after = found.fit;
+    let corrected = corrected.and_then(|fit| CorrectedConstants::new(problem, fit, &after));
     let cells = cells_since(&cells(experiment, &before), experiment, &after);
     let missing = missing_manoeuvre(experiment, &after);
     let verdict = verdict(experiment, &cells, &steps, &after, missing);
@@ -361,6 +327,7 @@ fn concluded(
     Explanation {
         before,
         refitted,
+        corrected,
         after,
         steps,
         verdict,
@@ -402,7 +369,7 @@ fn verdict(
         Verdict::Unexplained
     } else if steps.is_empty() && missing.is_some() {
         Verdict::NotEnoughData
-    } else if steps.is_empty() {
+    } else if steps.is_empty() && after.estimate.constants.is_none() {
         Verdict::NothingMissing
     } else if steps.iter().any(|step| !step.indistinguishable.is_empty()) {
         Verdict::Ambiguous

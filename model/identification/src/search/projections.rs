@@ -49,7 +49,7 @@ impl<'a> Projections<'a> {
         self.projections[subset].get_or_init(|| {
             let keeps = |column: usize| match self.jacobian.shared[column] {
                 Shared::Effect(index, _) => has(&index),
-                Shared::Offset(_) => true,
+                Shared::Offset(_) | Shared::Constants(_) => true,
             };
             NuisanceProjection::keeping(self.jacobian, self.present, keeps)
         })

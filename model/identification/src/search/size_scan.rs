@@ -169,7 +169,7 @@ pub(crate) fn scan(
     };
     let scan = Scan {
         experiment,
-        model: model.clone(),
+        model: base.estimate.applied_to(model),
         base,
         informative,
     };

@@ -13,10 +13,11 @@
 use std::time::Instant;
 
 use hitch_plant::Effect;
+use rayon::prelude::*;
 
 use crate::data::clocks::Clocks;
 use crate::data::problem::Problem;
-use crate::estimation::fit::{Fit, evaluate, evaluate_weighted};
+use crate::estimation::fit::{Fit, evaluate, evaluate_weighted, refine};
 use crate::search::candidates::{Progress, showing};
 use crate::search::coarse_view::Coarse;
 use crate::search::confounded::confounded;
@@ -28,7 +29,7 @@ use crate::search::screening::EXPLAINED;
 use crate::search::{delays, resolution};
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::hold_out::{HeldOut, held_out};
-use crate::selection::posterior::{Refitted, key};
+use crate::selection::posterior::{Refitted, key, probability_of};
 
 /// Most dictionaries of a search.
 const ROUNDS: usize = 6;
@@ -39,6 +40,9 @@ const MORE: usize = 2;
 /// Largest error, in sigma, of the model without an effect at which a switching effect can be confounded with another
 /// one. Above it, the switching instants distinguish them.
 const CONFOUNDABLE_ERROR: f64 = 1.5;
+
+/// Factor on the cost of the present set up to which a smaller one lacks faint effects only.
+const FAINT: f64 = 1.5;
 
 /// Sets per round that are evaluated on held-out runs.
 const TRIED: usize = 3;
@@ -107,44 +111,55 @@ impl Found {
             unfinished: false,
         }
     }
-}
 
-/// Searches the set of effects that explains a campaign best, from a fit of the model alone.
-pub(crate) fn search(
-    problem: Problem<'_>,
-    base: &Fit,
-    options: Options<'_>,
-    progress: Progress,
-) -> Found {
-    let mut search = Search {
-        problem,
-        options,
-        progress,
-        scans: Scans::default(),
-        refitted: Refitted::new(base),
-        present: base.clone(),
-        left: held_out(problem, base),
-        order: Vec::new(),
-        rivals: Vec::new(),
-    };
-    let mut unfinished = true;
-    for _ in 0..ROUNDS {
-        if options.is_over() {
-            break;
-        }
-        if search.extend() || search.tries_alternatives() {
-            let added = base.estimate.effects.len()..search.present.estimate.effects.len();
-            search.order = added.collect();
-        } else {
-            unfinished = options.is_over();
-            break;
+    /// Removes the effect at a place of the order, and fits the others again.
+    pub fn remove(&mut self, problem: Problem<'_>, place: usize) {
+        let effect = self.order.remove(place);
+        let reduced = self.fit.estimate.without(effect);
+        let removed = reduced.effects.len() < self.fit.estimate.effects.len();
+        self.fit = refine(problem, reduced);
+        self.held_out = held_out(problem, &self.fit);
+        for other in &mut self.order {
+            *other -= usize::from(removed && *other > effect);
         }
     }
-    search.found(unfinished)
+
+    /// Fits without each of its effects.
+    pub fn without_each(&self, problem: Problem<'_>) -> Vec<Fit> {
+        let effects = self.order.par_iter();
+        let without = |&effect: &usize| refine(problem, self.fit.estimate.without(effect));
+        effects.map(without).collect()
+    }
+
+    /// Moves to the best of the sets that were fitted, with fits of subsets of its effects, if that is better and has fewer
+    /// effects. Returns whether there is one: a fit of all effects may have ended in a local minimum that a fit of fewer
+    /// leaves.
+    pub fn moves_to_fewer(&mut self, problem: Problem<'_>, subsets: Vec<Fit>) -> bool {
+        for fit in subsets {
+            self.refitted.insert(fit);
+        }
+        let own = key(&self.fit).len();
+        let better = self.refitted.better(problem, &self.fit);
+        let Some(fit) = better.into_iter().find(|fit| key(fit).len() < own).cloned() else {
+            return false;
+        };
+        let effects = 0..fit.estimate.effects.len();
+        self.order = effects
+            .filter(|&effect| !fit.estimate.is_unchanged(effect))
+            .collect();
+        self.held_out = held_out(problem, &fit);
+        self.fit = fit;
+        true
+    }
+
+    /// Posterior probability that an effect is present.
+    pub fn probability_of(&self, problem: Problem<'_>, id: &str) -> f64 {
+        probability_of(&self.refitted.weighed(problem, &self.fit), id)
+    }
 }
 
-/// State of a search.
-struct Search<'a> {
+/// A search for the set of effects that explains a campaign best.
+pub(crate) struct Search<'a> {
     /// The measured data and the model.
     problem: Problem<'a>,
     options: Options<'a>,
@@ -158,9 +173,71 @@ struct Search<'a> {
     order: Vec<usize>,
     /// Indices of its effects, each with the ids of its confounded alternatives.
     rivals: Vec<(usize, Vec<&'static str>)>,
+    /// Rounds made.
+    rounds: usize,
+    /// Whether the last round found nothing better.
+    is_stable: bool,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    /// A search from a fit of the model alone.
+    pub fn new(
+        problem: Problem<'a>,
+        base: &Fit,
+        options: Options<'a>,
+        progress: Progress<'a>,
+    ) -> Self {
+        Self {
+            problem,
+            options,
+            progress,
+            scans: Scans::default(),
+            refitted: Refitted::new(base),
+            present: base.clone(),
+            left: held_out(problem, base),
+            order: Vec::new(),
+            rivals: Vec::new(),
+            rounds: 0,
+            is_stable: false,
+        }
+    }
+
+    /// Makes another round, within a deadline. Returns whether there may be more: the round found something better, and
+    /// neither the deadline nor the limit of rounds is reached.
+    pub fn advance(&mut self, deadline: Option<Instant>) -> bool {
+        self.options.deadline = deadline;
+        if self.is_stable || self.rounds >= ROUNDS || self.options.is_over() {
+            return false;
+        }
+        if self.extend() || self.tries_alternatives() {
+            self.rounds += 1;
+            let given = self.problem.model.effects.len();
+            self.order = (given..self.present.estimate.effects.len()).collect();
+            return true;
+        }
+        // A round that the deadline cut short says nothing.
+        self.is_stable = !self.options.is_over();
+        false
+    }
+
+    /// The best fit so far.
+    pub fn present(&self) -> &Fit {
+        &self.present
+    }
+
+    /// The best fits with fewer effects, one of each size, whose cost is not much larger: the other effects are faint.
+    pub fn slightly_worse_with_fewer(&self) -> Vec<&Fit> {
+        self.refitted
+            .best_by_size(key(&self.present).len())
+            .into_iter()
+            .filter(|fit| fit.cost < FAINT * self.present.cost)
+            .collect()
+    }
+
+    /// Whether the last round found nothing better.
+    pub fn is_stable(&self) -> bool {
+        self.is_stable
+    }
     /// Builds a dictionary around the present fit and moves to the best set that it leads to. Returns whether there is
     /// one.
     fn extend(&mut self) -> bool {
@@ -228,11 +305,11 @@ impl Search<'_> {
     }
 
     /// The inputs of a dictionary around a fit, with the effects selected by `wanted`.
-    fn builder<'a>(
-        &'a self,
-        coarse: &'a Coarse,
+    fn builder<'b>(
+        &'b self,
+        coarse: &'b Coarse,
         wanted: impl Fn(&dyn Effect) -> bool,
-    ) -> DictionaryBuilder<'a> {
+    ) -> DictionaryBuilder<'b> {
         let mut effects = showing(self.problem, &coarse.present.estimate);
         effects.retain(|effect| wanted(*effect));
         DictionaryBuilder {
@@ -291,7 +368,8 @@ impl Search<'_> {
         found
     }
 
-    fn found(self, unfinished: bool) -> Found {
+    /// The result so far.
+    pub fn found(self) -> Found {
         let present = self.present;
         let effects = 0..present.estimate.effects.len();
         let missing = effects.filter(|&effect| !present.estimate.is_unchanged(effect));
@@ -303,7 +381,7 @@ impl Search<'_> {
             held_out: self.left,
             refitted: self.refitted,
             order,
-            unfinished,
+            unfinished: !self.is_stable,
         }
     }
 }

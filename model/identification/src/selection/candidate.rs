@@ -297,7 +297,7 @@ impl Evidence {
 /// Share of the mean square beyond noise that an effect explains, both weighted by its squared change of the residuals.
 /// Residuals elsewhere do not count, as they say nothing about this effect. A wrong effect in place of the true one
 /// leaves residuals where it acts.
-fn explained_share(changes: &[Vec<f64>], residuals: &[Vec<f64>]) -> f64 {
+pub(crate) fn explained_share(changes: &[Vec<f64>], residuals: &[Vec<f64>]) -> f64 {
     let (mut weight, mut weight_square, mut explained, mut left) = (0.0, 0.0, 0.0, 0.0);
     let pairs = changes.iter().flatten().zip(residuals.iter().flatten());
     for (change, residual) in pairs {

@@ -46,7 +46,8 @@ impl HeldOut {
 ///
 /// Whole runs are assigned to the folds in turn, so samples of one run are never on both sides. Shared parameters come
 /// from the other runs; for a held-out run only its load error is fitted, within its prior. The weights are those of
-/// the fit to all runs.
+/// the fit to all runs. Free constants keep their values: some twenty parameters with a prior cannot follow the noise of
+/// a fold.
 ///
 /// The only run of a campaign is divided into blocks of time instead. The simulation passes through all of them, and the
 /// angle's filter predicts a sample from the measured ones before it also where they are held out; all parameters and the
@@ -77,6 +78,7 @@ fn held_out_runs(problem: Problem<'_>, fit: &Fit, fold: usize, folds: usize) -> 
     let experiment = problem.experiment;
     let outside = |run: usize| run % folds != fold;
     let (train, weights, start) = part(experiment, fit, outside);
+    let start = start.with_held_constants(true);
     let trained = refine_once(problem.on(&train), &weights, start);
     let (test, weights, test_start) = part(experiment, fit, |run| !outside(run));
     let start = Estimate {
@@ -86,6 +88,7 @@ fn held_out_runs(problem: Problem<'_>, fit: &Fit, fold: usize, folds: usize) -> 
         clocks: trained.clocks,
         nuisances: test_start.nuisances,
         clocks_within_s: test_start.clocks_within_s,
+        constants: trained.constants,
     };
     let test = problem.on(&test);
     let loaded = fit_loads(test, &weights, start);
@@ -97,7 +100,8 @@ fn held_out_blocks(problem: Problem<'_>, fit: &Fit, fold: usize) -> Fit {
     let samples = problem.experiment.runs[0].len();
     let inside = |sample: usize| sample * FOLDS * BLOCKS / samples % FOLDS == fold;
     let train = fit.weights.of_samples(|sample| !inside(sample));
-    let trained = refine_once(problem, &train, fit.estimate.clone());
+    let start = fit.estimate.clone().with_held_constants(true);
+    let trained = refine_once(problem, &train, start);
     evaluate_weighted(problem, trained, fit.weights.of_samples(inside))
 }
 

@@ -2,6 +2,7 @@
 
 pub mod candidate;
 pub(crate) mod complexity_penalty;
+pub(crate) mod constants_evidence;
 pub mod evidence;
 pub mod hold_out;
 pub mod leave_one_out;

@@ -131,6 +131,16 @@ impl Refitted {
         better.into_iter().map(|(_, fit)| fit).collect()
     }
 
+    /// The best fit of each number of effects below `size`.
+    pub fn best_by_size(&self, size: usize) -> Vec<&Fit> {
+        let best = |count: usize| {
+            let same = self.fits.iter().filter(|(key, _)| key.len() == count);
+            let fits = same.map(|(_, fit)| fit);
+            fits.min_by(|a, b| a.cost.total_cmp(&b.cost))
+        };
+        (0..size).filter_map(best).collect()
+    }
+
     /// The penalty of effects given the residuals of the best fit.
     fn penalty(&self, experiment: &Experiment) -> Penalty {
         let fits = self.fits.values();
@@ -167,6 +177,14 @@ impl Refitted {
         }
         weighed
     }
+}
+
+/// Probability that an effect is present.
+pub(crate) fn probability_of(weighed: &[Weighed<'_>], id: &str) -> f64 {
+    let with_it = weighed
+        .iter()
+        .filter(|set| set.key.ids().any(|own| own == id));
+    with_it.map(|set| set.probability).sum()
 }
 
 /// A set with its posterior weight.

@@ -17,6 +17,7 @@ export function drawMissing(state, acts) {
   byId("explained").replaceChildren(...(state.explained ? explanation(state.explained, state.effects.length > 0, acts.run) : []));
   if (state.ranking) drawRanking(state.ranking.candidates, acts, state.ranking.next_experiment);
   else byId("ranking").replaceChildren();
+  if (state.ranking?.constants_hint) byId("ranking").append(element("p", {}, state.ranking.constants_hint));
 }
 
 /** Draws the candidates evaluated so far.
@@ -106,13 +107,26 @@ function explanation(found, keeps, run) {
   return [element("h3", {}, "Explanation"),
     element("p", {}, element("strong", {}, `Verdict: ${found.verdict}. `), found.meaning), ...(keeps ? [element("p", {},
       "Effects of the model are kept; only their sizes may change. Remove an effect to have it re-examined.")] : []),
+    ...(found.constants ? [constants(found.constants)] : []),
     ...parts,
-    ...(found.steps.length ? [take] : []),
+    ...(found.steps.length || found.constants ? [take] : []),
     ...(found.suggested ? [suggested(found.suggested, run)] : []),
     ...(found.next_experiment ? [element("p", {}, `Next experiment: ${found.next_experiment}.`)] : []),
     ...(found.not_visible.length ? [element("details", {},
       element("summary", {}, `${found.not_visible.length} effects are not detectable in this campaign`),
       element("p", {}, found.not_visible.join(", ")))] : [])];
+}
+
+/** The corrected constants of the base model.
+ * @param {any} found */
+function constants(found) {
+  const percent = (/** @type {number} */ share) => `${share >= 0 ? "+" : ""}${(100 * share).toFixed(1)}`;
+  const moved = found.moved.map((/** @type {any} */ one) => element("li", {},
+    `${one.name}: ${number(one.declared)} → ${number(one.fitted)} ${one.unit} (95 %: ${number(one.low)} to ${number(one.high)})`));
+  const curves = found.curves.map((/** @type {any} */ one) => element("li", {},
+    `${one.valve}: flow ${percent(one.low)} to ${percent(one.high)} % of the declared curve`));
+  return element("div", { class: "effect", id: "constants" }, element("h3", {}, "Constants of the model"),
+    element("p", {}, found.sentence), element("ul", {}, ...curves, ...moved));
 }
 
 /** The suggested term for the remaining error.

@@ -32,10 +32,10 @@ impl Models {
     pub fn of(session: &Session) -> Self {
         let subject = session.subject();
         let name = format!("{}-{}", subject.model.name, subject.experiment().name);
-        let effects = &session.fit().estimate.effects;
+        let estimate = &session.fit().estimate;
         Self {
             initial: subject.model.clone(),
-            present: rebuilt(&session.model(), effects, name),
+            present: rebuilt(&session.model(), estimate, name),
         }
     }
 

@@ -8,7 +8,7 @@ use hitch_identification::selection::candidate;
 use hitch_plant::{Effect, full_name};
 use serde_json::{Value, json};
 
-use crate::explanation::{self, Candidate, explained as share_explained, parameters};
+use crate::explanation::{self, Candidate, Corrected, explained as share_explained, parameters};
 use crate::serve::session::{Explained, Ranking, Session};
 
 /// Texts of an effect.
@@ -60,6 +60,7 @@ fn ranked(ranking: &Ranking) -> Value {
         "error_before": shown.head.error_before,
         "candidates": shown.candidates.iter().filter_map(candidate).collect::<Vec<_>>(),
         "next_experiment": shown.next.next_experiment,
+        "constants_hint": shown.constants_hint(),
     })
 }
 
@@ -94,10 +95,22 @@ fn found(explained: &Explained) -> Value {
         "error_after": shown.head.error_after,
         "verdict": shown.head.verdict,
         "meaning": shown.meaning(),
+        "constants": shown.corrected_constants.as_ref().map(|corrected| constants(corrected, shown.head.error_before)),
         "steps": steps.map(step).collect::<Vec<_>>(),
         "suggested": shown.unexplained.suggested,
         "not_visible": shown.not_visible.iter().map(|effect| effect.effect).collect::<Vec<_>>(),
         "next_experiment": shown.next.next_experiment,
+    })
+}
+
+/// Constants that an explanation corrected.
+fn constants(corrected: &Corrected, error_before: f64) -> Value {
+    let curves = corrected.flow_changes().into_iter();
+    let curve = |(valve, low, high): (&'static str, f64, f64)| json!({ "valve": valve, "low": low, "high": high });
+    json!({
+        "sentence": corrected.sentence(error_before),
+        "moved": corrected.moved().collect::<Vec<_>>(),
+        "curves": curves.map(curve).collect::<Vec<_>>(),
     })
 }
 

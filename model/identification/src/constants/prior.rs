@@ -3,7 +3,7 @@
 use hitch_plant::Constants;
 use nalgebra::{DMatrix, DVector};
 
-use crate::base::parameter::{Parameter, THRESHOLD_SIGMA_A};
+use crate::constants::parameter::{Parameter, THRESHOLD_SIGMA_A};
 
 /// Standard deviation of the error that all points of a flow curve share, and of the one that varies over the current:
 /// 20 % together.
@@ -24,6 +24,8 @@ const BOUND: f64 = 4.0;
 pub struct Prior {
     /// One sigma of each unknown.
     pub sigma: Vec<f64>,
+    /// The covariance.
+    pub covariance: DMatrix<f64>,
     /// Inverse of the covariance.
     pub precision: DMatrix<f64>,
 }
@@ -36,10 +38,13 @@ impl Prior {
             covariance(declared, parameters[i], parameters[j], i == j)
         });
         let sigma = (0..size).map(|k| covariance[(k, k)].sqrt()).collect();
-        let precision = covariance
-            .cholesky()
-            .map_or_else(|| DMatrix::identity(size, size), |root| root.inverse());
-        Self { sigma, precision }
+        let root = covariance.clone().cholesky();
+        let precision = root.map_or_else(|| DMatrix::identity(size, size), |root| root.inverse());
+        Self {
+            sigma,
+            covariance,
+            precision,
+        }
     }
 
     /// The precision with the tolerances of all unknowns but one, which is uncorrelated, multiplied by `times`.

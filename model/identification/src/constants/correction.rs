@@ -4,7 +4,7 @@ use hitch_model_file::Valve;
 use hitch_plant::{Constants, ValveCurve};
 use nalgebra::DVector;
 
-use crate::base::parameter::Parameter;
+use crate::constants::parameter::Parameter;
 
 /// The declared constants with corrections applied. Flow curves stay monotone.
 pub fn corrected(

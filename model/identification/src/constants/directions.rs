@@ -1,0 +1,144 @@
+//! Independent directions of the errors of all constants.
+
+use hitch_plant::{Constants, Model};
+use nalgebra::{DMatrix, DVector};
+
+use crate::constants::correction::corrected;
+use crate::constants::fitted::{CurvePoint, DETERMINED, Fitted, FittedConstant, MODEL_ERROR};
+use crate::constants::parameter::{Parameter, parameters};
+use crate::constants::prior::Prior;
+
+/// Smallest kept variance of a direction, in variances of a single constant. The errors of neighbouring points of a
+/// flow curve are correlated: a curve of any number of points has about five directions above this variance.
+const SMALLEST_VARIANCE: f64 = 0.02;
+
+/// Principal directions of the prior of a model's constants.
+#[derive(Debug)]
+pub struct Directions {
+    parameters: Vec<Parameter>,
+    /// One column per direction: the errors of the parameters at one sigma.
+    columns: DMatrix<f64>,
+}
+
+impl Directions {
+    /// The directions of a model's constants.
+    #[must_use]
+    pub fn new(declared: &Constants) -> Self {
+        let parameters = parameters(declared);
+        let prior = Prior::new(declared, &parameters);
+        let sigma = DVector::from_vec(prior.sigma);
+        let size = parameters.len();
+        let correlation = DMatrix::from_fn(size, size, |i, j| {
+            prior.covariance[(i, j)] / (sigma[i] * sigma[j])
+        });
+        let principal = correlation.symmetric_eigen();
+        let mut order: Vec<usize> = (0..size)
+            .filter(|&k| principal.eigenvalues[k] >= SMALLEST_VARIANCE)
+            .collect();
+        order.sort_by(|&a, &b| principal.eigenvalues[b].total_cmp(&principal.eigenvalues[a]));
+        let column = |&k: &usize| {
+            let scaled = principal.eigenvectors.column(k) * principal.eigenvalues[k].sqrt();
+            scaled.component_mul(&sigma)
+        };
+        let columns: Vec<DVector<f64>> = order.iter().map(column).collect();
+        Self {
+            columns: match columns.is_empty() {
+                true => DMatrix::zeros(size, 0),
+                false => DMatrix::from_columns(&columns),
+            },
+            parameters,
+        }
+    }
+
+    /// Number of directions.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.columns.ncols()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Errors of the parameters at these numbers of sigmas along the directions.
+    fn errors(&self, sigmas: &[f64]) -> DVector<f64> {
+        &self.columns * DVector::from_column_slice(sigmas)
+    }
+
+    /// Constants and points of the flow curves of a corrected model, with intervals from the covariance of the
+    /// directions.
+    pub(crate) fn fitted(
+        &self,
+        declared: &Model,
+        sigmas: &[f64],
+        covariance: &DMatrix<f64>,
+    ) -> Option<(Vec<FittedConstant>, Vec<CurvePoint>)> {
+        let model = self.corrected(declared, sigmas)?;
+        let prior = Prior::new(declared.constants(), &self.parameters);
+        let spread = &self.columns * covariance * self.columns.transpose();
+        let sigma: Vec<f64> = (0..prior.sigma.len())
+            .map(|k| spread[(k, k)].sqrt().hypot(MODEL_ERROR).min(prior.sigma[k]))
+            .collect();
+        let pairs = sigma.iter().zip(&prior.sigma);
+        let determined: Vec<bool> = pairs
+            .map(|(own, prior)| *own <= DETERMINED * prior)
+            .collect();
+        let fitted = Fitted {
+            declared,
+            model: &model,
+            parameters: &self.parameters,
+            theta: &self.errors(sigmas),
+            sigma: &sigma,
+            determined: &determined,
+            prior: &prior,
+        };
+        Some((fitted.constants(), fitted.curves()))
+    }
+
+    /// The declared model with its constants moved along the directions by these numbers of sigmas; `None` if the
+    /// dimensions make no linkage.
+    #[must_use]
+    pub fn corrected(&self, declared: &Model, sigmas: &[f64]) -> Option<Model> {
+        let errors = self.errors(sigmas);
+        let constants = corrected(declared.constants(), &self.parameters, &errors);
+        declared.with_constants(constants).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Directions;
+    use crate::constants::parameter::parameters;
+    use crate::constants::prior::Prior;
+
+    /// The directions reproduce the prior covariance up to the small variances that are left out.
+    #[test]
+    fn directions_reproduce_the_prior() {
+        for model in [hitch_model_file::nominal(), hitch_model_file::dynamic()] {
+            let directions = Directions::new(model.constants());
+            let prior = Prior::new(model.constants(), &parameters(model.constants()));
+            let product = &directions.columns * directions.columns.transpose();
+            println!("{} directions of {}", directions.len(), prior.sigma.len());
+            assert!(directions.len() < prior.sigma.len());
+            for (i, sigma_i) in prior.sigma.iter().enumerate() {
+                for (j, sigma_j) in prior.sigma.iter().enumerate() {
+                    let missing = prior.covariance[(i, j)] - product[(i, j)];
+                    assert!(
+                        missing.abs() < 0.05 * sigma_i * sigma_j,
+                        "{i} {j}: {missing}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_error_leaves_the_constants_alone() {
+        let model = hitch_model_file::nominal();
+        let directions = Directions::new(model.constants());
+        let same = directions.corrected(&model, &vec![0.0; directions.len()]);
+        assert_eq!(same.expect("a linkage").constants(), model.constants());
+    }
+}

@@ -1,0 +1,139 @@
+//! Search with the declared constants and, if the data are evidence against those, with free constants.
+
+use std::time::Instant;
+
+use crate::constants::fitted::{CurvePoint, FittedConstant};
+use crate::data::problem::Problem;
+use crate::estimation::fit::{Fit, evaluate_weighted, fit};
+use crate::search::candidates::Progress;
+use crate::search::coarse_view::Coarse;
+use crate::search::subset::{Found, Options, Search};
+use crate::selection::constants_evidence::{Comparison, FreedConstants, covariance};
+
+/// Rounds of the search with the declared constants before the constants are suspected.
+const FIRST_ROUNDS: usize = 2;
+
+/// Constants that differ from the declared ones.
+#[derive(Debug, Clone)]
+pub struct CorrectedConstants {
+    /// The model with fitted constants and without further effects: the start of the steps.
+    pub fit: Fit,
+    /// The constants outside the flow curves, in the model with all effects.
+    pub constants: Vec<FittedConstant>,
+    /// The points of the flow curves in that model.
+    pub curves: Vec<CurvePoint>,
+}
+
+impl CorrectedConstants {
+    /// From the fit of the constants alone and that of the model with all effects. `None` if the constants are not
+    /// free.
+    pub(crate) fn new(problem: Problem<'_>, fit: Fit, after: &Fit) -> Option<Self> {
+        let covariance = covariance(problem, after)?;
+        let (constants, curves) = after.estimate.constants.as_ref()?.fitted(&covariance)?;
+        Some(Self {
+            fit,
+            constants,
+            curves,
+        })
+    }
+}
+
+/// The more probable of the two searches.
+pub(crate) struct Searched {
+    /// Its result.
+    pub found: Found,
+    /// The fit of the constants alone, if its constants are free.
+    pub corrected: Option<Fit>,
+    /// Probability of the other search, and its result; `None` if there was none.
+    other: Option<(f64, Found)>,
+}
+
+impl Searched {
+    /// The search with the declared constants only.
+    pub fn declared(found: Found) -> Self {
+        Self {
+            found,
+            corrected: None,
+            other: None,
+        }
+    }
+
+    /// Probability of an effect whose probability in the more probable search is `own`.
+    pub fn averaged(&self, problem: Problem<'_>, id: &str, own: f64) -> f64 {
+        self.other.as_ref().map_or(own, |(weight, other)| {
+            own + weight * (other.probability_of(problem, id) - own)
+        })
+    }
+}
+
+/// Whether free constants are predicted to make a fit better than the best one with the declared constants, on the
+/// condensed experiment. The fit may have fewer effects: constants that are off need several faint effects in their place.
+pub(crate) fn are_suspected(problem: Problem<'_>, fit: &Fit, best: &Fit) -> bool {
+    let coarse = Coarse::new(problem, best);
+    let (condensed, seen) = (coarse.condensed(), &coarse.seen);
+    let fit = match fit.cost == best.cost {
+        true => seen.clone(),
+        false => evaluate_weighted(condensed, fit.estimate.clone(), seen.weights.clone()),
+    };
+    FreedConstants::at(condensed, &fit).are_worthwhile(condensed, &fit, seen)
+}
+
+/// Searches from a fit of the model alone.
+///
+/// Constants that are off need many effects in their place, and the search for those is long. If the data are evidence
+/// against the declared constants after the first rounds, the search with free constants comes first. The other one then
+/// continues until it is stable, or its effects alone cost more than all that free constants need.
+pub(crate) fn search_with_constants(
+    problem: Problem<'_>,
+    before: &Fit,
+    options: Options<'_>,
+    progress: Progress,
+) -> Searched {
+    let mut declared = Search::new(problem, before, options, progress);
+    let half = options.deadline.map(half_way);
+    let mut goes_on = true;
+    for _ in 0..FIRST_ROUNDS {
+        goes_on = goes_on && declared.advance(half);
+    }
+    let is_suspected = |search: &Search| {
+        let fewer = search.slightly_worse_with_fewer();
+        let mut fits = std::iter::once(search.present()).chain(fewer);
+        !options.is_over() && fits.any(|fit| are_suspected(problem, fit, search.present()))
+    };
+    if !is_suspected(&declared) {
+        let is_final = declared.is_stable();
+        while declared.advance(options.deadline) {}
+        if is_final || !is_suspected(&declared) {
+            return Searched::declared(declared.found());
+        }
+    }
+    progress("the constants of the model");
+    let start = before.estimate.clone().with_free_constants(problem.model);
+    let corrected = fit(problem, start);
+    let mut free = Search::new(problem, &corrected, options, progress);
+    while free.advance(options.deadline) {}
+    let mut free = free.found();
+    while !options.is_over() && free.moves_to_fewer(problem, free.without_each(problem)) {}
+    let comparison = Comparison::new(problem, &free.fit);
+    while comparison.is_open(declared.present()) && declared.advance(options.deadline) {}
+    let off = comparison.probability_off(declared.present());
+    let declared = declared.found();
+    match off > 0.5 {
+        true => Searched {
+            found: free,
+            corrected: Some(corrected),
+            other: Some((1.0 - off, declared)),
+        },
+        false => Searched {
+            found: declared,
+            corrected: None,
+            other: Some((off, free)),
+        },
+    }
+}
+
+/// The time half way from now to a deadline.
+fn half_way(deadline: Instant) -> Instant {
+    let now = Instant::now();
+    now + deadline.saturating_duration_since(now) / 2
+}
