@@ -83,6 +83,8 @@ fn the_documents_commands_find_what_is_hidden_in_a_second_machine() {
         explained.contains("id = \"lowering-leakage\""),
         "{explained}"
     );
+    let effects = explained.matches("id = \"").count();
+    assert_eq!(effects, 1, "only the leakage is named: {explained}");
     let leakage = value(&explained, "conductance_lpm_per_bar");
     assert!((leakage / WORN_LPM_BAR - 1.0).abs() < 0.05, "{leakage}");
     for (key, machine, tolerance) in [
