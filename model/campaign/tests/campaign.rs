@@ -301,7 +301,7 @@ fn faults_of_the_manifest_have_a_line_and_a_column() {
     let cases = [
         (
             toml("format = 1\n", ""),
-            "campaign.toml: the top level has no format",
+            "campaign.toml:1:1: the top level has no format",
         ),
         (
             toml("format = 1", "format = 2"),
