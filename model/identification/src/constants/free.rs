@@ -8,8 +8,8 @@ use nalgebra::DMatrix;
 use crate::constants::directions::Directions;
 use crate::constants::fitted::{CurvePoint, FittedConstant};
 
-/// Bound of a coordinate, in prior sigmas.
-pub const FARTHEST_SIGMAS: f64 = 4.0;
+/// Bound of a coordinate, in prior sigmas: a larger error is outside the tolerances of data sheets.
+pub const FARTHEST_SIGMAS: f64 = 3.0;
 
 /// Errors of a model's constants, as coordinates along the directions of their prior.
 #[derive(Debug, Clone)]
@@ -89,6 +89,13 @@ impl FreeConstants {
     ) -> Option<(Vec<FittedConstant>, Vec<CurvePoint>)> {
         self.directions
             .fitted(&self.declared, &self.sigmas, covariance)
+    }
+
+    /// Whether a coordinate is at its bound: the constants then do not explain the data within their tolerances.
+    #[must_use]
+    pub fn is_at_an_end(&self) -> bool {
+        let mut sigmas = self.sigmas.iter();
+        sigmas.any(|sigmas| sigmas.abs() >= 0.999 * FARTHEST_SIGMAS)
     }
 
     /// Squared distance from the declared constants, in prior sigmas.

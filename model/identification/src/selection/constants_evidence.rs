@@ -7,6 +7,7 @@
 
 use nalgebra::DMatrix;
 
+use crate::constants::free::FreeConstants;
 use crate::data::problem::Problem;
 use crate::estimate::{Estimate, Shared};
 use crate::estimation::fit::Fit;
@@ -145,8 +146,13 @@ impl<'a> Comparison<'a> {
     /// Probability that the constants are off.
     ///
     /// The penalised costs of effects and constants decide. Constants that leave a lack of fit where they act may be the
-    /// closest match to physics outside the catalogue: see [`plausibility`].
+    /// closest match to physics outside the catalogue: see [`plausibility`]. Constants at the end of their tolerances
+    /// explain nothing.
     pub fn probability_off(&self, declared: &Fit) -> f64 {
+        let constants = self.free.estimate.constants.as_ref();
+        if constants.is_some_and(FreeConstants::is_at_an_end) {
+            return 0.0;
+        }
         let better = match self.free.cost < declared.cost {
             true => self.free,
             false => declared,
