@@ -135,10 +135,10 @@ impl Estimate {
         effects.chain(CLOCKS).chain(constants).collect()
     }
 
-    /// The same estimate, its constants held in a fit or, if they are not the declared ones, free again.
+    /// The same estimate, its constants held in a fit.
     #[must_use]
-    pub fn with_held_constants(mut self, is_held: bool) -> Self {
-        self.constants = self.constants.map(|constants| constants.held(is_held));
+    pub fn with_held_constants(mut self) -> Self {
+        self.constants = self.constants.map(FreeConstants::held);
         self
     }
 

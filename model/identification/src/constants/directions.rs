@@ -67,15 +67,14 @@ impl Directions {
         &self.columns * DVector::from_column_slice(sigmas)
     }
 
-    /// Constants and points of the flow curves of a corrected model, with intervals from the covariance of the
-    /// directions.
+    /// Constants and points of the flow curves of the second model, the first one corrected, with intervals from the
+    /// covariance of the directions.
     pub(crate) fn fitted(
         &self,
-        declared: &Model,
+        [declared, model]: [&Model; 2],
         sigmas: &[f64],
         covariance: &DMatrix<f64>,
-    ) -> Option<(Vec<FittedConstant>, Vec<CurvePoint>)> {
-        let model = self.corrected(declared, sigmas)?;
+    ) -> (Vec<FittedConstant>, Vec<CurvePoint>) {
         let prior = Prior::new(declared.constants(), &self.parameters);
         let spread = &self.columns * covariance * self.columns.transpose();
         let sigma: Vec<f64> = (0..prior.sigma.len())
@@ -87,14 +86,14 @@ impl Directions {
             .collect();
         let fitted = Fitted {
             declared,
-            model: &model,
+            model,
             parameters: &self.parameters,
             theta: &self.errors(sigmas),
             sigma: &sigma,
             determined: &determined,
             prior: &prior,
         };
-        Some((fitted.constants(), fitted.curves()))
+        (fitted.constants(), fitted.curves())
     }
 
     /// The declared model with its constants moved along the directions by these numbers of sigmas; `None` if the

@@ -44,11 +44,13 @@ impl FreeConstants {
         }
     }
 
-    /// The same constants, held in a fit or free.
+    /// The same constants, held in a fit.
     #[must_use]
-    pub fn held(mut self, is_held: bool) -> Self {
-        self.is_held = is_held;
-        self
+    pub fn held(self) -> Self {
+        Self {
+            is_held: true,
+            ..self
+        }
     }
 
     /// The coordinates, in prior sigmas.
@@ -66,7 +68,7 @@ impl FreeConstants {
     /// Moves a coordinate, within its bound. Dimensions that make no linkage leave it where it is.
     pub fn set(&mut self, coordinate: usize, sigmas: f64) {
         let mut moved = self.sigmas.clone();
-        moved[coordinate] = sigmas.clamp(-FARTHEST_SIGMAS, FARTHEST_SIGMAS);
+        moved[coordinate] = sigmas;
         self.set_all(moved);
     }
 
@@ -86,9 +88,9 @@ impl FreeConstants {
     pub(crate) fn fitted(
         &self,
         covariance: &DMatrix<f64>,
-    ) -> Option<(Vec<FittedConstant>, Vec<CurvePoint>)> {
-        self.directions
-            .fitted(&self.declared, &self.sigmas, covariance)
+    ) -> (Vec<FittedConstant>, Vec<CurvePoint>) {
+        let models = [&self.declared, &self.corrected];
+        self.directions.fitted(models, &self.sigmas, covariance)
     }
 
     /// Whether a coordinate is at its bound: the constants then do not explain the data within their tolerances.

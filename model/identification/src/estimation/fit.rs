@@ -6,8 +6,9 @@
 use crate::data::problem::Problem;
 use crate::estimate::Estimate;
 use crate::estimation::clock_synchronisation::synchronised;
-use crate::estimation::jacobian::{huber, load_steps, residuals, square_sum};
+use crate::estimation::jacobian::{huber, residuals, square_sum};
 use crate::estimation::least_squares::{Descent, Moves, descend};
+use crate::estimation::slow_columns::load_steps;
 use crate::residuals::whitening::Weights;
 
 /// Factors on the weights of the channels (pump pressure, cylinder pressure, flow, angle) in the coarse round. Ringing

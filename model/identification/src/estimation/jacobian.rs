@@ -4,14 +4,13 @@
 //! a load error affects only its own run. Eliminating the load errors run by run (Schur complement) leaves a system of
 //! the size of the shared parameters. Its columns are the projected signatures, orthogonal to the load columns.
 
-use hitch_plant::{Channel, SizeResponse};
+use hitch_plant::SizeResponse;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::data::clocks::OFFSET_PRIOR_S;
 use crate::data::problem::Problem;
-use crate::data::trace_cache::CurrentShift;
 use crate::estimate::{Estimate, Shared, Step};
+use crate::estimation::slow_columns::SlowColumns;
 use crate::residuals::whitening::Weights;
 
 /// Step of a difference quotient, as a share of the parameter's value, or of its scale if that is larger.
@@ -21,12 +20,6 @@ const STEP: f64 = 0.02;
 /// radian after five periods, so a longer secant no longer approximates the slope. A hitch standing on the ground loses
 /// contact if the ground is millimetres lower.
 const FINE_STEP: f64 = 0.002;
-
-/// Step of a channel's clock offset, in prior sigmas.
-const STEP_OF_OFFSET: f64 = 0.25;
-
-/// Step of the free constants, in prior sigmas.
-const STEP_OF_CONSTANTS: f64 = 0.02;
 
 /// One run's residuals and their sensitivities per step of one scale.
 #[derive(Debug, Clone)]
@@ -134,7 +127,7 @@ pub fn subtract(column: &mut [f64], share: f64, part: &[f64]) {
 }
 
 /// Change of the simulation per step of one scale: the residual decreases where the simulation increases.
-fn quotient(base: &[Vec<f64>], moved: Vec<Vec<f64>>, step: f64) -> Vec<Vec<f64>> {
+pub(super) fn quotient(base: &[Vec<f64>], moved: Vec<Vec<f64>>, step: f64) -> Vec<Vec<f64>> {
     moved
         .into_iter()
         .zip(base)
@@ -171,151 +164,6 @@ fn shared_column(
     }
     let taken = (moved.get(parameter) - value) / scale;
     quotient(base, huber_residuals(problem, weights, &moved), taken)
-}
-
-/// Sensitivities of all runs to their load errors, per step of one prior sigma.
-fn load_columns(
-    problem: Problem<'_>,
-    weights: &Weights,
-    estimate: &Estimate,
-    base: &[Vec<f64>],
-) -> Vec<Vec<f64>> {
-    let mut moved = estimate.clone();
-    let steps: Vec<f64> = (0..problem.experiment.runs.len())
-        .map(|run| {
-            let load = estimate.load(run);
-            moved.set_load(run, load + 1.0);
-            if moved.load(run) - load < 0.5 {
-                // The load error is at the end of its range.
-                moved.set_load(run, load - 1.0);
-            }
-            moved.load(run) - load
-        })
-        .collect();
-    let moved = huber_residuals(problem, weights, &moved);
-    let mut columns = quotient(base, moved, 1.0);
-    for (column, step) in columns.iter_mut().zip(steps) {
-        column.iter_mut().for_each(|change| *change /= step);
-    }
-    columns
-}
-
-/// Sensitivities of all runs to the channels' clock offsets, per step of one prior sigma; by channel, then by run.
-///
-/// An offset only shifts a channel of an existing trace: one simulation serves all four.
-fn offset_columns(
-    problem: Problem<'_>,
-    weights: &Weights,
-    estimate: &Estimate,
-) -> [Vec<Vec<f64>>; 4] {
-    let Problem { experiment, model } = problem;
-    let model = estimate.applied_to(model);
-    let columns: Vec<[Vec<f64>; 4]> = (0..experiment.runs.len())
-        .into_par_iter()
-        .map(|index| {
-            let run = &experiment.runs[index];
-            let (time_s, clocks) = (&run.drive.time_s, estimate.clocks);
-            let plain = run.trace(&model, estimate.nuisances[index], CurrentShift::default());
-            let stamped = run.stamped(&plain, &clocks);
-            let base = huber(vec![weights.runs[index].whiten(run, &stamped)]);
-            std::array::from_fn(|channel| {
-                if channel == Channel::PumpPressure.index() && !experiment.ringing {
-                    // A clock would move only its jumps, and samples next to those are left out.
-                    return vec![0.0; base[0].len()];
-                }
-                let mut moved = clocks;
-                moved.offsets_s[channel] += STEP_OF_OFFSET * OFFSET_PRIOR_S;
-                let mut trace = stamped.clone();
-                let late = moved.stamped_channel(Channel::ALL[channel], time_s, &plain);
-                trace.channels[channel] = late;
-                let moved = huber(vec![weights.runs[index].whiten(run, &trace)]);
-                quotient(&base, moved, STEP_OF_OFFSET).swap_remove(0)
-            })
-        })
-        .collect();
-    std::array::from_fn(|channel| columns.iter().map(|run| run[channel].clone()).collect())
-}
-
-/// Sensitivities of all runs to the free constants, per step of one prior sigma; by direction, then by run. The
-/// quotients are central: the curvature error of a one-sided quotient would appear to determine a direction that the
-/// campaign does not show.
-fn constant_columns(
-    problem: Problem<'_>,
-    weights: &Weights,
-    estimate: &Estimate,
-) -> Vec<Vec<Vec<f64>>> {
-    let column = |direction: usize| {
-        let shared = Shared::Constants(direction);
-        let side = |step: f64| {
-            let mut moved = estimate.clone();
-            moved.set(shared, estimate.get(shared) + step);
-            let residuals = huber_residuals(problem, weights, &moved);
-            (moved.get(shared), residuals)
-        };
-        let ((low, below), (high, above)) =
-            rayon::join(|| side(-STEP_OF_CONSTANTS), || side(STEP_OF_CONSTANTS));
-        match high > low {
-            true => quotient(&below, above, high - low),
-            false => below.iter().map(|run| vec![0.0; run.len()]).collect(),
-        }
-    };
-    let directions = 0..estimate.constant_directions();
-    directions.into_par_iter().map(column).collect()
-}
-
-/// Columns that hardly change between iterations: those of the clocks, the loads and the free constants.
-#[derive(Debug, Clone)]
-pub struct SlowColumns {
-    /// In the order of [`crate::estimate::CLOCKS`], by run.
-    clocks: [Vec<Vec<f64>>; 4],
-    /// By direction of the free constants and by run.
-    constants: Vec<Vec<Vec<f64>>>,
-    loads: Vec<Vec<f64>>,
-}
-
-impl SlowColumns {
-    /// Difference quotients at `estimate`, whose residuals are `base`.
-    #[must_use]
-    pub fn new(
-        problem: Problem<'_>,
-        weights: &Weights,
-        estimate: &Estimate,
-        base: &[Vec<f64>],
-    ) -> Self {
-        let (clocks, (loads, constants)) = rayon::join(
-            || offset_columns(problem, weights, estimate),
-            || {
-                rayon::join(
-                    || load_columns(problem, weights, estimate, base),
-                    || constant_columns(problem, weights, estimate),
-                )
-            },
-        );
-        Self {
-            clocks,
-            constants,
-            loads,
-        }
-    }
-}
-
-/// Optimal steps of the load errors, in prior sigmas, with all other parameters fixed.
-#[must_use]
-pub fn load_steps(problem: Problem<'_>, weights: &Weights, estimate: &Estimate) -> Vec<f64> {
-    let Problem { experiment, .. } = problem;
-    let base = huber_residuals(problem, weights, estimate);
-    let loads = load_columns(problem, weights, estimate, &base);
-    base.iter()
-        .zip(&loads)
-        .enumerate()
-        .map(|(run, (residual, load))| {
-            if experiment.runs[run].on_hitch() {
-                (dot(load, residual) - estimate.load(run)) / (dot(load, load) + 1.0)
-            } else {
-                0.0
-            }
-        })
-        .collect()
 }
 
 impl Jacobian {

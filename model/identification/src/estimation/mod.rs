@@ -7,3 +7,4 @@ pub mod jacobian;
 pub mod least_squares;
 pub mod nuisance_projection;
 pub mod profile_likelihood;
+pub mod slow_columns;

@@ -1,5 +1,6 @@
 //! Search with the declared constants and, if the data are evidence against those, with free constants.
 
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 use crate::constants::fitted::{CurvePoint, FittedConstant};
@@ -29,7 +30,7 @@ impl CorrectedConstants {
     /// free.
     pub(crate) fn new(problem: Problem<'_>, fit: Fit, after: &Fit) -> Option<Self> {
         let covariance = covariance(problem, after)?;
-        let (constants, curves) = after.estimate.constants.as_ref()?.fitted(&covariance)?;
+        let (constants, curves) = after.estimate.constants.as_ref()?.fitted(&covariance);
         Some(Self {
             fit,
             constants,
@@ -44,8 +45,8 @@ pub(crate) struct Searched {
     pub found: Found,
     /// The fit of the constants alone, if its constants are free.
     pub corrected: Option<Fit>,
-    /// Probability of the other search, and its result; `None` if there was none.
-    other: Option<(f64, Found)>,
+    /// Probability of the other search, and those of the effects in it; `None` if there was none.
+    other: Option<(f64, BTreeMap<&'static str, f64>)>,
 }
 
 impl Searched {
@@ -59,23 +60,27 @@ impl Searched {
     }
 
     /// Probability of an effect whose probability in the more probable search is `own`.
-    pub fn averaged(&self, problem: Problem<'_>, id: &str, own: f64) -> f64 {
-        self.other.as_ref().map_or(own, |(weight, other)| {
-            own + weight * (other.probability_of(problem, id) - own)
+    pub fn averaged(&self, id: &str, own: f64) -> f64 {
+        self.other.as_ref().map_or(own, |(weight, others)| {
+            let other = others.get(id).copied().unwrap_or(0.0);
+            own + weight * (other - own)
         })
     }
 }
 
-/// Whether free constants are predicted to make a fit better than the best one with the declared constants, on the
-/// condensed experiment. The fit may have fewer effects: constants that are off need several faint effects in their place.
-pub(crate) fn are_suspected(problem: Problem<'_>, fit: &Fit, best: &Fit) -> bool {
+/// Whether free constants are predicted to be better than the best fit with the declared ones, on the condensed experiment.
+/// They are tried at that fit and at fits with fewer effects: constants that are off need several faint effects in their
+/// place.
+pub(crate) fn are_suspected(problem: Problem<'_>, best: &Fit, fewer: &[&Fit]) -> bool {
     let coarse = Coarse::new(problem, best);
     let (condensed, seen) = (coarse.condensed(), &coarse.seen);
-    let fit = match fit.cost == best.cost {
-        true => seen.clone(),
-        false => evaluate_weighted(condensed, fit.estimate.clone(), seen.weights.clone()),
-    };
-    FreedConstants::at(condensed, &fit).are_worthwhile(condensed, &fit, seen)
+    let are_better =
+        |fit: &Fit| FreedConstants::at(condensed, fit).are_worthwhile(condensed, fit, seen);
+    are_better(seen)
+        || fewer.iter().any(|fit| {
+            let (estimate, weights) = (fit.estimate.clone(), seen.weights.clone());
+            are_better(&evaluate_weighted(condensed, estimate, weights))
+        })
 }
 
 /// Searches from a fit of the model alone.
@@ -97,8 +102,7 @@ pub(crate) fn search_with_constants(
     }
     let is_suspected = |search: &Search| {
         let fewer = search.slightly_worse_with_fewer();
-        let mut fits = std::iter::once(search.present()).chain(fewer);
-        !options.is_over() && fits.any(|fit| are_suspected(problem, fit, search.present()))
+        !options.is_over() && are_suspected(problem, search.present(), &fewer)
     };
     if !is_suspected(&declared) {
         let is_final = declared.is_stable();
@@ -122,12 +126,12 @@ pub(crate) fn search_with_constants(
         true => Searched {
             found: free,
             corrected: Some(corrected),
-            other: Some((1.0 - off, declared)),
+            other: Some((1.0 - off, declared.probabilities(problem))),
         },
         false => Searched {
             found: declared,
             corrected: None,
-            other: Some((off, free)),
+            other: Some((off, free.probabilities(problem))),
         },
     }
 }

@@ -54,7 +54,7 @@ pub fn diagnose_each(
 
 /// Probability that the declared constants are off, given a fit with them.
 fn constants_off(problem: Problem<'_>, declared: &Fit) -> f64 {
-    if declared.estimate.constants.is_some() || !are_suspected(problem, declared, declared) {
+    if declared.estimate.constants.is_some() || !are_suspected(problem, declared, &[]) {
         return 0.0;
     }
     let start = declared.estimate.clone().with_free_constants(problem.model);

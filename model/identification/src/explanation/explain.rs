@@ -209,7 +209,7 @@ fn steps(problem: Problem<'_>, before: &Fit, searched: &Searched) -> Vec<Explana
             error_after: fit.error(),
             held_out_before,
             held_out_after,
-            confidence: searched.averaged(problem, id, probability),
+            confidence: searched.averaged(id, probability),
             detectability: candidate.detectability,
             explained_share: candidate.explained_share,
             other_forms: other_forms(&found.fit, id, &weighed),

@@ -10,6 +10,7 @@
 //! A forward search would take the best single effect first, which may stand in for two others, and would need rules to
 //! remove it again. A subset is judged with all its members at once.
 
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 use hitch_plant::Effect;
@@ -41,7 +42,7 @@ const MORE: usize = 2;
 /// one. Above it, the switching instants distinguish them.
 const CONFOUNDABLE_ERROR: f64 = 1.5;
 
-/// Factor on the cost of the present set up to which a smaller one lacks faint effects only.
+/// A smaller set whose cost is below this multiple of the present cost lacks only faint effects.
 const FAINT: f64 = 1.5;
 
 /// Sets per round that are evaluated on held-out runs.
@@ -152,9 +153,11 @@ impl Found {
         true
     }
 
-    /// Posterior probability that an effect is present.
-    pub fn probability_of(&self, problem: Problem<'_>, id: &str) -> f64 {
-        probability_of(&self.refitted.weighed(problem, &self.fit), id)
+    /// Posterior probabilities of the effects that any fitted set has.
+    pub fn probabilities(&self, problem: Problem<'_>) -> BTreeMap<&'static str, f64> {
+        let weighed = self.refitted.weighed(problem, &self.fit);
+        let ids = weighed.iter().flat_map(|set| set.key.ids());
+        ids.map(|id| (id, probability_of(&weighed, id))).collect()
     }
 }
 

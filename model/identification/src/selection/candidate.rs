@@ -10,10 +10,11 @@ use crate::estimate::Shared;
 use crate::estimation::central_differences::with_central_differences;
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{
-    Jacobian, RunJacobian, SlowColumns, difference, huber, huber_residuals, square_sum,
+    Jacobian, RunJacobian, difference, huber, huber_residuals, square_sum,
 };
 use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::estimation::profile_likelihood::ProfileLikelihood;
+use crate::estimation::slow_columns::SlowColumns;
 use crate::selection::evidence::{detectability, log_odds, variance_inflation};
 
 /// Ratio of the mean square that an effect explains to the remaining one, weighted by its signature, at which it is

@@ -11,8 +11,9 @@ use crate::constants::free::FreeConstants;
 use crate::data::problem::Problem;
 use crate::estimate::{Estimate, Shared};
 use crate::estimation::fit::Fit;
-use crate::estimation::jacobian::{Jacobian, SlowColumns, difference, huber, huber_residuals};
+use crate::estimation::jacobian::{Jacobian, difference, huber, huber_residuals};
 use crate::estimation::nuisance_projection::NuisanceProjection;
+use crate::estimation::slow_columns::SlowColumns;
 use crate::selection::candidate::{explained_share, plausibility};
 use crate::selection::complexity_penalty::Penalty;
 
