@@ -83,7 +83,7 @@ def write_parquet(folder, log):
     }.items():
         pyarrow.parquet.write_table(table, folder / f"{name}.parquet", **options)
         yield f"{name}.parquet"
-    # Not supported; the test checks what is said.
+    # Not supported; the test checks the error message.
     pyarrow.parquet.write_table(table, folder / "refused.zstd.parquet", compression="zstd")
 
 

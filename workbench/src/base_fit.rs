@@ -109,6 +109,22 @@ impl ShownBaseFit {
 }
 
 impl ShownConstant {
+    /// Column headings of [`ShownConstant::cells`].
+    pub const HEADINGS: [&'static str; 5] =
+        ["constant", "declared", "fitted", "95 % interval", "unit"];
+
+    /// Its row in a table.
+    #[must_use]
+    pub fn cells(&self) -> [String; 5] {
+        [
+            self.name.clone(),
+            digits(self.declared),
+            digits(self.fitted),
+            format!("{} to {}", digits(self.low), digits(self.high)),
+            self.unit.to_owned(),
+        ]
+    }
+
     /// The constant for display.
     #[must_use]
     pub fn new(fitted: &FittedConstant) -> Self {
@@ -160,15 +176,9 @@ impl fmt::Display for ShownBaseFit {
             by_sigma(&format!("{:.2}", self.error_after), self.error_after)
         );
         writeln!(f, "{}\n", wrapped(&head))?;
-        let mut table = Table::new(["constant", "declared", "fitted", "95 % interval", "unit"]);
+        let mut table = Table::new(ShownConstant::HEADINGS);
         for constant in self.constants.iter().filter(|constant| constant.determined) {
-            table.row([
-                constant.name.clone(),
-                digits(constant.declared),
-                digits(constant.fitted),
-                format!("{} to {}", digits(constant.low), digits(constant.high)),
-                constant.unit.to_owned(),
-            ]);
+            table.row(constant.cells());
         }
         writeln!(f, "{table}")?;
         let mut table = Table::new([

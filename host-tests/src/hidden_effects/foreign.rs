@@ -8,12 +8,12 @@ use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::{explain, fit_base};
 use hitch_plant::{Constants, Model};
 use rand::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
 use super::answer::Method;
 use super::grade::{Graded, Posed};
 use super::starting_point;
+use super::wrong_base::put_off;
 use crate::second_rig::campaign_writer::campaign;
 use crate::second_rig::foreign::{Foreign, draw_foreign};
 use crate::second_rig::manoeuvres::Plan;
@@ -103,8 +103,5 @@ fn spoil(constants: &mut Constants, random: &mut Pcg64) {
         (&mut constants.oil.bulk_modulus_pa, TEXT_BOOK),
         (&mut constants.masses.piston_kg, TEXT_BOOK),
     ];
-    for (value, sigma) in constants {
-        let error: f64 = StandardNormal.sample(random);
-        *value *= 1.0 + sigma * error.clamp(-2.0, 2.0);
-    }
+    put_off(constants, random);
 }

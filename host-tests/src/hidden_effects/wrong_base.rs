@@ -80,7 +80,15 @@ fn spoil(constants: &mut Constants, random: &mut Pcg64) {
         (&mut constants.cylinder.viscous_friction_n_s_m, 0.2),
         (&mut constants.oil.bulk_modulus_pa, 0.15),
     ];
-    for (value, sigma) in constants {
+    put_off(constants, random);
+}
+
+/// Multiplies each value by one plus a drawn error with this sigma.
+pub(super) fn put_off<'v>(
+    values: impl IntoIterator<Item = (&'v mut f64, f64)>,
+    random: &mut Pcg64,
+) {
+    for (value, sigma) in values {
         *value *= 1.0 + sigma * draw(random);
     }
 }

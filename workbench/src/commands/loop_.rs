@@ -71,6 +71,16 @@ pub struct Args {
 /// Result of `hitch loop`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Driven<'a> {
+    #[serde(flatten)]
+    figures: Figures<'a>,
+    /// The same scenario with the variants of the calibration, in their order; absent without variants.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    variants: Vec<DrivenVariant<'a>>,
+}
+
+/// Figures of a calibration in a scenario.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Figures<'a> {
     /// Figures of each move, in the order of the scenario.
     moves: &'a [MoveResult],
     /// Figures of all moves; absent for rate control.
@@ -82,9 +92,26 @@ pub struct Driven<'a> {
     /// Figures of all presses; absent for scenarios of moves.
     #[serde(skip_serializing_if = "Option::is_none")]
     press_summary: Option<PressSummary>,
-    /// The same scenario with the variants of the calibration, in their order; absent without variants.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    variants: Vec<DrivenVariant<'a>>,
+}
+
+impl<'a> Figures<'a> {
+    fn of_moves(run: &'a LoopRun) -> Self {
+        Self {
+            moves: &run.results,
+            summary: Some(run.summary),
+            presses: None,
+            press_summary: None,
+        }
+    }
+
+    fn of_presses(run: &'a PressRun) -> Self {
+        Self {
+            moves: &[],
+            summary: None,
+            presses: Some(&run.results),
+            press_summary: Some(run.summary),
+        }
+    }
 }
 
 /// A variant of the calibration with its figures, as for the calibration without it.
@@ -94,17 +121,8 @@ struct DrivenVariant<'a> {
     name: &'a str,
     /// Its settings, as `group.key=value`.
     settings: &'a [String],
-    /// Figures of each move, in the order of the scenario.
-    moves: &'a [MoveResult],
-    /// Figures of all moves; absent for rate control.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    summary: Option<Summary>,
-    /// Figures of each press of the button; absent for scenarios of moves.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    presses: Option<&'a [PressResult]>,
-    /// Figures of all presses; absent for scenarios of moves.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    press_summary: Option<PressSummary>,
+    #[serde(flatten)]
+    figures: Figures<'a>,
 }
 
 /// Runs the command.
@@ -177,18 +195,12 @@ impl Job<'_> {
         }
         let varied = self.args.variants.iter().zip(varied);
         let document = Driven {
-            moves: &base.results,
-            summary: Some(base.summary),
-            presses: None,
-            press_summary: None,
+            figures: Figures::of_moves(base),
             variants: varied
                 .map(|(variant, run)| DrivenVariant {
                     name: &variant.name,
                     settings: &variant.settings,
-                    moves: &run.results,
-                    summary: Some(run.summary),
-                    presses: None,
-                    press_summary: None,
+                    figures: Figures::of_moves(run),
                 })
                 .collect(),
         };
@@ -231,18 +243,12 @@ impl Job<'_> {
         }
         let varied = self.args.variants.iter().zip(varied);
         let document = Driven {
-            moves: &[],
-            summary: None,
-            presses: Some(&base.results),
-            press_summary: Some(base.summary),
+            figures: Figures::of_presses(base),
             variants: varied
                 .map(|(variant, run)| DrivenVariant {
                     name: &variant.name,
                     settings: &variant.settings,
-                    moves: &[],
-                    summary: None,
-                    presses: Some(&run.results),
-                    press_summary: Some(run.summary),
+                    figures: Figures::of_presses(run),
                 })
                 .collect(),
         };

@@ -52,9 +52,14 @@ impl ValueEnum for LoopScenario {
 
 impl fmt::Display for LoopScenario {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let value = self.to_possible_value();
-        f.write_str(value.as_ref().map_or("", PossibleValue::get_name))
+        f.write_str(&typed(self))
     }
+}
+
+/// A value as it is typed on the command line.
+pub fn typed(value: &impl ValueEnum) -> String {
+    let value = value.to_possible_value();
+    value.map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
 #[cfg(test)]

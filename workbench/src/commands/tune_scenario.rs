@@ -8,7 +8,7 @@ use hitch_plant::Model;
 use hitch_quantities::ValidCalibration;
 
 use crate::closed_loop::{self, Move, OIL_TEMPERATURE_C, Press, Scenario};
-use crate::commands::loop_scenario::LoopScenario;
+use crate::commands::loop_scenario::{LoopScenario, typed};
 
 /// What is driven for tuning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,8 +70,7 @@ impl ValueEnum for TuneScenario {
 
 impl fmt::Display for TuneScenario {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let value = self.to_possible_value();
-        f.write_str(value.as_ref().map_or("", PossibleValue::get_name))
+        f.write_str(&typed(self))
     }
 }
 

@@ -6,7 +6,7 @@ use hitch_identification::explanation::constants::CorrectedConstants;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::base_fit::{ShownConstant, ShownPoint, digits};
+use crate::base_fit::{ShownConstant, ShownPoint};
 use crate::text::{Table, indented, wrapped};
 
 /// Constants that differ from the declared ones, within the tolerances of data sheets.
@@ -67,15 +67,9 @@ impl Corrected {
 
 impl fmt::Display for Corrected {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut table = Table::new(["constant", "declared", "fitted", "95 % interval", "unit"]);
+        let mut table = Table::new(ShownConstant::HEADINGS);
         for constant in self.moved() {
-            table.row([
-                constant.name.clone(),
-                digits(constant.declared),
-                digits(constant.fitted),
-                format!("{} to {}", digits(constant.low), digits(constant.high)),
-                constant.unit.to_owned(),
-            ]);
+            table.row(constant.cells());
         }
         if self.moved().next().is_some() {
             writeln!(f, "{table}")?;

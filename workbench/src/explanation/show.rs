@@ -129,12 +129,11 @@ impl Explanation {
 const MENTIONED: f64 = 0.05;
 
 impl Diagnosis {
-    /// What is said about the constants, if they may be off.
+    /// A sentence about the constants, if they may be off.
     pub fn constants_hint(&self) -> Option<String> {
         (self.constants_off >= MENTIONED).then(|| {
             format!(
-                "The declared constants are probably off (probability {:.2}); the confidences of the effects are lower for \
-                 that. Use hitch explain, which weighs both, or fit the constants with hitch model fit.",
+                "The declared constants may be off (probability {:.2}), which lowers the confidences of the effects. Use hitch explain, which weighs both, or fit the constants with hitch model fit.",
                 self.constants_off
             )
         })

@@ -11,7 +11,7 @@ use super::run_views::run_views;
 use super::runs::runs;
 use super::staircase::staircase;
 use super::{page, staircase};
-use crate::base_fit::{ShownConstant, digits};
+use crate::base_fit::ShownConstant;
 use crate::comparison::Evaluated;
 use crate::explanation::{ChannelFigures, Corrected, Explanation, Found, Head, Step};
 use crate::text::known;
@@ -109,17 +109,8 @@ fn stairs(shown: &Explanation) -> Vec<staircase::Step> {
 
 /// Constants that the explanation corrected.
 fn corrected_constants(corrected: &Corrected, error_before: f64) -> Markup {
-    let row = |constant: &ShownConstant| {
-        vec![
-            constant.name.clone(),
-            digits(constant.declared),
-            digits(constant.fitted),
-            format!("{} to {}", digits(constant.low), digits(constant.high)),
-            constant.unit.to_owned(),
-        ]
-    };
-    let rows: Vec<Vec<String>> = corrected.moved().map(row).collect();
-    let header = ["constant", "declared", "fitted", "95 % interval", "unit"];
+    let rows = corrected.moved().map(|constant| constant.cells().to_vec());
+    let rows: Vec<Vec<String>> = rows.collect();
     html! {
         p { (corrected.sentence(error_before)) }
         ul {
@@ -128,7 +119,7 @@ fn corrected_constants(corrected: &Corrected, error_before: f64) -> Markup {
             }
         }
         @if !rows.is_empty() {
-            (page::table(&header, &rows))
+            (page::table(&ShownConstant::HEADINGS, &rows))
         }
     }
 }

@@ -28,7 +28,7 @@ pub struct Shown<'a> {
     pub declared: &'a Model,
     /// The fit.
     pub fit: &'a BaseFit,
-    /// The values and intervals that the command tells.
+    /// The values and intervals that the command prints.
     pub told: &'a ShownBaseFit,
 }
 

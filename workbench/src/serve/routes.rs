@@ -141,23 +141,36 @@ async fn run(State(sessions): Known, Query(of): Query<OfRun>) -> Answer {
     Ok(Json(view.await?.ok_or_else(no_run)?))
 }
 
-/// A cell of the error map.
+/// A cell of an error map.
 #[derive(Debug, Deserialize)]
-struct OfCell {
-    session: String,
-    by: Grouping,
-    part: String,
+pub struct OfCell {
+    /// The session.
+    pub session: String,
+    /// Grouping of the map's rows.
+    pub by: Grouping,
+    /// Row.
+    pub part: String,
     channel: String,
+}
+
+impl OfCell {
+    /// The channel of its column; `None` if there is no such channel.
+    pub fn channel(&self) -> Option<Channel> {
+        let mut channels = Channel::ALL.into_iter();
+        channels.find(|channel| channel.key() == self.channel)
+    }
+
+    /// The refusal of a cell without data.
+    pub fn no_data() -> Refusal {
+        Refusal::of(StatusCode::NOT_FOUND, "this cell has no data")
+    }
 }
 
 async fn worst(State(sessions): Known, Query(of): Query<OfCell>) -> Answer {
     let session = find(&sessions, &of.session)?;
     let evaluated = Arc::clone(&lock(&session).present().evaluated);
-    let mut channels = Channel::ALL.into_iter();
-    let channel = channels.find(|channel| channel.key() == of.channel);
-    let worst = blocking(move || worst_in_part(&evaluated, of.by, &of.part, channel?)).await?;
-    let nothing = || Refusal::of(StatusCode::NOT_FOUND, "this cell has no data");
-    let (run, stretch) = worst.ok_or_else(nothing)?;
+    let worst = move || worst_in_part(&evaluated, of.by, &of.part, of.channel()?);
+    let (run, stretch) = blocking(worst).await?.ok_or_else(OfCell::no_data)?;
     Ok(Json(json!({ "run": run, "stretch": stretch })))
 }
 

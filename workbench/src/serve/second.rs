@@ -5,23 +5,22 @@ use std::sync::Arc;
 
 use axum::body::Bytes;
 use axum::extract::{DefaultBodyLimit, Query, State};
-use axum::http::StatusCode;
 use axum::routing::{get, post};
 use axum::{Json, Router};
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::fit_base;
 use hitch_input::source_file::SourceFile;
-use hitch_plant::{Channel, Model};
+use hitch_plant::Model;
 use serde::Deserialize;
 use serde_json::json;
 
 use super::jobs;
-use super::routes::{Answer, Known, Of, Refusal, blocking, find, lock};
+use super::routes::{Answer, Known, Of, OfCell, Refusal, blocking, find, lock};
 use super::session::Session;
 use super::sessions::Sessions;
 use super::source::Subject;
 use super::tasks::Task;
-use crate::comparison::{Evaluated, Grouping, largest_change_in_part};
+use crate::comparison::{Evaluated, largest_change_in_part};
 use crate::error::Error;
 
 /// Maximum size of a model file, bytes.
@@ -135,14 +134,6 @@ async fn close(State(sessions): Known, Json(of): Json<Of>) -> Answer {
     Ok(Json(json!({})))
 }
 
-#[derive(Debug, Deserialize)]
-struct OfCell {
-    session: String,
-    by: Grouping,
-    part: String,
-    channel: String,
-}
-
 /// The stretch that contributes most to the change of a cell.
 async fn largest(State(sessions): Known, Query(of): Query<OfCell>) -> Answer {
     let session = find(&sessions, &of.session)?;
@@ -151,14 +142,11 @@ async fn largest(State(sessions): Known, Query(of): Query<OfCell>) -> Answer {
         let second = session.second.clone().ok_or_else(none)?;
         (second, Arc::clone(&session.present().evaluated))
     };
-    let mut channels = Channel::ALL.into_iter();
-    let channel = channels.find(|channel| channel.key() == of.channel);
     let found = blocking(move || {
         let [before, after] = second.ordered(&present);
-        largest_change_in_part(before, after, of.by, &of.part, channel?)
+        largest_change_in_part(before, after, of.by, &of.part, of.channel()?)
     });
-    let nothing = || Refusal::of(StatusCode::NOT_FOUND, "this cell has no data");
-    let (run, stretch) = found.await?.ok_or_else(nothing)?;
+    let (run, stretch) = found.await?.ok_or_else(OfCell::no_data)?;
     Ok(Json(json!({ "run": run, "stretch": stretch })))
 }
 
