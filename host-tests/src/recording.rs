@@ -149,7 +149,7 @@ pub fn record() -> Trace {
     );
     let mut controller = replay::controller();
     let mut sensors = Sensors::default();
-    let mut coils = [Coil::of_the_rig(); 2];
+    let mut coils = [Coil::of(&model.constants().solenoid); 2];
     let mut currents = Currents::default();
     let mut trace = Trace::new();
     for scene in SCRIPT {

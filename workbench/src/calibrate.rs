@@ -1,13 +1,16 @@
 //! Converts an identified model into the firmware's calibration.
 
+use std::f64::consts::TAU;
+
 use hitch_controller::Controller;
 use hitch_plant::units::{bar_from_pa, lpm_from_m3_s, m3_s_from_lpm};
-use hitch_plant::{Constants, Dynamics, Model, OrificeValve, Valve};
+use hitch_plant::{Constants, Dynamics, Model, OrificeValve, Solenoid, Valve};
+use hitch_quantities::calibration::design_parameters::CurrentParameters;
 use hitch_quantities::calibration::linkage::LINKAGE_POINTS;
 use hitch_quantities::calibration::valve_table::{VALVE_POINTS, ValvePoint, ValveTable};
 use hitch_quantities::units::{
-    AmperePerSecond, MicroLitrePerSecond, Micrometre, MilliAmp, MilliBar, MilliDegree, Millisecond,
-    SquareMillimetre,
+    AmperePerSecond, MicroLitrePerSecond, Micrometre, MilliAmp, MilliBar, MilliDegree, MilliOhm,
+    MilliOhmPerSecond, Millisecond, SquareMillimetre,
 };
 use hitch_quantities::{Calibration, CalibrationError, ValidCalibration};
 
@@ -24,6 +27,10 @@ const FULL_OPENING_MS: i32 = 50;
 
 /// Dither over the largest current.
 const DITHER_SHARE: f64 = 0.03;
+
+/// Ends of the ranges of the firmware's parameters.
+const FASTEST_ADAPTATION: MilliOhmPerSecond = MilliOhmPerSecond(10_000);
+const LONGEST_SETTLING: Millisecond = Millisecond(1_000);
 
 /// Distance of the travel limits from the mechanical ends.
 const END_DISTANCE: MilliDegree = MilliDegree(500);
@@ -67,6 +74,7 @@ pub fn calibrate(model: &Model, base: &Calibration) -> Result<ValidCalibration, 
     }
     linkage(model, &mut calibration);
     currents(constants, &mut calibration);
+    current_regulation(&constants.solenoid, &mut calibration.current);
     let hydraulics = &mut calibration.hydraulics;
     hydraulics.reference_drop = MilliBar((LOWERING_PORT_BAR * 1e3) as i32);
     hydraulics.piston_area = SquareMillimetre((constants.cylinder.area_m2() * 1e6).round() as i32);
@@ -112,9 +120,46 @@ fn currents(constants: &Constants, calibration: &mut Calibration) {
     safety.free_current = safety.free_current.min(threshold + FREE_BEYOND_THRESHOLD);
     let slope = AmperePerSecond((range / FULL_OPENING_MS).max(1));
     safety.current_slope = safety.current_slope.min(slope);
-    let dither = MilliAmp((DITHER_SHARE * f64::from(lift.max(lower).0)).round() as i32);
+    let dither_ma = (DITHER_SHARE * f64::from(lift.max(lower).0)).min(fastest_dither_ma(
+        &constants.solenoid,
+        threshold,
+        &calibration.current,
+    ));
     let current = &mut calibration.current;
-    current.dither_amplitude = current.dither_amplitude.min(dither);
+    current.dither_amplitude = current
+        .dither_amplitude
+        .min(MilliAmp(dither_ma.round() as i32));
+}
+
+/// Largest amplitude of the dither, mA, whose current falls at the threshold by at most half as fast as it does through
+/// the freewheeling diode: a faster one would be cut off below, and shift the mean.
+fn fastest_dither_ma(solenoid: &Solenoid, threshold: MilliAmp, current: &CurrentParameters) -> f64 {
+    let threshold_a = 1e-3 * f64::from(threshold.0);
+    let diode_v = 1e-3 * f64::from(current.freewheel_drop.0);
+    let fall_a_s = (solenoid.resistance_ohm * threshold_a + diode_v) / solenoid.inductance_h;
+    let per_second = TAU * 1e3 / f64::from(current.dither_period.0);
+    0.5e3 * fall_a_s / per_second
+}
+
+/// Regulation of the currents for the coils of the model. The range of the resistance keeps its ratio to the resistance
+/// at 20 C. The gains are those of the default for its coil: the voltage to close a gap of current in a given time
+/// goes with the inductance, and the integral part cancels the time constant of the coil.
+fn current_regulation(solenoid: &Solenoid, current: &mut CurrentParameters) {
+    let default = Calibration::nominal().current;
+    let coil = Solenoid::default();
+    let milli_ohm = |ohm: f64| MilliOhm((ohm * 1e3).round() as i32);
+    let scaled = |value: MilliOhm, ratio: f64| milli_ohm(1e-3 * f64::from(value.0) * ratio);
+    let resistance = solenoid.resistance_ohm / coil.resistance_ohm;
+    current.nominal_resistance = milli_ohm(solenoid.resistance_ohm);
+    current.lowest_resistance = scaled(default.lowest_resistance, resistance);
+    current.highest_resistance = scaled(default.highest_resistance, resistance);
+    let adaptation = scaled(MilliOhm(default.adaptation.0), resistance);
+    current.adaptation = MilliOhmPerSecond(adaptation.0).min(FASTEST_ADAPTATION);
+    let inductance = solenoid.inductance_h / coil.inductance_h;
+    current.proportional = scaled(default.proportional, inductance);
+    current.integral = scaled(default.integral, resistance);
+    let settling_ms = f64::from(default.settling_time.0) * (inductance / resistance).max(1.0);
+    current.settling_time = Millisecond(settling_ms.ceil() as i32).min(LONGEST_SETTLING);
 }
 
 /// First parameter of an effect of the model.

@@ -1,9 +1,11 @@
 //! Current regulation of the firmware on a model of coil and driver.
 
 use hitch_control::current::Regulation;
+use hitch_plant::{Model, Solenoid, ValveCurve};
 use hitch_quantities::calibration::design_parameters::CurrentParameters;
 use hitch_quantities::units::{MilliAmp, MilliVolt};
-use hitch_quantities::{CoilCurrents, Inputs};
+use hitch_quantities::{Calibration, CoilCurrents, Inputs};
+use hitch_workbench::calibrate::calibrate;
 use hitch_workbench::closed_loop::Coil;
 
 const PARAMETERS: CurrentParameters = CurrentParameters::NOMINAL;
@@ -14,6 +16,7 @@ const NOISE_MA: f64 = 3.0;
 /// A coil with driver and measurement, and the regulation.
 struct Bench {
     coil: Coil,
+    parameters: CurrentParameters,
     regulation: Regulation,
     supply_v: f64,
     random: fastrand::Rng,
@@ -23,13 +26,18 @@ struct Bench {
 
 impl Bench {
     fn new(resistance_ohm: f64, inductance_h: f64, supply_v: f64) -> Self {
+        let solenoid = Solenoid {
+            resistance_ohm,
+            inductance_h,
+        };
+        Self::with(PARAMETERS, &solenoid, supply_v)
+    }
+
+    fn with(parameters: CurrentParameters, solenoid: &Solenoid, supply_v: f64) -> Self {
         Self {
-            coil: Coil {
-                resistance_ohm,
-                inductance_h,
-                current_a: 0.0,
-            },
-            regulation: Regulation::new(&PARAMETERS),
+            coil: Coil::of(solenoid),
+            regulation: Regulation::new(&parameters),
+            parameters,
             supply_v,
             random: fastrand::Rng::with_seed(7),
             means_ma: Vec::new(),
@@ -54,7 +62,7 @@ impl Bench {
                 lift: MilliAmp(asked_ma),
                 lower: MilliAmp(0),
             };
-            let duties = self.regulation.drive(asked, &inputs, &PARAMETERS);
+            let duties = self.regulation.drive(asked, &inputs, &self.parameters);
             assert_eq!(duties.lower.0, 0);
             let mean_a = self
                 .coil
@@ -65,14 +73,14 @@ impl Bench {
 
     /// Mean over the last period of the dither, mA.
     fn mean_ma(&self) -> f64 {
-        let period = PARAMETERS.dither_period.0 as usize;
+        let period = self.parameters.dither_period.0 as usize;
         let last = &self.means_ma[self.means_ma.len() - period..];
         last.iter().sum::<f64>() / period as f64
     }
 
     /// Whether supply voltage and resistance permit this current with its dither.
     fn can(&self, asked_ma: i32) -> bool {
-        let most_ma = f64::from(asked_ma + PARAMETERS.dither_amplitude.0);
+        let most_ma = f64::from(asked_ma + self.parameters.dither_amplitude.0);
         most_ma * 1e-3 * self.coil.resistance_ohm <= 0.97 * self.supply_v
     }
 }
@@ -126,6 +134,59 @@ fn a_current_of_the_map_is_there_within_one_percent_in_thirty_milliseconds() {
     );
     assert!(cases > 500, "only {cases} cases");
     assert!(worst.0 <= 0.01, "{} at {}", worst.0, worst.1);
+}
+
+/// A model with other coils, and curves of the valves that end at `largest_a`.
+fn with_coils(solenoid: &Solenoid, largest_a: f64) -> Model {
+    let model = hitch_model_file::dynamic();
+    let mut constants = model.constants().clone();
+    constants.solenoid = solenoid.clone();
+    for valve in [&mut constants.lift_valve, &mut constants.lower_valve] {
+        let currents_a = valve.curve.currents_a();
+        let share = largest_a / currents_a[currents_a.len() - 1];
+        let currents_a = currents_a
+            .iter()
+            .map(|current_a| share * current_a)
+            .collect();
+        valve.curve = ValveCurve::new(currents_a, valve.curve.flows_m3_s().to_vec()).unwrap();
+    }
+    model.with_constants(constants).unwrap()
+}
+
+/// Coils of other valves, with the calibration of a model that states them.
+#[test]
+fn the_currents_of_other_coils_are_there_within_one_percent_in_eight_time_constants() {
+    for (resistance_ohm, inductance_h, largest_ma) in [
+        (1.1, 0.005, 4_500),
+        (4.0, 0.04, 2_200),
+        (7.2, 0.03, 1_500),
+        (14.0, 0.08, 700),
+    ] {
+        let declared = Solenoid {
+            resistance_ohm,
+            inductance_h,
+        };
+        let model = with_coils(&declared, 1e-3 * f64::from(largest_ma));
+        let calibration = calibrate(&model, &Calibration::nominal()).unwrap();
+        let steps = (8e3 * inductance_h / resistance_ohm).max(30.0).ceil() as usize;
+        for share in [0.8, 1.0, 1.3] {
+            let coil = Solenoid {
+                resistance_ohm: share * resistance_ohm,
+                ..declared.clone()
+            };
+            let mut bench = Bench::with(calibration.current.clone(), &coil, 13.8);
+            for asked_ma in [0.4, 0.6, 0.5, 0.9].map(|part| (part * f64::from(largest_ma)) as i32) {
+                bench.run(asked_ma, steps);
+                let error = (bench.mean_ma() / f64::from(asked_ma) - 1.0).abs();
+                println!(
+                    "{coil:?} {asked_ma} mA after {steps} ms: {:.2} %",
+                    100.0 * error
+                );
+                assert!(bench.can(asked_ma) && error <= 0.01);
+                bench.run(asked_ma, 4 * steps);
+            }
+        }
+    }
 }
 
 #[test]

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
-use hitch_plant::{AddedEffect, Currents};
+use hitch_plant::{AddedEffect, Currents, Solenoid};
 use hitch_quantities::{Calibration, Inputs};
 use hitch_workbench::closed_loop::{ClosedLoop, Coil, SUPPLY_V, Sample};
 use host_tests::program::{hitch, run};
@@ -323,7 +323,7 @@ fn noise(samples: &[Sample]) -> String {
     let mut text = String::from(
         "lever_deg,rocker_angle_deg,cylinder_pressure_bar,pump_pressure_bar,lift_current_a,lower_current_a\n",
     );
-    let mut coils = [Coil::of_the_rig(); 2];
+    let mut coils = [Coil::of(&Solenoid::default()); 2];
     let mut currents = Currents::default();
     for sample in samples {
         let told = |value: Option<i32>| f64::from(value.unwrap()) / 1e3;

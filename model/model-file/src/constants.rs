@@ -5,10 +5,11 @@ use std::ops::RangeInclusive;
 use hitch_plant::units::{M3_S_PER_LPM, PA_PER_BAR};
 use hitch_plant::{
     CheckValve, Compensator, Constants, Cylinder, Dynamics, LinkageDimensions, Masses, Oil,
-    OrificeValve, Pump, PumpKind, ReliefValve, ValveCurve,
+    OrificeValve, Pump, PumpKind, ReliefValve, Solenoid, ValveCurve,
 };
 
 const M3_PER_L: f64 = 1e-3;
+const H_PER_MH: f64 = 1e-3;
 const S_PER_MS: f64 = 1e-3;
 /// Metre in a millimetre.
 pub const M_PER_MM: f64 = 1e-3;
@@ -146,13 +147,14 @@ pub const CURVES: [Curve; 2] = [
 ];
 
 /// Tables, in the order of the file.
-pub const TABLES: [&str; 11] = [
+pub const TABLES: [&str; 12] = [
     "pump",
     "relief_valve",
     "compensator",
     "check_valve",
     "lift_valve",
     "lower_valve",
+    "solenoid",
     "spool",
     "cylinder",
     "oil",
@@ -184,7 +186,7 @@ impl Constant {
 
 /// All constants except the flow curves.
 #[rustfmt::skip]
-pub static CONSTANTS: [Constant; 29] = [
+pub static CONSTANTS: [Constant; 31] = [
     constant(("pump", "theoretical_flow_lpm"), M3_S_PER_LPM, 0.1..=1000.0, |c| &mut c.pump.theoretical_flow_m3_s),
     constant(("pump", "volumetric_efficiency"), 1.0, 0.01..=1.0, |c| &mut c.pump.volumetric_efficiency),
     constant(("pump", "standby_pressure_bar"), PA_PER_BAR, 0.1..=300.0, |c| &mut c.pump.standby_pressure_pa).only(Had::LoadSensing),
@@ -196,6 +198,8 @@ pub static CONSTANTS: [Constant; 29] = [
     constant(("lift_valve", "transition_drop_bar"), PA_PER_BAR, 0.0..=10.0, |c| &mut c.lift_valve.transition_drop_pa),
     constant(("lower_valve", "reference_drop_bar"), PA_PER_BAR, 0.01..=500.0, |c| &mut c.lower_valve.reference_drop_pa),
     constant(("lower_valve", "transition_drop_bar"), PA_PER_BAR, 0.0..=10.0, |c| &mut c.lower_valve.transition_drop_pa),
+    constant(("solenoid", "resistance_ohm"), 1.0, 0.5..=20.0, |c| &mut c.solenoid.resistance_ohm),
+    constant(("solenoid", "inductance_mh"), H_PER_MH, 0.5..=100.0, |c| &mut c.solenoid.inductance_h),
     constant(("spool", "time_constant_ms"), S_PER_MS, 0.0..=10_000.0, |c| &mut c.spool_time_constant_s),
     constant(("cylinder", "bore_mm"), M_PER_MM, 5.0..=1000.0, |c| &mut c.cylinder.bore_m),
     constant(("cylinder", "stroke_mm"), M_PER_MM, 5.0..=5000.0, |c| &mut c.cylinder.stroke_m),
@@ -216,7 +220,7 @@ pub static CONSTANTS: [Constant; 29] = [
     constant(("masses", "piston_kg"), 1.0, 0.1..=10_000.0, |c| &mut c.masses.piston_kg),
 ];
 
-/// Constants before reading: all NaN, so that a forgotten one is detected.
+/// Constants before reading: NaN, so that a missing one is detected, except for the solenoid, which a file need not state.
 pub fn unset() -> Constants {
     const UNSET: f64 = f64::NAN;
     let valve = || OrificeValve {
@@ -242,6 +246,7 @@ pub fn unset() -> Constants {
         },
         lift_valve: valve(),
         lower_valve: valve(),
+        solenoid: Solenoid::default(),
         spool_time_constant_s: UNSET,
         cylinder: Cylinder {
             count: 1,

@@ -27,7 +27,7 @@ const fn meaning(
 
 /// Tables and constants, in the order of the file.
 #[rustfmt::skip]
-static MEANINGS: [Meaning; 49] = [
+static MEANINGS: [Meaning; 52] = [
     meaning(("pump", ""), "Pump at constant speed.", ""),
     meaning(("pump", "kind"), "\"fixed-displacement\" with a bypass compensator, or \"load-sensing\": of variable displacement", "Circuit diagram: a pump with an arrow through it and a load-sensing line is load-sensing"),
     meaning(("pump", "theoretical_flow_lpm"), "Largest displacement times speed, l/min", "Pump data sheet: displacement in cm3/rev times rev/min over 1000"),
@@ -50,6 +50,9 @@ static MEANINGS: [Meaning; 49] = [
     meaning(("lower_valve", "transition_drop_bar"), "Drop below which the flow turns laminar, bar", "Not on data sheets: 0.1 for a dynamic model, 0 for none"),
     meaning(("lower_valve", "current_a"), "Currents of the curve, A, rising; the last is the current limit", "Valve data sheet: flow over current; start with 0"),
     meaning(("lower_valve", "flow_lpm"), "Flows at these currents, l/min, not falling; 0 where it is shut", "The same curve"),
+    meaning(("solenoid", ""), "Solenoid of either valve; the closed loop and the regulation of the currents use it. The table may be left out.", ""),
+    meaning(("solenoid", "resistance_ohm"), "Resistance of the coil at 20 degC with wiring and driver, ohm", "Valve data sheet: resistance of the coil, or rated voltage over rated current; add 0.2 to 0.5 ohm for wiring and driver"),
+    meaning(("solenoid", "inductance_mh"), "Inductance of the coil, mH", "Rarely stated; time constant of a current step times the resistance"),
     meaning(("spool", ""), "Both spools; only a dynamic model uses it.", ""),
     meaning(("spool", "time_constant_ms"), "First-order lag behind the current, ms", "Valve data sheet: step response, time to 63 % of the stroke"),
     meaning(("cylinder", ""), "Single-acting lift cylinders.", ""),

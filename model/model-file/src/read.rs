@@ -82,7 +82,7 @@ fn dynamics(top: &TomlTable<'_>, inherited: Option<Dynamics>) -> Result<Dynamics
     }
 }
 
-/// Reads one table into the constants. If `complete`, missing keys keep their values, else they are faults.
+/// Reads one table into the constants. Missing keys keep the values of the constants; they are faults if there are none.
 fn read_table(
     top: &TomlTable<'_>,
     name: &str,
@@ -90,7 +90,7 @@ fn read_table(
     complete: bool,
 ) -> Result<(), InputError> {
     let Some(table) = top.table(name)? else {
-        return if complete {
+        return if complete || has_values(constants, name) {
             Ok(())
         } else {
             Err(missing_table(top, name, Variant::of(constants)))
@@ -99,12 +99,19 @@ fn read_table(
     let variant = Variant::of(constants);
     table.only(&variant.keys(name))?;
     for constant in variant.constants_of(name) {
-        read_constant(&table, constant, constants, complete)?;
+        read_constant(&table, constant, constants)?;
     }
     for curve in CURVES.iter().filter(|curve| curve.table == name) {
         read_curve(&table, curve, constants, complete)?;
     }
     Ok(())
+}
+
+/// Whether every key of a table already has a value.
+fn has_values(constants: &mut Constants, table: &str) -> bool {
+    let mut numbers = Variant::of(constants).constants_of(table);
+    !CURVES.iter().any(|curve| curve.table == table)
+        && numbers.all(|constant| !(constant.place)(constants).is_nan())
 }
 
 fn missing_table(top: &TomlTable<'_>, name: &str, variant: Variant) -> InputError {
@@ -119,12 +126,11 @@ fn read_constant(
     table: &TomlTable<'_>,
     constant: &Constant,
     constants: &mut Constants,
-    complete: bool,
 ) -> Result<(), InputError> {
     match table.number(constant.key, constant.range.clone())? {
         Some(value) => *(constant.place)(constants) = value * constant.unit,
-        // The base has no value for a variant that it is not.
-        None if complete && !(constant.place)(constants).is_nan() => {}
+        // A base has no value for a variant that it is not.
+        None if !(constant.place)(constants).is_nan() => {}
         None => return Err(table.missing(constant.key)),
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! The numbers of a model by name: its constants and the parameters of its effects, in the units of a model file.
+//! The numbers of a plant by name: its constants and the parameters of its effects, in the units of a model file.
 
 use hitch_plant::{LinkageError, Model};
 
@@ -36,12 +36,20 @@ pub struct Scalar {
     pub high: f64,
 }
 
-/// The constants of a model except its flow curves, then the parameters of its effects, in the order of a model file.
+/// Table of the constants on which the plant does not depend: its inputs are the currents.
+const NOT_OF_THE_PLANT: &str = "solenoid";
+
+fn constants_of_the_plant(variant: Variant) -> impl Iterator<Item = &'static Constant> {
+    variant
+        .constants()
+        .filter(|constant| constant.table != NOT_OF_THE_PLANT)
+}
+
+/// The constants of a model's plant except its flow curves, then the parameters of its effects, in the order of a model file.
 #[must_use]
 pub fn scalars(model: &Model) -> Vec<Scalar> {
     let mut constants = model.constants().clone();
-    let mut scalars: Vec<Scalar> = Variant::of(&constants)
-        .constants()
+    let mut scalars: Vec<Scalar> = constants_of_the_plant(Variant::of(&constants))
         .map(|constant| of_constant(constant, *(constant.place)(&mut constants)))
         .collect();
     for added in &model.effects {
@@ -80,8 +88,8 @@ pub fn with_scalars(model: &Model, values: &[f64]) -> Result<Model, LinkageError
     let mut changes = before.iter().zip(values);
     let mut constants = model.constants().clone();
     let variant = Variant::of(&constants);
-    let count = variant.constants().count();
-    for (constant, (scalar, &value)) in variant.constants().zip(&mut changes) {
+    let count = constants_of_the_plant(variant).count();
+    for (constant, (scalar, &value)) in constants_of_the_plant(variant).zip(&mut changes) {
         if value != scalar.value {
             *(constant.place)(&mut constants) = value * constant.unit;
         }

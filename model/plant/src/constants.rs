@@ -10,6 +10,7 @@ use crate::components::oil::Oil;
 use crate::components::orifice_valve::OrificeValve;
 use crate::components::pump::Pump;
 use crate::components::relief_valve::ReliefValve;
+use crate::components::solenoid::Solenoid;
 
 /// The two kinds of models (docs/plant.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,6 +38,8 @@ pub struct Constants {
     pub lift_valve: OrificeValve,
     /// The lowering valve.
     pub lower_valve: OrificeValve,
+    /// The solenoid of either valve.
+    pub solenoid: Solenoid,
     /// First-order lag of either spool, s; used by the dynamic plant.
     pub spool_time_constant_s: f64,
     /// The cylinder.

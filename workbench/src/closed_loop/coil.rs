@@ -7,6 +7,8 @@
 //! The driver switches at 16 kHz, and the current freewheels through a diode in the off time. The remaining ripple is
 //! 20 mA. It is not visible to samples in the middle of a pulse, so the model computes the mean over a pulse.
 
+use hitch_plant::Solenoid;
+
 /// A coil at the common supply.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coil {
@@ -26,12 +28,12 @@ const PWM_STEPS: f64 = 5_250.0;
 const PIECES: u32 = 8;
 
 impl Coil {
-    /// A cold, currentless coil of the rig.
+    /// A cold, currentless coil.
     #[must_use]
-    pub fn of_the_rig() -> Self {
+    pub const fn of(solenoid: &Solenoid) -> Self {
         Self {
-            resistance_ohm: 2.3,
-            inductance_h: 0.012,
+            resistance_ohm: solenoid.resistance_ohm,
+            inductance_h: solenoid.inductance_h,
             current_a: 0.0,
         }
     }

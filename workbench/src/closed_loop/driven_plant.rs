@@ -1,6 +1,6 @@
 //! A plant driven through its two coils by duty cycles.
 
-use hitch_plant::{Currents, HitchRig, Model, Plant, Reading, Rig};
+use hitch_plant::{Currents, HitchRig, Model, Plant, Reading, Rig, Solenoid};
 
 use super::coil::Coil;
 use super::instruments::SUPPLY_V;
@@ -15,10 +15,10 @@ struct CoilPair {
 
 impl CoilPair {
     /// Cold and currentless.
-    fn of_the_rig() -> Self {
+    const fn of(solenoid: &Solenoid) -> Self {
         Self {
-            lift: Coil::of_the_rig(),
-            lower: Coil::of_the_rig(),
+            lift: Coil::of(solenoid),
+            lower: Coil::of(solenoid),
         }
     }
 
@@ -53,7 +53,7 @@ impl<'m> DrivenPlant<'m> {
         });
         Self {
             plant: Plant::new(model, rig, oil_temperature_c, Currents::default()),
-            coils: CoilPair::of_the_rig(),
+            coils: CoilPair::of(&model.constants().solenoid),
             currents: Currents::default(),
         }
     }

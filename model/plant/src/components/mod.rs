@@ -13,4 +13,5 @@ pub mod oil;
 pub mod orifice_valve;
 pub mod pump;
 pub mod relief_valve;
+pub mod solenoid;
 pub mod valve_curve;
