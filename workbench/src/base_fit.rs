@@ -3,7 +3,6 @@
 use std::fmt;
 
 use hitch_identification::base::{BaseFit, CurvePoint, FittedConstant};
-use hitch_identification::constants::parameter::{SCALARS, THRESHOLD_SIGMA_A};
 use hitch_identification::data::experiment::Experiment;
 use hitch_plant::Model;
 use schemars::JsonSchema;
@@ -133,21 +132,12 @@ impl ShownConstant {
             unit: fitted.unit,
             declared: fitted.declared,
             fitted: fitted.fitted,
-            tolerance: tolerance(fitted),
+            tolerance: fitted.tolerance,
             low: fitted.interval.0,
             high: fitted.interval.1,
             determined: fitted.determined,
         }
     }
-}
-
-/// One sigma of the prior of a constant, in its unit; that of a threshold is a current.
-fn tolerance(fitted: &FittedConstant) -> f64 {
-    let mut scalars = SCALARS.iter();
-    let scalar = scalars.find(|scalar| scalar.name == fitted.name);
-    scalar.map_or(THRESHOLD_SIGMA_A, |scalar| {
-        scalar.tolerance * fitted.declared
-    })
 }
 
 impl ShownPoint {

@@ -4,6 +4,7 @@
 use hitch_identification::adequacy::lack_of_fit::cells;
 use hitch_identification::adequacy::unsuitable_base::{is_unsuitable, wrong_share};
 use hitch_identification::base::{BaseFit, fit_base_model};
+use hitch_identification::constants::parameter::{SCALARS, SENSORS};
 use hitch_identification::data::experiment::Experiment;
 use hitch_identification::data::problem::Problem;
 use hitch_identification::explanation::explain::fit_base;
@@ -13,7 +14,7 @@ use hitch_plant::{Constants, Model, ValveCurve};
 use host_tests::hidden_effects::starting_point;
 use host_tests::second_rig::campaign_writer::campaign;
 use host_tests::second_rig::draw::{Kind, Wish, draw};
-use host_tests::second_rig::hideable::Fidelity;
+use host_tests::second_rig::hideable::{Fidelity, find};
 use host_tests::second_rig::manoeuvres::Plan;
 use host_tests::second_rig::test_stand::Family;
 use host_tests::seeds::seeds;
@@ -67,6 +68,17 @@ fn declared(truth: &Model, off: Off) -> Model {
 }
 
 fn fitted(seed: u64, family: Family, plan: Plan, off: Off) -> (Model, BaseFit) {
+    fitted_with(seed, family, plan, off, None)
+}
+
+/// With an effect of a size hidden in the campaign.
+fn fitted_with(
+    seed: u64,
+    family: Family,
+    plan: Plan,
+    off: Off,
+    hidden: Option<(&str, f64)>,
+) -> (Model, BaseFit) {
     let case = draw(
         seed,
         &Wish {
@@ -75,7 +87,7 @@ fn fitted(seed: u64, family: Family, plan: Plan, off: Off) -> (Model, BaseFit) {
             fidelity: Some(Fidelity::Faithful),
             rough: Some(false),
             kind: Some(Kind::Nothing),
-            effect: None,
+            effect: hidden.map(|(id, size)| (find(id).expect("a hideable effect"), Some(size))),
             known: |_| true,
         },
     );
@@ -86,8 +98,11 @@ fn fitted(seed: u64, family: Family, plan: Plan, off: Off) -> (Model, BaseFit) {
     (truth, fit)
 }
 
-/// True value of a constant by its name in a model file.
+/// True value of a constant by its name in a model file; the sensors have no error.
 fn true_value(name: &str, truth: &Model) -> f64 {
+    if SENSORS.iter().any(|sensor| sensor.name == name) {
+        return 0.0;
+    }
     let mut constants: Constants = truth.constants().clone();
     match name.split_once('.') {
         Some((table, "threshold_a")) => {
@@ -97,8 +112,7 @@ fn true_value(name: &str, truth: &Model) -> f64 {
             valve.of(&constants).curve.threshold_a()
         }
         _ => {
-            let scalars = hitch_identification::constants::parameter::SCALARS.iter();
-            let mut scalars = scalars.filter(|scalar| scalar.name == name);
+            let mut scalars = SCALARS.iter().filter(|scalar| scalar.name == name);
             let scalar = scalars.next().expect("a constant");
             *(scalar.place)(&mut constants) / scalar.si
         }
@@ -198,6 +212,30 @@ fn a_dynamic_model_that_is_off_leaves_noise() {
     let margin = constants.find(|constant| constant.name == "compensator.margin_bar");
     let margin = margin.expect("a margin");
     assert!(margin.determined && (margin.fitted - 4.0).abs() < 0.1);
+}
+
+/// Errors of the sensors beside constants that are off.
+#[test]
+fn errors_of_the_sensors_are_fitted() {
+    for (id, size) in [
+        ("pressure-sensor-offset", 1.5),
+        ("pressure-sensor-offset", -2.0),
+        ("angle-sensor-gain", 0.02),
+        ("angle-sensor-gain", -0.015),
+    ] {
+        let (_, fit) = fitted_with(740, Family::Steady, Plan::Lab, TYPICAL, Some((id, size)));
+        println!(
+            "{id} {size}: error {:.2} -> {:.3} sigma",
+            fit.before.error(),
+            fit.after.error()
+        );
+        let mut own = fit.constants.iter();
+        let own = own.find(|constant| constant.name.starts_with(id));
+        let own = own.expect("a sensor");
+        println!("{own:?}");
+        assert!(fit.after.error() <= NOISE && own.determined);
+        assert!((own.interval.0..=own.interval.1).contains(&size));
+    }
 }
 
 /// Another machine: bore, curves, margin and weights differ widely from those of the rig.

@@ -87,17 +87,21 @@ pub struct Normal {
 impl BaseProblem<'_> {
     /// The corrected model; `None` if its dimensions form no valid linkage.
     pub fn model(&self, theta: &DVector<f64>) -> Option<Model> {
-        let constants = corrected(self.declared.constants(), self.parameters, theta);
-        self.declared.with_constants(constants).ok()
+        corrected(self.declared, self.parameters, theta)
     }
 
     /// The cost of corrections, loads and clocks.
     pub fn point(&self, weights: &Weights, theta: DVector<f64>, estimate: Estimate) -> Point {
-        let cost = self.model(&theta).map_or(f64::INFINITY, |model| {
-            let residuals =
-                huber_residuals(Problem::new(self.experiment, &model), weights, &estimate);
-            square_sum(&residuals) + estimate.prior_cost() + self.prior.cost(&theta)
-        });
+        let Some(model) = self.model(&theta) else {
+            return Point {
+                theta,
+                estimate,
+                cost: f64::INFINITY,
+            };
+        };
+        let estimate = with_effects_of(&model, estimate);
+        let residuals = huber_residuals(Problem::new(self.experiment, &model), weights, &estimate);
+        let cost = square_sum(&residuals) + estimate.prior_cost() + self.prior.cost(&theta);
         Point {
             theta,
             estimate,
@@ -150,8 +154,7 @@ impl BaseProblem<'_> {
         let run = &self.experiment.runs[index];
         let estimate = &point.estimate;
         let residual = |model: &Model, nuisance: Nuisance| {
-            let model = estimate.applied_to(model);
-            let trace = run.simulate(&model, nuisance, &estimate.clocks);
+            let trace = run.simulate(model, nuisance, &estimate.clocks);
             huber(vec![weights.runs[index].whiten(run, &trace)]).swap_remove(0)
         };
         let here = residual(model, estimate.nuisances[index]);
@@ -184,6 +187,16 @@ impl BaseProblem<'_> {
             residual: here,
         }
     }
+}
+
+/// An estimate of loads and clocks with the effects of a model, held in a fit.
+pub fn with_effects_of(model: &Model, estimate: Estimate) -> Estimate {
+    let effects = model.effects.clone();
+    Estimate {
+        effects,
+        ..estimate
+    }
+    .with_adopted()
 }
 
 impl RunColumns {

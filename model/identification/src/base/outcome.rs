@@ -5,9 +5,11 @@ use hitch_plant::Model;
 use nalgebra::{DMatrix, DVector};
 
 use crate::base::descent::descend;
-use crate::base::normal::{BaseProblem, Normal, Point, RunColumns};
-use crate::constants::fitted::{CurvePoint, DETERMINED, Fitted, FittedConstant, MODEL_ERROR};
-use crate::constants::parameter::{Parameter, parameters};
+use crate::base::normal::{BaseProblem, Normal, Point, RunColumns, with_effects_of};
+use crate::constants::fitted::{
+    CurvePoint, DETERMINED, Fitted, FittedConstant, INTERVAL, MODEL_ERROR,
+};
+use crate::constants::parameter::{Parameter, SENSORS, parameters};
 use crate::constants::prior::Prior;
 use crate::data::experiment::Experiment;
 use crate::data::problem::Problem;
@@ -28,7 +30,7 @@ const JACOBIANS: usize = 5;
 /// The base model fitted to a campaign.
 #[derive(Debug, Clone)]
 pub struct BaseFit {
-    /// The fitted model, with the effects of the declared one.
+    /// The fitted model, with the effects of the declared one and determined errors of the sensors.
     pub model: Model,
     /// The declared model with loads and clocks fitted.
     pub before: Fit,
@@ -43,7 +45,8 @@ pub struct BaseFit {
 /// Fits the constants of a model to a campaign; `say` receives the current task.
 #[must_use]
 pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&str)) -> BaseFit {
-    let parameters = parameters(declared.constants());
+    let mut parameters = parameters(declared.constants());
+    parameters.extend(SENSORS.iter().map(Parameter::Sensor));
     let prior = Prior::new(declared.constants(), &parameters);
     let before = fit_base(Problem::new(experiment, declared));
     let inseparable: Vec<bool> = parameters.iter().map(|one| !one.is_separable()).collect();
@@ -65,7 +68,7 @@ pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&s
     }
     say("intervals");
     let (sigma, determined) = posterior(&problem, &point);
-    let held = held(&parameters, &determined);
+    let held = held(&parameters, &point.theta, &sigma, &determined);
     for k in (0..held.len()).filter(|&k| held[k]) {
         point.theta[k] = 0.0;
     }
@@ -74,7 +77,8 @@ pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&s
     let point = improved(&problem, point, false);
     let model = problem.model(&point.theta);
     let model = model.unwrap_or_else(|| declared.clone());
-    let after = refine(Problem::new(experiment, &model), point.estimate.clone());
+    let estimate = with_effects_of(&model, point.estimate.clone());
+    let after = refine(Problem::new(experiment, &model), estimate);
     let report = Fitted {
         declared,
         model: &model,
@@ -98,7 +102,8 @@ fn improved(problem: &BaseProblem<'_>, point: Point, coarse: bool) -> Point {
     let Some(model) = problem.model(&point.theta) else {
         return point;
     };
-    let weights = Weights::new(Problem::new(problem.experiment, &model), &point.estimate);
+    let estimate = with_effects_of(&model, point.estimate.clone());
+    let weights = Weights::new(Problem::new(problem.experiment, &model), &estimate);
     let weights = match coarse {
         true => weights.scaled(COARSE),
         false => weights,
@@ -110,18 +115,25 @@ fn improved(problem: &BaseProblem<'_>, point: Point, coarse: bool) -> Point {
     point
 }
 
-/// Fixed unknowns: constants that are not determined, and curves without any determined point.
-fn held(parameters: &[Parameter], determined: &[bool]) -> Vec<bool> {
+/// Fixed unknowns: constants that are not determined, curves without any determined point, and sensors whose interval
+/// holds no error, which would be an effect without meaning.
+fn held(
+    parameters: &[Parameter],
+    theta: &DVector<f64>,
+    sigma: &[f64],
+    determined: &[bool],
+) -> Vec<bool> {
     let any_point = |valve: Valve| {
         let mut all = parameters.iter().zip(determined);
         all.any(|(parameter, &determined)| {
             determined && matches!(parameter, Parameter::Flow(of, _) if *of == valve)
         })
     };
-    let all = parameters.iter().zip(determined);
-    all.map(|(parameter, &determined)| match parameter {
+    let all = parameters.iter().zip(determined).enumerate();
+    all.map(|(k, (parameter, &determined))| match parameter {
         Parameter::Flow(valve, _) => !any_point(*valve),
         Parameter::Scalar(_) | Parameter::Threshold(_) => !determined,
+        Parameter::Sensor(_) => !determined || theta[k].abs() <= INTERVAL * sigma[k],
     })
     .collect()
 }

@@ -1,13 +1,42 @@
-//! Constants with their corrections applied.
+//! A model with corrections of its constants and sensors applied.
 
 use hitch_model_file::Valve;
-use hitch_plant::{Constants, ValveCurve};
+use hitch_plant::{AddedEffect, Constants, Model, ValveCurve};
 use nalgebra::DVector;
 
 use crate::constants::parameter::Parameter;
 
-/// The declared constants with corrections applied. Flow curves stay monotone.
+/// The declared model with corrections applied. Flow curves stay monotone. `None` if the dimensions make no linkage.
 pub fn corrected(
+    declared: &Model,
+    parameters: &[Parameter],
+    theta: &DVector<f64>,
+) -> Option<Model> {
+    let constants = corrected_constants(declared.constants(), parameters, theta);
+    let model = declared.with_constants(constants).ok()?;
+    let mut effects = model.effects.clone();
+    for (parameter, &value) in parameters.iter().zip(theta.iter()) {
+        if let Parameter::Sensor(sensor) = parameter
+            && value != 0.0
+        {
+            add_sensor_error(&mut effects, sensor.effect, value);
+        }
+    }
+    Some(model.with_effects(effects))
+}
+
+/// Adds an error of a sensor to the declared one, or to none.
+fn add_sensor_error(effects: &mut Vec<AddedEffect>, id: &str, error: f64) {
+    if let Some(declared) = effects.iter_mut().find(|added| added.effect.id() == id) {
+        declared.values[0] += error;
+    } else if let Some(effect) = hitch_effects::find(id) {
+        let mut added = AddedEffect::typical(effect);
+        added.values[0] = error;
+        effects.push(added);
+    }
+}
+
+fn corrected_constants(
     declared: &Constants,
     parameters: &[Parameter],
     theta: &DVector<f64>,

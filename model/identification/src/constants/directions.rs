@@ -101,8 +101,7 @@ impl Directions {
     #[must_use]
     pub fn corrected(&self, declared: &Model, sigmas: &[f64]) -> Option<Model> {
         let errors = self.errors(sigmas);
-        let constants = corrected(declared.constants(), &self.parameters, &errors);
-        declared.with_constants(constants).ok()
+        corrected(declared, &self.parameters, &errors)
     }
 }
 

@@ -15,7 +15,7 @@ pub(crate) const DETERMINED: f64 = 0.7;
 pub(crate) const MODEL_ERROR: f64 = 0.002;
 
 /// Half width of a 95 % interval, in sigmas.
-const INTERVAL: f64 = 1.96;
+pub(crate) const INTERVAL: f64 = 1.96;
 
 /// A constant with its estimate.
 #[derive(Debug, Clone)]
@@ -28,6 +28,8 @@ pub struct FittedConstant {
     pub declared: f64,
     /// Fitted value; the declared one if it is not determined.
     pub fitted: f64,
+    /// One sigma of the tolerance, in the unit.
+    pub tolerance: f64,
     /// 95 % interval, from data sheet and campaign.
     pub interval: (f64, f64),
     /// Whether the campaign determines it.
@@ -74,10 +76,12 @@ impl Fitted<'_> {
 
     fn constant(&self, k: usize, parameter: &Parameter) -> Option<FittedConstant> {
         let (value, half) = (self.theta[k], INTERVAL * self.sigma[k]);
+        let mut tolerance = self.prior.sigma[k];
         let (name, unit, declared, at): (_, _, _, Box<dyn Fn(f64) -> f64>) = match parameter {
             Parameter::Scalar(scalar) => {
                 let si = *(scalar.place)(&mut self.declared.constants().clone());
                 let declared = si / scalar.si;
+                tolerance *= declared;
                 let at = move |correction: f64| declared * correction.exp();
                 (scalar.name.to_owned(), scalar.unit, declared, Box::new(at))
             }
@@ -86,6 +90,13 @@ impl Fitted<'_> {
                 let name = format!("{}.threshold_a", valve.table());
                 (name, "A", declared, Box::new(move |shift| declared + shift))
             }
+            Parameter::Sensor(sensor) => {
+                let mut added = self.declared.effects.iter();
+                let added = added.find(|added| added.effect.id() == sensor.effect);
+                let declared = added.map_or(0.0, |added| added.values[0]);
+                let at = move |error: f64| declared + error;
+                (sensor.name.to_owned(), sensor.unit, declared, Box::new(at))
+            }
             Parameter::Flow(..) => return None,
         };
         Some(FittedConstant {
@@ -93,6 +104,7 @@ impl Fitted<'_> {
             unit,
             declared,
             fitted: at(value),
+            tolerance,
             interval: (at(value - half), at(value + half)),
             determined: self.determined[k],
             at_an_end: self.prior.is_at_an_end(self.theta, k),
@@ -104,7 +116,7 @@ impl Fitted<'_> {
         let all = self.parameters.iter().enumerate();
         all.filter_map(|(k, parameter)| match *parameter {
             Parameter::Flow(valve, point) => Some(self.curve_point(k, valve, point)),
-            Parameter::Scalar(_) | Parameter::Threshold(_) => None,
+            Parameter::Scalar(_) | Parameter::Threshold(_) | Parameter::Sensor(_) => None,
         })
         .collect()
     }

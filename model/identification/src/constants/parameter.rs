@@ -47,6 +47,28 @@ pub static SCALARS: [Scalar; 13] = [
     Scalar { name: "oil.bulk_modulus_pa", unit: "Pa", si: 1.0, tolerance: 0.3, dynamic: true, separable: true, place: |c| &mut c.oil.bulk_modulus_pa },
 ];
 
+/// Error of a sensor, an effect of the catalogue with one parameter.
+#[derive(Debug)]
+pub struct Sensor {
+    /// The effect's identifier.
+    pub effect: &'static str,
+    /// Name of the value: the effect and its parameter.
+    pub name: &'static str,
+    /// Unit of the parameter.
+    pub unit: &'static str,
+    /// Tolerance in that unit, one sigma.
+    pub tolerance: f64,
+}
+
+/// The sensors that a fit of the base model calibrates: a hall sensor has 1 % of gain error, a pressure sensor for
+/// 250 bar an offset of 0.4 % of that. A gain of the pressure sensor is not separable from the bore, since the flow
+/// curves correct any flow.
+#[rustfmt::skip]
+pub static SENSORS: [Sensor; 2] = [
+    Sensor { effect: "angle-sensor-gain", name: "angle-sensor-gain.gain", unit: "", tolerance: 0.01 },
+    Sensor { effect: "pressure-sensor-offset", name: "pressure-sensor-offset.offset_bar", unit: "bar", tolerance: 1.0 },
+];
+
 /// One unknown of the fit.
 #[derive(Debug, Clone, Copy)]
 pub enum Parameter {
@@ -54,6 +76,8 @@ pub enum Parameter {
     Scalar(&'static Scalar),
     /// Shift of a valve's curve along the current, A.
     Threshold(Valve),
+    /// Error of a sensor beyond the declared one, in the unit of its effect.
+    Sensor(&'static Sensor),
     /// Logarithm of the flow at a point of a valve's curve, by its index, over the declared one.
     Flow(Valve, usize),
 }

@@ -76,6 +76,7 @@ impl Prior {
 fn covariance(declared: &Constants, a: Parameter, b: Parameter, same: bool) -> f64 {
     match (a, b) {
         (Parameter::Scalar(scalar), _) if same => scalar.tolerance.powi(2),
+        (Parameter::Sensor(sensor), _) if same => sensor.tolerance.powi(2),
         (Parameter::Threshold(_), _) if same => THRESHOLD_SIGMA_A.powi(2),
         (Parameter::Flow(valve, i), Parameter::Flow(other, j)) if valve == other => {
             let curve = &valve.of(declared).curve;
