@@ -1,12 +1,15 @@
 """The page of `hitch serve` in a headless Chromium: open, find the worst place, rank, add, drag, undo, save, and drive the
 closed loop.
 
-Called with the page's address, the address of a page with a broken campaign, the browser, and a folder for pictures.
+Called with the page's address, the address of a page with a broken campaign, the program, the browser, and a folder for pictures.
 """
 
 import re
+import subprocess
 import sys
+import time
 from pathlib import Path
+from statistics import median
 
 from playwright.sync_api import Page, expect
 
@@ -15,12 +18,44 @@ from browser_view import DARK, DESKTOP, PATIENCE_MS, PHONE, assert_accessible, a
 # What a user feels as at once, on a machine of one's own; measured and printed.
 FIRST_VIEW_MS = 1000
 REDRAW_MS = 100
+RANKING_S = 3
+
+# What holds on a machine with other work too.
+LATEST_FIRST_VIEW_MS = 2500
+
+STARTS = 5
 
 
-def wait_for_first_view(page: Page) -> float:
-    """Waits until map and plot are drawn; when that was, in ms after the request."""
+def wait_for_plots(page: Page) -> None:
+    """Waits until map and plots are drawn."""
     page.wait_for_selector("#views[data-ready]")
-    return page.evaluate("performance.getEntriesByName('first view')[0].startTime")
+
+
+def first_views(browser, program: str, pictures: Path) -> None:
+    """Starts the program with its demonstration, and measures when the page shows the error map, and when the plots."""
+    times = []
+    for _ in range(STARTS):
+        page = browser.new_context(**DESKTOP).new_page()
+        began_ms = time.time() * 1000
+        server = subprocess.Popen([program, "serve", "--no-browser"], stdout=subprocess.PIPE, text=True)
+        try:
+            page.goto(server.stdout.readline().strip(), wait_until="commit")
+            page.wait_for_selector("#cells td button")
+            if not times:
+                page.screenshot(path=pictures / "first_view.png")
+            wait_for_plots(page)
+            marks = "['first view', 'plots'].map((name) => performance.getEntriesByName(name)[0].startTime)"
+            origin_ms, shown = page.evaluate(f"[performance.timeOrigin, {marks}]")
+            times.append([origin_ms - began_ms + at_ms for at_ms in shown])
+        finally:
+            server.kill()
+            server.wait()
+            page.context.close()
+    first, plots = (median(column) for column in zip(*times))
+    each = ", ".join(f"{at_ms:.0f}" for at_ms, _ in times)
+    print(f"from the start of the program: error map after {first:.0f} ms (median of {each}), wanted {FIRST_VIEW_MS} ms; "
+          f"plots after {plots:.0f} ms")
+    assert first < LATEST_FIRST_VIEW_MS, times
 
 
 def settled(page: Page) -> None:
@@ -35,9 +70,8 @@ def error_of(page: Page) -> float:
 
 def whole_story(page: Page, pictures: Path) -> None:
     """The story at a desktop."""
-    first = wait_for_first_view(page)
+    wait_for_plots(page)
     page.screenshot(path=pictures / "open.png")
-    print(f"first view after {first:.0f} ms, wanted {FIRST_VIEW_MS} ms")
     before = error_of(page)
 
     cells = page.locator("#cells td button")
@@ -45,9 +79,11 @@ def whole_story(page: Page, pictures: Path) -> None:
     cells.nth(errors.index(max(errors))).click()
     expect(page.locator("#place")).to_contain_text("Worst for")
 
+    began_s = time.monotonic()
     page.click("#rank")
     page.wait_for_selector("#ranking .effect")
     settled(page)
+    print(f"effects ranked within {time.monotonic() - began_s:.1f} s, wanted {RANKING_S} s")
     best = page.locator("#ranking .effect").first
     expect(best).to_contain_text("nearly certain, 100 %")
     page.screenshot(path=pictures / "ranked.png", full_page=True)
@@ -238,12 +274,13 @@ def drive(page: Page, pictures: Path, view: str) -> None:
 
 
 def main() -> None:
-    address, broken, name, folder = sys.argv[1:5]
+    address, broken, program, name, folder = sys.argv[1:6]
     with story(name, folder) as (browser, pictures, faults):
+        first_views(browser, program, pictures)
         whole_story(opened(browser, address, DESKTOP, faults), pictures)
         for view, options in {"phone": PHONE, "dark": DARK}.items():
             page = opened(browser, address, options, faults)
-            wait_for_first_view(page)
+            wait_for_plots(page)
             page.wait_for_timeout(300)
             page.screenshot(path=pictures / f"{view}.png", full_page=view == "phone")
             assert_fits(page)

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::Command;
 
 use host_tests::page_server::PageServer;
+use host_tests::program::hitch;
 use host_tests::python::{environment, run};
 use host_tests::refusal;
 use tempfile::TempDir;
@@ -31,6 +32,7 @@ fn the_whole_story_by_clicking() {
     command
         .arg(scripts.join("page_in_browser.py"))
         .args([&server.page, &broken.page])
+        .arg(hitch().get_program())
         .arg("chromium")
         .arg(&pictures)
         .env("PYTHONPYCACHEPREFIX", folder.join("python-cache"));

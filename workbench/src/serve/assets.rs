@@ -7,6 +7,9 @@ use crate::web;
 
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 
+/// Caching of the plotting library, for reloads of the page. The token in its address changes with each start of the program.
+const KEPT: &str = "private, max-age=86400, immutable";
+
 /// Name, media type and text of every file that the page does not share.
 const FILES: &[(&str, &str, &str)] = &[
     (
@@ -56,7 +59,8 @@ const FILES: &[(&str, &str, &str)] = &[
 pub fn file(name: &str) -> Option<Response> {
     let answer = |kind: &'static str, text: Bytes| ([(header::CONTENT_TYPE, kind)], text);
     if name == "plotly.js" {
-        return Some(answer(SCRIPT, Bytes::from_static(web::plotly().as_bytes())).into_response());
+        let answer = answer(SCRIPT, Bytes::from_static(web::plotly().as_bytes()));
+        return Some(([(header::CACHE_CONTROL, KEPT)], answer).into_response());
     }
     if name == "colours.css" {
         let text = Bytes::from_static(web::COLOURS.as_bytes());
@@ -78,5 +82,17 @@ mod tests {
     fn only_known_files_are_served() {
         assert!(file("").is_some() && file("main.js").is_some() && file("dom.js").is_some());
         assert!(file("../Cargo.toml").is_none());
+    }
+
+    #[test]
+    fn the_browser_requests_all_modules_at_once() {
+        let (_, _, page) = FILES[0];
+        let own = FILES.iter().filter(|(_, kind, _)| *kind == SCRIPT);
+        let names = own.map(|(name, ..)| *name);
+        let imported = names.filter(|name| *name != "main.js");
+        for name in imported.chain(web::MODULES.iter().map(|(name, _)| *name)) {
+            let preload = format!("<link rel=\"modulepreload\" href=\"{name}\">");
+            assert!(page.contains(&preload), "{name}");
+        }
     }
 }

@@ -115,8 +115,11 @@ fn named(name: &str) -> Response {
 }
 
 async fn begin(State(sessions): Known) -> Answer {
-    let session = blocking(move || sessions.begin()).await??;
-    Ok(Json(json!({ "session": session })))
+    let begun = blocking(move || {
+        let (id, session) = sessions.begin()?;
+        Ok::<_, Error>(json!({ "session": id, "state": views::state(&lock(&session)) }))
+    });
+    Ok(Json(begun.await??))
 }
 
 async fn state(State(sessions): Known, Query(of): Query<Of>) -> Answer {

@@ -50,19 +50,19 @@ impl Sessions {
         Ok(read)
     }
 
-    /// Starts a session; returns its id.
+    /// Starts a session; returns it with its id.
     ///
     /// # Errors
     /// If the campaign is invalid.
-    pub fn begin(&self) -> Result<String, Error> {
-        let session = Session::new(self.subject()?);
+    pub fn begin(&self) -> Result<(String, Shared), Error> {
+        let session = Arc::new(Mutex::new(Session::new(self.subject()?)));
         let id = random_token();
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if known.len() == MOST_SESSIONS {
             known.pop_front();
         }
-        known.push_back((id.clone(), Arc::new(Mutex::new(session))));
-        Ok(id)
+        known.push_back((id.clone(), Arc::clone(&session)));
+        Ok((id, session))
     }
 
     /// A session by its id.

@@ -72,6 +72,9 @@ mod tests {
             .lines()
             .find(|line| line.starts_with("import ") || line.starts_with("export "));
         assert_eq!(remaining, None);
-        assert!(joined.contains("return { library, drawRun, redrawRun, frame, ordinate };"));
+        assert!(
+            joined
+                .contains("return { library, loadLibrary, drawRun, redrawRun, frame, ordinate };")
+        );
     }
 }

@@ -10,7 +10,8 @@ export function byId(id) {
 }
 
 /** A new element with attributes, listeners (`onclick` and so on) and children.
- * @param {string} name
+ * @template {keyof HTMLElementTagNameMap} K
+ * @param {K} name
  * @param {Record<string, unknown>} [attributes]
  * @param {...(Node | string)} children */
 export function element(name, attributes = {}, ...children) {
@@ -45,4 +46,13 @@ export function sigmas(value) {
  * @param {string} name */
 export function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+/** Waits until the changes of the page are on the screen; not in a hidden tab, which is not painted.
+ * @returns {Promise<void>} */
+export function painted() {
+  return new Promise((resolve) => {
+    if (document.hidden) resolve();
+    else requestAnimationFrame(() => setTimeout(resolve));
+  });
 }

@@ -1,6 +1,6 @@
 // @ts-check
 /** The channels of a run over time, all with one time axis: measured, simulated, and the residual below. */
-import { byId, colour, sigmas } from "./dom.js";
+import { colour, element, sigmas } from "./dom.js";
 
 /** Preferred heights of the parts of the plot, px. */
 const SIGNAL = 125, RESIDUAL = 70, CURRENTS = 80;
@@ -20,27 +20,38 @@ const BAND = 2;
 /** Look of the lines of a second model. */
 const SECOND = { colour: "second", key: "second", dash: "dashdot", width: 1.6 };
 
-/** The plotting library, which loads while the campaign is read. */
+/** Called with the plotting library, or with the reason for its absence.
+ * @type {{resolve: (plotly: Plotly) => void, reject: (reason: Error) => void}} */
+let waiting;
+
+/** The plotting library: embedded in a report; on the page, it waits for `loadLibrary`.
+ * @type {Promise<Plotly>} */
 export const library = new Promise((resolve, reject) => {
-  const global = /** @type {any} */ (window);
-  if (global.Plotly) return resolve(global.Plotly);
-  const script = byId("plotly");
-  script.addEventListener("load", () => resolve(global.Plotly));
-  script.addEventListener("error", () => reject(new Error("the plotting library cannot be loaded")));
+  waiting = { resolve, reject };
+  if (window.Plotly) resolve(window.Plotly);
 });
+
+/** Loads the plotting library. Its evaluation occupies the page for the better part of a second: the page is drawn before. */
+export function loadLibrary() {
+  const fail = () => waiting.reject(new Error("the plotting library cannot be loaded; reload the page"));
+  const script = element("script", { src: "plotly.js", onerror: fail,
+    onload: () => (window.Plotly ? waiting.resolve(window.Plotly) : fail()) });
+  document.head.append(script);
+}
 
 /** Draws a run, or a view with its own rows. `place` is the stretch to look at, its channel first; `null` is the whole run, and
  * `undefined` leaves the zoom as it is.
  * @param {HTMLElement} at
- * @param {any} view
+ * @param {PlotView} view
  * @param {Place | null | undefined} place */
 export async function drawRun(at, view, place) {
-  const plot = /** @type {any} */ (at);
+  const plot = /** @type {Plotted} */ (at);
   const shown = looks.get(plot) ?? { marked: null, leading: "" };
   looks.set(plot, shown);
   if (place?.channel) shown.leading = place.channel;
   const plotly = await library;
-  const kept = place === undefined && plot.layout ? plot.layout.xaxis.range.slice() : null;
+  /** @type {[number, number] | null} */
+  const kept = place === undefined && plot.layout ? [...plot.layout.xaxis.range] : null;
   const { traces, layout } = figure(view, shown.leading);
   layout.xaxis.range = kept ?? range(view, place);
   if (place !== undefined) shown.marked = place;
@@ -51,7 +62,7 @@ export async function drawRun(at, view, place) {
 
 /** Redraws the parts that depend on a parameter: simulated curves and residuals.
  * @param {HTMLElement} plot
- * @param {any} view */
+ * @param {PlotView} view */
 export async function redrawRun(plot, view) {
   const plotly = await library;
   const { traces } = figure(view, looks.get(plot)?.leading ?? "");
@@ -60,14 +71,13 @@ export async function redrawRun(plot, view) {
     { mode: "immediate", transition: { duration: 0 }, frame: { duration: 0, redraw: false } });
 }
 
-/** @typedef {{from_s: number, to_s: number, channel?: string}} Place */
-
 /** The marked stretch of each plot, and its first channel.
  * @type {WeakMap<HTMLElement, {marked: Place | null, leading: string}>} */
 const looks = new WeakMap();
 
-/** @param {any} view
- * @param {Place | null | undefined} place */
+/** @param {PlotView} view
+ * @param {Place | null | undefined} place
+ * @returns {[number, number]} */
 function range(view, place) {
   const [first, last] = view.span ?? [view.time_s[0], view.time_s[view.time_s.length - 1]];
   if (!place) return [first, last];
@@ -82,19 +92,18 @@ function mark(place) {
 }
 
 /** Traces and layout of a view.
- * @param {any} view
+ * @param {PlotView} view
  * @param {string} leading key of the channel that is drawn first */
 function figure(view, leading) {
-  /** @type {any[]} */
+  /** @type {PlotTrace[]} */
   const traces = [];
   const layout = frame();
-  /** @type {any[]} */
-  const rows = view.rows?.map((/** @type {any} */ row) => ({ height: SIGNAL, ticks: 5, ...row })) ?? rowsOfRun(view, leading);
-  const inner = rows.reduce((/** @type {number} */ sum, /** @type {any} */ row) => sum + row.height + GAP, 0);
+  const rows = view.rows?.map((row) => ({ height: SIGNAL, ticks: 5, ...row })) ?? rowsOfRun(view, leading);
+  const inner = rows.reduce((sum, row) => sum + row.height + GAP, 0);
   layout.height = inner + layout.margin.b + TOP;
   let top = inner;
   const shown = new Set();
-  rows.forEach((/** @type {any} */ row, /** @type {number} */ index) => {
+  rows.forEach((row, index) => {
     const axis = index === 0 ? "y" : `y${index + 1}`;
     const high = (top - GAP) / inner, low = (top - GAP - row.height) / inner;
     top -= row.height + GAP;
@@ -117,35 +126,35 @@ function figure(view, leading) {
 }
 
 /** The rows of a run: each channel with its residual below it, and the currents.
- * @param {any} view
- * @param {string} leading */
+ * @param {PlotView} view
+ * @param {string} leading
+ * @returns {(PlotRow & {height: number})[]} */
 function rowsOfRun(view, leading) {
-  const channels = [...view.channels].sort((a, b) => Number(b.key === leading) - Number(a.key === leading));
+  const channels = [...view.channels ?? []].sort((a, b) => Number(b.key === leading) - Number(a.key === leading));
   const share = shrink(channels.length);
   const names = { first: "first model", simulated: "simulated", second: "second model", ...view.names };
-  /** @type {any[]} */
-  const rows = channels.flatMap((/** @type {any} */ channel) => [
-    /** @type {any} */ ({ height: share * SIGNAL, title: heading(channel), unit: channel.unit, ticks: 5,
-      lines: signals(channel, names) }),
+  /** @type {(PlotRow & {height: number})[]} */
+  const rows = channels.flatMap((channel) => [
+    { height: share * SIGNAL, title: heading(channel), unit: channel.unit, ticks: 5, lines: signals(channel, names) },
     { height: share * RESIDUAL, title: `${channel.title}: measured − simulated`, unit: "σ",
       band: true, lines: residuals(channel, names) },
   ]);
   rows.push({ height: share * CURRENTS, title: "currents of the valves", unit: "A", lines: [
-    { name: "lift current", y: view.lift_current_a, colour: "lift", key: "lift", unit: "A" },
-    { name: "lowering current", y: view.lower_current_a, colour: "lower", key: "lower", dash: "dash", unit: "A" }] });
+    { name: "lift current", y: view.lift_current_a ?? [], colour: "lift", key: "lift", unit: "A" },
+    { name: "lowering current", y: view.lower_current_a ?? [], colour: "lower", key: "lower", dash: "dash", unit: "A" }] });
   return rows;
 }
 
-/** @param {any} channel */
+/** @param {RunChannel} channel */
 function heading(channel) {
   const second = channel.second ? `, second model ${sigmas(channel.second.error)} σ` : "";
   return `${channel.title}, error ${sigmas(channel.error)} σ${second}`;
 }
 
-/** @param {any} channel
+/** @param {RunChannel} channel
  * @param {{first: string, simulated: string, second: string}} names */
 function signals(channel, names) {
-  /** @type {any[]} */
+  /** @type {PlotLine[]} */
   const lines = [{ name: "measured", y: channel.measured, colour: "measured", key: "measured", width: 1 }];
   if (channel.first) lines.push({ name: names.first, y: channel.first, colour: "first", key: "first", dash: "dot" });
   if (channel.second) lines.push({ name: names.second, y: channel.second.simulated, ...SECOND });
@@ -153,10 +162,10 @@ function signals(channel, names) {
   return lines.map((line) => ({ ...line, unit: channel.unit, of: channel.title }));
 }
 
-/** @param {any} channel
+/** @param {RunChannel} channel
  * @param {{first: string, second: string}} names */
 function residuals(channel, names) {
-  /** @type {any[]} */
+  /** @type {PlotLine[]} */
   const lines = [];
   if (channel.first_residual) lines.push({ name: names.first, y: channel.first_residual, colour: "first", key: "first", dash: "dot" });
   if (channel.second) lines.push({ name: names.second, y: channel.second.residual, ...SECOND });
@@ -176,7 +185,7 @@ function shrink(channels) {
 }
 
 /** Everything of the layout that does not depend on the run.
- * @returns {any} */
+ * @returns {PlotLayout} */
 export function frame() {
   const touch = matchMedia("(pointer: coarse)").matches;
   const narrow = matchMedia("(max-width: 40rem)").matches;

@@ -1,7 +1,7 @@
 // @ts-check
 /** State of the page, and handlers of its controls. */
 import { connectLoop, followModel, redrawLoop } from "./closed_loop.js";
-import { byId, element, sigmas } from "./dom.js";
+import { byId, element, painted, sigmas } from "./dom.js";
 import { worstCell } from "./error_map.js";
 import { faultLines } from "./fault.js";
 import { connectFiles } from "./files.js";
@@ -9,7 +9,7 @@ import { drawMissing, drawRanking, insert } from "./missing.js";
 import { drawCourse, drawModel } from "./model_panel.js";
 import { endOverlay, listOverlay, refreshOverlay } from "./overlay.js";
 import { openForm } from "./own_term.js";
-import { drawRun, redrawRun } from "./run_plot.js";
+import { drawRun, loadLibrary, redrawRun } from "./run_plot.js";
 import { connectSecond, drawCompared } from "./second.js";
 import { Refused, ask, begin, follow, leave, post } from "./server.js";
 
@@ -37,9 +37,12 @@ async function open() {
   connectFiles(another);
   listRuns();
   draw();
-  await openForm(acts.run);
-  await showWorst();
+  await painted();
   performance.mark("first view");
+  loadLibrary();
+  await Promise.all([showWorst(), openForm(acts.run)]);
+  await painted();
+  performance.mark("plots");
   byId("views").dataset.ready = "";
   if (state.job) {
     await follow(hear, guarded(refresh));

@@ -25,9 +25,10 @@ export async function begin() {
     const state = await ask("state").catch(() => null);
     if (state) return state;
   }
-  session = (await post("begin", {})).session;
+  const begun = await post("begin", {});
+  session = begun.session;
   sessionStorage.setItem(KEPT, session);
-  return ask("state");
+  return begun.state;
 }
 
 /** Requests a view.
