@@ -1,10 +1,10 @@
-//! Formatting, the order of folders, lints and documentation, with warnings denied.
+//! Formatting, the order of folders, types of the scripts, lints and documentation, with warnings denied.
 
 use anyhow::Result;
 use arm_build::toolchain::Way;
 use arm_build::{process, setup, workspace};
 
-use crate::{ablation, documents, image, layers};
+use crate::{ablation, documents, image, layers, scripts};
 
 /// Runs all checks; the first that fails ends it.
 pub fn run(way: Option<Way>) -> Result<()> {
@@ -14,6 +14,7 @@ pub fn run(way: Option<Way>) -> Result<()> {
     layers::check()?;
     documents::check()?;
     ablation::check()?;
+    scripts::check()?;
     cargo(&[
         "clippy",
         "--locked",

@@ -11,6 +11,7 @@ mod image;
 mod layers;
 mod mutants;
 mod programming;
+mod scripts;
 mod seal;
 mod size;
 mod test;
@@ -25,7 +26,7 @@ const USAGE: &str = "\
 usage: cargo xtask <task> [--arm rustup|debian]
 
   test    set up what is missing, build the ARM images, run every test, say how many passed
-  check   formatting, the order of folders, clippy and rustdoc, with warnings denied
+  check   formatting, the order of folders, types of the scripts, clippy and rustdoc, with warnings denied
   ci      check, coverage, mutants, then test
   arm     build the ARM images, say how large they are, and hold them to their budgets
   sizes   write down how large the images are and how deep their stacks get, in firmware/sizes.txt

@@ -1,17 +1,14 @@
 // @ts-check
 /** A report on a screen: error map and plots in place of tables and pictures. */
 import { byId, element, sigmas } from "./dom.js";
-import { drawMap } from "./error_map.js";
+import { drawErrors } from "./error_map.js";
 import { drawRun } from "./run_plot.js";
 
 /** Distance below the window at which a plot is drawn, px. */
 const AHEAD = 300;
 
-/** As in run_plot.js.
- * @typedef {{from_s: number, to_s: number, channel?: string}} Place */
-
 /** The drawn plots with their data.
- * @type {Map<HTMLElement, any>} */
+ * @type {Map<HTMLElement, PlotView>} */
 const drawn = new Map();
 
 let printing = false;
@@ -21,14 +18,16 @@ let printing = false;
  * @param {Place | null | undefined} place */
 async function show(plotted, place) {
   const at = /** @type {HTMLElement} */ (plotted.querySelector(".plot"));
-  if (!drawn.has(plotted)) {
-    drawn.set(plotted, read(plotted));
+  let view = drawn.get(plotted);
+  if (!view) {
+    view = /** @type {PlotView} */ (read(plotted));
+    drawn.set(plotted, view);
     plotted.classList.add("drawn");
     if (plotted.closest(".run")) {
       at.before(element("button", { type: "button", class: "interactive", onclick: () => show(plotted, null) }, "Whole run"));
     }
   }
-  await drawRun(at, drawn.get(plotted), place);
+  await drawRun(at, view, place);
 }
 
 /** The data of an element.
@@ -45,27 +44,30 @@ function samples({ step, differences }) {
   return differences.map((difference) => (difference === null ? null : (sum += difference) * step));
 }
 
+/** The map of a model.
+ * @typedef {ErrorMap & {name: string}} Model */
+
 /** Draws the map of a model, and the buttons for the models.
- * @param {any[]} models
- * @param {any} shown */
+ * @param {Model[]} models
+ * @param {Model} shown */
 function drawModels(models, shown) {
-  const button = (/** @type {any} */ model) => element("button", { type: "button", "aria-pressed": model === shown,
+  const button = (/** @type {Model} */ model) => element("button", { type: "button", "aria-pressed": model === shown,
     onclick: () => drawModels(models, model) }, `Model ${model.name}`);
   byId("models").replaceChildren(...(models.length > 1 ? models.map(button) : []));
-  drawMap(shown, (cell) => visit(shown, cell));
+  drawErrors(shown, (cell) => visit(shown, cell));
 }
 
 /** Shows the run and the second in which a cell is worst.
- * @param {any} model
- * @param {any} cell */
+ * @param {Model} model
+ * @param {Cell} cell */
 async function visit(model, cell) {
   if (!cell.worst) return;
   const run = /** @type {HTMLDetailsElement} */ (byId(`run-${cell.worst.run}`));
   run.open = true;
-  const channel = model.channels.find((/** @type {any} */ one) => one.key === cell.channel);
+  const channel = model.channels.find((one) => one.key === cell.channel);
   const { from_s, to_s, error } = cell.worst;
   /** @type {HTMLElement} */ (run.querySelector("output")).textContent =
-    `Worst for ${channel.title}, ${cell.part}: ${from_s.toFixed(1)} to ${to_s.toFixed(1)} s, ${sigmas(error)} σ`;
+    `Worst for ${channel?.title ?? cell.channel}, ${cell.part}: ${from_s.toFixed(1)} to ${to_s.toFixed(1)} s, ${sigmas(error)} σ`;
   const plotted = /** @type {HTMLElement} */ (run.querySelector(".plotted"));
   if (plotted.querySelector(".plot")) await show(plotted, cell.worst);
   run.scrollIntoView();

@@ -8,15 +8,26 @@ const DARKEST = 30;
 let grouping = "regime";
 
 /** Look of a cell and of the sum of a channel.
- * @typedef {{cell: (cell: any, channel: any) => {text: string, background: string, label: string, hint: string},
- *   sum: (channel: any) => string}} Look */
+ * @template {Group} C
+ * @template {Channel} H
+ * @typedef {{cell: (cell: C, channel: H) => {text: string, background: string, label: string, hint: string},
+ *   sum: (channel: H) => string}} Look */
 
-/** Draws the map; `visit` is called with the selected cell.
- * @param {any} state
- * @param {(cell: any) => void} visit
- * @param {Look} [look] */
-export function drawMap(state, visit, look = ERRORS) {
-  const buttons = state.groupings.map((/** @type {any} */ one) =>
+/** Draws the map of the errors of a model; `visit` is called with the selected cell.
+ * @param {ErrorMap} state
+ * @param {(cell: Cell) => void} visit */
+export function drawErrors(state, visit) {
+  drawMap(state, visit, ERRORS);
+}
+
+/** Draws a map; `visit` is called with the selected cell.
+ * @template {Group} C
+ * @template {Channel} H
+ * @param {ErrorMap<C, H>} state
+ * @param {(cell: C) => void} visit
+ * @param {Look<C, H>} look */
+export function drawMap(state, visit, look) {
+  const buttons = state.groupings.map((one) =>
     element("button", {
       type: "button",
       "aria-pressed": one.by === grouping,
@@ -27,27 +38,30 @@ export function drawMap(state, visit, look = ERRORS) {
 }
 
 /** The cell of the map with the largest error.
- * @param {any} state */
+ * @param {ErrorMap} state
+ * @returns {Cell | null} */
 export function worstCell(state) {
-  const cells = state.cells.filter((/** @type {any} */ cell) => cell.by === grouping && cell.error !== null);
-  return cells.reduce((/** @type {any} */ worst, /** @type {any} */ cell) =>
-    worst === null || cell.error > worst.error ? cell : worst, null);
+  const error = (/** @type {Cell | null} */ cell) => cell?.error ?? -Infinity;
+  const cells = state.cells.filter((cell) => cell.by === grouping && cell.error !== null);
+  return cells.reduce((worst, cell) => (error(cell) > error(worst) ? cell : worst), /** @type {Cell | null} */ (null));
 }
 
-/** @param {any} state
- * @param {(cell: any) => void} visit
- * @param {Look} look */
+/** @template {Group} C
+ * @template {Channel} H
+ * @param {ErrorMap<C, H>} state
+ * @param {(cell: C) => void} visit
+ * @param {Look<C, H>} look */
 function table(state, visit, look) {
-  const cells = state.cells.filter((/** @type {any} */ cell) => cell.by === grouping);
-  const parts = [...new Set(cells.map((/** @type {any} */ cell) => cell.part))];
-  const heads = state.channels.map((/** @type {any} */ channel) => element("th", { scope: "col" }, channel.title));
+  const cells = state.cells.filter((cell) => cell.by === grouping);
+  const parts = [...new Set(cells.map((cell) => cell.part))];
+  const heads = state.channels.map((channel) => element("th", { scope: "col" }, channel.title));
   const row = (/** @type {string} */ part) => element("tr", {}, element("th", { scope: "row" }, part),
-    ...state.channels.map((/** @type {any} */ channel) => {
-      const cell = cells.find((/** @type {any} */ one) => one.part === part && one.channel === channel.key);
+    ...state.channels.map((channel) => {
+      const cell = cells.find((one) => one.part === part && one.channel === channel.key);
       return cell ? element("td", {}, button(look.cell(cell, channel), () => visit(cell))) : element("td", { class: "none" }, "–");
     }));
   const total = element("tr", {}, element("th", { scope: "row" }, "all"),
-    ...state.channels.map((/** @type {any} */ channel) => element("td", { class: "none" }, look.sum(channel))));
+    ...state.channels.map((channel) => element("td", { class: "none" }, look.sum(channel))));
   return element("table", {},
     element("thead", {}, element("tr", {}, element("th", {}, "σ"), ...heads)),
     element("tbody", {}, ...parts.map(row), total));
@@ -67,11 +81,11 @@ export function depth(ratio) {
 }
 
 /** The error of one model.
- * @type {Look} */
+ * @type {Look<Cell, Channel>} */
 const ERRORS = {
   cell: (cell, channel) => ({
     text: sigmas(cell.error),
-    background: `rgba(var(--heat), ${depth(cell.error)})`,
+    background: `rgba(var(--heat), ${depth(cell.error ?? 1)})`,
     label: `${channel.title}, ${cell.part}: error ${sigmas(cell.error)} sigma; show the largest error`,
     hint: `${cell.samples} samples`,
   }),

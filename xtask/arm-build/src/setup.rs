@@ -1,4 +1,4 @@
-//! Finds the ARM tools and a browser, and installs missing ones if this is possible without interaction.
+//! Finds the ARM tools, a browser and Node.js, and installs missing ones if this is possible without interaction.
 
 use std::path::Path;
 
@@ -12,6 +12,9 @@ pub const EMULATOR: &str = "qemu-system-arm";
 
 /// The browser for the tests of the page of `hitch serve`.
 pub const BROWSER: &str = "chromium";
+
+/// Node.js and its package manager: programs, and Debian's packages.
+const NODE: [(&str, &str); 2] = [("node", "nodejs"), ("npm", "npm")];
 
 const DEBIAN_TOOLCHAIN: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
 
@@ -59,6 +62,20 @@ pub fn browser() -> Result<()> {
     let version =
         version_of(BROWSER).with_context(|| format!("{BROWSER} is installed, but does not run"))?;
     println!("browser: {version}");
+    Ok(())
+}
+
+/// Finds or installs Node.js, which the TypeScript compiler runs on, with its package manager.
+pub fn node() -> Result<()> {
+    for (program, package) in NODE {
+        if version_of(program).is_none() {
+            install_packages(&[package])
+                .with_context(|| format!("no {program}: install Debian's package {package}"))?;
+        }
+        let version = version_of(program)
+            .with_context(|| format!("{program} is installed, but does not run"))?;
+        println!("{program}: {version}");
+    }
     Ok(())
 }
 

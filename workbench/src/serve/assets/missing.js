@@ -5,13 +5,13 @@ import { byId, element, number, sigmas } from "./dom.js";
 /** Explained share or confidence below which an effect is not detectable. */
 const SIGN = 0.005;
 
-/** @typedef {(task: any) => void} Run */
+/** @typedef {(task: Task) => void} Run */
 
 /** Actions of the panel, and the name of the effect whose signature is drawn.
- * @typedef {{run: Run, sign: (effect: any) => void, signed: string}} Acts */
+ * @typedef {{run: Run, sign: (effect: Effect) => void, signed: string | undefined}} Acts */
 
 /** Draws ranking and explanation of a state.
- * @param {any} state
+ * @param {State} state
  * @param {Acts} acts */
 export function drawMissing(state, acts) {
   byId("explained").replaceChildren(...(state.explained ? explanation(state.explained, state.effects.length > 0, acts.run) : []));
@@ -21,13 +21,14 @@ export function drawMissing(state, acts) {
 }
 
 /** Draws the candidates evaluated so far.
- * @param {any[]} candidates
+ * @param {Candidate[]} candidates
  * @param {Acts} acts
  * @param {string | null} [next] */
 export function drawRanking(candidates, acts, next = null) {
-  const shows = (/** @type {any} */ one) => one.explains >= SIGN || (one.confidence ?? 0) >= SIGN;
+  const shows = (/** @type {Candidate} */ one) => one.explains >= SIGN || (one.confidence ?? 0) >= SIGN;
   const seen = candidates.filter(shows);
   const unseen = candidates.filter((one) => !shows(one));
+  /** @type {HTMLElement[]} */
   const parts = [element("h3", {}, "Each effect alone"), ...seen.map((one) => candidate(one, acts))];
   if (candidates.length > 0 && seen.length === 0) parts.push(element("p", {}, "No effect is detectable in these data."));
   if (next) parts.push(element("p", {}, `Experiment that separates them: ${next}.`));
@@ -39,8 +40,8 @@ export function drawRanking(candidates, acts, next = null) {
 }
 
 /** Adds an evaluated candidate: the best form of each effect, the best effect first.
- * @param {any[]} candidates
- * @param {any} tried */
+ * @param {Candidate[]} candidates
+ * @param {Candidate} tried */
 export function insert(candidates, tried) {
   const others = candidates.filter((one) => one.effect.id !== tried.effect.id);
   const own = candidates.filter((one) => one.effect.id === tried.effect.id);
@@ -48,7 +49,7 @@ export function insert(candidates, tried) {
   return [...others, best].sort((a, b) => a.error_after - b.error_after);
 }
 
-/** @param {any} one
+/** @param {Candidate} one
  * @param {Acts} acts */
 function candidate(one, acts) {
   const add = element("button", { type: "button", class: "add", "aria-label": `Add ${one.effect.title}`,
@@ -71,39 +72,39 @@ function candidate(one, acts) {
     ...twins(one), details(one.effect));
 }
 
-/** @param {any} one */
+/** @param {{parameters: Estimated[]}} one */
 function parameters(one) {
-  const shown = (/** @type {any} */ p) => {
+  const shown = (/** @type {Estimated} */ p) => {
     const interval = p.low === null || p.high === null ? "" : ` (95 %: ${number(p.low)} to ${number(p.high)})`;
     return `${p.name} ${number(p.value)} ${p.unit}`.trim() + interval;
   };
   return one.parameters.map(shown).join(", ");
 }
 
-/** @param {any} one */
+/** @param {{indistinguishable?: string[]}} one */
 function twins(one) {
   if (!one.indistinguishable?.length) return [];
   return [element("div", { class: "values" }, `On these data, indistinguishable from ${one.indistinguishable.join(", ")}.`)];
 }
 
-/** @param {any} effect */
+/** @param {Effect} effect */
 function details(effect) {
   return element("details", {}, element("summary", {}, "Equation, visibility, source"),
     element("code", { class: "equation" }, effect.equation), element("p", {}, `Shows: ${effect.shows}.`),
     element("p", {}, `Source: ${effect.source}.`));
 }
 
-/** @param {any} found
+/** @param {Explained} found
  * @param {boolean} keeps whether the model has effects already
  * @param {Run} run */
 function explanation(found, keeps, run) {
-  const boxes = found.steps.map((/** @type {any} */ step) => /** @type {HTMLInputElement} */ (
-    element("input", { type: "checkbox", checked: true, "aria-label": `Accept ${step.effect.title}` })));
+  const boxes = found.steps.map((step) =>
+    element("input", { type: "checkbox", checked: true, "aria-label": `Accept ${step.effect.title}` }));
   const take = element("button", { type: "button", class: "main", id: "adopt", onclick: () => {
-    const steps = boxes.map((/** @type {any} */ box, /** @type {number} */ index) => (box.checked ? index : -1));
-    run({ task: "adopt", steps: steps.filter((/** @type {number} */ index) => index >= 0) });
+    const steps = boxes.map((box, index) => (box.checked ? index : -1));
+    run({ task: "adopt", steps: steps.filter((index) => index >= 0) });
   } }, "Accept the selected steps");
-  const parts = found.steps.map((/** @type {any} */ step, /** @type {number} */ index) => accepted(step, boxes[index]));
+  const parts = found.steps.map((step, index) => accepted(step, boxes[index]));
   return [element("h3", {}, "Explanation"),
     element("p", {}, element("strong", {}, `Verdict: ${found.verdict}. `), found.meaning), ...(keeps ? [element("p", {},
       "Effects of the model are kept; only their sizes may change. Remove an effect to have it re-examined.")] : []),
@@ -118,19 +119,19 @@ function explanation(found, keeps, run) {
 }
 
 /** The corrected constants of the base model.
- * @param {any} found */
+ * @param {Constants} found */
 function constants(found) {
   const percent = (/** @type {number} */ share) => `${share >= 0 ? "+" : ""}${(100 * share).toFixed(1)}`;
-  const moved = found.moved.map((/** @type {any} */ one) => element("li", {},
+  const moved = found.moved.map((one) => element("li", {},
     `${one.name}: ${number(one.declared)} → ${number(one.fitted)} ${one.unit} (95 %: ${number(one.low)} to ${number(one.high)})`));
-  const curves = found.curves.map((/** @type {any} */ one) => element("li", {},
+  const curves = found.curves.map((one) => element("li", {},
     `${one.valve}: flow ${percent(one.low)} to ${percent(one.high)} % of the declared curve`));
   return element("div", { class: "effect", id: "constants" }, element("h3", {}, "Constants of the model"),
     element("p", {}, found.sentence), element("ul", {}, ...curves, ...moved));
 }
 
 /** The suggested term for the remaining error.
- * @param {any} term
+ * @param {Suggested} term
  * @param {Run} run */
 function suggested(term, run) {
   const replaces = term.replaces.length ? [element("p", {}, `It replaces ${term.replaces.join(", ")}.`)] : [];
@@ -143,7 +144,7 @@ function suggested(term, run) {
       "Accept the explanation with this term"));
 }
 
-/** @param {any} step
+/** @param {ExplainedStep} step
  * @param {HTMLInputElement} box */
 function accepted(step, box) {
   const was = step.changed_from === null ? "" : `, changed from ${number(step.changed_from)}`;

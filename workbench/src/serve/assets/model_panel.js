@@ -13,10 +13,10 @@ const REST_MS = 500;
 /** Range of a parameter without limits, in scales to either side. */
 const SCALES = 5;
 
-/** @typedef {{go: (at: number) => void, run: (task: any) => void, preview: (trial: any) => void}} Acts */
+/** @typedef {{go: (at: number) => void, run: (task: Task) => void, preview: (trial: Trial) => void}} Acts */
 
 /** Draws the panel.
- * @param {any} state
+ * @param {State} state
  * @param {Acts} acts */
 export function drawModel(state, acts) {
   const undo = /** @type {HTMLButtonElement} */ (byId("undo"));
@@ -25,31 +25,31 @@ export function drawModel(state, acts) {
   redo.disabled = state.at + 1 >= state.steps.length;
   /** @type {HTMLButtonElement} */ (byId("fit")).disabled = state.effects.length === 0;
   /** @type {HTMLAnchorElement} */ (byId("save")).href = address("model");
-  byId("steps").replaceChildren(...state.steps.map((/** @type {any} */ step, /** @type {number} */ index) =>
+  byId("steps").replaceChildren(...state.steps.map((step, index) =>
     element("li", { class: index > state.at ? "undone" : null }, element("button", { type: "button",
       "aria-current": index === state.at ? "step" : null, onclick: () => acts.go(index) },
     `${step.title}: ${sigmas(step.error)} σ` +
       (step.held_out === null ? "" : ` (${sigmas(step.held_out)} σ on held-out runs)`)))));
   const focused = document.activeElement?.id;
-  byId("effects").replaceChildren(...state.effects.map((/** @type {any} */ added, /** @type {number} */ index) =>
+  byId("effects").replaceChildren(...state.effects.map((added, index) =>
     effect(added, index, acts)));
   if (focused && /^(slider|fix)-/.test(focused)) document.getElementById(focused)?.focus();
   drawCourse(state, []);
 }
 
 /** Draws the error over the steps, and that of a running fit.
- * @param {any} state
+ * @param {State} state
  * @param {{fraction: number, error: number}[]} live */
 export async function drawCourse(state, live) {
   const plotly = await library;
   const done = state.steps.slice(0, state.at + 1);
-  const x = done.map((/** @type {any} */ _, /** @type {number} */ index) => index);
+  const x = done.map((_, index) => index);
   const last = state.at;
   const line = { color: colour("simulated"), width: 2 };
   const traces = [
-    { type: "scatter", mode: "lines+markers", name: "all runs", x, y: done.map((/** @type {any} */ step) => step.error), line },
+    { type: "scatter", mode: "lines+markers", name: "all runs", x, y: done.map((step) => step.error), line },
     { type: "scatter", mode: "markers", name: "held-out runs", x,
-      y: done.map((/** @type {any} */ step) => step.held_out), marker: { color: colour("first"), size: 10, symbol: "diamond-open" } },
+      y: done.map((step) => step.held_out), marker: { color: colour("first"), size: 10, symbol: "diamond-open" } },
     { type: "scatter", mode: "lines+markers", name: "running fit", x: [last, ...live.map((one) => last + one.fraction)],
       y: [state.error, ...live.map((one) => one.error)], line: { ...line, color: colour("residual"), dash: "dot" },
       visible: live.length > 0 },
@@ -69,13 +69,13 @@ export async function drawCourse(state, live) {
   }, { displayModeBar: false, responsive: true });
 }
 
-/** @param {any} added
+/** @param {AddedEffect} added
  * @param {number} index
  * @param {Acts} acts */
 function effect(added, index, acts) {
   const remove = element("button", { type: "button", "aria-label": `Take ${added.effect.title} away`,
     onclick: () => acts.run({ task: "remove", effect: index }) }, "Remove");
-  const parameters = added.parameters.map((/** @type {any} */ parameter, /** @type {number} */ place) =>
+  const parameters = added.parameters.map((parameter, place) =>
     slider(added, parameter, { effect: index, parameter: place }, acts));
   return element("div", { class: "effect" },
     element("div", { class: "row" }, element("h3", {}, added.effect.title), remove),
@@ -86,16 +86,16 @@ function effect(added, index, acts) {
  * @type {ReturnType<typeof setTimeout> | undefined} */
 let resting;
 
-/** @param {any} added
- * @param {any} parameter
+/** @param {AddedEffect} added
+ * @param {AddedParameter} parameter
  * @param {{effect: number, parameter: number}} where
  * @param {Acts} acts */
 function slider(added, parameter, where, acts) {
   const shown = (/** @type {number} */ value) => `${number(value, 4)} ${parameter.unit}`.trim();
   const output = element("output", {}, shown(parameter.value));
-  const input = /** @type {HTMLInputElement} */ (element("input", { type: "range", min: 0, max: POSITIONS, step: 1,
+  const input = element("input", { type: "range", min: 0, max: POSITIONS, step: 1,
     id: `slider-${where.effect}-${where.parameter}`, value: position(parameter), "aria-label": `${parameter.name} of ${added.effect.title}, ${parameter.unit}`,
-    title: parameter.meaning }));
+    title: parameter.meaning });
   const value = () => valueAt(parameter, Number(input.value));
   const say = () => input.setAttribute("aria-valuetext", shown(value()));
   input.addEventListener("input", () => {
@@ -109,21 +109,21 @@ function slider(added, parameter, where, acts) {
     resting = setTimeout(() => acts.run({ task: "set", ...where, value: value() }), REST_MS);
   });
   input.setAttribute("aria-valuetext", shown(parameter.value));
-  const fix = /** @type {HTMLInputElement} */ (element("input", { type: "checkbox", id: `fix-${where.effect}-${where.parameter}`,
+  const fix = element("input", { type: "checkbox", id: `fix-${where.effect}-${where.parameter}`,
     checked: parameter.fixed, "aria-label": `Fix ${parameter.name} of ${added.effect.title} in fits`,
-    onchange: () => acts.run({ task: "fix", ...where, fixed: fix.checked }) }));
+    onchange: () => acts.run({ task: "fix", ...where, fixed: fix.checked }) });
   return element("div", { class: "fixable" },
     element("label", { class: "parameter" }, element("span", {}, parameter.name), input, output),
     element("label", { class: "fix", title: "A fixed parameter keeps its value in fits" }, fix, " fixed"));
 }
 
-/** @param {any} parameter */
+/** @param {AddedParameter} parameter */
 function ends(parameter) {
   const reach = SCALES * parameter.scale;
   return [parameter.low ?? parameter.value - reach, parameter.high ?? parameter.value + reach];
 }
 
-/** @param {any} parameter */
+/** @param {AddedParameter} parameter */
 function position(parameter) {
   const [low, high] = ends(parameter);
   const share = parameter.by_magnitude ? Math.log(parameter.value / low) / Math.log(high / low)
@@ -131,7 +131,7 @@ function position(parameter) {
   return Math.round(POSITIONS * Math.min(1, Math.max(0, share)));
 }
 
-/** @param {any} parameter
+/** @param {AddedParameter} parameter
  * @param {number} place */
 function valueAt(parameter, place) {
   const [low, high] = ends(parameter);

@@ -26,7 +26,7 @@ const HUE = 137.508;
 /** The ticked runs. @type {Set<number>} */
 const ticked = new Set();
 
-/** Views of runs of the present model. @type {Map<number, any>} */
+/** Views of runs of the present model. @type {Map<number, RunView>} */
 const views = new Map();
 
 /** Range of the time when zoomed, s. @type {[number, number] | null} */
@@ -35,20 +35,23 @@ let zoomed = null;
 /** Counts the requests, so that only the latest is drawn. */
 let latest = 0;
 
-/** What is drawn. @type {{rows: any[], runs: [number, any][], range: [number, number]} | null} */
+/** A row of the plot, with its place in px and the range of its values.
+ * @typedef {{key: string, title: string, unit: string, top: number, height: number, range: [number, number]}} Row */
+
+/** What is drawn. @type {{rows: Row[], runs: [number, RunView][], range: [number, number]} | null} */
 let drawn = null;
 
 /** Lists the runs of a campaign, which is also the legend; none is ticked.
- * @param {any} state
+ * @param {State} state
  * @param {(error: unknown) => void} fail */
 export function listOverlay(state, fail) {
   views.clear();
-  const entry = (/** @type {any} */ run, /** @type {number} */ index) => {
-    const box = /** @type {HTMLInputElement} */ (element("input", { type: "checkbox", value: index, onchange: () => {
+  const entry = (/** @type {State["runs"][number]} */ run, /** @type {number} */ index) => {
+    const box = element("input", { type: "checkbox", value: index, onchange: () => {
       if (box.checked) ticked.add(index);
       else ticked.delete(index);
       update().catch(fail);
-    } }));
+    } });
     return element("label", { title: run.conditions }, box, element("span", { class: "swatch", style: `background: ${hue(index)}`, "data-run": index }),
       run.file);
   };
@@ -114,31 +117,34 @@ async function update() {
     return;
   }
   const began = performance.now();
-  const at = /** @type {any} */ (byId("overlay-plot"));
-  const runs = /** @type {[number, any][]} */ (chosen.map((run) => [run, views.get(run)]));
-  const { traces, layout, rows } = figure(runs);
+  const at = /** @type {Plotted} */ (byId("overlay-plot"));
+  const runs = chosen.flatMap((run) => {
+    const view = views.get(run);
+    return view ? [/** @type {[number, RunView]} */ ([run, view])] : [];
+  });
+  const { traces, layout, rows, range } = figure(runs);
   await plotly.react(at, traces, layout, { displaylogo: false, responsive: true,
     modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] });
   connect(at);
-  drawn = { rows, runs, range: layout.xaxis.range };
+  drawn = { rows, runs, range };
   paint();
   // Ends when the frame has been painted.
   requestAnimationFrame(() => setTimeout(() => performance.measure("overlay", { start: began })));
 }
 
 /** Redraws the lines whenever the time axis or the size of the plot changes.
- * @param {any} at */
+ * @param {Plotted} at */
 function connect(at) {
   if (at.dataset.connected) return;
   at.dataset.connected = "true";
   const zoom = () => {
+    if (!drawn || !at.layout) return;
     const [from, to] = at.layout.xaxis.range;
-    if (!drawn) return;
     zoomed = drawn.range = [Number(from), Number(to)];
     paint();
   };
   at.on("plotly_relayout", zoom);
-  at.on("plotly_relayouting", (/** @type {any} */ change) => {
+  at.on("plotly_relayouting", (change) => {
     const [from, to] = [change["xaxis.range[0]"], change["xaxis.range[1]"]];
     if (!drawn || from === undefined) return;
     drawn.range = [Number(from), Number(to)];
@@ -149,41 +155,43 @@ function connect(at) {
 }
 
 /** Axes of the channels of some runs.
- * @param {[number, any][]} runs */
+ * @param {[number, RunView][]} runs */
 function figure(runs) {
   const layout = frame();
-  /** @type {any[]} */
-  const rows = [];
+  /** @type {Map<string, RunChannel>} */
+  const channels = new Map();
   for (const channel of runs.flatMap(([, view]) => view.channels)) {
-    if (!rows.some((row) => row.key === channel.key)) rows.push({ key: channel.key, title: channel.title, unit: channel.unit });
+    if (!channels.has(channel.key)) channels.set(channel.key, channel);
   }
-  const inner = rows.length * (ROW + GAP);
+  const inner = channels.size * (ROW + GAP);
   Object.assign(layout, { height: inner + MARGIN.t + MARGIN.b, margin: MARGIN, showlegend: false, hovermode: false });
   const longest = Math.max(...runs.map(([, { time_s }]) => time_s[time_s.length - 1] - time_s[0]));
-  Object.assign(layout.xaxis, { range: zoomed ?? [0, longest], title: { text: "time from the start of the run, s" },
-    anchor: rows.length === 1 ? "y" : `y${rows.length}` });
-  rows.forEach((row, index) => {
+  const range = /** @type {[number, number]} */ (zoomed ?? [0, longest]);
+  Object.assign(layout.xaxis, { range, title: { text: "time from the start of the run, s" },
+    anchor: channels.size === 1 ? "y" : `y${channels.size}` });
+  const rows = [...channels.values()].map(({ key, title, unit }, index) => {
     const axis = index === 0 ? "" : String(index + 1);
     const high = 1 - (index * (ROW + GAP) + GAP) / inner, low = Math.max(0, high - ROW / inner);
-    Object.assign(row, { top: MARGIN.t + (1 - high) * inner, height: (high - low) * inner, range: extent(runs, row.key) });
+    const row = { key, title, unit, top: MARGIN.t + (1 - high) * inner, height: (high - low) * inner, range: extent(runs, key) };
     layout[`yaxis${axis}`] = { ...ordinate(row.unit, low, high, 5), range: row.range };
     layout.annotations.push({ text: row.title, x: 0, xref: "paper", xanchor: "left", y: high, yref: "paper", yanchor: "bottom",
       showarrow: false, font: { size: 12, color: colour("ink") } });
+    return row;
   });
   // The library draws an axis only if a trace has it.
   const traces = rows.map((_, index) => ({ type: "scatter", mode: "lines", x: [0], y: [null],
     yaxis: index === 0 ? "y" : `y${index + 1}` }));
-  return { traces, layout, rows };
+  return { traces, layout, rows, range };
 }
 
 /** Range of a channel over some runs.
- * @param {[number, any][]} runs
+ * @param {[number, RunView][]} runs
  * @param {string} key
  * @returns {[number, number]} */
 function extent(runs, key) {
   let low = Infinity, high = -Infinity;
   for (const [, view] of runs) {
-    const channel = view.channels.find((/** @type {any} */ one) => one.key === key);
+    const channel = view.channels.find((one) => one.key === key);
     for (const values of channel ? [channel.measured, channel.simulated] : []) {
       for (const value of values) {
         if (value === null) continue;
@@ -218,7 +226,7 @@ function paint() {
     const up = row.height / (row.range[1] - row.range[0]);
     const place = { across, left: MARGIN.l - from * across, up, bottom: row.top + row.height + row.range[0] * up };
     for (const [run, view] of drawn.runs) {
-      const channel = view.channels.find((/** @type {any} */ one) => one.key === row.key);
+      const channel = view.channels.find((one) => one.key === row.key);
       if (!channel) continue;
       pen.strokeStyle = hue(run);
       line(pen, view.time_s, channel.measured, place, 1, []);

@@ -14,7 +14,7 @@ const FIELDS = /** @type {[string, string, boolean, string][]} */ ([["name", "na
 let resting;
 
 /** Fills the form with the elements offered by the server.
- * @param {(task: any) => void} run */
+ * @param {(task: Task) => void} run */
 export async function openForm(run) {
   const offered = await ask("formulas");
   byId("term-place").replaceChildren(...offered.places.map((/** @type {any} */ place) =>

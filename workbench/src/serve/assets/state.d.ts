@@ -1,0 +1,194 @@
+/** What the server sends to the page, as JSON: `serve/views.rs`, `serve/views/` and `serve/upload/proposal.rs`. */
+
+/** State of a tab. */
+interface State extends ErrorMap<Cell, MeasuredChannel> {
+  campaign: string;
+  description: string;
+  model: string;
+  runs: { file: string; conditions: string }[];
+  /** Error of all channels, sigma. */
+  error: number;
+  second: SecondModel | null;
+  steps: Step[];
+  /** Index of the present step. */
+  at: number;
+  effects: AddedEffect[];
+  ranking: Ranking | null;
+  explained: Explained | null;
+  /** Title of the running computation. */
+  job: string | null;
+}
+
+interface MeasuredChannel extends Channel {
+  unit: string;
+  /** One sigma, in the unit. */
+  noise: number;
+}
+
+interface Step {
+  title: string;
+  error: number;
+  held_out: number | null;
+}
+
+interface BeforeAfter {
+  /** Errors in sigma. */
+  before: number;
+  after: number;
+}
+
+/** Comparison with a second model. */
+interface SecondModel extends BeforeAfter {
+  title: string;
+  model: string;
+  step: number | null;
+  is_after: boolean;
+  is_present: boolean;
+  has_other_linkage: boolean;
+  channels: (BeforeAfter & { key: string })[];
+  changes: Change[];
+  cells: Cell[];
+}
+
+type Change = Group & BeforeAfter;
+
+type ComparedChannel = MeasuredChannel & BeforeAfter;
+
+interface Effect {
+  /** Name with its form. */
+  name: string;
+  id: string;
+  title: string;
+  equation: string;
+  shows: string;
+  source: string;
+}
+
+interface AddedEffect {
+  effect: Effect;
+  parameters: AddedParameter[];
+}
+
+/** A parameter with the range of its slider. */
+interface AddedParameter {
+  fixed: boolean;
+  name: string;
+  unit: string;
+  meaning: string;
+  value: number;
+  low: number | null;
+  high: number | null;
+  scale: number;
+  by_magnitude: boolean;
+}
+
+/** An estimate with its 95 % interval. */
+interface Estimated {
+  name: string;
+  unit: string;
+  value: number;
+  low: number | null;
+  high: number | null;
+}
+
+interface Candidate {
+  effect: Effect;
+  /** Share of the error above the noise, 0 to 1. */
+  explains: number;
+  error_after: number;
+  /** Absent while others are being evaluated. */
+  confidence?: number;
+  in_words?: string;
+  indistinguishable?: string[];
+  parameters: Estimated[];
+}
+
+interface Ranking {
+  error_before: number;
+  candidates: Candidate[];
+  next_experiment: string | null;
+  constants_hint: string | null;
+}
+
+interface ExplainedStep {
+  effect: Effect;
+  changed_from: number | null;
+  error_before: number;
+  error_after: number;
+  held_out_after: number | null;
+  confidence: number;
+  in_words: string;
+  indistinguishable: string[];
+  parameters: Estimated[];
+}
+
+interface Explained {
+  verdict: string;
+  meaning: string;
+  constants: Constants | null;
+  steps: ExplainedStep[];
+  suggested: Suggested | null;
+  not_visible: string[];
+  next_experiment: string | null;
+}
+
+/** Corrected constants of the base model. */
+interface Constants {
+  sentence: string;
+  moved: { name: string; unit: string; declared: number; fitted: number; low: number | null; high: number | null }[];
+  curves: { valve: string; low: number; high: number }[];
+}
+
+interface Suggested {
+  place: string;
+  formula: string;
+  parameters: Estimated[];
+  held_out_before: number | null;
+  held_out_after: number | null;
+  replaces: string[];
+}
+
+/** A computation: its kind, and its arguments. */
+type Task = { task: string } & Record<string, unknown>;
+
+/** A value of a parameter that is tried. */
+interface Trial {
+  effect: number;
+  parameter: number;
+  value: number;
+}
+
+/** Progress of a computation. */
+type Message = { kind: "progress"; text: string; fraction: number | null; error: number | null }
+  | { kind: "candidate"; candidate: Candidate; fraction: number }
+  | { kind: "done" }
+  | { kind: "failed"; text: string };
+
+/** The proposed assignment of logs. */
+interface Proposal {
+  name: string;
+  logs: ProposedLog[];
+  groups: ProposedGroup[];
+  signals: Signal[];
+}
+
+interface ProposedLog {
+  file: string;
+  load_kg: number | null;
+}
+
+interface Signal {
+  key: string;
+  unit: string;
+  units: string[];
+}
+
+/** Logs with equal columns. */
+interface ProposedGroup {
+  files: string[];
+  times: boolean;
+  own_units: boolean;
+  columns: { name: string; unit: string | null }[];
+  taken: { channel: string; column: string; unit: string | null; reason: string; assumed: boolean }[];
+  untold: string | null;
+}
