@@ -79,18 +79,21 @@ function connectDrop() {
 }
 
 /** The files of a dropped file or folder.
- * @param {any} entry
+ * @param {FileSystemEntry} entry
  * @returns {Promise<Named[]>} */
 async function filesOf(entry) {
   if (entry.isFile) {
-    const file = await new Promise((resolve, reject) => entry.file(resolve, reject));
+    const single = /** @type {FileSystemFileEntry} */ (entry);
+    /** @type {File} */
+    const file = await new Promise((resolve, reject) => single.file(resolve, reject));
     return [{ name: entry.fullPath.replace(/^\//, ""), file }];
   }
-  const reader = entry.createReader();
+  const reader = /** @type {FileSystemDirectoryEntry} */ (entry).createReader();
   /** @type {Named[]} */
   const files = [];
   for (;;) {
     // A part of the entries at a time; the last part is empty.
+    /** @type {FileSystemEntry[]} */
     const part = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
     if (part.length === 0) return files;
     files.push(...(await Promise.all(part.map(filesOf))).flat());

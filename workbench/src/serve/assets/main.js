@@ -13,15 +13,16 @@ import { drawRun, loadLibrary, redrawRun } from "./run_plot.js";
 import { connectSecond, drawCompared } from "./second.js";
 import { Refused, ask, begin, follow, leave, post } from "./server.js";
 
-/** @type {any} */
-let state = null;
-/** @type {any} */
+/** Set before a control acts.
+ * @type {State} */
+let state;
+/** @type {RunView | null} */
 let view = null;
 /** Candidates of a ranking in progress.
- * @type {any[]} */
+ * @type {Candidate[]} */
 let tried = [];
 /** The candidate whose signature is drawn.
- * @type {any} */
+ * @type {Effect | null} */
 let signed = null;
 /** Errors of a running fit.
  * @type {{fraction: number, error: number}[]} */
@@ -97,11 +98,12 @@ const acts = {
     await post("go", { at });
     await refresh();
   }),
-  run: guarded(async (/** @type {any} */ task) => {
+  run: guarded(async (/** @type {Task} */ task) => {
     await launch(() => post("start", task), ["add", "term", "adopt"].includes(task.task));
   }),
   preview: guarded(preview),
-  sign: guarded(async (/** @type {any} */ effect) => {
+  sign: guarded(async (/** @type {Effect} */ effect) => {
+    if (!view) return;
     signed = signed?.name === effect.name ? null : effect;
     view = await look(view.run);
     draw();
@@ -132,12 +134,14 @@ async function launch(request, watched = false) {
 }
 
 /** A run, with the signature of the selected candidate.
- * @param {number} index */
+ * @param {number} index
+ * @returns {Promise<RunView>} */
 async function look(index) {
+  /** @type {RunView} */
   const run = await ask("run", { run: index });
   if (!signed) return run;
   const { channels } = await ask("signature", { run: index, effect: signed.name });
-  return { ...run, channels: run.channels.map((/** @type {any} */ channel, /** @type {number} */ at) =>
+  return { ...run, channels: run.channels.map((channel, at) =>
     ({ ...channel, ...channels[at] })) };
 }
 
@@ -147,28 +151,29 @@ function watch() {
   byId("model-title").focus({ preventScroll: true });
 }
 
-/** @type {any} */
+/** @type {Trial | null} */
 let wanted = null;
 let previewing = false;
 
 /** Redraws the run with a manually set parameter; during a request, only the latest value is queued.
- * @param {any} trial */
+ * @param {Trial} trial */
 async function preview(trial) {
   wanted = trial;
   if (previewing) return;
   previewing = true;
   try {
-    while (wanted) {
+    while (wanted && view) {
+      /** @type {Trial} */
       const next = wanted;
       wanted = null;
       const began = performance.now();
       const tried = await post("preview", { ...next, run: view.run });
       if (tried.run !== view.run) continue;
-      const channels = view.channels.map((/** @type {any} */ channel, /** @type {number} */ index) =>
+      const channels = view.channels.map((channel, index) =>
         ({ ...channel, ...tried.channels[index] }));
       await redrawRun(byId("plot"), { ...view, channels });
       performance.measure("redraw", { start: began });
-      const errors = channels.map((/** @type {any} */ one) => `${one.title} ${sigmas(one.error)} σ`);
+      const errors = channels.map((one) => `${one.title} ${sigmas(one.error)} σ`);
       byId("place").textContent = `This run: ${errors.join(", ")}`;
     }
   } finally {
@@ -177,7 +182,7 @@ async function preview(trial) {
 }
 
 /** Handles a progress message of a computation.
- * @param {any} message */
+ * @param {Message} message */
 function hear(message) {
   if (message.kind === "progress") {
     byId("job-text").textContent = `${byId("job").dataset.title}: ${message.text}`;
@@ -246,37 +251,37 @@ function guarded(work) {
 }
 
 function listRuns() {
-  const option = (/** @type {any} */ run, /** @type {number} */ index) =>
+  const option = (/** @type {State["runs"][number]} */ run, /** @type {number} */ index) =>
     element("option", { value: index }, `${run.file}, ${run.conditions}`);
   byId("run").replaceChildren(...state.runs.map(option));
   listOverlay(state, sayError);
 }
 
 /** Shows the stretch with the largest error of a cell.
- * @param {any} cell */
+ * @param {Group} cell */
 async function visit(cell) {
   const { run, stretch } = await ask("worst", { by: cell.by, part: cell.part, channel: cell.channel });
-  const channel = state.channels.find((/** @type {any} */ one) => one.key === cell.channel);
+  const channel = state.channels.find((one) => one.key === cell.channel);
   await show(run, stretch);
   byId("place").textContent =
-    `Worst for ${channel.title}, ${cell.part}: ${stretch.from_s.toFixed(1)} to ${stretch.to_s.toFixed(1)} s, ` +
+    `Worst for ${channel?.title ?? cell.channel}, ${cell.part}: ${stretch.from_s.toFixed(1)} to ${stretch.to_s.toFixed(1)} s, ` +
     `${sigmas(stretch.error)} σ`;
 }
 
 /** Shows the stretch that contributes most to the change of a cell.
- * @param {any} cell */
+ * @param {Group} cell */
 async function compare(cell) {
   const { run, stretch } = await ask("second/largest", { by: cell.by, part: cell.part, channel: cell.channel });
-  const channel = state.channels.find((/** @type {any} */ one) => one.key === cell.channel);
+  const channel = state.channels.find((one) => one.key === cell.channel);
   await show(run, stretch);
   byId("place").textContent =
-    `Largest change for ${channel.title}, ${cell.part}: ${stretch.from_s.toFixed(1)} to ${stretch.to_s.toFixed(1)} s, ` +
+    `Largest change for ${channel?.title ?? cell.channel}, ${cell.part}: ${stretch.from_s.toFixed(1)} to ${stretch.to_s.toFixed(1)} s, ` +
     `${sigmas(stretch.before)} → ${sigmas(stretch.after)} σ`;
 }
 
 /** Shows a run.
  * @param {number} index
- * @param {any} place */
+ * @param {Place | null} place */
 async function show(index, place) {
   endOverlay();
   view = await look(index);

@@ -9,7 +9,7 @@ const TITLES = { time_s: "time", lift_current_a: "lift current", lower_current_a
   rocker_angle_deg: "rocker angle", oil_temperature_c: "oil temperature" };
 
 /** Content of the table: functions that read it.
- * @type {() => any} */
+ * @type {() => Record<string, unknown>} */
 let read = () => ({});
 
 /** The edited assignment. */
@@ -19,26 +19,26 @@ export function assignment() {
 
 /** Draws a proposal.
  * @param {HTMLElement} at
- * @param {any} proposal */
+ * @param {Proposal | {campaign: string, runs: number}} proposal */
 export function drawProposal(at, proposal) {
-  if (proposal.campaign !== undefined) {
+  if ("campaign" in proposal) {
     read = () => ({});
     at.replaceChildren(element("p", {}, `Campaign ${proposal.campaign} with ${count(proposal.runs, "run")}.`));
     return;
   }
   const name = input({ value: proposal.name, autocomplete: "off" });
-  const groups = proposal.groups.map((/** @type {any} */ group) => table(group, proposal.signals));
+  const groups = proposal.groups.map((group) => table(group, proposal.signals));
   const logs = proposal.logs.map(stand);
   read = () => ({
     name: name.value,
-    groups: groups.map((/** @type {any} */ group) => group.read()),
-    logs: logs.map((/** @type {any} */ log) => log.read()),
+    groups: groups.map((group) => group.read()),
+    logs: logs.map((log) => log.read()),
   });
   at.replaceChildren(element("div", { class: "row" }, element("label", {}, "Name of the campaign ", name)),
-    ...groups.map((/** @type {any} */ group) => group.shown), element("h3", {}, "Logs"),
+    ...groups.map((group) => group.shown), element("h3", {}, "Logs"),
     element("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": "Test stand of each log" },
       element("table", {}, head(["log", "bench", "load or pressure"]),
-        element("tbody", {}, ...logs.map((/** @type {any} */ log) => log.shown)))));
+        element("tbody", {}, ...logs.map((log) => log.shown)))));
 }
 
 /** @param {number} number
@@ -70,8 +70,8 @@ function select(options, chosen, label) {
 }
 
 /** The table of logs with equal columns.
- * @param {any} group
- * @param {any[]} signals */
+ * @param {ProposedGroup} group
+ * @param {Signal[]} signals */
 function table(group, signals) {
   const wanted = signals.filter((signal) => group.times || signal.key !== "time_s");
   const rows = wanted.map((signal) => row(group, signal));
@@ -88,12 +88,12 @@ function table(group, signals) {
 }
 
 /** The row of a signal.
- * @param {any} group
- * @param {any} signal */
+ * @param {ProposedGroup} group
+ * @param {Signal} signal */
 function row(group, signal) {
-  const taken = group.taken.find((/** @type {any} */ one) => one.channel === signal.key);
+  const taken = group.taken.find((one) => one.channel === signal.key);
   const title = TITLES[signal.key] ?? signal.key;
-  const named = (/** @type {any} */ column) => /** @type {[string, string]} */ (
+  const named = (/** @type {ProposedGroup["columns"][number]} */ column) => /** @type {[string, string]} */ (
     [column.name, column.unit ? `${column.name} (${column.unit})` : column.name]);
   const column = select([["", "– none –"], ...group.columns.map(named)], taken?.column ?? "", `Column for ${title}`);
   const units = [...new Set([...signal.units, ...(taken?.unit ? [taken.unit] : [])])];
@@ -110,8 +110,8 @@ function row(group, signal) {
   };
   column.addEventListener("change", () => {
     // The unit that the log states for this column, if it is one of the signal.
-    const own = group.columns.find((/** @type {any} */ one) => one.name === column.value)?.unit;
-    unit.value = !group.own_units && units.includes(own) ? own : own || group.own_units || signal.key === "time_s" ? "" : signal.unit;
+    const own = group.columns.find((one) => one.name === column.value)?.unit;
+    unit.value = !group.own_units && own && units.includes(own) ? own : own || group.own_units || signal.key === "time_s" ? "" : signal.unit;
     edited();
   });
   unit.addEventListener("change", edited);
@@ -122,7 +122,7 @@ function row(group, signal) {
 }
 
 /** The row of a log's test stand.
- * @param {any} log */
+ * @param {ProposedLog} log */
 function stand(log) {
   const bench = select([["hitch", "hitch"], ["flow", "flow bench"]], "hitch", `Bench of ${log.file}`);
   const value = input({ type: "number", step: "any", min: 0, value: log.load_kg ?? "", "aria-label": `Load of ${log.file}, kg` });
@@ -131,7 +131,7 @@ function stand(log) {
     const isHitch = bench.value === "hitch";
     unit.textContent = isHitch ? "kg" : "bar";
     value.setAttribute("aria-label", isHitch ? `Load of ${log.file}, kg` : `Port pressure of ${log.file}, bar`);
-    value.value = isHitch ? log.load_kg ?? "" : "";
+    value.value = isHitch ? String(log.load_kg ?? "") : "";
   });
   const shown = element("tr", {}, element("th", { scope: "row" }, log.file), element("td", {}, bench),
     element("td", {}, value, " ", unit));

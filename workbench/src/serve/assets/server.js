@@ -73,7 +73,7 @@ async function answer(request) {
 }
 
 /** Follows the running computation of this tab. An idle tab has no connection, as browsers limit their number.
- * @param {(message: any) => void} hear
+ * @param {(message: Message) => void} hear
  * @param {() => void} reconnected
  * @returns {Promise<void>} settled as soon as no message can be missed */
 export function follow(hear, reconnected) {
