@@ -100,7 +100,7 @@ fn fitted_with(
 
 /// True value of a constant by its name in a model file; the sensors have no error.
 fn true_value(name: &str, truth: &Model) -> f64 {
-    if SENSORS.iter().any(|sensor| sensor.name == name) {
+    if SENSORS.iter().any(|sensor| sensor.effect == name) {
         return 0.0;
     }
     let mut constants: Constants = truth.constants().clone();
@@ -217,11 +217,11 @@ fn a_dynamic_model_that_is_off_leaves_noise() {
 /// Errors of the sensors beside constants that are off.
 #[test]
 fn errors_of_the_sensors_are_fitted() {
-    for (id, size) in [
-        ("pressure-sensor-offset", 1.5),
-        ("pressure-sensor-offset", -2.0),
-        ("angle-sensor-gain", 0.02),
-        ("angle-sensor-gain", -0.015),
+    for (id, size, shown) in [
+        ("pressure-sensor-offset", 1.5, 1.5),
+        ("pressure-sensor-offset", -2.0, -2.0),
+        ("angle-sensor-gain", 0.02, 2.0),
+        ("angle-sensor-gain", -0.015, -1.5),
     ] {
         let (_, fit) = fitted_with(740, Family::Steady, Plan::Lab, TYPICAL, Some((id, size)));
         println!(
@@ -230,11 +230,13 @@ fn errors_of_the_sensors_are_fitted() {
             fit.after.error()
         );
         let mut own = fit.constants.iter();
-        let own = own.find(|constant| constant.name.starts_with(id));
+        let own = own.find(|constant| constant.name == id);
         let own = own.expect("a sensor");
         println!("{own:?}");
         assert!(fit.after.error() <= NOISE && own.determined);
-        assert!((own.interval.0..=own.interval.1).contains(&size));
+        assert!((own.interval.0..=own.interval.1).contains(&shown));
+        let mut added = fit.model.effects.iter();
+        assert!(added.any(|added| added.effect.id() == id), "{id}");
     }
 }
 

@@ -6,9 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::base::descent::descend;
 use crate::base::normal::{BaseProblem, Normal, Point, RunColumns, with_effects_of};
-use crate::constants::fitted::{
-    CurvePoint, DETERMINED, Fitted, FittedConstant, INTERVAL, MODEL_ERROR,
-};
+use crate::constants::fitted::{CurvePoint, DETERMINED, Fitted, FittedConstant, MODEL_ERROR};
 use crate::constants::parameter::{Parameter, SENSORS, parameters};
 use crate::constants::prior::Prior;
 use crate::data::experiment::Experiment;
@@ -21,6 +19,9 @@ use crate::selection::evidence::variance_inflation;
 /// Factor on the tolerances of all other constants in the test whether the campaign determines a constant: one that is
 /// determined only by the others' tolerances (a length that trades off against the bore) keeps its declared value.
 const WIDER: f64 = 3.0;
+
+/// Smallest error of a sensor, in sigmas, that becomes an effect of the model.
+const SIGNIFICANT: f64 = 3.0;
 
 /// Rounds of the fit, each with new weights, and Jacobians per round. The first round relies on flow and angle, as
 /// ringing pressures create local minima.
@@ -115,8 +116,8 @@ fn improved(problem: &BaseProblem<'_>, point: Point, coarse: bool) -> Point {
     point
 }
 
-/// Fixed unknowns: constants that are not determined, curves without any determined point, and sensors whose interval
-/// holds no error, which would be an effect without meaning.
+/// Fixed unknowns: constants that are not determined, curves without any determined point, and sensors without a
+/// significant error, which would be an effect without meaning.
 fn held(
     parameters: &[Parameter],
     theta: &DVector<f64>,
@@ -133,7 +134,7 @@ fn held(
     all.map(|(k, (parameter, &determined))| match parameter {
         Parameter::Flow(valve, _) => !any_point(*valve),
         Parameter::Scalar(_) | Parameter::Threshold(_) => !determined,
-        Parameter::Sensor(_) => !determined || theta[k].abs() <= INTERVAL * sigma[k],
+        Parameter::Sensor(_) => !determined || theta[k].abs() <= SIGNIFICANT * sigma[k],
     })
     .collect()
 }

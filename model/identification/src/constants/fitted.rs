@@ -15,7 +15,7 @@ pub(crate) const DETERMINED: f64 = 0.7;
 pub(crate) const MODEL_ERROR: f64 = 0.002;
 
 /// Half width of a 95 % interval, in sigmas.
-pub(crate) const INTERVAL: f64 = 1.96;
+const INTERVAL: f64 = 1.96;
 
 /// A constant with its estimate.
 #[derive(Debug, Clone)]
@@ -93,9 +93,15 @@ impl Fitted<'_> {
             Parameter::Sensor(sensor) => {
                 let mut added = self.declared.effects.iter();
                 let added = added.find(|added| added.effect.id() == sensor.effect);
-                let declared = added.map_or(0.0, |added| added.values[0]);
-                let at = move |error: f64| declared + error;
-                (sensor.name.to_owned(), sensor.unit, declared, Box::new(at))
+                let declared = added.map_or(0.0, |added| added.values[0]) / sensor.size;
+                tolerance /= sensor.size;
+                let at = move |error: f64| declared + error / sensor.size;
+                (
+                    sensor.effect.to_owned(),
+                    sensor.unit,
+                    declared,
+                    Box::new(at),
+                )
             }
             Parameter::Flow(..) => return None,
         };

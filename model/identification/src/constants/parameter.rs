@@ -52,11 +52,11 @@ pub static SCALARS: [Scalar; 13] = [
 pub struct Sensor {
     /// The effect's identifier.
     pub effect: &'static str,
-    /// Name of the value: the effect and its parameter.
-    pub name: &'static str,
-    /// Unit of the parameter.
+    /// Display unit.
     pub unit: &'static str,
-    /// Tolerance in that unit, one sigma.
+    /// One display unit in the unit of the effect's parameter.
+    pub size: f64,
+    /// Tolerance in the unit of the effect's parameter, one sigma.
     pub tolerance: f64,
 }
 
@@ -65,8 +65,8 @@ pub struct Sensor {
 /// curves correct any flow.
 #[rustfmt::skip]
 pub static SENSORS: [Sensor; 2] = [
-    Sensor { effect: "angle-sensor-gain", name: "angle-sensor-gain.gain", unit: "", tolerance: 0.01 },
-    Sensor { effect: "pressure-sensor-offset", name: "pressure-sensor-offset.offset_bar", unit: "bar", tolerance: 1.0 },
+    Sensor { effect: "angle-sensor-gain", unit: "%", size: 0.01, tolerance: 0.01 },
+    Sensor { effect: "pressure-sensor-offset", unit: "bar", size: 1.0, tolerance: 1.0 },
 ];
 
 /// One unknown of the fit.
