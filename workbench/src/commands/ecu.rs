@@ -4,7 +4,6 @@ use std::io::BufRead;
 use std::net::SocketAddr;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::time::Instant;
 use std::{io, thread};
@@ -14,16 +13,13 @@ use hitch_protocols::can::Frame;
 
 use super::loop_::{calibration, load_kg};
 use crate::ecu::{
-    Bench, Bus, CutFlash, EcuMachine, Emulator, FLASH_BYTES, MachineError, OnHost, Order, Pace,
-    QEMU, delivered, find_image, reach_deg,
+    Bench, Bus, EcuMachine, FLASH_BYTES, MachineError, Order, PICK_UP_MS, Pace, Runner, delivered,
+    reach_deg,
 };
 use crate::error::Error;
 use crate::output::{check_writable, no_stdout, write_file};
 use crate::slcan_server::SlcanServer;
 use crate::status_line::StatusLine;
-
-/// Time of the lever capture by the operator, ms: after the first address claim.
-const PICK_UP_MS: u64 = 500;
 
 /// Arguments of `hitch ecu`.
 #[derive(Debug, clap::Args)]
@@ -77,24 +73,14 @@ pub fn run(args: &Args) -> Result<(), Error> {
     let flash = flash(args)?;
     let server = args.can.as_deref().map(open_slcan_server).transpose()?;
     let mut session = Session::new(&model, args, server);
-    if args.host {
-        let cells = CutFlash::holding(flash);
-        let result = session.run(&mut OnHost::start(cells.clone()));
-        keep(args.flash.as_deref(), &cells.bytes())?;
-        return result;
-    }
-    require_emulator()?;
-    let image = find_image(args.image.as_deref())?;
-    let folder = tempfile::tempdir().map_err(failed)?;
-    let file = folder.path().join("flash");
-    std::fs::write(&file, flash).map_err(failed)?;
-    let mut machine = Emulator::start(&image, folder.path()).map_err(failed)?;
+    let runner = match args.host {
+        true => Runner::Host,
+        false => Runner::emulator(args.image.as_deref())?,
+    };
+    let mut machine = runner.power_up(flash).map_err(failed)?;
     let result = session.run(&mut machine);
-    drop(machine);
-    keep(
-        args.flash.as_deref(),
-        &std::fs::read(&file).map_err(failed)?,
-    )?;
+    let flash = machine.power_off().map_err(failed)?;
+    keep(args.flash.as_deref(), &flash)?;
     result
 }
 
@@ -132,23 +118,6 @@ fn open_slcan_server(address: &str) -> Result<SlcanServer, Error> {
             "--can {address}: cannot be opened: {error}; give an address of this machine and a free port, as in 127.0.0.1:7701"
         ))
     })
-}
-
-/// Adds a suggested correction if there is no emulator.
-fn require_emulator() -> Result<(), Error> {
-    let found = Command::new(QEMU)
-        .arg("--version")
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .status();
-    match found {
-        Ok(status) if status.success() => Ok(()),
-        _ => Err(Error::Usage(format!(
-            "{QEMU} is missing: install QEMU for ARM (Debian: apt-get install qemu-system-arm; macOS: brew install qemu), \
-             or take --host, which runs the same application without an emulator"
-        ))),
-    }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

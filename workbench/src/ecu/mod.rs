@@ -9,6 +9,7 @@ mod image;
 mod machine;
 mod operator;
 mod pace;
+mod runner;
 
 pub use bench::{Bench, Moment};
 pub use bus::Bus;
@@ -17,5 +18,6 @@ pub use emulator::{Emulator, Mode, QEMU, command as emulator_command};
 pub use flash::{CALIBRATION_BYTES, CutFlash, FLASH_BYTES, delivered};
 pub use image::{IMAGE_VARIABLE, find as find_image};
 pub use machine::{EcuMachine, MachineError, OnHost};
-pub use operator::{Operator, Order, reach_deg};
+pub use operator::{Operator, Order, PICK_UP_MS, reach_deg};
 pub use pace::{Pace, PaceChange};
+pub use runner::{PoweredEcu, Runner};

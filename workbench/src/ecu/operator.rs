@@ -7,6 +7,9 @@ use hitch_plant::Model;
 
 use super::converters::SENSORS_DEG;
 
+/// Time of the lever capture by the operator, ms: after the first address claim.
+pub const PICK_UP_MS: u64 = 500;
+
 /// Speed of a lever moved by hand, degrees per second.
 const HAND_DEG_PER_S: f64 = 60.0;
 
