@@ -4,6 +4,7 @@
 mod board_bench;
 mod closed_loop_page;
 mod corrected_constants;
+mod ecu_page;
 #[cfg(target_os = "linux")]
 mod ecu_process;
 mod ecu_tools;

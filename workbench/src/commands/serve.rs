@@ -1,6 +1,7 @@
 //! `hitch serve`: the interactive page, local only.
 use std::path::PathBuf;
 
+use crate::ecu::Runner;
 use crate::error::Error;
 use crate::model_arg::ModelArg;
 use crate::serve::{self, Source};
@@ -8,7 +9,10 @@ use crate::serve::{self, Source};
 /// Arguments of `hitch serve`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Examples:\n  hitch serve\n  hitch serve lab-a --model dynamic --port 8080 --no-browser"
+    after_help = "Examples:\n  hitch serve\n  hitch serve lab-a --model dynamic --port 8080 --no-browser\n  hitch serve --ecu\n\n\
+    With --ecu, the closed loop of the page is the firmware's image on an emulated Cortex-M4, as `hitch ecu` runs it, with \
+    the present model as the plant. There is one ECU: one tab at a time has it, from Start to Stop, and a tab that is \
+    closed or silent for 5 s gives it back. The page says when this computer is too slow for real time."
 )]
 pub struct Args {
     /// Folder of the campaign; without this option, the demonstration campaign
@@ -18,6 +22,15 @@ pub struct Args {
     /// Port on 127.0.0.1; 0 selects a free one
     #[arg(long, value_name = "PORT", default_value_t = 0)]
     port: u16,
+    /// Run the closed loop with the emulated ECU of `hitch ecu`, in real time, instead of the controller on this computer
+    #[arg(long)]
+    ecu: bool,
+    /// Image of the emulated ECU; without this option, it is built from the sources
+    #[arg(long, value_name = "FILE", requires = "ecu", conflicts_with = "host")]
+    image: Option<PathBuf>,
+    /// Run the application of the ECU on the host instead of the emulated processor
+    #[arg(long, requires = "ecu")]
+    host: bool,
     /// Print the address of the page without opening a browser
     #[arg(long)]
     no_browser: bool,
@@ -26,11 +39,22 @@ pub struct Args {
 /// Runs the command until it is stopped with Ctrl-C.
 ///
 /// # Errors
-/// If the model file is invalid, or the port is not available. A fault of the campaign is shown on the page.
+/// If the model file is invalid, the port is not available, or the emulator or its image is missing. A fault of the campaign is shown on the page.
 pub fn run(args: &Args) -> Result<(), Error> {
     let source = Source {
         campaign: args.campaign.clone(),
         model: args.model.load()?,
     };
-    serve::run(source, args.port, !args.no_browser)
+    serve::run(source, args.runner()?, args.port, !args.no_browser)
+}
+
+impl Args {
+    /// What runs the ECU, if it runs the closed loop.
+    fn runner(&self) -> Result<Option<Runner>, Error> {
+        Ok(match (self.ecu, self.host) {
+            (false, _) => None,
+            (true, true) => Some(Runner::Host),
+            (true, false) => Some(Runner::emulator(self.image.as_deref())?),
+        })
+    }
 }

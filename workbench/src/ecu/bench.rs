@@ -6,13 +6,10 @@ use hitch_plant::Model;
 use hitch_protocols::can::Frame;
 use hitch_quantities::units::PerMille;
 
-use super::converters::{Converters, Signals};
+use super::converters::{Converters, SENSOR_SUPPLY_V, Signals};
 use super::machine::{EcuMachine, MachineError};
 use super::operator::Operator;
 use crate::closed_loop::{DrivenPlant, SUPPLY_V};
-
-/// Supply of the sensors, V.
-const SENSOR_SUPPLY_V: f64 = 5.0;
 
 /// True state and signals of one millisecond.
 #[derive(Debug, Clone, Copy)]
@@ -59,6 +56,16 @@ impl<'m> Bench<'m> {
     /// Rocker angle, degree.
     pub fn angle_deg(&self) -> f64 {
         self.plant.angle_deg()
+    }
+
+    /// Changes the load of the hitch, kg.
+    pub fn set_load_kg(&mut self, load_kg: f64) {
+        self.plant.set_load_kg(load_kg);
+    }
+
+    /// Changes the oil temperature, C.
+    pub fn set_oil_temperature_c(&mut self, oil_temperature_c: f64) {
+        self.plant.set_oil_temperature_c(oil_temperature_c);
     }
 
     /// One millisecond of hitch and ECU.

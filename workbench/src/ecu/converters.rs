@@ -11,6 +11,8 @@ use crate::closed_loop::{ANGLE_NOISE_DEG, CURRENT_NOISE_A, CYLINDER_NOISE_BAR, P
 
 /// Range of the sensors of rocker, lever and upper-limit dial of the board, degree.
 pub const SENSORS_DEG: RangeInclusive<f64> = 35.0..=145.0;
+/// Supply of the sensors, V.
+pub const SENSOR_SUPPLY_V: f64 = 5.0;
 /// Number of codes of 12 bits.
 const CODES: f64 = 4096.0;
 /// One sigma of the noise of lever and dials: one code.
@@ -91,6 +93,13 @@ impl Converters {
             reference: code(f64::from(BoardScaling::NOMINAL.reference.get()) / CODES),
         }
     }
+}
+
+/// Codes of a share of a sensor's range, at the nominal supply of the sensors.
+#[must_use]
+pub fn ratiometric_codes(share: f64) -> f64 {
+    let full_scale_v = f64::from(BoardScaling::NOMINAL.signal.0) * 1e-3;
+    0.8 * share * SENSOR_SUPPLY_V / full_scale_v * CODES
 }
 
 /// The code for a fraction of full scale.

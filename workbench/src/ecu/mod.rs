@@ -13,7 +13,7 @@ mod runner;
 
 pub use bench::{Bench, Moment};
 pub use bus::Bus;
-pub use converters::Signals;
+pub use converters::{Signals, ratiometric_codes};
 pub use emulator::{Emulator, Mode, QEMU, command as emulator_command};
 pub use flash::{CALIBRATION_BYTES, CutFlash, FLASH_BYTES, delivered};
 pub use image::{IMAGE_VARIABLE, find as find_image};

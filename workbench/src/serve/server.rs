@@ -9,22 +9,29 @@ use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 
 use super::guard::{self, Guard, random_token};
+use super::live::LoopSource;
 use super::routes;
 use super::sessions::Sessions;
 use super::source::Source;
+use crate::ecu::Runner;
 use crate::error::Error;
 use crate::output;
 
 /// Maximum size of a request, bytes; the requests of the page are short.
 const LARGEST_REQUEST: usize = 64 * 1024;
 
-/// Serves the page until Ctrl-C.
+/// Serves the page until Ctrl-C; `ecu` runs the closed loop instead of the controller on the host.
 ///
 /// # Errors
 /// If the port cannot be used, or the address cannot be printed.
-pub fn run(source: Source, port: u16, open_browser: bool) -> Result<(), Error> {
+pub fn run(
+    source: Source,
+    ecu: Option<Runner>,
+    port: u16,
+    open_browser: bool,
+) -> Result<(), Error> {
     let runtime = Runtime::new().map_err(cannot_start)?;
-    let sessions = Arc::new(Sessions::new(source));
+    let sessions = Arc::new(Sessions::new(source, LoopSource::new(ecu)));
     let page = runtime.block_on(start(Arc::clone(&sessions), port))?;
     output::print(&format!("{page}\nStop it with Ctrl-C.\n"))?;
     if open_browser && let Err(error) = open::that_detached(&page) {
@@ -39,6 +46,7 @@ pub fn run(source: Source, port: u16, open_browser: bool) -> Result<(), Error> {
     let stopped = runtime.block_on(stopped());
     // Running computations and open pages do not delay the exit.
     runtime.shutdown_background();
+    sessions.loop_source.close();
     sessions.folders.close();
     stopped.map_err(cannot_start)
 }

@@ -12,7 +12,7 @@ use hitch_plant::{Effect, Model, full_name};
 use serde_json::Value;
 use tokio::sync::broadcast;
 
-use super::live::Bench;
+use super::live::TabLoop;
 use super::second::Second;
 use super::source::Subject;
 use super::upload::Upload;
@@ -97,7 +97,7 @@ pub struct Session {
     /// The running computation.
     pub job: Option<Job>,
     /// The closed loop.
-    pub bench: Option<Bench>,
+    pub tab_loop: Option<TabLoop>,
     /// The second model.
     pub second: Option<Arc<Second>>,
     /// The files that are being opened.
@@ -116,7 +116,7 @@ impl Session {
             ranking: None,
             explained: None,
             job: None,
-            bench: None,
+            tab_loop: None,
             second: None,
             upload: None,
             messages: broadcast::Sender::new(KEPT_MESSAGES),
@@ -130,7 +130,7 @@ impl Session {
         self.at = 0;
         self.subject = subject;
         (self.ranking, self.explained) = (None, None);
-        (self.bench, self.second) = (None, None);
+        (self.tab_loop, self.second) = (None, None);
     }
 
     /// The campaign and the initial model.

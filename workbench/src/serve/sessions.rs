@@ -3,6 +3,7 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::guard::random_token;
+use super::live::LoopSource;
 use super::session::Session;
 use super::source::{Source, Subject};
 use super::upload::Folders;
@@ -19,6 +20,8 @@ pub type Shared = Arc<Mutex<Session>>;
 pub struct Sessions {
     source: Source,
     subject: Mutex<Option<Arc<Subject>>>,
+    /// What runs the closed loops.
+    pub loop_source: LoopSource,
     /// Temporary folders of the tabs.
     pub folders: Folders,
     /// Sessions, the newest last.
@@ -27,9 +30,10 @@ pub struct Sessions {
 
 impl Sessions {
     /// No session yet.
-    pub fn new(source: Source) -> Self {
+    pub fn new(source: Source, loop_source: LoopSource) -> Self {
         Self {
             source,
+            loop_source,
             subject: Mutex::default(),
             folders: Folders::default(),
             known: Mutex::default(),

@@ -4,7 +4,7 @@ import { byId, element } from "./dom.js";
 import { drawLinkage } from "./linkage.js";
 import { connectOrders, limitLever, orders } from "./loop_orders.js";
 import { Refused, address, post } from "./server.js";
-import { addSamples, clearChart, drawChart } from "./strip_chart.js";
+import { addSamples, clearChart, drawChart, showOnly } from "./strip_chart.js";
 import { drawMaps } from "./valve_map.js";
 
 /** Time between two requests, ms. */
@@ -29,6 +29,8 @@ let model = "";
 let machine = null;
 /** @type {ReturnType<typeof drawLinkage> | null} */
 let move = null;
+/** Whether the closed loop has been started: a description alone starts nothing. */
+let opened = false;
 let running = false;
 let visible = false;
 /** Shows an error.
@@ -44,7 +46,7 @@ let generation = 0;
 export function connectLoop(show) {
   say = show;
   connectOrders();
-  byId("loop-start").addEventListener("click", () => (running ? pause() : start()));
+  byId("loop-start").addEventListener("click", () => (running ? stop() : start()));
   byId("loop-restart").addEventListener("click", () => reopen());
   new IntersectionObserver(([entry]) => {
     visible = entry.isIntersecting;
@@ -69,14 +71,23 @@ export function redrawLoop() {
   drawChart(true);
 }
 
-/** Starts a new simulation at rest, with the hitch at the lever. */
+/** Whether the ECU runs the closed loop, in real time. */
+function isEcu() {
+  return machine?.source === "ecu";
+}
+
+/** Describes the machine with the hitch at rest at the lever, and starts a new closed loop if one is to run. */
 async function reopen() {
   generation += 1;
   const own = generation;
+  const starts = running;
+  opened = false;
   try {
-    const opened = await post("loop/open", { orders: { ...orders(), button: null, fault: null } });
+    const path = starts ? "loop/open" : "loop/describe";
+    const described = await post(path, { orders: { ...orders(), button: null, fault: null } });
     if (own !== generation) return;
-    machine = opened;
+    machine = described;
+    opened = starts;
   } catch (error) {
     pause();
     say(error);
@@ -85,7 +96,9 @@ async function reopen() {
   limitLever(machine.swing_deg);
   move = drawLinkage(/** @type {any} */ (byId("linkage")), machine.linkage);
   move(machine.angle_deg, machine.angle_deg, machine.angle_deg, orders().load_kg);
-  byId("loop-equal").hidden = !machine.equal;
+  byId("loop").dataset.source = machine.source;
+  showOnly(isEcu() ? "ECU, rebuilt calibration" : null);
+  byId("loop-equal").hidden = !machine.equal || isEcu();
   reported = ["", ""];
   byId("loop-events").replaceChildren();
   clearChart();
@@ -96,28 +109,39 @@ async function reopen() {
 
 async function start() {
   if (running) return;
-  if (!machine) await reopen();
-  if (!machine) return;
   running = true;
   showRunning();
+  if (!opened) await reopen();
   let last = performance.now();
   while (running) {
     await new Promise((resolve) => { setTimeout(resolve, REQUEST_MS); });
     const now = performance.now();
     const elapsed = Math.min(LONGEST_MS, Math.round(now - last));
     last = now;
-    if (document.hidden || !running || elapsed < 1) continue;
+    // An ECU that hears nothing of its tab is switched off.
+    if ((document.hidden && !isEcu()) || !running || !opened || elapsed < 1) continue;
     await step(elapsed);
   }
 }
 
 function pause() {
   running = false;
+  // An ECU does not pause.
+  if (isEcu()) opened = false;
   showRunning();
 }
 
+/** Pauses the simulation, or switches the ECU off. */
+async function stop() {
+  pause();
+  if (!isEcu()) return;
+  generation += 1;
+  byId("loop-pace").textContent = "";
+  await post("loop/close", {}).catch(say);
+}
+
 function showRunning() {
-  byId("loop-start").textContent = running ? "Pause" : "Start";
+  byId("loop-start").textContent = !running ? "Start" : isEcu() ? "Switch off" : "Pause";
   byId("loop").toggleAttribute("data-running", running);
 }
 
@@ -132,7 +156,7 @@ async function step(milliseconds) {
     if (own !== generation) return;
     show(answer, given);
     const pace = milliseconds / (performance.now() - began);
-    byId("loop-pace").textContent = pace < SLOW ? `slower than real time: ${pace.toFixed(2)}` : "";
+    byId("loop-pace").textContent = isEcu() ? (answer.behind ? "behind real time: this computer is too slow or busy" : "") : pace < SLOW ? `slower than real time: ${pace.toFixed(2)}` : "";
   } catch (error) {
     if (own !== generation) return;
     // The page follows the change of the model with a new simulation.
@@ -146,12 +170,13 @@ async function step(milliseconds) {
  * @param {any} answer
  * @param {any} given */
 function show(answer, given) {
-  const { loops } = answer;
+  // The ECU has the place of the rebuilt calibration; what belongs to the first one is hidden.
+  const loops = isEcu() ? [answer.loops[0], answer.loops[0]] : answer.loops;
   addSamples(loops, given.lever_deg);
   const last = (/** @type {any} */ loop) => loop.angle_deg[loop.angle_deg.length - 1];
   if (loops[0].angle_deg.length > 0 && move) move(given.lever_deg, last(loops[0]), last(loops[1]), given.load_kg);
   showFigures(loops, given.lever_deg);
-  loops.forEach(report);
+  loops.forEach((/** @type {any} */ loop, /** @type {number} */ index) => { if (index === 1 || !isEcu()) report(loop, index); });
   if (visible) drawChart();
 }
 
@@ -189,7 +214,7 @@ function report(loop, index) {
   if (first) return;
   const cause = [loop.fault_text, loop.trip_text && `safety envelope: ${loop.trip_text}`].filter(Boolean).join("; ");
   const time = loop.time_s.length ? `${loop.time_s[loop.time_s.length - 1].toFixed(1)} s` : "";
-  const whose = index === 0 ? "first calibration" : "rebuilt calibration";
+  const whose = isEcu() ? "ECU" : index === 0 ? "first calibration" : "rebuilt calibration";
   const text = [loop.state_text, cause && `Cause: ${cause}.`].filter(Boolean).join(" ");
   const events = byId("loop-events");
   events.prepend(element("p", { class: loop.fault ? "fault" : null }, `${time}, ${whose}: ${text}`));

@@ -23,6 +23,9 @@ const HITCHES = [{ name: "first calibration", colour: "first", dash: "dash", wid
 
 /** @type {{time: number[], set_point: number[], sensor: (number | null)[], loops: Record<string, (number | null)[]>[]}} */
 let history = empty();
+/** Name of the only hitch; `null` if there are two.
+ * @type {string | null} */
+let only = null;
 let drawn = 0;
 let drawing = false;
 
@@ -35,6 +38,12 @@ function empty() {
 export function clearChart() {
   history = empty();
   drawn = 0;
+}
+
+/** Shows the second hitch alone, under this name.
+ * @param {string | null} name `null` shows both */
+export function showOnly(name) {
+  only = name;
 }
 
 /** Adds the samples of an answer.
@@ -98,7 +107,7 @@ function figure() {
     if (key.endsWith("_a")) Object.assign(layout[`yaxis${axis}`], { range: [0, 3.6] });
     layout.annotations.push({ text: title, x: 0, xref: "paper", xanchor: "left", y: high, yref: "paper", yanchor: "bottom",
       showarrow: false, font: { size: 12, color: colour("ink") } });
-    HITCHES.forEach((hitch, loop) => traces.push({ name: hitch.name, y: history.loops[loop][key], yaxis: `y${axis}`,
+    HITCHES.forEach((hitch, loop) => (only && loop === 0) || traces.push({ name: only ?? hitch.name, y: history.loops[loop][key], yaxis: `y${axis}`,
       showlegend: index === 0, line: { color: colour(hitch.colour), width: hitch.width, dash: hitch.dash } }));
   });
   return { layout, traces: traces.map((trace) => ({ ...trace, type: "scatter", mode: "lines", x: history.time })) };

@@ -1,6 +1,5 @@
 //! The thread in which both hitches run.
 
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, TrySendError, channel, sync_channel};
 use std::time::Instant;
 
@@ -9,7 +8,6 @@ use serde_json::{Value, json};
 use super::hitch::Hitch;
 use super::machine::Machine;
 use super::orders::Orders;
-use crate::comparison::Evaluated;
 
 /// An advance of both hitches.
 struct Advance {
@@ -21,8 +19,6 @@ struct Advance {
 /// Both hitches of a tab; the thread ends when this is dropped.
 #[derive(Debug)]
 pub struct Bench {
-    /// The present model at the start.
-    pub of: Arc<Evaluated>,
     orders: SyncSender<Advance>,
 }
 
@@ -35,42 +31,24 @@ pub enum NoAnswer {
     Failed,
 }
 
-/// The result of an advance, when it is ready.
-pub struct Pending(Receiver<Value>);
-
-impl Pending {
-    /// Waits for the result.
-    ///
-    /// # Errors
-    /// If the simulation has failed.
-    pub fn wait(self) -> Result<Value, NoAnswer> {
-        self.0.recv().map_err(|_| NoAnswer::Failed)
-    }
-}
-
 impl Bench {
     /// Starts both hitches at rest at an angle, degree.
     ///
     /// # Errors
     /// If no thread can be started.
-    pub fn start(
-        of: Arc<Evaluated>,
-        machine: Machine,
-        orders: Orders,
-        angle_deg: f64,
-    ) -> std::io::Result<Self> {
+    pub fn start(machine: Machine, orders: Orders, angle_deg: f64) -> std::io::Result<Self> {
         let (sender, advances) = sync_channel(1);
         std::thread::Builder::new()
             .name("closed loop".to_owned())
             .spawn(move || run(&machine, &orders, angle_deg, &advances))?;
-        Ok(Self { of, orders: sender })
+        Ok(Self { orders: sender })
     }
 
-    /// Requests an advance by `steps` milliseconds.
+    /// Requests an advance by `steps` milliseconds; its result, when it is ready.
     ///
     /// # Errors
     /// If the previous one has not ended, or the simulation has failed.
-    pub fn advance(&self, orders: Orders, steps: u32) -> Result<Pending, NoAnswer> {
+    pub fn advance(&self, orders: Orders, steps: u32) -> Result<Receiver<Value>, NoAnswer> {
         let (answer, pending) = channel();
         let advance = Advance {
             orders,
@@ -78,7 +56,7 @@ impl Bench {
             answer,
         };
         match self.orders.try_send(advance) {
-            Ok(()) => Ok(Pending(pending)),
+            Ok(()) => Ok(pending),
             Err(TrySendError::Full(_)) => Err(NoAnswer::Busy),
             Err(TrySendError::Disconnected(_)) => Err(NoAnswer::Failed),
         }

@@ -6,6 +6,7 @@ use hitch_quantities::calibration::valve_table::ValveTable;
 use hitch_quantities::units::MilliAmp;
 use serde_json::{Value, json};
 
+use super::loop_source::LoopSource;
 use super::machine::Machine;
 use super::orders::{LOADS_KG, LONGEST_MS, OILS_C};
 use crate::error::Error;
@@ -17,12 +18,13 @@ const POSITIONS: u32 = 64;
 ///
 /// # Errors
 /// If the linkage cannot be assembled.
-pub fn described(machine: &Machine, angle_deg: f64) -> Result<Value, Error> {
+pub fn described(machine: &Machine, angle_deg: f64, source: &LoopSource) -> Result<Value, Error> {
     let failed =
         |error: LinkageError| Error::Failed(format!("the linkage cannot be drawn: {error}"));
     let (low_rad, high_rad) = machine.plant.linkage().swing_rad();
     let (initial, rebuilt) = (&machine.initial, &machine.rebuilt);
     Ok(json!({
+        "source": source.name(),
         "angle_deg": angle_deg,
         "swing_deg": [low_rad.to_degrees(), high_rad.to_degrees()],
         "loads_kg": [LOADS_KG.start(), LOADS_KG.end()],

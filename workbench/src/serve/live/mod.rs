@@ -3,15 +3,21 @@
 //!
 //! Two hitches receive the same orders. Their plant is the present model; the calibration of the first is built from
 //! the initial model, that of the second from the present one. Both run in a thread of their own, `bench::Bench`.
+//!
+//! With `--ecu`, the ECU runs in real time instead, with the calibration of the present model: `emulated::EcuSocket`.
 mod bench;
 mod description;
+mod ecu_bench;
+mod emulated;
 mod figures;
 mod hitch;
+mod loop_source;
 mod machine;
 mod orders;
 mod routes;
 mod sensor_fault;
+mod strip;
 mod words;
 
-pub use bench::Bench;
+pub use loop_source::{LoopSource, TabLoop};
 pub use routes::routes;

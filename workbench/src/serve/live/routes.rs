@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use axum::extract::{Query, State};
-use axum::http::{StatusCode, header};
+use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
@@ -11,17 +11,17 @@ use hitch_controller_host::calibration_file;
 use serde::Deserialize;
 use serde_json::json;
 
-use super::bench::{Bench, NoAnswer};
 use super::description::described;
-use super::machine::Models;
+use super::machine::{Machine, Models};
 use super::orders::{LONGEST_MS, Orders};
-use crate::error::Error;
 use crate::serve::routes::{Answer, Known, Of, Refusal, blocking, find, lock};
 
 /// All routes of the closed loop.
 pub fn routes() -> Router<Arc<crate::serve::sessions::Sessions>> {
     Router::new()
+        .route("/{token}/api/loop/describe", post(describe))
         .route("/{token}/api/loop/open", post(open))
+        .route("/{token}/api/loop/close", post(close))
         .route("/{token}/api/loop/step", post(step))
         .route("/{token}/api/calibration", get(calibration))
 }
@@ -33,30 +33,61 @@ struct Open {
     orders: Orders,
 }
 
-/// Starts both hitches at rest with the lever at their position; replaces those of before.
+/// What the page draws before it starts anything.
+async fn describe(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
+    let session = find(&sessions, &wanted.session)?;
+    let orders = checked(wanted.orders)?;
+    let models = Models::of(&lock(&session));
+    let view = blocking(move || {
+        let machine = models.machine()?;
+        described(
+            &machine,
+            start_deg(&machine, &orders),
+            &sessions.loop_source,
+        )
+    });
+    Ok(Json(view.await??))
+}
+
+/// Starts a closed loop at rest with the lever at its position; replaces that of before.
 async fn open(State(sessions): Known, Json(wanted): Json<Open>) -> Answer {
     let session = find(&sessions, &wanted.session)?;
     let orders = checked(wanted.orders)?;
-    let (of, models) = {
-        let session = lock(&session);
+    let (of, models, before) = {
+        let mut session = lock(&session);
         (
             Arc::clone(&session.present().evaluated),
             Models::of(&session),
+            session.tab_loop.take(),
         )
     };
     let started = blocking(move || {
+        drop(before);
         let machine = models.machine()?;
-        let (low_rad, high_rad) = machine.plant.linkage().swing_rad();
-        let (low_deg, high_deg) = (low_rad.to_degrees(), high_rad.to_degrees());
-        let angle_deg = orders.lever_deg.clamp(low_deg, high_deg);
-        let view = described(&machine, angle_deg)?;
-        let no_thread = |error| Error::Failed(format!("the simulation cannot be started: {error}"));
-        let bench = Bench::start(of, machine, orders, angle_deg).map_err(no_thread)?;
-        Ok::<_, Error>((bench, view))
+        let angle_deg = start_deg(&machine, &orders);
+        let source = &sessions.loop_source;
+        let view = described(&machine, angle_deg, source)?;
+        Ok::<_, Refusal>((source.start(of, machine, orders, angle_deg)?, view))
     });
-    let (bench, view) = started.await??;
-    lock(&session).bench = Some(bench);
+    let (tab_loop, view) = started.await??;
+    lock(&session).tab_loop = Some(tab_loop);
     Ok(Json(view))
+}
+
+/// Ends the closed loop.
+async fn close(State(sessions): Known, Json(of): Json<Of>) -> Answer {
+    let session = find(&sessions, &of.session)?;
+    let before = lock(&session).tab_loop.take();
+    blocking(move || drop(before)).await?;
+    Ok(Json(json!({})))
+}
+
+/// The angle of the lever, within the travel of the hitch, degree.
+fn start_deg(machine: &Machine, orders: &Orders) -> f64 {
+    let (low_rad, high_rad) = machine.plant.linkage().swing_rad();
+    orders
+        .lever_deg
+        .clamp(low_rad.to_degrees(), high_rad.to_degrees())
 }
 
 /// An advance of both hitches.
@@ -80,16 +111,14 @@ async fn step(State(sessions): Known, Json(wanted): Json<Advance>) -> Answer {
     let pending = {
         let session = lock(&session);
         let present = &session.present().evaluated;
-        let bench = session.bench.as_ref();
-        let bench = bench.filter(|bench| Arc::ptr_eq(&bench.of, present));
+        let tab_loop = session.tab_loop.as_ref();
+        let tab_loop = tab_loop.filter(|known| Arc::ptr_eq(&known.of, present));
         let stale = || Refusal::conflict("the model has changed; start the closed loop again");
-        let bench = bench.ok_or_else(stale)?;
-        bench
-            .advance(orders, wanted.milliseconds)
-            .map_err(refused)?
+        let tab_loop = tab_loop.ok_or_else(stale)?;
+        tab_loop.advance(orders, wanted.milliseconds)?
     };
     let advanced = blocking(move || pending.wait()).await?;
-    Ok(Json(advanced.map_err(refused)?))
+    Ok(Json(advanced?))
 }
 
 /// The orders, if all values are in range.
@@ -97,19 +126,6 @@ fn checked(orders: Orders) -> Result<Orders, Refusal> {
     match orders.fault() {
         Some(what) => Err(Refusal::wrong(json!({ "what": what }))),
         None => Ok(orders),
-    }
-}
-
-fn refused(reason: NoAnswer) -> Refusal {
-    match reason {
-        NoAnswer::Busy => Refusal::of(
-            StatusCode::TOO_MANY_REQUESTS,
-            "an earlier step of the closed loop has not ended",
-        ),
-        NoAnswer::Failed => Refusal::of(
-            StatusCode::INTERNAL_SERVER_ERROR,
-            "the simulation has failed; start the closed loop again",
-        ),
     }
 }
 

@@ -1,0 +1,139 @@
+//! What runs the closed loop of the page, and the closed loop of a tab.
+
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+
+use axum::http::StatusCode;
+use serde_json::Value;
+
+use super::bench::{Bench, NoAnswer};
+use super::emulated::{EcuSocket, NoEcu, RunningEcu};
+use super::machine::Machine;
+use super::orders::Orders;
+use crate::comparison::Evaluated;
+use crate::ecu::Runner;
+use crate::error::Error;
+use crate::serve::routes::Refusal;
+
+/// What runs the closed loops of a server.
+#[derive(Debug)]
+pub enum LoopSource {
+    /// The controller on the host: each tab has its own, and time passes as the tab requests it.
+    Host,
+    /// The ECU: one for all tabs, in real time.
+    Ecu(EcuSocket),
+}
+
+/// The closed loop of a tab.
+#[derive(Debug)]
+pub struct TabLoop {
+    /// The present model at the start.
+    pub of: Arc<Evaluated>,
+    kind: Kind,
+}
+
+#[derive(Debug)]
+enum Kind {
+    Host(Bench),
+    Ecu(RunningEcu),
+}
+
+/// The result of an advance, when it is ready.
+pub enum Pending {
+    /// It is ready.
+    Ready(Value),
+    /// The simulation computes it.
+    Computed(Receiver<Value>),
+}
+
+impl LoopSource {
+    /// The controller on the host, or the ECU that `runner` runs.
+    pub fn new(ecu: Option<Runner>) -> Self {
+        ecu.map_or(Self::Host, |runner| Self::Ecu(EcuSocket::new(runner)))
+    }
+
+    /// Its name for the page.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Host => "host",
+            Self::Ecu(_) => "ecu",
+        }
+    }
+
+    /// Starts a closed loop at rest at an angle, degree.
+    ///
+    /// # Errors
+    /// If it cannot be started, or another tab has the ECU.
+    pub fn start(
+        &self,
+        of: Arc<Evaluated>,
+        machine: Machine,
+        orders: Orders,
+        angle_deg: f64,
+    ) -> Result<TabLoop, Refusal> {
+        let kind = match self {
+            Self::Host => {
+                let no_thread =
+                    |error| Error::Failed(format!("the simulation cannot be started: {error}"));
+                Kind::Host(Bench::start(machine, orders, angle_deg).map_err(no_thread)?)
+            }
+            Self::Ecu(socket) => {
+                let refused = |error: NoEcu| Refusal::conflict(&error.to_string());
+                Kind::Ecu(socket.start(machine, orders, angle_deg).map_err(refused)?)
+            }
+        };
+        Ok(TabLoop { of, kind })
+    }
+
+    /// Ends what would outlive the server.
+    pub fn close(&self) {
+        match self {
+            Self::Host => {}
+            Self::Ecu(socket) => socket.close(),
+        }
+    }
+}
+
+impl TabLoop {
+    /// Requests an advance by `steps` milliseconds; an ECU runs in real time.
+    ///
+    /// # Errors
+    /// If the previous one has not ended, or the simulation or the ECU has ended.
+    pub fn advance(&self, orders: Orders, steps: u32) -> Result<Pending, Refusal> {
+        match &self.kind {
+            Kind::Host(bench) => Ok(Pending::Computed(
+                bench.advance(orders, steps).map_err(refused)?,
+            )),
+            Kind::Ecu(ecu) => match ecu.exchange(orders) {
+                Ok(view) => Ok(Pending::Ready(view)),
+                Err(reason) => Err(Refusal::of(StatusCode::GONE, &reason)),
+            },
+        }
+    }
+}
+
+impl Pending {
+    /// Waits for the result.
+    ///
+    /// # Errors
+    /// If the simulation has failed.
+    pub fn wait(self) -> Result<Value, Refusal> {
+        match self {
+            Self::Ready(view) => Ok(view),
+            Self::Computed(answer) => answer.recv().map_err(|_| refused(NoAnswer::Failed)),
+        }
+    }
+}
+
+fn refused(reason: NoAnswer) -> Refusal {
+    match reason {
+        NoAnswer::Busy => Refusal::of(
+            StatusCode::TOO_MANY_REQUESTS,
+            "an earlier step of the closed loop has not ended",
+        ),
+        NoAnswer::Failed => Refusal::of(
+            StatusCode::INTERNAL_SERVER_ERROR,
+            "the simulation has failed; start the closed loop again",
+        ),
+    }
+}
