@@ -31,7 +31,7 @@ pub struct PoweredEcu(Kind);
 enum Kind {
     Host {
         cells: CutFlash,
-        machine: OnHost,
+        machine: Box<OnHost>,
     },
     Emulated {
         machine: Emulator,
@@ -61,7 +61,7 @@ impl Runner {
         let kind = match self {
             Self::Host => {
                 let cells = CutFlash::holding(flash);
-                let machine = OnHost::start(cells.clone());
+                let machine = Box::new(OnHost::start(cells.clone()));
                 Kind::Host { cells, machine }
             }
             Self::Emulator(image) => {
