@@ -24,8 +24,9 @@ const IMAGES_VARIABLE: &str = "HITCH_BOARD_IMAGES";
 const PROGRAM_VARIABLE: &str = "HITCH_PROGRAM";
 
 /// Modules of the test program `live` with tests that need images or a browser. Each runs alone: some are in real time.
-const ON_TARGET: [&str; 11] = [
+const ON_TARGET: [&str; 12] = [
     "board_bench::",
+    "bus_in_browser::",
     "ecu_page::",
     "ecu_process::",
     "emulated::",

@@ -2,6 +2,9 @@
 //! images, the emulator and the browser that the ignored ones need.
 
 mod board_bench;
+mod bus_in_browser;
+#[cfg(unix)]
+mod bus_page;
 mod closed_loop_page;
 mod corrected_constants;
 mod ecu_page;

@@ -57,20 +57,7 @@ fn interrupted(error: ToolError) -> Error {
 /// # Errors
 /// If there is no ECU.
 pub fn connect(address: &BusAddress) -> Result<Session, Error> {
-    let client = CanClient::open(address).map_err(|error| {
-        let advice = match address {
-            BusAddress::Tcp(_) => {
-                format!("start `hitch ecu --can {address}` or give the address of an slcan adapter")
-            }
-            BusAddress::Serial(_) => {
-                "give the port of an slcan adapter that no other program uses".to_owned()
-            }
-            BusAddress::Interface(_) => {
-                format!("start it with `ip link set {address} up type can bitrate 250000`")
-            }
-        };
-        Error::Usage(format!("--can {address}: no answer: {error}; {advice}"))
-    })?;
+    let client = CanClient::open(address).map_err(|error| address.unreachable(&error))?;
     Session::open(client).map_err(tool_error)
 }
 

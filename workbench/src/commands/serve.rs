@@ -4,15 +4,21 @@ use std::path::PathBuf;
 use crate::ecu::Runner;
 use crate::error::Error;
 use crate::model_arg::ModelArg;
-use crate::serve::{self, Source};
+use crate::serve::{self, LoopSource, Source};
+use crate::xcp_tool::BusAddress;
 
 /// Arguments of `hitch serve`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Examples:\n  hitch serve\n  hitch serve lab-a --model dynamic --port 8080 --no-browser\n  hitch serve --ecu\n\n\
+    after_help = "Examples:\n  hitch serve\n  hitch serve lab-a --model dynamic --port 8080 --no-browser\n  hitch serve --ecu\n  \
+    hitch serve --can 127.0.0.1:7701\n\n\
     With --ecu, the closed loop of the page is the firmware's image on an emulated Cortex-M4, as `hitch ecu` runs it, with \
     the present model as the plant. There is one ECU: one tab at a time has it, from Start to Stop, and a tab that is \
-    closed or silent for 5 s gives it back. The page says when this computer is too slow for real time."
+    closed or silent for 5 s gives it back. The page says when this computer is too slow for real time.\n\n\
+    With --can, the closed loop of the page is a real ECU on its bus, shown read only: angle, currents, pressures, status and \
+    trouble codes as the ECU sends them, in any number of tabs. Nothing is sent on the bus, and an slcan adapter is opened in \
+    listen-only mode if it has one. A lost connection is opened again. Tuning and calibration over XCP are done with \
+    `hitch flash-calibration` and other XCP tools: docs/tuning-live.md."
 )]
 pub struct Args {
     /// Folder of the campaign; without this option, the demonstration campaign
@@ -31,6 +37,10 @@ pub struct Args {
     /// Run the application of the ECU on the host instead of the emulated processor
     #[arg(long, requires = "ecu")]
     host: bool,
+    /// Show the ECU on this bus instead, read only: HOST:PORT of an slcan adapter such as `hitch ecu --can`, a CAN interface
+    /// of Linux (can0), or the serial port of an slcan adapter (/dev/ttyACM0, COM3)
+    #[arg(long, value_name = "BUS", conflicts_with = "ecu")]
+    can: Option<BusAddress>,
     /// Print the address of the page without opening a browser
     #[arg(long)]
     no_browser: bool,
@@ -39,22 +49,26 @@ pub struct Args {
 /// Runs the command until it is stopped with Ctrl-C.
 ///
 /// # Errors
-/// If the model file is invalid, the port is not available, or the emulator or its image is missing. A fault of the campaign is shown on the page.
+/// If the model file is invalid, the port is not available, the emulator or its image is missing, or the bus
+/// cannot be opened. A fault of the campaign is shown on the page.
 pub fn run(args: &Args) -> Result<(), Error> {
     let source = Source {
         campaign: args.campaign.clone(),
         model: args.model.load()?,
     };
-    serve::run(source, args.runner()?, args.port, !args.no_browser)
+    serve::run(source, args.loop_source()?, args.port, !args.no_browser)
 }
 
 impl Args {
-    /// What runs the ECU, if it runs the closed loop.
-    fn runner(&self) -> Result<Option<Runner>, Error> {
+    /// What runs the closed loop.
+    fn loop_source(&self) -> Result<LoopSource, Error> {
+        if let Some(address) = &self.can {
+            return LoopSource::bus(address.clone());
+        }
         Ok(match (self.ecu, self.host) {
-            (false, _) => None,
-            (true, true) => Some(Runner::Host),
-            (true, false) => Some(Runner::emulator(self.image.as_deref())?),
+            (false, _) => LoopSource::Host,
+            (true, true) => LoopSource::ecu(Runner::Host),
+            (true, false) => LoopSource::ecu(Runner::emulator(self.image.as_deref())?),
         })
     }
 }

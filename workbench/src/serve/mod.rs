@@ -18,5 +18,6 @@ mod tasks;
 mod upload;
 mod views;
 
+pub use live::LoopSource;
 pub use server::run;
 pub use source::Source;

@@ -13,25 +13,24 @@ use super::live::LoopSource;
 use super::routes;
 use super::sessions::Sessions;
 use super::source::Source;
-use crate::ecu::Runner;
 use crate::error::Error;
 use crate::output;
 
 /// Maximum size of a request, bytes; the requests of the page are short.
 const LARGEST_REQUEST: usize = 64 * 1024;
 
-/// Serves the page until Ctrl-C; `ecu` runs the closed loop instead of the controller on the host.
+/// Serves the page until Ctrl-C.
 ///
 /// # Errors
 /// If the port cannot be used, or the address cannot be printed.
 pub fn run(
     source: Source,
-    ecu: Option<Runner>,
+    loop_source: LoopSource,
     port: u16,
     open_browser: bool,
 ) -> Result<(), Error> {
     let runtime = Runtime::new().map_err(cannot_start)?;
-    let sessions = Arc::new(Sessions::new(source, LoopSource::new(ecu)));
+    let sessions = Arc::new(Sessions::new(source, loop_source));
     let page = runtime.block_on(start(Arc::clone(&sessions), port))?;
     output::print(&format!("{page}\nStop it with Ctrl-C.\n"))?;
     if open_browser && let Err(error) = open::that_detached(&page) {

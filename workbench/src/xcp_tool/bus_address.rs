@@ -1,8 +1,11 @@
 //! Address of a CAN bus: an slcan adapter on TCP, an interface of Linux, or an slcan adapter on a serial line.
 
 use std::fmt;
+use std::io;
 use std::path::Path;
 use std::str::FromStr;
+
+use crate::error::Error;
 
 /// The accepted forms, for messages.
 const FORMS: &str = "give HOST:PORT of an slcan adapter, as in 127.0.0.1:7701; a CAN interface, as in can0; or a serial port, \
@@ -35,6 +38,22 @@ impl fmt::Display for BusAddress {
 }
 
 impl BusAddress {
+    /// The fault of a bus that cannot be opened, with suggested correction.
+    pub fn unreachable(&self, error: &io::Error) -> Error {
+        let advice = match self {
+            Self::Tcp(_) => {
+                format!("start `hitch ecu --can {self}` or give the address of an slcan adapter")
+            }
+            Self::Serial(_) => {
+                "give the port of an slcan adapter that no other program uses".to_owned()
+            }
+            Self::Interface(_) => {
+                format!("start it with `ip link set {self} up type can bitrate 250000`")
+            }
+        };
+        Error::Usage(format!("--can {self}: no answer: {error}; {advice}"))
+    }
+
     /// Reads an address; `link_type` returns the type of the network interface with a name, `None` without one.
     fn parse(text: &str, link_type: impl Fn(&str) -> Option<Link>) -> Result<Self, String> {
         if let Some(address) = text.strip_prefix("tcp:") {

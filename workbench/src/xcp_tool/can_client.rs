@@ -19,8 +19,9 @@ pub(super) const SENDS_WITHIN: Duration = Duration::from_secs(1);
 #[derive(Debug)]
 pub struct CanClient(Adapter);
 
+/// A connection to an adapter.
 #[derive(Debug)]
-enum Adapter {
+pub(super) enum Adapter {
     Slcan(SlcanClient),
     #[cfg(target_os = "linux")]
     Interface(CanInterface),
@@ -32,19 +33,13 @@ impl CanClient {
     /// # Errors
     /// If the adapter cannot be opened.
     pub fn open(address: &BusAddress) -> io::Result<Self> {
-        Ok(Self(match address {
-            BusAddress::Tcp(address) => Adapter::Slcan(SlcanClient::connect(address)?),
-            BusAddress::Serial(port) => Adapter::Slcan(SlcanClient::open_serial(port)?),
+        let mut adapter = Adapter::connect(address)?;
+        match &mut adapter {
+            Adapter::Slcan(client) => client.open()?,
             #[cfg(target_os = "linux")]
-            BusAddress::Interface(name) => Adapter::Interface(CanInterface::open(name)?),
-            #[cfg(not(target_os = "linux"))]
-            BusAddress::Interface(_) => {
-                return Err(io::Error::new(
-                    io::ErrorKind::Unsupported,
-                    "CAN interfaces need Linux",
-                ));
-            }
-        }))
+            Adapter::Interface(_) => {}
+        }
+        Ok(Self(adapter))
     }
 
     /// Sends a frame.
@@ -64,10 +59,40 @@ impl CanClient {
     /// # Errors
     /// If the adapter is disconnected.
     pub fn receive(&mut self, deadline: Instant) -> io::Result<Option<Frame>> {
-        match &mut self.0 {
-            Adapter::Slcan(client) => client.receive(deadline),
+        self.0.receive(deadline)
+    }
+}
+
+impl Adapter {
+    /// Connects to an adapter; the channel of an slcan adapter is not yet opened.
+    ///
+    /// # Errors
+    /// If the adapter cannot be reached.
+    pub(super) fn connect(address: &BusAddress) -> io::Result<Self> {
+        Ok(match address {
+            BusAddress::Tcp(address) => Self::Slcan(SlcanClient::connect(address)?),
+            BusAddress::Serial(port) => Self::Slcan(SlcanClient::open_serial(port)?),
             #[cfg(target_os = "linux")]
-            Adapter::Interface(interface) => interface.receive(deadline),
+            BusAddress::Interface(name) => Self::Interface(CanInterface::open(name)?),
+            #[cfg(not(target_os = "linux"))]
+            BusAddress::Interface(_) => {
+                return Err(io::Error::new(
+                    io::ErrorKind::Unsupported,
+                    "CAN interfaces need Linux",
+                ));
+            }
+        })
+    }
+
+    /// The next data frame; `None` if none arrives before `deadline`.
+    ///
+    /// # Errors
+    /// If the adapter is disconnected.
+    pub(super) fn receive(&mut self, deadline: Instant) -> io::Result<Option<Frame>> {
+        match self {
+            Self::Slcan(client) => client.receive(deadline),
+            #[cfg(target_os = "linux")]
+            Self::Interface(interface) => interface.receive(deadline),
         }
     }
 }

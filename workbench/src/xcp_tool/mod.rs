@@ -1,10 +1,11 @@
-//! Client of the ECU's bus: measurement and calibration over XCP.
+//! Client of the ECU's bus: measurement and calibration over XCP, and a listener.
 
 mod bus_address;
 mod calibration;
 mod can_client;
 #[cfg(target_os = "linux")]
 mod can_interface;
+mod can_listener;
 mod recording;
 mod session;
 mod slcan_client;
@@ -12,5 +13,6 @@ mod slcan_client;
 pub use bus_address::BusAddress;
 pub use calibration::{Written, write_calibration};
 pub use can_client::CanClient;
+pub use can_listener::{CanListener, ListenMode};
 pub use recording::{CHANNELS, PERIOD_MS, Row, record};
 pub use session::{Session, ToolError};

@@ -3,19 +3,27 @@
 use std::fmt;
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::TcpStream;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use hitch_protocols::can::{Frame, slcan};
 
 use super::can_client::{PATIENCE, SENDS_WITHIN, is_timeout};
+use super::can_listener::ListenMode;
 
 /// Baud rate of a serial line; adapters on USB ignore it.
 const BAUD: u32 = 115_200;
-/// Closes a channel that is open, sets 250 kbit/s, and opens it. The first end of line completes a partial command.
-const OPEN: &[u8] = b"\rC\rS5\rO\r";
+/// Closes a channel that is open, and sets 250 kbit/s. The first end of line completes a partial command.
+const SET_UP: &[u8] = b"\rC\rS5\r";
+const OPEN: &[u8] = b"O\r";
+const LISTEN: &[u8] = b"L\r";
 const CLOSE: &[u8] = b"C\r";
 /// A line ends with one of these: success, or failure.
-const ENDS: [u8; 2] = [b'\r', 0x07];
+const ENDS: [u8; 2] = [b'\r', REFUSED];
+const REFUSED: u8 = 0x07;
+/// Silence after which all replies to the first commands have arrived.
+const QUIET: Duration = Duration::from_millis(60);
+/// Time limit of the replies to the first commands; and of a reply, which some adapters never send.
+const REPLIES_WITHIN: Duration = Duration::from_millis(500);
 
 /// Connection to an adapter; reads return after [`PATIENCE`].
 trait Line: Read + Write + Send {}
@@ -38,7 +46,7 @@ impl fmt::Debug for SlcanClient {
 }
 
 impl SlcanClient {
-    /// Connects to a TCP port and opens the channel.
+    /// Connects to a TCP port; the channel is not yet opened.
     ///
     /// # Errors
     /// If the connection fails.
@@ -47,25 +55,55 @@ impl SlcanClient {
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(PATIENCE))?;
         stream.set_write_timeout(Some(PATIENCE))?;
-        Self::open(Box::new(stream))
+        Ok(Self::on(Box::new(stream)))
     }
 
-    /// Opens a serial port, and the channel.
+    /// Opens a serial port; the channel is not yet opened.
     ///
     /// # Errors
     /// If the port does not exist, is in use, or is not a serial port.
     pub fn open_serial(port: &str) -> io::Result<Self> {
         let port = serialport::new(port, BAUD).timeout(PATIENCE).open()?;
-        Self::open(Box::new(port))
+        Ok(Self::on(Box::new(port)))
     }
 
-    fn open(line: Box<dyn Line>) -> io::Result<Self> {
-        let mut client = Self {
+    fn on(line: Box<dyn Line>) -> Self {
+        Self {
             line,
             text: Vec::new(),
-        };
-        client.write(OPEN)?;
-        Ok(client)
+        }
+    }
+
+    /// Opens the channel for sending and receiving.
+    ///
+    /// # Errors
+    /// If the connection is closed.
+    pub fn open(&mut self) -> io::Result<()> {
+        self.write(&[SET_UP, OPEN].concat())
+    }
+
+    /// Opens the channel for listening only: the adapter does not even acknowledge frames. An adapter that refuses this
+    /// is opened as usual.
+    ///
+    /// # Errors
+    /// If the connection is closed.
+    pub fn listen(&mut self) -> io::Result<ListenMode> {
+        self.write(SET_UP)?;
+        // A channel that was open had frames on their way.
+        let limit = Instant::now() + REPLIES_WITHIN;
+        while Instant::now() < limit && self.read_until(Instant::now() + QUIET, |_| true)? {
+            self.text.clear();
+        }
+        self.text.clear();
+        self.write(LISTEN)?;
+        let is_line = |text: &[u8]| text.iter().any(|byte| ENDS.contains(byte));
+        self.read_until(Instant::now() + REPLIES_WITHIN, is_line)?;
+        let end = self.text.iter().find(|byte| ENDS.contains(byte));
+        if end != Some(&REFUSED) {
+            return Ok(ListenMode::ListenOnly);
+        }
+        self.write(OPEN)?;
+        Ok(ListenMode::Acknowledging)
     }
 
     /// Sends a frame.
@@ -102,17 +140,31 @@ impl SlcanClient {
                     return Ok(Some(frame));
                 }
             }
-            if Instant::now() >= deadline {
+            if !self.read_until(deadline, |_| true)? {
                 return Ok(None);
             }
+        }
+    }
+
+    /// Reads until the text is as wanted, at least once; false if it is not before `deadline`.
+    fn read_until(
+        &mut self,
+        deadline: Instant,
+        wanted: impl Fn(&[u8]) -> bool,
+    ) -> io::Result<bool> {
+        while Instant::now() < deadline {
             let mut bytes = [0; 4_096];
             match self.line.read(&mut bytes) {
                 Ok(0) => return Err(closed()),
                 Ok(count) => self.text.extend(&bytes[..count]),
-                Err(error) if is_timeout(&error) => {}
+                Err(error) if is_timeout(&error) => continue,
                 Err(error) => return Err(error),
             }
+            if wanted(&self.text) {
+                return Ok(true);
+            }
         }
+        Ok(false)
     }
 }
 

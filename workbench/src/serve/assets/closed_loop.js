@@ -1,5 +1,5 @@
 // @ts-check
-/** The closed loop in real time: requests steps of the simulation, and shows both hitches. */
+/** The closed loop in real time: requests steps of the simulation, and shows both hitches; or shows the ECU on the bus. */
 import { byId, element } from "./dom.js";
 import { drawLinkage } from "./linkage.js";
 import { connectOrders, limitLever, orders } from "./loop_orders.js";
@@ -50,7 +50,7 @@ export function connectLoop(show) {
   byId("loop-restart").addEventListener("click", () => reopen());
   new IntersectionObserver(([entry]) => {
     visible = entry.isIntersecting;
-    if (visible && !machine) reopen();
+    if (visible && !machine) describe();
   }, { rootMargin: "200px" }).observe(byId("loop"));
 }
 
@@ -76,6 +76,17 @@ function isEcu() {
   return machine?.source === "ecu";
 }
 
+/** Whether the page shows an ECU on the bus, which gets no orders. */
+function isBus() {
+  return machine?.source === "bus";
+}
+
+/** Draws the section for the first time. An ECU on the bus is shown at once. */
+async function describe() {
+  await reopen();
+  if (isBus()) await start();
+}
+
 /** Describes the machine with the hitch at rest at the lever, and starts a new closed loop if one is to run. */
 async function reopen() {
   generation += 1;
@@ -97,8 +108,9 @@ async function reopen() {
   move = drawLinkage(/** @type {any} */ (byId("linkage")), machine.linkage);
   move(machine.angle_deg, machine.angle_deg, machine.angle_deg, orders().load_kg);
   byId("loop").dataset.source = machine.source;
-  showOnly(isEcu() ? "ECU, rebuilt calibration" : null);
-  byId("loop-equal").hidden = !machine.equal || isEcu();
+  showOnly(isEcu() ? "ECU, rebuilt calibration" : isBus() ? "ECU on the bus" : null, isBus());
+  if (isBus()) byId("linkage").setAttribute("aria-label", "Three-point linkage at the measured angle");
+  byId("loop-equal").hidden = !machine.equal || isEcu() || isBus();
   reported = ["", ""];
   byId("loop-events").replaceChildren();
   clearChart();
@@ -156,7 +168,7 @@ async function step(milliseconds) {
     if (own !== generation) return;
     show(answer, given);
     const pace = milliseconds / (performance.now() - began);
-    byId("loop-pace").textContent = isEcu() ? (answer.behind ? "behind real time: this computer is too slow or busy" : "") : pace < SLOW ? `slower than real time: ${pace.toFixed(2)}` : "";
+    byId("loop-pace").textContent = isEcu() ? (answer.behind ? "behind real time: this computer is too slow or busy" : "") : !isBus() && pace < SLOW ? `slower than real time: ${pace.toFixed(2)}` : "";
   } catch (error) {
     if (own !== generation) return;
     // The page follows the change of the model with a new simulation.
@@ -170,14 +182,27 @@ async function step(milliseconds) {
  * @param {any} answer
  * @param {any} given */
 function show(answer, given) {
-  // The ECU has the place of the rebuilt calibration; what belongs to the first one is hidden.
-  const loops = isEcu() ? [answer.loops[0], answer.loops[0]] : answer.loops;
+  // An ECU has the place of the rebuilt calibration; what belongs to the first one is hidden.
+  const isSingle = answer.loops.length === 1;
+  const loops = isSingle ? [answer.loops[0], answer.loops[0]] : answer.loops;
   addSamples(loops, given.lever_deg);
-  const last = (/** @type {any} */ loop) => loop.angle_deg[loop.angle_deg.length - 1];
-  if (loops[0].angle_deg.length > 0 && move) move(given.lever_deg, last(loops[0]), last(loops[1]), given.load_kg);
+  const [first, second] = loops.map((/** @type {any} */ loop) => loop.angle_deg[loop.angle_deg.length - 1] ?? null);
+  if (first !== null && second !== null && move) move(given.lever_deg, first, second, given.load_kg);
   showFigures(loops, given.lever_deg);
-  loops.forEach((/** @type {any} */ loop, /** @type {number} */ index) => { if (index === 1 || !isEcu()) report(loop, index); });
+  if (answer.bus) showBus(answer.bus);
+  loops.forEach((/** @type {any} */ loop, /** @type {number} */ index) => { if (index === 1 || !isSingle) report(loop, index); });
   if (visible) drawChart();
+}
+
+/** Shows the connection to the bus, and why there are no values.
+ * @param {{text: string, problem: string | null, position_percent: number | null}} bus */
+function showBus({ text, problem, position_percent }) {
+  const line = byId("loop-bus");
+  const now = problem ?? text;
+  if (line.textContent !== now) line.textContent = now;
+  line.toggleAttribute("data-fault", problem !== null);
+  byId("loop-position").textContent = position_percent === null ? "–" : `${position_percent.toFixed(1)} %`;
+  if (problem !== null) byId("loop-angle-1").textContent = "–";
 }
 
 /** @param {any[]} loops
@@ -191,7 +216,7 @@ function showFigures(loops, lever_deg) {
     };
     const angle = loop.angle_deg[loop.angle_deg.length - 1];
     set("state", loop.fault ? `${loop.state}: ${loop.fault}` : loop.state);
-    if (angle !== undefined) set("angle", `${angle.toFixed(2)} deg`);
+    if (angle !== undefined) set("angle", angle === null ? "–" : `${angle.toFixed(2)} deg`);
     const figures = loop.move;
     set("overshoot", figures ? `${figures.overshoot_deg.toFixed(2)} deg` : "–");
     set("arrived", figures && figures.arrived_s !== null ? `${figures.arrived_s.toFixed(2)} s` : "–");
@@ -214,7 +239,7 @@ function report(loop, index) {
   if (first) return;
   const cause = [loop.fault_text, loop.trip_text && `safety envelope: ${loop.trip_text}`].filter(Boolean).join("; ");
   const time = loop.time_s.length ? `${loop.time_s[loop.time_s.length - 1].toFixed(1)} s` : "";
-  const whose = isEcu() ? "ECU" : index === 0 ? "first calibration" : "rebuilt calibration";
+  const whose = isEcu() || isBus() ? "ECU" : index === 0 ? "first calibration" : "rebuilt calibration";
   const text = [loop.state_text, cause && `Cause: ${cause}.`].filter(Boolean).join(" ");
   const events = byId("loop-events");
   events.prepend(element("p", { class: loop.fault ? "fault" : null }, `${time}, ${whose}: ${text}`));

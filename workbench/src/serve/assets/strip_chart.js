@@ -26,6 +26,8 @@ let history = empty();
 /** Name of the only hitch; `null` if there are two.
  * @type {string | null} */
 let only = null;
+/** Whether the angle is that of the sensor, and no set point is known. */
+let measured = false;
 let drawn = 0;
 let drawing = false;
 
@@ -41,9 +43,11 @@ export function clearChart() {
 }
 
 /** Shows the second hitch alone, under this name.
- * @param {string | null} name `null` shows both */
-export function showOnly(name) {
+ * @param {string | null} name `null` shows both
+ * @param {boolean} isMeasured whether its angle is that of the sensor, without a set point */
+export function showOnly(name, isMeasured) {
   only = name;
+  measured = isMeasured;
 }
 
 /** Adds the samples of an answer.
@@ -95,7 +99,7 @@ function figure() {
       zeroline: false, anchor: `y${ROWS.length}` },
   };
   /** @type {any[]} */
-  const traces = [{ name: "angle sensor, rebuilt", y: history.sensor, yaxis: "y", line: { color: colour("band"), width: 3 } },
+  const traces = measured ? [] : [{ name: "angle sensor, rebuilt", y: history.sensor, yaxis: "y", line: { color: colour("band"), width: 3 } },
     { name: "set point", y: history.set_point, yaxis: "y", line: { color: colour("measured"), width: 1.2, dash: "dot" } }];
   let top = inner;
   ROWS.forEach(([key, title, unit, height], index) => {
@@ -105,7 +109,7 @@ function figure() {
     layout[`yaxis${axis}`] = { title: { text: unit, standoff: 4 }, domain: [low, Math.min(1, high)], fixedrange: true, nticks: 4,
       gridcolor: colour("line"), zerolinecolor: colour("band") };
     if (key.endsWith("_a")) Object.assign(layout[`yaxis${axis}`], { range: [0, 3.6] });
-    layout.annotations.push({ text: title, x: 0, xref: "paper", xanchor: "left", y: high, yref: "paper", yanchor: "bottom",
+    layout.annotations.push({ text: measured && index === 0 ? "rocker angle" : title, x: 0, xref: "paper", xanchor: "left", y: high, yref: "paper", yanchor: "bottom",
       showarrow: false, font: { size: 12, color: colour("ink") } });
     HITCHES.forEach((hitch, loop) => (only && loop === 0) || traces.push({ name: only ?? hitch.name, y: history.loops[loop][key], yaxis: `y${axis}`,
       showlegend: index === 0, line: { color: colour(hitch.colour), width: hitch.width, dash: hitch.dash } }));

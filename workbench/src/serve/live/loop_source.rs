@@ -7,6 +7,7 @@ use axum::http::StatusCode;
 use serde_json::Value;
 
 use super::bench::{Bench, NoAnswer};
+use super::bus::{BusMonitor, Place};
 use super::emulated::{EcuSocket, NoEcu, RunningEcu};
 use super::machine::Machine;
 use super::orders::Orders;
@@ -14,6 +15,7 @@ use crate::comparison::Evaluated;
 use crate::ecu::Runner;
 use crate::error::Error;
 use crate::serve::routes::Refusal;
+use crate::xcp_tool::BusAddress;
 
 /// What runs the closed loops of a server.
 #[derive(Debug)]
@@ -22,6 +24,8 @@ pub enum LoopSource {
     Host,
     /// The ECU: one for all tabs, in real time.
     Ecu(EcuSocket),
+    /// A real ECU on the bus: all tabs only listen to it.
+    Bus(BusMonitor),
 }
 
 /// The closed loop of a tab.
@@ -36,6 +40,7 @@ pub struct TabLoop {
 enum Kind {
     Host(Bench),
     Ecu(RunningEcu),
+    Bus(Place),
 }
 
 /// The result of an advance, when it is ready.
@@ -47,9 +52,17 @@ pub enum Pending {
 }
 
 impl LoopSource {
-    /// The controller on the host, or the ECU that `runner` runs.
-    pub fn new(ecu: Option<Runner>) -> Self {
-        ecu.map_or(Self::Host, |runner| Self::Ecu(EcuSocket::new(runner)))
+    /// The ECU that `runner` runs.
+    pub fn ecu(runner: Runner) -> Self {
+        Self::Ecu(EcuSocket::new(runner))
+    }
+
+    /// The ECU on a bus.
+    ///
+    /// # Errors
+    /// If the adapter cannot be opened.
+    pub fn bus(address: BusAddress) -> Result<Self, Error> {
+        Ok(Self::Bus(BusMonitor::start(address)?))
     }
 
     /// Its name for the page.
@@ -57,14 +70,15 @@ impl LoopSource {
         match self {
             Self::Host => "host",
             Self::Ecu(_) => "ecu",
+            Self::Bus(_) => "bus",
         }
     }
 
-    /// Starts a closed loop at rest at an angle, degree.
+    /// Starts a closed loop at rest at an angle, degree; or follows the ECU on the bus.
     ///
     /// # Errors
     /// If it cannot be started, or another tab has the ECU.
-    pub fn start(
+    pub(in crate::serve) fn start(
         &self,
         of: Arc<Evaluated>,
         machine: Machine,
@@ -81,6 +95,7 @@ impl LoopSource {
                 let refused = |error: NoEcu| Refusal::conflict(&error.to_string());
                 Kind::Ecu(socket.start(machine, orders, angle_deg).map_err(refused)?)
             }
+            Self::Bus(monitor) => Kind::Bus(monitor.place()),
         };
         Ok(TabLoop { of, kind })
     }
@@ -90,16 +105,17 @@ impl LoopSource {
         match self {
             Self::Host => {}
             Self::Ecu(socket) => socket.close(),
+            Self::Bus(monitor) => monitor.close(),
         }
     }
 }
 
 impl TabLoop {
-    /// Requests an advance by `steps` milliseconds; an ECU runs in real time.
+    /// Requests an advance by `steps` milliseconds; an ECU runs in real time, and one on the bus gets no orders.
     ///
     /// # Errors
     /// If the previous one has not ended, or the simulation or the ECU has ended.
-    pub fn advance(&self, orders: Orders, steps: u32) -> Result<Pending, Refusal> {
+    pub(in crate::serve) fn advance(&self, orders: Orders, steps: u32) -> Result<Pending, Refusal> {
         match &self.kind {
             Kind::Host(bench) => Ok(Pending::Computed(
                 bench.advance(orders, steps).map_err(refused)?,
@@ -108,6 +124,7 @@ impl TabLoop {
                 Ok(view) => Ok(Pending::Ready(view)),
                 Err(reason) => Err(Refusal::of(StatusCode::GONE, &reason)),
             },
+            Kind::Bus(place) => Ok(Pending::Ready(place.advance())),
         }
     }
 }
@@ -117,7 +134,7 @@ impl Pending {
     ///
     /// # Errors
     /// If the simulation has failed.
-    pub fn wait(self) -> Result<Value, Refusal> {
+    pub(in crate::serve) fn wait(self) -> Result<Value, Refusal> {
         match self {
             Self::Ready(view) => Ok(view),
             Self::Computed(answer) => answer.recv().map_err(|_| refused(NoAnswer::Failed)),

@@ -5,7 +5,9 @@
 //! the initial model, that of the second from the present one. Both run in a thread of their own, `bench::Bench`.
 //!
 //! With `--ecu`, the ECU runs in real time instead, with the calibration of the present model: `emulated::EcuSocket`.
+//! With `--can`, the page shows an ECU on the bus: `bus::BusMonitor`.
 mod bench;
+mod bus;
 mod description;
 mod ecu_bench;
 mod emulated;

@@ -1,0 +1,157 @@
+//! The thread that listens to the bus, for all tabs.
+
+use std::io;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{JoinHandle, sleep};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use super::heard::Heard;
+use super::view;
+use crate::error::Error;
+use crate::xcp_tool::{BusAddress, CanListener, ListenMode};
+
+/// Time after which the thread checks whether it has to end.
+const TURN: Duration = Duration::from_millis(50);
+/// Time between two attempts to open a lost adapter.
+const RETRY: Duration = Duration::from_secs(1);
+/// Silence of the bus after which the adapter is opened again: it may have lost its settings, or a gateway its network.
+const REOPEN_AFTER: Duration = Duration::from_secs(10);
+/// Time for which the end of the thread is awaited.
+const ENDS_WITHIN: Duration = Duration::from_secs(1);
+
+/// The listener of a server.
+#[derive(Debug)]
+pub struct BusMonitor {
+    shared: Arc<Shared>,
+    thread: JoinHandle<()>,
+}
+
+/// The place of a tab in what was heard.
+#[derive(Debug)]
+pub struct Place {
+    shared: Arc<Shared>,
+    /// Number of samples that the tab has.
+    known: AtomicU64,
+}
+
+#[derive(Debug)]
+struct Shared {
+    address: BusAddress,
+    stopped: AtomicBool,
+    state: Mutex<State>,
+}
+
+/// What the thread and the requests of the tabs share.
+#[derive(Debug)]
+pub struct State {
+    /// The adapter, or why it is lost.
+    pub adapter: Result<ListenMode, String>,
+    /// What was received.
+    pub heard: Heard,
+}
+
+impl BusMonitor {
+    /// Opens the bus, and listens.
+    ///
+    /// # Errors
+    /// If the adapter cannot be opened.
+    pub fn start(address: BusAddress) -> Result<Self, Error> {
+        let listener = CanListener::open(&address).map_err(|error| address.unreachable(&error))?;
+        let shared = Arc::new(Shared {
+            address,
+            stopped: AtomicBool::new(false),
+            state: Mutex::new(State {
+                adapter: Ok(listener.mode()),
+                heard: Heard::new(Instant::now()),
+            }),
+        });
+        let of_thread = Arc::clone(&shared);
+        let no_thread = |error| Error::Failed(format!("the bus cannot be listened to: {error}"));
+        let thread = std::thread::Builder::new()
+            .name("CAN bus".to_owned())
+            .spawn(move || of_thread.run(listener))
+            .map_err(no_thread)?;
+        Ok(Self { shared, thread })
+    }
+
+    /// The place of a new tab: it gets the kept samples first.
+    pub fn place(&self) -> Place {
+        Place {
+            shared: Arc::clone(&self.shared),
+            known: AtomicU64::new(0),
+        }
+    }
+
+    /// Ends the thread, which closes the channel of the adapter.
+    pub fn close(&self) {
+        self.shared.stopped.store(true, Ordering::Relaxed);
+        let begun = Instant::now();
+        while !self.thread.is_finished() && begun.elapsed() < ENDS_WITHIN {
+            sleep(Duration::from_millis(1));
+        }
+    }
+}
+
+impl Place {
+    /// The samples since the last call, and the present state.
+    pub fn advance(&self) -> Value {
+        let state = self.shared.lock();
+        let (samples, count) = state
+            .heard
+            .samples_after(self.known.load(Ordering::Relaxed));
+        self.known.store(count, Ordering::Relaxed);
+        view::shown(&state, &self.shared.address, &samples, Instant::now())
+    }
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+
+    /// Listens until the end of the server.
+    fn run(&self, first: CanListener) {
+        let mut opened = Ok(first);
+        while !self.is_stopped() {
+            let lost = match opened {
+                Ok(listener) => self.listen(listener),
+                Err(error) => Err(error),
+            };
+            if let Err(error) = lost {
+                self.lock().adapter = Err(error.to_string());
+                self.wait(RETRY);
+            }
+            if self.is_stopped() {
+                return;
+            }
+            opened = CanListener::open(&self.address);
+        }
+    }
+
+    /// Listens until the adapter is lost, or the bus is silent for long.
+    fn listen(&self, mut listener: CanListener) -> io::Result<()> {
+        self.lock().adapter = Ok(listener.mode());
+        let mut active = Instant::now();
+        while !self.is_stopped() && active.elapsed() < REOPEN_AFTER {
+            if let Some(frame) = listener.receive(Instant::now() + TURN)? {
+                active = Instant::now();
+                self.lock().heard.receive(&frame, active);
+            }
+        }
+        Ok(())
+    }
+
+    fn wait(&self, time: Duration) {
+        let begun = Instant::now();
+        while !self.is_stopped() && begun.elapsed() < time {
+            sleep(TURN);
+        }
+    }
+}
