@@ -42,12 +42,12 @@ impl SamplePairs {
         let is_complete = begun.is_some();
         let mut values = begun.unwrap_or_default();
         if group == Pgn::HITCH_MOTION {
-            values.lift_a = scaled(first, 1e-3, -32.0);
-            values.lower_a = scaled(second, 1e-3, -32.0);
-            values.angle_deg = scaled(third, 0.01, -200.0);
+            values.lift_a = scaled(first, 32_000.0, 1_000.0);
+            values.lower_a = scaled(second, 32_000.0, 1_000.0);
+            values.angle_deg = scaled(third, 20_000.0, 100.0);
         } else {
-            values.cylinder_bar = scaled(first, 0.01, -50.0);
-            values.pump_bar = scaled(second, 0.01, -50.0);
+            values.cylinder_bar = scaled(first, 5_000.0, 100.0);
+            values.pump_bar = scaled(second, 5_000.0, 100.0);
         }
         if !is_complete {
             self.half = Some((time_ms, group, values));
@@ -56,9 +56,9 @@ impl SamplePairs {
     }
 }
 
-/// A value in its unit, with the scale of `firmware/hitch.dbc`.
-fn scaled(raw: u16, per_bit: f64, offset: f64) -> Option<f64> {
-    (raw <= LARGEST).then_some(f64::from(raw) * per_bit + offset)
+/// A value in its unit, with the scale of `firmware/hitch.dbc`: the raw value of zero, and the bits of a unit.
+fn scaled(raw: u16, zero: f64, bits_per_unit: f64) -> Option<f64> {
+    (raw <= LARGEST).then_some((f64::from(raw) - zero) / bits_per_unit)
 }
 
 #[cfg(test)]
