@@ -174,7 +174,7 @@ fn the_currents_of_other_coils_are_there_within_one_percent_in_eight_time_consta
                 resistance_ohm: share * resistance_ohm,
                 ..declared.clone()
             };
-            let mut bench = Bench::with(calibration.current.clone(), &coil, 13.8);
+            let mut bench = Bench::with(calibration.current, &coil, 13.8);
             for asked_ma in [0.4, 0.6, 0.5, 0.9].map(|part| (part * f64::from(largest_ma)) as i32) {
                 bench.run(asked_ma, steps);
                 let error = (bench.mean_ma() / f64::from(asked_ma) - 1.0).abs();
