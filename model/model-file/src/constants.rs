@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use hitch_plant::units::{M3_S_PER_LPM, PA_PER_BAR};
 use hitch_plant::{
     CheckValve, Compensator, Constants, Cylinder, Dynamics, LinkageDimensions, Masses, Oil,
-    OrificeValve, Pump, PumpKind, ReliefValve, Solenoid, ValveCurve,
+    OrificeValve, Pump, PumpKind, ReliefValve, SensorNoise, Solenoid, UsualLoads, ValveCurve,
 };
 
 const M3_PER_L: f64 = 1e-3;
@@ -147,7 +147,7 @@ pub const CURVES: [Curve; 2] = [
 ];
 
 /// Tables, in the order of the file.
-pub const TABLES: [&str; 12] = [
+pub const TABLES: [&str; 14] = [
     "pump",
     "relief_valve",
     "compensator",
@@ -160,6 +160,8 @@ pub const TABLES: [&str; 12] = [
     "oil",
     "linkage",
     "masses",
+    "loads",
+    "sensors",
 ];
 
 const fn constant(
@@ -186,7 +188,7 @@ impl Constant {
 
 /// All constants except the flow curves.
 #[rustfmt::skip]
-pub static CONSTANTS: [Constant; 31] = [
+pub static CONSTANTS: [Constant; 38] = [
     constant(("pump", "theoretical_flow_lpm"), M3_S_PER_LPM, 0.1..=1000.0, |c| &mut c.pump.theoretical_flow_m3_s),
     constant(("pump", "volumetric_efficiency"), 1.0, 0.01..=1.0, |c| &mut c.pump.volumetric_efficiency),
     constant(("pump", "standby_pressure_bar"), PA_PER_BAR, 0.1..=300.0, |c| &mut c.pump.standby_pressure_pa).only(Had::LoadSensing),
@@ -218,9 +220,17 @@ pub static CONSTANTS: [Constant; 31] = [
     constant(("linkage", "cylinder_axis_y_m"), 1.0, -10.0..=10.0, |c| &mut c.linkage.cylinder_axis_y_m).only(Had::Dimensions),
     constant(("masses", "dead_weight_kg"), 1.0, 0.0..=10_000.0, |c| &mut c.masses.dead_weight_kg),
     constant(("masses", "piston_kg"), 1.0, 0.1..=10_000.0, |c| &mut c.masses.piston_kg),
+    constant(("loads", "light_kg"), 1.0, 0.0..=20_000.0, |c| &mut c.usual_loads.light_kg),
+    constant(("loads", "usual_kg"), 1.0, 0.0..=20_000.0, |c| &mut c.usual_loads.usual_kg),
+    constant(("loads", "heavy_kg"), 1.0, 0.0..=20_000.0, |c| &mut c.usual_loads.heavy_kg),
+    constant(("sensors", "rocker_angle_noise_deg"), 1.0, 0.0..=5.0, |c| &mut c.sensor_noise.rocker_angle_deg),
+    constant(("sensors", "cylinder_pressure_noise_bar"), 1.0, 0.0..=10.0, |c| &mut c.sensor_noise.cylinder_pressure_bar),
+    constant(("sensors", "pump_pressure_noise_bar"), 1.0, 0.0..=10.0, |c| &mut c.sensor_noise.pump_pressure_bar),
+    constant(("sensors", "current_noise_a"), 1.0, 0.0..=0.1, |c| &mut c.sensor_noise.current_a),
 ];
 
-/// Constants before reading: NaN, so that a missing one is detected, except for the solenoid, which a file need not state.
+/// Constants before reading: NaN, so that a missing one is detected, except for those that a file need not state:
+/// solenoid, loads and sensors.
 pub fn unset() -> Constants {
     const UNSET: f64 = f64::NAN;
     let valve = || OrificeValve {
@@ -275,6 +285,8 @@ pub fn unset() -> Constants {
             dead_weight_kg: UNSET,
             piston_kg: UNSET,
         },
+        usual_loads: UsualLoads::default(),
+        sensor_noise: SensorNoise::default(),
     }
 }
 

@@ -27,7 +27,7 @@ const fn meaning(
 
 /// Tables and constants, in the order of the file.
 #[rustfmt::skip]
-static MEANINGS: [Meaning; 52] = [
+static MEANINGS: [Meaning; 61] = [
     meaning(("pump", ""), "Pump at constant speed.", ""),
     meaning(("pump", "kind"), "\"fixed-displacement\" with a bypass compensator, or \"load-sensing\": of variable displacement", "Circuit diagram: a pump with an arrow through it and a load-sensing line is load-sensing"),
     meaning(("pump", "theoretical_flow_lpm"), "Largest displacement times speed, l/min", "Pump data sheet: displacement in cm3/rev times rev/min over 1000"),
@@ -80,6 +80,15 @@ static MEANINGS: [Meaning; 52] = [
     meaning(("masses", ""), "Moving masses without the load.", ""),
     meaning(("masses", "dead_weight_kg"), "Links and frame, as mass at the hitch point, kg", "Weigh the empty hitch at the hitch point"),
     meaning(("masses", "piston_kg"), "All pistons and rods, kg", "Cylinder data sheet"),
+    meaning(("loads", ""), "Loads with which loop and tune try the controller. 0: from the relief setting. The table may be left out.", ""),
+    meaning(("loads", "light_kg"), "A light implement at the hitch point, kg", "Data sheets of the implements"),
+    meaning(("loads", "usual_kg"), "The most common implement, kg", "Data sheets of the implements"),
+    meaning(("loads", "heavy_kg"), "The heaviest implement, kg", "Data sheets of the implements, or the lift capacity of the hitch"),
+    meaning(("sensors", ""), "Noise of the sensors, one sigma, in the closed loop. The table may be left out.", ""),
+    meaning(("sensors", "rocker_angle_noise_deg"), "Rocker angle, degree", "Standard deviation of a log at rest"),
+    meaning(("sensors", "cylinder_pressure_noise_bar"), "Cylinder pressure, bar", "Standard deviation of a log at rest"),
+    meaning(("sensors", "pump_pressure_noise_bar"), "Pump pressure, bar", "Standard deviation of a log at rest"),
+    meaning(("sensors", "current_noise_a"), "Measured current of a coil, A", "Standard deviation of a log of a constant current"),
 ];
 
 /// The documentation of a constant, or of a table if the key is empty.

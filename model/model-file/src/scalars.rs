@@ -36,13 +36,13 @@ pub struct Scalar {
     pub high: f64,
 }
 
-/// Table of the constants on which the plant does not depend: its inputs are the currents.
-const NOT_OF_THE_PLANT: &str = "solenoid";
+/// Tables of constants on which the plant does not depend: its inputs are the currents, and it has no noise.
+const NOT_OF_THE_PLANT: [&str; 3] = ["solenoid", "loads", "sensors"];
 
 fn constants_of_the_plant(variant: Variant) -> impl Iterator<Item = &'static Constant> {
     variant
         .constants()
-        .filter(|constant| constant.table != NOT_OF_THE_PLANT)
+        .filter(|constant| !NOT_OF_THE_PLANT.contains(&constant.table))
 }
 
 /// The constants of a model's plant except its flow curves, then the parameters of its effects, in the order of a model file.

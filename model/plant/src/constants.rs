@@ -10,7 +10,9 @@ use crate::components::oil::Oil;
 use crate::components::orifice_valve::OrificeValve;
 use crate::components::pump::Pump;
 use crate::components::relief_valve::ReliefValve;
+use crate::components::sensor_noise::SensorNoise;
 use crate::components::solenoid::Solenoid;
+use crate::components::usual_loads::UsualLoads;
 
 /// The two kinds of models (docs/plant.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,4 +54,8 @@ pub struct Constants {
     pub linkage_table: Option<LinkageTable>,
     /// The moving masses without the load.
     pub masses: Masses,
+    /// The usual loads.
+    pub usual_loads: UsualLoads,
+    /// The noise of the sensors.
+    pub sensor_noise: SensorNoise,
 }

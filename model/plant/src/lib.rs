@@ -40,7 +40,9 @@ pub use components::oil::Oil;
 pub use components::orifice_valve::OrificeValve;
 pub use components::pump::{Pump, PumpKind};
 pub use components::relief_valve::ReliefValve;
+pub use components::sensor_noise::SensorNoise;
 pub use components::solenoid::Solenoid;
+pub use components::usual_loads::UsualLoads;
 pub use components::valve_curve::{ValveCurve, ValveCurveError};
 pub use constants::{Constants, Dynamics};
 pub use hooks::effect::{

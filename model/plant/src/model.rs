@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::components::linkage::{Joints, Linkage};
 use crate::components::linkage_error::LinkageError;
 use crate::components::linkage_sketch::sketched;
+use crate::components::usual_loads::UsualLoads;
 use crate::constants::{Constants, Dynamics};
 use crate::hooks::effect::{AddedEffect, Effect};
 use crate::units::GRAVITY_M_S2;
@@ -107,7 +108,7 @@ impl Model {
         }
     }
 
-    /// Three usual loads, kg: 3, 9 and 15 % of the load that the relief valve just permits in the middle of the
+    /// Three usual loads, kg: those of the constants; where they are zero, 3, 9 and 15 % of the load that the relief valve just permits in the middle of the
     /// stroke, with the first rounded to one digit. The paper's rig, whose loads are 50, 150 and 250 kg, sets the shares.
     #[must_use]
     pub fn usual_loads_kg(&self) -> [f64; 3] {
@@ -118,7 +119,20 @@ impl Model {
         let light_kg = LIGHT_SHARE * most_kg;
         let digit = 10f64.powf(light_kg.log10().floor());
         let light_kg = (light_kg / digit).round() * digit;
-        [1.0, 3.0, 5.0].map(|factor| factor * light_kg)
+        let UsualLoads {
+            light_kg: light,
+            usual_kg: usual,
+            heavy_kg: heavy,
+        } = constants.usual_loads;
+        let stated_or = |stated_kg: f64, factor: f64| match stated_kg > 0.0 {
+            true => stated_kg,
+            false => factor * light_kg,
+        };
+        [
+            stated_or(light, 1.0),
+            stated_or(usual, 3.0),
+            stated_or(heavy, 5.0),
+        ]
     }
 
     /// The same model with other effects.

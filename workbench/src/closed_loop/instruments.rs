@@ -1,24 +1,16 @@
 //! Typical sensors and current measurement of a tractor: noisy, quantised, reproducible by seed.
 
-use hitch_plant::{Currents, Reading};
+use hitch_plant::{Currents, Reading, SensorNoise};
 use hitch_quantities::Inputs;
 use hitch_quantities::units::{MilliAmp, MilliBar, MilliCelsius, MilliDegree, MilliVolt};
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64Mcg;
 
-/// One sigma of the angle sensor, degree.
-pub const ANGLE_NOISE_DEG: f64 = 0.05;
-/// One sigma of the cylinder pressure sensor, bar.
-pub const CYLINDER_NOISE_BAR: f64 = 0.10;
-/// One sigma of the pump pressure sensor, bar.
-pub const PUMP_NOISE_BAR: f64 = 0.15;
 /// Resolution of a 12-bit converter for an angle sensor with 0.5 to 4.5 V of 5 V over 110 degrees, degree.
 const ANGLE_STEP_DEG: f64 = 110.0 / (0.8 * 4096.0);
 /// Resolution of the same converter over 250 bar, bar.
 const PRESSURE_STEP_BAR: f64 = 250.0 / (0.8 * 4096.0);
-/// One sigma of a measured coil current, A.
-pub const CURRENT_NOISE_A: f64 = 0.003;
 /// Resolution of the same converter over 5 A, A.
 const CURRENT_STEP_A: f64 = 5.0 / 4096.0;
 /// Supply with the engine running, V.
@@ -35,16 +27,16 @@ pub struct Instruments {
 }
 
 impl Instruments {
-    /// Instruments with noise from `seed`.
+    /// Instruments with this noise, from `seed`.
     #[must_use]
-    pub fn new(seed: u64, oil_temperature_c: f64) -> Self {
-        let normal = |sigma| Normal::new(0.0, sigma).expect("a positive constant");
+    pub fn new(noise: &SensorNoise, seed: u64, oil_temperature_c: f64) -> Self {
+        let normal = |sigma| Normal::new(0.0, sigma).expect("a finite constant");
         Self {
             random: Pcg64Mcg::seed_from_u64(seed),
-            angle: normal(ANGLE_NOISE_DEG),
-            cylinder: normal(CYLINDER_NOISE_BAR),
-            pump: normal(PUMP_NOISE_BAR),
-            current: normal(CURRENT_NOISE_A),
+            angle: normal(noise.rocker_angle_deg),
+            cylinder: normal(noise.cylinder_pressure_bar),
+            pump: normal(noise.pump_pressure_bar),
+            current: normal(noise.current_a),
             oil_temperature_c,
         }
     }

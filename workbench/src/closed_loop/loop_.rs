@@ -51,7 +51,7 @@ impl<'m> ClosedLoop<'m> {
     ) -> Self {
         Self {
             plant: DrivenPlant::at_rest(model, load_kg, oil_temperature_c, start_angle_deg),
-            instruments: Instruments::new(seed, oil_temperature_c),
+            instruments: Instruments::new(&model.constants().sensor_noise, seed, oil_temperature_c),
             controller: Controller::new(calibration.clone()),
             steps: 0,
         }

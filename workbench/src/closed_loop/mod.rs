@@ -18,9 +18,7 @@ pub mod variant;
 pub use coil::Coil;
 pub use driven_plant::DrivenPlant;
 pub use ideal_ramp::IdealRamp;
-pub use instruments::{
-    ANGLE_NOISE_DEG, CURRENT_NOISE_A, CYLINDER_NOISE_BAR, Instruments, PUMP_NOISE_BAR, SUPPLY_V,
-};
+pub use instruments::{Instruments, SUPPLY_V};
 pub use loop_::{ClosedLoop, Sample};
 pub use machine::with_dynamics;
 pub use metrics::{ARRIVED_DEG, MoveResult, Summary};

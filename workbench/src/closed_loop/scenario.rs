@@ -143,6 +143,16 @@ mod tests {
     }
 
     #[test]
+    fn stated_loads_replace_those_of_the_relief_setting() {
+        let nominal = hitch_model_file::nominal();
+        let mut constants = nominal.constants().clone();
+        constants.usual_loads.usual_kg = 180.0;
+        constants.usual_loads.heavy_kg = 420.0;
+        let model = nominal.with_constants(constants).expect("a linkage");
+        assert_eq!(model.usual_loads_kg(), [50.0, 180.0, 420.0]);
+    }
+
+    #[test]
     fn two_larger_cylinders_have_larger_loads() {
         let nominal = hitch_model_file::nominal();
         let mut constants = nominal.constants().clone();

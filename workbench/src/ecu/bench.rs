@@ -46,7 +46,7 @@ impl<'m> Bench<'m> {
     ) -> Self {
         Self {
             plant: DrivenPlant::at_rest(model, load_kg, oil_temperature_c, start_angle_deg),
-            converters: Converters::new(seed),
+            converters: Converters::new(model.constants().sensor_noise.clone(), seed),
             time_ms: 0,
             enabled: false,
             operator: Operator::with_lever_at(start_angle_deg - 5.0),

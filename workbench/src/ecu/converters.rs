@@ -3,11 +3,10 @@
 use std::ops::RangeInclusive;
 
 use hitch_ecu::{AdcCode, BoardScaling, Samples};
+use hitch_plant::SensorNoise;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
-
-use crate::closed_loop::{ANGLE_NOISE_DEG, CURRENT_NOISE_A, CYLINDER_NOISE_BAR, PUMP_NOISE_BAR};
 
 /// Range of the sensors of rocker, lever and upper-limit dial of the board, degree.
 pub const SENSORS_DEG: RangeInclusive<f64> = 35.0..=145.0;
@@ -48,19 +47,22 @@ pub struct Signals {
 /// Sensors, wiring and converters; the noise is reproducible by seed.
 #[derive(Debug)]
 pub struct Converters {
+    noise: SensorNoise,
     random: Pcg64Mcg,
 }
 
 impl Converters {
-    /// Converters with noise from `seed`.
-    pub fn new(seed: u64) -> Self {
+    /// Converters of sensors with this noise, from `seed`.
+    pub fn new(noise: SensorNoise, seed: u64) -> Self {
         Self {
+            noise,
             random: Pcg64Mcg::seed_from_u64(seed),
         }
     }
 
     /// The codes for one millisecond.
     pub fn convert(&mut self, signals: &Signals) -> Samples {
+        let sensors = &self.noise;
         let mut noisy = |value: f64, sigma: f64| {
             let noise: f64 = StandardNormal.sample(&mut self.random);
             value + sigma * noise
@@ -75,18 +77,22 @@ impl Converters {
         let angle_deg =
             |angle_deg: f64| ratiometric((angle_deg - first_deg) / (last_deg - first_deg));
         Samples {
-            rocker_angle: angle_deg(noisy(signals.rocker_angle_deg, ANGLE_NOISE_DEG)),
+            rocker_angle: angle_deg(noisy(signals.rocker_angle_deg, sensors.rocker_angle_deg)),
             lever: angle_deg(noisy(signals.lever_deg, 110.0 * POTENTIOMETER_NOISE)),
             upper_limit: angle_deg(noisy(signals.upper_limit_deg, 110.0 * POTENTIOMETER_NOISE)),
             lowering_dial: ratiometric(noisy(signals.lowering_dial, POTENTIOMETER_NOISE)),
-            lift_current: code(noisy(signals.lift_current_a, CURRENT_NOISE_A) / full_scale_a),
-            lower_current: code(noisy(signals.lower_current_a, CURRENT_NOISE_A) / full_scale_a),
+            lift_current: code(noisy(signals.lift_current_a, sensors.current_a) / full_scale_a),
+            lower_current: code(noisy(signals.lower_current_a, sensors.current_a) / full_scale_a),
             supply: code(signals.supply_v / full_scale(BoardScaling::NOMINAL.supply.0)),
             cylinder_pressure: ratiometric(
-                noisy(signals.cylinder_pressure_bar, CYLINDER_NOISE_BAR) / 250.0,
+                noisy(signals.cylinder_pressure_bar, sensors.cylinder_pressure_bar) / 250.0,
             ),
-            pump_pressure: ratiometric(noisy(signals.pump_pressure_bar, PUMP_NOISE_BAR) / 250.0),
-            second_angle: angle_deg(180.0 - noisy(signals.rocker_angle_deg, ANGLE_NOISE_DEG)),
+            pump_pressure: ratiometric(
+                noisy(signals.pump_pressure_bar, sensors.pump_pressure_bar) / 250.0,
+            ),
+            second_angle: angle_deg(
+                180.0 - noisy(signals.rocker_angle_deg, sensors.rocker_angle_deg),
+            ),
             sensor_supply: code(
                 signals.sensor_supply_v / full_scale(BoardScaling::NOMINAL.sensor_supply.0),
             ),
@@ -128,7 +134,7 @@ mod tests {
             sensor_supply_v: 5.0,
             reference: 1.0,
         };
-        let mut converters = Converters::new(1);
+        let mut converters = Converters::new(SensorNoise::default(), 1);
         let mut conversion = Conversion::new(BoardScaling::NOMINAL);
         let inputs: Vec<_> = (0..2_000)
             .map(|_| conversion.inputs(&converters.convert(&signals)))

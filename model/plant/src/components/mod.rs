@@ -13,5 +13,7 @@ pub mod oil;
 pub mod orifice_valve;
 pub mod pump;
 pub mod relief_valve;
+pub mod sensor_noise;
 pub mod solenoid;
+pub mod usual_loads;
 pub mod valve_curve;

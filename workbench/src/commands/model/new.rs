@@ -50,7 +50,7 @@ pub struct Args {
 }
 
 /// Questions on a terminal: constant and text.
-const QUESTIONS: [(&str, &str); 11] = [
+const QUESTIONS: [(&str, &str); 18] = [
     ("pump.kind", "Pump, fixed-displacement or load-sensing"),
     ("cylinder.cylinders", "Number of lift cylinders"),
     ("cylinder.bore_mm", "Bore of each cylinder, mm"),
@@ -73,6 +73,28 @@ const QUESTIONS: [(&str, &str); 11] = [
     (
         "lower_valve.reference_drop_bar",
         "Lowering valve, pressure drop of its flow curve, bar",
+    ),
+    (
+        "solenoid.resistance_ohm",
+        "Solenoids, resistance with wiring, ohm",
+    ),
+    (
+        "loads.light_kg",
+        "Light implement, kg; 0: from the relief setting",
+    ),
+    ("loads.usual_kg", "Most common implement, kg; 0: as above"),
+    ("loads.heavy_kg", "Heaviest implement, kg; 0: as above"),
+    (
+        "sensors.rocker_angle_noise_deg",
+        "Noise of the angle sensor, one sigma, degree",
+    ),
+    (
+        "sensors.cylinder_pressure_noise_bar",
+        "Noise of the cylinder pressure sensor, one sigma, bar",
+    ),
+    (
+        "sensors.pump_pressure_noise_bar",
+        "Noise of the pump pressure sensor, one sigma, bar",
     ),
 ];
 
