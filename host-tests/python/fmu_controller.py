@@ -25,4 +25,4 @@ with open(lines, newline="") as file:
             controller.set(**{f"{name}_valid": bool(cell)})
         controller.step(number * 1e-3, 1e-3)
         lift_a, lower_a, state = controller.get("lift_current_a", "lower_current_a", "state")
-        print(f"{lift_a:.3f},{lower_a:.3f},{state.decode()}")
+        print(f"{lift_a:.3f},{lower_a:.3f},{state}")

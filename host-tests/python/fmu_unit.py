@@ -1,53 +1,73 @@
-"""A unit for co-simulation with its variables by name."""
+"""A unit for co-simulation, of FMI 2.0 or FMI 3.0, with its variables by name."""
 
 from fmpy import extract, read_model_description
-from fmpy.fmi2 import FMU2Slave
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from fmpy.fmi3 import FMU3Slave
 
 
 class Unit:
-    """An instance of a unit; values are set and read by name."""
+    """An instance of a unit; values are set and read by name. Messages go into a list, if one is given."""
 
-    def __init__(self, path, parameters={}, inputs={}):
+    def __init__(self, path, parameters={}, inputs={}, messages=None):
         self.description = read_model_description(path)
         self.variables = {variable.name: variable for variable in self.description.modelVariables}
-        self.slave = FMU2Slave(
+        self.is_fmi3 = self.description.fmiVersion == "3.0"
+        self.slave = (FMU3Slave if self.is_fmi3 else FMU2Slave)(
             guid=self.description.guid,
             unzipDirectory=extract(path),
             modelIdentifier=self.description.coSimulation.modelIdentifier,
             instanceName="unit",
         )
-        self.slave.instantiate()
-        self.slave.setupExperiment(startTime=0.0)
+        instantiate(self.slave, messages)
         self.begin(parameters, inputs)
 
-    def begin(self, parameters, inputs):
+    def begin(self, parameters, inputs, stop_s=None):
         """Initialises it."""
         self.set(**parameters)
-        self.slave.enterInitializationMode()
+        if self.is_fmi3:
+            self.slave.enterInitializationMode(startTime=0.0, stopTime=stop_s)
+        else:
+            self.slave.setupExperiment(startTime=0.0, stopTime=stop_s)
+            self.slave.enterInitializationMode()
         self.set(**inputs)
         self.slave.exitInitializationMode()
+
+    def function(self, what, type):
+        """The function that gets or sets values of a type of FMI 2.0, or of the same type in FMI 3.0."""
+        name = {"Real": "Float64", "Integer": "Int32"}.get(type, type) if self.is_fmi3 else type
+        return getattr(self.slave, f"{what}{name}")
 
     def set(self, **values):
         """Sets variables by name."""
         for name, value in values.items():
             variable = self.variables[name]
-            setter = {"Real": self.slave.setReal, "Boolean": self.slave.setBoolean}[variable.type]
-            setter([variable.valueReference], [value])
+            self.function("set", variable.type)([variable.valueReference], [value])
 
     def get(self, *names):
         """Values of variables by name."""
-        return [self.getter(name)([self.variables[name].valueReference])[0] for name in names]
+        return [self.value(self.variables[name]) for name in names]
 
-    def getter(self, name):
-        slave = self.slave
-        getters = {
-            "Real": slave.getReal,
-            "Integer": slave.getInteger,
-            "Boolean": slave.getBoolean,
-            "String": slave.getString,
-        }
-        return getters[self.variables[name].type]
+    def value(self, variable):
+        value = self.function("get", variable.type)([variable.valueReference])[0]
+        return value.decode() if isinstance(value, bytes) else value
 
     def step(self, at_s, step_s):
         """Takes a step."""
-        self.slave.doStep(currentCommunicationPoint=at_s, communicationStepSize=step_s)
+        return self.slave.doStep(currentCommunicationPoint=at_s, communicationStepSize=step_s)
+
+    def state(self, what, *arguments):
+        """Gets, sets, frees or serializes a state."""
+        return getattr(self.slave, f"{what}FMU{'State' if self.is_fmi3 else 'state'}")(*arguments)
+
+
+def instantiate(slave, messages=None, **options):
+    """Makes an instance; its messages go into a list, if one is given."""
+    if isinstance(slave, FMU2Slave):
+        callbacks = None
+        if messages is not None:
+            callbacks = fmi2CallbackFunctions()
+            callbacks.logger = fmi2CallbackLoggerTYPE(lambda *said: messages.append(said[-1].decode()))
+        slave.instantiate(callbacks=callbacks, **options)
+        return
+    log = None if messages is None else lambda *said: messages.append(said[-1].decode())
+    slave.instantiate(logMessage=log, **options)

@@ -89,7 +89,7 @@ const CRATES: [Layers; 8] = [
     Layers {
         sources: "workbench/fmu/src",
         order: &[
-            &["location", "units", "variable"],
+            &["location", "units", "variable", "version"],
             &["component"],
             &["plant", "controller"],
             &["description", "content"],

@@ -10,6 +10,7 @@ mod examples;
 mod fit_report;
 mod fleet;
 mod fmu;
+mod fmu_export;
 mod from_bus_to_model;
 mod import;
 mod loop_scenarios;

@@ -1,8 +1,9 @@
-//! Plant and controller as FMI 2.0 co-simulation units (docs/fmu.md).
+//! Plant and controller as co-simulation units of FMI 2.0 and FMI 3.0 (docs/fmu.md).
 //!
-//! From the bottom layer to the top: the [`variable`]s of a unit and their [`Value`](variable::Value)s; the
-//! [`component`], which is what a unit simulates, with [`plant`] and [`controller`]; the [`content`] that a unit carries,
-//! and its [`description`] for importers; and the interface in C, which is what the shared library exports.
+//! From the bottom layer to the top: the [`version`]s of the standard; the [`variable`]s of a unit and their
+//! [`Value`](variable::Value)s; the [`component`], which is what a unit simulates, with [`plant`] and [`controller`]; the
+//! [`content`] that a unit carries, and its [`description`] for importers; and the interface in C, which is what the
+//! shared library exports.
 //!
 //! Only the interface has unsafe code: it takes pointers from the importing tool.
 #![deny(unsafe_code)]
@@ -18,3 +19,4 @@ mod location;
 pub mod plant;
 mod units;
 pub mod variable;
+pub mod version;

@@ -3,6 +3,7 @@
 use std::io::{Cursor, Write};
 
 use hitch_fmu::content::{Content, Kind};
+use hitch_fmu::version::Version;
 use hitch_input::source_file::SourceFile;
 use zip::ZipWriter;
 use zip::result::ZipError;
@@ -11,13 +12,18 @@ use zip::write::SimpleFileOptions;
 use super::library::platform;
 use crate::error::Error;
 
-/// The bytes of a unit with the content of `file` and the `library`.
+/// The bytes of a unit of a version of the standard with the content of `file` and the `library`.
 ///
 /// # Errors
 /// If the file is wrong, or the standard has no name for this machine.
-pub fn archive(kind: Kind, file: &SourceFile, library: &[u8]) -> Result<Vec<u8>, Error> {
-    let content = Content::parse(kind, file)?;
-    let (platform, suffix) = platform()?;
+pub fn archive(
+    version: Version,
+    kind: Kind,
+    file: &SourceFile,
+    library: &[u8],
+) -> Result<Vec<u8>, Error> {
+    let content = Content::parse(version, kind, file)?;
+    let (platform, suffix) = platform(version)?;
     let binary = format!("binaries/{platform}/{}{suffix}", kind.identifier());
     let entries = [
         (

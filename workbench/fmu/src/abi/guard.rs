@@ -5,19 +5,19 @@ use std::ffi::CStr;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::instance::{Fault, Instance, Phase};
-use super::types::{Fmi2Component, Fmi2String, Status};
+use super::types::{Handle, Status, Text};
 
 /// Calls `act` on an instance. A fault is logged, and an error ends the simulation of the instance.
 ///
 /// # Safety
-/// `component` is null, or an instance that this library has made and nobody has freed, which no other call uses.
+/// `instance` is null, or an instance that this library has made and nobody has freed, which no other call uses.
 pub unsafe fn call(
-    component: Fmi2Component,
+    instance: Handle,
     function: &str,
     act: impl FnOnce(&mut Instance) -> Result<(), Fault>,
 ) -> Status {
     // SAFETY: by the contract above, it is null or points to an instance that nobody else uses.
-    let Some(instance) = (unsafe { component.cast::<Instance>().as_mut() }) else {
+    let Some(instance) = (unsafe { instance.cast::<Instance>().as_mut() }) else {
         return Status::Error;
     };
     let result = catch_unwind(AssertUnwindSafe(|| act(instance))).unwrap_or_else(|panic| {
@@ -49,7 +49,7 @@ pub fn said(panic: &(dyn Any + Send)) -> &str {
 ///
 /// # Safety
 /// `text` is null, or ends with a zero byte and stays as it is while the result is used.
-pub unsafe fn text<'a>(text: Fmi2String) -> Option<&'a str> {
+pub unsafe fn text<'a>(text: Text) -> Option<&'a str> {
     if text.is_null() {
         return None;
     }

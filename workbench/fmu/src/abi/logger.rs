@@ -2,55 +2,78 @@
 
 use std::ffi::{CString, c_void};
 
-use super::types::{Callbacks, LogFunction, Status};
+use super::types::{Status, Text};
 
-/// The importer's function for messages, and the name of the instance.
+/// Writes a message, FMI 2.0: environment, instance, status, category, format as of `printf`, and its arguments.
+pub type FormatFunction = unsafe extern "C" fn(*mut c_void, Text, Status, Text, Text, ...);
+/// Writes a message, FMI 3.0: environment, status, category, message.
+pub type MessageFunction = unsafe extern "C" fn(*mut c_void, Status, Text, Text);
+
+/// The importer's function.
+#[derive(Clone)]
+pub enum Sink {
+    /// None: nothing is said.
+    Nowhere,
+    /// That of FMI 2.0, with the name of the instance.
+    Format(FormatFunction, CString),
+    /// That of FMI 3.0.
+    Message(MessageFunction),
+}
+
+/// The importer's function for messages, with what it is told.
 #[derive(Clone)]
 pub struct Logger {
-    function: Option<LogFunction>,
+    sink: Sink,
     environment: *mut c_void,
-    instance: CString,
 }
 
 // SAFETY: the environment is never read here. It goes back to the importer in the thread of the importer's own call.
 unsafe impl Send for Logger {}
 
 impl Logger {
-    /// A logger of an instance; without callbacks it says nothing.
-    pub fn new(callbacks: Option<&Callbacks>, instance: &str) -> Self {
-        Self {
-            function: callbacks.and_then(|callbacks| callbacks.logger),
-            environment: callbacks.map_or(std::ptr::null_mut(), |callbacks| callbacks.environment),
-            instance: without_zeros(instance),
-        }
+    /// A logger with a function of the importer.
+    #[must_use]
+    pub fn new(sink: Sink, environment: *mut c_void) -> Self {
+        Self { sink, environment }
     }
 
     /// Writes a message.
     pub fn write(&self, status: Status, text: &str) {
-        let Some(function) = self.function else {
-            return;
-        };
         let category = match status {
             Status::Discard => c"logStatusDiscard",
             _ => c"logStatusError",
-        };
-        // It is taken for a format.
-        let text = without_zeros(&text.replace('%', "%%"));
-        // SAFETY: the importer promises that its function can be called as the standard declares it until the instance
-        // is freed. The texts end with a zero byte and live until the call returns. The format has no argument.
-        unsafe {
-            function(
-                self.environment,
-                self.instance.as_ptr(),
-                status,
-                category.as_ptr(),
-                text.as_ptr(),
-            );
+        }
+        .as_ptr();
+        let environment = self.environment;
+        match &self.sink {
+            Sink::Nowhere => (),
+            Sink::Format(function, instance) => {
+                // It is taken for a format.
+                let text = without_zeros(&text.replace('%', "%%"));
+                // SAFETY: the importer promises that its function can be called as the standard declares it until the
+                // instance is freed. The texts end with a zero byte and live until the call returns. The format has no
+                // argument.
+                unsafe {
+                    function(
+                        environment,
+                        instance.as_ptr(),
+                        status,
+                        category,
+                        text.as_ptr(),
+                    )
+                }
+            }
+            Sink::Message(function) => {
+                let text = without_zeros(text);
+                // SAFETY: as above; there is no format.
+                unsafe { function(environment, status, category, text.as_ptr()) }
+            }
         }
     }
 }
 
 /// A text for C: nothing behind a zero byte.
+#[must_use]
 pub fn without_zeros(text: &str) -> CString {
     let bytes: Vec<u8> = text.bytes().take_while(|byte| *byte != 0).collect();
     CString::new(bytes).unwrap_or_default()

@@ -1,24 +1,15 @@
-//! Types of the standard.
+//! Types that both versions of the standard have.
 
-use std::ffi::{c_char, c_int, c_void};
+use std::ffi::{c_char, c_void};
 
 /// A unit's instance, as an importer holds it.
-pub type Fmi2Component = *mut c_void;
+pub type Handle = *mut c_void;
 /// A stored state, as an importer holds it.
-pub type Fmi2State = *mut c_void;
+pub type StateHandle = *mut c_void;
 /// Index of a variable.
 pub type ValueReference = u32;
-/// A truth value; 0 is false.
-pub type Fmi2Boolean = c_int;
 /// A text that ends with a zero byte.
-pub type Fmi2String = *const c_char;
-
-/// True.
-pub const FMI2_TRUE: Fmi2Boolean = 1;
-/// False.
-pub const FMI2_FALSE: Fmi2Boolean = 0;
-/// `fmi2Type` of an instance for co-simulation.
-pub const CO_SIMULATION: c_int = 1;
+pub type Text = *const c_char;
 
 /// What a function returns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,25 +25,6 @@ pub enum Status {
     Error = 3,
     /// No instance can be used any more.
     Fatal = 4,
-    /// Not yet done; never returned here.
+    /// Not yet done, FMI 2.0 only; never returned here.
     Pending = 5,
-}
-
-/// Writes a message: environment, instance, status, category, format as of `printf`, and its arguments.
-pub type LogFunction =
-    unsafe extern "C" fn(*mut c_void, Fmi2String, Status, Fmi2String, Fmi2String, ...);
-
-/// Functions of the importer.
-#[repr(C)]
-pub struct Callbacks {
-    /// Writes a message.
-    pub logger: Option<LogFunction>,
-    /// Allocates memory; not used here.
-    pub allocate_memory: Option<unsafe extern "C" fn(usize, usize) -> *mut c_void>,
-    /// Frees memory; not used here.
-    pub free_memory: Option<unsafe extern "C" fn(*mut c_void)>,
-    /// Told at the end of an asynchronous step; not used here.
-    pub step_finished: Option<unsafe extern "C" fn(*mut c_void, Status)>,
-    /// Given back to the importer with each message.
-    pub environment: *mut c_void,
 }

@@ -2,9 +2,10 @@
 
 use std::ffi::c_int;
 
-use super::guard::call;
-use super::instance::{Fault, Instance, Phase};
-use super::types::{FMI2_FALSE, Fmi2Boolean, Fmi2Component, Fmi2String, Status};
+use super::types::{FMI2_FALSE, Fmi2Boolean};
+use crate::abi::guard::call;
+use crate::abi::instance::{Fault, Instance, Phase};
+use crate::abi::types::{Handle, Status, Text};
 
 /// `fmi2StatusKind` of the time up to which the last step was taken.
 const LAST_SUCCESSFUL_TIME: c_int = 2;
@@ -17,7 +18,7 @@ const TERMINATED: c_int = 3;
 /// As the standard says: `component` is an instance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2DoStep(
-    component: Fmi2Component,
+    component: Handle,
     current_communication_point: f64,
     communication_step_size: f64,
     _no_set_state_prior_to_current_point: Fmi2Boolean,
@@ -35,7 +36,7 @@ pub unsafe extern "C" fn fmi2DoStep(
 /// # Safety
 /// As the standard says: `component` is an instance.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2CancelStep(component: Fmi2Component) -> Status {
+pub unsafe extern "C" fn fmi2CancelStep(component: Handle) -> Status {
     // SAFETY: the importer gives null or an instance, and calls one function at a time.
     unsafe {
         call(component, "fmi2CancelStep", |_| {
@@ -49,7 +50,7 @@ pub unsafe extern "C" fn fmi2CancelStep(component: Fmi2Component) -> Status {
 /// # Safety
 /// `component` is null or an instance; `value` is null or a place for the answer.
 unsafe fn answer<T>(
-    component: Fmi2Component,
+    component: Handle,
     function: &str,
     value: *mut T,
     question: impl FnOnce(&Instance) -> Option<T>,
@@ -72,7 +73,7 @@ unsafe fn answer<T>(
 /// As the standard says: `component` is an instance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetStatus(
-    component: Fmi2Component,
+    component: Handle,
     _kind: c_int,
     value: *mut Status,
 ) -> Status {
@@ -86,7 +87,7 @@ pub unsafe extern "C" fn fmi2GetStatus(
 /// As the standard says: `component` is an instance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealStatus(
-    component: Fmi2Component,
+    component: Handle,
     kind: c_int,
     value: *mut f64,
 ) -> Status {
@@ -101,7 +102,7 @@ pub unsafe extern "C" fn fmi2GetRealStatus(
 /// As the standard says: `component` is an instance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetIntegerStatus(
-    component: Fmi2Component,
+    component: Handle,
     _kind: c_int,
     value: *mut c_int,
 ) -> Status {
@@ -115,7 +116,7 @@ pub unsafe extern "C" fn fmi2GetIntegerStatus(
 /// As the standard says: `component` is an instance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetBooleanStatus(
-    component: Fmi2Component,
+    component: Handle,
     kind: c_int,
     value: *mut Fmi2Boolean,
 ) -> Status {
@@ -130,9 +131,9 @@ pub unsafe extern "C" fn fmi2GetBooleanStatus(
 /// As the standard says: `component` is an instance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetStringStatus(
-    component: Fmi2Component,
+    component: Handle,
     _kind: c_int,
-    value: *mut Fmi2String,
+    value: *mut Text,
 ) -> Status {
     // SAFETY: the importer gives null or an instance, and null or a place for the answer.
     unsafe { answer(component, "fmi2GetStringStatus", value, |_| None) }

@@ -1,21 +1,51 @@
 //! `modelDescription.xml`: what an importer has to know of a unit.
 
+mod fmi2;
+mod fmi3;
+
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use crate::content::Kind;
 use crate::controller;
 use crate::units;
-use crate::variable::{Causality, Value, Variable};
+use crate::variable::{Causality, Variable};
+use crate::version::Version;
 
 /// Categories of messages.
 pub const LOG_CATEGORIES: [&str; 2] = ["logStatusDiscard", "logStatusError"];
 
+/// What a unit is, and what it can do.
+#[derive(Debug, Clone, Copy)]
+pub struct About<'a> {
+    /// What is simulated.
+    pub kind: Kind,
+    /// Name of the model.
+    pub name: &'a str,
+    /// Checksum of the unit.
+    pub guid: &'a str,
+    /// Whether its state can be stored.
+    pub can_copy: bool,
+}
+
+impl About<'_> {
+    /// What is simulated, in words.
+    const fn text(&self) -> &'static str {
+        match self.kind {
+            Kind::Plant => "electro-hydraulic three-point hitch: valves, cylinder, linkage, load",
+            Kind::Controller => "the firmware's controller of a three-point hitch",
+        }
+    }
+}
+
 /// The text of the file. (Writing to a string cannot fail.)
 #[must_use]
-pub fn write(kind: Kind, name: &str, guid: &str, variables: &[Variable]) -> String {
+pub fn write(version: Version, about: About<'_>, variables: &[Variable]) -> String {
     let mut xml = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    write_head(&mut xml, kind, name, guid);
+    match version {
+        Version::Two => fmi2::write_head(&mut xml, about),
+        Version::Three => fmi3::write_head(&mut xml, about),
+    }
     write_units(&mut xml, variables);
     xml.push_str("  <LogCategories>\n");
     for category in LOG_CATEGORIES {
@@ -23,37 +53,15 @@ pub fn write(kind: Kind, name: &str, guid: &str, variables: &[Variable]) -> Stri
     }
     let _ = write!(
         xml,
-        "  </LogCategories>\n  <DefaultExperiment startTime=\"0\" stepSize=\"{}\"/>\n  <ModelVariables>\n",
+        "  </LogCategories>\n  <DefaultExperiment startTime=\"0\" stepSize=\"{}\"/>\n",
         controller::STEP_S
     );
-    for (reference, variable) in variables.iter().enumerate() {
-        write_variable(&mut xml, reference, variable);
+    match version {
+        Version::Two => fmi2::write_variables(&mut xml, variables),
+        Version::Three => fmi3::write_variables(&mut xml, variables),
     }
-    xml.push_str("  </ModelVariables>\n");
-    write_structure(&mut xml, variables);
     xml.push_str("</fmiModelDescription>\n");
     xml
-}
-
-fn write_head(xml: &mut String, kind: Kind, name: &str, guid: &str) {
-    let about = match kind {
-        Kind::Plant => "electro-hydraulic three-point hitch: valves, cylinder, linkage, load",
-        Kind::Controller => "the firmware's controller of a three-point hitch",
-    };
-    let can_copy = kind == Kind::Controller;
-    let _ = write!(
-        xml,
-        "<fmiModelDescription fmiVersion=\"2.0\" modelName=\"{}\" guid=\"{guid}\"\n    \
-         description=\"{about}\" version=\"{}\" generationTool=\"hitch {}\"\n    \
-         variableNamingConvention=\"structured\">\n  \
-         <CoSimulation modelIdentifier=\"{}\" canHandleVariableCommunicationStepSize=\"true\"\n    \
-         canInterpolateInputs=\"true\" canGetAndSetFMUstate=\"{can_copy}\"\n    \
-         canNotUseMemoryManagementFunctions=\"true\"/>\n",
-        escaped(name),
-        env!("CARGO_PKG_VERSION"),
-        env!("CARGO_PKG_VERSION"),
-        kind.identifier(),
-    );
 }
 
 fn write_units(xml: &mut String, variables: &[Variable]) {
@@ -69,7 +77,8 @@ fn write_units(xml: &mut String, variables: &[Variable]) {
     xml.push_str("  </UnitDefinitions>\n");
 }
 
-fn write_variable(xml: &mut String, reference: usize, variable: &Variable) {
+/// Causality, variability and, where it is not the standard's, the source of the value at the start.
+fn roles(variable: &Variable) -> String {
     let (causality, variability, initial) = match (variable.causality, variable.is_continuous()) {
         (Causality::Parameter, _) => ("parameter", "fixed", " initial=\"exact\""),
         (Causality::Input, true) => ("input", "continuous", ""),
@@ -77,30 +86,15 @@ fn write_variable(xml: &mut String, reference: usize, variable: &Variable) {
         (Causality::Output, true) => ("output", "continuous", " initial=\"calculated\""),
         (Causality::Output, false) => ("output", "discrete", " initial=\"calculated\""),
     };
-    let _ = write!(
-        xml,
-        "    <ScalarVariable name=\"{}\" valueReference=\"{reference}\" causality=\"{causality}\" \
-         variability=\"{variability}\"{initial}\n      description=\"{}\">\n      ",
-        escaped(&variable.name),
-        escaped(&variable.description),
-    );
-    let calculated = variable.causality == Causality::Output;
-    let start = |value: &str| match calculated {
-        true => String::new(),
-        false => format!(" start=\"{}\"", escaped(value)),
-    };
-    let _ = match &variable.start {
-        Value::Real(value) => write!(
-            xml,
-            "<Real{}{}/>",
-            start(&value.to_string()),
-            of_real(variable)
-        ),
-        Value::Integer(value) => write!(xml, "<Integer{}/>", start(&value.to_string())),
-        Value::Boolean(value) => write!(xml, "<Boolean{}/>", start(&value.to_string())),
-        Value::Text(value) => write!(xml, "<String{}/>", start(value)),
-    };
-    xml.push_str("\n    </ScalarVariable>\n");
+    format!("causality=\"{causality}\" variability=\"{variability}\"{initial}")
+}
+
+/// The attribute `start`; none for a variable that is calculated.
+fn start(variable: &Variable, value: &str) -> String {
+    match variable.causality {
+        Causality::Output => String::new(),
+        Causality::Parameter | Causality::Input => format!(" start=\"{}\"", escaped(value)),
+    }
 }
 
 /// Unit and range of a real number.
@@ -120,20 +114,6 @@ fn of_real(variable: &Variable) -> String {
         let _ = write!(attributes, " {end}=\"{value}\"");
     }
     attributes
-}
-
-fn write_structure(xml: &mut String, variables: &[Variable]) {
-    let outputs: String = variables
-        .iter()
-        .enumerate()
-        .filter(|(_, variable)| variable.causality == Causality::Output)
-        .map(|(place, _)| format!("      <Unknown index=\"{}\"/>\n", place + 1))
-        .collect();
-    let _ = write!(
-        xml,
-        "  <ModelStructure>\n    <Outputs>\n{outputs}    </Outputs>\n    \
-         <InitialUnknowns>\n{outputs}    </InitialUnknowns>\n  </ModelStructure>\n"
-    );
 }
 
 /// A text as the value of an attribute.
