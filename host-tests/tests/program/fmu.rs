@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
-use hitch_plant::{AddedEffect, Currents, Solenoid};
+use hitch_plant::{AddedEffect, Currents, Model, Solenoid};
 use hitch_quantities::{Calibration, Inputs};
 use hitch_workbench::closed_loop::{ClosedLoop, Coil, SUPPLY_V, Sample};
 use host_tests::program::{hitch, run};
@@ -23,7 +23,7 @@ const PICK_UP_STEPS: usize = 500;
 const RUN_STEPS: usize = 64_000;
 
 /// The Python that has FMPy, or nothing on a machine where that may be.
-fn python() -> Option<&'static Path> {
+pub fn python() -> Option<&'static Path> {
     static PYTHON: OnceLock<Option<PathBuf>> = OnceLock::new();
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     PYTHON
@@ -32,7 +32,7 @@ fn python() -> Option<&'static Path> {
 }
 
 /// Runs a script in a folder and returns its output.
-fn script(python: &Path, folder: &Path, script: &Path, arguments: &[&str]) -> String {
+pub fn script(python: &Path, folder: &Path, script: &Path, arguments: &[&str]) -> String {
     let cache = Path::new(env!("CARGO_TARGET_TMPDIR")).join("python-cache");
     let mut command = Command::new(python);
     let command = command.arg(script).args(arguments).current_dir(folder);
@@ -48,10 +48,10 @@ fn succeed(folder: &Path, arguments: &[&str]) -> String {
 }
 
 /// Versions of the standard, as the command line names them.
-const VERSIONS: [&str; 2] = ["2", "3"];
+pub const VERSIONS: [&str; 2] = ["2", "3"];
 
 /// Exports a unit in a version of the standard.
-fn export(folder: &Path, version: &str, arguments: &[&str]) {
+pub fn export(folder: &Path, version: &str, arguments: &[&str]) {
     succeed(
         folder,
         &[&["export-fmu", "--fmi", version], arguments].concat(),
@@ -59,12 +59,24 @@ fn export(folder: &Path, version: &str, arguments: &[&str]) {
 }
 
 /// A folder with the units of the dynamic plant and of the nominal controller.
-fn units(version: &str) -> tempfile::TempDir {
+pub fn units(version: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     export(folder.path(), version, &["dynamic", "--out", "plant.fmu"]);
     let controller = ["--controller", "--out", "controller.fmu"];
     export(folder.path(), version, &controller);
     folder
+}
+
+/// The dynamic plant with every effect at its typical size.
+pub fn with_every_effect(name: &str) -> Model {
+    let effects = hitch_effects::CATALOGUE
+        .iter()
+        .filter(|effect| effect.form().is_none())
+        .map(|effect| AddedEffect::typical(*effect))
+        .collect();
+    let mut model = hitch_model_file::dynamic().with_effects(effects);
+    model.name = name.to_owned();
+    model
 }
 
 /// A log of the campaign that comes with the program.
@@ -97,13 +109,7 @@ fn an_importer_finds_no_fault_in_a_unit() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().unwrap();
     let model = folder.path().join("own <&> \"model\".toml");
-    let effects = hitch_effects::CATALOGUE
-        .iter()
-        .filter(|effect| effect.form().is_none())
-        .map(|effect| AddedEffect::typical(*effect))
-        .collect();
-    let mut every = hitch_model_file::dynamic().with_effects(effects);
-    every.name = "own <&> \"model\"".to_owned();
+    let every = with_every_effect("own <&> \"model\"");
     fs::write(&model, hitch_model_file::to_toml(&every)).unwrap();
     let model = model.to_str().unwrap();
     for version in VERSIONS {

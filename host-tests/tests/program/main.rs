@@ -11,6 +11,7 @@ mod fit_report;
 mod fleet;
 mod fmu;
 mod fmu_export;
+mod fmu_states;
 mod from_bus_to_model;
 mod import;
 mod loop_scenarios;

@@ -25,8 +25,8 @@ pub trait Component: Send {
     /// If the step is refused. Nothing has changed then.
     fn step(&mut self, values: &mut [Value], slopes: &[f64], dt_s: f64) -> Result<(), Refusal>;
 
-    /// A copy of everything that it remembers; `None` if it cannot be copied.
-    fn copy(&self) -> Option<Box<dyn Component>>;
+    /// A copy of everything that it remembers.
+    fn copy(&self) -> Box<dyn Component>;
 }
 
 /// The real number at an index; not a number for anything else.

@@ -76,14 +76,9 @@ impl Content {
                 (Box::new(component), "hitch controller".to_owned())
             }
         };
-        let (name, can_copy) = (name.as_str(), component.copy().is_some());
+        let name = name.as_str();
         let described = |guid: &str| {
-            let about = About {
-                kind,
-                name,
-                guid,
-                can_copy,
-            };
+            let about = About { kind, name, guid };
             description::write(version, about, component.variables())
         };
         let hashed = format!("{}\n{}", described(""), file.text);

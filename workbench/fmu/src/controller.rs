@@ -218,8 +218,8 @@ impl Component for ControllerComponent {
         Ok(())
     }
 
-    fn copy(&self) -> Option<Box<dyn Component>> {
-        Some(Box::new(self.clone()))
+    fn copy(&self) -> Box<dyn Component> {
+        Box::new(self.clone())
     }
 }
 

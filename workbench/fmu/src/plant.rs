@@ -1,5 +1,7 @@
 //! The plant as a component.
 
+use std::sync::Arc;
+
 use hitch_model_file::{scalars, with_scalars};
 use hitch_plant::units::{bar_from_pa, pa_from_bar};
 use hitch_plant::{Channel, Currents, HitchRig, Model, Plant, Rig};
@@ -41,7 +43,7 @@ self_cell::self_cell!(
 /// The plant of a model, with its parameters.
 pub struct PlantComponent {
     model: Model,
-    variables: Vec<Variable>,
+    variables: Arc<[Variable]>,
     plant: Option<OwnedPlant>,
 }
 
@@ -64,7 +66,7 @@ impl PlantComponent {
         }));
         Self {
             model,
-            variables,
+            variables: variables.into(),
             plant: None,
         }
     }
@@ -215,9 +217,17 @@ impl Component for PlantComponent {
         Ok(())
     }
 
-    /// Its effects hold functions and components that cannot be copied.
-    fn copy(&self) -> Option<Box<dyn Component>> {
-        None
+    fn copy(&self) -> Box<dyn Component> {
+        let copied = |plant: &OwnedPlant| {
+            OwnedPlant::new(plant.borrow_owner().clone(), |model| {
+                plant.borrow_dependent().copied_onto(model)
+            })
+        };
+        Box::new(Self {
+            model: self.model.clone(),
+            variables: Arc::clone(&self.variables),
+            plant: self.plant.as_ref().map(copied),
+        })
     }
 }
 

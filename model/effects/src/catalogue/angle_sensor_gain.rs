@@ -40,7 +40,7 @@ fn attach(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {
     hooks.sensors.push(Box::new(Gain { gain: values[0] }));
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Gain {
     gain: f64,
 }

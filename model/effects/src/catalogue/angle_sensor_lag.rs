@@ -102,7 +102,7 @@ fn attach(time_constant_s: f64, dead_s: f64, hooks: &mut EffectHooks) {
 }
 
 /// A sensor with dead time before its filter.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct DelayedAngle {
     time_constant_s: f64,
     dead_s: f64,

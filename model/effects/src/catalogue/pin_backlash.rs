@@ -46,7 +46,7 @@ fn attach(values: &[f64], conditions: RunConditions<'_>, hooks: &mut EffectHooks
     }));
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Backlash {
     half_width_m: f64,
     follower_m: f64,

@@ -40,7 +40,7 @@ fn attach(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks) {
     }));
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Offset {
     offset_bar: f64,
 }

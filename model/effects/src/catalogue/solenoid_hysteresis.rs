@@ -66,7 +66,7 @@ impl Effect for SolenoidHysteresis {
 }
 
 /// Play operator on both currents.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Play {
     half_width_a: f64,
     spool: Currents,

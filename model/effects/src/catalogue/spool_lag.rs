@@ -121,7 +121,7 @@ fn attach_creeping(values: &[f64], _: RunConditions<'_>, hooks: &mut EffectHooks
 }
 
 /// First-order lag of both spools.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct SpoolLag {
     time_constant_s: f64,
     spools: [Lag; 2],
@@ -143,7 +143,7 @@ impl CurrentStage for SpoolLag {
 }
 
 /// Second-order lag of both spools.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct SwingingSpools {
     frequency_rad_s: f64,
     damping: f64,

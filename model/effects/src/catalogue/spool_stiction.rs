@@ -107,7 +107,7 @@ trait Spool: std::fmt::Debug + Copy + Default + Send + Sync {
 }
 
 /// The spools of both valves.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Sticking<S> {
     friction: Friction,
     lift: S,

@@ -89,7 +89,7 @@ impl Effect for ThresholdShift {
     }
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Shift {
     valve: Valve,
     shift_a: f64,

@@ -6,6 +6,8 @@
 
 use std::sync::Arc;
 
+use dyn_clone::{DynClone, clone_trait_object};
+
 use crate::components::linkage::Linkage;
 use crate::constants::Constants;
 use crate::hooks::place::Place;
@@ -59,7 +61,7 @@ impl Currents {
 }
 
 /// A stage between coil current and effective spool current; it may have state (hysteresis, lag).
-pub trait CurrentStage: Send + Sync + std::fmt::Debug {
+pub trait CurrentStage: DynClone + Send + Sync + std::fmt::Debug {
     /// Sets the stage to rest at these currents and returns its output.
     fn rest(&mut self, currents: Currents) -> Currents;
     /// Advances by `dt_s` while the currents change linearly to `currents`; returns the output.
@@ -67,7 +69,7 @@ pub trait CurrentStage: Send + Sync + std::fmt::Debug {
 }
 
 /// A stage between a physical quantity and the reading of its instrument; it may have state (lag).
-pub trait SensorStage: Send + Sync + std::fmt::Debug {
+pub trait SensorStage: DynClone + Send + Sync + std::fmt::Debug {
     /// Sets the instrument to rest at this reading.
     fn rest(&mut self, reading: &mut Reading);
     /// Advances by `dt_s` to the true `reading` and replaces it by the instrument's reading.
@@ -77,6 +79,9 @@ pub trait SensorStage: Send + Sync + std::fmt::Debug {
         shown_deg
     }
 }
+
+clone_trait_object!(CurrentStage);
+clone_trait_object!(SensorStage);
 
 /// A function of one quantity; the units are given where it is used.
 pub type Law = Box<dyn Fn(f64) -> f64 + Send + Sync>;

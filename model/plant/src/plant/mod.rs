@@ -1,6 +1,7 @@
 //! The plant in motion.
 
 mod conditions;
+mod copy;
 mod instruments;
 mod rest;
 

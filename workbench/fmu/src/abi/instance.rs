@@ -266,22 +266,21 @@ impl Instance {
         (now.start_s, now.time_s, now.stop_s) = (0.0, 0.0, None);
     }
 
-    /// A copy of everything; `None` if the component cannot be copied.
-    pub fn store(&self) -> Option<Stored> {
+    /// A copy of everything.
+    pub fn store(&self) -> Stored {
         self.now.copy()
     }
 
-    /// Goes back to a stored state; false if it cannot be copied.
-    pub fn restore(&mut self, stored: &Stored) -> bool {
-        let copy = stored.copy();
-        copy.map(|copy| self.now = copy).is_some()
+    /// Goes back to a stored state.
+    pub fn restore(&mut self, stored: &Stored) {
+        self.now = stored.copy();
     }
 }
 
 impl Stored {
-    fn copy(&self) -> Option<Self> {
-        Some(Self {
-            component: self.component.copy()?,
+    fn copy(&self) -> Self {
+        Self {
+            component: self.component.copy(),
             values: self.values.clone(),
             slopes: self.slopes.clone(),
             phase: self.phase,
@@ -289,6 +288,6 @@ impl Stored {
             start_s: self.start_s,
             time_s: self.time_s,
             stop_s: self.stop_s,
-        })
+        }
     }
 }

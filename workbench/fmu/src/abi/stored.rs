@@ -15,9 +15,7 @@ pub unsafe fn store(instance: Handle, function: &str, state: *mut StateHandle) -
         // SAFETY: by the contract above, it is null or a place for a state.
         let place = unsafe { state.as_mut() };
         let place = place.ok_or_else(|| Fault::error("the place for the state is null"))?;
-        let stored = instance.store().ok_or_else(|| {
-            Fault::error("is not supported: modelDescription.xml says that states cannot be stored")
-        })?;
+        let stored = instance.store();
         // SAFETY: by the contract above, the place holds null or a state that was stored here.
         match unsafe { place.cast::<Stored>().as_mut() } {
             Some(before) => *before = stored,
@@ -37,10 +35,10 @@ pub unsafe fn restore(instance: Handle, function: &str, state: StateHandle) -> S
     let restore = |instance: &mut Instance| {
         // SAFETY: by the contract above, it is null or a state that was stored here.
         let stored = unsafe { state.cast::<Stored>().as_ref() };
-        match stored.is_some_and(|stored| instance.restore(stored)) {
-            true => Ok(()),
-            false => Err(Fault::error("there is no stored state; store one first")),
-        }
+        let stored =
+            stored.ok_or_else(|| Fault::error("there is no stored state; store one first"))?;
+        instance.restore(stored);
+        Ok(())
     };
     // SAFETY: by the contract above, it is null or an instance.
     unsafe { call(instance, function, restore) }

@@ -12,7 +12,7 @@ pub fn write_head(xml: &mut String, about: About<'_>) {
          description=\"{}\" version=\"{}\" generationTool=\"hitch {}\"\n    \
          variableNamingConvention=\"structured\">\n  \
          <CoSimulation modelIdentifier=\"{}\" canHandleVariableCommunicationStepSize=\"true\"\n    \
-         canInterpolateInputs=\"true\" canGetAndSetFMUstate=\"{}\"\n    \
+         canInterpolateInputs=\"true\" canGetAndSetFMUstate=\"true\"\n    \
          canNotUseMemoryManagementFunctions=\"true\"/>\n",
         escaped(about.name),
         about.guid,
@@ -20,7 +20,6 @@ pub fn write_head(xml: &mut String, about: About<'_>) {
         env!("CARGO_PKG_VERSION"),
         env!("CARGO_PKG_VERSION"),
         about.kind.identifier(),
-        about.can_copy,
     );
 }
 

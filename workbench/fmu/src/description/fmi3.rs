@@ -5,6 +5,9 @@ use std::fmt::Write as _;
 use super::{About, escaped, of_real, roles, start};
 use crate::variable::{Causality, Value, Variable};
 
+/// Unit of the independent variable.
+pub const TIME_UNIT: &str = "s";
+
 pub fn write_head(xml: &mut String, about: About<'_>) {
     let _ = write!(
         xml,
@@ -13,14 +16,13 @@ pub fn write_head(xml: &mut String, about: About<'_>) {
          description=\"{}\" version=\"{}\" generationTool=\"hitch {}\"\n    \
          variableNamingConvention=\"structured\">\n  \
          <CoSimulation modelIdentifier=\"{}\" canHandleVariableCommunicationStepSize=\"true\"\n    \
-         canGetAndSetFMUState=\"{}\"/>\n",
+         canGetAndSetFMUState=\"true\"/>\n",
         escaped(about.name),
         about.guid,
         about.text(),
         env!("CARGO_PKG_VERSION"),
         env!("CARGO_PKG_VERSION"),
         about.kind.identifier(),
-        about.can_copy,
     );
 }
 
@@ -33,7 +35,7 @@ pub fn write_variables(xml: &mut String, variables: &[Variable]) {
     let _ = write!(
         xml,
         "    <Float64 name=\"time\" valueReference=\"{}\" causality=\"independent\" \
-         variability=\"continuous\"\n      description=\"time, s\"/>\n  </ModelVariables>\n",
+         variability=\"continuous\"\n      description=\"time\" unit=\"{TIME_UNIT}\"/>\n  </ModelVariables>\n",
         variables.len()
     );
     write_structure(xml, variables);

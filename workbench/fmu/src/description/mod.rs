@@ -15,7 +15,7 @@ use crate::version::Version;
 /// Categories of messages.
 pub const LOG_CATEGORIES: [&str; 2] = ["logStatusDiscard", "logStatusError"];
 
-/// What a unit is, and what it can do.
+/// What a unit is.
 #[derive(Debug, Clone, Copy)]
 pub struct About<'a> {
     /// What is simulated.
@@ -24,8 +24,6 @@ pub struct About<'a> {
     pub name: &'a str,
     /// Checksum of the unit.
     pub guid: &'a str,
-    /// Whether its state can be stored.
-    pub can_copy: bool,
 }
 
 impl About<'_> {
@@ -46,7 +44,8 @@ pub fn write(version: Version, about: About<'_>, variables: &[Variable]) -> Stri
         Version::Two => fmi2::write_head(&mut xml, about),
         Version::Three => fmi3::write_head(&mut xml, about),
     }
-    write_units(&mut xml, variables);
+    let of_time = (version == Version::Three).then_some(fmi3::TIME_UNIT);
+    write_units(&mut xml, variables, of_time);
     xml.push_str("  <LogCategories>\n");
     for category in LOG_CATEGORIES {
         let _ = writeln!(xml, "    <Category name=\"{category}\"/>");
@@ -64,8 +63,9 @@ pub fn write(version: Version, about: About<'_>, variables: &[Variable]) -> Stri
     xml
 }
 
-fn write_units(xml: &mut String, variables: &[Variable]) {
-    let units: BTreeSet<&str> = variables.iter().map(|variable| variable.unit).collect();
+fn write_units(xml: &mut String, variables: &[Variable], of_time: Option<&'static str>) {
+    let units = variables.iter().map(|variable| variable.unit);
+    let units: BTreeSet<&str> = units.chain(of_time).collect();
     xml.push_str("  <UnitDefinitions>\n");
     for unit in units.into_iter().filter(|unit| !unit.is_empty()) {
         let name = escaped(unit);
