@@ -295,6 +295,36 @@ fn the_page_shows_what_the_ecu_sends_and_sends_nothing_on_its_bus() {
     }
 }
 
+#[test]
+fn a_calibration_is_written_only_with_tune_and_if_the_ecu_permits_it() {
+    let dir = TempDir::new().unwrap();
+    let mut ecu = RunningEcu::start(dir.path());
+    let adapter = Adapter::start(Some(&ecu.bus), false);
+    let server = PageServer::start(dir.path(), &["--can", &adapter.address]);
+    let refused = Tab::open(&server).post("write");
+    assert_eq!(refused.status, 409, "{}", refused.body);
+    assert!(refused.body.contains("--tune"), "{}", refused.body);
+    drop(server);
+
+    let server = PageServer::start(dir.path(), &["--can", &adapter.address, "--tune"]);
+    let tab = Tab::open(&server);
+    assert_eq!(tab.post("describe").json()["may_write"], true);
+    let locked = tab.post("write");
+    assert_eq!(locked.status, 422, "{}", locked.body);
+    assert!(locked.body.contains("service on"), "{}", locked.body);
+    tab.until(|view| !values(view, "angle_deg").is_empty());
+    ecu.order("service on");
+    ecu.order("lock on");
+    sleep(Duration::from_millis(100));
+    let written = tab.post("write");
+    println!("{}", written.body);
+    assert_eq!(written.status, 200, "{}", written.body);
+    assert!(written.json()["words"].as_u64().unwrap() > 100);
+    let again = tab.post("write");
+    assert_eq!(again.json()["changed"], 0, "{}", again.body);
+    tab.until(|view| !values(view, "angle_deg").is_empty());
+}
+
 /// Blank flash and an unplugged lever are two codes, which come as a broadcast in packets.
 #[test]
 fn faults_are_shown_in_words() {

@@ -6,7 +6,7 @@ use hitch_controller_host::calibration_file;
 use crate::error::Error;
 use crate::output;
 use crate::progress::Progress;
-use crate::xcp_tool::{BusAddress, CanClient, Session, ToolError, write_calibration};
+use crate::xcp_tool::{BusAddress, write_to};
 
 /// Arguments of `hitch flash-calibration`.
 #[derive(Debug, clap::Args)]
@@ -32,45 +32,10 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Error> {
     let calibration = calibration_file::read(&args.calibration)?;
     let progress = Progress::start("writing the calibration");
-    let mut session = connect(&args.can)?;
-    let written = write_calibration(&mut session, &calibration).map_err(interrupted)?;
-    session.close().map_err(tool_error)?;
+    let written = write_to(&args.can, &calibration)?;
     drop(progress);
     output::print(&format!(
         "{} of {} values changed; stored and verified.\n",
         written.changed, written.words
     ))
-}
-
-/// The error of a write; after a lost connection, values may have been written without having been stored.
-fn interrupted(error: ToolError) -> Error {
-    match error {
-        ToolError::Bus(_) | ToolError::Silent => Error::Usage(format!(
-            "{error}; the write is incomplete: write again, or switch the ECU off and on to return to the stored calibration"
-        )),
-        other => tool_error(other),
-    }
-}
-
-/// Connects to the ECU at an address.
-///
-/// # Errors
-/// If there is no ECU.
-pub fn connect(address: &BusAddress) -> Result<Session, Error> {
-    let client = CanClient::open(address).map_err(|error| address.unreachable(&error))?;
-    Session::open(client).map_err(tool_error)
-}
-
-/// A fault that the user can correct is an input error; others are failures.
-pub fn tool_error(error: ToolError) -> Error {
-    match error {
-        ToolError::Bus(_)
-        | ToolError::Silent
-        | ToolError::Locked
-        | ToolError::NotAtRest
-        | ToolError::OutOfRange(_)
-        | ToolError::NoHitch
-        | ToolError::OtherEcu(_) => Error::Usage(error.to_string()),
-        other => Error::Failed(other.to_string()),
-    }
 }

@@ -3,13 +3,12 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::flash_calibration::{connect, tool_error};
 use super::loop_::{load_kg, temperature_c};
 use crate::error::Error;
 use crate::output;
 use crate::progress::Progress;
 use crate::text::wrapped;
-use crate::xcp_tool::{BusAddress, CHANNELS, PERIOD_MS, Row, record};
+use crate::xcp_tool::{BusAddress, CHANNELS, PERIOD_MS, Row, connect, record, tool_error};
 
 /// Arguments of `hitch record`.
 #[derive(Debug, clap::Args)]

@@ -17,8 +17,8 @@ use crate::xcp_tool::BusAddress;
     closed or silent for 5 s gives it back. The page says when this computer is too slow for real time.\n\n\
     With --can, the closed loop of the page is a real ECU on its bus, shown read only: angle, currents, pressures, status and \
     trouble codes as the ECU sends them, in any number of tabs. Nothing is sent on the bus, and an slcan adapter is opened in \
-    listen-only mode if it has one. A lost connection is opened again. Tuning and calibration over XCP are done with \
-    `hitch flash-calibration` and other XCP tools: docs/tuning-live.md."
+    listen-only mode if it has one. A lost connection is opened again. With --tune, a button of the page writes the \
+    calibration of the present model to the ECU as `hitch flash-calibration` does. Other XCP tools: docs/tuning-live.md."
 )]
 pub struct Args {
     /// Folder of the campaign; without this option, the demonstration campaign
@@ -41,6 +41,10 @@ pub struct Args {
     /// of Linux (can0), or the serial port of an slcan adapter (/dev/ttyACM0, COM3)
     #[arg(long, value_name = "BUS", conflicts_with = "ecu")]
     can: Option<BusAddress>,
+    /// Offer to write the calibration of the present model to the ECU on the bus; the ECU accepts it only while the hitch is
+    /// locked and the service switch is closed
+    #[arg(long, requires = "can")]
+    tune: bool,
     /// Print the address of the page without opening a browser
     #[arg(long)]
     no_browser: bool,
@@ -63,7 +67,7 @@ impl Args {
     /// What runs the closed loop.
     fn loop_source(&self) -> Result<LoopSource, Error> {
         if let Some(address) = &self.can {
-            return LoopSource::bus(address.clone());
+            return LoopSource::bus(address.clone(), self.tune);
         }
         Ok(match (self.ecu, self.host) {
             (false, _) => LoopSource::Host,

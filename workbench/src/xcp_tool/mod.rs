@@ -6,6 +6,7 @@ mod can_client;
 #[cfg(target_os = "linux")]
 mod can_interface;
 mod can_listener;
+mod connection;
 mod recording;
 mod session;
 mod slcan_client;
@@ -14,5 +15,6 @@ pub use bus_address::BusAddress;
 pub use calibration::{Written, write_calibration};
 pub use can_client::CanClient;
 pub use can_listener::{CanListener, ListenMode};
+pub use connection::{connect, tool_error, write_to};
 pub use recording::{CHANNELS, PERIOD_MS, Row, record};
 pub use session::{Session, ToolError};

@@ -48,6 +48,7 @@ export function connectLoop(show) {
   connectOrders();
   byId("loop-start").addEventListener("click", () => (running ? stop() : start()));
   byId("loop-restart").addEventListener("click", () => reopen());
+  byId("loop-write").addEventListener("click", write);
   new IntersectionObserver(([entry]) => {
     visible = entry.isIntersecting;
     if (visible && !machine) describe();
@@ -108,6 +109,7 @@ async function reopen() {
   move = drawLinkage(/** @type {any} */ (byId("linkage")), machine.linkage);
   move(machine.angle_deg, machine.angle_deg, machine.angle_deg, orders().load_kg);
   byId("loop").dataset.source = machine.source;
+  byId("loop-write").hidden = !machine.may_write;
   showOnly(isEcu() ? "ECU, rebuilt calibration" : isBus() ? "ECU on the bus" : null, isBus());
   if (isBus()) byId("linkage").setAttribute("aria-label", "Three-point linkage at the measured angle");
   byId("loop-equal").hidden = !machine.equal || isEcu() || isBus();
@@ -152,6 +154,26 @@ async function stop() {
   await post("loop/close", {}).catch(say);
 }
 
+/** Writes the calibration of the present model to the ECU on the bus. */
+async function write() {
+  const question = "Write the calibration of the present model to the ECU? It replaces the stored one. " +
+    "The hitch has to be locked, and the service switch closed.";
+  if (!confirm(question)) return;
+  const button = /** @type {HTMLButtonElement} */ (byId("loop-write"));
+  const result = byId("loop-pace");
+  button.disabled = true;
+  result.textContent = "writing";
+  try {
+    const { changed, words } = await post("loop/write", {});
+    result.textContent = `${changed} of ${words} values changed; stored and verified`;
+  } catch (error) {
+    result.textContent = "";
+    say(error);
+  } finally {
+    button.disabled = false;
+  }
+}
+
 function showRunning() {
   byId("loop-start").textContent = !running ? "Start" : isEcu() ? "Switch off" : "Pause";
   byId("loop").toggleAttribute("data-running", running);
@@ -168,7 +190,7 @@ async function step(milliseconds) {
     if (own !== generation) return;
     show(answer, given);
     const pace = milliseconds / (performance.now() - began);
-    byId("loop-pace").textContent = isEcu() ? (answer.behind ? "behind real time: this computer is too slow or busy" : "") : !isBus() && pace < SLOW ? `slower than real time: ${pace.toFixed(2)}` : "";
+    if (!isBus()) byId("loop-pace").textContent = isEcu() ? (answer.behind ? "behind real time: this computer is too slow or busy" : "") : pace < SLOW ? `slower than real time: ${pace.toFixed(2)}` : "";
   } catch (error) {
     if (own !== generation) return;
     // The page follows the change of the model with a new simulation.

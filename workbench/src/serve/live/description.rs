@@ -25,6 +25,7 @@ pub fn described(machine: &Machine, angle_deg: f64, source: &LoopSource) -> Resu
     let (initial, rebuilt) = (&machine.initial, &machine.rebuilt);
     Ok(json!({
         "source": source.name(),
+        "may_write": source.may_write(),
         "angle_deg": angle_deg,
         "swing_deg": [low_rad.to_degrees(), high_rad.to_degrees()],
         "loads_kg": [LOADS_KG.start(), LOADS_KG.end()],

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
 use axum::http::StatusCode;
+use hitch_quantities::ValidCalibration;
 use serde_json::Value;
 
 use super::bench::{Bench, NoAnswer};
@@ -15,7 +16,7 @@ use crate::comparison::Evaluated;
 use crate::ecu::Runner;
 use crate::error::Error;
 use crate::serve::routes::Refusal;
-use crate::xcp_tool::BusAddress;
+use crate::xcp_tool::{BusAddress, Written};
 
 /// What runs the closed loops of a server.
 #[derive(Debug)]
@@ -57,12 +58,33 @@ impl LoopSource {
         Self::Ecu(EcuSocket::new(runner))
     }
 
-    /// The ECU on a bus.
+    /// The ECU on a bus; a tab may have a calibration written to it if `may_write`.
     ///
     /// # Errors
     /// If the adapter cannot be opened.
-    pub fn bus(address: BusAddress) -> Result<Self, Error> {
-        Ok(Self::Bus(BusMonitor::start(address)?))
+    pub fn bus(address: BusAddress, may_write: bool) -> Result<Self, Error> {
+        Ok(Self::Bus(BusMonitor::start(address, may_write)?))
+    }
+
+    /// Whether a tab may have a calibration written to the ECU.
+    pub const fn may_write(&self) -> bool {
+        matches!(self, Self::Bus(monitor) if monitor.may_write)
+    }
+
+    /// Writes a calibration to the ECU on the bus.
+    ///
+    /// # Errors
+    /// If the server only listens, or the ECU refuses.
+    pub(in crate::serve) fn write(
+        &self,
+        calibration: &ValidCalibration,
+    ) -> Result<Written, Refusal> {
+        match self {
+            Self::Bus(monitor) if monitor.may_write => Ok(monitor.write(calibration)?),
+            _ => Err(Refusal::conflict(
+                "this page writes to no ECU; start it with hitch serve --can BUS --tune",
+            )),
+        }
     }
 
     /// Its name for the page.

@@ -23,6 +23,7 @@ pub fn routes() -> Router<Arc<crate::serve::sessions::Sessions>> {
         .route("/{token}/api/loop/open", post(open))
         .route("/{token}/api/loop/close", post(close))
         .route("/{token}/api/loop/step", post(step))
+        .route("/{token}/api/loop/write", post(write))
         .route("/{token}/api/calibration", get(calibration))
 }
 
@@ -80,6 +81,20 @@ async fn close(State(sessions): Known, Json(of): Json<Of>) -> Answer {
     let before = lock(&session).tab_loop.take();
     blocking(move || drop(before)).await?;
     Ok(Json(json!({})))
+}
+
+/// Writes the calibration of the present model to the ECU on the bus.
+async fn write(State(sessions): Known, Json(of): Json<Of>) -> Answer {
+    let session = find(&sessions, &of.session)?;
+    let models = Models::of(&lock(&session));
+    let written = blocking(move || {
+        let rebuilt = models.rebuilt()?;
+        sessions.loop_source.write(&rebuilt)
+    });
+    let written = written.await??;
+    Ok(Json(
+        json!({ "changed": written.changed, "words": written.words }),
+    ))
 }
 
 /// The angle of the lever, within the travel of the hitch, degree.

@@ -1,17 +1,18 @@
 //! The thread that listens to the bus, for all tabs.
 
 use std::io;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{JoinHandle, sleep};
 use std::time::{Duration, Instant};
 
+use hitch_quantities::ValidCalibration;
 use serde_json::Value;
 
 use super::heard::Heard;
 use super::view;
 use crate::error::Error;
-use crate::xcp_tool::{BusAddress, CanListener, ListenMode};
+use crate::xcp_tool::{BusAddress, CanListener, ListenMode, Written, write_to};
 
 /// Time after which the thread checks whether it has to end.
 const TURN: Duration = Duration::from_millis(50);
@@ -25,6 +26,8 @@ const ENDS_WITHIN: Duration = Duration::from_secs(1);
 /// The listener of a server.
 #[derive(Debug)]
 pub struct BusMonitor {
+    /// Whether a tab may have a calibration written to the ECU.
+    pub may_write: bool,
     shared: Arc<Shared>,
     thread: JoinHandle<()>,
 }
@@ -41,6 +44,10 @@ pub struct Place {
 struct Shared {
     address: BusAddress,
     stopped: AtomicBool,
+    /// Number of writers that wait for the adapter, or have it.
+    writers: AtomicUsize,
+    /// Held by whoever has the adapter.
+    adapter: Mutex<()>,
     state: Mutex<State>,
 }
 
@@ -58,11 +65,13 @@ impl BusMonitor {
     ///
     /// # Errors
     /// If the adapter cannot be opened.
-    pub fn start(address: BusAddress) -> Result<Self, Error> {
+    pub fn start(address: BusAddress, may_write: bool) -> Result<Self, Error> {
         let listener = CanListener::open(&address).map_err(|error| address.unreachable(&error))?;
         let shared = Arc::new(Shared {
             address,
             stopped: AtomicBool::new(false),
+            writers: AtomicUsize::new(0),
+            adapter: Mutex::default(),
             state: Mutex::new(State {
                 adapter: Ok(listener.mode()),
                 heard: Heard::new(Instant::now()),
@@ -74,7 +83,26 @@ impl BusMonitor {
             .name("CAN bus".to_owned())
             .spawn(move || of_thread.run(listener))
             .map_err(no_thread)?;
-        Ok(Self { shared, thread })
+        Ok(Self {
+            may_write,
+            shared,
+            thread,
+        })
+    }
+
+    /// Writes a calibration to the ECU over XCP, which stores it; meanwhile nothing is listened to.
+    ///
+    /// # Errors
+    /// If the ECU cannot be reached, or it refuses: its service switch has to be closed, and the hitch locked.
+    pub fn write(&self, calibration: &ValidCalibration) -> Result<Written, Error> {
+        let shared = &self.shared;
+        shared.writers.fetch_add(1, Ordering::Relaxed);
+        let written = {
+            let _adapter = held(&shared.adapter);
+            write_to(&shared.address, calibration)
+        };
+        shared.writers.fetch_sub(1, Ordering::Relaxed);
+        written
     }
 
     /// The place of a new tab: it gets the kept samples first.
@@ -109,7 +137,11 @@ impl Place {
 
 impl Shared {
     fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        held(&self.state)
+    }
+
+    fn is_wanted_by_writers(&self) -> bool {
+        self.writers.load(Ordering::Relaxed) > 0
     }
 
     fn is_stopped(&self) -> bool {
@@ -118,28 +150,33 @@ impl Shared {
 
     /// Listens until the end of the server.
     fn run(&self, first: CanListener) {
-        let mut opened = Ok(first);
+        let mut first = Some(first);
         while !self.is_stopped() {
-            let lost = match opened {
-                Ok(listener) => self.listen(listener),
-                Err(error) => Err(error),
+            if self.is_wanted_by_writers() {
+                first = None;
+                sleep(TURN);
+                continue;
+            }
+            let ended = {
+                let _adapter = held(&self.adapter);
+                let opened = first
+                    .take()
+                    .map_or_else(|| CanListener::open(&self.address), Ok);
+                opened.and_then(|listener| self.listen(listener))
             };
-            if let Err(error) = lost {
+            if let Err(error) = ended {
                 self.lock().adapter = Err(error.to_string());
                 self.wait(RETRY);
             }
-            if self.is_stopped() {
-                return;
-            }
-            opened = CanListener::open(&self.address);
         }
     }
 
-    /// Listens until the adapter is lost, or the bus is silent for long.
+    /// Listens until the adapter is lost, wanted by a writer, or the bus is silent for long.
     fn listen(&self, mut listener: CanListener) -> io::Result<()> {
         self.lock().adapter = Ok(listener.mode());
         let mut active = Instant::now();
-        while !self.is_stopped() && active.elapsed() < REOPEN_AFTER {
+        let goes_on = || !self.is_stopped() && !self.is_wanted_by_writers();
+        while goes_on() && active.elapsed() < REOPEN_AFTER {
             if let Some(frame) = listener.receive(Instant::now() + TURN)? {
                 active = Instant::now();
                 self.lock().heard.receive(&frame, active);
@@ -154,4 +191,9 @@ impl Shared {
             sleep(TURN);
         }
     }
+}
+
+/// A lock, after a panic too: the data stay valid.
+fn held<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
+    lock.lock().unwrap_or_else(PoisonError::into_inner)
 }
