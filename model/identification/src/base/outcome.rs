@@ -51,12 +51,16 @@ pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&s
     let prior = Prior::new(declared.constants(), &parameters);
     let before = fit_base(Problem::new(experiment, declared));
     let inseparable: Vec<bool> = parameters.iter().map(|one| !one.is_separable()).collect();
+    let without_sensors: Vec<bool> = parameters
+        .iter()
+        .map(|one| !one.is_separable() || one.is_sensor())
+        .collect();
     let mut problem = BaseProblem {
         experiment,
         declared,
         parameters: &parameters,
         prior: &prior,
-        held: &inseparable,
+        held: &without_sensors,
     };
     let mut point = Point {
         theta: DVector::zeros(parameters.len()),
@@ -67,8 +71,12 @@ pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&s
         say(&format!("constants, round {} of {}", round + 1, ROUNDS + 1));
         point = improved(&problem, point, round == 0);
     }
-    say("intervals");
-    let (sigma, determined) = posterior(&problem, &point);
+    say("sensors");
+    let Posterior {
+        mut point,
+        sigma,
+        determined,
+    } = with_sensors(&problem, &inseparable, point);
     let held = held(&parameters, &point.theta, &sigma, &determined);
     for k in (0..held.len()).filter(|&k| held[k]) {
         point.theta[k] = 0.0;
@@ -96,6 +104,55 @@ pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&s
         before,
         after,
     }
+}
+
+/// Values of the unknowns, their posterior sigmas, and whether the campaign determines them.
+struct Posterior {
+    point: Point,
+    sigma: Vec<f64>,
+    determined: Vec<bool>,
+}
+
+impl Posterior {
+    fn of(problem: &BaseProblem<'_>, point: Point) -> Self {
+        let (sigma, determined) = posterior(problem, &point);
+        Self {
+            point,
+            sigma,
+            determined,
+        }
+    }
+
+    /// Whether a sensor has an error.
+    fn has_error(&self, sensor: usize) -> bool {
+        let error = self.point.theta[sensor].abs();
+        self.determined[sensor] && error > SIGNIFICANT * self.sigma[sensor]
+    }
+}
+
+/// The fit of constants with the sensors free if one of them has an error; else the fit without them. Free sensors
+/// without errors would only take up errors of the model.
+fn with_sensors(problem: &BaseProblem<'_>, inseparable: &[bool], point: Point) -> Posterior {
+    let free = BaseProblem {
+        held: inseparable,
+        ..*problem
+    };
+    let mut moved = point.clone();
+    for _ in 1..ROUNDS {
+        moved = improved(&free, moved, false);
+    }
+    let moved = Posterior::of(&free, moved);
+    let sensors = (0..inseparable.len()).filter(|&k| problem.parameters[k].is_sensor());
+    let sensors: Vec<usize> = sensors.collect();
+    if sensors.iter().any(|&sensor| moved.has_error(sensor)) {
+        return moved;
+    }
+    let mut kept = Posterior::of(problem, point);
+    for sensor in sensors {
+        kept.sigma[sensor] = moved.sigma[sensor];
+        kept.determined[sensor] = moved.determined[sensor];
+    }
+    kept
 }
 
 /// One round: constants and loads under new weights, then clocks and loads.

@@ -89,6 +89,12 @@ impl Parameter {
         !matches!(self, Self::Scalar(scalar) if !scalar.separable)
     }
 
+    /// Whether it is an error of a sensor.
+    #[must_use]
+    pub fn is_sensor(&self) -> bool {
+        matches!(self, Self::Sensor(_))
+    }
+
     /// Whether it belongs to a flow curve.
     #[must_use]
     pub fn is_flow(&self) -> bool {
