@@ -3,6 +3,7 @@
 Called with the page's address, that of a page with 20 long runs, the browser, and a folder for pictures.
 """
 
+import re
 import sys
 from pathlib import Path
 
@@ -12,6 +13,20 @@ from browser_view import DARK, DESKTOP, PHONE, assert_accessible, assert_fits, o
 
 # What a user feels as at once, on a machine of one's own; measured and printed.
 REDRAW_MS = 100
+FRAME_MS = 1000 / 60
+
+# Collects the times between frames.
+FRAMES = """() => {
+  window.framesEnd = false;
+  window.frameTimes = [];
+  let last = null;
+  const next = (now) => {
+    if (last !== null) window.frameTimes.push(now - last);
+    last = now;
+    if (!window.framesEnd) requestAnimationFrame(next);
+  };
+  requestAnimationFrame(next);
+}"""
 
 # Hues of the drawn lines, in steps of 10 deg, with the number of their pixels.
 HUES = """() => {
@@ -86,7 +101,43 @@ def zoom(page: Page) -> None:
     page.wait_for_function("document.getElementById('overlay-plot').layout.xaxis.range[0] === 0")
 
 
-def measure(page: Page) -> None:
+def cursor(page: Page, runs: int, pictures: Path) -> None:
+    """Moves the pointer over the plot, and pans it; measures the frames meanwhile."""
+    box = page.locator("#overlay-plot .nsewdrag").first.bounding_box()
+    y = box["y"] + box["height"] / 2
+
+    def sweep() -> None:
+        for step in range(60):
+            page.mouse.move(box["x"] + (0.2 + 0.01 * step) * box["width"], y)
+
+    page.mouse.move(box["x"] + 0.2 * box["width"], y)
+    frames(page, sweep, f"cursor over {runs} runs")
+    label = page.locator("#overlay-cursor span")
+    expect(label.first).to_have_text(re.compile(r"^[0-9.]+ s$"))
+    assert " to " in label.nth(1).inner_text(), label.nth(1).inner_text()
+    page.screenshot(path=pictures / "overlay_cursor.png")
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] - 200)
+    expect(page.locator("#overlay-cursor")).to_be_hidden()
+    page.locator("#overlay-plot .modebar-btn[data-val=pan]").click()
+    page.mouse.move(box["x"] + 0.2 * box["width"], y)
+    page.mouse.down()
+    frames(page, sweep, f"panning {runs} runs")
+    page.mouse.up()
+    page.mouse.dblclick(box["x"] + 0.3 * box["width"], y)
+    page.locator("#overlay-plot .modebar-btn[data-val=zoom]").click()
+
+
+def frames(page: Page, act, what: str) -> None:
+    """Prints the times between frames while something happens."""
+    page.evaluate(FRAMES)
+    act()
+    times = sorted(page.evaluate("() => { window.framesEnd = true; return window.frameTimes; }"))
+    middle, late = times[len(times) // 2], times[len(times) * 95 // 100]
+    print(f"{what}: a frame every {middle:.1f} ms (95 %: {late:.1f} ms), wanted {FRAME_MS:.1f} ms")
+    assert middle < 4 * FRAME_MS, "the machine may be busy, but not that much"
+
+
+def measure(page: Page, pictures: Path) -> None:
     """Measures the redraw of many runs when one is switched."""
     page.wait_for_selector("#views[data-ready]")
     page.locator("#overlay summary").press("Enter")
@@ -95,6 +146,7 @@ def measure(page: Page) -> None:
     runs = boxes.count()
     shown(page, runs)
     zoom(page)
+    cursor(page, runs, pictures)
     page.evaluate("performance.clearMeasures('overlay')")
     for _ in range(5):
         for expected in (runs - 1, runs):
@@ -112,7 +164,7 @@ def main() -> None:
     with story(name, folder) as (browser, pictures, faults):
         for view, options in {"desktop": DESKTOP, "phone": PHONE, "dark": DARK}.items():
             overlay(opened(browser, address, options, faults), pictures, view)
-        measure(opened(browser, long, DESKTOP, faults))
+        measure(opened(browser, long, DESKTOP, faults), pictures)
     print("the overlay went well")
 
 

@@ -28,6 +28,11 @@ const FILES: &[(&str, &str, &str)] = &[
     ("files.js", SCRIPT, include_str!("assets/files.js")),
     ("second.js", SCRIPT, include_str!("assets/second.js")),
     ("overlay.js", SCRIPT, include_str!("assets/overlay.js")),
+    (
+        "overlay_cursor.js",
+        SCRIPT,
+        include_str!("assets/overlay_cursor.js"),
+    ),
     ("mapping.js", SCRIPT, include_str!("assets/mapping.js")),
     ("own_term.js", SCRIPT, include_str!("assets/own_term.js")),
     (

@@ -5,6 +5,7 @@
  * 20 runs, the canvas with the axes 0.05 s.
  */
 import { byId, colour, element } from "./dom.js";
+import { connectCursor } from "./overlay_cursor.js";
 import { frame, library, ordinate } from "./run_plot.js";
 import { ask } from "./server.js";
 
@@ -151,7 +152,48 @@ function connect(at) {
     paint();
   });
   at.on("plotly_doubleclick", () => { zoomed = null; update(); });
+  connectCursor(() => {
+    if (!drawn) return null;
+    const right = at.clientWidth - MARGIN.r;
+    return { left: MARGIN.l, right, range: drawn.range, read: reading };
+  });
   new ResizeObserver(paint).observe(at);
+}
+
+/** The measured values of all drawn runs at a time from their starts, by row.
+ * @param {number} time_s */
+function reading(time_s) {
+  if (!drawn) return [];
+  const places = drawn.runs.map(([, view]) => sampleAt(view.time_s, view.time_s[0] + time_s));
+  return drawn.rows.map(({ key, top, unit }) => {
+    const values = (drawn?.runs ?? []).flatMap(([, view], index) => {
+      const value = view.channels.find((one) => one.key === key)?.measured[places[index]];
+      return value === null || value === undefined ? [] : [value];
+    });
+    const [low, high] = [Math.min(...values), Math.max(...values)];
+    const text = !values.length ? "–" : values.length === 1 ? `${number(low)} ${unit}` : `${number(low)} to ${number(high)} ${unit}`;
+    return { top, text };
+  });
+}
+
+/** Index of the last sample up to a time; behind the end, there is none.
+ * @param {number[]} times_s
+ * @param {number} time_s */
+function sampleAt(times_s, time_s) {
+  if (time_s > times_s[times_s.length - 1]) return -1;
+  let [low, high] = [0, times_s.length];
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (times_s[middle] <= time_s) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+
+/** A value for a label.
+ * @param {number} value */
+function number(value) {
+  return value.toFixed(Math.abs(value) < 10 ? 2 : 1);
 }
 
 /** Axes of the channels of some runs.
