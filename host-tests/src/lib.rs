@@ -13,6 +13,7 @@ pub mod html_report;
 pub mod instruction_counts;
 pub mod lab;
 pub mod live_ecu;
+pub mod loop_tab;
 pub mod page_server;
 pub mod program;
 pub mod python;

@@ -1,49 +1,29 @@
 //! The closed loop of `hitch serve`, without a browser.
 use std::fs;
 
+use host_tests::loop_tab::LoopTab;
 use host_tests::page_server::{Answer, PageServer};
 use host_tests::program::run;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-/// A tab with its closed loop.
-struct Tab<'s> {
-    server: &'s PageServer,
-    session: String,
-    orders: Value,
+fn open(tab: &LoopTab<'_>) -> Answer {
+    tab.post("open", 0)
 }
 
-impl<'s> Tab<'s> {
-    fn new(server: &'s PageServer) -> Self {
-        Self {
-            server,
-            session: server.begin(),
-            orders: json!({ "lever_deg": 90.0, "load_kg": 150.0, "oil_temperature_c": 40.0 }),
-        }
-    }
+fn step(tab: &LoopTab<'_>, milliseconds: i64) -> Answer {
+    tab.post("step", milliseconds)
+}
 
-    fn open(&self) -> Answer {
-        let body = json!({ "session": self.session, "orders": self.orders });
-        self.server.post("api/loop/open", &body)
+/// The last answer of some seconds.
+fn advance(tab: &LoopTab<'_>, seconds: u32) -> Value {
+    let mut answer = Value::Null;
+    for _ in 0..seconds {
+        let step = step(tab, 1000);
+        assert_eq!(step.status, 200, "{}", step.body);
+        answer = step.json();
     }
-
-    fn step(&self, milliseconds: i64) -> Answer {
-        let body = json!({
-            "session": self.session, "orders": self.orders, "milliseconds": milliseconds
-        });
-        self.server.post("api/loop/step", &body)
-    }
-
-    /// The last answer of some seconds.
-    fn advance(&self, seconds: u32) -> Value {
-        let mut answer = Value::Null;
-        for _ in 0..seconds {
-            let step = self.step(1000);
-            assert_eq!(step.status, 200, "{}", step.body);
-            answer = step.json();
-        }
-        answer
-    }
+    answer
 }
 
 /// The last value of a signal of a hitch: 0 with the first calibration, 1 with the rebuilt one.
@@ -64,13 +44,13 @@ fn mean(answer: &Value, hitch: usize, signal: &str) -> f64 {
 fn the_lever_moves_both_hitches_and_tabs_are_independent() {
     let dir = TempDir::new().unwrap();
     let server = PageServer::start(dir.path(), &[]);
-    let (mut one, other) = (Tab::new(&server), Tab::new(&server));
-    let opened = one.open().json();
+    let (mut one, other) = (LoopTab::new(&server), LoopTab::new(&server));
+    let opened = open(&one).json();
     assert_eq!(opened["equal"], true);
     assert_eq!(opened["linkage"]["positions"].as_array().unwrap().len(), 65);
-    assert_eq!(other.open().status, 200);
+    assert_eq!(open(&other).status, 200);
     one.orders["lever_deg"] = json!(110.0);
-    let moved = one.advance(6);
+    let moved = advance(&one, 6);
     for hitch in 0..2 {
         assert!(
             (last(&moved, hitch, "angle_deg") - 110.0).abs() < 0.5,
@@ -91,7 +71,7 @@ fn the_lever_moves_both_hitches_and_tabs_are_independent() {
         moved["loops"][0]["angle_deg"].as_array().unwrap().len(),
         100
     );
-    let still = other.advance(1);
+    let still = advance(&other, 1);
     assert!((last(&still, 1, "angle_deg") - 90.0).abs() < 0.1, "{still}");
     println!("simulated seconds per second: {}", moved["speed"]);
     assert!(moved["speed"].as_f64().unwrap() > 1.0, "{}", moved["speed"]);
@@ -101,22 +81,22 @@ fn the_lever_moves_both_hitches_and_tabs_are_independent() {
 fn load_and_buttons_act_during_the_run() {
     let dir = TempDir::new().unwrap();
     let server = PageServer::start(dir.path(), &[]);
-    let mut tab = Tab::new(&server);
-    assert_eq!(tab.open().status, 200);
-    let light_bar = mean(&tab.advance(1), 1, "cylinder_bar");
+    let mut tab = LoopTab::new(&server);
+    assert_eq!(open(&tab).status, 200);
+    let light_bar = mean(&advance(&tab, 1), 1, "cylinder_bar");
     tab.orders["load_kg"] = json!(250.0);
     // The sudden load rings on its oil at 5 Hz; the mean over a second is the pressure at rest.
-    let heavy_bar = mean(&tab.advance(3), 1, "cylinder_bar");
+    let heavy_bar = mean(&advance(&tab, 3), 1, "cylinder_bar");
     // The transmission at 90 degrees is 4.3, the piston 45.4 cm2: 100 kg are 9.3 bar.
     assert!(
         (heavy_bar - light_bar - 9.3).abs() < 0.3,
         "{light_bar} {heavy_bar}"
     );
     tab.orders["button"] = json!("raise");
-    let raised = tab.advance(2);
+    let raised = advance(&tab, 2);
     assert!(last(&raised, 1, "angle_deg") > 100.0, "{raised}");
     tab.orders["button"] = Value::Null;
-    assert_eq!(tab.advance(1)["loops"][1]["state"], "locked");
+    assert_eq!(advance(&tab, 1)["loops"][1]["state"], "locked");
 }
 
 // REQ-SAFE-03
@@ -124,7 +104,7 @@ fn load_and_buttons_act_during_the_run() {
 fn a_broken_angle_sensor_is_a_fault_until_it_is_repaired() {
     let dir = TempDir::new().unwrap();
     let server = PageServer::start(dir.path(), &[]);
-    let mut tab = Tab::new(&server);
+    let mut tab = LoopTab::new(&server);
     // A sensor that has jumped by an offset looks healthy again after half a second: the lock follows the fault.
     for (kind, milliseconds) in [
         (json!("open"), 1000),
@@ -132,24 +112,24 @@ fn a_broken_angle_sensor_is_a_fault_until_it_is_repaired() {
         (json!({ "offset": 20.0 }), 200),
     ] {
         tab.orders["lever_deg"] = json!(90.0);
-        assert_eq!(tab.open().status, 200);
+        assert_eq!(open(&tab).status, 200);
         tab.orders["lever_deg"] = json!(120.0);
-        assert_eq!(tab.step(100).status, 200);
+        assert_eq!(step(&tab, 100).status, 200);
         tab.orders["fault"] = json!({ "sensor": "angle", "kind": kind });
-        let broken = tab.step(milliseconds).json();
+        let broken = step(&tab, milliseconds).json();
         for hitch in 0..2 {
             let hitch = &broken["loops"][hitch];
             assert_eq!(hitch["state"], "fault", "{kind}: {hitch}");
             assert!(hitch["fault_text"].is_string(), "{hitch}");
         }
         let at_deg = last(&broken, 1, "angle_deg");
-        let later_deg = last(&tab.advance(1), 1, "angle_deg");
+        let later_deg = last(&advance(&tab, 1), 1, "angle_deg");
         assert!(
             (at_deg - later_deg).abs() < 0.1,
             "{kind}: {at_deg} {later_deg}"
         );
         tab.orders["fault"] = Value::Null;
-        assert_eq!(tab.advance(1)["loops"][1]["state"], "locked");
+        assert_eq!(advance(&tab, 1)["loops"][1]["state"], "locked");
     }
 }
 
@@ -158,11 +138,11 @@ fn a_broken_angle_sensor_is_a_fault_until_it_is_repaired() {
 fn the_rebuilt_calibration_lowers_better_and_is_saved_as_by_the_command() {
     let dir = TempDir::new().unwrap();
     let server = PageServer::start(dir.path(), &[]);
-    let mut tab = Tab::new(&server);
+    let mut tab = LoopTab::new(&server);
     let task = json!({ "session": tab.session, "task": "add", "effect": "lower-threshold-shift" });
     assert_eq!(server.post("api/start", &task).status, 200);
     let _ = server.settled(&tab.session);
-    let opened = tab.open().json();
+    let opened = open(&tab).json();
     assert_eq!(opened["equal"], false);
     let threshold = |map: usize| {
         opened["maps"][map]["lower"]["threshold_a"]
@@ -175,7 +155,7 @@ fn the_rebuilt_calibration_lowers_better_and_is_saved_as_by_the_command() {
         opened["maps"]
     );
     tab.orders["lever_deg"] = json!(80.0);
-    let lowered = tab.advance(8);
+    let lowered = advance(&tab, 8);
     let arrived_s = |hitch: usize| {
         let arrived_s = lowered["loops"][hitch]["move"]["arrived_s"].as_f64();
         arrived_s.unwrap_or(f64::INFINITY)
@@ -205,9 +185,9 @@ fn the_rebuilt_calibration_lowers_better_and_is_saved_as_by_the_command() {
 
     let undo = json!({ "session": tab.session, "at": 0 });
     assert_eq!(server.post("api/go", &undo).status, 200);
-    assert_eq!(tab.step(100).status, 409);
-    assert_eq!(tab.open().json()["equal"], true);
-    assert_eq!(tab.step(100).status, 200);
+    assert_eq!(step(&tab, 100).status, 409);
+    assert_eq!(open(&tab).json()["equal"], true);
+    assert_eq!(step(&tab, 100).status, 200);
 }
 
 // REQ-INPUT-04
@@ -215,11 +195,11 @@ fn the_rebuilt_calibration_lowers_better_and_is_saved_as_by_the_command() {
 fn steps_that_make_no_sense_are_refused_and_leave_the_loop_usable() {
     let dir = TempDir::new().unwrap();
     let server = PageServer::start(dir.path(), &[]);
-    let mut tab = Tab::new(&server);
-    assert_eq!(tab.step(100).status, 409);
-    assert_eq!(tab.open().status, 200);
+    let mut tab = LoopTab::new(&server);
+    assert_eq!(step(&tab, 100).status, 409);
+    assert_eq!(open(&tab).status, 200);
     for milliseconds in [-1, 0, 1001, i64::MAX] {
-        assert_eq!(tab.step(milliseconds).status, 422, "{milliseconds}");
+        assert_eq!(step(&tab, milliseconds).status, 422, "{milliseconds}");
     }
     let good = tab.orders.clone();
     for (key, value) in [
@@ -236,14 +216,14 @@ fn steps_that_make_no_sense_are_refused_and_leave_the_loop_usable() {
     ] {
         tab.orders = good.clone();
         tab.orders[key] = value;
-        assert_eq!(tab.step(100).status, 422, "{}", tab.orders);
-        assert_eq!(tab.open().status, 422, "{}", tab.orders);
+        assert_eq!(step(&tab, 100).status, 422, "{}", tab.orders);
+        assert_eq!(open(&tab).status, 422, "{}", tab.orders);
     }
     tab.orders = good.clone();
     tab.orders["note"] = json!("x".repeat(100_000));
-    assert_eq!(tab.step(100).status, 413);
+    assert_eq!(step(&tab, 100).status, 413);
     tab.orders = good;
-    assert_eq!(tab.step(100).status, 200);
+    assert_eq!(step(&tab, 100).status, 200);
     let unknown = json!({ "session": "x", "orders": tab.orders, "milliseconds": 100 });
     assert_eq!(server.post("api/loop/step", &unknown).status, 410);
 }

@@ -6,6 +6,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use hitch_workbench::ecu::{IMAGE_VARIABLE, find_image};
+use host_tests::loop_tab::LoopTab;
 use host_tests::page_server::{Answer, PageServer};
 use host_tests::program::{hitch, run};
 use serde_json::{Value, json};
@@ -14,54 +15,37 @@ use tempfile::TempDir;
 /// Time between two requests of the page.
 const TURN: Duration = Duration::from_millis(50);
 
-struct Tab<'s> {
-    server: &'s PageServer,
-    session: String,
-    orders: Value,
+fn post(tab: &LoopTab<'_>, what: &str) -> Answer {
+    tab.post(what, 50)
 }
 
-impl<'s> Tab<'s> {
-    fn new(server: &'s PageServer) -> Self {
-        Self {
-            server,
-            session: server.begin(),
-            orders: json!({ "lever_deg": 90.0, "load_kg": 150.0, "oil_temperature_c": 40.0 }),
+/// Asks as the page does for this long; the last answer, and the times of all samples.
+fn follow(tab: &LoopTab<'_>, time: Duration) -> (Value, Vec<f64>) {
+    let (begun, mut times) = (Instant::now(), Vec::new());
+    loop {
+        let answer = post(tab, "step");
+        assert_eq!(answer.status, 200, "{}", answer.body);
+        let view = answer.json();
+        let loops = view["loops"].as_array().unwrap();
+        assert_eq!(loops.len(), 1, "there is one ECU");
+        let new = loops[0]["time_s"].as_array().unwrap();
+        times.extend(new.iter().map(|time| time.as_f64().unwrap()));
+        if begun.elapsed() >= time && !new.is_empty() {
+            return (view, times);
         }
+        sleep(TURN);
     }
+}
 
-    fn post(&self, what: &str) -> Answer {
-        let body = json!({ "session": self.session, "orders": self.orders, "milliseconds": 50 });
-        self.server.post(&format!("api/loop/{what}"), &body)
-    }
-
-    /// Asks as the page does for this long; the last answer, and the times of all samples.
-    fn follow(&self, time: Duration) -> (Value, Vec<f64>) {
-        let (begun, mut times) = (Instant::now(), Vec::new());
-        loop {
-            let answer = self.post("step");
-            assert_eq!(answer.status, 200, "{}", answer.body);
-            let view = answer.json();
-            let loops = view["loops"].as_array().unwrap();
-            assert_eq!(loops.len(), 1, "there is one ECU");
-            let new = loops[0]["time_s"].as_array().unwrap();
-            times.extend(new.iter().map(|time| time.as_f64().unwrap()));
-            if begun.elapsed() >= time && !new.is_empty() {
-                return (view, times);
-            }
-            sleep(TURN);
+/// Asks until the hitch is as wanted; the last answer.
+fn until(tab: &LoopTab<'_>, wanted: impl Fn(&Value) -> bool) -> Value {
+    let begun = Instant::now();
+    loop {
+        let (view, _) = follow(tab, TURN);
+        if wanted(&view["loops"][0]) {
+            return view["loops"][0].clone();
         }
-    }
-
-    /// Asks until the hitch is as wanted; the last answer.
-    fn until(&self, wanted: impl Fn(&Value) -> bool) -> Value {
-        let begun = Instant::now();
-        loop {
-            let (view, _) = self.follow(TURN);
-            if wanted(&view["loops"][0]) {
-                return view["loops"][0].clone();
-            }
-            assert!(begun.elapsed() < Duration::from_secs(30), "{view}");
-        }
+        assert!(begun.elapsed() < Duration::from_secs(30), "{view}");
     }
 }
 
@@ -72,15 +56,19 @@ fn last(hitch: &Value, signal: &str) -> f64 {
 
 /// Lever, load, button and a broken sensor act on the ECU, whose time is real time.
 fn the_ecu_follows_the_page(server: &PageServer) {
-    let mut tab = Tab::new(server);
-    let described = tab.post("describe");
+    let mut tab = LoopTab::new(server);
+    let described = post(&tab, "describe");
     assert_eq!(described.json()["source"], "ecu", "{}", described.body);
-    assert_eq!(tab.post("step").status, 409, "a description starts nothing");
-    assert_eq!(tab.post("open").status, 200);
-    tab.until(|hitch| hitch["state"] == "holding");
+    assert_eq!(
+        post(&tab, "step").status,
+        409,
+        "a description starts nothing"
+    );
+    assert_eq!(post(&tab, "open").status, 200);
+    until(&tab, |hitch| hitch["state"] == "holding");
 
     let begun = Instant::now();
-    let (view, times) = tab.follow(Duration::from_secs(2));
+    let (view, times) = follow(&tab, Duration::from_secs(2));
     let real_s = begun.elapsed().as_secs_f64();
     let ecu_s = times.last().unwrap() - times[0];
     println!(
@@ -102,21 +90,21 @@ fn the_ecu_follows_the_page(server: &PageServer) {
     let arrived = |hitch: &Value| {
         hitch["state"] == "holding" && (last(hitch, "angle_deg") - 110.0).abs() < 0.5
     };
-    let light_bar = last(&tab.until(arrived), "cylinder_bar");
+    let light_bar = last(&until(&tab, arrived), "cylinder_bar");
     tab.orders["load_kg"] = json!(350.0);
     // 200 kg at this angle are 10 to 30 bar.
-    tab.until(|hitch| last(hitch, "cylinder_bar") > light_bar + 10.0);
+    until(&tab, |hitch| last(hitch, "cylinder_bar") > light_bar + 10.0);
 
     tab.orders["button"] = json!("lower");
-    tab.until(|hitch| last(hitch, "angle_deg") < 105.0);
+    until(&tab, |hitch| last(hitch, "angle_deg") < 105.0);
     tab.orders["button"] = Value::Null;
-    tab.until(|hitch| hitch["state"] == "locked");
+    until(&tab, |hitch| hitch["state"] == "locked");
 
     tab.orders["fault"] = json!({ "sensor": "angle", "kind": "open" });
-    let broken = tab.until(|hitch| hitch["state"] == "fault");
+    let broken = until(&tab, |hitch| hitch["state"] == "fault");
     assert!(broken["fault_text"].is_string(), "{broken}");
     tab.orders["fault"] = Value::Null;
-    tab.until(|hitch| hitch["state"] == "locked");
+    until(&tab, |hitch| hitch["state"] == "locked");
 }
 
 // REQ-MODE-02
@@ -131,26 +119,26 @@ fn the_application_on_the_host_follows_the_page() {
 fn one_tab_at_a_time_has_the_ecu() {
     let dir = TempDir::new().unwrap();
     let server = PageServer::start(dir.path(), &["--ecu", "--host"]);
-    let (one, other) = (Tab::new(&server), Tab::new(&server));
-    assert_eq!(one.post("open").status, 200);
-    let refused = other.post("open");
+    let (one, other) = (LoopTab::new(&server), LoopTab::new(&server));
+    assert_eq!(post(&one, "open").status, 200);
+    let refused = post(&other, "open");
     assert_eq!(refused.status, 409);
     assert!(
         refused.body.contains("in use by another tab"),
         "{}",
         refused.body
     );
-    assert_eq!(other.post("describe").status, 200);
-    let _ = one.follow(TURN);
+    assert_eq!(post(&other, "describe").status, 200);
+    let _ = follow(&one, TURN);
     // A new start by the same tab replaces its own.
-    assert_eq!(one.post("open").status, 200);
-    assert_eq!(one.post("close").status, 200);
-    assert_eq!(one.post("step").status, 409);
-    assert_eq!(other.post("open").status, 200);
+    assert_eq!(post(&one, "open").status, 200);
+    assert_eq!(post(&one, "close").status, 200);
+    assert_eq!(post(&one, "step").status, 409);
+    assert_eq!(post(&other, "open").status, 200);
     // A tab that has been closed is silent.
     sleep(Duration::from_millis(5_500));
-    assert_eq!(one.post("open").status, 200);
-    let gone = other.post("step");
+    assert_eq!(post(&one, "open").status, 200);
+    let gone = post(&other, "step");
     assert_eq!(gone.status, 410, "{}", gone.body);
     assert!(gone.body.contains("start it again"), "{}", gone.body);
 }
@@ -198,13 +186,13 @@ fn the_emulated_ecu_follows_the_page_and_ends_with_it() {
     let mut server = PageServer::start_with(dir.path(), &["--ecu"], &variables);
     the_ecu_follows_the_page(&server);
     assert_eq!(children(server.process()).len(), 1);
-    let tab = Tab::new(&server);
-    assert_eq!(tab.post("open").status, 409);
+    let tab = LoopTab::new(&server);
+    assert_eq!(post(&tab, "open").status, 409);
     // The first tab is silent; its emulator ends.
     sleep(Duration::from_millis(5_500));
     assert_eq!(children(server.process()).len(), 0);
-    assert_eq!(tab.post("open").status, 200);
-    let _ = tab.follow(Duration::from_millis(500));
+    assert_eq!(post(&tab, "open").status, 200);
+    let _ = follow(&tab, Duration::from_millis(500));
     let emulators = children(server.process());
     assert_eq!(emulators.len(), 1);
     let sent = Command::new("kill")
