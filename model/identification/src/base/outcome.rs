@@ -72,12 +72,13 @@ pub fn fit_base_model(experiment: &Experiment, declared: &Model, say: &dyn Fn(&s
         point = improved(&problem, point, round == 0);
     }
     say("sensors");
+    let found = with_sensors(&problem, &inseparable, point);
+    let held = found.held(&parameters);
     let Posterior {
         mut point,
         sigma,
         determined,
-    } = with_sensors(&problem, &inseparable, point);
-    let held = held(&parameters, &point.theta, &sigma, &determined);
+    } = found;
     for k in (0..held.len()).filter(|&k| held[k]) {
         point.theta[k] = 0.0;
     }
@@ -128,6 +129,24 @@ impl Posterior {
         let error = self.point.theta[sensor].abs();
         self.determined[sensor] && error > SIGNIFICANT * self.sigma[sensor]
     }
+
+    /// Fixed unknowns: constants that are not determined, curves without any determined point, and sensors without an
+    /// error, which would be an effect without meaning.
+    fn held(&self, parameters: &[Parameter]) -> Vec<bool> {
+        let any_point = |valve: Valve| {
+            let mut all = parameters.iter().zip(&self.determined);
+            all.any(|(parameter, &determined)| {
+                determined && matches!(parameter, Parameter::Flow(of, _) if *of == valve)
+            })
+        };
+        let all = parameters.iter().enumerate();
+        all.map(|(k, parameter)| match parameter {
+            Parameter::Flow(valve, _) => !any_point(*valve),
+            Parameter::Scalar(_) | Parameter::Threshold(_) => !self.determined[k],
+            Parameter::Sensor(_) => !self.has_error(k),
+        })
+        .collect()
+    }
 }
 
 /// The fit of constants with the sensors free if one of them has an error; else the fit without them. Free sensors
@@ -171,29 +190,6 @@ fn improved(problem: &BaseProblem<'_>, point: Point, coarse: bool) -> Point {
         point.estimate = refine(Problem::new(problem.experiment, &model), point.estimate).estimate;
     }
     point
-}
-
-/// Fixed unknowns: constants that are not determined, curves without any determined point, and sensors without a
-/// significant error, which would be an effect without meaning.
-fn held(
-    parameters: &[Parameter],
-    theta: &DVector<f64>,
-    sigma: &[f64],
-    determined: &[bool],
-) -> Vec<bool> {
-    let any_point = |valve: Valve| {
-        let mut all = parameters.iter().zip(determined);
-        all.any(|(parameter, &determined)| {
-            determined && matches!(parameter, Parameter::Flow(of, _) if *of == valve)
-        })
-    };
-    let all = parameters.iter().zip(determined).enumerate();
-    all.map(|(k, (parameter, &determined))| match parameter {
-        Parameter::Flow(valve, _) => !any_point(*valve),
-        Parameter::Scalar(_) | Parameter::Threshold(_) => !determined,
-        Parameter::Sensor(_) => !determined || theta[k].abs() <= SIGNIFICANT * sigma[k],
-    })
-    .collect()
 }
 
 /// Posterior sigma of each unknown, from campaign and prior, and whether the campaign determines it. Residuals beyond
