@@ -1,4 +1,4 @@
-//! What runs the application: the emulator with an image, or the host; and the powered ECU with its flash.
+//! The processor of the application, the emulator with an image or the host; and the powered ECU with its flash.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -14,7 +14,7 @@ use super::image;
 use super::machine::{EcuMachine, MachineError, OnHost};
 use crate::error::Error;
 
-/// What runs the application.
+/// The processor that runs the application.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Runner {
     /// The host.

@@ -42,7 +42,7 @@ const MORE: usize = 2;
 /// one. Above it, the switching instants distinguish them.
 const CONFOUNDABLE_ERROR: f64 = 1.5;
 
-/// A smaller set whose cost is below this multiple of the present cost lacks only faint effects.
+/// A fit with fewer effects is slightly worse than the present one if its cost is below this multiple of that one's.
 const FAINT: f64 = 1.5;
 
 /// Sets per round that are evaluated on held-out runs.

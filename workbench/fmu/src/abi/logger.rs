@@ -12,7 +12,7 @@ pub type MessageFunction = unsafe extern "C" fn(*mut c_void, Status, Text, Text)
 /// The importer's function.
 #[derive(Clone)]
 pub enum Sink {
-    /// None: nothing is said.
+    /// None: messages are dropped.
     Nowhere,
     /// That of FMI 2.0, with the name of the instance.
     Format(FormatFunction, CString),
@@ -20,7 +20,7 @@ pub enum Sink {
     Message(MessageFunction),
 }
 
-/// The importer's function for messages, with what it is told.
+/// The importer's function for messages, with the pointer that is passed back to it.
 #[derive(Clone)]
 pub struct Logger {
     sink: Sink,

@@ -1,4 +1,4 @@
-//! What runs the closed loop of the page, and the closed loop of a tab.
+//! The source of the closed loops of the page: host, ECU, or ECU on the bus; and the closed loop of a tab.
 
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
@@ -18,7 +18,7 @@ use crate::error::Error;
 use crate::serve::routes::Refusal;
 use crate::xcp_tool::{BusAddress, Written};
 
-/// What runs the closed loops of a server.
+/// The source of the closed loops of a server.
 #[derive(Debug)]
 pub enum LoopSource {
     /// The controller on the host: each tab has its own, and time passes as the tab requests it.

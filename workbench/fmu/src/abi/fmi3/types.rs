@@ -11,5 +11,5 @@ pub const FMI3_FALSE: Fmi3Boolean = 0;
 /// A function of the importer that is never called here.
 pub type Unused = Option<unsafe extern "C" fn()>;
 
-/// What an importer is told with its messages.
+/// Pointer of the importer, which is passed back with each message.
 pub type Environment = *mut c_void;
