@@ -122,7 +122,7 @@ pub fn weigh(problem: Problem<'_>, base: &Fit, fit: Fit, index: usize) -> Candid
     let slow = slow_columns(problem, &fit);
     let jacobian = jacobian_by(problem, &fit, &slow);
     let jacobian = with_central_differences(problem, &fit, jacobian, index);
-    weigh_with(problem, base, fit, index, &jacobian)
+    weigh_with(problem, base, fit, index, &jacobian, Ends::Profile)
 }
 
 /// Columns of clocks and loads at a fit, from its residuals.
@@ -138,8 +138,8 @@ pub(crate) fn jacobian_by(problem: Problem<'_>, fit: &Fit, slow: &SlowColumns) -
     Jacobian::with_slow_columns(problem, weights, estimate, &residuals, slow)
 }
 
-/// [`weigh`] with the columns of clocks and loads from a nearby estimate, and with forward differences: accurate enough
-/// to rank effects.
+/// [`weigh`] for a fit near its optimum, with the columns of clocks and loads from a nearby estimate, forward differences, and
+/// intervals from the curvature: accurate enough to rank effects.
 pub(crate) fn weigh_by(
     problem: Problem<'_>,
     base: &Fit,
@@ -148,7 +148,16 @@ pub(crate) fn weigh_by(
     slow: &SlowColumns,
 ) -> Candidate {
     let jacobian = jacobian_by(problem, &fit, slow);
-    weigh_with(problem, base, fit, index, &jacobian)
+    weigh_with(problem, base, fit, index, &jacobian, Ends::Curvature)
+}
+
+/// What gives the ends of intervals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ends {
+    /// The profile likelihood, which needs a fit at its optimum.
+    Profile,
+    /// The curvature of the cost.
+    Curvature,
 }
 
 fn weigh_with(
@@ -157,6 +166,7 @@ fn weigh_with(
     fit: Fit,
     index: usize,
     jacobian: &Jacobian,
+    ends: Ends,
 ) -> Candidate {
     let Problem { experiment, .. } = problem;
     let effect = fit.estimate.effects[index].effect;
@@ -185,7 +195,11 @@ fn weigh_with(
                 projection: &signature.projection,
             };
             let rise = 1.96f64.powi(2) * variance * signature.inflation;
-            let [down, up] = [-predicted, predicted].map(|half| profile.end(half, rise));
+            let end = |half: f64| match ends {
+                Ends::Profile => profile.end(half, rise),
+                Ends::Curvature => half,
+            };
+            let [down, up] = [-predicted, predicted].map(end);
             (
                 (value - down.hypot(systematic)).max(range.low),
                 (value + up.hypot(systematic)).min(range.high),
