@@ -14,7 +14,7 @@ use host_tests::hidden_effects::answer::Method;
 use host_tests::hidden_effects::foreign::Adopted;
 use host_tests::hidden_effects::grade::{Graded, Posed};
 use host_tests::hidden_effects::tally::{BINS, Tally, quantile};
-use host_tests::hidden_effects::wrong_base::declared;
+use host_tests::hidden_effects::wrong_base::declared_within;
 use host_tests::hidden_effects::{methods, starting_point};
 use host_tests::second_rig::draw::{Kind, draw};
 use host_tests::second_rig::manoeuvres::Plan;
@@ -51,6 +51,9 @@ struct Arguments {
     /// Declared models that differ from the machine in every constant, as data sheets do
     #[arg(long, conflicts_with = "foreign")]
     wrong_base: bool,
+    /// Errors of those constants, as a share of the tolerances of data sheets
+    #[arg(long, default_value_t = 1.0, requires = "wrong_base")]
+    base_error: f64,
     /// Methods, by a part of their name
     #[arg(long, value_delimiter = ',')]
     methods: Vec<String>,
@@ -110,7 +113,7 @@ fn answers(
     for seed in arguments.seed..arguments.seed + arguments.count {
         let posed = Posed::new(draw(seed, &arguments.wish.wish(family, plan)));
         let declared = match arguments.wrong_base {
-            true => declared(family, seed),
+            true => declared_within(family, seed, arguments.base_error),
             false => starting_point(family),
         };
         for (method, answers) in methods.iter().zip(&mut answers) {

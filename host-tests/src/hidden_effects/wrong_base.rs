@@ -25,16 +25,22 @@ const FARTHEST: f64 = 2.0;
 /// Stream of random numbers, apart from those of the campaigns.
 const STREAM: u64 = 0x7772_6f6e_6762_6173;
 
-/// The model of a family with every constant off, drawn with a seed.
+/// The model of a family with every constant off as on a data sheet, drawn with a seed.
 #[must_use]
 pub fn declared(family: Family, seed: u64) -> Model {
+    declared_within(family, seed, 1.0)
+}
+
+/// The same with errors that are a share of those of a data sheet: a fitted model is off by a few hundredths.
+#[must_use]
+pub fn declared_within(family: Family, seed: u64, share: f64) -> Model {
     let mut random = Pcg64::seed_from_u64(seed ^ STREAM);
     let mut constants = starting_point(family).constants().clone();
     for valve in [Valve::Lift, Valve::Lower] {
         let curve = &mut valve.of_mut(&mut constants).curve;
-        *curve = wrong_curve(curve, &mut random);
+        *curve = wrong_curve(curve, share, &mut random);
     }
-    spoil(&mut constants, &mut random);
+    spoil(&mut constants, share, &mut random);
     Model::new("data sheet", constants).expect("the dimensions differ by less than a percent")
 }
 
@@ -43,18 +49,18 @@ fn draw(random: &mut Pcg64) -> f64 {
     error.clamp(-FARTHEST, FARTHEST)
 }
 
-fn wrong_curve(curve: &ValveCurve, random: &mut Pcg64) -> ValveCurve {
+fn wrong_curve(curve: &ValveCurve, share: f64, random: &mut Pcg64) -> ValveCurve {
     let threshold_a = curve.threshold_a();
     let last_a = curve.currents_a().last().copied().unwrap_or(threshold_a);
-    let shift_a = THRESHOLD_A * draw(random);
+    let shift_a = share * THRESHOLD_A * draw(random);
     let [scale, slope, bend] =
-        [CURVE_SCALE, CURVE_SLOPE, CURVE_BEND].map(|sigma| sigma * draw(random));
+        [CURVE_SCALE, CURVE_SLOPE, CURVE_BEND].map(|sigma| share * sigma * draw(random));
     let points = curve.currents_a().iter().zip(curve.flows_m3_s());
     let (mut currents_a, mut flows_m3_s) = (Vec::new(), Vec::new());
     for (&current_a, &flow_m3_s) in points {
         let way = (current_a - threshold_a).max(0.0) / (last_a - threshold_a);
         let bent = 4.0 * way * (1.0 - way);
-        let error = scale + slope * way + bend * bent + CURVE_POINT * draw(random);
+        let error = scale + slope * way + bend * bent + share * CURVE_POINT * draw(random);
         currents_a.push(if current_a > 0.0 {
             current_a + shift_a
         } else {
@@ -66,8 +72,8 @@ fn wrong_curve(curve: &ValveCurve, random: &mut Pcg64) -> ValveCurve {
     ValveCurve::new(currents_a, flows_m3_s).expect("the currents rise, the flows do not fall")
 }
 
-/// Puts the other constants off by their tolerances, one sigma.
-fn spoil(constants: &mut Constants, random: &mut Pcg64) {
+/// Puts the other constants off by a share of their tolerances, one sigma.
+fn spoil(constants: &mut Constants, share: f64, random: &mut Pcg64) {
     let constants = [
         (&mut constants.pump.theoretical_flow_m3_s, 0.03),
         (&mut constants.relief_valve.set_pressure_pa, 0.05),
@@ -80,7 +86,10 @@ fn spoil(constants: &mut Constants, random: &mut Pcg64) {
         (&mut constants.cylinder.viscous_friction_n_s_m, 0.2),
         (&mut constants.oil.bulk_modulus_pa, 0.15),
     ];
-    put_off(constants, random);
+    put_off(
+        constants.map(|(value, sigma)| (value, share * sigma)),
+        random,
+    );
 }
 
 /// Multiplies each value by one plus a drawn error with this sigma.
