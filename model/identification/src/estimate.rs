@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use hitch_plant::{AddedEffect, Model, Parameter, SizeResponse};
 use nalgebra::DVector;
 
-use crate::constants::free::{FARTHEST_SIGMAS, FreeConstants};
+use crate::constants::free::FreeConstants;
 use crate::data::clocks::{Clocks, OFFSET_PRIOR_S};
 use crate::data::experiment::{Experiment, LOAD_PRIOR, Nuisance};
 
@@ -70,7 +70,7 @@ pub enum Shared {
     Effect(usize, usize),
     /// Clock offset of a channel, by its index, s; positive if stamped late.
     Offset(usize),
-    /// Error of the constants along a direction of their prior, by its index, in prior sigmas.
+    /// Error of the constants along a direction of their prior, by its index, in tolerances.
     Constants(usize),
 }
 
@@ -100,10 +100,12 @@ impl Estimate {
             .with_effects(self.effects.clone())
     }
 
-    /// The same estimate with all constants of a model free.
+    /// The same estimate with all constants of a model free. One sigma of their prior is this share of their tolerances.
     #[must_use]
-    pub fn with_free_constants(mut self, model: &Model) -> Self {
-        self.constants = Some(FreeConstants::of(model));
+    pub fn with_free_constants(mut self, model: &Model, share: f64) -> Self {
+        let constants = self.constants.take();
+        let constants = constants.unwrap_or_else(|| FreeConstants::of(model));
+        self.constants = Some(constants.within(share));
         self
     }
 
@@ -228,7 +230,10 @@ impl Estimate {
         match shared {
             Shared::Effect(effect, parameter) => self.parameter(effect, parameter).scale(),
             Shared::Offset(_) => OFFSET_PRIOR_S,
-            Shared::Constants(_) => 1.0,
+            Shared::Constants(_) => {
+                let constants = self.constants.as_ref();
+                constants.map_or(1.0, FreeConstants::share)
+            }
         }
     }
 
@@ -240,7 +245,7 @@ impl Estimate {
             Shared::Offset(channel) => self.clocks.offsets_s[channel],
             Shared::Constants(direction) => {
                 let constants = self.constants.as_ref();
-                constants.map_or(0.0, |constants| constants.sigmas()[direction])
+                constants.map_or(0.0, |constants| constants.errors()[direction])
             }
         }
     }
@@ -262,7 +267,11 @@ impl Estimate {
                 (range.low, range.high)
             }
             Shared::Offset(_) => (-self.clocks_within_s, self.clocks_within_s),
-            Shared::Constants(_) => (-FARTHEST_SIGMAS, FARTHEST_SIGMAS),
+            Shared::Constants(_) => {
+                let constants = self.constants.as_ref();
+                let farthest = constants.map_or(0.0, FreeConstants::farthest);
+                (-farthest, farthest)
+            }
         }
     }
 
@@ -293,17 +302,17 @@ impl Estimate {
     pub fn moved(&self, parameters: &[Shared], step: &Step) -> Self {
         let mut moved = self.clone();
         let constants = self.constants.as_ref();
-        let mut sigmas = constants.map_or(Vec::new(), |constants| constants.sigmas().to_vec());
+        let mut errors = constants.map_or(Vec::new(), |constants| constants.errors().to_vec());
         for (&shared, &scales) in parameters.iter().zip(step.shared.iter()) {
             match shared {
-                Shared::Constants(direction) => sigmas[direction] += scales,
+                Shared::Constants(direction) => errors[direction] += scales * self.scale(shared),
                 Shared::Effect(..) | Shared::Offset(_) => {
                     moved.set(shared, self.get(shared) + scales * self.scale(shared));
                 }
             }
         }
         if let Some(constants) = &mut moved.constants {
-            constants.set_all(sigmas);
+            constants.set_all(errors);
         }
         for (run, &sigmas) in step.loads.iter().enumerate() {
             moved.set_load(run, self.load(run) + sigmas);

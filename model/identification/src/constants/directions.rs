@@ -68,27 +68,36 @@ impl Directions {
     }
 
     /// Constants and points of the flow curves of the second model, the first one corrected, with intervals from the
-    /// covariance of the directions.
+    /// covariance of the directions, in tolerances; one sigma of the prior is this share of a tolerance.
     pub(crate) fn fitted(
         &self,
         [declared, model]: [&Model; 2],
-        sigmas: &[f64],
+        errors: &[f64],
+        share: f64,
         covariance: &DMatrix<f64>,
     ) -> (Vec<FittedConstant>, Vec<CurvePoint>) {
         let prior = Prior::new(declared.constants(), &self.parameters);
         let spread = &self.columns * covariance * self.columns.transpose();
-        let sigma: Vec<f64> = (0..prior.sigma.len())
-            .map(|k| spread[(k, k)].sqrt().hypot(MODEL_ERROR).min(prior.sigma[k]))
+        let own: Vec<f64> = (0..prior.sigma.len())
+            .map(|k| spread[(k, k)].sqrt().hypot(MODEL_ERROR))
             .collect();
-        let pairs = sigma.iter().zip(&prior.sigma);
+        let pairs = own.iter().zip(&prior.sigma);
         let determined: Vec<bool> = pairs
-            .map(|(own, prior)| *own <= DETERMINED * prior)
+            .clone()
+            .map(|(own, prior)| *own <= DETERMINED * (share * prior).hypot(MODEL_ERROR))
+            .collect();
+        let sigma: Vec<f64> = pairs
+            .zip(&determined)
+            .map(|((own, prior), is_determined)| match is_determined {
+                true => own.min(*prior),
+                false => *prior,
+            })
             .collect();
         let fitted = Fitted {
             declared,
             model,
             parameters: &self.parameters,
-            theta: &self.errors(sigmas),
+            theta: &self.errors(errors),
             sigma: &sigma,
             determined: &determined,
             prior: &prior,

@@ -8,26 +8,29 @@ use nalgebra::DMatrix;
 use crate::constants::directions::Directions;
 use crate::constants::fitted::{CurvePoint, FittedConstant};
 
-/// Bound of a coordinate, in prior sigmas: a larger error is outside the tolerances of data sheets.
-pub const FARTHEST_SIGMAS: f64 = 3.0;
+/// Bound of a coordinate, in prior sigmas: a larger error is outside the tolerances of data sheets, or the accuracy of any
+/// model.
+const FARTHEST_SIGMAS: f64 = 3.0;
 
-/// Errors of a model's constants, as coordinates along the directions of their prior.
+/// Errors of a model's constants, as coordinates along the directions of their prior, in tolerances of data sheets.
 #[derive(Debug, Clone)]
 pub struct FreeConstants {
     directions: Arc<Directions>,
     declared: Model,
-    sigmas: Vec<f64>,
+    errors: Vec<f64>,
+    share: f64,
     corrected: Model,
     is_held: bool,
 }
 
 impl FreeConstants {
-    /// The declared constants, free to change.
+    /// The declared constants, free to change within their tolerances.
     #[must_use]
     pub fn of(declared: &Model) -> Self {
         let directions = Arc::new(Directions::new(declared.constants()));
         Self {
-            sigmas: vec![0.0; directions.len()],
+            errors: vec![0.0; directions.len()],
+            share: 1.0,
             corrected: declared.clone(),
             declared: declared.clone(),
             directions,
@@ -40,7 +43,7 @@ impl FreeConstants {
     pub fn free(&self) -> usize {
         match self.is_held {
             true => 0,
-            false => self.sigmas.len(),
+            false => self.errors.len(),
         }
     }
 
@@ -53,10 +56,25 @@ impl FreeConstants {
         }
     }
 
-    /// The coordinates, in prior sigmas.
+    /// The same constants with another prior: one sigma is this share of their tolerances.
     #[must_use]
-    pub fn sigmas(&self) -> &[f64] {
-        &self.sigmas
+    pub fn within(self, share: f64) -> Self {
+        let errors = self.errors.clone();
+        let mut narrowed = Self { share, ..self };
+        narrowed.set_all(errors);
+        narrowed
+    }
+
+    /// One sigma of the prior of every coordinate, in tolerances.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        self.share
+    }
+
+    /// The coordinates, in tolerances.
+    #[must_use]
+    pub fn errors(&self) -> &[f64] {
+        &self.errors
     }
 
     /// The model with the corrected constants, and the effects of the declared one.
@@ -66,43 +84,54 @@ impl FreeConstants {
     }
 
     /// Moves a coordinate, within its bound. Dimensions that make no linkage leave it where it is.
-    pub fn set(&mut self, coordinate: usize, sigmas: f64) {
-        let mut moved = self.sigmas.clone();
-        moved[coordinate] = sigmas;
+    pub fn set(&mut self, coordinate: usize, error: f64) {
+        let mut moved = self.errors.clone();
+        moved[coordinate] = error;
         self.set_all(moved);
     }
 
     /// Moves all coordinates, within their bounds.
-    pub fn set_all(&mut self, mut sigmas: Vec<f64>) {
-        for value in &mut sigmas {
-            *value = value.clamp(-FARTHEST_SIGMAS, FARTHEST_SIGMAS);
+    pub fn set_all(&mut self, mut errors: Vec<f64>) {
+        let farthest = self.farthest();
+        for value in &mut errors {
+            *value = value.clamp(-farthest, farthest);
         }
-        if sigmas != self.sigmas
-            && let Some(corrected) = self.directions.corrected(&self.declared, &sigmas)
+        if errors != self.errors
+            && let Some(corrected) = self.directions.corrected(&self.declared, &errors)
         {
-            (self.sigmas, self.corrected) = (sigmas, corrected);
+            (self.errors, self.corrected) = (errors, corrected);
         }
     }
 
-    /// Constants and points of the flow curves with their intervals, from the covariance of the coordinates.
+    /// Constants and points of the flow curves with their intervals, from the covariance of the coordinates, in prior
+    /// sigmas.
     pub(crate) fn fitted(
         &self,
         covariance: &DMatrix<f64>,
     ) -> (Vec<FittedConstant>, Vec<CurvePoint>) {
         let models = [&self.declared, &self.corrected];
-        self.directions.fitted(models, &self.sigmas, covariance)
+        let covariance = covariance * self.share.powi(2);
+        let directions = &self.directions;
+        directions.fitted(models, &self.errors, self.share, &covariance)
     }
 
-    /// Whether a coordinate is at its bound: the constants then do not explain the data within their tolerances.
+    /// Largest error along a coordinate, in tolerances.
+    #[must_use]
+    pub fn farthest(&self) -> f64 {
+        FARTHEST_SIGMAS * self.share
+    }
+
+    /// Whether a coordinate is at the end of its tolerance: the constants then do not explain the data.
     #[must_use]
     pub fn is_at_an_end(&self) -> bool {
-        let mut sigmas = self.sigmas.iter();
-        sigmas.any(|sigmas| sigmas.abs() >= 0.999 * FARTHEST_SIGMAS)
+        let mut errors = self.errors.iter();
+        errors.any(|error| error.abs() >= 0.999 * FARTHEST_SIGMAS)
     }
 
     /// Squared distance from the declared constants, in prior sigmas.
     #[must_use]
     pub fn prior_cost(&self) -> f64 {
-        self.sigmas.iter().map(|sigmas| sigmas * sigmas).sum()
+        let errors = self.errors.iter();
+        errors.map(|error| (error / self.share).powi(2)).sum()
     }
 }

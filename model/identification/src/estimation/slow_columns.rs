@@ -13,7 +13,7 @@ use crate::residuals::whitening::Weights;
 /// Step of a channel's clock offset, in prior sigmas.
 const STEP_OF_OFFSET: f64 = 0.25;
 
-/// Step of the free constants, in prior sigmas.
+/// Step of the free constants, in tolerances.
 const STEP_OF_CONSTANTS: f64 = 0.02;
 
 /// Sensitivities of all runs to their load errors, per step of one prior sigma.
@@ -98,7 +98,7 @@ fn constant_columns(
         let ((low, below), (high, above)) =
             rayon::join(|| side(-STEP_OF_CONSTANTS), || side(STEP_OF_CONSTANTS));
         match high > low {
-            true => quotient(&below, above, high - low),
+            true => quotient(&below, above, (high - low) / estimate.scale(shared)),
             false => below.iter().map(|run| vec![0.0; run.len()]).collect(),
         }
     };

@@ -5,14 +5,18 @@ use std::time::Instant;
 
 use crate::constants::fitted::{CurvePoint, FittedConstant};
 use crate::data::problem::Problem;
-use crate::estimation::fit::{Fit, evaluate_weighted, fit};
+use crate::estimate::Estimate;
+use crate::estimation::fit::{Fit, fit, refine};
+use crate::explanation::suspected_constants::suspected;
 use crate::search::candidates::Progress;
-use crate::search::coarse_view::Coarse;
 use crate::search::subset::{Found, Options, Search};
-use crate::selection::constants_evidence::{Comparison, FreedConstants, covariance};
+use crate::selection::constants_evidence::{Comparison, covariance};
 
 /// Rounds of the search with the declared constants before the constants are suspected.
 const FIRST_ROUNDS: usize = 2;
+
+/// Most searches with free constants, each with another prior.
+const SEARCHES: usize = 3;
 
 /// Constants that differ from the declared ones.
 #[derive(Debug, Clone)]
@@ -68,21 +72,6 @@ impl Searched {
     }
 }
 
-/// Whether free constants are predicted to be better than the best fit with the declared ones, on the condensed experiment.
-/// They are tried at that fit and at fits with fewer effects: constants that are off need several faint effects in their
-/// place.
-pub(crate) fn are_suspected(problem: Problem<'_>, best: &Fit, fewer: &[&Fit]) -> bool {
-    let coarse = Coarse::new(problem, best);
-    let (condensed, seen) = (coarse.condensed(), &coarse.seen);
-    let are_better =
-        |fit: &Fit| FreedConstants::at(condensed, fit).are_worthwhile(condensed, fit, seen);
-    are_better(seen)
-        || fewer.iter().any(|fit| {
-            let (estimate, weights) = (fit.estimate.clone(), seen.weights.clone());
-            are_better(&evaluate_weighted(condensed, estimate, weights))
-        })
-}
-
 /// Searches from a fit of the model alone.
 ///
 /// Constants that are off need many effects in their place, and the search for those is long. If the data are evidence
@@ -100,22 +89,40 @@ pub(crate) fn search_with_constants(
     for _ in 0..FIRST_ROUNDS {
         goes_on = goes_on && declared.advance(half);
     }
-    let is_suspected = |search: &Search| {
+    let suspected = |search: &Search| {
         let fewer = search.slightly_worse_with_fewer();
-        !options.is_over() && are_suspected(problem, search.present(), &fewer)
+        match options.is_over() {
+            true => None,
+            false => suspected(problem, search.present(), &fewer),
+        }
     };
-    if !is_suspected(&declared) {
-        let is_final = declared.is_stable();
+    let mut found = suspected(&declared);
+    if found.is_none() && !declared.is_stable() {
         while declared.advance(options.deadline) {}
-        if is_final || !is_suspected(&declared) {
-            return Searched::declared(declared.found());
+        found = suspected(&declared);
+    }
+    let Some(found) = found else {
+        return Searched::declared(declared.found());
+    };
+    progress("the constants of the model");
+    let search = |start: Estimate| {
+        let alone = Estimate {
+            constants: start.constants.clone(),
+            ..before.estimate.clone()
+        };
+        let corrected = fit(problem, alone);
+        let mut free = Search::new(problem, &corrected, options, progress);
+        free.consider(refine(problem, start));
+        while free.advance(options.deadline) {}
+        (corrected, free)
+    };
+    let (mut corrected, mut free) = search(found);
+    for _ in 1..SEARCHES {
+        match suspected(&free) {
+            Some(better) => (corrected, free) = search(better),
+            None => break,
         }
     }
-    progress("the constants of the model");
-    let start = before.estimate.clone().with_free_constants(problem.model);
-    let corrected = fit(problem, start);
-    let mut free = Search::new(problem, &corrected, options, progress);
-    while free.advance(options.deadline) {}
     let mut free = free.found();
     while !options.is_over() && free.moves_to_fewer(problem, free.without_each(problem)) {}
     let comparison = Comparison::new(problem, &free.fit);

@@ -1,10 +1,11 @@
 //! Diagnosis: every effect of the catalogue added to a model once, and ranked.
 
 use crate::data::problem::Problem;
-use crate::estimation::fit::{Fit, refine};
-use crate::explanation::constants::are_suspected;
+use crate::estimation::fit::{Fit, fit};
+use crate::explanation::suspected_constants::{suspected, worthwhile_beside};
 use crate::search::candidates::{Progress, showing};
 use crate::search::single_effects::{confidences, try_each};
+use crate::search::subset::FAINT;
 use crate::selection::candidate::Candidate;
 use crate::selection::constants_evidence::Comparison;
 
@@ -40,7 +41,7 @@ pub fn diagnose_each(
     let candidates = try_each(problem, &base, &absent, progress, &report);
     let best = candidates.first().map_or(&base, |best| &best.fit);
     progress("the constants of the model");
-    let constants_off = constants_off(problem, best);
+    let constants_off = constants_off(problem, best, &base);
     let confidences = confidences(&candidates).into_iter();
     Diagnosis {
         confidences: confidences
@@ -52,11 +53,16 @@ pub fn diagnose_each(
     }
 }
 
-/// Probability that the declared constants are off, given a fit with them.
-fn constants_off(problem: Problem<'_>, declared: &Fit) -> f64 {
-    if declared.estimate.constants.is_some() || !are_suspected(problem, declared, &[]) {
+/// Probability that the declared constants are off, given the best fit with them and that without further effects.
+fn constants_off(problem: Problem<'_>, declared: &Fit, base: &Fit) -> f64 {
+    if declared.estimate.constants.is_some() {
         return 0.0;
     }
-    let start = declared.estimate.clone().with_free_constants(problem.model);
-    Comparison::new(problem, &refine(problem, start)).probability_off(declared)
+    let is_faint = || base.cost < FAINT * declared.cost;
+    let start = worthwhile_beside(problem, declared)
+        .or_else(|| is_faint().then(|| suspected(problem, declared, &[base]))?);
+    match start {
+        Some(start) => Comparison::new(problem, &fit(problem, start)).probability_off(declared),
+        None => 0.0,
+    }
 }

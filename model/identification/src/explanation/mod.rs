@@ -3,4 +3,5 @@
 pub mod constants;
 pub mod diagnosis;
 pub mod explain;
+pub(crate) mod suspected_constants;
 pub mod undetected;

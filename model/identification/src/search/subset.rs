@@ -43,7 +43,7 @@ const MORE: usize = 2;
 const CONFOUNDABLE_ERROR: f64 = 1.5;
 
 /// A fit with fewer effects is slightly worse than the present one if its cost is below this multiple of that one's.
-const FAINT: f64 = 1.5;
+pub(crate) const FAINT: f64 = 1.5;
 
 /// Sets per round that are evaluated on held-out runs.
 const TRIED: usize = 3;
@@ -221,6 +221,12 @@ impl<'a> Search<'a> {
         // A round that the deadline cut short says nothing.
         self.is_stable = !self.options.is_over();
         false
+    }
+
+    /// Moves to a fit if it is better.
+    pub fn consider(&mut self, fit: Fit) {
+        self.refitted.insert(fit);
+        self.moves_to_best();
     }
 
     /// The best fit so far.

@@ -1,0 +1,136 @@
+//! What free constants are worth at a fit with the declared ones, to first order.
+//!
+//! Constants of a data sheet are off by most of their tolerances, those of a fitted model by some hundredths. The width of
+//! their prior is therefore one of a few shares of the tolerances, and that of the largest marginal likelihood is used
+//! (MacKay 1992). All of them follow from one Jacobian.
+//!
+//! No constant is exact: the smallest share is the accuracy that no model exceeds. Every hypothesis has it, so that it costs
+//! nothing, and an effect has to explain more than such errors can.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::constants::free::FreeConstants;
+use crate::data::problem::Problem;
+use crate::estimation::fit::Fit;
+use crate::selection::complexity_penalty::Penalty;
+use crate::selection::constants_sensitivities::Sensitivities;
+
+/// Possible widths of the prior, in tolerances, the smallest one last: two thousandths of a flow curve.
+const SHARES: [f64; 4] = [1.0, 0.25, 0.06, LEAST_SHARE];
+
+/// Width of the prior that every hypothesis has, in tolerances.
+const LEAST_SHARE: f64 = 0.015;
+
+/// Possible widths of the prior in a fit. Residuals beyond noise reduce the information of the campaign: a likelihood ratio
+/// of one is a cost of [`Penalty::unit`]. In a fit, whose cost counts every residual in full, the prior is narrower by as much.
+pub(crate) fn shares(penalty: Penalty) -> [f64; 4] {
+    SHARES.map(|share| share / penalty.unit.sqrt())
+}
+
+/// The smallest of these widths.
+pub(crate) fn least_share(penalty: Penalty) -> f64 {
+    LEAST_SHARE / penalty.unit.sqrt()
+}
+
+/// The cost of a fit over the errors of its constants, in tolerances; all other parameters are optimal.
+pub(crate) struct ConstantsCost {
+    /// Half of the second derivative, without the prior.
+    curvature: DMatrix<f64>,
+    /// Half of the negative gradient where all errors are zero.
+    pull: DVector<f64>,
+    /// Cost at the fit, with its own prior, less that where all errors are zero.
+    at_fit: f64,
+}
+
+impl ConstantsCost {
+    /// At a fit, whose constants are freed if they are not.
+    pub fn at(problem: Problem<'_>, fit: &Fit) -> Self {
+        let mut free = fit.clone();
+        let constants = free.estimate.constants.take();
+        let constants = constants.unwrap_or_else(|| FreeConstants::of(problem.model));
+        let share = constants.share();
+        let errors = DVector::from_column_slice(constants.errors());
+        free.estimate.constants = Some(constants);
+        let (precision, right) = Sensitivities::at(problem, &free).normal_equations();
+        let prior = DMatrix::identity(precision.nrows(), precision.ncols());
+        let curvature = (precision - prior) / share.powi(2);
+        let pull_at_fit = (right + &errors / share) / share;
+        let bent = &curvature * &errors;
+        let pull = pull_at_fit + &bent;
+        let at_fit = errors.norm_squared() / share.powi(2) + errors.dot(&(bent - 2.0 * &pull));
+        Self {
+            curvature,
+            pull,
+            at_fit,
+        }
+    }
+
+    /// Reduction of the penalised cost by constants with a prior of this width. What wider priors cost is relative to the
+    /// smallest one; as an effect, they have to exceed the smallest accepted detectability.
+    pub fn gain(&self, share: f64, penalty: Penalty) -> f64 {
+        self.at_fit + self.reduction(share) - self.price(share, penalty)
+    }
+
+    /// Cost reduction that constants with a prior of this width need.
+    pub fn price(&self, share: f64, penalty: Penalty) -> f64 {
+        let narrowed = self.narrowed(share) - self.narrowed(least_share(penalty));
+        price(share, narrowed, penalty)
+    }
+
+    /// Reduction of the cost by constants with a prior of this width, compared with errors of zero.
+    pub fn reduction(&self, share: f64) -> f64 {
+        let pull = &self.pull * share;
+        let root = self.precision(share).cholesky();
+        root.map_or(0.0, |root| pull.dot(&root.solve(&pull)))
+    }
+
+    /// Logarithm of the determinant of the posterior's precision, in units of that of a prior of this width.
+    pub fn narrowed(&self, share: f64) -> f64 {
+        log_determinant(&self.precision(share))
+    }
+
+    fn precision(&self, share: f64) -> DMatrix<f64> {
+        let prior = DMatrix::identity(self.pull.len(), self.pull.len());
+        &self.curvature * share.powi(2) + prior
+    }
+}
+
+/// Cost reduction that constants with a prior of this width need, given by how much more than the smallest prior the
+/// campaign narrows it. The next wider prior is four times as wide.
+pub(crate) fn price(share: f64, narrowed: f64, penalty: Penalty) -> f64 {
+    match share > 2.0 * least_share(penalty) {
+        true => penalty.minimum() + penalty.unit * narrowed,
+        false => 0.0,
+    }
+}
+
+/// Logarithm of the determinant of a positive definite matrix.
+pub(crate) fn log_determinant(matrix: &DMatrix<f64>) -> f64 {
+    let values = matrix.clone().symmetric_eigenvalues();
+    values.iter().map(|value| value.max(1.0).ln()).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::{ConstantsCost, SHARES};
+
+    /// For a single constant the reduction and the factor by which the prior is narrowed have closed forms.
+    #[test]
+    fn a_single_constant_has_a_closed_form() {
+        let (curvature, pull) = (900.0, 60.0);
+        let cost = ConstantsCost {
+            curvature: DMatrix::from_element(1, 1, curvature),
+            pull: DVector::from_element(1, pull),
+            at_fit: 0.0,
+        };
+        for share in SHARES {
+            let precision = curvature + 1.0 / (share * share);
+            let reduction = pull * pull / precision;
+            assert!((cost.reduction(share) / reduction - 1.0).abs() < 1e-12);
+            let narrowed = (precision * share * share).ln();
+            assert!((cost.narrowed(share) - narrowed).abs() < 1e-12);
+        }
+    }
+}
