@@ -151,7 +151,7 @@ pub(crate) fn weigh_by(
     weigh_with(problem, base, fit, index, &jacobian, Ends::Curvature)
 }
 
-/// What gives the ends of intervals.
+/// Method for the ends of intervals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Ends {
     /// The profile likelihood, which needs a fit at its optimum.

@@ -114,7 +114,13 @@ pub(crate) fn log_determinant(matrix: &DMatrix<f64>) -> f64 {
 mod tests {
     use nalgebra::{DMatrix, DVector};
 
-    use super::{ConstantsCost, SHARES};
+    use super::{ConstantsCost, SHARES, log_determinant};
+
+    #[test]
+    fn the_logarithm_of_a_determinant_is_a_sum() {
+        let logarithm = log_determinant(&DMatrix::from_diagonal_element(3, 3, 2.0));
+        assert!((logarithm - 3.0 * 2f64.ln()).abs() < 1e-12);
+    }
 
     /// For a single constant the reduction and the factor by which the prior is narrowed have closed forms.
     #[test]

@@ -6,7 +6,7 @@ use crate::data::problem::Problem;
 use crate::estimate::{Estimate, Shared};
 use crate::estimation::fit::Fit;
 use crate::estimation::jacobian::{Jacobian, huber};
-use crate::estimation::slow_columns::SlowColumns;
+use crate::selection::candidate::{jacobian_by, slow_columns};
 
 /// Sensitivities at a fit with free constants.
 pub(super) struct Sensitivities {
@@ -21,15 +21,10 @@ pub(super) struct Sensitivities {
 impl Sensitivities {
     /// At a fit with free constants.
     pub fn at(problem: Problem<'_>, fit: &Fit) -> Self {
-        let estimate = fit.estimate.clone();
-        let residuals = huber(fit.residuals.clone());
-        let weights = &fit.weights;
-        let slow = SlowColumns::new(problem, weights, &estimate, &residuals);
-        let jacobian = Jacobian::with_slow_columns(problem, weights, &estimate, &residuals, &slow);
         Self {
-            estimate,
-            residuals,
-            jacobian,
+            estimate: fit.estimate.clone(),
+            residuals: huber(fit.residuals.clone()),
+            jacobian: jacobian_by(problem, fit, &slow_columns(problem, fit)),
         }
     }
 
