@@ -10,7 +10,7 @@ use crate::constants::fitted::{CurvePoint, FittedConstant};
 
 /// Bound of a coordinate, in prior sigmas: a larger error is outside the tolerances of data sheets, or the accuracy of any
 /// model.
-const FARTHEST_SIGMAS: f64 = 3.0;
+pub const FARTHEST_SIGMAS: f64 = 3.0;
 
 /// Errors of a model's constants, as coordinates along the directions of their prior, in tolerances of data sheets.
 #[derive(Debug, Clone)]

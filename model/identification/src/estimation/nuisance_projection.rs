@@ -6,6 +6,7 @@ use std::ops::Range;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::estimate::{Estimate, Shared, Step};
+use crate::estimation::bounded_minimum::minimum_within;
 use crate::estimation::jacobian::{Jacobian, RunJacobian, dot, square_sum, subtract};
 
 /// The free columns of a Jacobian and each run's load, prepared for projection.
@@ -134,44 +135,11 @@ impl<J: Borrow<Jacobian>> NuisanceProjection<J> {
     #[must_use]
     pub fn project_within_range(&self, signature: Vec<Vec<f64>>) -> (Vec<Vec<f64>>, f64) {
         let coupling = self.coupling(&signature);
-        let mut shares = self.shares(&coupling);
-        let mut held: Vec<usize> = Vec::new();
-        let beyond = |shares: &DVector<f64>, held: &[usize]| {
-            let mut free = (0..shares.len()).filter(|row| !held.contains(row));
-            free.find(|&row| shares[row] < self.room[row].0 || shares[row] > self.room[row].1)
-        };
-        while let Some(row) = beyond(&shares, &held) {
-            held.push(row);
-            let at = held.iter().map(|&row| {
-                let (low, high) = self.room[row];
-                (row, shares[row].clamp(low, high))
-            });
-            let at: Vec<(usize, f64)> = at.collect();
-            let Some(others) = self.shares_beside(&coupling, &at) else {
-                break;
-            };
-            shares = others;
-        }
-        self.without(signature, &shares)
-    }
-
-    /// Optimal values of the free parameters with some of them fixed; `None` if the system is singular.
-    fn shares_beside(
-        &self,
-        coupling: &DVector<f64>,
-        held: &[(usize, f64)],
-    ) -> Option<DVector<f64>> {
-        let (mut matrix, mut right) = (self.matrix.clone(), coupling.clone());
-        for &(row, share) in held {
-            right -= self.matrix.column(row) * share;
-        }
-        for &(row, share) in held {
-            matrix.row_mut(row).fill(0.0);
-            matrix.column_mut(row).fill(0.0);
-            matrix[(row, row)] = 1.0;
-            right[row] = share;
-        }
-        Some(matrix.cholesky()?.solve(&right))
+        let shares = minimum_within(&self.matrix, &coupling, &self.room);
+        self.without(
+            signature,
+            &shares.unwrap_or_else(|| DVector::zeros(coupling.len())),
+        )
     }
 
     /// A signature minus given shares of the free columns and minus the optimal shares of the loads, and the prior cost

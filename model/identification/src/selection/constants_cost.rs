@@ -9,8 +9,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::constants::free::FreeConstants;
+use crate::constants::free::{FARTHEST_SIGMAS, FreeConstants};
 use crate::data::problem::Problem;
+use crate::estimation::bounded_minimum::minimum_within;
 use crate::estimation::fit::Fit;
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::constants_sensitivities::Sensitivities;
@@ -33,6 +34,7 @@ pub(crate) fn least_share(penalty: Penalty) -> f64 {
 }
 
 /// The cost of a fit over the errors of its constants, in tolerances; all other parameters are optimal.
+#[derive(Debug, Clone)]
 pub(crate) struct ConstantsCost {
     /// Half of the second derivative, without the prior.
     curvature: DMatrix<f64>,
@@ -46,12 +48,18 @@ impl ConstantsCost {
     /// At a fit, whose constants are freed if they are not.
     pub fn at(problem: Problem<'_>, fit: &Fit) -> Self {
         let mut free = fit.clone();
-        let constants = free.estimate.constants.take();
-        let constants = constants.unwrap_or_else(|| FreeConstants::of(problem.model));
-        let share = constants.share();
-        let errors = DVector::from_column_slice(constants.errors());
-        free.estimate.constants = Some(constants);
-        let (precision, right) = Sensitivities::at(problem, &free).normal_equations();
+        let constants = &mut free.estimate.constants;
+        constants.get_or_insert_with(|| FreeConstants::of(problem.model));
+        Self::of(&Sensitivities::at(problem, &free))
+    }
+
+    /// From sensitivities at a fit with free constants.
+    pub fn of(sensitivities: &Sensitivities) -> Self {
+        let constants = sensitivities.estimate.constants.as_ref();
+        let share = constants.map_or(1.0, FreeConstants::share);
+        let errors = constants.map_or(&[][..], FreeConstants::errors);
+        let errors = DVector::from_column_slice(errors);
+        let (precision, right) = sensitivities.normal_equations();
         let prior = DMatrix::identity(precision.nrows(), precision.ncols());
         let curvature = (precision - prior) / share.powi(2);
         let pull_at_fit = (right + &errors / share) / share;
@@ -71,17 +79,26 @@ impl ConstantsCost {
         self.at_fit + self.reduction(share) - self.price(share, penalty)
     }
 
-    /// Cost reduction that constants with a prior of this width need.
+    /// Cost reduction that constants with a prior of this width need: as much as any effect, and the logarithm of the factor
+    /// by which the campaign narrows it more than the smallest prior.
     pub fn price(&self, share: f64, penalty: Penalty) -> f64 {
-        let narrowed = self.narrowed(share) - self.narrowed(least_share(penalty));
-        price(share, narrowed, penalty)
+        let least = least_share(penalty);
+        // The next wider prior is four times as wide.
+        if share < 2.0 * least {
+            return 0.0;
+        }
+        let narrowed = self.narrowed(share) - self.narrowed(least);
+        penalty.minimum() + penalty.unit * narrowed
     }
 
-    /// Reduction of the cost by constants with a prior of this width, compared with errors of zero.
+    /// Reduction of the cost by constants with a prior of this width and within its bounds, compared with errors of zero.
     pub fn reduction(&self, share: f64) -> f64 {
-        let pull = &self.pull * share;
-        let root = self.precision(share).cholesky();
-        root.map_or(0.0, |root| pull.dot(&root.solve(&pull)))
+        let (precision, pull) = (self.precision(share), &self.pull * share);
+        let ranges = vec![(-FARTHEST_SIGMAS, FARTHEST_SIGMAS); pull.len()];
+        let errors = minimum_within(&precision, &pull, &ranges);
+        errors.map_or(0.0, |errors| {
+            errors.dot(&(2.0 * pull - precision * &errors))
+        })
     }
 
     /// Logarithm of the determinant of the posterior's precision, in units of that of a prior of this width.
@@ -95,17 +112,8 @@ impl ConstantsCost {
     }
 }
 
-/// Cost reduction that constants with a prior of this width need, given by how much more than the smallest prior the
-/// campaign narrows it. The next wider prior is four times as wide.
-pub(crate) fn price(share: f64, narrowed: f64, penalty: Penalty) -> f64 {
-    match share > 2.0 * least_share(penalty) {
-        true => penalty.minimum() + penalty.unit * narrowed,
-        false => 0.0,
-    }
-}
-
 /// Logarithm of the determinant of a positive definite matrix.
-pub(crate) fn log_determinant(matrix: &DMatrix<f64>) -> f64 {
+fn log_determinant(matrix: &DMatrix<f64>) -> f64 {
     let values = matrix.clone().symmetric_eigenvalues();
     values.iter().map(|value| value.max(1.0).ln()).sum()
 }
@@ -138,5 +146,19 @@ mod tests {
             let narrowed = (precision * share * share).ln();
             assert!((cost.narrowed(share) - narrowed).abs() < 1e-12);
         }
+    }
+
+    /// An error beyond the bound of its prior reduces the cost by as much as at the bound.
+    #[test]
+    fn a_constant_stays_within_its_bound() {
+        let (curvature, pull, share) = (900.0, 600.0, 0.06);
+        let cost = ConstantsCost {
+            curvature: DMatrix::from_element(1, 1, curvature),
+            pull: DVector::from_element(1, pull),
+            at_fit: 0.0,
+        };
+        let bound = 3.0 * share;
+        let reduction = bound * (2.0 * pull - (curvature + 1.0 / (share * share)) * bound);
+        assert!((cost.reduction(share) / reduction - 1.0).abs() < 1e-12);
     }
 }

@@ -15,7 +15,7 @@ use crate::estimation::jacobian::{difference, huber_residuals};
 use crate::estimation::nuisance_projection::NuisanceProjection;
 use crate::selection::candidate::{explained_share, plausibility};
 use crate::selection::complexity_penalty::Penalty;
-use crate::selection::constants_cost::{least_share, log_determinant, price};
+use crate::selection::constants_cost::{ConstantsCost, least_share};
 use crate::selection::constants_sensitivities::Sensitivities;
 
 /// The free constants of a fit.
@@ -23,8 +23,8 @@ use crate::selection::constants_sensitivities::Sensitivities;
 struct FreedConstants {
     /// One sigma of their prior, in tolerances.
     share: f64,
-    /// Precision of the constants, in units of this prior's.
-    precision: DMatrix<f64>,
+    /// The cost over their errors.
+    cost: ConstantsCost,
     /// Share of the mean square beyond noise that their present values explain: see [`explained_share`].
     explained_share: f64,
 }
@@ -60,21 +60,16 @@ impl FreedConstants {
             .constants
             .as_ref()
             .map_or(1.0, FreeConstants::share);
-        let (precision, _) = sensitivities.normal_equations();
         Self {
             share,
-            precision,
+            cost: ConstantsCost::of(&sensitivities),
             explained_share: explained_share(&changes, residuals),
         }
     }
 
     /// Cost reduction that they need.
     fn price(&self, penalty: Penalty) -> f64 {
-        let prior = DMatrix::identity(self.precision.nrows(), self.precision.ncols());
-        let ratio = least_share(penalty) / self.share;
-        let least = (&self.precision - &prior) * ratio.powi(2) + prior;
-        let narrowed = log_determinant(&self.precision) - log_determinant(&least);
-        price(self.share, narrowed, penalty)
+        self.cost.price(self.share, penalty)
     }
 }
 

@@ -9,7 +9,7 @@ use crate::estimation::jacobian::{Jacobian, huber};
 use crate::selection::candidate::{jacobian_by, slow_columns};
 
 /// Sensitivities at a fit with free constants.
-pub(super) struct Sensitivities {
+pub(crate) struct Sensitivities {
     /// The estimate of the fit.
     pub estimate: Estimate,
     /// Its residuals, transformed by [`huber`].
