@@ -159,6 +159,13 @@ impl Refits<'_> {
         }
     }
 
+    /// A short fit from one start on few samples, evaluated on all samples.
+    pub fn one_roughly(&self, start: Estimate) -> Fit {
+        let found = self.short_fit_from(start);
+        let weights = self.coarse.present.weights.clone();
+        evaluate_weighted(self.coarse.problem, found.estimate, weights)
+    }
+
     /// A short fit under the present weights; far from the data also by way of the coarse weights.
     fn short_fit_from(&self, start: Estimate) -> Descent {
         let weights = &self.coarse.seen.weights;

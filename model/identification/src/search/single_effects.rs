@@ -18,8 +18,11 @@ use crate::selection::candidate::{Candidate, slow_columns, weigh, weigh_by};
 use crate::selection::complexity_penalty::Penalty;
 use crate::selection::evidence::shares;
 
-/// Number of the most promising forms that are fitted in full; the others are weighed at the start of their fit.
-const FITTED: usize = 8;
+/// Number of the most promising forms that are fitted; the others are weighed at the start of their fit.
+const FITTED: usize = 12;
+
+/// Least share of the best predicted cost reduction at which a form gets a full fit; the others get a short one.
+const CONSIDERABLE: f64 = 0.1;
 
 /// Callback with each form of an effect once it is weighed.
 pub type OnWeighed<'a> = &'a (dyn Fn(&Candidate) + Sync);
@@ -84,6 +87,8 @@ pub fn try_each(
         penalty,
         options: Options::default(),
     };
+    let least = starts.first().map_or(coarse.seen.cost, |start| start.0);
+    let considerable = coarse.seen.cost - CONSIDERABLE * (coarse.seen.cost - least);
     let slow = slow_columns(problem, base);
     // Index of the added effect.
     let added = base.estimate.effects.len();
@@ -92,8 +97,11 @@ pub fn try_each(
     let tried = tried.map(|(rank, (cost, effect, estimate))| {
         progress(effect.id());
         let candidate = match estimate {
-            Some(estimate) if promising(cost) && rank < FITTED => {
+            Some(estimate) if promising(cost) && rank < FITTED && cost <= considerable => {
                 weigh(problem, base, refits.one(estimate), added)
+            }
+            Some(estimate) if promising(cost) && rank < FITTED => {
+                weigh_by(problem, base, refits.one_roughly(estimate), added, &slow)
             }
             Some(estimate) if promising(cost) => {
                 let fit = evaluate_weighted(problem, estimate, base.weights.clone());
