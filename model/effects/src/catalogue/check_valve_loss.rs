@@ -4,7 +4,8 @@
 //! throttling seat, and with the share `steady` a spring that is stiffer than in its data sheet. The compensator
 //! controls the sum of all drops, so the drop of the lift orifice decreases from 1.5 bar. A poppet whose opening
 //! increases with the flow has a linear loss instead, `Q / 40 l/min`. Throttling reduces large flows relatively more;
-//! the spring alone reduces all flows by the same share and is equivalent to `lift-flow-scale`.
+//! the spring alone reduces all flows by the same share and is equivalent to `lift-flow-scale`. It is a form of its own with a
+//! single parameter, so that the equivalent effects are equally probable.
 
 use hitch_plant::hooks::effect_hooks::EffectHooks;
 use hitch_plant::units::{m3_s_from_lpm, pa_from_bar};
@@ -75,6 +76,19 @@ pub static LIFTING: Described = Described {
         let varying_pa = stiffened(values, hooks);
         hooks.check_valve.laminar_pa_s_m3 += varying_pa / m3_s_from_lpm(RATED_LPM);
     },
+    ..THROTTLING
+};
+
+/// Higher cracking pressure of a spring that is stiffer than in its data sheet.
+pub static STIFF_SPRING: Described = Described {
+    form: Some("stiff-spring"),
+    title: "Pressure loss of the check valve, by a stiffer spring",
+    equation: "dp_orifice = p_P - p_C - p_crack - loss; Q = Q_table(I) sqrt(dp_orifice / dp_ref)",
+    source: "force balance of the closed poppet; spring tolerances of 5 to 10 %",
+    shows: "all lift flows are too small by the same share at every load, as with another lift flow curve; the pump \
+         pressure does not change",
+    parameters: &[LOSS],
+    attach: |values, _, hooks| hooks.cracking_extra_pa += pa_from_bar(values[0]),
     ..THROTTLING
 };
 

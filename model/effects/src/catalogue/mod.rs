@@ -79,6 +79,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &compensator_margin::BYPASS,
     &check_valve_loss::THROTTLING,
     &check_valve_loss::LIFTING,
+    &check_valve_loss::STIFF_SPRING,
     &pump_leakage::PUMP_LEAKAGE,
     &pump_flow::PUMP_FLOW,
     &relief_override::RELIEF_OVERRIDE,
