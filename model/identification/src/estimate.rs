@@ -109,6 +109,13 @@ impl Estimate {
         self
     }
 
+    /// The same estimate with its constants held in a fit or free.
+    #[must_use]
+    pub fn with_constants_held(mut self, is_held: bool) -> Self {
+        self.constants = self.constants.map(|constants| constants.held(is_held));
+        self
+    }
+
     /// The given effects, with zero clock offsets and load errors.
     #[must_use]
     pub fn new(experiment: &Experiment, effects: Vec<AddedEffect>) -> Self {
@@ -135,13 +142,6 @@ impl Estimate {
         });
         let constants = (0..self.constant_directions()).map(Shared::Constants);
         effects.chain(CLOCKS).chain(constants).collect()
-    }
-
-    /// The same estimate, its constants held in a fit.
-    #[must_use]
-    pub fn with_held_constants(mut self) -> Self {
-        self.constants = self.constants.map(FreeConstants::held);
-        self
     }
 
     /// Number of free directions of the constants.

@@ -47,13 +47,10 @@ impl FreeConstants {
         }
     }
 
-    /// The same constants, held in a fit.
+    /// The same constants, held in a fit or not.
     #[must_use]
-    pub fn held(self) -> Self {
-        Self {
-            is_held: true,
-            ..self
-        }
+    pub fn held(self, is_held: bool) -> Self {
+        Self { is_held, ..self }
     }
 
     /// The same constants with another prior: one sigma is this share of their tolerances.

@@ -253,7 +253,7 @@ fn other_forms(fit: &Fit, id: &str, weighed: &[Weighed]) -> Vec<Option<&'static 
         .collect()
 }
 
-/// Confounded alternatives of an effect of a fit.
+/// Confounded alternatives of an effect of a fit, each in its best form.
 fn alternatives(
     problem: Problem<'_>,
     whole: &Fit,
@@ -289,6 +289,13 @@ fn alternatives(
     alternatives.sort_by(|a, b| {
         b.relative_likelihood_ratio
             .total_cmp(&a.relative_likelihood_ratio)
+    });
+    let mut named: Vec<&str> = Vec::new();
+    alternatives.retain(|alternative| {
+        let id = alternative.effect.id();
+        let is_new = !named.contains(&id);
+        named.push(id);
+        is_new
     });
     alternatives
 }

@@ -257,11 +257,10 @@ impl<'a> Search<'a> {
         let builder = self.builder(&coarse, |_| true);
         let dictionary = builder.dictionary();
         self.fits_subsets(&coarse, &dictionary, MORE);
-        let effects = 0..present.estimate.effects.len();
-        let own = effects.filter(|&index| !present.estimate.is_unchanged(index));
-        self.rivals = own
-            .map(|index| (index, confounded(&dictionary, index)))
-            .collect();
+        self.rivals = match present.estimate.constants {
+            None => rivals(&present, &dictionary),
+            Some(_) => rivals(&present, &self.beside_held_constants(&present)),
+        };
         self.order = in_order(&dictionary);
         // Once an effect has been found, the plain dictionary is sufficient as long as it leads to improvements.
         if key(&present).len() > 0 && self.moves_to_best() {
@@ -273,6 +272,15 @@ impl<'a> Search<'a> {
             self.tries_synchronised(&present);
         }
         self.moves_to_best()
+    }
+
+    /// The dictionary around a fit with its constants held. To first order, constants without bounds explain as much as an
+    /// effect that is confounded with them, so that its alternatives would seem to explain nothing.
+    fn beside_held_constants(&self, present: &Fit) -> Dictionary {
+        let mut held = present.clone();
+        held.estimate = held.estimate.with_constants_held(true);
+        let coarse = Coarse::new(self.problem, &held);
+        self.builder(&coarse, |_| true).dictionary()
     }
 
     /// Repeats the dictionary with all clocks in step, for delays that clock offsets compensate.
@@ -290,9 +298,10 @@ impl<'a> Search<'a> {
     }
 
     /// Tries the confounded alternatives of each effect in its place, and moves to one if it is better. Returns whether
-    /// there is one. Added beside the effect, an alternative would explain nothing.
+    /// there is one. Added beside the effect, an alternative would explain nothing. Free constants are held, see
+    /// [`Search::beside_held_constants`].
     fn tries_alternatives(&mut self) -> bool {
-        let estimate = self.present.estimate.clone();
+        let estimate = self.present.estimate.clone().with_constants_held(true);
         for (index, rivals) in std::mem::take(&mut self.rivals) {
             if rivals.is_empty() || self.options.is_over() {
                 continue;
@@ -351,7 +360,8 @@ impl<'a> Search<'a> {
             penalty: starts.penalty,
             options: self.options,
         };
-        for fit in refits.of(starts.estimates, &dictionary.jacobian, known, self.progress) {
+        for mut fit in refits.of(starts.estimates, &dictionary.jacobian, known, self.progress) {
+            fit.estimate = fit.estimate.with_constants_held(false);
             if resolution::is_resolved(self.problem.experiment, &fit.estimate) {
                 self.refitted.insert(fit);
             }
@@ -393,6 +403,14 @@ impl<'a> Search<'a> {
             unfinished: !self.is_stable,
         }
     }
+}
+
+/// The effects of a fit, each with the ids of its confounded alternatives.
+fn rivals(present: &Fit, dictionary: &Dictionary) -> Vec<(usize, Vec<&'static str>)> {
+    let effects = 0..present.estimate.effects.len();
+    let own = effects.filter(|&index| !present.estimate.is_unchanged(index));
+    own.map(|index| (index, confounded(dictionary, index)))
+        .collect()
 }
 
 /// A fit re-evaluated with all clocks in step, if they are off: clock offsets that compensate for a missing delay hide

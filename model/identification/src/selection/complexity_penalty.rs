@@ -81,6 +81,12 @@ impl Penalty {
         prices.sum()
     }
 
+    /// Cost reduction that constants off by more than the accuracy of any model need, given the logarithm of the factor by
+    /// which the campaign narrows their prior. An effect that explains as much is preferred.
+    pub fn of_constants(&self, narrowed: f64) -> f64 {
+        self.visibility_cost() + self.unit * (narrowed + 2.0 * (TRIED.ln() + RARER))
+    }
+
     /// Cost reduction that any effect needs, regardless of its parameters.
     pub fn minimum(&self) -> f64 {
         self.visibility_cost()

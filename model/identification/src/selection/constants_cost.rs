@@ -79,8 +79,8 @@ impl ConstantsCost {
         self.at_fit + self.reduction(share) - self.price(share, penalty)
     }
 
-    /// Cost reduction that constants with a prior of this width need: as much as any effect, and the logarithm of the factor
-    /// by which the campaign narrows it more than the smallest prior.
+    /// Cost reduction that constants with a prior of this width need: see [`Penalty::of_constants`]; the factor
+    /// is that relative to the smallest prior.
     pub fn price(&self, share: f64, penalty: Penalty) -> f64 {
         let least = least_share(penalty);
         // The next wider prior is four times as wide.
@@ -88,7 +88,7 @@ impl ConstantsCost {
             return 0.0;
         }
         let narrowed = self.narrowed(share) - self.narrowed(least);
-        penalty.minimum() + penalty.unit * narrowed
+        penalty.of_constants(narrowed)
     }
 
     /// Reduction of the cost by constants with a prior of this width and within its bounds, compared with errors of zero.

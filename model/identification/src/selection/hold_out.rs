@@ -78,7 +78,7 @@ fn held_out_runs(problem: Problem<'_>, fit: &Fit, fold: usize, folds: usize) -> 
     let experiment = problem.experiment;
     let outside = |run: usize| run % folds != fold;
     let (train, weights, start) = part(experiment, fit, outside);
-    let start = start.with_held_constants();
+    let start = start.with_constants_held(true);
     let trained = refine_once(problem.on(&train), &weights, start);
     let (test, weights, test_start) = part(experiment, fit, |run| !outside(run));
     let start = Estimate {
@@ -100,7 +100,7 @@ fn held_out_blocks(problem: Problem<'_>, fit: &Fit, fold: usize) -> Fit {
     let samples = problem.experiment.runs[0].len();
     let inside = |sample: usize| sample * FOLDS * BLOCKS / samples % FOLDS == fold;
     let train = fit.weights.of_samples(|sample| !inside(sample));
-    let start = fit.estimate.clone().with_held_constants();
+    let start = fit.estimate.clone().with_constants_held(true);
     let trained = refine_once(problem, &train, start);
     evaluate_weighted(problem, trained, fit.weights.of_samples(inside))
 }
