@@ -67,7 +67,7 @@ async function visit(model, cell) {
   const channel = model.channels.find((one) => one.key === cell.channel);
   const { from_s, to_s, error } = cell.worst;
   /** @type {HTMLElement} */ (run.querySelector("output")).textContent =
-    `Worst for ${channel?.title ?? cell.channel}, ${cell.part}: ${from_s.toFixed(1)} to ${to_s.toFixed(1)} s, ${sigmas(error)} σ`;
+    `Worst for ${channel?.title ?? cell.channel}, ${cell.part}, model ${model.name}: ${from_s.toFixed(1)} to ${to_s.toFixed(1)} s, ${sigmas(error)} σ`;
   const plotted = /** @type {HTMLElement} */ (run.querySelector(".plotted"));
   if (plotted.querySelector(".plot")) await show(plotted, cell.worst);
   run.scrollIntoView();
