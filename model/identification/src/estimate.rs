@@ -195,6 +195,11 @@ impl Estimate {
         adopted.is_some_and(|adopted| adopted.held == Held::All)
     }
 
+    /// Indices of the effects that the model lacks, or whose adopted sizes may change.
+    pub fn changed(&self) -> impl Iterator<Item = usize> {
+        (0..self.effects.len()).filter(|&index| !self.is_unchanged(index))
+    }
+
     /// Size at which an effect, by its index, counts as absent: its adopted size, or its null value.
     #[must_use]
     pub fn off(&self, effect: usize) -> f64 {

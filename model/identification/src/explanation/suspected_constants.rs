@@ -85,8 +85,7 @@ impl Trial<'_> {
     /// The best of those with an effect less.
     fn with_one_less(self, than: &Inaccurate, limit: f64) -> Option<Inaccurate> {
         let estimate = &than.fit.estimate;
-        let effects = (0..estimate.effects.len()).filter(|&effect| !estimate.is_unchanged(effect));
-        let without = effects.map(|effect| {
+        let without = estimate.changed().map(|effect| {
             let fit = self.short_fit(estimate.without(effect));
             self.beside(fit, limit)
         });

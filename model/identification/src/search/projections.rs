@@ -21,10 +21,7 @@ pub(crate) struct Projections<'a> {
 impl<'a> Projections<'a> {
     /// Projections of the sensitivities at the present fit.
     pub fn new(jacobian: &'a Jacobian, present: &'a Estimate) -> Self {
-        let effects = 0..present.effects.len();
-        let free: Vec<usize> = effects
-            .filter(|&index| !present.is_unchanged(index))
-            .collect();
+        let free: Vec<usize> = present.changed().collect();
         Self {
             projections: (0..1usize << free.len()).map(|_| OnceLock::new()).collect(),
             jacobian,

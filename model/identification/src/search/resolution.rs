@@ -12,8 +12,7 @@ const SMALLEST_WIDTH: f64 = 1.5;
 /// Whether all changes of an estimate relative to the model exceed the uncertainty of the logged currents and of the
 /// instants of their jumps.
 pub(crate) fn is_resolved(experiment: &Experiment, estimate: &Estimate) -> bool {
-    let effects = (0..estimate.effects.len()).filter(|&index| !estimate.is_unchanged(index));
-    effects.into_iter().all(|index| {
+    estimate.changed().all(|index| {
         let added = &estimate.effects[index];
         let size = &added.effect.parameters()[0];
         let off = (added.values[0] - estimate.off(index)).abs();

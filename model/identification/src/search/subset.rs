@@ -144,10 +144,7 @@ impl Found {
         let Some(fit) = better.into_iter().find(|fit| key(fit).len() < own).cloned() else {
             return false;
         };
-        let effects = 0..fit.estimate.effects.len();
-        self.order = effects
-            .filter(|&effect| !fit.estimate.is_unchanged(effect))
-            .collect();
+        self.order = fit.estimate.changed().collect();
         self.held_out = held_out(problem, &fit);
         self.fit = fit;
         true
@@ -390,9 +387,8 @@ impl<'a> Search<'a> {
     /// The result so far.
     pub fn found(self) -> Found {
         let present = self.present;
-        let effects = 0..present.estimate.effects.len();
-        let missing = effects.filter(|&effect| !present.estimate.is_unchanged(effect));
         let mut order = self.order;
+        let missing = present.estimate.changed();
         let missing: Vec<usize> = missing.filter(|effect| !order.contains(effect)).collect();
         order.extend(missing);
         Found {
@@ -407,8 +403,7 @@ impl<'a> Search<'a> {
 
 /// The effects of a fit, each with the ids of its confounded alternatives.
 fn rivals(present: &Fit, dictionary: &Dictionary) -> Vec<(usize, Vec<&'static str>)> {
-    let effects = 0..present.estimate.effects.len();
-    let own = effects.filter(|&index| !present.estimate.is_unchanged(index));
+    let own = present.estimate.changed();
     own.map(|index| (index, confounded(dictionary, index)))
         .collect()
 }

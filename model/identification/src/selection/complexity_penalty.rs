@@ -72,8 +72,7 @@ impl Penalty {
 
     /// Cost reduction that all added or changed effects of an estimate need.
     pub fn of_all(&self, estimate: &Estimate) -> f64 {
-        let effects = (0..estimate.effects.len()).filter(|&index| !estimate.is_unchanged(index));
-        let prices = effects.map(|index| {
+        let prices = estimate.changed().map(|index| {
             let added = &estimate.effects[index];
             let free = estimate.free_parameters(added.effect.id());
             self.of(added, free.min(added.values.len()))

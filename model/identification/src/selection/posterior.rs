@@ -67,8 +67,7 @@ pub(crate) fn key(fit: &Fit) -> EffectSet {
 
 /// The changes of an estimate relative to the model.
 pub(crate) fn key_of(estimate: &Estimate) -> EffectSet {
-    let beyond = (0..estimate.effects.len()).filter(|&index| !estimate.is_unchanged(index));
-    let members = beyond.map(|index| {
+    let members = estimate.changed().map(|index| {
         let effect = estimate.effects[index].effect;
         (effect.id(), effect.form())
     });
