@@ -254,10 +254,7 @@ impl<'a> Search<'a> {
         let builder = self.builder(&coarse, |_| true);
         let dictionary = builder.dictionary();
         self.fits_subsets(&coarse, &dictionary, MORE);
-        self.rivals = match present.estimate.constants {
-            None => rivals(&present, &dictionary),
-            Some(_) => rivals(&present, &self.beside_held_constants(&present)),
-        };
+        self.rivals = rivals(&present, &dictionary);
         self.order = in_order(&dictionary);
         // Once an effect has been found, the plain dictionary is sufficient as long as it leads to improvements.
         if key(&present).len() > 0 && self.moves_to_best() {
@@ -271,10 +268,10 @@ impl<'a> Search<'a> {
         self.moves_to_best()
     }
 
-    /// The dictionary around a fit with its constants held. To first order, constants without bounds explain as much as an
-    /// effect that is confounded with them, so that its alternatives would seem to explain nothing.
-    fn beside_held_constants(&self, present: &Fit) -> Dictionary {
-        let mut held = present.clone();
+    /// The dictionary around the present fit with its constants held. To first order, constants without bounds explain as
+    /// much as an effect that is confounded with them, so that its alternatives would seem to explain nothing.
+    fn beside_held_constants(&self) -> Dictionary {
+        let mut held = self.present.clone();
         held.estimate = held.estimate.with_constants_held(true);
         let coarse = Coarse::new(self.problem, &held);
         self.builder(&coarse, |_| true).dictionary()
@@ -298,7 +295,11 @@ impl<'a> Search<'a> {
     /// there is one. Added beside the effect, an alternative would explain nothing. Free constants are held, see
     /// [`Search::beside_held_constants`].
     fn tries_alternatives(&mut self) -> bool {
-        let estimate = self.present.estimate.clone().with_constants_held(true);
+        let mut estimate = self.present.estimate.clone();
+        if estimate.constants.is_some() {
+            estimate = estimate.with_constants_held(true);
+            self.rivals = rivals(&self.present, &self.beside_held_constants());
+        }
         for (index, rivals) in std::mem::take(&mut self.rivals) {
             if rivals.is_empty() || self.options.is_over() {
                 continue;
