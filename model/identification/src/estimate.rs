@@ -195,7 +195,7 @@ impl Estimate {
         adopted.is_some_and(|adopted| adopted.held == Held::All)
     }
 
-    /// Indices of the effects that the model lacks, or whose adopted sizes may change.
+    /// Indices of the effects that were added, and of the adopted effects that are not held fixed.
     pub fn changed(&self) -> impl Iterator<Item = usize> {
         (0..self.effects.len()).filter(|&index| !self.is_unchanged(index))
     }

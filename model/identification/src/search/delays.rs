@@ -31,9 +31,8 @@ pub(crate) fn is_delay(effect: &dyn Effect) -> bool {
 /// An estimate with the clock offsets of the lag's channels moved into the lag; `None` without a lag or with clocks
 /// that are in step.
 fn with_offsets_in_lag(estimate: &Estimate) -> Option<Estimate> {
-    let is_lag =
-        |&index: &usize| is_delay(estimate.effects[index].effect) && !estimate.is_unchanged(index);
-    let index = (0..estimate.effects.len()).find(is_lag)?;
+    let is_lag = |&index: &usize| is_delay(estimate.effects[index].effect);
+    let index = estimate.changed().find(is_lag)?;
     let effect = estimate.effects[index].effect;
     let channels = effect.channels().iter();
     let mut late_s: Vec<f64> = channels

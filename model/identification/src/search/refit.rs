@@ -183,10 +183,9 @@ impl Refits<'_> {
     /// A fit after the line search for the size of a switching or stepped effect.
     fn line_searched(&self, fit: Fit) -> Fit {
         let estimate = &fit.estimate;
-        let jumps = (0..estimate.effects.len()).find(|&index| {
+        let jumps = estimate.changed().find(|&index| {
             let search = estimate.effects[index].effect.size_response();
             matches!(search, SizeResponse::Switching | SizeResponse::Stepped)
-                && !estimate.is_unchanged(index)
         });
         match jumps {
             Some(index) => {
