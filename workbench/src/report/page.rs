@@ -30,7 +30,7 @@ pub fn page(title: &str, content: &Markup) -> String {
             }
             body {
                 main { (content) }
-                script id="plotly" { (PreEscaped(web::plotly())) }
+                script id="plotly" { (PreEscaped(web::PLOTLY)) }
                 script type="module" { (PreEscaped(script)) }
             }
         }
@@ -67,7 +67,7 @@ mod tests {
     fn text_is_escaped_and_nothing_is_fetched() {
         let text = page("a < b", &table(&["run"], &[vec!["<script>".to_owned()]]));
         assert!(text.contains("<title>a &lt; b</title>") && text.contains("&lt;script&gt;"));
-        let own = text.replacen(web::plotly(), "", 1);
+        let own = text.replacen(web::PLOTLY, "", 1);
         assert!(
             own.len() + 1_000_000 < text.len(),
             "the library is embedded"

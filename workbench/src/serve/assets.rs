@@ -64,7 +64,7 @@ const FILES: &[(&str, &str, &str)] = &[
 pub fn file(name: &str) -> Option<Response> {
     let answer = |kind: &'static str, text: Bytes| ([(header::CONTENT_TYPE, kind)], text);
     if name == "plotly.js" {
-        let answer = answer(SCRIPT, Bytes::from_static(web::plotly().as_bytes()));
+        let answer = answer(SCRIPT, Bytes::from_static(web::PLOTLY.as_bytes()));
         return Some(([(header::CACHE_CONTROL, KEPT)], answer).into_response());
     }
     if name == "colours.css" {
