@@ -14,6 +14,7 @@ mod fmu_export;
 mod fmu_states;
 mod from_bus_to_model;
 mod import;
+mod json_schema;
 mod loop_scenarios;
 mod other_valves;
 mod schema;

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use host_tests::program::run;
-use jsonschema::Validator;
 use serde_json::{Value, json};
 
+use crate::json_schema::faults;
 use crate::small_campaign::campaign;
 
 /// The schema of a command's document, as it is printed.
@@ -48,25 +48,16 @@ fn assert_valid_with(folder: &Path, command: &str, more: &str, code: i32) {
     );
     let document: Value = serde_json::from_slice(&output.stdout).unwrap();
     let mut schema = schema(command);
-    let validator: Validator = jsonschema::validator_for(&schema).unwrap();
-    let faults: Vec<String> = validator
-        .iter_errors(&document)
-        .map(|e| e.to_string())
-        .collect();
-    assert!(faults.is_empty(), "{arguments}: {faults:?}");
-    close(&mut schema);
-    let closed = jsonschema::validator_for(&schema).unwrap();
-    let faults: Vec<String> = closed
-        .iter_errors(&document)
-        .map(|e| e.to_string())
-        .collect();
-    assert!(faults.is_empty(), "{arguments}: {faults:?}");
-    let mut wrong = document;
+    let mut wrong = document.clone();
     wrong["format"] = json!(2);
-    assert!(
-        !validator.is_valid(&wrong),
-        "{command}: the version is fixed"
-    );
+    let Some(found) = faults(&schema, &[document.clone(), wrong]) else {
+        return;
+    };
+    assert!(found[0].is_empty(), "{arguments}: {:?}", found[0]);
+    assert!(!found[1].is_empty(), "{command}: the version is fixed");
+    close(&mut schema);
+    let closed = faults(&schema, &[document]).expect("Python is there");
+    assert!(closed[0].is_empty(), "{arguments}: {:?}", closed[0]);
 }
 
 #[test]
