@@ -8,6 +8,7 @@ use std::sync::LazyLock;
 use hitch_campaign::{Campaign, survey};
 use host_tests::python::{self, installed, scripts};
 use host_tests::refusal::refused;
+use host_tests::seeds::cases;
 use tempfile::TempDir;
 
 use crate::import::{assert_same, dbc, imported, own};
@@ -102,11 +103,12 @@ fn broken_binary_logs_are_refused() {
         fs::write(folder.join("rig.dbc"), dbc()).unwrap();
         let path = folder.join(name);
         assert_eq!(read_all(&path, [whole.clone()].into_iter()), (1, 1));
+        // Odd steps reach all places of the formats' words.
         let prefixes = (0..whole.len())
-            .step_by(3)
+            .step_by(cases(41, 3))
             .map(|length| whole[..length].to_vec());
         let (read, cut) = read_all(&path, prefixes);
-        let flipped = (0..whole.len()).map(|at| {
+        let flipped = (0..whole.len()).step_by(cases(13, 1)).map(|at| {
             let mut bytes = whole.clone();
             bytes[at] ^= [0x01, 0x80, 0xFF][at % 3];
             bytes
