@@ -1,6 +1,6 @@
 //! Python environments with pinned packages, created once under the target folder.
 
-use std::fs;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -34,6 +34,11 @@ pub fn environment(requirements: &Path, folder: &Path) -> Result<PathBuf> {
     let environment = folder.join(format!("python-{:08x}", Crc32::of(&wanted)));
     let python = environment.join("bin").join("python");
     let complete = environment.join("complete");
+    // Another test program may be making it.
+    fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    let lock = environment.with_extension("lock");
+    let lock = File::create(&lock).with_context(|| lock.display().to_string())?;
+    lock.lock().context("can't lock the Python environment")?;
     if !complete.exists() {
         run(Command::new("python3")
             .args(["-m", "venv", "--clear"])

@@ -1,35 +1,43 @@
 //! Formatting, the order of folders, types of the scripts, lints and documentation, with warnings denied.
 
 use anyhow::Result;
+use arm_build::images::PARTS;
 use arm_build::toolchain::Way;
 use arm_build::{process, setup, workspace};
 
-use crate::{ablation, documents, image, layers, scripts};
+use crate::timings::Timings;
+use crate::{ablation, documents, layers, scripts};
 
 /// Runs all checks; the first that fails ends it.
-pub fn run(way: Option<Way>) -> Result<()> {
+pub fn run(way: Option<Way>, timings: &mut Timings) -> Result<()> {
     let cargo =
         |arguments: &[&str]| process::run(&mut process::command(workspace::cargo(), arguments));
-    cargo(&["fmt", "--all", "--check"])?;
-    layers::check()?;
-    documents::check()?;
-    ablation::check()?;
-    scripts::check()?;
-    cargo(&[
-        "clippy",
-        "--locked",
-        "--workspace",
-        "--all-targets",
-        "--",
-        "--deny",
-        "warnings",
-    ])?;
-    let mut documentation = process::command(
-        workspace::cargo(),
-        &["doc", "--locked", "--workspace", "--no-deps"],
-    );
-    process::run(documentation.env("RUSTDOCFLAGS", "--deny warnings"))?;
-    lint_images(setup::toolchain(way)?)
+    timings.measured("format, folders, documents, types of the scripts", || {
+        cargo(&["fmt", "--all", "--check"])?;
+        layers::check()?;
+        documents::check()?;
+        ablation::check()?;
+        scripts::check()
+    })?;
+    timings.measured("clippy", || {
+        cargo(&[
+            "clippy",
+            "--locked",
+            "--workspace",
+            "--all-targets",
+            "--",
+            "--deny",
+            "warnings",
+        ])
+    })?;
+    timings.measured("doc", || {
+        let arguments = ["doc", "--locked", "--workspace", "--no-deps"];
+        let mut documentation = process::command(workspace::cargo(), &arguments);
+        process::run(documentation.env("RUSTDOCFLAGS", "--deny warnings"))
+    })?;
+    timings.measured("clippy of the images", || {
+        lint_images(setup::toolchain(way)?)
+    })
 }
 
 /// The images exist for ARM only. Debian's packages have no clippy, so there the compiler's own lints must do.
@@ -38,7 +46,7 @@ fn lint_images(way: Way) -> Result<()> {
         Way::Rustup => "clippy",
         Way::Debian => "check",
     };
-    for feature in std::iter::once("emulated").chain(image::PARTS) {
+    for feature in std::iter::once("emulated").chain(PARTS) {
         let mut command = way.cargo(subcommand)?;
         command
             .args(["--package", "hitch-ecu", "--lib", "--bins"])

@@ -1,31 +1,29 @@
 //! Project tasks that need more than cargo.
 
-mod a2l;
 mod ablation;
 mod benchmarks;
-mod budget;
 mod check;
-mod coverage;
 mod documents;
-mod image;
 mod layers;
 mod mutants;
-mod programming;
 mod scripts;
-mod seal;
-mod size;
 mod test;
+mod timings;
 
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result, bail};
-use arm_build::setup;
 use arm_build::toolchain::Way;
+use arm_build::{process, setup, workspace};
+use test::Tests;
+use timings::Timings;
 
 const USAGE: &str = "\
-usage: cargo xtask <task> [--arm rustup|debian]
+usage: cargo xtask <task> [--arm rustup|debian] [--timings]
 
-  test    set up what is missing, build the ARM images, run every test, say how many passed
+  test [--only TEXT]
+          set up what is missing, build the ARM images, run every test, say how many passed; or only the tests of the
+          programs and modules with this text in their names, e.g. `motion teach`
   check   formatting, the order of folders, types of the scripts, clippy and rustdoc, with warnings denied
   ci      check, coverage, mutants, then test
   arm     build the ARM images, say how large they are, and hold them to their budgets
@@ -45,12 +43,12 @@ usage: cargo xtask <task> [--arm rustup|debian]
 
   --arm   take this ARM toolchain instead of the first that works:
           rustup   the target thumbv7em-none-eabihf of the toolchain in use
-          debian   the packages rustc-web, cargo-web and rust-web-src";
+          debian   the packages rustc-web, cargo-web and rust-web-src
+  --timings
+          print a table of where the time of check, test or ci went, and record the times of the tests in
+          xtask/test-seconds.txt";
 
 fn main() -> ExitCode {
-    if let Some(code) = coverage::compile() {
-        return code;
-    }
     match run(&std::env::args().skip(1).collect::<Vec<_>>()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -68,31 +66,68 @@ fn run(arguments: &[String]) -> Result<()> {
     if task == "benchmarks" {
         return benchmarks::run(options);
     }
-    let again = task == "mutants" && options == ["--again"];
-    let way = match options {
-        [] => None,
-        _ if again => None,
-        [flag, name] if flag == "--arm" => Some(name.parse::<Way>()?),
-        _ => bail!("unknown options {options:?}\n{USAGE}"),
-    };
+    let options = Options::parse(options)?;
+    let mut timings = Timings::new(options.timings);
+    let way = options.way;
     match task.as_str() {
-        "test" => test::run(way),
-        "check" => check::run(way),
-        "ci" => check::run(way)
-            .and_then(|()| coverage::run())
-            .and_then(|()| mutants::run(false))
-            .and_then(|()| test::run(way)),
-        "arm" => image::build_all(setup::toolchain(way)?).map(drop),
-        "sizes" => budget::write(&image::sizes(setup::toolchain(way)?)?),
-        "stack" => image::show_stacks(setup::toolchain(way)?),
-        "coverage" => coverage::run(),
-        "mutants" => mutants::run(again),
-        "a2l" => a2l::write(),
-        "setup" => setup::run(way),
-        "help" | "--help" | "-h" => {
-            println!("{USAGE}");
-            Ok(())
+        "test" => Tests::build(way, &mut timings)?.run(&options.only, &mut timings)?,
+        "check" => {
+            check::run(way, &mut timings)?;
+            timings.print();
         }
+        "ci" => {
+            check::run(way, &mut timings)?;
+            let tests = Tests::build(way, &mut timings)?;
+            timings.measured("coverage", || tests.tool(&["coverage"]))?;
+            timings.measured("mutants", || mutants::run(false))?;
+            tests.run("", &mut timings)?;
+        }
+        "arm" | "sizes" | "stack" | "coverage" | "a2l" => build_firmware_tool(task, way)?,
+        "mutants" => mutants::run(options.again)?,
+        "setup" => setup::run(way)?,
+        "help" | "--help" | "-h" => println!("{USAGE}"),
         unknown => bail!("unknown task `{unknown}`\n{USAGE}"),
     }
+    Ok(())
+}
+
+/// Options after the task.
+#[derive(Debug, Default)]
+struct Options {
+    way: Option<Way>,
+    timings: bool,
+    again: bool,
+    only: String,
+}
+
+impl Options {
+    fn parse(words: &[String]) -> Result<Self> {
+        let mut options = Self::default();
+        let mut words = words.iter().map(String::as_str);
+        while let Some(word) = words.next() {
+            match word {
+                "--arm" => options.way = Some(words.next().context(USAGE)?.parse()?),
+                "--timings" => options.timings = true,
+                "--only" => options.only = words.next().context(USAGE)?.to_owned(),
+                "--again" => options.again = true,
+                _ => bail!("unknown option `{word}`\n{USAGE}"),
+            }
+        }
+        Ok(options)
+    }
+}
+
+/// Builds `firmware-tools`, and runs a task of it.
+fn build_firmware_tool(task: &str, way: Option<Way>) -> Result<()> {
+    let options = [
+        "run",
+        "--quiet",
+        "--locked",
+        "--package",
+        "firmware-tools",
+        "--",
+    ];
+    let mut command: Command = process::command(workspace::cargo(), &options);
+    command.arg(task).args(way.map(Way::name));
+    process::run(&mut command)
 }

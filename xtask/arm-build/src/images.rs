@@ -1,14 +1,39 @@
 //! Builds of the images.
 
+use std::fs;
 use std::path::PathBuf;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 
 use crate::process;
 use crate::toolchain::{TARGET, Way};
 
+/// Supported parts, by the features that select them.
+pub const PARTS: [&str; 2] = ["stm32f405", "stm32g474"];
+
 /// Cargo profile of the images: optimised, with overflow checks.
 const PROFILE: &str = "firmware";
+
+/// Builds everything for ARM: the library for the ECU, the proof that it cannot panic, the image for the emulator and
+/// those for the parts.
+///
+/// # Errors
+/// If cargo can't build it.
+pub fn build_all(way: Way) -> Result<()> {
+    build(way, &["--lib"])?;
+    build(way, &["--bin", "panic_proof", "--features", "emulated"]).context(
+        "if `the_controller_can_panic` is undefined above, a step of the controller or a millisecond of the application can panic",
+    )?;
+    build_emulated(way)?;
+    for part in PARTS {
+        build(way, &["--bin", "ecu", "--features", part])?;
+        // All parts have the same build path; each image is copied under its own name.
+        let path = of_part(way, part);
+        fs::copy(folder(way).join("ecu"), &path)
+            .with_context(|| format!("can't write {}", path.display()))?;
+    }
+    Ok(())
+}
 
 /// Builds the image for the emulator and returns its path.
 ///
@@ -16,7 +41,19 @@ const PROFILE: &str = "firmware";
 /// If cargo can't build it.
 pub fn build_emulated(way: Way) -> Result<PathBuf> {
     build(way, &["--bin", "emulated", "--features", "emulated"])?;
-    Ok(folder(way).join("emulated"))
+    Ok(emulated(way))
+}
+
+/// Path of the image for the emulator.
+#[must_use]
+pub fn emulated(way: Way) -> PathBuf {
+    folder(way).join("emulated")
+}
+
+/// Path of the image for a part.
+#[must_use]
+pub fn of_part(way: Way, part: &str) -> PathBuf {
+    folder(way).join(format!("ecu-{part}"))
 }
 
 /// Folder of the images.
@@ -26,10 +63,7 @@ pub fn folder(way: Way) -> PathBuf {
 }
 
 /// Builds a part of the ECU's crate, selected by arguments of cargo.
-///
-/// # Errors
-/// If cargo can't build it.
-pub fn build(way: Way, what: &[&str]) -> Result<()> {
+fn build(way: Way, what: &[&str]) -> Result<()> {
     let mut command = way.cargo("build")?;
     process::run(
         command

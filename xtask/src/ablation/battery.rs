@@ -7,13 +7,11 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
 use arm_build::{process, workspace};
-use serde::Deserialize;
 
 use super::SWITCH;
 
 /// A part of the project with its own benchmark.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Battery {
     /// Drawn campaigns with a hidden effect: `hidden_effects`.
     Identification,

@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use arm_build::workspace;
-use serde::Deserialize;
+use toml::de::{DeTable, DeValue};
 
 use super::SWITCH;
 use super::battery::Battery;
@@ -14,8 +14,7 @@ use super::battery::Battery;
 const LIST: &str = "xtask/ablations.toml";
 
 /// A heuristic and the source text without it.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug)]
 pub struct Ablation {
     /// Name for the command line.
     pub name: String,
@@ -31,20 +30,50 @@ pub struct Ablation {
     replace: String,
 }
 
-#[derive(Deserialize)]
-struct List {
-    ablation: Vec<Ablation>,
-}
-
 /// Reads the list.
 pub fn read() -> Result<Vec<Ablation>> {
     let path = workspace::root().join(LIST);
     let text = fs::read_to_string(&path).with_context(|| LIST.to_owned())?;
-    let list: List = toml::from_str(&text).with_context(|| LIST.to_owned())?;
-    Ok(list.ablation)
+    parsed(&text).with_context(|| LIST.to_owned())
+}
+
+fn parsed(text: &str) -> Result<Vec<Ablation>> {
+    let list = DeTable::parse(text)?.into_inner();
+    let entries = list
+        .get("ablation")
+        .and_then(|list| list.get_ref().as_array());
+    let entries = entries.context("there is no [[ablation]]")?;
+    entries
+        .iter()
+        .map(|entry| Ablation::parsed(entry.get_ref()))
+        .collect()
 }
 
 impl Ablation {
+    fn parsed(entry: &DeValue) -> Result<Self> {
+        const KEYS: [&str; 6] = ["name", "part", "removes", "file", "find", "replace"];
+        let table = entry.as_table().context("[[ablation]] is no table")?;
+        let [name, part, removes, file, find, replace] = KEYS.map(|key| {
+            let value = table.get(key).and_then(|value| value.get_ref().as_str());
+            value
+                .map(str::to_owned)
+                .ok_or_else(|| anyhow!("an [[ablation]] has no text `{key}`"))
+        });
+        ensure!(
+            table.len() == KEYS.len(),
+            "an [[ablation]] has other keys than {}",
+            KEYS.join(", ")
+        );
+        Ok(Self {
+            name: name?,
+            part: part?.parse()?,
+            removes: removes?,
+            file: file?,
+            find: find?,
+            replace: replace?,
+        })
+    }
+
     /// Checks that the entry matches the source below `root`.
     pub fn check(&self, root: &Path) -> Result<()> {
         let path = root.join(&self.file);
@@ -74,6 +103,21 @@ impl Ablation {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_entry_has_its_six_texts_and_no_other() {
+        let keys = ["name", "removes", "file", "find", "replace"];
+        let text: String = keys.map(|key| format!("{key} = \"a\"\n")).concat();
+        let text = format!("[[ablation]]\npart = \"control\"\n{text}");
+        assert_eq!(parsed(&text).expect("well-formed").len(), 1);
+        for wrong in [
+            text.replace("file =", "fil ="),
+            text.replace("control", "motion"),
+            format!("{text}more = 1\n"),
+        ] {
+            assert!(parsed(&wrong).is_err(), "{wrong}");
+        }
+    }
 
     #[test]
     fn an_entry_replaces_its_text_and_one_that_does_not_match_is_refused() {

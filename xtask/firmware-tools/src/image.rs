@@ -1,0 +1,85 @@
+//! Finishes the images that cargo has built: checksums, formats of flash programmers, sizes and stacks.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use arm_build::images::{PARTS, build_all, emulated, folder, of_part};
+use arm_build::toolchain::Way;
+use image_stack::Bound;
+
+use crate::budget::{self, Entry};
+use crate::{programming, seal, size};
+
+/// Builds and finishes all images, and checks them against their budgets.
+///
+/// The stack bound of the image for the emulator is written beside it, for the tests that run it.
+pub fn build(way: Way) -> Result<()> {
+    let images = finished(way)?;
+    println!(
+        "controller and application can't panic; with their start-up code they take {}",
+        size::of(&folder(way).join("panic_proof"))?
+    );
+    let entries: Vec<Entry> = images.iter().map(|image| image.entry.clone()).collect();
+    budget::check(&entries)?;
+    for image in images {
+        let path = image.path.with_extension("stack");
+        fs::write(&path, image.stack.bytes().to_string())
+            .with_context(|| format!("can't write {}", path.display()))?;
+    }
+    Ok(())
+}
+
+/// Builds the images and records their sizes.
+pub fn write_sizes(way: Way) -> Result<()> {
+    let entries: Vec<Entry> = finished(way)?
+        .into_iter()
+        .map(|image| image.entry)
+        .collect();
+    budget::write(&entries)
+}
+
+/// Builds the images and prints their maximum stack depths with the calls.
+pub fn show_stacks(way: Way) -> Result<()> {
+    for image in finished(way)? {
+        println!("\n{}\n{}", image.entry.name(), image.stack);
+    }
+    Ok(())
+}
+
+/// A built image.
+struct Image {
+    path: PathBuf,
+    entry: Entry,
+    stack: Bound,
+}
+
+impl Image {
+    fn measured(name: String, path: &Path) -> Result<Self> {
+        let (size, stack) = (size::of(path)?, image_stack::of(path)?);
+        println!(
+            "{} takes {size}, and at most {} B of stack",
+            path.display(),
+            stack.bytes()
+        );
+        Ok(Self {
+            path: path.to_owned(),
+            entry: Entry::new(name, size, stack.bytes()),
+            stack,
+        })
+    }
+}
+
+/// Builds an image for each part, as ELF, as plain bytes and as Intel HEX, and the one for the emulator.
+fn finished(way: Way) -> Result<Vec<Image>> {
+    build_all(way)?;
+    let of_parts = PARTS.iter().map(|part| {
+        let path = of_part(way, part);
+        seal::write(&path)?;
+        programming::write(&path)?;
+        Image::measured(format!("ecu-{part}"), &path)
+    });
+    let emulated =
+        std::iter::once_with(|| Image::measured(budget::EMULATED.to_owned(), &emulated(way)));
+    of_parts.chain(emulated).collect()
+}
