@@ -1,6 +1,6 @@
 //! The controller without teaching on unknown hitches: drawn, driven, and tabulated.
 //!
-//! `cargo run --release -p host-tests --bin drive-drawn-hitches` runs many more.
+//! `cargo run --release -p host-tests --example drive-drawn-hitches` runs many more.
 
 use hitch_quantities::Calibration;
 use host_tests::drawn_hitches::draw::{Drawn, draw};

@@ -1,6 +1,6 @@
 //! A single angle sensor that freezes at a drawn instant causes a bounded travel, and a healthy one no trip.
 //!
-//! `cargo run --release -p host-tests --bin freeze-the-angle` runs many more.
+//! `cargo run --release -p host-tests --example freeze-the-angle` runs many more.
 
 use hitch_quantities::Calibration;
 use host_tests::frozen_angle::freeze::{Case, Cost};

@@ -83,7 +83,7 @@ impl Battery {
         let target = workspace::target().join("ablation/target");
         let (what, name): (&[&str], &str) = match self {
             Self::Identification => (&["bench", "--no-run", "--bench"], "hidden_effects"),
-            Self::Control => (&["build", "--release", "--bin"], "drive-drawn-hitches"),
+            Self::Control => (&["build", "--release", "--example"], "drive-drawn-hitches"),
         };
         let mut command = process::command(workspace::cargo(), what);
         command

@@ -35,7 +35,9 @@ impl Built {
             workspace::cargo(),
             &["test", "--locked", "--workspace", "--no-run"],
         );
+        // Without examples, which no test runs.
         command
+            .args(["--lib", "--bins", "--tests"])
             .args(["--message-format", "json-render-diagnostics"])
             .args(options);
         process::announce(&command);
