@@ -5,10 +5,9 @@ use std::path::Path;
 
 use host_tests::program::run;
 use serde_json::{Value, json};
-
-use crate::json_schema::faults;
 use tempfile::TempDir;
 
+use crate::json_schema::faults;
 use crate::small_campaign::campaign;
 
 /// Three copies of a campaign; the log of `b` is cut short.

@@ -13,7 +13,7 @@ use crate::{programming, seal, size};
 
 /// Builds and finishes all images, and checks them against their budgets.
 ///
-/// The stack bound of the image for the emulator is written beside it, for the tests that run it.
+/// The stack bound of each image is written beside it; the tests that run the emulator read the one of its image.
 pub fn build(way: Way) -> Result<()> {
     let images = finished(way)?;
     println!(
