@@ -4,7 +4,7 @@ use hitch_control::Control;
 use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_control::current::Regulation;
 use hitch_control::operator::EngineWatch;
-use hitch_quantities::{Inputs, Outputs, Trip, ValidCalibration};
+use hitch_quantities::{Inputs, Outputs, ValidCalibration};
 use hitch_safety::{Command, Envelope, Limits, MachineModel};
 
 use crate::memory_check::MemoryCheck;
@@ -47,11 +47,10 @@ impl Controller {
     /// Takes a calibration that makes it another machine: everything begins anew, but an engine that has told its speed
     /// still has to, and a final trip stays.
     pub fn restart(&mut self, calibration: ValidCalibration) {
-        let envelope = self.envelope;
+        let mut envelope = self.envelope;
+        envelope.restart();
         *self = Self::with(calibration, self.control.engine());
-        if envelope.tripped().is_some_and(Trip::is_final) {
-            self.envelope = envelope;
-        }
+        self.envelope = envelope;
     }
 
     /// The calibration in use.
@@ -83,6 +82,9 @@ impl Controller {
     pub fn control(&mut self, inputs: &Inputs) {
         let request = self.control.step(inputs, self.envelope.holds_back());
         if request.recovered {
+            self.envelope.disarm();
+        }
+        if request.healthy {
             self.envelope.reset();
         }
         self.command = Command {
@@ -98,9 +100,10 @@ impl Controller {
         let limits = Limits {
             safety: &calibration.safety,
             sensors: &calibration.sensors,
+            lock: &calibration.lock,
+            operator: &calibration.operator,
             damaged: self.memory.step(calibration),
             machine: MachineModel::of(calibration),
-            slow_start: self.control.is_teaching(),
         };
         let currents = self.envelope.pass(self.command, inputs, limits);
         if let Some(trip) = self.envelope.objection() {

@@ -104,6 +104,66 @@ fn hold_keeps_the_hitch_whatever_the_lever_does() {
     assert!(hitch.is_at(60_000), "picked up by passing the hitch");
 }
 
+// REQ-MODE-05
+#[test]
+fn hold_stops_a_moving_hitch_at_once() {
+    let mut hitch = Hitch::picked_up(90_000);
+    hitch.lever(120_000);
+    assert_eq!(hitch.run(200).state, State::Lifting);
+    hitch.inputs.switches.hold = true;
+    assert!(hitch.is_still(1_000), "stops in the very step");
+    assert_eq!(hitch.run(1).state, State::Holding);
+    hitch.inputs.jog = Some(MilliDegreePerSecond(-5_000));
+    assert_eq!(hitch.run(300).state, State::Lowering, "the button lowers");
+    hitch.inputs.jog = None;
+    hitch.run(1_000);
+    assert!(hitch.is_still(1_000), "released");
+}
+
+// REQ-MODE-05
+// REQ-MODE-06
+#[test]
+fn a_button_that_is_pressed_while_a_lock_opens_moves_nothing() {
+    let transport_lock = |inputs: &mut Inputs, locked| inputs.switches.transport_lock = locked;
+    let engine = |inputs: &mut Inputs, locked| {
+        let speed = if locked { 0 } else { 800 };
+        inputs.engine_speed = Some(RevolutionPerMinute(speed));
+    };
+    let locks: [fn(&mut Inputs, bool); 2] = [transport_lock, engine];
+    for lock in locks {
+        let mut hitch = Hitch::locked(90_000);
+        hitch.run(10);
+        lock(&mut hitch.inputs, true);
+        hitch.inputs.jog = Some(MilliDegreePerSecond(5_000));
+        assert!(hitch.is_still(1_000));
+        lock(&mut hitch.inputs, false);
+        assert!(hitch.is_still(2_000), "still pressed");
+        assert_eq!(hitch.run(1).state, State::Locked);
+        hitch.inputs.jog = None;
+        hitch.run(1);
+        hitch.inputs.jog = Some(MilliDegreePerSecond(5_000));
+        assert_eq!(hitch.run(100).state, State::Lifting);
+    }
+}
+
+// REQ-SAFE-10
+// REQ-SAFE-13
+#[test]
+fn a_dial_that_is_turned_below_a_moving_hitch_or_shut_stops_it_before_its_row_trips() {
+    let upper_limit = |inputs: &mut Inputs| inputs.upper_limit = Some(MilliDegree(60_000));
+    let shut = |inputs: &mut Inputs| inputs.lowering_dial = Some(PerMille(0));
+    let dials: [fn(&mut Inputs); 2] = [upper_limit, shut];
+    for (lever, dial) in [130_000, 50_000].into_iter().zip(dials) {
+        let mut hitch = Hitch::picked_up(90_000);
+        hitch.lever(lever);
+        hitch.run(300);
+        dial(&mut hitch.inputs);
+        for _ in 0..1_000 {
+            assert_eq!(hitch.run(1).trip, None, "lever at {lever}");
+        }
+    }
+}
+
 // REQ-MODE-04
 #[test]
 fn the_upper_limit_caps_lever_and_button() {

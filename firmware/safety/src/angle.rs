@@ -84,11 +84,13 @@ impl Default for AngleWatch {
 }
 
 impl AngleWatch {
-    /// One step with the inputs and the currents that were passed in the last one.
+    /// One step with the inputs and the currents that were passed in the last one. `slow_start`: currents rise slowly
+    /// from below any threshold.
     pub fn judge(
         &mut self,
         inputs: &Inputs,
         passed: CoilCurrents,
+        slow_start: bool,
         limits: Limits<'_>,
     ) -> AngleFaults {
         let sensors = limits.sensors;
@@ -117,7 +119,7 @@ impl AngleWatch {
             }
             None => self.bad_for = self.bad_for.next(),
         }
-        self.judge_motion(believed, inputs, passed, limits, &mut faults);
+        self.judge_motion(believed, inputs, passed, slow_start, limits, &mut faults);
         faults
     }
 
@@ -127,10 +129,10 @@ impl AngleWatch {
     }
 
     /// Current limit of a stroke until motion has been detected.
-    pub fn onset_limit(&self, limits: Limits<'_>) -> Option<CoilCurrents> {
+    pub fn onset_limit(&self, slow_start: bool, limits: Limits<'_>) -> Option<CoilCurrents> {
         self.stroke
             .map_or(FollowingMonitor::default(), |stroke| stroke.following)
-            .onset_limit(limits)
+            .onset_limit(slow_start, limits)
     }
 
     /// The command without a lowering current if the hitch may be on the ground; a command without one ends that.
@@ -210,6 +212,7 @@ impl AngleWatch {
         believed: Option<MilliDegree>,
         inputs: &Inputs,
         passed: CoilCurrents,
+        slow_start: bool,
         limits: Limits<'_>,
         faults: &mut AngleFaults,
     ) {
@@ -239,7 +242,9 @@ impl AngleWatch {
             faults.against = back && !bounced;
         }
         let safety = limits.safety;
-        let stands = stroke.following.judge(shown, passed, inputs, limits);
+        let stands = stroke
+            .following
+            .judge(shown, passed, slow_start, inputs, limits);
         let fault = stands == Some(Standstill::Fault);
         let same = self.noise.same_for() >= safety.frozen_time;
         faults.frozen |= fault && same;

@@ -99,6 +99,11 @@ impl<'a> MachineModel<'a> {
         }
     }
 
+    /// Lowest and highest set point.
+    pub(crate) const fn ends(self) -> (MilliDegree, MilliDegree) {
+        self.ends
+    }
+
     /// Piston speed that the currents less a margin give.
     fn speed(self, passed: CoilCurrents, margin: MilliAmp) -> MicrometrePerSecond {
         let (table, current) = match passed.lift > MilliAmp::ZERO {
@@ -173,10 +178,10 @@ pub struct FollowingMonitor {
 }
 
 impl FollowingMonitor {
-    /// Current limit until motion has been detected.
-    pub fn onset_limit(&self, limits: Limits<'_>) -> Option<CoilCurrents> {
+    /// Current limit until motion has been detected; none for a slow start.
+    pub fn onset_limit(&self, slow_start: bool, limits: Limits<'_>) -> Option<CoilCurrents> {
         let (machine, safety) = (limits.machine, limits.safety);
-        if self.started || limits.slow_start {
+        if self.started || slow_start {
             return None;
         }
         let left = safety.onset_budget - MilliDegree(self.predicted_udeg / 1_000);
@@ -191,11 +196,12 @@ impl FollowingMonitor {
         Some(machine.currents(floors.map(|floor| speed.max(floor))))
     }
 
-    /// One step with the regulated currents of the last one.
+    /// One step with the regulated currents of the last one. `slow_start`: nothing is required before motion.
     pub fn judge(
         &mut self,
         shown: AngleReading,
         passed: CoilCurrents,
+        slow_start: bool,
         inputs: &Inputs,
         limits: Limits<'_>,
     ) -> Option<Standstill> {
@@ -223,7 +229,7 @@ impl FollowingMonitor {
                 if backwards {
                     self.rest = None;
                 }
-                let held = held || limits.slow_start;
+                let held = held || slow_start;
                 let allowance = onset_allowance(angle, lifts, machine, safety);
                 self.onset_deficit(backwards, held, passed, machine, safety) > allowance
             }

@@ -13,17 +13,18 @@
 //! ```text
 //!  power-up   +----------+  lever moved, or button seen released and pressed   +-------+
 //! ----------> | Disarmed | --------------------------------------------------> | Armed |
-//!             +----------+                                                     +-------+
+//!             |          | <-------------------------------------------------- |       |
+//!             +----------+  transport lock, hold, engine stopped               +-------+
 //!                  ^                                                               | a row holds for its time
-//!                  |  reset, once the row no longer holds                          v
+//!                  |  reset, once no row has held for `lock.healthy_time`          v
 //!                  +---------------------------------------------------------- +---------+
-//!                                         (never, for a final row)        | Tripped |
+//!                                         (never, for a final row)             | Tripped |
 //!                                                                              +---------+
 //! ```
 //!
 //! Its parts are watches, each for some rows of the table: `angle` (with `following` and `noise_detector`), `coils`,
-//! `supply`,
-//! `measuring`; `arming` for the operator's touch; and [`rows`], which counts how long each row has been holding.
+//! `supply`, `measuring`, `travel_limits`; `locks` for the operator's locks; `arming` for the operator's touch; and
+//! [`rows`], which counts how long each row has been holding.
 //!
 //! ```
 //! use hitch_quantities::{CoilCurrents, Inputs, ValidCalibration};
@@ -33,9 +34,10 @@
 //! let limits = Limits {
 //!     safety: &calibration.safety,
 //!     sensors: &calibration.sensors,
+//!     lock: &calibration.lock,
+//!     operator: &calibration.operator,
 //!     damaged: false,
 //!     machine: MachineModel::of(&calibration),
-//!     slow_start: false,
 //! };
 //! let mut envelope = Envelope::default();
 //! let mut currents = CoilCurrents::OFF;
@@ -55,12 +57,16 @@ mod arming;
 mod coils;
 mod command;
 mod following;
+mod locks;
 mod measuring;
 mod noise_detector;
 pub mod rows;
 mod supply;
+mod travel_limits;
 
-use hitch_quantities::calibration::design_parameters::{SafetyParameters, SensorParameters};
+use hitch_quantities::calibration::design_parameters::{
+    LockParameters, OperatorParameters, SafetyParameters, SensorParameters,
+};
 use hitch_quantities::units::{Duty, MilliAmp, Millisecond};
 use hitch_quantities::{CoilCurrents, Duties, Inputs, Trip};
 
@@ -69,6 +75,7 @@ use arming::Arming;
 use coils::CoilWatch;
 pub use command::{Command, Step};
 pub use following::MachineModel;
+use locks::{Lock, Locks};
 use measuring::MeasuringFaults;
 use rows::{Debounce, Rows};
 use supply::SupplyWatch;
@@ -83,18 +90,20 @@ pub struct Limits<'a> {
     pub safety: &'a SafetyParameters,
     /// What sensors can plausibly say.
     pub sensors: &'a SensorParameters,
+    /// When the engine locks the hitch, and how long no row may have held before a reset.
+    pub lock: &'a LockParameters,
+    /// Where the dials are shut.
+    pub operator: &'a OperatorParameters,
     /// They, or others of their calibration, have changed in memory.
     pub damaged: bool,
     /// What currents do to the hitch.
     pub machine: MachineModel<'a>,
-    /// The command's currents rise slowly from below any threshold, as in teaching. Then the thresholds needn't be
-    /// those of the calibration: nothing is required, and nothing is held back, before motion is seen.
-    pub slow_start: bool,
 }
 
 /// The envelope.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Envelope {
+    locks: Locks,
     arming: Arming,
     angle: AngleWatch,
     coils: CoilWatch,
@@ -106,6 +115,10 @@ pub struct Envelope {
     /// Currents whose pulse widths may be released in this step.
     released: CoilCurrents,
     tripped: Option<Trip>,
+    /// How long no row has held, at most `lock.healthy_time`.
+    calm_for: Millisecond,
+    /// No row has held for `lock.healthy_time`.
+    healthy: bool,
     /// The command was more than a hitch gets that has yet to start.
     holds_back: bool,
 }
@@ -124,8 +137,10 @@ impl Envelope {
         let fresh = command.step == self.step;
         let command = Some(command.currents).filter(|_| fresh);
         let measuring = measuring::judge(inputs, limits.sensors, limits.safety);
-        let holds = self.rows_that_hold(command, inputs, measuring, limits);
+        let slow_start = self.starts_slowly(inputs);
+        let holds = self.rows_that_hold(command, inputs, measuring, slow_start, limits);
         let found = self.debounce.judge(holds, measuring.lost, limits.safety);
+        self.count_health(limits.lock);
         // The first trip is the one to report, unless a worse one comes.
         if self.tripped.is_none_or(|trip| !trip.is_final()) {
             self.tripped = found
@@ -133,16 +148,19 @@ impl Envelope {
                 .or(self.tripped)
                 .or(found);
         }
-        let armed = self
-            .arming
-            .update(inputs, self.tripped.is_some(), limits.safety);
+        let lock = match (self.locks.judge(inputs, limits.lock), self.tripped) {
+            (lock, None) => lock,
+            (_, Some(_)) => Lock::All,
+        };
+        let at_rest = self.passed == CoilCurrents::OFF;
+        let armed = self.arming.update(inputs, lock, at_rest, limits.safety);
         // While a sample is bridged a coil that is on stays on, but none is switched on.
-        let bridged = holds.has_any(&BRIDGED) && self.passed == CoilCurrents::OFF;
+        let bridged = holds.has_any(&BRIDGED) && at_rest;
         self.holds_back = false;
         self.passed = match command {
             Some(command) if armed && self.tripped.is_none() && !bridged => {
                 let command = self.angle.withhold(command);
-                self.bounded(command, limits)
+                self.bounded(command, slow_start, limits)
             }
             _ => CoilCurrents::OFF,
         };
@@ -190,12 +208,42 @@ impl Envelope {
         self.holds_back
     }
 
-    /// Clears a trip, if it may be cleared; lever or button have to be touched anew. The watches go on.
+    /// Asks for the end of a trip. It ends if it is not final and no row has held for `lock.healthy_time`; the watches
+    /// go on.
     pub fn reset(&mut self) {
-        if self.objection().is_none() {
+        if self.healthy && self.objection().is_none() {
             self.tripped = None;
-            self.arming = Arming::default();
         }
+    }
+
+    /// Lever or button have to be touched anew.
+    pub fn disarm(&mut self) {
+        self.arming = Arming::default();
+    }
+
+    /// Begins anew with another machine. A final trip stays, and so does what is known of the engine.
+    pub fn restart(&mut self) {
+        if !self.tripped.is_some_and(Trip::is_final) {
+            *self = Self {
+                locks: self.locks,
+                ..Self::default()
+            };
+        }
+    }
+
+    fn count_health(&mut self, parameters: &LockParameters) {
+        self.calm_for = match self.debounce.is_calm() {
+            true => self.calm_for.next().min(parameters.healthy_time),
+            false => Millisecond::ZERO,
+        };
+        self.healthy = self.calm_for >= parameters.healthy_time;
+    }
+
+    /// True while the operator teaches: the service contact is closed, and the button is pressed that armed. Currents
+    /// then rise slowly from below any threshold, and the thresholds need not be those of the calibration: nothing is
+    /// required, and nothing is held back, before motion is seen. Teaching moves to both ends, beyond the limits.
+    fn starts_slowly(&self, inputs: &Inputs) -> bool {
+        inputs.switches.teach && inputs.jog.is_some() && self.arming.is_by_button()
     }
 
     /// Whether each row of the table holds in this step, in its order.
@@ -204,10 +252,11 @@ impl Envelope {
         command: Option<CoilCurrents>,
         inputs: &Inputs,
         measuring: MeasuringFaults,
+        slow_start: bool,
         limits: Limits<'_>,
     ) -> Rows {
         let (safety, sensors) = (limits.safety, limits.sensors);
-        let angle = self.angle.judge(inputs, self.passed, limits);
+        let angle = self.angle.judge(inputs, self.passed, slow_start, limits);
         let coils = self.coils.judge(self.passed, inputs, safety);
         let outside = |value: i32, low: i32, high: i32| value < low || value > high;
         let lever_bad = inputs
@@ -216,31 +265,38 @@ impl Envelope {
         let supply_bad = self.supply.judge(inputs, safety);
         let both =
             command.is_some_and(|both| both.lift > MilliAmp::ZERO && both.lower > MilliAmp::ZERO);
+        let beyond_limit = !slow_start && travel_limits::are_exceeded(inputs, self.passed, limits);
         Rows::of([
-            command.is_none(),
-            both,
-            measuring.lost != Millisecond::ZERO,
-            supply_bad,
-            lever_bad,
-            angle.missing,
-            angle.jumps,
-            angle.frozen,
-            angle.noisy,
-            angle.not_following,
-            angle.against,
-            coils.open,
-            coils.short,
-            coils.stuck,
-            measuring.reference,
-            measuring.sensor_supply,
-            measuring.tracks,
-            measuring.clock,
-            inputs.enable_line_fault,
-            limits.damaged,
+            (Trip::Stale, command.is_none()),
+            (Trip::BothCoils, both),
+            (Trip::Overrun, measuring.lost != Millisecond::ZERO),
+            (Trip::Supply, supply_bad),
+            (Trip::Lever, lever_bad),
+            (Trip::AngleMissing, angle.missing),
+            (Trip::AngleJumps, angle.jumps),
+            (Trip::AngleFrozen, angle.frozen),
+            (Trip::AngleNoisy, angle.noisy),
+            (Trip::NotFollowing, angle.not_following),
+            (Trip::Against, angle.against),
+            (Trip::CoilOpen, coils.open),
+            (Trip::CoilShort, coils.short),
+            (Trip::CoilStuck, coils.stuck),
+            (Trip::Reference, measuring.reference),
+            (Trip::SensorSupply, measuring.sensor_supply),
+            (Trip::AngleTracks, measuring.tracks),
+            (Trip::Clock, measuring.clock),
+            (Trip::EnableLine, inputs.enable_line_fault),
+            (Trip::Memory, limits.damaged),
+            (Trip::BeyondLimit, beyond_limit),
         ])
     }
 
-    fn bounded(&mut self, command: CoilCurrents, limits: Limits<'_>) -> CoilCurrents {
+    fn bounded(
+        &mut self,
+        command: CoilCurrents,
+        slow_start: bool,
+        limits: Limits<'_>,
+    ) -> CoilCurrents {
         let parameters = limits.safety;
         let changes_over = (self.passed.lift > MilliAmp::ZERO && command.lower > MilliAmp::ZERO)
             || (self.passed.lower > MilliAmp::ZERO && command.lift > MilliAmp::ZERO);
@@ -248,10 +304,13 @@ impl Envelope {
             // A step with both coils off, so that the angle watch starts anew.
             return CoilCurrents::OFF;
         }
-        let onset_limit = self.angle.onset_limit(limits).unwrap_or(CoilCurrents {
-            lift: parameters.lift_current_limit,
-            lower: parameters.lower_current_limit,
-        });
+        let onset_limit = self
+            .angle
+            .onset_limit(slow_start, limits)
+            .unwrap_or(CoilCurrents {
+                lift: parameters.lift_current_limit,
+                lower: parameters.lower_current_limit,
+            });
         self.holds_back = command.lift > onset_limit.lift || command.lower > onset_limit.lower;
         let bound = |command: MilliAmp, passed: MilliAmp, limit: MilliAmp| {
             let rising = passed.max(parameters.free_current) + MilliAmp(parameters.current_slope.0);

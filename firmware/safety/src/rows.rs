@@ -17,6 +17,7 @@ fn time(trip: Trip, parameters: &SafetyParameters) -> Millisecond {
         Trip::SensorSupply => parameters.sensor_supply_time,
         Trip::AngleTracks => parameters.track_time,
         Trip::Clock => parameters.clock_time,
+        Trip::BeyondLimit => parameters.limit_time,
         // Both coils are never right, and the watches of the others measure the time themselves.
         Trip::BothCoils
         | Trip::Supply
@@ -34,13 +35,11 @@ fn time(trip: Trip, parameters: &SafetyParameters) -> Millisecond {
 pub struct Rows(u32);
 
 impl Rows {
-    /// The rows of a list of conditions in the order of the table.
+    /// The rows whose condition holds, of a list of all conditions.
     #[must_use]
-    pub fn of(holds: [bool; ROWS]) -> Self {
-        let bits = holds.into_iter().rev().fold(0_u32, |bits, holds| {
-            (bits << 1).saturating_add(u32::from(holds))
-        });
-        Self(bits)
+    pub fn of(conditions: [(Trip, bool); ROWS]) -> Self {
+        let holding = conditions.into_iter().filter(|(_, holds)| *holds);
+        Self(holding.fold(0, |bits, (row, _)| bits | 1 << index(row)))
     }
 
     const fn has(self, row: u32) -> bool {
@@ -50,10 +49,13 @@ impl Rows {
     /// True if one of these holds.
     #[must_use]
     pub fn has_any(self, rows: &[Trip]) -> bool {
-        // The first row is bit 0.
-        rows.iter()
-            .any(|&row| self.has((row as u32).saturating_sub(1)))
+        rows.iter().any(|&row| self.has(index(row)))
     }
+}
+
+/// Bit of a row: the first row is bit 0.
+const fn index(row: Trip) -> u32 {
+    (row as u32).saturating_sub(1) & 31
 }
 
 /// How long each row has been holding.

@@ -43,8 +43,10 @@ mod report;
 pub struct ControlRequest {
     /// Requested currents of the coils.
     pub currents: CoilCurrents,
-    /// A fault has ended: the trip of the envelope may be reset before it judges this step.
+    /// A fault has ended: lever or button have to be touched anew.
     pub recovered: bool,
+    /// There is no fault: control asks for the end of a trip of the envelope.
+    pub healthy: bool,
 }
 
 /// The control part of the controller: a calibration and a state.
@@ -140,12 +142,6 @@ impl Control {
         self.engine
     }
 
-    /// True while the machine is being taught: currents rise slowly from below any threshold.
-    #[must_use]
-    pub const fn is_teaching(&self) -> bool {
-        matches!(self.mode, Mode::Teach)
-    }
-
     /// Takes another calibration of the same machine, with other ramps, gains or limits. The hitch may be moving. If
     /// the valve curves differ, their adaptation is reset.
     pub fn recalibrate(&mut self, calibration: ValidCalibration) {
@@ -180,6 +176,7 @@ impl Control {
         ControlRequest {
             currents,
             recovered: self.recovered,
+            healthy: self.mode.fault().is_none(),
         }
     }
 

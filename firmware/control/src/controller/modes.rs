@@ -29,6 +29,9 @@ impl Control {
             .engine
             .permits(inputs.engine_speed, &self.calibration.lock);
         self.mode = self.mode.switched(inputs.switches, engine);
+        if inputs.switches.transport_lock || !engine {
+            self.button.distrust();
+        }
         let was_fault = self.mode.fault().is_some();
         self.mode = self.mode.healthy(&self.calibration.lock);
         if was_fault && self.mode.fault().is_none() {

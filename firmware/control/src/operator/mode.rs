@@ -124,7 +124,7 @@ impl Mode {
     pub const fn is_still(&self) -> bool {
         matches!(
             self,
-            Self::Locked(_) | Self::TransportLock | Self::Fault { .. }
+            Self::Locked(_) | Self::Hold | Self::TransportLock | Self::Fault { .. }
         )
     }
 

@@ -2,7 +2,7 @@
 
 use hitch_quantities::calibration::calibration_words::CALIBRATION_WORDS;
 use hitch_quantities::units::{MilliAmp, MilliDegree};
-use hitch_quantities::{Calibration, Inputs, Outputs};
+use hitch_quantities::{Calibration, Inputs, Outputs, Trip};
 
 use super::*;
 

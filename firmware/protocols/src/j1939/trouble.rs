@@ -127,13 +127,15 @@ troubles! {
     EnableLine = ENABLE_LINE / 12,
     /// The calibration in use has changed in memory.
     Memory = CALIBRATION / 12,
+    /// A current drives the hitch beyond a limit of its travel, or lowers it with the dial shut.
+    BeyondLimit = CONTROLLER / 31,
 }
 
 /// A set of troubles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Troubles(u32);
+pub struct Troubles(u64);
 
-const _: () = assert!(Trouble::ALL.len() <= 32, "a set has 32 bits");
+const _: () = assert!(Trouble::ALL.len() <= 64, "a set has 64 bits");
 
 impl Troubles {
     /// None.
@@ -141,13 +143,13 @@ impl Troubles {
 
     /// The set with one more element.
     pub const fn insert(&mut self, trouble: Trouble) {
-        self.0 |= 1 << trouble as u32;
+        self.0 |= 1 << trouble as u64;
     }
 
     /// Whether the set contains it.
     #[must_use]
     pub const fn contains(self, trouble: Trouble) -> bool {
-        self.0 & (1 << trouble as u32) != 0
+        self.0 & (1 << trouble as u64) != 0
     }
 
     /// Whether the set is empty.
@@ -251,6 +253,7 @@ impl TroubleFinder {
             Trip::Clock => Trouble::Clock,
             Trip::EnableLine => Trouble::EnableLine,
             Trip::Memory => Trouble::Memory,
+            Trip::BeyondLimit => Trouble::BeyondLimit,
         }
     }
 }

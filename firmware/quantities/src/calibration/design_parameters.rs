@@ -350,6 +350,10 @@ parameter_group! {
         end_zone: MilliDegree = 4_000, 0..=20_000;
         /// Movement against the energised coil that trips: above noise and the swing at a start.
         contradiction: MilliDegree = 4_000, 500..=45_000;
+        /// How far beyond a limit of its travel the hitch may be while a current drives it further: a load that swings about its set point, and the noise of the dial.
+        limit_margin: MilliDegree = 2_000, 0..=20_000;
+        /// How long such a current, or one that lowers with the dial shut, may flow: `position.abort_deceleration` stops the fastest lowering of 216 mm/s in 72 ms.
+        limit_time: Millisecond = 100, 1..=1_000;
         /// Current from which a broken wire can be told.
         testable_current: MilliAmp = 500, 50..=5_000;
         /// How long less than half of it has to flow: four time constants of a coil.

@@ -3,7 +3,7 @@
 use super::fault::Fault;
 
 /// Number of rows.
-pub const ROWS: usize = 20;
+pub const ROWS: usize = 21;
 
 /// What tripped the envelope, with the code it has on links and in traces; the order of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +49,8 @@ pub enum Trip {
     EnableLine = 19,
     /// The calibration in use no longer has its checksum: memory has lost a bit.
     Memory = 20,
+    /// A current drives the hitch beyond a limit of its travel, or lowers it with the dial shut.
+    BeyondLimit = 21,
 }
 
 impl Trip {
@@ -74,6 +76,7 @@ impl Trip {
         Self::Clock,
         Self::EnableLine,
         Self::Memory,
+        Self::BeyondLimit,
     ];
 
     /// True if only a restart clears it: the driver has to be tested, or the calibration read from flash, before it is
@@ -97,7 +100,7 @@ impl Trip {
             | Self::AngleNoisy
             | Self::AngleTracks => Fault::Angle,
             Self::NotFollowing => Fault::NotFollowing,
-            Self::Stale | Self::BothCoils | Self::Against => Fault::Envelope,
+            Self::Stale | Self::BothCoils | Self::Against | Self::BeyondLimit => Fault::Envelope,
             Self::Overrun | Self::Clock => Fault::Overrun,
             Self::Reference => Fault::Reference,
             Self::SensorSupply => Fault::SensorSupply,

@@ -6,6 +6,7 @@ mod angle;
 mod any_inputs;
 mod bounds;
 mod coils;
+mod locks;
 mod measuring;
 mod noise_detector;
 mod onset;
@@ -14,10 +15,13 @@ mod release;
 mod signals;
 mod standstill;
 mod travel_deficit;
+mod travel_limits;
 
 use std::sync::LazyLock;
 
-use hitch_quantities::calibration::design_parameters::{SafetyParameters, SensorParameters};
+use hitch_quantities::calibration::design_parameters::{
+    LockParameters, OperatorParameters, SafetyParameters, SensorParameters,
+};
 use hitch_quantities::units::{
     Microsecond, MilliAmp, MilliDegree, MilliDegreePerSecond, MilliVolt,
 };
@@ -32,8 +36,9 @@ fn limits() -> Limits<'static> {
     Limits {
         safety: &SAFETY,
         sensors: &SENSORS,
+        lock: &LockParameters::NOMINAL,
+        operator: &OperatorParameters::NOMINAL,
         damaged: false,
-        slow_start: false,
         machine: MachineModel::of(&NOMINAL),
     }
 }

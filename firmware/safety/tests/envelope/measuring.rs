@@ -54,11 +54,8 @@ fn tracks(second: impl Fn(i32) -> Option<i32>) -> (Option<i32>, Option<Trip>) {
         ..SENSORS
     };
     let limits = Limits {
-        machine: limits().machine,
-        safety: &SAFETY,
         sensors: &sensors,
-        damaged: false,
-        slow_start: false,
+        ..limits()
     };
     let mut rig = Rig::moving(LIFT);
     let cut = (1..=500).find(|_| {

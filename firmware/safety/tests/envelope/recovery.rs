@@ -37,7 +37,7 @@ fn shift(inputs: &mut Inputs, by: MilliDegree) {
 }
 
 /// Causes with a row that they trip, at one of the orders and times at least.
-const CAUSES: [(&str, Trip, Wrong); 19] = [
+const CAUSES: [(&str, Trip, Wrong); 20] = [
     ("no command", Trip::Stale, |_, _| {}),
     ("both coils", Trip::BothCoils, |_, _| {}),
     ("late", Trip::Overrun, |inputs, _| {
@@ -88,6 +88,9 @@ const CAUSES: [(&str, Trip, Wrong); 19] = [
     }),
     ("clock", Trip::Clock, |inputs, _| {
         inputs.clock_ratio = Some(PerMille(500));
+    }),
+    ("dial shut", Trip::BeyondLimit, |inputs, _| {
+        inputs.lowering_dial = Some(PerMille(0));
     }),
 ];
 

@@ -60,5 +60,6 @@ pub const fn trip(trip: Trip) -> &'static str {
         Trip::Clock => "clock wrong",
         Trip::EnableLine => "enable line faulty",
         Trip::Memory => "calibration memory damaged",
+        Trip::BeyondLimit => "current beyond a limit of the travel",
     }
 }

@@ -77,5 +77,6 @@ const fn known_trouble(trouble: Trouble) -> &'static str {
         Trouble::Clock => "clock rate changed",
         Trouble::EnableLine => "enable line of the drivers faulty",
         Trouble::Memory => "calibration changed in memory",
+        Trouble::BeyondLimit => "current beyond a limit of the travel",
     }
 }
