@@ -4,7 +4,8 @@ use hitch_control::Control;
 use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_control::current::Regulation;
 use hitch_control::operator::EngineWatch;
-use hitch_quantities::{Inputs, Outputs, ValidCalibration};
+use hitch_quantities::calibration::design_parameters::PositionParameters;
+use hitch_quantities::{Calibration, Inputs, Outputs, ValidCalibration};
 use hitch_safety::{Command, Envelope, Limits, MachineModel};
 
 use crate::memory_check::MemoryCheck;
@@ -44,6 +45,27 @@ impl Controller {
         }
     }
 
+    /// Takes a calibration at any time. If ramps or gains differ, they change under a moving hitch. If anything else
+    /// differs, it is another machine, which the operator has to pick up anew.
+    pub fn apply(&mut self, calibration: ValidCalibration) {
+        let present = self.calibration();
+        let same_machine = Calibration {
+            position: PositionParameters {
+                lower_limit: present.position.lower_limit,
+                upper_limit: present.position.upper_limit,
+                ..calibration.position
+            },
+            rate: calibration.rate,
+            bus: calibration.bus,
+            checksum: calibration.checksum,
+            ..(**present).clone()
+        };
+        match same_machine == *calibration {
+            true => self.recalibrate(calibration),
+            false => self.restart(calibration),
+        }
+    }
+
     /// Takes a calibration that makes it another machine: everything begins anew, but an engine that has told its speed
     /// still has to, and a final trip stays.
     pub fn restart(&mut self, calibration: ValidCalibration) {
@@ -59,8 +81,8 @@ impl Controller {
         self.control.calibration()
     }
 
-    /// Takes another calibration of the same machine: one whose ramps, gains or limits differ. The hitch may be moving,
-    /// and goes on from where it is.
+    /// Takes another calibration of the same machine: one whose ramps or gains differ. The hitch may be moving, and goes
+    /// on from where it is.
     pub fn recalibrate(&mut self, calibration: ValidCalibration) {
         self.control.recalibrate(calibration);
         self.memory.begin_anew();

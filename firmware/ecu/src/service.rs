@@ -114,7 +114,7 @@ impl<F: NorFlash> Service<F> {
         let mut wanted = at_rest && (self.take_taught(controller) || self.taught_waits);
         if let Some(change) = self.pages.take_change() {
             if let Ok(calibration) = change {
-                apply(calibration, controller);
+                controller.apply(calibration);
             }
             // Checking a calibration takes half a millisecond: whoever wants to store it waits for the next one.
             self.taught_waits = wanted;
@@ -188,21 +188,5 @@ impl<F: NorFlash> Service<F> {
         if core::mem::take(&mut self.tool_waits) {
             slave.stored(success);
         }
-    }
-}
-
-/// Hands a calibration to the controller. Ramps, gains and limits change under a moving hitch; whatever else changes
-/// makes it another machine, which the operator has to pick up anew.
-fn apply(calibration: ValidCalibration, controller: &mut Controller) {
-    let same_machine = Calibration {
-        position: calibration.position,
-        rate: calibration.rate,
-        bus: calibration.bus,
-        checksum: calibration.checksum,
-        ..(**controller.calibration()).clone()
-    };
-    match same_machine == *calibration {
-        true => controller.recalibrate(calibration),
-        false => controller.restart(calibration),
     }
 }

@@ -77,7 +77,7 @@ impl Control {
     fn position_reference(&mut self, sensed: &Sensed, inputs: &Inputs) -> Option<Micrometre> {
         let moving = self.phase.is_moving();
         let calibration = &self.calibration;
-        let noise_band = calibration.position.lever_deadband;
+        let noise_band = self.position.bands(&calibration.position).lever_deadband;
         let lever = self.lever.follow(sensed.set_point, noise_band + noise_band);
         let lever = self.quick_lift.set_point(lever, &calibration.operator);
         let highest = upper_limit(inputs.upper_limit, &calibration.position);

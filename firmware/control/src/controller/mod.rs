@@ -142,7 +142,7 @@ impl Control {
         self.engine
     }
 
-    /// Takes another calibration of the same machine, with other ramps, gains or limits. The hitch may be moving. If
+    /// Takes another calibration of the same machine, with other ramps or gains. The hitch may be moving. If
     /// the valve curves differ, their adaptation is reset.
     pub fn recalibrate(&mut self, calibration: ValidCalibration) {
         self.closing = ClosingCurves::of(&calibration);

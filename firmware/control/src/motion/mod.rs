@@ -1,4 +1,5 @@
 //! Control laws: from a set point or a button to the demanded speed.
 
+pub mod bands;
 pub mod position;
 pub mod rate;

@@ -30,6 +30,7 @@ use hitch_quantities::units::{
     PerSecond,
 };
 
+use super::bands::Bands;
 use crate::estimation::motion_observer::{MotionObserver, StopPrediction};
 use crate::valve::closing::ClosingCurves;
 use crate::valve::drop_scale::DropScale;
@@ -50,6 +51,8 @@ const MAX_STOP_BAND_EXTENSION: i32 = 130;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PositionControl {
     set_point: Option<MilliDegree>,
+    /// Taken over with the set point.
+    bands: Option<Bands>,
     /// Set point for which the state below holds. The one in use is within the dead band of it.
     reference_set_point: MilliDegree,
     /// The hitch has been at rest at this set point: a later deviation is drift.
@@ -86,11 +89,13 @@ impl PositionControl {
         parameters: &PositionParameters,
     ) -> bool {
         let lever = lever.limited(parameters.lower_limit, upper_limit);
-        let changed = self.set_point.is_none()
-            || (lever - self.reference_set_point).magnitude() > parameters.lever_deadband;
+        let deadband = self.bands(parameters).lever_deadband;
+        let changed =
+            self.set_point.is_none() || (lever - self.reference_set_point).magnitude() > deadband;
         if changed {
             *self = Self {
                 set_point: Some(lever),
+                bands: Some(Bands::of(parameters)),
                 reference_set_point: lever,
                 ..Self::default()
             };
@@ -98,6 +103,12 @@ impl PositionControl {
             self.set_point = Some(lever);
         }
         changed
+    }
+
+    /// The bands of the present set point; those of `parameters` before there is one.
+    #[must_use]
+    pub fn bands(&self, parameters: &PositionParameters) -> Bands {
+        self.bands.unwrap_or(Bands::of(parameters))
     }
 
     /// The set point inside the limits; `otherwise` before there was one.
@@ -124,7 +135,7 @@ impl PositionControl {
         rest: Micrometre,
         parameters: &PositionParameters,
     ) -> Option<MoveReason> {
-        if self.accepted || (target - rest).magnitude() <= parameters.restart_band {
+        if self.accepted || (target - rest).magnitude() <= self.bands(parameters).restart_band {
             self.arrived = true;
             return None;
         }

@@ -1,8 +1,8 @@
 //! Tests: a bit of the calibration in use flips.
 
+use hitch_quantities::Trip;
 use hitch_quantities::calibration::calibration_words::CALIBRATION_WORDS;
 use hitch_quantities::units::{MilliAmp, MilliDegree};
-use hitch_quantities::{Calibration, Inputs, Outputs, Trip};
 
 use super::*;
 

@@ -63,6 +63,22 @@ fn while_the_hitch_moves_only_what_is_harmless_can_be_changed() {
 }
 
 // REQ-SAFE-11
+// REQ-SAFE-14
+#[test]
+fn limits_are_no_lever() {
+    let mut desk = Desk::connected();
+    for limit in ["lower_limit", "upper_limit"] {
+        let address = scalar("position", limit);
+        let present = desk.read(address).unwrap();
+        desk.access = Access::Moving;
+        assert_eq!(desk.write(address, 110_000), Err(ACCESS_DENIED), "{limit}");
+        assert_eq!(desk.read(address), Ok(present));
+        desk.access = Access::AtRest;
+        assert_eq!(desk.write(address, 110_000), Ok(()), "{limit}");
+    }
+}
+
+// REQ-SAFE-11
 #[test]
 fn without_tuning_enabled_nothing_is_written() {
     let mut desk = Desk::connected();

@@ -7,7 +7,7 @@ use hitch_protocols::xcp::{
     Access, CalibrationPages, EcuMemory, Event, Measurements, Slave, TOOL_ADDRESS,
 };
 use hitch_quantities::ValidCalibration;
-use hitch_quantities::calibration::calibration_words::{GROUPS, SCALARS_WORD};
+use hitch_quantities::calibration::calibration_words::{GROUPS, SCALARS_WORD, word_range};
 use hitch_quantities::calibration::parameter::ParameterInfo;
 
 /// Address of the ECU.
@@ -149,10 +149,13 @@ pub fn word_address(word: usize) -> u32 {
 pub fn scalars() -> Vec<(&'static str, &'static ParameterInfo, u32, bool)> {
     let all = GROUPS.iter().flat_map(|group| {
         let parameters = group.parameters.iter();
-        parameters.map(|parameter| (group.name, parameter, group.live))
+        parameters.map(|parameter| (group.name, parameter))
     });
     all.zip(SCALARS_WORD..)
-        .map(|((group, parameter, live), word)| (group, parameter, word_address(word), live))
+        .map(|((group, parameter), word)| {
+            let live = word_range(word).unwrap().live;
+            (group, parameter, word_address(word), live)
+        })
         .collect()
 }
 

@@ -37,7 +37,7 @@ pub struct Group {
     pub name: &'static str,
     /// Its scalars, a word each.
     pub parameters: &'static [ParameterInfo],
-    /// True if they may be changed while the hitch moves.
+    /// True if they may be changed while the hitch moves, except for limits of set points.
     pub live: bool,
 }
 
@@ -49,10 +49,30 @@ const fn group<G: ParameterGroup>(live: bool) -> Group {
     }
 }
 
-/// Changing it while the hitch moves is harmless: ramps, gains and limits of set points, which the controller takes up
-/// from wherever it is. Everything else says what the machine is or what is safe, and is changed at rest.
+/// Changing it while the hitch moves is harmless: ramps and gains, which the controller takes up from wherever it is.
+/// Everything else says what the machine is, where it may go or what is safe, and is changed at rest.
 const LIVE: bool = true;
 const AT_REST: bool = false;
+
+/// Scalars of live groups that are changed at rest: limits, because they move set points.
+const NOT_LIVE: [(&str, &str); 2] = [("position", "lower_limit"), ("position", "upper_limit")];
+
+/// True if a scalar may be changed while the hitch moves.
+const fn is_live(group: &Group, name: &str) -> bool {
+    let mut live = group.live;
+    let mut index = 0;
+    while index < NOT_LIVE.len() {
+        let (of_group, of_name) = NOT_LIVE[index];
+        live &= full_name(of_group, of_name) != full_name(group.name, name);
+        index += 1;
+    }
+    live
+}
+
+/// A hash of the name of a scalar with that of its group.
+const fn full_name(group: &str, name: &str) -> u32 {
+    fnv::text(fnv::text(fnv::START, group), name)
+}
 
 /// The groups in the order of the block.
 pub const GROUPS: [Group; 13] = [
@@ -265,7 +285,11 @@ const fn scalars() -> [Scalar; SCALAR_COUNT] {
                 parameter.counts_per_unit,
             );
             all[next] = Scalar {
-                key_and_live: if group.live { key | Scalar::LIVE } else { key },
+                key_and_live: if is_live(&group, parameter.name) {
+                    key | Scalar::LIVE
+                } else {
+                    key
+                },
                 min: parameter.min,
                 max: parameter.max,
             };
@@ -280,7 +304,7 @@ const fn scalars() -> [Scalar; SCALAR_COUNT] {
 
 /// 24 bits from the name of a group, the name in it, the unit and the scale.
 const fn key(group: &str, name: &str, unit: &str, scale: i32) -> u32 {
-    let hash = fnv::text(fnv::text(fnv::text(fnv::START, group), name), unit);
+    let hash = fnv::text(full_name(group, name), unit);
     let hash = fnv::number(hash, scale);
     (hash >> 24) ^ (hash & 0xFF_FFFF)
 }

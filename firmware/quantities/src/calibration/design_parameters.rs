@@ -130,15 +130,15 @@ parameter_group! {
 parameter_group! {
     /// Position control.
     PositionParameters, "position" {
-        /// Lowest set point that is obeyed: half a degree above the mechanical end, so the end stop isn't worked against.
+        /// Lowest set point that is obeyed: half a degree above the mechanical end, so the end stop isn't worked against. Changed at rest only; the hitch is then locked until the lever is moved through it.
         lower_limit: MilliDegree = 44_600, -360_000..=360_000;
-        /// Highest set point that is obeyed: half a degree below the mechanical end.
+        /// Highest set point that is obeyed: half a degree below the mechanical end. Changed at rest only.
         upper_limit: MilliDegree = 135_400, -360_000..=360_000;
-        /// A resting hitch follows the lever only when it moves by more than this: 0.2 % of the range, beyond lever noise.
+        /// A resting hitch follows the lever only when it moves by more than this: 0.2 % of the range, beyond lever noise. A change takes effect with the next movement of the lever.
         lever_deadband: MilliDegree = 200, 0..=5_000;
         /// The coil is cut when that would bring the hitch this close: 0.1 degree short, so that a load swings about a place with room beyond.
         stop_band: Micrometre = 170, 0..=5_000;
-        /// A resting hitch that is further off than this is corrected: 0.35 degree, inside the 0.5 degree that is asked for.
+        /// A resting hitch that is further off than this is corrected: 0.35 degree, inside the 0.5 degree that is asked for. A change takes effect with the next movement of the lever.
         restart_band: Micrometre = 600, 20..=10_000;
         /// Speed per remaining distance at the end of the approach: 10 Hz, about the frequency at which a load swings on its oil, which is damped while it is lifted.
         approach_gain: PerSecond = 60, 1..=200;
