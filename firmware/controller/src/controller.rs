@@ -4,7 +4,7 @@ use hitch_control::Control;
 use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_control::current::Regulation;
 use hitch_control::operator::EngineWatch;
-use hitch_quantities::calibration::design_parameters::PositionParameters;
+use hitch_quantities::calibration::design_parameters::{BusParameters, PositionParameters};
 use hitch_quantities::{Calibration, Inputs, Outputs, ValidCalibration};
 use hitch_safety::{Command, Envelope, Limits, MachineModel};
 
@@ -56,7 +56,10 @@ impl Controller {
                 ..calibration.position
             },
             rate: calibration.rate,
-            bus: calibration.bus,
+            bus: BusParameters {
+                measured_period: calibration.bus.measured_period,
+                ..present.bus
+            },
             checksum: calibration.checksum,
             ..(**present).clone()
         };

@@ -215,6 +215,11 @@ impl<F: NorFlash> Ecu<F> {
 
     fn receive(&mut self, access: Access, now_us: u32, hardware: &mut impl Hardware) {
         self.slave.set_address(self.node.address());
+        let bus = &self.controller.calibration().bus;
+        let engines = [bus.engine_address, bus.second_engine_address];
+        self.node.accept_engine_speed_from(
+            engines.map(|address| u8::try_from(address.0).unwrap_or(NO_ADDRESS)),
+        );
         for _ in 0..MAX_RECEIVED {
             let Some(frame) = hardware.receive() else {
                 return;
@@ -250,7 +255,10 @@ impl<F: NorFlash> Ecu<F> {
 
     /// Creates the frames that are due and passes them to the bus as far as it accepts them.
     fn send(&mut self, hardware: &mut impl Hardware) {
-        let found = self.trouble_finder.update(&self.inputs, &self.outputs);
+        let lock = &self.controller.calibration().lock;
+        let found = self
+            .trouble_finder
+            .update(&self.inputs, &self.outputs, lock);
         let status = status(
             &self.inputs,
             &self.outputs,

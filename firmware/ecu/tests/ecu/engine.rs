@@ -1,6 +1,6 @@
 //! The engine lock, from frames to pulse widths.
 
-use hitch_protocols::j1939::Pgn;
+use hitch_protocols::j1939::{Id, Pgn};
 use hitch_protocols::storage::CalibrationStore;
 use hitch_quantities::units::Count;
 use hitch_quantities::{Calibration, State};
@@ -20,6 +20,16 @@ fn still_with_engine(bench: &mut Bench, speed: u16, ms: u32) -> bool {
         }
         bench.is_still(1) && still
     })
+}
+
+/// Flash in which a calibration is stored.
+fn stored(block: Calibration) -> Flash {
+    let flash = Flash::blank();
+    let calibration = block.sealed().validate().unwrap();
+    CalibrationStore::new(flash.clone())
+        .store(&calibration)
+        .unwrap();
+    flash
 }
 
 /// Moves the lever through the hitch and away from it.
@@ -110,16 +120,60 @@ fn an_engine_that_falls_silent_or_says_that_it_does_not_know_counts_as_stopped()
     }
 }
 
+/// DM1 that the ECU has sent since `since_ms`: the trouble code of the lost engine speed is in the last one.
+fn reports_a_lost_speed(bench: &Bench, since_ms: u32) -> bool {
+    // SPN 190, FMI 9.
+    const CODE: [u8; 3] = [190, 0, 9];
+    let dm1 = bench.sent.iter().rev().find_map(|(at_ms, frame)| {
+        let id = frame.extended_data_id().map(Id::unpack)?;
+        (*at_ms >= since_ms && id.pgn == Pgn::DM1).then(|| frame.data())
+    });
+    dm1.is_some_and(|data| data[2..5] == CODE)
+}
+
+// REQ-SAFE-08
+#[test]
+fn an_engine_speed_from_a_foreign_address_neither_locks_nor_opens_the_lock() {
+    let mut bench = Bench::start(Flash::blank());
+    let [low, high] = (8 * 1_600_u16).to_le_bytes();
+    let message = [0xFF, 0xFF, 0xFF, low, high, 0xFF, 0xFF, 0xFF];
+    bench.run(20);
+    bench.receive(Pgn::ENGINE, 0x33, message);
+    bench.run(1_000);
+    bench.pick_up(110_000);
+    assert_eq!(bench.run(300), State::Lifting);
+    bench.receive(Pgn::ENGINE, 0, [0xFF, 0xFF, 0xFF, 0, 0, 0xFF, 0xFF, 0xFF]);
+    bench.run(2);
+    assert_eq!(bench.state(), State::Locked, "the engine stands");
+    for _ in 0..1_000 {
+        bench.receive(Pgn::ENGINE, 0x33, message);
+        bench.run(1);
+    }
+    bench.pick_up(90_000);
+    assert!(bench.is_still(1_000));
+}
+
+// REQ-SAFE-08
+#[test]
+fn a_lost_engine_speed_is_reported_until_it_is_received_again() {
+    // With a stored calibration no other code is active.
+    let mut bench = Bench::start(stored(Calibration::nominal()));
+    still_with_engine(&mut bench, 800, 2_000);
+    assert!(!reports_a_lost_speed(&bench, 0), "healthy");
+    let lost_ms = bench.now_ms;
+    bench.run(4_000);
+    assert!(reports_a_lost_speed(&bench, lost_ms));
+    let back_ms = bench.now_ms;
+    still_with_engine(&mut bench, 800, 4_000);
+    assert!(!reports_a_lost_speed(&bench, back_ms + 1_500));
+    assert!(!lever_moves(&mut bench, 800), "the lock is open again");
+}
+
 #[test]
 fn an_engine_that_is_required_has_to_be_heard() {
     let mut block = Calibration::nominal();
     block.lock.engine_required = Count(1);
-    let flash = Flash::blank();
-    let calibration = block.sealed().validate().unwrap();
-    CalibrationStore::new(flash.clone())
-        .store(&calibration)
-        .unwrap();
-    let mut bench = Bench::start(flash);
+    let mut bench = Bench::start(stored(block));
     bench.pick_up(110_000);
     assert!(bench.is_still(3_000));
     assert_eq!(bench.state(), State::Locked);

@@ -1,8 +1,8 @@
 //! Engine speed, as broadcast by the engine controller (EEC1, SAE J1939-71, SPN 190).
 //!
-//! The message is accepted from any address: engines have 0 or 1, and on some tractors another unit forwards it. Of
-//! several senders the first one is used until it has been silent for the time-out, so that two engines do not
-//! alternate.
+//! The message is accepted from the two addresses of the calibration only: engines have 0 or 1, and on some tractors
+//! another unit forwards it. Of two senders the first one is used until it has been silent for the time-out, so that two
+//! engines do not alternate.
 
 use hitch_quantities::units::RevolutionPerMinute;
 
@@ -24,17 +24,35 @@ struct LastSpeed {
     at_ms: u32,
 }
 
+/// Addresses of the first and the second engine.
+const ENGINES: [u8; 2] = [0, 1];
+
 /// The receiver.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct EngineSpeed {
+    sources: [u8; 2],
     last: Option<LastSpeed>,
 }
 
+impl Default for EngineSpeed {
+    fn default() -> Self {
+        Self {
+            sources: ENGINES,
+            last: None,
+        }
+    }
+}
+
 impl EngineSpeed {
+    /// Accepts the speed from these addresses only.
+    pub fn accept_from(&mut self, sources: [u8; 2]) {
+        self.sources = sources;
+    }
+
     /// A message was received.
     pub fn receive(&mut self, bytes: &[u8; 8], from: u8, now_ms: u32) {
         let other = self.fresh(now_ms).is_some_and(|last| last.from != from);
-        if !other {
+        if self.sources.contains(&from) && !other {
             self.last = Some(LastSpeed {
                 from,
                 speed: speed(bytes),

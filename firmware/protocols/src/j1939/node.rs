@@ -112,6 +112,11 @@ impl Node {
         self.engine.speed(now_ms)
     }
 
+    /// Accepts the engine speed from these addresses only; 0 and 1 unless told otherwise.
+    pub fn accept_engine_speed_from(&mut self, sources: [u8; 2]) {
+        self.engine.accept_from(sources);
+    }
+
     /// How often each trouble has occurred.
     #[must_use]
     pub const fn occurrences(&self) -> &Occurrences {

@@ -5,6 +5,7 @@
 //! 7 mechanical system doesn't respond, 8 abnormal frequency, 9 abnormal update rate, 10 abnormal rate of change, 12 bad unit,
 //! 13 out of calibration, 31 condition exists.
 
+use hitch_quantities::calibration::design_parameters::LockParameters;
 use hitch_quantities::units::{MilliAmp, MilliVolt};
 use hitch_quantities::{Fault, Inputs, Outputs, Trip};
 
@@ -17,6 +18,8 @@ pub struct Code {
     pub fmi: u8,
 }
 
+/// Engine speed.
+const ENGINE_SPEED: u32 = 190;
 /// Battery potential.
 const SUPPLY: u32 = 168;
 /// Rear hitch position.
@@ -129,6 +132,8 @@ troubles! {
     Memory = CALIBRATION / 12,
     /// A current drives the hitch beyond a limit of its travel, or lowers it with the dial shut.
     BeyondLimit = CONTROLLER / 31,
+    /// The engine speed is no longer received, or was never although the calibration requires it.
+    EngineSpeedLost = ENGINE_SPEED / 9,
 }
 
 /// A set of troubles.
@@ -206,11 +211,24 @@ enum Coil {
 pub struct TroubleFinder {
     last_asked: Option<Coil>,
     tripped: Option<(Trip, Trouble)>,
+    engine_speed: EngineSpeedMonitor,
 }
 
 impl TroubleFinder {
     /// Processes the result of a step.
-    pub fn update(&mut self, inputs: &Inputs, outputs: &Outputs) -> Troubles {
+    pub fn update(
+        &mut self,
+        inputs: &Inputs,
+        outputs: &Outputs,
+        lock: &LockParameters,
+    ) -> Troubles {
+        let lost = self.engine_speed.is_lost(inputs, lock);
+        let engine = lost.then_some(Troubles::from(Trouble::EngineSpeedLost));
+        self.of_controller(inputs, outputs)
+            .union(engine.unwrap_or_default())
+    }
+
+    fn of_controller(&mut self, inputs: &Inputs, outputs: &Outputs) -> Troubles {
         if outputs.lift_current > MilliAmp::ZERO {
             self.last_asked = Some(Coil::Lift);
         } else if outputs.lower_current > MilliAmp::ZERO {
@@ -255,6 +273,31 @@ impl TroubleFinder {
             Trip::Memory => Trouble::Memory,
             Trip::BeyondLimit => Trouble::BeyondLimit,
         }
+    }
+}
+
+/// How long the engine speed has to be missing, ms: a start or a change of the engine's sender is no fault.
+const ENGINE_SPEED_LOST_MS: u16 = 1_000;
+
+/// Monitors whether an engine speed that the engine lock relies on is received.
+#[derive(Clone, Copy, Debug, Default)]
+struct EngineSpeedMonitor {
+    /// It has been received since power-up.
+    known: bool,
+    missing_ms: u16,
+}
+
+impl EngineSpeedMonitor {
+    /// One millisecond.
+    fn is_lost(&mut self, inputs: &Inputs, lock: &LockParameters) -> bool {
+        let is_present = inputs.engine_speed.is_some();
+        self.known |= is_present;
+        let is_missing = !is_present && (self.known || lock.engine_required.0 != 0);
+        self.missing_ms = match is_missing {
+            true => self.missing_ms.saturating_add(1).min(ENGINE_SPEED_LOST_MS),
+            false => 0,
+        };
+        self.missing_ms >= ENGINE_SPEED_LOST_MS
     }
 }
 

@@ -1,7 +1,8 @@
 //! Trouble codes and requests.
 
 use hitch_protocols::j1939::{Pgn, Trouble, TroubleFinder, Troubles, Variant};
-use hitch_quantities::units::{MilliAmp, MilliVolt};
+use hitch_quantities::calibration::design_parameters::LockParameters;
+use hitch_quantities::units::{Count, MilliAmp, MilliVolt, RevolutionPerMinute};
 use hitch_quantities::{Fault, Inputs, Outputs, Trip};
 
 use crate::bus::{Bus, OTHER, OURS};
@@ -180,9 +181,51 @@ fn currents(lift: i32, lower: i32) -> Inputs {
     }
 }
 
+const LOCK: LockParameters = LockParameters::NOMINAL;
+
+// REQ-SAFE-08
+#[test]
+fn a_lost_engine_speed_has_its_code_until_it_is_received_again() {
+    let required = LockParameters {
+        engine_required: Count(1),
+        ..LOCK
+    };
+    let speed = Some(RevolutionPerMinute(800));
+    let after = |finder: &mut TroubleFinder, engine_speed, lock, ms| {
+        let inputs = Inputs {
+            engine_speed,
+            ..Inputs::default()
+        };
+        let mut found = Troubles::NONE;
+        for _ in 0..ms {
+            found = finder.update(&inputs, &Outputs::default(), lock);
+        }
+        found
+    };
+    let lost = Troubles::from(Trouble::EngineSpeedLost);
+    let mut finder = TroubleFinder::default();
+    assert_eq!(after(&mut finder, None, &LOCK, 5_000), Troubles::NONE);
+    for _ in 0..2 {
+        assert_eq!(after(&mut finder, speed, &LOCK, 1), Troubles::NONE);
+        assert_eq!(after(&mut finder, None, &LOCK, 999), Troubles::NONE);
+        assert_eq!(after(&mut finder, None, &LOCK, 1), lost);
+        assert_eq!(after(&mut finder, None, &LOCK, 100_000), lost);
+    }
+    let mut finder = TroubleFinder::default();
+    assert_eq!(after(&mut finder, None, &required, 999), Troubles::NONE);
+    assert_eq!(after(&mut finder, None, &required, 1), lost);
+    assert_eq!(after(&mut finder, speed, &required, 1), Troubles::NONE);
+    let open = tripped(Trip::CoilOpen);
+    let mut finder = TroubleFinder::default();
+    after(&mut finder, None, &required, 1_000);
+    let both = finder.update(&Inputs::default(), &open, &required);
+    assert_eq!(both, lost.union(Trouble::Coils.into()));
+}
+
 #[test]
 fn what_trips_the_envelope_gets_the_code_that_leads_to_it() {
-    let found = |trip, inputs: &Inputs| TroubleFinder::default().update(inputs, &tripped(trip));
+    let found =
+        |trip, inputs: &Inputs| TroubleFinder::default().update(inputs, &tripped(trip), &LOCK);
     let supply = |millivolt| Inputs {
         supply: Some(MilliVolt(millivolt)),
         ..Inputs::default()
@@ -207,8 +250,14 @@ fn what_trips_the_envelope_gets_the_code_that_leads_to_it() {
     };
     let mut finder = TroubleFinder::default();
     let inputs = Inputs::default();
-    assert_eq!(finder.update(&inputs, &sinking), Trouble::Sinking.into());
-    assert_eq!(finder.update(&inputs, &Outputs::default()), Troubles::NONE);
+    assert_eq!(
+        finder.update(&inputs, &sinking, &LOCK),
+        Trouble::Sinking.into()
+    );
+    assert_eq!(
+        finder.update(&inputs, &Outputs::default(), &LOCK),
+        Troubles::NONE
+    );
 }
 
 #[test]
@@ -218,19 +267,19 @@ fn which_coil_it_was_is_still_known_when_both_are_off() {
         lower_current: MilliAmp(1_500),
         ..Outputs::default()
     };
-    finder.update(&currents(0, 0), &lowering);
+    finder.update(&currents(0, 0), &lowering, &LOCK);
     let open = tripped(Trip::CoilOpen);
     assert_eq!(
-        finder.update(&currents(0, 0), &open),
+        finder.update(&currents(0, 0), &open, &LOCK),
         Trouble::LoweringCoilOpen.into()
     );
     let short = tripped(Trip::CoilShort);
     assert_eq!(
-        finder.update(&currents(3_000, 0), &short),
+        finder.update(&currents(3_000, 0), &short, &LOCK),
         Trouble::LiftCoilShort.into()
     );
     assert_eq!(
-        finder.update(&currents(0, 1), &short),
+        finder.update(&currents(0, 1), &short, &LOCK),
         Trouble::LiftCoilShort.into()
     );
 }

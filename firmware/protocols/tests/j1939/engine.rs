@@ -58,21 +58,34 @@ fn silence_ends_it_after_300_ms_and_for_good() {
     assert_eq!(known(&bus), None);
 }
 
+// REQ-SAFE-08
 #[test]
-fn any_address_tells_it_and_of_two_the_first_one_counts() {
-    for source in [0x00, 0x01, OTHER, 0xF0, 0xFD] {
+fn only_the_addresses_of_the_calibration_tell_it() {
+    let told_by = |sources: Option<[u8; 2]>| {
+        (0..=u8::MAX).filter(move |&source| {
+            let mut bus = Bus::new(Variant::J1939);
+            if let Some(sources) = sources {
+                bus.node.accept_engine_speed_from(sources);
+            }
+            heard(&mut bus, source, 8_000).is_some()
+        })
+    };
+    assert!(told_by(None).eq([0, 1]), "the engines");
+    assert!(told_by(Some([OTHER, 0xFD])).eq([OTHER, 0xFD]));
+    assert!(told_by(Some([0, 0])).eq([0]));
+}
+
+#[test]
+fn of_two_engines_the_first_one_counts() {
+    for (first, second) in [(0, 1), (1, 0)] {
         let mut bus = Bus::new(Variant::J1939);
-        assert_eq!(heard(&mut bus, source, 8_000), Some(1_000), "{source:X}");
-        assert_eq!(heard(&mut bus, 0x05, 0), Some(1_000));
+        assert_eq!(heard(&mut bus, first, 8_000), Some(1_000));
+        assert_eq!(heard(&mut bus, second, 0), Some(1_000));
         bus.run(301);
-        assert_eq!(heard(&mut bus, 0x05, 0), Some(0), "the first one is silent");
-    }
-    for source in [0xFE, 0xFF] {
-        let mut bus = Bus::new(Variant::J1939);
         assert_eq!(
-            heard(&mut bus, source, 8_000),
-            None,
-            "{source:X} is no address"
+            heard(&mut bus, second, 0),
+            Some(0),
+            "the first one is silent"
         );
     }
 }

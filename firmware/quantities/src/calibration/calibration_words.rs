@@ -37,7 +37,7 @@ pub struct Group {
     pub name: &'static str,
     /// Its scalars, a word each.
     pub parameters: &'static [ParameterInfo],
-    /// True if they may be changed while the hitch moves, except for limits of set points.
+    /// True if they may be changed while the hitch moves, except for limits and addresses.
     pub live: bool,
 }
 
@@ -54,8 +54,14 @@ const fn group<G: ParameterGroup>(live: bool) -> Group {
 const LIVE: bool = true;
 const AT_REST: bool = false;
 
-/// Scalars of live groups that are changed at rest: limits, because they move set points.
-const NOT_LIVE: [(&str, &str); 2] = [("position", "lower_limit"), ("position", "upper_limit")];
+/// Scalars of live groups that are changed at rest: limits, because they move set points, and addresses of engines,
+/// because they say whose speed opens the engine lock.
+const NOT_LIVE: [(&str, &str); 4] = [
+    ("position", "lower_limit"),
+    ("position", "upper_limit"),
+    ("bus", "engine_address"),
+    ("bus", "second_engine_address"),
+];
 
 /// True if a scalar may be changed while the hitch moves.
 const fn is_live(group: &Group, name: &str) -> bool {

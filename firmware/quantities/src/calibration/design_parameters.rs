@@ -278,10 +278,14 @@ parameter_group! {
 }
 
 parameter_group! {
-    /// What is sent on the bus.
+    /// What is sent on the bus, and from whom it is received.
     BusParameters, "bus" {
         /// How often loggers are sent currents, angle and pressures; 0 is never. 50 Hz are what a campaign has, and take 6 % of a bus of 250 kbit/s.
         measured_period: Millisecond = 20, 0..=1_000;
+        /// Source address whose engine speed is accepted: that of the first engine. Changed at rest only.
+        engine_address: Count = 0, 0..=253;
+        /// Another one: that of the second engine, or of a unit that forwards the speed. Changed at rest only.
+        second_engine_address: Count = 1, 0..=253;
     }
 }
 

@@ -63,7 +63,7 @@ pub struct Calibration {
     pub teach: TeachParameters,
     /// Regulation of the coils' currents.
     pub current: CurrentParameters,
-    /// What is sent on the bus.
+    /// What is sent on the bus, and from whom it is received.
     pub bus: BusParameters,
     /// Safety envelope.
     pub safety: SafetyParameters,
