@@ -127,6 +127,7 @@ impl Controller {
             sensors: &calibration.sensors,
             lock: &calibration.lock,
             operator: &calibration.operator,
+            remote: &calibration.remote,
             damaged: self.memory.step(calibration),
             machine: MachineModel::of(calibration),
         };

@@ -278,6 +278,7 @@ fn every_switch_at_once_moves_nothing() {
         hold: true,
         quick_lift: true,
         teach: true,
+        consent: false,
     };
     hitch.inputs.jog = Some(MilliDegreePerSecond(10_000));
     hitch.lever(120_000);

@@ -18,6 +18,7 @@ use hitch_quantities::signals::charge::CoilCharge;
 use hitch_quantities::{Inputs, Outputs, State};
 
 use super::arbiter::Arbiter;
+use super::consent::ConsentWatch;
 use super::converter::Conversion;
 use super::drive::Drive;
 use super::enable_line::EnableLine;
@@ -47,6 +48,9 @@ pub struct Ecu<F> {
     pwm_steps: u16,
     enable_line: EnableLine,
     arbiter: Arbiter,
+    consent: ConsentWatch,
+    /// The operator consents to remote control in this step.
+    consents: bool,
     service: Service<F>,
     history: FaultHistory<F>,
     node: Node,
@@ -88,6 +92,8 @@ impl<F: NorFlash> Ecu<F> {
             pwm_steps: scaling.pwm_steps,
             enable_line: EnableLine::default(),
             arbiter: Arbiter::default(),
+            consent: ConsentWatch::default(),
+            consents: false,
             node: Node::new(settings),
             measured: MeasuredBroadcast::default(),
             trouble_finder: TroubleFinder::default(),
@@ -150,8 +156,11 @@ impl<F: NorFlash> Ecu<F> {
         inputs.enable_line_fault = self.enable_line.read(contacts.enable_feedback);
         // Some microcontrollers stop while their flash is erased: no motion is allowed then.
         inputs.switches.transport_lock |= self.service.is_storing();
-        let limits = &self.controller.calibration().position;
-        self.inputs = self.arbiter.decide(inputs, self.node.remote(), limits);
+        let calibration = self.controller.calibration();
+        self.consents = self.consent.update(&inputs, calibration.remote.consent);
+        self.inputs = self
+            .arbiter
+            .decide(inputs, self.node.remote(), &calibration.position);
     }
 
     fn serve_bus(&mut self, contacts: &Contacts, hardware: &mut impl Hardware) {
@@ -202,6 +211,7 @@ impl<F: NorFlash> Ecu<F> {
                 Remote::Position(position) => position.0,
                 Remote::Idle => -1,
             },
+            remote_state: self.node.remote_state(),
             address: self.node.address().unwrap_or(NO_ADDRESS),
             charge: self.charge,
             calibration_state: self.service.pages.applied() as u8,
@@ -215,7 +225,9 @@ impl<F: NorFlash> Ecu<F> {
 
     fn receive(&mut self, access: Access, now_us: u32, hardware: &mut impl Hardware) {
         self.slave.set_address(self.node.address());
-        let bus = &self.controller.calibration().bus;
+        let calibration = self.controller.calibration();
+        self.node.bound_remote_control(calibration.remote);
+        let bus = &calibration.bus;
         let engines = [bus.engine_address, bus.second_engine_address];
         self.node.accept_engine_speed_from(
             engines.map(|address| u8::try_from(address.0).unwrap_or(NO_ADDRESS)),
@@ -265,6 +277,7 @@ impl<F: NorFlash> Ecu<F> {
             &self.controller.calibration().position,
             self.service.troubles().union(found),
             self.arbiter.is_overridden(),
+            self.consents,
         );
         // The node is polled even if the bus is blocked: new frames then replace old ones.
         for _ in 0..MAX_SENT {

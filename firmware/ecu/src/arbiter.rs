@@ -6,9 +6,9 @@
 //!  | Lever |                                                    | Implement |
 //!  +-------+ <-----------------+ lever left where it was        +-----------+
 //!      ^                       |                                  |
-//!      |  one step of hold   +------+  lever moved, or the        |
+//!      |  one step of hold   +------+  lever moved, button        |
 //!      +---------------------| Stop | <---------------------------+
-//!                            +------+  implement gave it back or fell silent
+//!                            +------+  pressed, or remote control ended
 //! ```
 //!
 //! After remote control the lever is usually not at the hitch position. The return of control therefore includes a step
@@ -56,7 +56,7 @@ impl Arbiter {
             }
             (Remote::Position(position), taken_at) => {
                 let taken_at = *self.lever.insert(taken_at.unwrap_or(lever));
-                self.overridden |= (lever - taken_at).magnitude() > TAKEN;
+                self.overridden |= (lever - taken_at).magnitude() > TAKEN || inputs.jog.is_some();
                 match self.overridden {
                     true => held(inputs),
                     false => Inputs {

@@ -26,6 +26,7 @@ extern crate std;
 mod application;
 mod arbiter;
 mod coil_driver;
+mod consent;
 mod converter;
 mod drive;
 mod enable_line;

@@ -23,17 +23,20 @@ pub enum Contact {
     QuickLift = 1 << 4,
     /// Service: the external buttons start teaching.
     Service = 1 << 5,
+    /// Consent to remote control, a button. Open is no consent.
+    Consent = 1 << 6,
 }
 
 impl Panel {
     /// Contacts in the order of their bits.
-    pub const CONTACTS: [Contact; 6] = [
+    pub const CONTACTS: [Contact; 7] = [
         Contact::Up,
         Contact::Down,
         Contact::FieldMode,
         Contact::Hold,
         Contact::QuickLift,
         Contact::Service,
+        Contact::Consent,
     ];
 
     /// A tractor in the field with nothing pressed.
@@ -42,7 +45,7 @@ impl Panel {
     /// The panel with these bits; bits without a contact are ignored.
     #[must_use]
     pub const fn from_bits(bits: u8) -> Self {
-        Self(bits & 0b11_1111)
+        Self(bits & 0b111_1111)
     }
 
     /// One bit for each contact, set if it is closed.
@@ -85,6 +88,7 @@ impl Panel {
                 hold: self.is_closed(Contact::Hold),
                 quick_lift: self.is_closed(Contact::QuickLift),
                 teach: self.is_closed(Contact::Service),
+                consent: self.is_closed(Contact::Consent),
             },
             ..inputs
         }

@@ -11,7 +11,8 @@ const UNDER_WAY_MDEG: i32 = 2_000;
 /// Distance from a travel limit within which a set point counts as at the limit: 0.1 degree.
 const AT_LIMIT_MDEG: i32 = 100;
 
-/// The hitch's status after a step. `taken_back`: the operator has moved the lever during remote control.
+/// The hitch's status after a step. `taken_back`: the operator has moved the lever or pressed the button during remote
+/// control. `consents`: the operator consents to remote control.
 #[must_use]
 pub fn status(
     inputs: &Inputs,
@@ -19,6 +20,7 @@ pub fn status(
     limits: &PositionParameters,
     troubles: Troubles,
     taken_back: bool,
+    consents: bool,
 ) -> HitchStatus {
     let exit = exit_code(outputs);
     HitchStatus {
@@ -28,7 +30,11 @@ pub fn status(
         in_work: None,
         limit: limit(inputs, outputs, limits),
         exit,
-        remote_permitted: exit == ExitCode::Clear && !inputs.switches.hold && !taken_back,
+        remote_permitted: exit == ExitCode::Clear
+            && !inputs.switches.hold
+            && inputs.jog.is_none()
+            && !taken_back,
+        consents,
         troubles,
     }
 }

@@ -23,8 +23,8 @@
 //! ```
 //!
 //! Its parts are watches, each for some rows of the table: `angle` (with `following` and `noise_detector`), `coils`,
-//! `supply`, `measuring`, `travel_limits`; `locks` for the operator's locks; `arming` for the operator's touch; and
-//! [`rows`], which counts how long each row has been holding.
+//! `supply`, `measuring`, `travel_limits`; `locks` for the operator's locks; `arming` for the operator's touch; `consent` for remote
+//! control; and [`rows`], which counts how long each row has been holding.
 //!
 //! ```
 //! use hitch_quantities::{CoilCurrents, Inputs, ValidCalibration};
@@ -36,6 +36,7 @@
 //!     sensors: &calibration.sensors,
 //!     lock: &calibration.lock,
 //!     operator: &calibration.operator,
+//!     remote: &calibration.remote,
 //!     damaged: false,
 //!     machine: MachineModel::of(&calibration),
 //! };
@@ -56,6 +57,7 @@ mod angle;
 mod arming;
 mod coils;
 mod command;
+mod consent;
 mod following;
 mod locks;
 mod measuring;
@@ -65,7 +67,7 @@ mod supply;
 mod travel_limits;
 
 use hitch_quantities::calibration::design_parameters::{
-    LockParameters, OperatorParameters, SafetyParameters, SensorParameters,
+    LockParameters, OperatorParameters, RemoteParameters, SafetyParameters, SensorParameters,
 };
 use hitch_quantities::units::{Duty, MilliAmp, Millisecond};
 use hitch_quantities::{CoilCurrents, Duties, Inputs, Trip};
@@ -74,6 +76,7 @@ use angle::AngleWatch;
 use arming::Arming;
 use coils::CoilWatch;
 pub use command::{Command, Step};
+use consent::Consent;
 pub use following::MachineModel;
 use locks::{Lock, Locks};
 use measuring::MeasuringFaults;
@@ -94,6 +97,8 @@ pub struct Limits<'a> {
     pub lock: &'a LockParameters,
     /// Where the dials are shut.
     pub operator: &'a OperatorParameters,
+    /// How the operator consents to remote control.
+    pub remote: &'a RemoteParameters,
     /// They, or others of their calibration, have changed in memory.
     pub damaged: bool,
     /// What currents do to the hitch.
@@ -105,6 +110,7 @@ pub struct Limits<'a> {
 pub struct Envelope {
     locks: Locks,
     arming: Arming,
+    consent: Consent,
     angle: AngleWatch,
     coils: CoilWatch,
     supply: SupplyWatch,
@@ -138,7 +144,8 @@ impl Envelope {
         let command = Some(command.currents).filter(|_| fresh);
         let measuring = measuring::judge(inputs, limits.sensors, limits.safety);
         let slow_start = self.starts_slowly(inputs);
-        let holds = self.rows_that_hold(command, inputs, measuring, slow_start, limits);
+        let lock = self.locks.judge(inputs, limits.lock);
+        let holds = self.rows_that_hold(command, inputs, measuring, slow_start, lock, limits);
         let found = self.debounce.judge(holds, measuring.lost, limits.safety);
         self.count_health(limits.lock);
         // The first trip is the one to report, unless a worse one comes.
@@ -148,9 +155,9 @@ impl Envelope {
                 .or(self.tripped)
                 .or(found);
         }
-        let lock = match (self.locks.judge(inputs, limits.lock), self.tripped) {
-            (lock, None) => lock,
-            (_, Some(_)) => Lock::All,
+        let lock = match self.tripped {
+            None => lock,
+            Some(_) => Lock::All,
         };
         let at_rest = self.passed == CoilCurrents::OFF;
         let armed = self.arming.update(inputs, lock, at_rest, limits.safety);
@@ -253,6 +260,7 @@ impl Envelope {
         inputs: &Inputs,
         measuring: MeasuringFaults,
         slow_start: bool,
+        lock: Lock,
         limits: Limits<'_>,
     ) -> Rows {
         let (safety, sensors) = (limits.safety, limits.sensors);
@@ -266,6 +274,8 @@ impl Envelope {
         let both =
             command.is_some_and(|both| both.lift > MilliAmp::ZERO && both.lower > MilliAmp::ZERO);
         let beyond_limit = !slow_start && travel_limits::are_exceeded(inputs, self.passed, limits);
+        let no_consent = self.consent.is_missing(inputs, lock, limits.remote)
+            && self.passed != CoilCurrents::OFF;
         Rows::of([
             (Trip::Stale, command.is_none()),
             (Trip::BothCoils, both),
@@ -288,6 +298,7 @@ impl Envelope {
             (Trip::EnableLine, inputs.enable_line_fault),
             (Trip::Memory, limits.damaged),
             (Trip::BeyondLimit, beyond_limit),
+            (Trip::NoConsent, no_consent),
         ])
     }
 

@@ -26,7 +26,8 @@ fn time(trip: Trip, parameters: &SafetyParameters) -> Millisecond {
         | Trip::NotFollowing
         | Trip::Against
         | Trip::EnableLine
-        | Trip::Memory => Millisecond(1),
+        | Trip::Memory
+        | Trip::NoConsent => Millisecond(1),
     }
 }
 

@@ -404,7 +404,7 @@ impl Board {
             }
         }
         // A closed contact is low.
-        for number in 0..6 {
+        for number in 0..7 {
             let closed = contacts.panel.bits() >> number & 1 == 1;
             let pin = Pin::new(Port::C, 6 + number);
             chip.conditions.levels.insert(pin, !closed);

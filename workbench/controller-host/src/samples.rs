@@ -23,7 +23,7 @@ pub const QUANTITIES: [&str; 12] = [
 ];
 
 /// Names of the operator's switches.
-pub const SWITCHES: [&str; 4] = ["transport_lock", "hold", "quick_lift", "teach"];
+pub const SWITCHES: [&str; 5] = ["transport_lock", "hold", "quick_lift", "teach", "consent"];
 
 /// The inputs of a step: values in the order of [`QUANTITIES`], `None` for a sample that is missing, and the
 /// [`SWITCHES`].
@@ -35,7 +35,7 @@ pub fn inputs(
     let scaled =
         |index: usize, counts: f64| values[index].map(|value: f64| (value * counts).round() as i32);
     let milli = |index: usize| scaled(index, 1e3);
-    let [transport_lock, hold, quick_lift, teach] = switches;
+    let [transport_lock, hold, quick_lift, teach, consent] = switches;
     Inputs {
         lever: milli(0).map(MilliDegree),
         rocker_angle: milli(1).map(MilliDegree),
@@ -62,6 +62,7 @@ pub fn inputs(
             hold,
             quick_lift,
             teach,
+            consent,
         },
     }
 }

@@ -55,6 +55,7 @@ const SWITCHES_ABOUT: [&str; SWITCHES.len()] = [
     "hold: the hitch stays where it is whatever the lever does",
     "quick lift, a button: the first press raises, the next returns to the lever",
     "service: with it, jog_deg_per_s teaches a locked machine",
+    "consent to remote control, a button; no effect without an implement on a bus",
 ];
 
 /// The controller with a calibration.

@@ -27,7 +27,7 @@ use crate::status_line::StatusLine;
     The real firmware image runs on an emulated Cortex-M4 with the plant attached, in lock step and in real time. The \
     operator moves the lever through the hitch position (lever capture) after half a second. Standard input then takes \
     operator commands, one in each line: lever DEG, up, down, stop, quick on|off, hold on|off, lock on|off, \
-    service on|off, limit DEG, dial PERCENT, power, quit. Lever and limit move over the travel of the model's hitch and \
+    service on|off, consent on|off, limit DEG, dial PERCENT, power, quit. Lever and limit move over the travel of the model's hitch and \
     10 degrees more, as far as the board's sensors measure it (35 to 145 degrees). The status shows when the computer is too slow for real time. With --can, the bus accepts slcan clients: python-can with \
     interface slcan and channel socket://HOST:PORT. Writing the calibration over XCP requires `service on`.")]
 pub struct Args {

@@ -48,7 +48,7 @@ pub enum Order {
 impl Order {
     /// The accepted commands.
     pub const WORDS: &'static str = "lever DEG, up, down, stop, quick on|off, hold on|off, lock on|off, \
-        service on|off, limit DEG, dial PERCENT, power, quit";
+        service on|off, consent on|off, limit DEG, dial PERCENT, power, quit";
 }
 
 impl Order {
@@ -88,6 +88,7 @@ impl Order {
             ["quick", position] => Self::Contact(Contact::QuickLift, switch(position)?),
             ["hold", position] => Self::Contact(Contact::Hold, switch(position)?),
             ["lock", position] => Self::Contact(Contact::FieldMode, !switch(position)?),
+            ["consent", position] => Self::Contact(Contact::Consent, switch(position)?),
             ["service", position] => Self::Contact(Contact::Service, switch(position)?),
             ["power"] => Self::Power,
             ["quit"] => Self::Quit,

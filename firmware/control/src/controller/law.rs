@@ -119,8 +119,14 @@ impl Control {
     fn position_law(&mut self, target: Micrometre, inputs: &Inputs) -> Demand {
         let calibration = &self.calibration;
         let parameters = &calibration.position;
+        // An implement moves the hitch more slowly than the operator may.
+        let most = match inputs.set_point {
+            Some(_) => calibration.remote.speed,
+            None => MicrometrePerSecond(i32::MAX),
+        };
         let lower_speed = lowering_limit(inputs.lowering_dial, &calibration.operator, parameters);
-        let demand = self.position.demand(
+        let lower_speed = lower_speed.min(most);
+        let mut demand = self.position.demand(
             target,
             self.phase,
             &self.motion,
@@ -128,6 +134,9 @@ impl Control {
             self.scale,
             calibration,
         );
+        if demand.direction == Direction::Lift {
+            demand.speed = demand.speed.min(most);
+        }
         self.position
             .limit_approach(demand, lower_speed, parameters)
     }

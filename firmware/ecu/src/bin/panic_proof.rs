@@ -67,7 +67,7 @@ fn application() {
     };
     let mut ecu = Ecu::start(flash, black_box(0), scaling);
     let mut hardware = AnyHardware(CoilDriver::new(AnyPin, AnyPin, AnyPin, AnyPin));
-    let mut panel = PanelInputs::new([AnyPin; 6]);
+    let mut panel = PanelInputs::new([AnyPin; 7]);
     while black_box(true) {
         let codes = black_box([0; Samples::CHANNELS]);
         let contacts = Contacts {

@@ -23,7 +23,7 @@ fn still_with_engine(bench: &mut Bench, speed: u16, ms: u32) -> bool {
 }
 
 /// Flash in which a calibration is stored.
-fn stored(block: Calibration) -> Flash {
+pub fn stored(block: Calibration) -> Flash {
     let flash = Flash::blank();
     let calibration = block.sealed().validate().unwrap();
     CalibrationStore::new(flash.clone())

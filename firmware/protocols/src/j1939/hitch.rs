@@ -27,8 +27,11 @@ pub struct HitchStatus {
     pub limit: Limit,
     /// Why the hitch can't be commanded, or [`ExitCode::Clear`].
     pub exit: ExitCode,
-    /// True while the operator lets an implement command the hitch. Taking it away ends remote control.
+    /// True while the hitch follows lever or implement and the operator does nothing else. Otherwise remote control
+    /// ends, with the reason in `exit`, or as the operator's override.
     pub remote_permitted: bool,
+    /// The operator consents to remote control in this step.
+    pub consents: bool,
     /// What is wrong.
     pub troubles: Troubles,
 }
@@ -125,6 +128,8 @@ exit_codes! {
     ControlFault = 8,
     /// The function is faulty.
     FunctionFault = 9,
+    /// Ground speed too high.
+    SpeedTooHigh = 17,
     /// Oil level too low.
     OilLevelLow = 20,
     /// Hitch locked out.
@@ -207,8 +212,12 @@ impl StatusMessage {
 }
 
 /// What there is of the facilities of a tractor (ISO 11783-7, tractor facilities response): the position of the rear
-/// hitch, its commands and their limit status. A bit that is 0 promises nothing.
-pub const FACILITIES: [u8; 8] = [0, 0b1000_0000, 0, 0b1000_1000, 0, 0, 0, 0];
+/// hitch, and, if `is_commanded`, its commands and their limit status. A bit that is 0 promises nothing.
+#[must_use]
+pub const fn facilities(is_commanded: bool) -> [u8; 8] {
+    let commands = if is_commanded { 0b1000_1000 } else { 0 };
+    [0, 0b1000_0000, 0, commands, 0, 0, 0, 0]
+}
 
 /// What an implement asks of the rear hitch (SPN 1875).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

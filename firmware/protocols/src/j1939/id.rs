@@ -34,6 +34,10 @@ impl Pgn {
     pub const REAR_HITCH_STATUS: Self = Self(0xFE45);
     /// Electronic engine controller 1: engine speed.
     pub const ENGINE: Self = Self(0xF004);
+    /// Wheel-based speed and distance.
+    pub const WHEEL_SPEED: Self = Self(0xFE48);
+    /// Ground-based speed and distance.
+    pub const GROUND_SPEED: Self = Self(0xFE49);
     /// Hitch and PTO commands.
     pub const HITCH_COMMANDS: Self = Self(0xFE42);
     /// Request for a group to be repeated.

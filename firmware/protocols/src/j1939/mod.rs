@@ -6,9 +6,11 @@
 //! No call blocks: [`Node::receive`] takes a frame, [`Node::poll`] returns the next one that is due. Both do a bounded
 //! amount of work, and the number of answers per second is bounded for any bus traffic.
 
+mod address_book;
 pub mod claim;
 pub mod diagnostics;
 pub mod engine;
+mod ground_speed;
 pub mod heartbeat;
 pub mod hitch;
 mod id;

@@ -71,6 +71,26 @@ impl Name {
         self.0 >> 63 == 1
     }
 
+    /// Device class, 7 bits.
+    const fn device_class(self) -> u8 {
+        (self.0 >> 49) as u8 & 0x7F
+    }
+
+    /// Industry group, 3 bits.
+    const fn industry_group(self) -> u8 {
+        (self.0 >> 60) as u8 & 0x07
+    }
+
+    /// Whether the node belongs to an implement: industry group 2, agriculture and forestry, and a device class that is
+    /// neither 0, non-specific, nor 1, tractor, nor 127, not available. Nodes of these classes (terminals, task
+    /// controllers, guidance, engines, service tools) are not what hangs on the hitch, and no function of a tractor
+    /// commands a hitch as an implement does.
+    #[must_use]
+    pub const fn is_implement(self) -> bool {
+        const AGRICULTURE: u8 = 2;
+        self.industry_group() == AGRICULTURE && !matches!(self.device_class(), 0 | 1 | 0x7F)
+    }
+
     /// As in a message.
     #[must_use]
     pub const fn to_bytes(self) -> [u8; 8] {

@@ -1,17 +1,20 @@
 //! The hitch as a node on the bus: what it hears, and what it says when.
 
+use hitch_quantities::calibration::design_parameters::RemoteParameters;
 use hitch_quantities::units::RevolutionPerMinute;
 
+use super::address_book::AddressBook;
 use super::claim::AddressClaim;
 use super::diagnostics::{Diagnostics, LONGEST_MESSAGE, Message, Occurrences, Variant};
 use super::engine::EngineSpeed;
+use super::ground_speed::GroundSpeed;
 use super::heartbeat;
 use super::heartbeat::{Heartbeat, Monitor};
-use super::hitch::{FACILITIES, HitchCommand, HitchStatus, StatusMessage};
+use super::hitch::{HitchCommand, HitchStatus, StatusMessage, facilities};
 use super::id::{GLOBAL, Id, NULL, Pgn};
 use super::name::Name;
 use super::reception::Reception;
-use super::remote::{Remote, RemoteControl};
+use super::remote::{Remote, RemoteControl, Surroundings};
 use super::request::{Acknowledgement, GroupRequest, RequestQueue, acknowledgement};
 use super::time::since_ms;
 use super::transport::Transport;
@@ -21,7 +24,7 @@ use crate::can::Frame;
 const STATUS_PERIOD_MS: u32 = 100;
 /// A status that has changed comes no closer to the last one than this, ms: a moving hitch changes it all the time.
 const STATUS_SPACING_MS: u32 = 20;
-/// Nobody is asked for a heartbeat more often than this, ms.
+/// Nobody is asked for a heartbeat, or for a claim, more often than this, ms.
 const ASKING_SPACING_MS: u32 = 1_000;
 /// Characters of the software's identification at most.
 const LONGEST_IDENTIFICATION: usize = 40;
@@ -54,6 +57,8 @@ pub struct Settings {
 #[derive(Clone, Debug)]
 pub struct Node {
     claim: AddressClaim,
+    addresses: AddressBook,
+    ground_speed: GroundSpeed,
     remote: RemoteControl,
     remote_permitted: bool,
     diagnostics: Diagnostics,
@@ -69,6 +74,10 @@ pub struct Node {
     unwatched: Option<u8>,
     /// When somebody was asked last.
     asked_ms: Option<u32>,
+    /// Who is to be asked for its claim.
+    unknown: Option<u8>,
+    /// When somebody was asked for its claim last.
+    asked_for_claim_ms: Option<u32>,
     last_status: Option<([u8; 8], u32)>,
 }
 
@@ -78,6 +87,8 @@ impl Node {
     pub fn new(settings: Settings) -> Self {
         Self {
             claim: AddressClaim::new(settings.name, settings.preferred_address),
+            addresses: AddressBook::default(),
+            ground_speed: GroundSpeed::default(),
             remote: RemoteControl::default(),
             remote_permitted: false,
             diagnostics: Diagnostics::new(settings.variant, &settings.occurrences),
@@ -90,6 +101,8 @@ impl Node {
             monitor: None,
             unwatched: None,
             asked_ms: None,
+            unknown: None,
+            asked_for_claim_ms: None,
             last_status: None,
         }
     }
@@ -104,6 +117,17 @@ impl Node {
     #[must_use]
     pub fn remote(&self) -> Remote {
         self.remote.remote()
+    }
+
+    /// State of remote control: 0 idle, 1 requested, 2 consented, 3 active.
+    #[must_use]
+    pub const fn remote_state(&self) -> u8 {
+        self.remote.state_code()
+    }
+
+    /// Takes the bounds of remote control; those of the nominal calibration unless told otherwise.
+    pub fn bound_remote_control(&mut self, parameters: RemoteParameters) {
+        self.remote.set_parameters(parameters);
     }
 
     /// Engine speed; none while no engine tells it.
@@ -142,6 +166,9 @@ impl Node {
     fn receive_eight(&mut self, id: &Id, bytes: &[u8; 8], now_ms: u32) {
         if id.pgn == Pgn::ADDRESS_CLAIMED {
             let name = Name::from_bytes(*bytes);
+            self.addresses.claimed(id.source, name);
+            self.unknown = self.unknown.filter(|&unknown| unknown != id.source);
+            self.remote.claimed(id.source, name, now_ms);
             return self.claim.heard_claim(id.source, name, now_ms);
         }
         if id.source >= NULL {
@@ -155,6 +182,10 @@ impl Node {
         match id.pgn {
             Pgn::HITCH_COMMANDS => {
                 self.commanded(HitchCommand::from_bytes(bytes), id.source, now_ms);
+            }
+            Pgn::WHEEL_SPEED | Pgn::GROUND_SPEED => {
+                let limit = self.remote.parameters().ground_speed;
+                self.ground_speed.receive(bytes, limit, now_ms);
             }
             Pgn::ENGINE => self.engine.receive(bytes, id.source, now_ms),
             Pgn::TRANSPORT_CONNECTION if for_us || for_all => {
@@ -190,13 +221,21 @@ impl Node {
         }
     }
 
-    /// An implement commands the hitch. Who begins to is asked for a heartbeat, and so is one whose heartbeat is
-    /// broken.
+    /// A node commands the hitch. Who begins to is asked for a heartbeat, and so is one whose heartbeat is broken. Who
+    /// is unknown is asked for its claim.
     fn commanded(&mut self, command: HitchCommand, source: u8, now_ms: u32) {
         let condemned = self.is_condemned(source, now_ms);
         let before = self.remote.owner();
-        let permitted = self.remote_permitted && !condemned;
-        self.remote.command(command, source, permitted, now_ms);
+        let too_fast = self.ground_speed.is_exceeded(now_ms);
+        let permitted =
+            self.remote_permitted && self.address().is_some() && !condemned && !too_fast;
+        let name = self.addresses.name(source);
+        if name.is_none() {
+            self.unknown = Some(source);
+        }
+        let implement = name.filter(|name| name.is_implement());
+        self.remote
+            .command(command, source, implement, permitted, now_ms);
         let begins = before.is_none() && self.remote.owner().is_some();
         if begins || condemned {
             self.unwatched = Some(source);
@@ -223,8 +262,12 @@ impl Node {
         self.remote_permitted = status.remote_permitted;
         self.engine.update(now_ms);
         let owner = self.remote.owner();
-        let condemned = owner.is_some_and(|owner| self.is_condemned(owner, now_ms));
-        self.remote.update(status, condemned, now_ms);
+        let around = Surroundings {
+            condemned: owner.is_some_and(|owner| self.is_condemned(owner, now_ms)),
+            too_fast: self.ground_speed.is_exceeded(now_ms),
+            has_address: self.address().is_some(),
+        };
+        self.remote.update(status, around, now_ms);
         self.diagnostics.update(status.troubles);
         let claim = self.claim.poll(now_ms);
         let Some(source) = self.claim.address() else {
@@ -234,6 +277,7 @@ impl Node {
             self.reception = Reception::default();
             self.heartbeat = Heartbeat::default();
             self.unwatched = None;
+            self.unknown = None;
             return claim;
         };
         claim
@@ -243,6 +287,7 @@ impl Node {
             .or_else(|| self.periodic_dm1(source, now_ms))
             .or_else(|| self.reception.poll(source, now_ms))
             .or_else(|| self.ask_for_heartbeat(source, now_ms))
+            .or_else(|| self.ask_for_claim(source, now_ms))
             .or_else(|| self.answer(source, now_ms, status))
     }
 
@@ -301,6 +346,22 @@ impl Node {
         Some(id.frame([a, b, c, heartbeat::PERIOD_MS as u8, 0, 0xFF, 0xFF, 0xFF]))
     }
 
+    fn ask_for_claim(&mut self, source: u8, now_ms: u32) -> Option<Frame> {
+        let spaced = self
+            .asked_for_claim_ms
+            .is_none_or(|asked| since_ms(asked, now_ms) >= ASKING_SPACING_MS);
+        let destination = self.unknown.filter(|_| spaced)?;
+        self.unknown = None;
+        self.asked_for_claim_ms = Some(now_ms);
+        let id = Id {
+            priority: DIAGNOSTIC_PRIORITY,
+            pgn: Pgn::REQUEST,
+            destination,
+            source,
+        };
+        Frame::data_frame(id.pack().into(), &Pgn::ADDRESS_CLAIMED.to_bytes())
+    }
+
     fn answer(&mut self, source: u8, now_ms: u32, status: &HitchStatus) -> Option<Frame> {
         let request = self.requests.next(now_ms)?;
         let message = match request.group {
@@ -309,9 +370,8 @@ impl Node {
                 return Some(broadcast(request.group, STATUS_PRIORITY, source).frame(bytes));
             }
             Pgn::TRACTOR_FACILITIES => {
-                return Some(
-                    broadcast(request.group, DIAGNOSTIC_PRIORITY, source).frame(FACILITIES),
-                );
+                let bytes = facilities(self.remote.is_offered());
+                return Some(broadcast(request.group, DIAGNOSTIC_PRIORITY, source).frame(bytes));
             }
             Pgn::DM1 => self.diagnostics.dm1(),
             Pgn::DM2 => self.diagnostics.dm2(),

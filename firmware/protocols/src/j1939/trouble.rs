@@ -38,6 +38,7 @@ const PUMP_PRESSURE: u32 = OWN + 8;
 const REFERENCE: u32 = OWN + 9;
 const ANGLE_TRACKS: u32 = OWN + 10;
 const ENABLE_LINE: u32 = OWN + 11;
+const REMOTE: u32 = OWN + 12;
 /// Sensor supply voltage 1.
 const SENSOR_SUPPLY: u32 = 3509;
 
@@ -134,6 +135,8 @@ troubles! {
     BeyondLimit = CONTROLLER / 31,
     /// The engine speed is no longer received, or was never although the calibration requires it.
     EngineSpeedLost = ENGINE_SPEED / 9,
+    /// A current on the set point of an implement to which the operator has not consented.
+    NoConsent = REMOTE / 31,
 }
 
 /// A set of troubles.
@@ -272,6 +275,7 @@ impl TroubleFinder {
             Trip::EnableLine => Trouble::EnableLine,
             Trip::Memory => Trouble::Memory,
             Trip::BeyondLimit => Trouble::BeyondLimit,
+            Trip::NoConsent => Trouble::NoConsent,
         }
     }
 }

@@ -58,6 +58,8 @@ mod form {
 pub struct EcuState {
     /// Set point of an implement, per mille of the travel; -1: none.
     pub remote_set_point: i32,
+    /// State of remote control: 0 idle, 1 requested, 2 consented, 3 active.
+    pub remote_state: u8,
     /// Own address on the bus; 254: none.
     pub address: u8,
     /// Charge through the coils.
@@ -202,6 +204,8 @@ measurements! {
     step_time: I32, "us", 1, 0..=1_000_000 = inputs.step_time.map_or(0, |value| value.0);
     /// Set point of an implement over the travel; negative: none.
     remote_set_point: I16, "percent", 10, -10..=1_000 = ecu.remote_set_point;
+    /// State of remote control: 0 idle, 1 requested, 2 consented, 3 active.
+    remote_state: U8, "", 1, 0..=3 = i32::from(ecu.remote_state);
     /// Address on the bus; 254: none.
     address: U8, "", 1, 0..=254 = i32::from(ecu.address);
     /// Why the working page isn't in use; 0: it is.

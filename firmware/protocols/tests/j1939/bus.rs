@@ -3,7 +3,7 @@
 use hitch_protocols::can::Frame;
 use hitch_protocols::j1939::diagnostics::KINDS;
 use hitch_protocols::j1939::{
-    ExitCode, HitchStatus, Id, Name, NameFields, Node, Pgn, Settings, Variant,
+    ExitCode, HitchCommand, HitchStatus, Id, Name, NameFields, Node, Pgn, Settings, Variant,
 };
 use hitch_quantities::units::PerMille;
 
@@ -58,10 +58,11 @@ impl Bus {
         }
     }
 
-    /// A bus with a node that has its address.
+    /// A bus with a node that has its address, and the implement [`OTHER`].
     pub fn claimed(variant: Variant) -> Self {
         let mut bus = Self::new(variant);
         bus.run(251);
+        bus.hear_claim(OTHER, implement(1));
         assert_eq!(bus.node.address(), Some(OURS));
         bus.sent.clear();
         bus
@@ -107,6 +108,37 @@ impl Bus {
         self.receive(Pgn::ADDRESS_CLAIMED, 0xFF, address, &name.to_bytes());
     }
 
+    /// Another node commands the hitch.
+    pub fn command_from(&mut self, source: u8, command: HitchCommand) {
+        self.receive(Pgn::HITCH_COMMANDS, 0xFF, source, &command.to_bytes());
+    }
+
+    /// The implement [`OTHER`] commands.
+    pub fn command(&mut self, command: HitchCommand) {
+        self.command_from(OTHER, command);
+    }
+
+    /// The operator consents in the next millisecond.
+    pub fn consent(&mut self) {
+        self.status.consents = true;
+        self.step();
+        self.status.consents = false;
+    }
+
+    /// The implement [`OTHER`] asks for the hitch at `raw`, the operator consents, and the implement has it.
+    pub fn take_control(&mut self, raw: u8) {
+        for _ in 0..2 {
+            self.command(HitchCommand::Position(raw));
+            self.run(99);
+            assert_eq!(self.node.remote_state(), 1, "requested");
+            self.step();
+        }
+        self.consent();
+        assert_eq!(self.node.remote_state(), 2, "consented");
+        self.command(HitchCommand::Position(raw));
+        assert_eq!(self.node.remote_state(), 3, "active");
+    }
+
     /// Another node asks for a group.
     pub fn ask(&mut self, group: Pgn, destination: u8) {
         self.receive(Pgn::REQUEST, destination, OTHER, &group.to_bytes());
@@ -122,4 +154,14 @@ impl Bus {
 /// The NAME of a hitch with this serial number; smaller ones win.
 pub fn name(identity: u32) -> Name {
     NameFields::rear_hitch(identity + 1_000).into()
+}
+
+/// The NAME of an implement, a sprayer, with this serial number.
+pub fn implement(identity: u32) -> Name {
+    let fields = NameFields {
+        function: 128,
+        device_class: 6,
+        ..NameFields::rear_hitch(identity + 2_000)
+    };
+    fields.into()
 }

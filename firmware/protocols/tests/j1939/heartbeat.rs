@@ -2,7 +2,8 @@
 
 use hitch_protocols::j1939::hitch::StatusMessage;
 use hitch_protocols::j1939::{ExitCode, HitchCommand, Pgn, Remote, Variant};
-use hitch_quantities::units::PerMille;
+use hitch_quantities::calibration::design_parameters::RemoteParameters;
+use hitch_quantities::units::{Count, PerMille};
 
 use crate::bus::{Bus, OTHER, OURS};
 
@@ -23,9 +24,19 @@ fn commanded(bus: &mut Bus, beats: impl IntoIterator<Item = u8>) {
 
 fn command(bus: &mut Bus, times: u32) {
     for _ in 0..times {
-        let bytes = HitchCommand::Position(HERE).to_bytes();
-        bus.receive(Pgn::HITCH_COMMANDS, 0xFF, OTHER, &bytes);
+        bus.command(HitchCommand::Position(HERE));
         bus.run(100);
+    }
+}
+
+/// Commands every 100 ms with these heartbeats, of an implement that begins anew, and the operator consents.
+fn begin_anew(bus: &mut Bus, beats: impl IntoIterator<Item = u8>) {
+    bus.command(HitchCommand::None);
+    for number in beats {
+        beat(bus, number);
+        bus.command(HitchCommand::Position(HERE));
+        bus.consent();
+        bus.run(99);
     }
 }
 
@@ -39,7 +50,7 @@ fn exit(bus: &mut Bus) -> ExitCode {
 fn watched() -> Bus {
     let mut bus = Bus::claimed(Variant::Iso11783);
     bus.run(100);
-    commanded(&mut bus, [251].into_iter().chain(0..10));
+    begin_anew(&mut bus, [251].into_iter().chain(0..10));
     assert_eq!(bus.node.remote(), ACTIVE);
     bus
 }
@@ -76,6 +87,8 @@ fn who_asks_gets_it_every_100_ms() {
 fn who_takes_the_hitch_is_asked_for_one_and_may_have_none() {
     let mut bus = Bus::claimed(Variant::Iso11783);
     bus.run(100);
+    command(&mut bus, 1);
+    bus.consent();
     command(&mut bus, 20);
     assert_eq!(bus.node.remote(), ACTIVE);
     let asked = bus.take(Pgn::REPETITION_RATE);
@@ -94,10 +107,10 @@ fn a_heartbeat_that_goes_wrong_ends_remote_control_until_eight_are_good() {
         assert_eq!(bus.node.remote(), Remote::Idle, "{wrong}");
         assert_eq!(exit(&mut bus), ExitCode::Timeout);
         // The first of these is measured against the wrong one.
-        commanded(&mut bus, 100..108);
-        assert_eq!(bus.node.remote(), Remote::Idle, "seven good ones");
-        commanded(&mut bus, 108..110);
-        assert_eq!(bus.node.remote(), ACTIVE, "nine");
+        begin_anew(&mut bus, 100..108);
+        assert_eq!(bus.node.remote_state(), 0, "seven good ones");
+        begin_anew(&mut bus, 108..111);
+        assert_eq!(bus.node.remote(), ACTIVE, "ten");
     }
 }
 
@@ -126,7 +139,7 @@ fn silence_ends_remote_control_though_commands_go_on() {
         asked.len()
     );
     // Its sender begins anew.
-    commanded(&mut bus, [251].into_iter().chain(0..10));
+    begin_anew(&mut bus, [251].into_iter().chain(0..10));
     assert_eq!(bus.node.remote(), ACTIVE);
 }
 
@@ -149,4 +162,15 @@ fn facilities_are_told_who_asks_or_says_what_it_needs() {
     bus.receive(Pgn::REQUIRED_FACILITIES, 0xFF, OTHER, &[0xFF; 8]);
     bus.run(10);
     assert_eq!(bus.take(Pgn::TRACTOR_FACILITIES)[0].data(), expected);
+    bus.node.bound_remote_control(RemoteParameters {
+        consent: Count(0),
+        ..RemoteParameters::NOMINAL
+    });
+    bus.ask(Pgn::TRACTOR_FACILITIES, 0xFF);
+    bus.run(10);
+    let without_commands = [0, 0x80, 0, 0, 0, 0, 0, 0];
+    assert_eq!(
+        bus.take(Pgn::TRACTOR_FACILITIES)[0].data(),
+        without_commands
+    );
 }

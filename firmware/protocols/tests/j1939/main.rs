@@ -2,6 +2,7 @@
 
 mod bus;
 mod claim;
+mod consent;
 mod diagnostics;
 mod engine;
 mod flood;

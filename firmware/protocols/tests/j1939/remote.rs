@@ -8,14 +8,10 @@ use hitch_quantities::units::PerMille;
 /// The raw value of the position that the hitch stands at.
 const HERE: u8 = 155;
 
-fn command(bus: &mut Bus, command: HitchCommand) {
-    bus.receive(Pgn::HITCH_COMMANDS, 0xFF, OTHER, &command.to_bytes());
-}
-
 /// Commands every 100 ms, as an implement does.
 fn commanded(bus: &mut Bus, wanted: HitchCommand, ms: u32) {
     for _ in 0..ms / 100 {
-        command(bus, wanted);
+        bus.command(wanted);
         bus.run(100);
     }
 }
@@ -30,7 +26,8 @@ fn last_status(bus: &Bus) -> StatusMessage {
 fn remote_bus() -> Bus {
     let mut bus = Bus::claimed(Variant::Iso11783);
     bus.run(100);
-    commanded(&mut bus, HitchCommand::Position(HERE), 200);
+    bus.take_control(HERE);
+    bus.run(100);
     assert_eq!(bus.node.remote(), Remote::Position(PerMille(620)));
     bus
 }
@@ -95,10 +92,11 @@ fn remote_control_starts_from_the_reported_position_only() {
     bus.run(100);
     for far in [HERE - 2, HERE + 2, 0, 250] {
         commanded(&mut bus, HitchCommand::Position(far), 300);
-        assert_eq!(bus.node.remote(), Remote::Idle, "{far}");
+        assert_eq!(bus.node.remote_state(), 0, "{far}");
         assert_eq!(last_status(&bus).limit, LimitStatus::OperatorLimited);
     }
-    commanded(&mut bus, HitchCommand::Position(HERE), 200);
+    bus.take_control(HERE);
+    bus.run(100);
     assert_eq!(
         last_status(&bus).limit,
         LimitStatus::NotLimited,
@@ -114,12 +112,12 @@ fn remote_control_starts_from_the_reported_position_only() {
 
 // REQ-MODE-11
 #[test]
-fn without_the_operators_consent_nothing_starts_and_taking_it_away_ends_it() {
+fn an_operator_who_does_something_else_ends_it() {
     let mut bus = Bus::claimed(Variant::Iso11783);
     bus.status.remote_permitted = false;
     bus.run(100);
     commanded(&mut bus, HitchCommand::Position(HERE), 300);
-    assert_eq!(bus.node.remote(), Remote::Idle);
+    assert_eq!(bus.node.remote_state(), 0);
 
     let mut bus = remote_bus();
     bus.status.remote_permitted = false;
@@ -155,7 +153,8 @@ fn silence_ends_it_after_300_ms_with_its_reason() {
     assert_eq!(bus.node.remote(), Remote::Idle);
     bus.run(20);
     assert_eq!(last_status(&bus).exit, ExitCode::Timeout);
-    commanded(&mut bus, HitchCommand::Position(HERE), 200);
+    bus.take_control(HERE);
+    bus.run(100);
     assert_eq!(
         last_status(&bus).exit,
         ExitCode::Clear,
@@ -213,7 +212,7 @@ fn the_same_value_may_be_off_by_one_bit() {
     for (raw, position) in [(HERE - 1, 616), (HERE, 620), (HERE + 1, 624)] {
         let mut bus = Bus::claimed(Variant::Iso11783);
         bus.run(100);
-        command(&mut bus, HitchCommand::Position(raw));
+        bus.take_control(raw);
         assert_eq!(bus.node.remote(), Remote::Position(PerMille(position)));
     }
 }
@@ -284,7 +283,7 @@ fn only_the_node_that_took_control_is_heard() {
 fn duplicated_and_malformed_commands_change_nothing() {
     let mut bus = remote_bus();
     for _ in 0..5 {
-        command(&mut bus, HitchCommand::Position(HERE));
+        bus.command(HitchCommand::Position(HERE));
     }
     for length in 0..8 {
         bus.receive(Pgn::HITCH_COMMANDS, 0xFF, OTHER, &vec![0; length]);
@@ -299,6 +298,6 @@ fn a_node_without_an_address_commands_nothing() {
     for source in [0xFE, 0xFF] {
         let command = HitchCommand::Position(HERE).to_bytes();
         bus.receive(Pgn::HITCH_COMMANDS, 0xFF, source, &command);
-        assert_eq!(bus.node.remote(), Remote::Idle, "{source:X}");
+        assert_eq!(bus.node.remote_state(), 0, "{source:X}");
     }
 }

@@ -2,8 +2,8 @@
 
 use super::design_parameters::{
     BusParameters, CurrentParameters, HoldParameters, HydraulicParameters, LockParameters,
-    MotionParameters, OperatorParameters, PositionParameters, RateParameters, SafetyParameters,
-    SaturationParameters, SensorParameters, TeachParameters,
+    MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
+    SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
 };
 use super::linkage::LINKAGE_POINTS;
 use super::parameter::{OutOfRange, ParameterGroup, ParameterInfo};
@@ -81,7 +81,7 @@ const fn full_name(group: &str, name: &str) -> u32 {
 }
 
 /// The groups in the order of the block.
-pub const GROUPS: [Group; 13] = [
+pub const GROUPS: [Group; 14] = [
     group::<HydraulicParameters>(AT_REST),
     group::<SensorParameters>(AT_REST),
     group::<LockParameters>(AT_REST),
@@ -94,6 +94,7 @@ pub const GROUPS: [Group; 13] = [
     group::<TeachParameters>(AT_REST),
     group::<CurrentParameters>(AT_REST),
     group::<BusParameters>(LIVE),
+    group::<RemoteParameters>(AT_REST),
     group::<SafetyParameters>(AT_REST),
 ];
 
@@ -385,6 +386,7 @@ impl Calibration {
             .or_else(|| of(&self.teach, at))
             .or_else(|| of(&self.current, at))
             .or_else(|| of(&self.bus, at))
+            .or_else(|| of(&self.remote, at))
             .or_else(|| of(&self.safety, at))
     }
 

@@ -290,6 +290,22 @@ parameter_group! {
 }
 
 parameter_group! {
+    /// Remote control by an implement.
+    RemoteParameters, "remote" {
+        /// How the operator consents to it: 0 not at all, it is refused; 1 with the consent contact; 2 with the lever, moved there and back twice. An input without a contact reads as open, which is no consent.
+        consent: Count = 1, 0..=2;
+        /// Lowest position that an implement may ask for, 0 is the lower limit of the travel: all of it, since working depth is what implements control.
+        lowest: PerMille = 0, 0..=1_000;
+        /// Highest position that an implement may ask for, 1000 is the upper limit of the travel: 88 %, that of quick lift, short of the upper end so that a drive shaft isn't bent.
+        highest: PerMille = 880, 0..=1_000;
+        /// Largest piston speed on the set point of an implement, both ways: half of what the valve gives when lifting, the full travel in 2.1 s. Nobody has a hand on the lever, and a bystander has the time to step back.
+        speed: MicrometrePerSecond = 75_000, 1_000..=1_000_000;
+        /// Ground speed above which remote control ends and is refused, if a node tells the speed: 15 km/h, faster than any work with an implement that commands its hitch.
+        ground_speed: MicrometrePerSecond = 4_167_000, 0..=60_000_000;
+    }
+}
+
+parameter_group! {
     /// The safety envelope.
     SafetyParameters, "safety" {
         /// Largest current of the lift coil: what the coil bears.

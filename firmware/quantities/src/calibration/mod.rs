@@ -15,8 +15,8 @@ use super::units::{MicroLitrePerSecond, MilliAmp};
 use calibration_words::CALIBRATION_WORDS;
 use design_parameters::{
     BusParameters, CurrentParameters, HoldParameters, HydraulicParameters, LockParameters,
-    MotionParameters, OperatorParameters, PositionParameters, RateParameters, SafetyParameters,
-    SaturationParameters, SensorParameters, TeachParameters,
+    MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
+    SafetyParameters, SaturationParameters, SensorParameters, TeachParameters,
 };
 use linkage::{LINKAGE_POINTS, LinkageTable};
 use parameter::{OutOfRange, ParameterGroup};
@@ -65,6 +65,8 @@ pub struct Calibration {
     pub current: CurrentParameters,
     /// What is sent on the bus, and from whom it is received.
     pub bus: BusParameters,
+    /// Remote control by an implement.
+    pub remote: RemoteParameters,
     /// Safety envelope.
     pub safety: SafetyParameters,
     /// CRC-32 (ISO-HDLC) over everything before it, words in little-endian order.
@@ -192,6 +194,7 @@ impl Calibration {
             teach: TeachParameters::NOMINAL,
             current: CurrentParameters::NOMINAL,
             bus: BusParameters::NOMINAL,
+            remote: RemoteParameters::NOMINAL,
             safety: SafetyParameters::NOMINAL,
             checksum: 0,
         }
@@ -313,6 +316,13 @@ impl Calibration {
                 self.safety.sensor_supply_max.0,
             ),
             (
+                "remote",
+                "lowest",
+                self.remote.lowest.0,
+                "highest",
+                self.remote.highest.0,
+            ),
+            (
                 "hydraulics",
                 "smallest_drop",
                 hydraulics.smallest_drop.0,
@@ -386,6 +396,7 @@ impl Calibration {
         self.teach.visit(visit);
         self.current.visit(visit);
         self.bus.visit(visit);
+        self.remote.visit(visit);
         self.safety.visit(visit);
         visit_unsigned(&mut self.checksum, visit);
     }

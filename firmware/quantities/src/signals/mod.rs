@@ -23,6 +23,8 @@ pub struct Switches {
     pub quick_lift: bool,
     /// Service: with it, the button outside teaches a locked machine for as long as it is held.
     pub teach: bool,
+    /// Consent to remote control, a button: its closing lets an implement that asks command the hitch.
+    pub consent: bool,
 }
 
 impl Switches {
@@ -30,10 +32,16 @@ impl Switches {
     const FIRST_BIT: u32 = 24;
 
     fn to_bits(self) -> u32 {
-        [self.transport_lock, self.hold, self.quick_lift, self.teach]
-            .into_iter()
-            .rev()
-            .fold(0, |bits, on| (bits << 1) | u32::from(on))
+        [
+            self.transport_lock,
+            self.hold,
+            self.quick_lift,
+            self.teach,
+            self.consent,
+        ]
+        .into_iter()
+        .rev()
+        .fold(0, |bits, on| (bits << 1) | u32::from(on))
             << Self::FIRST_BIT
     }
 
@@ -44,6 +52,7 @@ impl Switches {
             hold: on(1),
             quick_lift: on(2),
             teach: on(3),
+            consent: on(4),
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::fault::Fault;
 
 /// Number of rows.
-pub const ROWS: usize = 21;
+pub const ROWS: usize = 22;
 
 /// What tripped the envelope, with the code it has on links and in traces; the order of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +51,8 @@ pub enum Trip {
     Memory = 20,
     /// A current drives the hitch beyond a limit of its travel, or lowers it with the dial shut.
     BeyondLimit = 21,
+    /// A current on the set point of an implement to which the operator has not consented.
+    NoConsent = 22,
 }
 
 impl Trip {
@@ -77,6 +79,7 @@ impl Trip {
         Self::EnableLine,
         Self::Memory,
         Self::BeyondLimit,
+        Self::NoConsent,
     ];
 
     /// True if only a restart clears it: the driver has to be tested, or the calibration read from flash, before it is
@@ -100,7 +103,9 @@ impl Trip {
             | Self::AngleNoisy
             | Self::AngleTracks => Fault::Angle,
             Self::NotFollowing => Fault::NotFollowing,
-            Self::Stale | Self::BothCoils | Self::Against | Self::BeyondLimit => Fault::Envelope,
+            Self::Stale | Self::BothCoils | Self::Against | Self::BeyondLimit | Self::NoConsent => {
+                Fault::Envelope
+            }
             Self::Overrun | Self::Clock => Fault::Overrun,
             Self::Reference => Fault::Reference,
             Self::SensorSupply => Fault::SensorSupply,

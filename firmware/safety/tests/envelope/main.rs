@@ -6,6 +6,7 @@ mod angle;
 mod any_inputs;
 mod bounds;
 mod coils;
+mod consent;
 mod locks;
 mod measuring;
 mod noise_detector;
@@ -20,7 +21,7 @@ mod travel_limits;
 use std::sync::LazyLock;
 
 use hitch_quantities::calibration::design_parameters::{
-    LockParameters, OperatorParameters, SafetyParameters, SensorParameters,
+    LockParameters, OperatorParameters, RemoteParameters, SafetyParameters, SensorParameters,
 };
 use hitch_quantities::units::{
     Microsecond, MilliAmp, MilliDegree, MilliDegreePerSecond, MilliVolt,
@@ -37,6 +38,7 @@ fn limits() -> Limits<'static> {
         safety: &SAFETY,
         sensors: &SENSORS,
         lock: &LockParameters::NOMINAL,
+        remote: &RemoteParameters::NOMINAL,
         operator: &OperatorParameters::NOMINAL,
         damaged: false,
         machine: MachineModel::of(&NOMINAL),

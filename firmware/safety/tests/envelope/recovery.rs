@@ -37,7 +37,7 @@ fn shift(inputs: &mut Inputs, by: MilliDegree) {
 }
 
 /// Causes with a row that they trip, at one of the orders and times at least.
-const CAUSES: [(&str, Trip, Wrong); 20] = [
+const CAUSES: [(&str, Trip, Wrong); 21] = [
     ("no command", Trip::Stale, |_, _| {}),
     ("both coils", Trip::BothCoils, |_, _| {}),
     ("late", Trip::Overrun, |inputs, _| {
@@ -91,6 +91,9 @@ const CAUSES: [(&str, Trip, Wrong); 20] = [
     }),
     ("dial shut", Trip::BeyondLimit, |inputs, _| {
         inputs.lowering_dial = Some(PerMille(0));
+    }),
+    ("no consent", Trip::NoConsent, |inputs, _| {
+        inputs.set_point = Some(MilliDegree(PLACE));
     }),
 ];
 

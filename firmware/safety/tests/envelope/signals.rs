@@ -225,11 +225,7 @@ fn what_comes_and_goes_trips_too() {
 }
 
 #[test]
-fn an_implement_neither_hides_a_broken_lever_nor_arms() {
-    assert_row(Trip::Lever, 5, |inputs, _| {
-        inputs.lever = None;
-        inputs.set_point = Some(MilliDegree(90_000));
-    });
+fn an_implement_does_not_arm() {
     let mut rig = Rig::new();
     for set_point in (50_000..130_000).step_by(100) {
         let passed = rig.step_with(LIFT, |inputs| {

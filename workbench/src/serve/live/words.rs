@@ -61,5 +61,6 @@ pub const fn trip(trip: Trip) -> &'static str {
         Trip::EnableLine => "enable line faulty",
         Trip::Memory => "calibration memory damaged",
         Trip::BeyondLimit => "current beyond a limit of the travel",
+        Trip::NoConsent => "current on a set point without consent",
     }
 }

@@ -78,6 +78,7 @@ const fn known_trouble(trouble: Trouble) -> &'static str {
         Trouble::EnableLine => "enable line of the drivers faulty",
         Trouble::Memory => "calibration changed in memory",
         Trouble::BeyondLimit => "current beyond a limit of the travel",
+        Trouble::NoConsent => "current on a set point without consent",
         Trouble::EngineSpeedLost => "engine speed no longer received",
     }
 }
