@@ -10,6 +10,9 @@ import shared
 PGN_STATUS = 0xFE45
 STATUS = "RearHitchStatus"
 COMMAND = "HitchAndPtoCommands"
+# Industry group 2, device class 6 (sprayer), function 128.
+NAME = (2 << 60) | (6 << 49) | (128 << 40) | 77
+CLAIM = 0x18EEFF26
 
 
 def pgn(message):
@@ -20,6 +23,12 @@ class Implement:
     def __init__(self, address, dbc):
         self.database = cantools.database.load_file(dbc)
         self.bus = shared.open_bus(address)
+        self.due = time.monotonic()
+
+    def claim(self):
+        """Claims the address from which the commands come."""
+        data = NAME.to_bytes(8, "little")
+        self.bus.send(can.Message(arbitration_id=CLAIM, data=data, is_extended_id=True))
 
     def status(self, seconds=1.0):
         """The next status."""
@@ -42,14 +51,13 @@ class Implement:
         self.bus.send(can.Message(arbitration_id=message.frame_id, data=data, is_extended_id=True))
 
     def commanded(self, percent, until, what, seconds=10.0):
-        """Commands ten times a second until a status is as wanted."""
-        due = time.monotonic()
+        """Commands ten times a second until a status is as wanted. A new set point keeps the rhythm."""
 
         def step():
-            nonlocal due
-            if time.monotonic() >= due:
+            now = time.monotonic()
+            if now >= self.due:
                 self.command(percent)
-                due += 0.1
+                self.due = now + 0.1
             status = self.status()
             return status if until(status) else None
 
@@ -120,7 +128,15 @@ def main():
     far = implement.commanded(here - 20, lambda _: time.monotonic() > begun + 0.5, "time")
     assert far["RearHitchLimitStatus"] == "operator limited" and abs(far["RearHitchPosition"] - here) < 0.5
 
-    implement.commanded(here, lambda now: now["RearHitchLimitStatus"] == "not limited", "answer to the same value")
+    # Nor for a node without an address, whatever the operator does.
+    begun = time.monotonic()
+    unknown = implement.commanded(here, lambda _: time.monotonic() > begun + 2.5, "time")
+    assert unknown["RearHitchLimitStatus"] == "operator limited" and unknown["RearHitchExitCode"] == "clear"
+
+    # The operator presses the button every two seconds.
+    implement.claim()
+    implement.commanded(here, lambda now: now["RearHitchLimitStatus"] == "not limited", "consent of the operator")
+    print("remote: consented")
     for target in (here - 20, here + 4):
         implement.commanded(
             target, lambda now: abs(now["RearHitchPosition"] - target) <= 0.8, f"hitch at {target} %"

@@ -13,7 +13,7 @@ use hitch_workbench::slcan_server::SlcanServer;
 pub enum Operator {
     /// Leaves the lever where it is, and so the hitch locked.
     Away,
-    /// Moves the lever through the hitch once and then leaves it alone.
+    /// Moves the lever through the hitch once and then leaves it alone. Presses the consent button every two seconds.
     Present,
     /// The same, and then moves it up and down.
     Working,
@@ -48,6 +48,9 @@ const PICK_UP_MS: u32 = 1_000;
 /// How often a working one moves the lever, ms, and how far.
 const WORK_MS: u32 = 3_000;
 const WORK_DEG: f64 = 10.0;
+/// How often the consent button is pressed, ms, and how long.
+const CONSENT_MS: u32 = 2_000;
+const PRESSED_MS: u32 = 200;
 /// Behind by more than this, time is given up: the machine has other things to do.
 const MOST_BEHIND: Duration = Duration::from_millis(200);
 
@@ -69,6 +72,9 @@ pub fn run(
         if let Some(lever_deg) = operator.moves_lever(time_ms) {
             bench.operator.apply(Order::Lever(lever_deg));
         }
+        let pressed = operator == Operator::Present && time_ms % CONSENT_MS < PRESSED_MS;
+        let consent = Order::Contact(Contact::Consent, pressed);
+        bench.operator.apply(consent);
         said.clear();
         let tamper = |contacts: &mut Contacts| {
             if operator == Operator::LeverUnplugged {

@@ -77,7 +77,12 @@ const SESSION: [&str; 6] = [
 
 #[test]
 fn an_implement_reads_the_status_by_the_dbc_and_commands_the_hitch() {
-    let expected = ["status: ", "remote: at ", "remote: timed out"];
+    let expected = [
+        "status: ",
+        "remote: consented",
+        "remote: at ",
+        "remote: timed out",
+    ];
     client("hitch_messages.py", here, Operator::Present, &expected);
 }
 

@@ -6,6 +6,7 @@ mod history;
 mod motion;
 mod processor;
 mod random;
+mod remote;
 mod rig;
 mod start;
 mod storage;
@@ -34,7 +35,7 @@ pub struct Setup {
 pub type Scenario = fn(&Setup) -> Result<String>;
 
 /// All of them, by name.
-pub const ALL: [(&str, Scenario); 24] = [
+pub const ALL: [(&str, Scenario); 25] = [
     ("boot", start::boot),
     ("factory-fresh", start::factory_fresh),
     ("slow-crystal", start::slow_crystal),
@@ -58,5 +59,6 @@ pub const ALL: [(&str, Scenario); 24] = [
     ("damaged-ram", processor::damaged_ram),
     ("bus-off", bus::bus_off),
     ("flooded-bus", bus::flooded),
+    ("remote-control", remote::consent),
     ("random-operation", random::operation),
 ];

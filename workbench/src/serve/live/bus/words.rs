@@ -28,6 +28,7 @@ pub const fn exit(exit: ExitCode) -> Option<&'static str> {
         ExitCode::NotCalibrated => "not calibrated",
         ExitCode::ControlFault => "operator control faulty",
         ExitCode::FunctionFault => "hitch faulty",
+        ExitCode::SpeedTooHigh => "ground speed too high",
         ExitCode::OilLevelLow => "oil level too low",
         ExitCode::LockedOut => "hitch locked",
         ExitCode::Error => "error",
