@@ -38,6 +38,7 @@ const PUMP_PRESSURE: u32 = OWN + 8;
 const REFERENCE: u32 = OWN + 9;
 const ANGLE_TRACKS: u32 = OWN + 10;
 const ENABLE_LINE: u32 = OWN + 11;
+const SAFETY_VALUES: u32 = OWN + 14;
 /// Sensor supply voltage 1.
 const SENSOR_SUPPLY: u32 = 3509;
 
@@ -134,6 +135,10 @@ troubles! {
     BeyondLimit = CONTROLLER / 31,
     /// The engine speed is no longer received, or was never although the calibration requires it.
     EngineSpeedLost = ENGINE_SPEED / 9,
+    /// Safety values were stored, and no block of them is good any more: the hitch is locked.
+    SafetyValuesLost = SAFETY_VALUES / 12,
+    /// Safety values differ from those that the firmware is shipped with.
+    SafetyValuesDiffer = SAFETY_VALUES / 31,
 }
 
 /// A set of troubles.

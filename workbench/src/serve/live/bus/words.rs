@@ -79,5 +79,7 @@ const fn known_trouble(trouble: Trouble) -> &'static str {
         Trouble::Memory => "calibration changed in memory",
         Trouble::BeyondLimit => "current beyond a limit of the travel",
         Trouble::EngineSpeedLost => "engine speed no longer received",
+        Trouble::SafetyValuesLost => "stored safety values lost: locked",
+        Trouble::SafetyValuesDiffer => "safety values differ from the shipped ones",
     }
 }
