@@ -74,7 +74,6 @@ impl<F: NorFlash> Ecu<F> {
     pub fn start(flash: FlashRegions<F>, serial_number: u32, scaling: BoardScaling) -> Self {
         let mut store = CalibrationStore::new(flash.calibration);
         let start = service::load(&mut store, scaling.second_track);
-        let controller = Controller::new(start.calibration.clone());
         let mut key = flash.key;
         let history = FaultHistory::open(flash.fault_log);
         let settings = Settings {
@@ -85,9 +84,9 @@ impl<F: NorFlash> Ecu<F> {
             software: &IDENTITY,
         };
         Self {
-            service: Service::new(store, start),
+            service: Service::new(store, &start),
             history,
-            controller,
+            controller: Controller::new(start.calibration),
             conversion: Conversion::new(scaling),
             pwm_steps: scaling.pwm_steps,
             enable_line: EnableLine::default(),

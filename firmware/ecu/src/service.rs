@@ -87,7 +87,7 @@ fn factory(nominal: ValidCalibration, second_track: bool) -> ValidCalibration {
 
 impl<F: NorFlash> Service<F> {
     /// The keeper of the calibration that `store` gave.
-    pub fn new(store: CalibrationStore<F>, start: Start) -> Self {
+    pub fn new(store: CalibrationStore<F>, start: &Start) -> Self {
         let mut pages = CalibrationPages::new(&start.calibration);
         if start.troubles.contains(Trouble::SafetyValuesLost) {
             pages.require_key_to_store();
