@@ -4,7 +4,9 @@ use hitch_control::Control;
 use hitch_control::commissioning::teach::{Taught, TeachError};
 use hitch_control::current::Regulation;
 use hitch_control::operator::EngineWatch;
-use hitch_quantities::calibration::design_parameters::{BusParameters, PositionParameters};
+use hitch_quantities::calibration::design_parameters::{
+    BusParameters, PositionParameters, RateParameters,
+};
 use hitch_quantities::{Calibration, Inputs, Outputs, ValidCalibration};
 use hitch_safety::{Command, Envelope, Limits, MachineModel};
 
@@ -55,7 +57,10 @@ impl Controller {
                 upper_limit: present.position.upper_limit,
                 ..calibration.position
             },
-            rate: calibration.rate,
+            rate: RateParameters {
+                rate_limit: present.rate.rate_limit,
+                ..calibration.rate
+            },
             bus: BusParameters {
                 measured_period: calibration.bus.measured_period,
                 ..present.bus

@@ -120,7 +120,7 @@ fn no_value_of_the_calibration_moves_a_hitch_at_rest() {
         };
         words += 1;
         // Whatever is not live locks, wherever the hitch is.
-        let watched = match range.live {
+        let watched = match range.class.is_live() {
             true => &places[..],
             false => &places[..1],
         };
@@ -216,6 +216,6 @@ fn what_a_tool_may_change_in_a_move_goes_on_and_nothing_else() {
         let mut hitch = resting.clone();
         hitch.controller.apply(calibration);
         let locked = hitch.run(1).state == State::Locked;
-        assert_eq!(locked, !range.live, "word {word}");
+        assert_eq!(locked, !range.class.is_live(), "word {word}");
     }
 }

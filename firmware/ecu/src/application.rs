@@ -8,6 +8,7 @@ use hitch_protocols::j1939::{
     MeasuredBroadcast, NameFields, Node, PREFERRED_ADDRESS, Remote, Settings, TroubleFinder,
     Variant,
 };
+use hitch_protocols::key::{Nonce, Secret};
 use hitch_protocols::storage::CalibrationStore;
 use hitch_protocols::storage::fault_history::FaultHistory;
 use hitch_protocols::xcp::angle_noise::AngleNoise;
@@ -15,11 +16,11 @@ use hitch_protocols::xcp::map::IDENTITY;
 use hitch_protocols::xcp::measurements::{EcuState, Measurements};
 use hitch_protocols::xcp::{Access, EcuMemory, Event, Slave};
 use hitch_quantities::signals::charge::CoilCharge;
-use hitch_quantities::{Inputs, Outputs, State};
+use hitch_quantities::{Inputs, Outputs, State, ValidCalibration};
 
 use super::arbiter::Arbiter;
 use super::consent::ConsentWatch;
-use super::converter::Conversion;
+use super::converter::{AdcCode, Conversion};
 use super::drive::Drive;
 use super::enable_line::EnableLine;
 use super::hardware::{Contacts, FlashRegions, Hardware};
@@ -60,6 +61,7 @@ pub struct Ecu<F> {
     measurements: Measurements,
     charge: CoilCharge,
     angle_noise: AngleNoise,
+    nonce: Nonce,
     outbox: Deque<Frame, OUTBOX>,
     tick_timer: TickTimer,
     task_sequence: TaskSequenceMonitor,
@@ -75,7 +77,8 @@ impl<F: NorFlash> Ecu<F> {
     #[inline(never)]
     pub fn start(flash: FlashRegions<F>, serial_number: u32, scaling: BoardScaling) -> Self {
         let mut store = CalibrationStore::new(flash.calibration);
-        let (calibration, troubles) = service::load(&mut store, scaling.second_track);
+        let start = service::load(&mut store, scaling.second_track);
+        let mut key = flash.key;
         let history = FaultHistory::open(flash.fault_log);
         let settings = Settings {
             name: NameFields::rear_hitch(serial_number).into(),
@@ -85,9 +88,9 @@ impl<F: NorFlash> Ecu<F> {
             software: &IDENTITY,
         };
         Self {
-            service: Service::new(store, &calibration, troubles),
+            service: Service::new(store, &start),
             history,
-            controller: Controller::new(calibration),
+            controller: Controller::new(start.calibration),
             conversion: Conversion::new(scaling),
             pwm_steps: scaling.pwm_steps,
             enable_line: EnableLine::default(),
@@ -97,10 +100,14 @@ impl<F: NorFlash> Ecu<F> {
             node: Node::new(settings),
             measured: MeasuredBroadcast::default(),
             trouble_finder: TroubleFinder::default(),
-            slave: Slave::new(),
+            slave: Slave::new(Secret::load(&mut key)),
             measurements: Measurements::default(),
             charge: CoilCharge::default(),
             angle_noise: AngleNoise::default(),
+            nonce: Nonce {
+                serial_number,
+                ..Nonce::default()
+            },
             outbox: Deque::new(),
             tick_timer: TickTimer::default(),
             task_sequence: TaskSequenceMonitor::default(),
@@ -134,6 +141,12 @@ impl<F: NorFlash> Ecu<F> {
         self.service.is_storing()
     }
 
+    /// The calibration in use.
+    #[must_use]
+    pub fn calibration(&self) -> &ValidCalibration {
+        self.controller.calibration()
+    }
+
     /// Inputs of the controller in the last millisecond.
     #[must_use]
     pub const fn inputs(&self) -> &Inputs {
@@ -154,8 +167,8 @@ impl<F: NorFlash> Ecu<F> {
         inputs.clock_ratio = contacts.clock_ratio;
         inputs.engine_speed = self.node.engine_speed(self.tick_timer.now_ms());
         inputs.enable_line_fault = self.enable_line.read(contacts.enable_feedback);
-        // Some microcontrollers stop while their flash is erased: no motion is allowed then.
-        inputs.switches.transport_lock |= self.service.is_storing();
+        // Some microcontrollers stop while their flash is erased: no motion is allowed then, nor without safety values.
+        inputs.switches.transport_lock |= self.service.has_to_lock();
         let calibration = self.controller.calibration();
         self.consents = self.consent.update(&inputs, calibration.remote.consent);
         self.inputs = self
@@ -165,6 +178,8 @@ impl<F: NorFlash> Ecu<F> {
 
     fn serve_bus(&mut self, contacts: &Contacts, hardware: &mut impl Hardware) {
         let access = self.access(contacts);
+        self.nonce.safety_sequence = self.service.safety_sequence();
+        self.nonce.stir(contacts.samples.codes().map(AdcCode::get));
         self.measure(hardware.frames_dropped());
         self.receive(access, contacts.clock_us, hardware);
         self.sample_for_tool(access, contacts.clock_us);
@@ -241,6 +256,7 @@ impl<F: NorFlash> Ecu<F> {
                 pages: &mut self.service.pages,
                 measurements: &self.measurements,
                 access,
+                nonce: self.nonce,
             };
             self.slave.receive(&frame, &mut memory, now_us);
         }
@@ -252,6 +268,7 @@ impl<F: NorFlash> Ecu<F> {
             pages: &mut self.service.pages,
             measurements: &self.measurements,
             access,
+            nonce: self.nonce,
         };
         let events = [
             (1, Event::Every1Ms),

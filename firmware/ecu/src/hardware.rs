@@ -29,6 +29,8 @@ pub struct FlashRegions<F> {
     pub calibration: F,
     /// Two pages of the fault log.
     pub fault_log: F,
+    /// The secret of the safety values, which is read only.
+    pub key: F,
 }
 
 /// Drivers and bus. No call blocks.

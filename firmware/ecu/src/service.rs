@@ -3,7 +3,7 @@
 use embedded_storage::nor_flash::NorFlash;
 use hitch_controller::Controller;
 use hitch_protocols::j1939::{Trouble, Troubles};
-use hitch_protocols::storage::{CalibrationStore, Copy, Progress, Source};
+use hitch_protocols::storage::{CalibrationStore, Copy, Progress, SafetySource, Source};
 use hitch_protocols::xcp::{CalibrationPages, Slave};
 use hitch_quantities::units::Count;
 use hitch_quantities::{Calibration, ValidCalibration};
@@ -36,28 +36,47 @@ pub struct Service<F> {
     /// It waits to be stored.
     taught_waits: bool,
     troubles: Troubles,
+    /// The board has a second track of the angle sensor.
+    second_track: bool,
+    /// The present calibration has other safety values than the factory's.
+    differs: bool,
+    /// A tool had the key in the last millisecond.
+    was_unlocked: bool,
+}
+
+/// A calibration as it was loaded.
+#[derive(Debug)]
+pub struct Start {
+    /// What to run on.
+    pub calibration: ValidCalibration,
+    /// What is wrong with what is stored.
+    troubles: Troubles,
+    second_track: bool,
 }
 
 /// Reads what is stored, and what is wrong with it.
 ///
-/// Without anything stored, the factory's calibration watches the angle's second track where there is one.
-pub fn load<F: NorFlash>(
-    store: &mut CalibrationStore<F>,
-    second_track: bool,
-) -> (ValidCalibration, Troubles) {
+/// The factory's calibration watches the angle's second track where there is one.
+pub fn load<F: NorFlash>(store: &mut CalibrationStore<F>, second_track: bool) -> Start {
     let loaded = store.load();
-    let troubles = if loaded.source == Source::Factory {
+    let mut troubles = if loaded.source == Source::Factory {
         Trouble::CalibrationLost.into()
     } else if loaded.copies.contains(&Copy::Damaged) {
         Trouble::CalibrationCopyLost.into()
     } else {
         Troubles::NONE
     };
-    let calibration = match loaded.source {
-        Source::Factory => factory(loaded.calibration, second_track),
-        Source::Stored { .. } => loaded.calibration,
-    };
-    (calibration, troubles)
+    if loaded.safety == SafetySource::Lost {
+        troubles.insert(Trouble::SafetyValuesLost);
+    }
+    Start {
+        calibration: match loaded.safety {
+            SafetySource::Stored => loaded.calibration,
+            SafetySource::Factory | SafetySource::Lost => factory(loaded.calibration, second_track),
+        },
+        troubles,
+        second_track,
+    }
 }
 
 fn factory(nominal: ValidCalibration, second_track: bool) -> ValidCalibration {
@@ -67,34 +86,55 @@ fn factory(nominal: ValidCalibration, second_track: bool) -> ValidCalibration {
 }
 
 impl<F: NorFlash> Service<F> {
-    /// The keeper of `calibration`, which `store` gave with these troubles.
-    pub fn new(
-        store: CalibrationStore<F>,
-        calibration: &ValidCalibration,
-        troubles: Troubles,
-    ) -> Self {
+    /// The keeper of the calibration that `store` gave.
+    pub fn new(store: CalibrationStore<F>, start: &Start) -> Self {
+        let mut pages = CalibrationPages::new(&start.calibration);
+        if start.troubles.contains(Trouble::SafetyValuesLost) {
+            pages.require_key_to_store();
+        }
         Self {
-            pages: CalibrationPages::new(calibration),
+            pages,
             store,
             storing: false,
             until_change: 0,
             tool_waits: false,
             taught_seen: false,
             taught_waits: false,
-            troubles,
+            troubles: start.troubles,
+            differs: start
+                .calibration
+                .has_other_safety_values(start.second_track),
+            second_track: start.second_track,
+            was_unlocked: false,
         }
     }
 
-    /// True while something is being stored; the hitch has to be locked meanwhile.
+    /// Whether the hitch has to be locked: flash is being changed, or the stored safety values are lost.
+    #[must_use]
+    pub const fn has_to_lock(&self) -> bool {
+        self.storing || self.troubles.contains(Trouble::SafetyValuesLost)
+    }
+
+    /// Number of the safety block in use.
+    #[must_use]
+    pub fn safety_sequence(&self) -> u32 {
+        self.store.safety_sequence()
+    }
+
+    /// True while something is being stored.
     #[must_use]
     pub const fn is_storing(&self) -> bool {
         self.storing
     }
 
-    /// What is wrong with what is stored.
+    /// What is wrong with what is stored, and whether safety values differ from the shipped ones.
     #[must_use]
     pub const fn troubles(&self) -> Troubles {
-        self.troubles
+        let mut troubles = self.troubles;
+        if self.differs {
+            troubles.insert(Trouble::SafetyValuesDiffer);
+        }
+        troubles
     }
 
     /// The keeper's part of a millisecond. `at_rest`: both coils are off and the lock is shut.
@@ -111,9 +151,14 @@ impl<F: NorFlash> Service<F> {
         if self.storing {
             return self.store_on(slave);
         }
+        let is_unlocked = slave.is_unlocked();
+        if core::mem::replace(&mut self.was_unlocked, is_unlocked) && !is_unlocked {
+            self.pages.revert_loosened();
+        }
         let mut wanted = at_rest && (self.take_taught(controller) || self.taught_waits);
         if let Some(change) = self.pages.take_change() {
             if let Ok(calibration) = change {
+                self.differs = calibration.has_other_safety_values(self.second_track);
                 controller.apply(calibration);
             }
             // Checking a calibration takes half a millisecond: whoever wants to store it waits for the next one.

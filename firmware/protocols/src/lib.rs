@@ -7,6 +7,7 @@
 //!
 //! * [`can`]: frames and their text form,
 //! * [`j1939`]: the hitch on the tractor's bus,
+//! * [`key`]: challenge and response for safety values,
 //! * [`storage`]: the calibration and the trouble codes in flash,
 //! * [`xcp`]: measurement and calibration.
 //!
@@ -25,5 +26,6 @@ extern crate std;
 
 pub mod can;
 pub mod j1939;
+pub mod key;
 pub mod storage;
 pub mod xcp;

@@ -67,6 +67,49 @@ fn a_campaign_is_recorded_and_a_calibration_comes_back_from_flash() {
 }
 
 #[test]
+fn a_safety_value_becomes_looser_with_the_key_only() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path();
+    let calibration = |name: &str, open_time_ms: u32| {
+        let text = format!("format = 1\n[safety]\nopen_time_ms = {open_time_ms}\n");
+        std::fs::write(folder.join(name), text).unwrap();
+    };
+    calibration("tight.toml", 30);
+    calibration("loose.toml", 44);
+    let digits = |first: char| format!("{first}{}\n", "1f".repeat(32).split_off(1));
+    std::fs::write(folder.join("key.txt"), digits('1')).unwrap();
+    std::fs::write(folder.join("wrong.txt"), digits('2')).unwrap();
+    let mut ecu = RunningEcu::start_with(folder, &["--key", "key.txt"]);
+    ecu.order("service on");
+    ecu.order("lock on");
+    sleep(Duration::from_millis(1_000));
+    let write = |file: &str, key: &[&str]| {
+        let command = ["flash-calibration", file, "--can", &ecu.bus];
+        run(folder, &[&command, key].concat())
+    };
+    let refused = write("loose.toml", &[]);
+    assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
+    let line = said(&refused);
+    assert!(
+        line.contains("safety.open_time") && line.contains("--key"),
+        "{line}"
+    );
+    assert_eq!(line.trim().lines().count(), 1, "{line}");
+    let written = write("tight.toml", &[]);
+    assert!(written.status.success(), "{}", said(&written));
+    let written = write("loose.toml", &["--key", "key.txt"]);
+    assert!(written.status.success(), "{}", said(&written));
+    assert!(write("tight.toml", &[]).status.success());
+    let refused = write("loose.toml", &["--key", "wrong.txt"]);
+    assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
+    assert!(
+        said(&refused).contains("refuses the key"),
+        "{}",
+        said(&refused)
+    );
+}
+
+#[test]
 fn a_line_that_is_no_text_is_reported_and_the_next_one_is_obeyed() {
     let mut child = hitch()
         .args(["ecu", "--host", "--seconds", "60"])

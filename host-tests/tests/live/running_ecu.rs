@@ -17,10 +17,16 @@ pub struct RunningEcu {
 impl RunningEcu {
     /// Starts the application on the host, with its flash in `flash.bin`.
     pub fn start(folder: &Path) -> Self {
+        Self::start_with(folder, &[])
+    }
+
+    /// The same with further arguments.
+    pub fn start_with(folder: &Path, arguments: &[&str]) -> Self {
         let mut command = hitch();
         command
             .args(["ecu", "--host", "--can", "127.0.0.1:0", "--seconds", "60"])
             .args(["--flash", "flash.bin"])
+            .args(arguments)
             .current_dir(folder);
         let (mut child, line) = started(&mut command);
         let bus = line.split_whitespace().last().unwrap().to_owned();

@@ -464,7 +464,7 @@ fn the_ecu_picks_the_hitch_up_and_says_so() {
     assert_eq!(states.last(), Some(&"holding"), "{said}");
     assert_eq!(
         fs::metadata(dir.path().join("flash.bin")).unwrap().len(),
-        12_288,
+        14_336,
         "the flash is kept"
     );
 }

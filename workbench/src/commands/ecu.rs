@@ -13,13 +13,14 @@ use hitch_protocols::can::Frame;
 
 use super::loop_::{calibration, load_kg};
 use crate::ecu::{
-    Bench, Bus, EcuMachine, FLASH_BYTES, MachineError, Order, PICK_UP_MS, Pace, Runner, delivered,
-    reach_deg,
+    Bench, Bus, CutFlash, EcuMachine, FLASH_BYTES, MachineError, Order, PICK_UP_MS, Pace, Runner,
+    delivered, reach_deg,
 };
 use crate::error::Error;
 use crate::output::{check_writable, no_stdout, write_file};
 use crate::slcan_server::SlcanServer;
 use crate::status_line::StatusLine;
+use crate::xcp_tool::read_key;
 
 /// Arguments of `hitch ecu`.
 #[derive(Debug, clap::Args)]
@@ -46,6 +47,9 @@ pub struct Args {
     /// Keep the ECU's flash in this file, with taught and tuned values
     #[arg(long, value_name = "FILE")]
     flash: Option<PathBuf>,
+    /// Key of the ECU as delivered, a file with 64 hexadecimal digits; without one, safety values are never loosened
+    #[arg(long, value_name = "FILE")]
+    key: Option<PathBuf>,
     /// End after this many seconds
     #[arg(long, value_name = "S", value_parser = seconds)]
     seconds: Option<f64>,
@@ -90,6 +94,15 @@ fn failed(error: impl std::fmt::Display) -> Error {
 
 /// Initial contents of the ECU's flash.
 fn flash(args: &Args) -> Result<Vec<u8>, Error> {
+    let key = args.key.as_deref().map(read_key).transpose()?;
+    let flash = CutFlash::holding(flash_without_key(args)?);
+    if let Some(key) = key {
+        flash.set_key(&key);
+    }
+    Ok(flash.bytes())
+}
+
+fn flash_without_key(args: &Args) -> Result<Vec<u8>, Error> {
     let delivered = delivered(&calibration(args.calibration.as_ref())?);
     let Some(path) = args.flash.as_deref().filter(|path| path.exists()) else {
         return Ok(delivered);

@@ -6,14 +6,14 @@ use hitch_controller_host::calibration_file;
 use crate::error::Error;
 use crate::output;
 use crate::progress::Progress;
-use crate::xcp_tool::{BusAddress, write_to};
+use crate::xcp_tool::{BusAddress, read_key, write_to};
 
 /// Arguments of `hitch flash-calibration`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Example: hitch flash-calibration calibration.toml --can 127.0.0.1:7701\n\n\
     The hitch has to be locked (`lock on`) and the service switch closed (`service on`). Only changed values are \
-    written. The ECU then stores the calibration, and all values are verified from flash."
+    written, and safety values only if they become stricter, unless the key is given. The ECU then stores the calibration, and all values are verified from flash."
 )]
 pub struct Args {
     /// Calibration file, as written by `hitch calibrate` and `hitch tune`
@@ -23,6 +23,9 @@ pub struct Args {
     /// port of an slcan adapter (/dev/ttyACM0, COM3)
     #[arg(long, value_name = "BUS")]
     can: BusAddress,
+    /// File with the key of this machine, 64 hexadecimal digits: required if a safety value becomes looser
+    #[arg(long, value_name = "FILE")]
+    key: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -31,8 +34,9 @@ pub struct Args {
 /// If the calibration is invalid, the ECU cannot be reached, or it refuses.
 pub fn run(args: &Args) -> Result<(), Error> {
     let calibration = calibration_file::read(&args.calibration)?;
+    let key = args.key.as_deref().map(read_key).transpose()?;
     let progress = Progress::start("writing the calibration");
-    let written = write_to(&args.can, &calibration)?;
+    let written = write_to(&args.can, &calibration, key.as_ref())?;
     drop(progress);
     output::print(&format!(
         "{} of {} values changed; stored and verified.\n",

@@ -8,11 +8,13 @@ use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 use hitch_ecu::FlashRegions;
+use hitch_protocols::key::Secret;
 use hitch_protocols::storage::CalibrationStore;
 use hitch_quantities::ValidCalibration;
 
-/// Size of the emulated ECU's flash: two copies of the calibration, then two pages of the fault log.
-pub const FLASH_BYTES: usize = CALIBRATION_BYTES + 2 * PAGE_BYTES;
+/// Size of the emulated ECU's flash: two copies of the calibration, two pages of the fault log, and one of the key.
+pub const FLASH_BYTES: usize = KEY_START + PAGE_BYTES;
+const KEY_START: usize = CALIBRATION_BYTES + 2 * PAGE_BYTES;
 /// Size of the two copies of the calibration, which are at its start.
 pub const CALIBRATION_BYTES: usize = 8_192;
 const PAGE_BYTES: usize = 2_048;
@@ -68,7 +70,18 @@ impl CutFlash {
         };
         FlashRegions {
             calibration: region(0..CALIBRATION_BYTES),
-            fault_log: region(CALIBRATION_BYTES..FLASH_BYTES),
+            fault_log: region(CALIBRATION_BYTES..KEY_START),
+            key: region(KEY_START..FLASH_BYTES),
+        }
+    }
+
+    /// Writes the secret of the safety values, as at the end of the line.
+    pub fn set_key(&self, key: &Secret) {
+        let record = key.to_record();
+        let mut cells = self.cells.borrow_mut();
+        let place = KEY_START..KEY_START + record.len();
+        if let Some(place) = cells.bytes.get_mut(place) {
+            place.copy_from_slice(&record);
         }
     }
 

@@ -2,9 +2,10 @@
 
 use std::time::{Duration, Instant};
 
+use hitch_protocols::key::Secret;
 use hitch_protocols::xcp::map::CALIBRATION_BASE;
 use hitch_quantities::ValidCalibration;
-use hitch_quantities::calibration::calibration_words::word_range;
+use hitch_quantities::calibration::calibration_words::{GROUPS, SCALARS_WORD, word_range};
 
 use super::session::{Session, ToolError};
 
@@ -23,13 +24,15 @@ pub struct Written {
     pub changed: usize,
 }
 
-/// Writes changed values, requests storage, and verifies all values from flash.
+/// Writes changed values, requests storage, and verifies all values from flash. Nothing is written if safety values would
+/// be loosened without the key.
 ///
 /// # Errors
 /// If the ECU refuses, or the stored values differ.
 pub fn write_calibration(
     session: &mut Session,
     calibration: &ValidCalibration,
+    key: Option<&Secret>,
 ) -> Result<Written, ToolError> {
     let wanted: Vec<(usize, i32)> = calibration
         .to_words()
@@ -39,11 +42,29 @@ pub fn write_calibration(
         .filter(|(index, _)| word_range(*index).is_some())
         .collect();
     let present = words(session)?;
-    let differing = wanted
+    let differing: Vec<(usize, i32)> = wanted
         .iter()
-        .filter(|(index, value)| present.get(*index) != Some(value));
+        .filter(|(index, value)| present.get(*index) != Some(value))
+        .copied()
+        .collect();
+    let loosened: Vec<usize> = differing
+        .iter()
+        .filter(|(index, value)| {
+            let class = word_range(*index).map(|range| range.class);
+            let present = present.get(*index).copied().unwrap_or(*value);
+            class.is_some_and(|class| class.requires_key(present, *value))
+        })
+        .map(|(index, _)| *index)
+        .collect();
+    if let Some((&first, others)) = loosened.split_first() {
+        let key = key.ok_or_else(|| ToolError::Loosens {
+            first: name(first),
+            others: others.len(),
+        })?;
+        session.unlock(key)?;
+    }
     let mut changed = 0;
-    for &(index, value) in differing {
+    for (index, value) in differing {
         write_word(session, index, value)?;
         changed += 1;
     }
@@ -66,6 +87,17 @@ pub fn write_calibration(
         }),
         false => Err(ToolError::NotStored),
     }
+}
+
+/// Name of a scalar.
+fn name(word: usize) -> String {
+    let names = GROUPS.iter().flat_map(|group| {
+        let parameters = group.parameters.iter();
+        parameters.map(|parameter| format!("{}.{}", group.name, parameter.name))
+    });
+    let index = word.checked_sub(SCALARS_WORD);
+    let named = index.and_then(|index| names.into_iter().nth(index));
+    named.unwrap_or_else(|| format!("word {word}"))
 }
 
 fn write_word(session: &mut Session, index: usize, value: i32) -> Result<(), ToolError> {

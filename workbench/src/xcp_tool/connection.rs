@@ -1,5 +1,6 @@
 //! Connection to the ECU at an address, and its errors for people.
 
+use hitch_protocols::key::Secret;
 use hitch_quantities::ValidCalibration;
 
 use super::bus_address::BusAddress;
@@ -17,13 +18,17 @@ pub fn connect(address: &BusAddress) -> Result<Session, Error> {
     Session::open(client).map_err(tool_error)
 }
 
-/// Writes a calibration to the ECU at an address, which stores it.
+/// Writes a calibration to the ECU at an address, which stores it. `key` is used if safety values are loosened.
 ///
 /// # Errors
 /// If the ECU cannot be reached, or it refuses.
-pub fn write_to(address: &BusAddress, calibration: &ValidCalibration) -> Result<Written, Error> {
+pub fn write_to(
+    address: &BusAddress,
+    calibration: &ValidCalibration,
+    key: Option<&Secret>,
+) -> Result<Written, Error> {
     let mut session = connect(address)?;
-    let written = write_calibration(&mut session, calibration).map_err(interrupted)?;
+    let written = write_calibration(&mut session, calibration, key).map_err(interrupted)?;
     session.close().map_err(tool_error)?;
     Ok(written)
 }
@@ -45,6 +50,9 @@ pub fn tool_error(error: ToolError) -> Error {
         | ToolError::Silent
         | ToolError::Locked
         | ToolError::NotAtRest
+        | ToolError::Loosens { .. }
+        | ToolError::WrongKey
+        | ToolError::NoChallenge
         | ToolError::OutOfRange(_)
         | ToolError::NoHitch
         | ToolError::OtherEcu(_) => Error::Usage(error.to_string()),

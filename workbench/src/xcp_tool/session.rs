@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use hitch_protocols::can::Frame;
 use hitch_protocols::j1939::{Id, Pgn};
+use hitch_protocols::key::{SEED_BYTES, Secret};
 use hitch_protocols::xcp::map::{IDENTITY, IDENTITY_BASE};
 
 use super::can_client::CanClient;
@@ -48,6 +49,25 @@ pub enum ToolError {
     /// The hitch is not at rest.
     #[error("the hitch is not at rest; lock it first (`lock on`)")]
     NotAtRest,
+    /// Safety values would be loosened.
+    #[error(
+        "`{first}`{} would be looser than stored, which requires the key of this machine; give it with --key FILE",
+        and_others(*.others)
+    )]
+    Loosens {
+        /// The first one.
+        first: String,
+        /// Number of others.
+        others: usize,
+    },
+    /// The response to the challenge was wrong.
+    #[error("the ECU refuses the key; give the key of this machine, after 10 s")]
+    WrongKey,
+    /// The ECU gives no challenge.
+    #[error(
+        "the ECU has no key, or a wrong one was given within the last 10 s; set a key, or try again"
+    )]
+    NoChallenge,
     /// A number is out of its range.
     #[error("the ECU refuses word {0} of the calibration: its value is out of range")]
     OutOfRange(usize),
@@ -166,12 +186,54 @@ impl Session {
         self.command(&[0xF6, 0, 0, 0, a, b, c, d]).map(drop)
     }
 
+    /// Unlocks the safety values by challenge and response.
+    ///
+    /// # Errors
+    /// If the ECU gives no challenge, or refuses the response.
+    pub fn unlock(&mut self, key: &Secret) -> Result<(), ToolError> {
+        const CALIBRATION: u8 = 1;
+        const PIECE: usize = 6;
+        let protection = self.command(&[0xFD])?.get(1).copied().unwrap_or(0);
+        if protection & CALIBRATION != 0 {
+            return Err(ToolError::Locked);
+        }
+        let mut seed = Vec::new();
+        for mode in [0, 1, 1] {
+            let piece = self.command(&[0xF8, mode, CALIBRATION]);
+            let piece = piece.map_err(|error| match error {
+                ToolError::Locked => ToolError::NoChallenge,
+                other => other,
+            })?;
+            seed.extend(piece.into_iter().skip(1).take(PIECE));
+        }
+        seed.truncate(SEED_BYTES);
+        let seed = seed.try_into().map_err(|_| ToolError::NoChallenge)?;
+        let response = key.response(&seed);
+        for (piece, sent) in response.chunks(PIECE).zip((0..).step_by(PIECE)) {
+            let left = (response.len() - sent) as u8;
+            let answer = self.command(&[&[0xF7, left], piece].concat());
+            answer.map_err(|error| match error {
+                ToolError::Locked => ToolError::WrongKey,
+                other => other,
+            })?;
+        }
+        Ok(())
+    }
+
     /// Ends the session.
     ///
     /// # Errors
     /// If the ECU doesn't answer.
     pub fn close(mut self) -> Result<(), ToolError> {
         self.command(&[0xFE]).map(drop)
+    }
+}
+
+fn and_others(others: usize) -> String {
+    match others {
+        0 => String::new(),
+        1 => " and one more value".to_owned(),
+        _ => format!(" and {others} more values"),
     }
 }
 

@@ -64,6 +64,7 @@ fn application() {
     let flash = FlashRegions {
         calibration: AnyFlash,
         fault_log: AnyFlash,
+        key: AnyFlash,
     };
     let mut ecu = Ecu::start(flash, black_box(0), scaling);
     let mut hardware = AnyHardware(CoilDriver::new(AnyPin, AnyPin, AnyPin, AnyPin));

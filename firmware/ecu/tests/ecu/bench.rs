@@ -11,12 +11,14 @@ use hitch_ecu::link::Reply;
 use hitch_ecu::{AdcCode, BoardScaling, Contacts, FlashRegions, HostedEcu, Panel, Samples};
 use hitch_protocols::can::Frame;
 use hitch_protocols::j1939::{Id, Pgn};
+use hitch_protocols::key::Secret;
 use hitch_quantities::State;
 use hitch_quantities::units::PerMille;
 
 const PAGE: usize = 2_048;
 const PAGES: usize = 4;
 const LOG_PAGES: usize = 2;
+const KEY_PAGES: usize = 1;
 
 /// Power failed.
 #[derive(Debug)]
@@ -39,12 +41,28 @@ pub struct Flash {
 impl Flash {
     pub fn blank() -> Self {
         Self {
-            bytes: Rc::new(RefCell::new(vec![0xFF; PAGE * (PAGES + LOG_PAGES)])),
+            bytes: Rc::new(RefCell::new(vec![
+                0xFF;
+                PAGE * (PAGES + LOG_PAGES + KEY_PAGES)
+            ])),
             region: 0..PAGE * PAGES,
         }
     }
 
-    /// What both regions hold.
+    /// The same with the secret of the safety values.
+    pub fn with_secret(self, secret: &Secret) -> Self {
+        let record = secret.to_record();
+        let start = PAGE * (PAGES + LOG_PAGES);
+        self.bytes.borrow_mut()[start..start + record.len()].copy_from_slice(&record);
+        self
+    }
+
+    /// Flips a bit of a byte.
+    pub fn flip(&self, byte: usize) {
+        self.bytes.borrow_mut()[byte] ^= 1;
+    }
+
+    /// What all regions hold.
     pub fn all_bytes(&self) -> Vec<u8> {
         self.bytes.borrow().clone()
     }
@@ -55,9 +73,14 @@ impl Flash {
             bytes: Rc::clone(&self.bytes),
             region: PAGE * PAGES..PAGE * (PAGES + LOG_PAGES),
         };
+        let key = Self {
+            bytes: Rc::clone(&self.bytes),
+            region: PAGE * (PAGES + LOG_PAGES)..PAGE * (PAGES + LOG_PAGES + KEY_PAGES),
+        };
         FlashRegions {
             calibration: self,
             fault_log,
+            key,
         }
     }
 

@@ -3,4 +3,5 @@
 mod bench;
 mod engine;
 mod history;
+mod key;
 mod remote;

@@ -178,5 +178,6 @@ const fn is_grave(trouble: Trouble) -> bool {
             | Trouble::Against
             | Trouble::Sinking
             | Trouble::Controller
+            | Trouble::SafetyValuesLost
     )
 }

@@ -39,6 +39,7 @@ const REFERENCE: u32 = OWN + 9;
 const ANGLE_TRACKS: u32 = OWN + 10;
 const ENABLE_LINE: u32 = OWN + 11;
 const REMOTE: u32 = OWN + 12;
+const SAFETY_VALUES: u32 = OWN + 14;
 /// Sensor supply voltage 1.
 const SENSOR_SUPPLY: u32 = 3509;
 
@@ -137,6 +138,10 @@ troubles! {
     EngineSpeedLost = ENGINE_SPEED / 9,
     /// A current on the set point of an implement to which the operator has not consented.
     NoConsent = REMOTE / 31,
+    /// Safety values were stored, and no block of them is good any more: the hitch is locked.
+    SafetyValuesLost = SAFETY_VALUES / 12,
+    /// Safety values differ from those that the firmware is shipped with.
+    SafetyValuesDiffer = SAFETY_VALUES / 31,
 }
 
 /// A set of troubles.

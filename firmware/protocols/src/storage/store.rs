@@ -1,4 +1,5 @@
-//! Two copies in flash, and the steps in which one of them is written.
+//! Two copies in flash, each with a block of safety values and one of all others, and the steps in which a copy is
+//! written.
 //!
 //! ```text
 //!            begin                       all erased                 all written
@@ -12,19 +13,25 @@ use hitch_quantities::ValidCalibration;
 use hitch_quantities::calibration::calibration_words::CALIBRATION_WORDS;
 use hitch_quantities::crc32::Crc32;
 
+use super::copy_state::{BlockState, CopyState};
+use super::reader::Reader;
 use super::record;
-use super::record::{Carried, HEADER_WORDS, Header, RECORD_WORDS};
+use super::record::{Block, Carried};
 
 /// Bytes that are read or programmed at a time: a multiple of what any flash takes at once.
-const CHUNK: usize = 32;
+pub(super) const CHUNK: usize = 32;
 const CHUNK_WORDS: usize = CHUNK / 4;
-/// Bytes that a record of this firmware takes, the last chunk filled up.
-const RECORD_BYTES: usize = (4 * RECORD_WORDS).next_multiple_of(CHUNK);
+/// Bytes that the safety block of this firmware takes, the last chunk filled up. It is first in a copy.
+pub(super) const SAFETY_BYTES: usize = (4 * Block::Safety.record_words()).next_multiple_of(CHUNK);
+const SAFETY_CHUNKS: usize = SAFETY_BYTES / CHUNK;
+/// Bytes that both blocks take.
+pub const COPY_BYTES: usize =
+    SAFETY_BYTES + (4 * Block::Machine.record_words()).next_multiple_of(CHUNK);
 
 /// One of the two copies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Copy {
-    /// Complete.
+    /// Complete: both blocks.
     Good {
         /// The higher one counts.
         sequence: u32,
@@ -56,8 +63,20 @@ pub enum Source {
         /// What couldn't be carried over.
         carried: Carried,
     },
-    /// No copy makes a calibration: this is the factory's.
+    /// No copy makes a calibration: this is the factory's, except for safety values that are stored.
     Factory,
+}
+
+/// Where the safety values came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SafetySource {
+    /// From a good block.
+    Stored,
+    /// None were ever stored, or a cut power ended the first storing: these are the factory's.
+    Factory,
+    /// They were stored, and no block of them is good any more. These are the factory's, which may be looser: nothing
+    /// may move on them.
+    Lost,
 }
 
 /// What was found at start.
@@ -67,6 +86,8 @@ pub struct Loaded {
     pub calibration: ValidCalibration,
     /// Where it came from.
     pub source: Source,
+    /// Where its safety values came from.
+    pub safety: SafetySource,
     /// Both copies.
     pub copies: [Copy; 2],
 }
@@ -107,7 +128,9 @@ struct Writing {
     job: Job,
     copy: usize,
     sequence: u32,
+    safety_sequence: u32,
     words: [i32; CALIBRATION_WORDS],
+    safety_checksum: u32,
     checksum: u32,
 }
 
@@ -116,6 +139,7 @@ struct Writing {
 struct InUse {
     copy: usize,
     sequence: u32,
+    safety_sequence: u32,
 }
 
 /// The store.
@@ -152,16 +176,17 @@ impl<F: NorFlash> CalibrationStore<F> {
 
     /// What is stored: the newest copy that makes a calibration. A copy that can't be read counts as damaged.
     pub fn load(&mut self) -> Loaded {
-        let mut copies = self.copies();
+        let states = self.states();
+        let mut copies = states.map(|state| state.copy());
         self.in_use = None;
-        for copy in newest_first(copies) {
-            let sequence = copies.get(copy).and_then(|copy| copy.sequence());
-            let decoded = self.decode(copy).ok().flatten();
-            if let (Some((calibration, source)), Some(sequence)) = (decoded, sequence) {
-                self.in_use = Some(InUse { copy, sequence });
+        for copy in newest_first(copies.map(|copy| copy.sequence())) {
+            let state = states.get(copy).copied().unwrap_or_default();
+            if let Ok(Some((calibration, source))) = self.decode(copy, state) {
+                self.use_copy(copy, state);
                 return Loaded {
                     calibration,
                     source,
+                    safety: SafetySource::Stored,
                     copies,
                 };
             }
@@ -169,11 +194,50 @@ impl<F: NorFlash> CalibrationStore<F> {
                 *useless = Copy::Damaged;
             }
         }
+        let (calibration, safety) = self.without_machine_block(states);
         Loaded {
-            calibration: ValidCalibration::nominal(),
+            calibration,
             source: Source::Factory,
+            safety,
             copies,
         }
+    }
+
+    /// The factory's calibration with the newest safety block, if there is a good one.
+    fn without_machine_block(
+        &mut self,
+        states: [CopyState; 2],
+    ) -> (ValidCalibration, SafetySource) {
+        for copy in newest_first(states.map(|state| state.safety.sequence())) {
+            let state = states.get(copy).copied().unwrap_or_default();
+            let alone = state.without_machine();
+            if let Ok(Some((calibration, _))) = self.decode(copy, alone) {
+                self.use_copy(copy, alone);
+                return (calibration, SafetySource::Stored);
+            }
+        }
+        // A first storing that is cut leaves one copy blank, and no machine block, which is written last.
+        let stored = states.iter().any(|state| state.machine.is_good())
+            || !states.iter().any(CopyState::is_blank);
+        let safety = match stored {
+            true => SafetySource::Lost,
+            false => SafetySource::Factory,
+        };
+        (ValidCalibration::nominal(), safety)
+    }
+
+    fn use_copy(&mut self, copy: usize, state: CopyState) {
+        self.in_use = Some(InUse {
+            copy,
+            sequence: state.machine.sequence().unwrap_or(0),
+            safety_sequence: state.safety.sequence().unwrap_or(0),
+        });
+    }
+
+    /// The number of the safety block in use: it rises with each storing. 0 without one.
+    #[must_use]
+    pub fn safety_sequence(&self) -> u32 {
+        self.in_use.map_or(0, |used| used.safety_sequence)
     }
 
     /// Begins to store. The application then calls [`Self::step`] until it is done; the hitch has to be at rest,
@@ -185,15 +249,19 @@ impl<F: NorFlash> CalibrationStore<F> {
         if self.writing.is_some() {
             return Err(StoreError::Busy);
         }
-        if self.copy_bytes() < RECORD_BYTES {
+        if self.copy_bytes() < COPY_BYTES {
             return Err(StoreError::TooSmall);
         }
         if self.in_use.is_none() {
             self.load();
         }
-        let (copy, sequence) = match self.in_use {
-            // The other copy is erased, so only this one's sequence has to be exceeded.
-            Some(InUse { copy, sequence }) => (usize::from(copy == 0), sequence.wrapping_add(1)),
+        let (copy, sequence, safety_sequence) = match self.in_use {
+            // The other copy is erased, so only this one's sequences have to be exceeded.
+            Some(used) => (
+                usize::from(used.copy == 0),
+                used.sequence.wrapping_add(1),
+                used.safety_sequence.wrapping_add(1),
+            ),
             None => self.without_any(),
         };
         let words = calibration.to_words();
@@ -201,7 +269,9 @@ impl<F: NorFlash> CalibrationStore<F> {
             job: Job::Erase { page: 0 },
             copy,
             sequence,
-            checksum: checksum(record::words(&words, sequence)),
+            safety_sequence,
+            safety_checksum: checksum(Block::Safety.words(&words, safety_sequence)),
+            checksum: checksum(Block::Machine.words(&words, sequence)),
             words,
         });
         Ok(())
@@ -245,7 +315,7 @@ impl<F: NorFlash> CalibrationStore<F> {
                 let (from, to) = (start.saturating_add(done), start.saturating_add(next));
                 let erased = self.flash.erase(address(from), address(to));
                 erased.map_err(StoreError::Flash)?;
-                let more = next < RECORD_BYTES;
+                let more = next < COPY_BYTES;
                 Ok(Some(if more {
                     Job::Erase {
                         page: page.saturating_add(1),
@@ -259,7 +329,7 @@ impl<F: NorFlash> CalibrationStore<F> {
                 let done = chunk.saturating_mul(CHUNK);
                 let at = address(start.saturating_add(done));
                 self.flash.write(at, &bytes).map_err(StoreError::Flash)?;
-                let more = done.saturating_add(CHUNK) < RECORD_BYTES;
+                let more = done.saturating_add(CHUNK) < COPY_BYTES;
                 Ok(Some(if more {
                     Job::Program {
                         chunk: chunk.saturating_add(1),
@@ -268,79 +338,69 @@ impl<F: NorFlash> CalibrationStore<F> {
                     Job::Verify
                 }))
             }
-            Job::Verify => match self.examine(writing.copy).map_err(StoreError::Flash)? {
-                Copy::Good { sequence } if sequence == writing.sequence => {
-                    let copy = writing.copy;
-                    self.in_use = Some(InUse { copy, sequence });
-                    Ok(None)
+            Job::Verify => {
+                let state = self.examine(writing.copy).map_err(StoreError::Flash)?;
+                let good = state.machine.sequence() == Some(writing.sequence)
+                    && state.safety.sequence() == Some(writing.safety_sequence);
+                if !good {
+                    return Err(StoreError::Verify);
                 }
-                _ => Err(StoreError::Verify),
-            },
+                self.use_copy(writing.copy, state);
+                Ok(None)
+            }
         }
     }
 
-    /// Where to store, and under which number, if no copy makes a calibration: over a damaged copy before another one,
-    /// for it may be one that could be read again later. The number exceeds that of the copy that stays.
-    fn without_any(&mut self) -> (usize, u32) {
-        let [first, second] = self.copies();
-        let (copy, stays) = match second == Copy::Damaged && first != Copy::Damaged {
+    /// Where to store, and under which numbers, if no copy makes a calibration: over a damaged copy before another one,
+    /// for it may be one that could be read again later. The numbers exceed those of the copy that stays.
+    fn without_any(&mut self) -> (usize, u32, u32) {
+        let [first, second] = self.states();
+        let is_damaged = |state: &CopyState| state.copy() == Copy::Damaged;
+        let (copy, stays) = match is_damaged(&second) && !is_damaged(&first) {
             true => (1, first),
             false => (0, second),
         };
-        (copy, stays.sequence().unwrap_or(0).wrapping_add(1))
+        let after = |block: BlockState| block.sequence().unwrap_or(0).wrapping_add(1);
+        (copy, after(stays.machine), after(stays.safety))
     }
 
-    fn copies(&mut self) -> [Copy; 2] {
-        [0, 1].map(|copy| self.examine(copy).unwrap_or(Copy::Damaged))
+    fn states(&mut self) -> [CopyState; 2] {
+        [0, 1].map(|copy| self.examine(copy).unwrap_or_default())
     }
 
-    /// What a copy is worth, by its checksum.
-    fn examine(&mut self, copy: usize) -> Result<Copy, F::Error> {
-        let mut reader = self.reader(copy);
-        let first = reader.header()?;
-        let Some(header) = Header::from_words(first) else {
-            let blank = first.iter().all(|&word| word == u32::MAX);
-            return Ok(if blank { Copy::Blank } else { Copy::Damaged });
-        };
-        let Some(rest) = reader.entries(&header) else {
-            return Ok(Copy::Damaged);
-        };
-        let mut digest = Crc32::default();
-        first
-            .iter()
-            .for_each(|word| digest.update(&word.to_le_bytes()));
-        for _ in 0..rest {
-            digest.update(&reader.word()?.to_le_bytes());
-        }
-        Ok(if reader.word()? == digest.value() {
-            Copy::Good {
-                sequence: header.sequence,
+    /// What a copy is worth, by its checksums.
+    fn examine(&mut self, copy: usize) -> Result<CopyState, F::Error> {
+        let (start, end) = self.copy_range(copy);
+        CopyState::examine(&mut self.flash, start, end)
+    }
+
+    /// The calibration in the good blocks of a copy, if they make one.
+    fn decode(
+        &mut self,
+        copy: usize,
+        state: CopyState,
+    ) -> Result<Option<(ValidCalibration, Source)>, F::Error> {
+        let (start, end) = self.copy_range(copy);
+        let mut block = record::factory();
+        let mut version = 0;
+        for place in state.places().into_iter().flatten() {
+            let mut reader = Reader::new(&mut self.flash, start.saturating_add(place), end);
+            let Some((header, rest)) = reader.record()? else {
+                return Ok(None);
+            };
+            version = header.version;
+            let mut failed = None;
+            let entries =
+                (0..rest).map_while(|_| reader.word().map_err(|error| failed = Some(error)).ok());
+            block.take_entries(entries);
+            if let Some(error) = failed {
+                return Err(error);
             }
-        } else {
-            Copy::Damaged
-        })
-    }
-
-    /// The calibration in a good copy, if it makes one.
-    fn decode(&mut self, copy: usize) -> Result<Option<(ValidCalibration, Source)>, F::Error> {
-        let mut reader = self.reader(copy);
-        let header = Header::from_words(reader.header()?);
-        let Some((header, rest)) =
-            header.and_then(|header| Some((header, reader.entries(&header)?)))
-        else {
-            return Ok(None);
-        };
-        let mut failed = None;
-        let entries =
-            (0..rest).map_while(|_| reader.word().map_err(|error| failed = Some(error)).ok());
-        let decoded = record::decode(entries);
-        if let Some(error) = failed {
-            return Err(error);
         }
-        Ok(decoded.map(|(calibration, carried)| {
+        Ok(block.finish().map(|(calibration, carried)| {
             let source = Source::Stored {
                 copy,
-                version: header.version,
+                version,
                 carried,
             };
             (calibration, source)
@@ -357,72 +417,16 @@ impl<F: NorFlash> CalibrationStore<F> {
         copy.saturating_mul(self.copy_bytes())
     }
 
-    fn reader(&mut self, copy: usize) -> Reader<'_, F> {
-        let at = self.copy_start(copy);
-        let end = at.saturating_add(self.copy_bytes());
-        Reader {
-            flash: &mut self.flash,
-            at,
-            end,
-            chunk: [0; CHUNK],
-            next: CHUNK_WORDS,
-        }
+    fn copy_range(&self, copy: usize) -> (usize, usize) {
+        let start = self.copy_start(copy);
+        (start, start.saturating_add(self.copy_bytes()))
     }
 }
 
-/// Reads a copy word by word.
-struct Reader<'a, F> {
-    flash: &'a mut F,
-    at: usize,
-    end: usize,
-    chunk: [u8; CHUNK],
-    /// The next word in the chunk.
-    next: usize,
-}
-
-impl<F: NorFlash> Reader<'_, F> {
-    fn header(&mut self) -> Result<[u32; HEADER_WORDS], F::Error> {
-        let mut words = [0; HEADER_WORDS];
-        for word in &mut words {
-            *word = self.word()?;
-        }
-        Ok(words)
-    }
-
-    /// Words between header and checksum, if the record fits into the copy.
-    fn entries(&self, header: &Header) -> Option<usize> {
-        let words = usize::try_from(header.words).ok()?;
-        // The first chunk has been read already.
-        let room = self.end.saturating_sub(self.at).saturating_add(CHUNK) / 4;
-        let fits = words <= room;
-        words.checked_sub(HEADER_WORDS + 1).filter(|_| fits)
-    }
-
-    /// The next word; an erased one beyond the end.
-    fn word(&mut self) -> Result<u32, F::Error> {
-        if self.next >= CHUNK_WORDS {
-            let next = self.at.saturating_add(CHUNK);
-            if next > self.end {
-                return Ok(u32::MAX);
-            }
-            self.flash.read(address(self.at), &mut self.chunk)?;
-            self.at = next;
-            self.next = 0;
-        }
-        let (words, _) = self.chunk.as_chunks::<4>();
-        let word = words.get(self.next).copied().unwrap_or([u8::MAX; 4]);
-        self.next = self.next.saturating_add(1);
-        Ok(u32::from_le_bytes(word))
-    }
-}
-
-/// The good copies, the newer one first.
-fn newest_first(copies: [Copy; 2]) -> impl Iterator<Item = usize> {
-    let order = match copies {
-        [
-            Copy::Good { sequence: first },
-            Copy::Good { sequence: second },
-        ] => {
+/// Those that have a sequence, the newer one first.
+fn newest_first(sequences: [Option<u32>; 2]) -> impl Iterator<Item = usize> {
+    let order = match sequences {
+        [Some(first), Some(second)] => {
             // Sequences wrap; of two that were stored one after the other, the later one is one further on.
             if first.wrapping_sub(second).cast_signed() >= 0 {
                 [Some(0), Some(1)]
@@ -430,9 +434,9 @@ fn newest_first(copies: [Copy; 2]) -> impl Iterator<Item = usize> {
                 [Some(1), Some(0)]
             }
         }
-        [Copy::Good { .. }, _] => [Some(0), None],
-        [_, Copy::Good { .. }] => [Some(1), None],
-        _ => [None, None],
+        [Some(_), None] => [Some(0), None],
+        [None, Some(_)] => [Some(1), None],
+        [None, None] => [None, None],
     };
     order.into_iter().flatten()
 }
@@ -443,13 +447,27 @@ fn checksum(words: impl Iterator<Item = u32>) -> u32 {
     digest.value()
 }
 
-/// A chunk of the record, the last one filled up with what erased flash holds.
+/// A chunk of the copy, the last one of each block filled up with what erased flash holds.
 fn chunk_bytes(writing: &Writing, chunk: usize) -> [u8; CHUNK] {
+    match chunk.checked_sub(SAFETY_CHUNKS) {
+        None => chunk_of(
+            Block::Safety.words(&writing.words, writing.safety_sequence),
+            writing.safety_checksum,
+            chunk,
+        ),
+        Some(chunk) => chunk_of(
+            Block::Machine.words(&writing.words, writing.sequence),
+            writing.checksum,
+            chunk,
+        ),
+    }
+}
+
+fn chunk_of(words: impl Iterator<Item = u32>, checksum: u32, chunk: usize) -> [u8; CHUNK] {
     let mut bytes = [u8::MAX; CHUNK];
-    let all = record::words(&writing.words, writing.sequence).chain([writing.checksum]);
     let (targets, _) = bytes.as_chunks_mut::<4>();
     let first = chunk.saturating_mul(CHUNK_WORDS);
-    for (index, word) in (0..RECORD_WORDS).zip(all) {
+    for (index, word) in (0..COPY_BYTES / 4).zip(words.chain([checksum])) {
         let place = index.checked_sub(first);
         if let Some(target) = place.and_then(|place| targets.get_mut(place)) {
             *target = word.to_le_bytes();
@@ -459,6 +477,6 @@ fn chunk_bytes(writing: &Writing, chunk: usize) -> [u8; CHUNK] {
 }
 
 /// Flash is addressed with 32 bits.
-fn address(offset: usize) -> u32 {
+pub(super) fn address(offset: usize) -> u32 {
     u32::try_from(offset).unwrap_or(u32::MAX)
 }

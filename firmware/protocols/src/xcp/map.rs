@@ -14,8 +14,9 @@ use super::error::Refusal;
 use super::measurements;
 use super::measurements::Measurements;
 use super::memory::{Memory, MemoryRange, Page, Text};
-use super::pages::CalibrationPages;
+use super::pages::{CalibrationPages, Right};
 use super::slave::Event;
+use crate::key::Nonce;
 
 /// Bytes of a slot.
 pub const SLOT_BYTES: u32 = 4;
@@ -54,7 +55,8 @@ pub enum Access {
     Locked,
     /// Values that are harmless while the hitch moves.
     Moving,
-    /// All values, and the working page may be stored: both coils are off and locked.
+    /// All values as far as they do not loosen safety values, and the working page may be stored: both coils are off and
+    /// locked.
     AtRest,
 }
 
@@ -67,6 +69,8 @@ pub struct EcuMemory<'a> {
     pub measurements: &'a Measurements,
     /// Write permission.
     pub access: Access,
+    /// What makes the next challenge a new one.
+    pub nonce: Nonce,
 }
 
 impl EcuMemory<'_> {
@@ -121,13 +125,15 @@ impl Memory for EcuMemory<'_> {
         Ok(())
     }
 
-    fn write(&mut self, address: u32, bytes: &[u8]) -> Result<(), Refusal> {
+    fn write(&mut self, address: u32, bytes: &[u8], unlocked: bool) -> Result<(), Refusal> {
         let offset = calibration_offset(address).ok_or(Refusal::AccessDenied)?;
-        match self.access {
-            Access::Locked => Err(Refusal::AccessLocked),
-            Access::Moving => self.pages.write(offset, bytes, true),
-            Access::AtRest => self.pages.write(offset, bytes, false),
-        }
+        let right = match self.access {
+            Access::Locked => return Err(Refusal::AccessLocked),
+            Access::Moving => Right::Moving,
+            Access::AtRest if unlocked => Right::WithKey,
+            Access::AtRest => Right::AtRest,
+        };
+        self.pages.write(offset, bytes, right)
     }
 
     fn segment(&self) -> (u32, u32) {
@@ -154,6 +160,14 @@ impl Memory for EcuMemory<'_> {
 
     fn may_store(&self) -> bool {
         self.access == Access::AtRest
+    }
+
+    fn requires_key_to_store(&self) -> bool {
+        self.pages.requires_key_to_store()
+    }
+
+    fn nonce(&self) -> Nonce {
+        self.nonce
     }
 
     fn tool_page(&self) -> Page {

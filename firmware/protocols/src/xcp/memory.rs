@@ -2,6 +2,7 @@
 
 use super::error::Refusal;
 use super::slave::Event;
+use crate::key::Nonce;
 
 /// Page of the calibration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,11 +55,11 @@ pub trait Memory {
     /// If a part of it is not readable.
     fn read(&self, address: u32, target: &mut [u8]) -> Result<(), Refusal>;
 
-    /// Writes `bytes` completely or fails.
+    /// Writes `bytes` completely or fails; `unlocked`: safety values may be loosened.
     ///
     /// # Errors
     /// If a part of it is not writable, or a value is out of range.
-    fn write(&mut self, address: u32, bytes: &[u8]) -> Result<(), Refusal>;
+    fn write(&mut self, address: u32, bytes: &[u8], unlocked: bool) -> Result<(), Refusal>;
 
     /// The segment of the calibration: address and length.
     fn segment(&self) -> (u32, u32);
@@ -95,4 +96,10 @@ pub trait Memory {
 
     /// Whether the working page may be stored in flash now.
     fn may_store(&self) -> bool;
+
+    /// Whether storing requires the key: the stored safety values are lost.
+    fn requires_key_to_store(&self) -> bool;
+
+    /// What makes the next challenge a new one.
+    fn nonce(&self) -> Nonce;
 }

@@ -18,10 +18,11 @@ mod packet;
 pub mod pages;
 mod paging;
 mod slave;
+mod unlocking;
 
 pub use error::Refusal;
 pub use map::{Access, EcuMemory};
 pub use measurements::Measurements;
 pub use memory::{Memory, MemoryRange, Page, Text};
-pub use pages::CalibrationPages;
+pub use pages::{CalibrationPages, Right};
 pub use slave::{Event, Slave, TOOL_ADDRESS};

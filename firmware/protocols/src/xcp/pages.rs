@@ -22,6 +22,17 @@ pub enum Applied {
     Inconsistent = 2,
 }
 
+/// What a writer may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Right {
+    /// Values of the live class.
+    Moving,
+    /// The same, values of the machine class, and safety values as far as that tightens the stored ones.
+    AtRest,
+    /// All values.
+    WithKey,
+}
+
 /// Bytes of a word.
 const WORD_BYTES: usize = 4;
 /// Maximum number of bytes of one write command.
@@ -76,6 +87,7 @@ pub struct CalibrationPages {
     tool_page: Page,
     applied: Applied,
     fragment: Fragment,
+    requires_key_to_store: bool,
 }
 
 impl CalibrationPages {
@@ -90,6 +102,34 @@ impl CalibrationPages {
             tool_page: Page::Working,
             applied: Applied::InUse,
             fragment: Fragment::default(),
+            requires_key_to_store: false,
+        }
+    }
+
+    /// The stored safety values are lost: only the key allows to store others.
+    pub const fn require_key_to_store(&mut self) {
+        self.requires_key_to_store = true;
+    }
+
+    /// Whether the working page can be stored only with the key.
+    #[must_use]
+    pub const fn requires_key_to_store(&self) -> bool {
+        self.requires_key_to_store
+    }
+
+    /// Takes back what only the key allows to write. Called at the end of a session with the key: what it has not stored
+    /// does not stay.
+    pub fn revert_loosened(&mut self) {
+        let mut reverted = false;
+        let pairs = self.working.iter_mut().zip(&self.reference);
+        for (index, (working, &stored)) in (0..CALIBRATION_WORDS).zip(pairs) {
+            if loosens(index, stored, *working) {
+                *working = stored;
+                reverted = true;
+            }
+        }
+        if reverted {
+            self.changed(Page::Working);
         }
     }
 
@@ -126,6 +166,7 @@ impl CalibrationPages {
     /// `stored` is in flash now and becomes the reference page.
     pub fn stored(&mut self, stored: &ValidCalibration) {
         self.reference = stored.to_words();
+        self.requires_key_to_store = false;
         if self.controller_page == Page::Reference {
             self.applied = Applied::Pending;
         }
@@ -143,7 +184,8 @@ impl CalibrationPages {
         self.page(self.tool_page).get(index).copied()
     }
 
-    /// Writes bytes of the block from `offset`; `moving`: only values that may be changed while the hitch moves.
+    /// Writes bytes of the block from `offset`. Whether a safety value becomes looser is told by the stored one: what a
+    /// tool has tightened it may take back until it is stored.
     ///
     /// A word is checked and changed as a unit. Tools split long writes into pieces of six or seven bytes, so a piece
     /// may end inside a word; its first part is kept until the next piece completes it. A piece that begins inside a
@@ -151,7 +193,7 @@ impl CalibrationPages {
     ///
     /// # Errors
     /// The reason for the refusal; nothing was changed.
-    pub fn write(&mut self, offset: usize, bytes: &[u8], moving: bool) -> Result<(), Refusal> {
+    pub fn write(&mut self, offset: usize, bytes: &[u8], right: Right) -> Result<(), Refusal> {
         if self.tool_page != Page::Working {
             return Err(Refusal::WriteProtected);
         }
@@ -168,11 +210,15 @@ impl CalibrationPages {
         let words = words.iter().map(|word| i32::from_le_bytes(*word));
         let indexed = (first..=usize::MAX).zip(words);
         for (index, value) in indexed.clone() {
-            check(index, value, moving)?;
+            check(index, value, right)?;
+            let stored = self.reference.get(index).copied().unwrap_or(value);
+            if right != Right::WithKey && loosens(index, stored, value) {
+                return Err(Refusal::AccessLocked);
+            }
         }
         if !rest.is_empty() {
             let word = first.saturating_add(piece.len() / WORD_BYTES);
-            check_place(word, moving)?;
+            check_place(word, right)?;
             self.fragment = Fragment::new(word, rest);
         }
         for (index, value) in indexed {
@@ -233,18 +279,23 @@ impl CalibrationPages {
     }
 }
 
+/// Whether `value` in place of the stored one requires the key.
+fn loosens(index: usize, stored: i32, value: i32) -> bool {
+    word_range(index).is_some_and(|range| range.class.requires_key(stored, value))
+}
+
 /// Checks that a word may be written now.
-fn check_place(index: usize, moving: bool) -> Result<WordRange, Refusal> {
+fn check_place(index: usize, right: Right) -> Result<WordRange, Refusal> {
     let range = word_range(index).ok_or(Refusal::WriteProtected)?;
-    if moving && !range.live {
+    if right == Right::Moving && !range.class.is_live() {
         return Err(Refusal::AccessDenied);
     }
     Ok(range)
 }
 
 /// Checks that a word may be written now with this value.
-fn check(index: usize, value: i32, moving: bool) -> Result<(), Refusal> {
-    let range = check_place(index, moving)?;
+fn check(index: usize, value: i32, right: Right) -> Result<(), Refusal> {
+    let range = check_place(index, right)?;
     if !(range.min..=range.max).contains(&value) {
         return Err(Refusal::OutOfRange);
     }

@@ -8,9 +8,11 @@ use super::daq::Daq;
 use super::error::Refusal;
 use super::memory::{Memory, MemoryRange, Text};
 use super::packet::{Answer, MOST_BYTES, Packet, done, packet, response};
+use super::unlocking::{CALIBRATION, Unlocking};
 use super::{checksum, measuring, paging};
 use crate::can::Frame;
 use crate::j1939::{Id, Pgn};
+use crate::key::Secret;
 
 /// Capacity of the queue of answers and events.
 const QUEUE: usize = 4;
@@ -19,8 +21,7 @@ const PRIORITY: u8 = 6;
 /// Address of the tool (249: off-board service tool).
 pub const TOOL_ADDRESS: u8 = 249;
 
-/// Resources: calibrating and paging, measuring.
-const CALIBRATION: u8 = 0x01;
+/// The other resource, measuring.
 const MEASURING: u8 = 0x04;
 /// Communication mode: little-endian, bytes; details by GET_COMM_MODE_INFO.
 const MORE_INFORMATION: u8 = 0x80;
@@ -77,6 +78,7 @@ pub struct Slave {
     checksum: Option<Checksum>,
     queue: Deque<Packet, QUEUE>,
     store: Store,
+    unlocking: Unlocking,
 }
 
 /// State of storing the working page.
@@ -90,10 +92,19 @@ enum Store {
 }
 
 impl Slave {
-    /// A slave without connection.
+    /// A slave without connection, with the secret of the safety values. Without one they are locked for good.
     #[must_use]
-    pub fn new() -> Self {
-        Self::default()
+    pub fn new(secret: Option<Secret>) -> Self {
+        Self {
+            unlocking: Unlocking::new(secret),
+            ..Self::default()
+        }
+    }
+
+    /// Whether the session may loosen safety values.
+    #[must_use]
+    pub const fn is_unlocked(&self) -> bool {
+        self.unlocking.is_open()
     }
 
     /// Sets the own address on the bus; with `None` nothing is sent. A connection ends when the address changes.
@@ -189,6 +200,7 @@ impl Slave {
     }
 
     fn carry_on(&mut self, memory: &impl Memory) {
+        self.unlocking.step(memory);
         let answer = self
             .checksum
             .as_mut()
@@ -217,9 +229,8 @@ impl Slave {
             code::GET_COMM_MODE_INFO => response(&[0, 0, 0, 0, 0, 0, DRIVER_VERSION]),
             code::GET_ID => self.identity(rest, memory),
             code::SET_REQUEST => self.request_store(rest, memory),
-            code::GET_SEED => seed(rest, memory),
-            // There is no key: tuning is enabled by a switch on the machine.
-            code::UNLOCK => Err(Refusal::Sequence),
+            code::GET_SEED => self.unlocking.seed(rest, memory, now_us),
+            code::UNLOCK => self.unlock(rest),
             code::SET_MTA => self.set_transfer_address(rest),
             code::UPLOAD => self.upload(rest, memory),
             code::SHORT_UPLOAD => self.short_upload(rest, memory),
@@ -260,6 +271,7 @@ impl Slave {
 
     fn disconnect(&mut self) {
         self.connected = false;
+        self.unlocking.close();
         self.checksum = None;
         self.daq.free();
         self.queue.clear();
@@ -281,6 +293,15 @@ impl Slave {
         response(&[session, protected, 0, 0, 0])
     }
 
+    /// A wrong key ends the session.
+    fn unlock(&mut self, rest: &[u8]) -> Answer {
+        let answer = self.unlocking.unlock(rest);
+        if answer == Err(Refusal::AccessLocked) {
+            self.disconnect();
+        }
+        answer
+    }
+
     /// Sets the transfer address to a text.
     fn identity(&mut self, rest: &[u8], memory: &impl Memory) -> Answer {
         let [kind, ..] = *rest else {
@@ -299,6 +320,9 @@ impl Slave {
         const STORE_CALIBRATION: u8 = 0x01;
         match rest {
             [STORE_CALIBRATION, ..] if !memory.may_calibrate() => Err(Refusal::AccessLocked),
+            [STORE_CALIBRATION, ..] if memory.requires_key_to_store() && !self.is_unlocked() => {
+                Err(Refusal::AccessLocked)
+            }
             [STORE_CALIBRATION, ..] if !memory.may_store() => Err(Refusal::AccessDenied),
             [STORE_CALIBRATION, ..] => {
                 if self.store == Store::Idle {
@@ -361,20 +385,10 @@ impl Slave {
                 .and_then(|(&count, data)| data.get(..usize::from(count)))
         };
         let data = data.ok_or(Refusal::Syntax)?;
-        memory.write(self.transfer_address, data)?;
+        memory.write(self.transfer_address, data, self.is_unlocked())?;
         let written = u32::try_from(data.len()).unwrap_or(0);
         self.transfer_address = self.transfer_address.wrapping_add(written);
         done()
-    }
-}
-
-/// With tuning enabled on the machine nothing is protected (seed of zero bytes); otherwise no key unlocks it.
-fn seed(rest: &[u8], memory: &impl Memory) -> Answer {
-    match rest {
-        [0, CALIBRATION, ..] if !memory.may_calibrate() => Err(Refusal::AccessLocked),
-        [0, _, ..] => response(&[0]),
-        [_, _, ..] => Err(Refusal::Sequence),
-        _ => Err(Refusal::Syntax),
     }
 }
 

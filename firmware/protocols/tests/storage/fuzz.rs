@@ -32,7 +32,7 @@ enum Event {
 }
 
 fn event() -> impl Strategy<Value = Event> {
-    let place = (0..2_usize, 0..4 * record::RECORD_WORDS);
+    let place = (0..2_usize, 0..COPY_BYTES);
     let torn = prop::collection::vec(any::<u8>(), 0..40);
     prop_oneof![
         3 => Just(Event::Store),
@@ -62,7 +62,7 @@ struct Machine {
 impl Machine {
     /// Nothing is stored; sequences begin shortly before they wrap.
     fn new() -> Self {
-        let mut first = record_of(&calibration(1_000));
+        let mut first = record_of(&calibration(1_000), 1);
         first[1] = u32::MAX - 2;
         let flash = Shared::new(flash_with_record(&first));
         let mut machine = Self {

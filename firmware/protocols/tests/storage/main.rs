@@ -4,11 +4,13 @@ mod fault_log;
 mod flash;
 mod fuzz;
 mod pieces;
+mod safety_block;
 mod spared;
 
 use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
 use flash::{Flash, FlashError, PAGE, PAGES};
-use hitch_protocols::storage::record::Carried;
+use hitch_protocols::storage::record::{Block, Carried};
+use hitch_protocols::storage::store::COPY_BYTES;
 use hitch_protocols::storage::{CalibrationStore, Copy, Progress, Source, StoreError, record};
 use hitch_quantities::calibration::CALIBRATION_VERSION;
 use hitch_quantities::calibration::calibration_words::{CALIBRATION_WORDS, items};
@@ -60,9 +62,27 @@ fn flash_with_record(words: &[u32]) -> Flash {
     flash
 }
 
-/// The words of a record of `calibration`, without its checksum.
-fn record_of(calibration: &ValidCalibration) -> Vec<u32> {
-    record::words(&calibration.to_words(), 1).collect()
+/// The words of a record of `calibration` by firmware that had one block, without its checksum.
+fn record_of(calibration: &Calibration, sequence: u32) -> Vec<u32> {
+    let words = calibration.to_words();
+    let entries = |block: Block| block.words(&words, sequence).skip(record::HEADER_WORDS);
+    let head = Block::Machine.words(&words, sequence).take(4);
+    let all = entries(Block::Machine).chain(entries(Block::Safety));
+    let mut record: Vec<u32> = head.chain(all).collect();
+    record[2] = u32::try_from(record.len() + 1).unwrap();
+    record
+}
+
+/// Where the machine block begins in a copy.
+const MACHINE_BLOCK: usize = (4 * Block::Safety.record_words()).next_multiple_of(32);
+
+/// Whether a byte of a copy belongs to a block; the last chunk of each is filled up.
+fn is_used(byte: &usize) -> bool {
+    let (block, place) = match byte.checked_sub(MACHINE_BLOCK) {
+        Some(place) => (Block::Machine, place),
+        None => (Block::Safety, *byte),
+    };
+    place < 4 * block.record_words()
 }
 
 /// The entry of a scalar in a record: where it stands.
@@ -110,7 +130,7 @@ fn what_is_stored_is_loaded_and_copies_take_turns() {
 
 #[test]
 fn the_newer_copy_counts_when_the_sequence_wraps() {
-    let mut first = record_of(&calibration(2_000));
+    let mut first = record_of(&calibration(2_000), 1);
     first[1] = u32::MAX;
     let mut store = CalibrationStore::new(flash_with_record(&first));
     store.store(&calibration(3_000)).unwrap();
@@ -179,8 +199,10 @@ fn every_flipped_bit_of_the_newer_copy_gives_the_older_one() {
     let (old, new) = (calibration(2_000), calibration(3_000));
     let flash = flash_with(&old, &new);
     let start = PAGE * PAGES / 2;
-    let bytes = 4 * record::RECORD_WORDS;
-    for bit in 0..8 * bytes {
+    for bit in (0..COPY_BYTES)
+        .filter(is_used)
+        .flat_map(|byte| 8 * byte..8 * byte + 8)
+    {
         let mut damaged = flash.clone();
         damaged.bytes[start + bit / 8] ^= 1 << (bit % 8);
         let mut store = CalibrationStore::new(damaged);
@@ -222,7 +244,7 @@ fn rubbish_in_flash_is_no_calibration() {
 
 #[test]
 fn a_calibration_of_another_layout_keeps_what_both_know() {
-    let mut words = record_of(&calibration(2_000));
+    let mut words = record_of(&calibration(2_000), 1);
     // An older firmware: its version, an entry that this one has dropped, and one missing that this one has added.
     words[3] = CALIBRATION_VERSION - 1;
     words.splice(4..4, [0xABCD_EF03, 1, 2, 3]);
@@ -256,7 +278,7 @@ fn a_calibration_of_another_layout_keeps_what_both_know() {
 
 #[test]
 fn a_value_that_is_no_longer_in_range_gets_its_default() {
-    let mut words = record_of(&calibration(2_000));
+    let mut words = record_of(&calibration(2_000), 1);
     let speed = entry_of(&words, lift_speed_word());
     words[speed + 1] = 0;
     let (calibration, source) = loaded(&flash_with_record(&words));
@@ -282,13 +304,13 @@ fn a_record_that_makes_no_calibration_is_passed_over() {
         &mut crossed.position.lower_limit,
         &mut crossed.position.upper_limit,
     );
-    let words: Vec<u32> = record::words(&crossed.to_words(), 1).collect();
+    let words: Vec<u32> = record_of(&crossed, 1);
     assert_eq!(loaded(&flash_with_record(&words)).1, Source::Factory);
 }
 
 #[test]
 fn a_record_without_any_entry_that_is_known_is_passed_over() {
-    let head = record_of(&calibration(2_000))[..4].to_vec();
+    let head = record_of(&calibration(2_000), 1)[..4].to_vec();
     for entries in [&[][..], &[0xABCD_EF03, 1, 2, 3]] {
         let mut words = [&head, entries].concat();
         words[2] = u32::try_from(words.len() + 1).unwrap();
@@ -321,8 +343,7 @@ fn storing_is_done_in_steps_of_a_page_or_a_chunk() {
     while store.step().unwrap() == Progress::Busy {
         steps += 1;
     }
-    let bytes = 4 * record::RECORD_WORDS;
-    assert_eq!(steps, bytes.div_ceil(PAGE) + bytes.div_ceil(32));
+    assert_eq!(steps, COPY_BYTES.div_ceil(PAGE) + COPY_BYTES / 32);
     assert_eq!(store.step(), Ok(Progress::Idle));
 }
 
@@ -378,7 +399,7 @@ fn flash_that_is_too_small_is_refused() {
 
 #[test]
 fn an_entry_that_is_cut_off_gets_its_default() {
-    let mut words = record_of(&calibration(2_000));
+    let mut words = record_of(&calibration(2_000), 1);
     words.pop();
     words[2] = u32::try_from(words.len() + 1).unwrap();
     let (calibration, source) = loaded(&flash_with_record(&words));

@@ -3,8 +3,6 @@
 use super::flash::Shared;
 use super::*;
 
-/// What a record takes, in chunks of 32 bytes.
-const RECORD: usize = (4 * record::RECORD_WORDS).next_multiple_of(32);
 /// Half of the flash: where the second copy starts.
 const SECOND: usize = PAGE * PAGES / 2;
 
@@ -57,14 +55,14 @@ fn a_copy_that_is_just_large_enough_is_used_and_no_page_behind_it_is_erased() {
         bytes: vec![0; bytes],
         erased: 0,
     };
-    let mut store = CalibrationStore::new(fine(2 * RECORD));
+    let mut store = CalibrationStore::new(fine(2 * COPY_BYTES));
     for round in 1..=2 {
         let stored = calibration(2_000 + round);
         store.store(&stored).unwrap();
         assert_eq!(store.load().calibration, stored);
     }
-    assert_eq!(store.release().erased, 2 * RECORD / 32);
-    let mut store = CalibrationStore::new(fine(2 * RECORD - 64));
+    assert_eq!(store.release().erased, 2 * COPY_BYTES / 32);
+    let mut store = CalibrationStore::new(fine(2 * COPY_BYTES - 64));
     assert_eq!(store.store(&calibration(2_000)), Err(StoreError::TooSmall));
 }
 
@@ -80,14 +78,14 @@ fn flash_that_does_not_take_a_record_is_noticed_though_an_older_one_is_there() {
 
 #[test]
 fn a_record_that_says_that_it_is_longer_than_its_copy_is_not_read() {
-    let mut words = record_of(&calibration(2_000));
-    for (length, reads) in [(SECOND / 4, 2..=SECOND / 32), (SECOND / 4 + 1, 1..=1)] {
+    let mut words = record_of(&calibration(2_000), 1);
+    for (length, reads) in [(SECOND / 4, 2..=SECOND / 32), (SECOND / 4 + 1, 2..=2)] {
         words[2] = u32::try_from(length).unwrap();
         let shared = Shared::new(flash_with_record(&words));
         let found = CalibrationStore::new(shared.clone()).load();
         assert_eq!(found.copies, [Copy::Damaged, Copy::Blank]);
-        // One of them is of the blank copy.
-        let read = shared.flash().reads - 1;
+        // Two of them are of the blank copy, one for each block.
+        let read = shared.flash().reads - 2;
         assert!(reads.contains(&read), "{length} words: {read} reads");
     }
 }

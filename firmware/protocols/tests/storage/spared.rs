@@ -13,9 +13,9 @@ pub fn useless_record(sequence: u32) -> Vec<u8> {
         &mut crossed.position.lower_limit,
         &mut crossed.position.upper_limit,
     );
-    let words = record::words(&crossed.to_words(), sequence).collect::<Vec<_>>();
+    let words = record_of(&crossed, sequence);
     let flash = flash_with_record(&words);
-    flash.bytes[..4 * record::RECORD_WORDS].to_vec()
+    flash.bytes[..4 * (words.len() + 1)].to_vec()
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn a_newest_copy_that_makes_no_calibration_is_the_one_that_is_stored_over() {
 fn a_copy_that_cannot_be_read_counts_as_damaged_and_the_other_one_is_used() {
     let (old, new) = (calibration(2_000), calibration(3_000));
     let flash = flash_with(&old, &new);
-    for byte in (0..4 * record::RECORD_WORDS).step_by(32) {
+    for byte in (0..COPY_BYTES).step_by(32) {
         for (start, expected) in [(0, &new), (SECOND, &old)] {
             let mut store = CalibrationStore::new(Flash {
                 unreadable: start + byte..start + byte + 1,

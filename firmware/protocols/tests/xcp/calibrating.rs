@@ -10,11 +10,12 @@ use crate::client::{
     ACCESS_DENIED, ACCESS_LOCKED, Desk, OUT_OF_RANGE, WRITE_PROTECTED, scalar, scalars,
     word_address,
 };
+use crate::key::unlocked;
 
 // REQ-SAFE-11
 #[test]
 fn every_parameter_takes_what_is_in_its_range_and_nothing_else() {
-    let mut desk = Desk::connected();
+    let mut desk = unlocked();
     for (group, parameter, address, _) in scalars() {
         let name = format!("{group}.{}", parameter.name);
         assert_eq!(desk.read(address), Ok(parameter.nominal), "{name}");
@@ -75,6 +76,7 @@ fn limits_are_no_lever() {
         assert_eq!(desk.read(address), Ok(present));
         desk.access = Access::AtRest;
         assert_eq!(desk.write(address, 110_000), Ok(()), "{limit}");
+        assert_eq!(desk.write(address, present), Ok(()), "{limit}");
     }
 }
 

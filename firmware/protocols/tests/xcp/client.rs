@@ -2,6 +2,7 @@
 
 use hitch_protocols::can::Frame;
 use hitch_protocols::j1939::{Id, Pgn};
+use hitch_protocols::key::{Nonce, Secret};
 use hitch_protocols::xcp::map::CALIBRATION_BASE;
 use hitch_protocols::xcp::{
     Access, CalibrationPages, EcuMemory, Event, Measurements, Slave, TOOL_ADDRESS,
@@ -19,6 +20,7 @@ pub struct Desk {
     pub pages: CalibrationPages,
     pub measurements: Measurements,
     pub access: Access,
+    pub nonce: Nonce,
     pub now_us: u32,
 }
 
@@ -33,13 +35,19 @@ pub const ACCESS_LOCKED: Error = 0x25;
 impl Desk {
     /// An ECU without connection, at rest, with tuning enabled.
     pub fn new() -> Self {
-        let mut slave = Slave::new();
+        Self::with_secret(None)
+    }
+
+    /// The same with a secret.
+    pub fn with_secret(secret: Option<Secret>) -> Self {
+        let mut slave = Slave::new(secret);
         slave.set_address(Some(ECU));
         Self {
             slave,
             pages: CalibrationPages::new(&ValidCalibration::nominal()),
             measurements: Measurements::default(),
             access: Access::AtRest,
+            nonce: Nonce::default(),
             now_us: 0,
         }
     }
@@ -56,6 +64,7 @@ impl Desk {
             pages: &mut self.pages,
             measurements: &self.measurements,
             access: self.access,
+            nonce: self.nonce,
         };
         self.slave.receive(frame, &mut memory, self.now_us);
     }
@@ -71,6 +80,7 @@ impl Desk {
             pages: &mut self.pages,
             measurements: &self.measurements,
             access: self.access,
+            nonce: self.nonce,
         };
         self.slave.event(event, &memory, self.now_us);
     }
@@ -153,7 +163,7 @@ pub fn scalars() -> Vec<(&'static str, &'static ParameterInfo, u32, bool)> {
     });
     all.zip(SCALARS_WORD..)
         .map(|((group, parameter), word)| {
-            let live = word_range(word).unwrap().live;
+            let live = word_range(word).unwrap().class.is_live();
             (group, parameter, word_address(word), live)
         })
         .collect()

@@ -180,8 +180,13 @@ fn tuning_is_enabled_at_the_machine_and_nowhere_else() {
     desk.access = Access::Moving;
     assert_eq!(desk.obeyed(&[0xFD])[1], 0x00);
     assert_eq!(
-        desk.obeyed(&[0xF8, 0, 1]),
+        desk.ask(&[0xF8, 0, 1]),
+        Err(ACCESS_LOCKED),
+        "without a secret there is no seed"
+    );
+    assert_eq!(
+        desk.obeyed(&[0xF8, 0, 4]),
         [0],
-        "a seed of no bytes: unlocked"
+        "measuring is unlocked: a seed of no bytes"
     );
 }

@@ -3,5 +3,6 @@
 mod calibrating;
 mod client;
 mod connection;
+mod key;
 mod measuring;
 mod nonsense;

@@ -1,5 +1,6 @@
 //! The calibration block as a list of words, with what each may hold: the view that tools and storage have of it.
 
+use super::class::{Class, Tightening, class_of};
 use super::design_parameters::{
     BusParameters, CurrentParameters, HoldParameters, HydraulicParameters, LockParameters,
     MotionParameters, OperatorParameters, PositionParameters, RateParameters, RemoteParameters,
@@ -37,42 +38,13 @@ pub struct Group {
     pub name: &'static str,
     /// Its scalars, a word each.
     pub parameters: &'static [ParameterInfo],
-    /// True if they may be changed while the hitch moves, except for limits and addresses.
-    pub live: bool,
 }
 
-const fn group<G: ParameterGroup>(live: bool) -> Group {
+const fn group<G: ParameterGroup>() -> Group {
     Group {
         name: G::NAME,
         parameters: G::INFO,
-        live,
     }
-}
-
-/// Changing it while the hitch moves is harmless: ramps and gains, which the controller takes up from wherever it is.
-/// Everything else says what the machine is, where it may go or what is safe, and is changed at rest.
-const LIVE: bool = true;
-const AT_REST: bool = false;
-
-/// Scalars of live groups that are changed at rest: limits, because they move set points, and addresses of engines,
-/// because they say whose speed opens the engine lock.
-const NOT_LIVE: [(&str, &str); 4] = [
-    ("position", "lower_limit"),
-    ("position", "upper_limit"),
-    ("bus", "engine_address"),
-    ("bus", "second_engine_address"),
-];
-
-/// True if a scalar may be changed while the hitch moves.
-const fn is_live(group: &Group, name: &str) -> bool {
-    let mut live = group.live;
-    let mut index = 0;
-    while index < NOT_LIVE.len() {
-        let (of_group, of_name) = NOT_LIVE[index];
-        live &= full_name(of_group, of_name) != full_name(group.name, name);
-        index += 1;
-    }
-    live
 }
 
 /// A hash of the name of a scalar with that of its group.
@@ -82,20 +54,20 @@ const fn full_name(group: &str, name: &str) -> u32 {
 
 /// The groups in the order of the block.
 pub const GROUPS: [Group; 14] = [
-    group::<HydraulicParameters>(AT_REST),
-    group::<SensorParameters>(AT_REST),
-    group::<LockParameters>(AT_REST),
-    group::<OperatorParameters>(AT_REST),
-    group::<MotionParameters>(AT_REST),
-    group::<PositionParameters>(LIVE),
-    group::<RateParameters>(LIVE),
-    group::<HoldParameters>(AT_REST),
-    group::<SaturationParameters>(AT_REST),
-    group::<TeachParameters>(AT_REST),
-    group::<CurrentParameters>(AT_REST),
-    group::<BusParameters>(LIVE),
-    group::<RemoteParameters>(AT_REST),
-    group::<SafetyParameters>(AT_REST),
+    group::<HydraulicParameters>(),
+    group::<SensorParameters>(),
+    group::<LockParameters>(),
+    group::<OperatorParameters>(),
+    group::<MotionParameters>(),
+    group::<PositionParameters>(),
+    group::<RateParameters>(),
+    group::<HoldParameters>(),
+    group::<SaturationParameters>(),
+    group::<TeachParameters>(),
+    group::<CurrentParameters>(),
+    group::<BusParameters>(),
+    group::<RemoteParameters>(),
+    group::<SafetyParameters>(),
 ];
 
 /// What a word may hold.
@@ -105,8 +77,8 @@ pub struct WordRange {
     pub min: i32,
     /// Largest.
     pub max: i32,
-    /// True if it may be changed while the hitch moves.
-    pub live: bool,
+    /// Who may change it, and when.
+    pub class: Class,
 }
 
 /// What word `index` may hold; `None` for version and checksum, which belong to the block, and beyond its end.
@@ -122,7 +94,7 @@ pub fn word_range(index: usize) -> Option<WordRange> {
     Some(WordRange {
         min,
         max,
-        live: false,
+        class: Class::Machine,
     })
 }
 
@@ -188,7 +160,7 @@ fn description(_index: usize) -> (&'static str, &'static ParameterInfo) {
     ("", &NAMELESS)
 }
 
-static NAMELESS: ParameterInfo = ParameterInfo {
+const NAMELESS: ParameterInfo = ParameterInfo {
     name: "",
     suffix: "",
     counts_per_unit: 1,
@@ -207,10 +179,23 @@ pub struct Item {
     pub first: usize,
     /// How many words it has, at most 255.
     pub count: u8,
+    /// Whether it belongs to the safety block.
+    pub is_safety: bool,
 }
 
 /// Number of items in a block.
 pub const ITEM_COUNT: usize = TABLES.len() + SCALAR_COUNT;
+
+/// Number of items in the safety block, a word each.
+pub const SAFETY_ITEM_COUNT: usize = {
+    let all = scalars();
+    let (mut count, mut index) = (0, 0);
+    while index < all.len() {
+        count += all[index].class().is_safety() as usize;
+        index += 1;
+    }
+    count
+};
 
 /// The items of a block in their order; version and checksum are none.
 pub fn items() -> impl Iterator<Item = Item> + Clone {
@@ -220,6 +205,7 @@ pub fn items() -> impl Iterator<Item = Item> + Clone {
             key: scalar.key(),
             first,
             count: 1,
+            is_safety: scalar.class().is_safety(),
         });
     TABLES.into_iter().chain(scalars)
 }
@@ -229,41 +215,73 @@ const TABLES: [Item; 3] = [
         key: key("lift", "current over flow", "a", 1_000),
         first: LIFT_WORD,
         count: VALVE_WORDS as u8,
+        is_safety: false,
     },
     Item {
         key: key("lower", "current over flow", "a", 1_000),
         first: LOWER_WORD,
         count: VALVE_WORDS as u8,
+        is_safety: false,
     },
     Item {
         key: key("linkage", "travel over angle", "mm", 1_000),
         first: LINKAGE_WORD,
         count: LINKAGE_WORDS as u8,
+        is_safety: false,
     },
 ];
 
 /// What the ECU itself needs of a scalar: names and reasons stay out of its flash.
 #[derive(Clone, Copy)]
 struct Scalar {
-    /// Above the 24 bits of the key, one that says whether it may be changed while the hitch moves: a byte of its own
-    /// would take three more.
-    key_and_live: u32,
+    /// Above the 24 bits of the key, the class: a byte of its own would take three more.
+    key_and_class: u32,
     min: i32,
     max: i32,
 }
 
 impl Scalar {
+    const KEY: u32 = (1 << 24) - 1;
+    const MACHINE: u32 = 0 << 24;
     const LIVE: u32 = 1 << 24;
+    const TIGHTER_UP: u32 = 2 << 24;
+    const TIGHTER_DOWN: u32 = 3 << 24;
+    const KEY_ONLY: u32 = 4 << 24;
+
+    const fn new(key: u32, class: Class, parameter: &ParameterInfo) -> Self {
+        let class = match class {
+            Class::Machine => Self::MACHINE,
+            Class::Live => Self::LIVE,
+            Class::Safety(Tightening::Up) => Self::TIGHTER_UP,
+            Class::Safety(Tightening::Down) => Self::TIGHTER_DOWN,
+            Class::Safety(Tightening::None) => Self::KEY_ONLY,
+        };
+        Self {
+            key_and_class: key | class,
+            min: parameter.min,
+            max: parameter.max,
+        }
+    }
 
     const fn key(&self) -> u32 {
-        self.key_and_live & (Self::LIVE - 1)
+        self.key_and_class & Self::KEY
+    }
+
+    const fn class(&self) -> Class {
+        match self.key_and_class & !Self::KEY {
+            Self::LIVE => Class::Live,
+            Self::TIGHTER_UP => Class::Safety(Tightening::Up),
+            Self::TIGHTER_DOWN => Class::Safety(Tightening::Down),
+            Self::KEY_ONLY => Class::Safety(Tightening::None),
+            _ => Class::Machine,
+        }
     }
 
     const fn range(&self) -> WordRange {
         WordRange {
             min: self.min,
             max: self.max,
-            live: self.key_and_live & Self::LIVE != 0,
+            class: self.class(),
         }
     }
 }
@@ -273,12 +291,7 @@ const SCALAR_COUNT: usize = CALIBRATION_WORDS - SCALARS_WORD - 1;
 static SCALARS: [Scalar; SCALAR_COUNT] = scalars();
 
 const fn scalars() -> [Scalar; SCALAR_COUNT] {
-    let nothing = Scalar {
-        key_and_live: 0,
-        min: 0,
-        max: 0,
-    };
-    let mut all = [nothing; SCALAR_COUNT];
+    let mut all = [Scalar::new(0, Class::Machine, &NAMELESS); SCALAR_COUNT];
     let (mut next, mut of_group) = (0, 0);
     while of_group < GROUPS.len() {
         let group = GROUPS[of_group];
@@ -291,15 +304,7 @@ const fn scalars() -> [Scalar; SCALAR_COUNT] {
                 parameter.suffix,
                 parameter.counts_per_unit,
             );
-            all[next] = Scalar {
-                key_and_live: if is_live(&group, parameter.name) {
-                    key | Scalar::LIVE
-                } else {
-                    key
-                },
-                min: parameter.min,
-                max: parameter.max,
-            };
+            all[next] = Scalar::new(key, class_of(group.name, &parameter), &parameter);
             next += 1;
             index += 1;
         }

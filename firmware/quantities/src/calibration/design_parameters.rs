@@ -48,8 +48,8 @@ parameter_group! {
         angle_min: MilliDegree = 40_000, -360_000..=360_000;
         /// Largest rocker angle that a healthy sensor shows: the upper end plus mounting error.
         angle_max: MilliDegree = 140_000, -360_000..=360_000;
-        /// Largest change in one step: the fastest drop is 0.2 degree, the rest is ten sigma of noise.
-        angle_jump: MilliDegree = 1_000, 100..=20_000;
+        /// Largest change in one step: the fastest drop is 0.2 degree, the rest is ten sigma of noise. At most 5 degrees, which a jump may hide.
+        angle_jump: MilliDegree = 1_000, 100..=5_000;
         /// Smallest lever position that a healthy lever shows: below it the wire is broken.
         lever_min: MilliDegree = 30_000, -360_000..=360_000;
         /// Largest lever position that a healthy lever shows: above it the wire is shorted.
@@ -58,8 +58,8 @@ parameter_group! {
         pressure_min: MilliBar = -5_000, -50_000..=0;
         /// Largest pressure that a healthy sensor shows: shock valve plus margin.
         pressure_max: MilliBar = 260_000, 20_000..=600_000;
-        /// How long a bad angle or lever sample is bridged by the last good one before it is a fault: at full speed the hitch moves less than 1 degree.
-        bridged: Millisecond = 5, 0..=100;
+        /// How long a bad angle or lever sample is bridged by the last good one before it is a fault: at full speed the hitch moves less than 1 degree. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
+        bridged: Millisecond = 5, 0..=44;
         /// 1 if the angle sensor has a second, inverted track: then it has to agree with the first.
         second_track: Count = 0, 0..=1;
     }
@@ -168,8 +168,8 @@ parameter_group! {
 parameter_group! {
     /// Rate control (hold-to-run buttons).
     RateParameters, "rate" {
-        /// Fastest speed that may be asked for: a person stands beside the implement.
-        rate_limit: MilliDegreePerSecond = 15_000, 100..=200_000;
+        /// Fastest speed that may be asked for: a person stands beside the implement. At most 25 degrees a second: a hand that lets go within 0.2 s stops it after 5 degrees. Changed at rest only.
+        rate_limit: MilliDegreePerSecond = 15_000, 100..=25_000;
         /// Ramp of the rocker speed: full speed in half a second, with room for second thoughts.
         rate_slope: MilliDegreePerSecond = 30_000, 1_000..=1_000_000;
         /// Time of the integral on what is left of the speed's error: slower than estimate and spool together.
@@ -188,8 +188,8 @@ parameter_group! {
         rest_time: Millisecond = 250, 1..=5_000;
         /// How often a hitch that left its place by itself is brought back before that is a fault.
         corrections: Count = 5, 0..=100;
-        /// How far a hitch that leaves its place by itself is brought back, all corrections together: each rightful one is less than 1 degree.
-        corrected_travel: Micrometre = 4_500, 500..=50_000;
+        /// How far a hitch that leaves its place by itself is brought back, all corrections together: each rightful one is less than 1 degree. At most 9.6 mm, 5 degrees.
+        corrected_travel: Micrometre = 4_500, 500..=9_600;
         /// A correction is forgotten after this time: a seated valve sinks less in it than a correction makes good, 0.25 degree.
         correction_memory: Millisecond = 740_000, 1_000..=86_400_000;
     }
@@ -240,10 +240,10 @@ parameter_group! {
         longest_drive: Millisecond = 60_000, 1_000..=600_000;
         /// Stroke of the cylinder, from end to end.
         stroke: Micrometre = 158_000, 10_000..=2_000_000;
-        /// How far the sensor may be turned against the linkage: beyond it is mounted a tooth off.
-        most_offset: MilliDegree = 3_000, 100..=45_000;
-        /// How far the travel may differ from what the linkage allows: an obstacle, or another linkage.
-        most_stretch: MilliDegree = 1_500, 100..=45_000;
+        /// How far the sensor may be turned against the linkage: beyond it is mounted a tooth off. At most 5 degrees, by which the limits then are wrong.
+        most_offset: MilliDegree = 3_000, 100..=5_000;
+        /// How far the travel may differ from what the linkage allows: an obstacle, or another linkage. At most 5 degrees, by which the limits then are wrong.
+        most_stretch: MilliDegree = 1_500, 100..=5_000;
         /// Set points stay this far inside the ends, so that the end stops aren't worked against.
         end_margin: MilliDegree = 500, 0..=10_000;
     }
@@ -312,97 +312,97 @@ parameter_group! {
         lift_current_limit: MilliAmp = 3_500, 100..=5_000;
         /// Largest current of the lowering coil: what the coil bears.
         lower_current_limit: MilliAmp = 3_500, 100..=5_000;
-        /// A current may start at once up to here: below and just above the threshold nothing moves yet.
+        /// A current may start at once up to here: below and just above the threshold nothing moves yet. Full flow at once instead of in 50 ms is 2.8 degrees more at 112 degrees a second.
         free_current: MilliAmp = 1_500, 0..=5_000;
-        /// Above it currents rise no faster than this: full flow in 50 ms at the earliest. Falling is always free.
+        /// Above it currents rise no faster than this: full flow in 50 ms at the earliest. Falling is always free. Full flow at once instead of in 50 ms is 2.8 degrees more at 112 degrees a second.
         current_slope: AmperePerSecond = 40, 1..=10_000;
         /// How far the lever has to move since power-up or the last trip before any coil is switched on: half of what opens the lock, clear of noise.
         arming_movement: MilliDegree = 350, 50..=5_000;
-        /// Age at which a command is stale and both coils go off for good: at full speed the hitch moves less than 1 degree.
-        command_age: Millisecond = 5, 1..=1_000;
-        /// How long a signal has to be missing, out of range or jumping: the same.
-        sensor_time: Millisecond = 5, 1..=100;
-        /// A step that begins later than this after the last is an overrun: half a step of slack.
-        longest_step: Microsecond = 1_500, 1_000..=100_000;
+        /// Age at which a command is stale and both coils go off for good: at full speed the hitch moves less than 1 degree. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
+        command_age: Millisecond = 5, 1..=44;
+        /// How long a signal has to be missing, out of range or jumping: the same. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
+        sensor_time: Millisecond = 5, 1..=44;
+        /// A step that begins later than this after the last is an overrun: half a step of slack. At most 22 ms, with `overrun_time` 44 ms: 5 degrees at 112 degrees a second.
+        longest_step: Microsecond = 1_500, 1_000..=22_000;
         /// A step that begins sooner than this after the last is one as well: half a step of slack.
         shortest_step: Microsecond = 500, 0..=999;
-        /// How long steps have to be late or early: one may be, for a flash page that is written.
-        overrun_time: Millisecond = 2, 1..=100;
+        /// How long steps have to be late or early: one may be, for a flash page that is written. At most 22 ms, with `longest_step` 44 ms: 5 degrees at 112 degrees a second.
+        overrun_time: Millisecond = 2, 1..=22;
         /// Lowest supply voltage: below it the largest current no longer fits through a hot coil, and converters lose their reference.
         supply_min: MilliVolt = 8_000, 5_000..=24_000;
         /// Highest supply voltage: a charging fault, or somebody jump-starts with 24 V.
         supply_max: MilliVolt = 16_800, 9_000..=36_000;
-        /// How long the supply has to be wrong: longer than the swing as a relay switches, and at full speed less than 2 degrees.
-        supply_time: Millisecond = 10, 1..=1_000;
-        /// A sample that has been the same to the last bit for this long when travel is missing is called frozen: eight throws of noise.
-        frozen_time: Millisecond = 8, 2..=1_000;
-        /// A sensor that shows noise at rest is frozen once it is still for this long: a healthy one is by chance once in a million years.
-        still_time: Millisecond = 20, 5..=1_000;
-        /// Mean second difference from which a sensor is too noisy: six times that of a healthy one, whose sigma of 0.05 degree gives 0.1 degree.
-        noise_limit: MilliDegree = 600, 50..=20_000;
-        /// Current above the threshold that may do nothing in a hitch that starts: 0.1 A that a threshold is off, and half of 0.2 A of hysteresis. Half of it in one that moves.
-        following_margin: MilliAmp = 200, 0..=1_000;
-        /// Each of the two lags behind which a hitch in motion follows a rising current: together a slow spool.
-        following_lag: Millisecond = 20, 1..=500;
-        /// Each of the two lags behind which a hitch follows its current that has just started: the first motion is seen before a slow spool is open.
-        started_lag: Millisecond = 40, 1..=500;
-        /// Lift speed by the valve curve that the current is limited to when the onset budget is spent: a hitch on the ground still starts with it.
-        lift_onset_speed: MicrometrePerSecond = 20_000, 1_000..=1_000_000;
-        /// The same of lowering.
-        lower_onset_speed: MicrometrePerSecond = 15_000, 1_000..=1_000_000;
-        /// Travel that a hitch is given by the valve curve before motion has been seen and its current is limited. A healthy one is given about 3 degrees by the controller's ramp, one that is heavy, late and off by 0.1 A more than 5: less than 8 makes such moves overshoot.
-        onset_budget: MilliDegree = 8_000, 0..=100_000;
+        /// How long the supply has to be wrong: longer than the swing as a relay switches, and at full speed less than 2 degrees. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
+        supply_time: Millisecond = 10, 1..=44;
+        /// A sample that has been the same to the last bit for this long when travel is missing is called frozen: eight throws of noise. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
+        frozen_time: Millisecond = 8, 2..=44;
+        /// A sensor that shows noise at rest is frozen once it is still for this long: a healthy one is by chance once in a million years. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
+        still_time: Millisecond = 20, 5..=44;
+        /// Mean second difference from which a sensor is too noisy: six times that of a healthy one, whose sigma of 0.05 degree gives 0.1 degree. At most 5 degrees, which noise may hide.
+        noise_limit: MilliDegree = 600, 50..=5_000;
+        /// Current above the threshold that may do nothing in a hitch that starts: 0.1 A that a threshold is off, and half of 0.2 A of hysteresis. Half of it in one that moves. At most 0.3 A: by the curves a lifting hitch then owes nothing up to 10 degrees a second, 5 degrees in half a second.
+        following_margin: MilliAmp = 200, 0..=300;
+        /// Each of the two lags behind which a hitch in motion follows a rising current: together a slow spool. At most 22 ms, both 44 ms: 5 degrees at 112 degrees a second.
+        following_lag: Millisecond = 20, 1..=22;
+        /// Each of the two lags behind which a hitch follows its current that has just started: the first motion is seen before a slow spool is open. At most the default: both are 9 degrees at 112 degrees a second.
+        started_lag: Millisecond = 40, 1..=40;
+        /// Lift speed by the valve curve that the current is limited to when the onset budget is spent: a hitch on the ground still starts with it. At most 48 mm/s: 5 degrees in 0.2 s, at 1.92 mm a degree.
+        lift_onset_speed: MicrometrePerSecond = 20_000, 1_000..=48_000;
+        /// The same of lowering. At most 48 mm/s: 5 degrees in 0.2 s, at 1.92 mm a degree.
+        lower_onset_speed: MicrometrePerSecond = 15_000, 1_000..=48_000;
+        /// Travel that a hitch is given by the valve curve before motion has been seen and its current is limited. A healthy one is given about 3 degrees by the controller's ramp, one that is heavy, late and off by 0.1 A more than 5: less than 8 makes such moves overshoot. At most the default, which is more than 5 degrees already.
+        onset_budget: MilliDegree = 8_000, 0..=8_000;
         /// Time constant with which the rest of the budget may be given, so that the current falls back smoothly.
         onset_time: Millisecond = 25, 1..=1_000;
-        /// Travel along the coil's way that is motion, on top of the sensor's mean second difference: five sigmas of averaged noise of 0.05 degree.
-        onset_travel: MilliDegree = 100, 0..=20_000;
-        /// Travel given by currents above threshold and margin after which a hitch that shows no motion is a fault: what the budget and 0.2 s of the onset speed give.
-        onset_debt: MilliDegree = 10_000, 10..=100_000;
-        /// As much again for a hitch that is lifted off its lower end stop, which carried its load: the oil is compressed from no pressure at all, for up to 0.15 s longer.
-        stop_debt: MilliDegree = 1_500, 0..=100_000;
-        /// Share of the calibration's speed that a hitch in motion owes: healthy ones that swing, or take up a load from the ground, stand while they are given 12 mm of piston travel.
-        following_share: PerMille = 80, 10..=1_000;
-        /// Speed that a hitch in motion owes if the calibration gives twice as much or more: a standstill of 125 ms is then a fault, of healthy ones that swing the longest took 98 ms.
-        following_speed: MicrometrePerSecond = 8_000, 0..=1_000_000;
-        /// Travel that is owed when a standstill is a fault, 0.5 degree; a quarter of it, five sigmas of averaged noise of 0.1 degree, is motion.
-        following_allowance: Micrometre = 1_000, 50..=20_000;
-        /// Within this of the ends no travel towards them is owed: the end stop itself, of a sensor that is turned by as much as teaching accepts.
-        end_zone: MilliDegree = 4_000, 0..=20_000;
-        /// Movement against the energised coil that trips: above noise and the swing at a start.
-        contradiction: MilliDegree = 4_000, 500..=45_000;
-        /// How far beyond a limit of its travel the hitch may be while a current drives it further: a load that swings about its set point, and the noise of the dial.
-        limit_margin: MilliDegree = 2_000, 0..=20_000;
-        /// How long such a current, or one that lowers with the dial shut, may flow: `position.abort_deceleration` stops the fastest lowering of 216 mm/s in 72 ms.
-        limit_time: Millisecond = 100, 1..=1_000;
-        /// Current from which a broken wire can be told.
-        testable_current: MilliAmp = 500, 50..=5_000;
-        /// How long less than half of it has to flow: four time constants of a coil.
-        open_time: Millisecond = 40, 2..=1_000;
-        /// Current beyond what was asked for that means a short: twice what a controller overshoots.
-        excess_current: MilliAmp = 500, 50..=5_000;
-        /// How long: longer than a supply step takes to be regulated away, shorter than the spool needs to follow.
-        short_time: Millisecond = 8, 1..=1_000;
-        /// Current that may be left in a coil that is off.
-        leftover_current: MilliAmp = 200, 20..=1_000;
-        /// How long a coil may take to lose its current before that counts: six time constants with a freewheeling diode.
-        decay_time: Millisecond = 30, 2..=1_000;
+        /// Travel along the coil's way that is motion, on top of the sensor's mean second difference: five sigmas of averaged noise of 0.05 degree. At most 5 degrees, which are not seen as motion.
+        onset_travel: MilliDegree = 100, 0..=5_000;
+        /// Travel given by currents above threshold and margin after which a hitch that shows no motion is a fault: what the budget and 0.2 s of the onset speed give. At most the default, which is more than 5 degrees already.
+        onset_debt: MilliDegree = 10_000, 10..=10_000;
+        /// As much again for a hitch that is lifted off its lower end stop, which carried its load: the oil is compressed from no pressure at all, for up to 0.15 s longer. At most 5 degrees.
+        stop_debt: MilliDegree = 1_500, 0..=5_000;
+        /// Share of the calibration's speed that a hitch in motion owes: healthy ones that swing, or take up a load from the ground, stand while they are given 12 mm of piston travel. At least the default: with `following_allowance`, 12.5 mm or 6.5 degrees are given before a standstill is a fault.
+        following_share: PerMille = 80, 80..=1_000;
+        /// Speed that a hitch in motion owes if the calibration gives twice as much or more: a standstill of 125 ms is then a fault, of healthy ones that swing the longest took 98 ms. At least the default: 14 degrees at the fastest lowering.
+        following_speed: MicrometrePerSecond = 8_000, 8_000..=1_000_000;
+        /// Travel that is owed when a standstill is a fault, 0.5 degree; a quarter of it, five sigmas of averaged noise of 0.1 degree, is motion. At most the default: with `following_speed`, 14 degrees at the fastest lowering.
+        following_allowance: Micrometre = 1_000, 50..=1_000;
+        /// Within this of the ends no travel towards them is owed: the end stop itself, of a sensor that is turned by as much as teaching accepts. At most 5 degrees, in which a standstill is no fault.
+        end_zone: MilliDegree = 4_000, 0..=5_000;
+        /// Movement against the energised coil that trips: above noise and the swing at a start. At most 5 degrees, which are the extra travel.
+        contradiction: MilliDegree = 4_000, 500..=5_000;
+        /// How far beyond a limit of its travel the hitch may be while a current drives it further: a load that swings about its set point, and the noise of the dial. At most 5 degrees, which are the extra travel.
+        limit_margin: MilliDegree = 2_000, 0..=5_000;
+        /// How long such a current, or one that lowers with the dial shut, may flow: `position.abort_deceleration` stops the fastest lowering of 216 mm/s in 72 ms. At most the default: 11 degrees at 112 degrees a second without a ramp.
+        limit_time: Millisecond = 100, 1..=100;
+        /// Current from which a broken wire can be told. At most 0.9 A, from which no valve of this kind opens: no extra travel.
+        testable_current: MilliAmp = 500, 50..=900;
+        /// How long less than half of it has to flow: four time constants of a coil. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
+        open_time: Millisecond = 40, 2..=44;
+        /// Current beyond what was asked for that means a short: twice what a controller overshoots. At most 0.9 A: where nothing is asked for, no valve of this kind opens with it.
+        excess_current: MilliAmp = 500, 50..=900;
+        /// How long: longer than a supply step takes to be regulated away, shorter than the spool needs to follow. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
+        short_time: Millisecond = 8, 1..=44;
+        /// Current that may be left in a coil that is off. At most 0.9 A, from which no valve of this kind opens: no extra travel.
+        leftover_current: MilliAmp = 200, 20..=900;
+        /// How long a coil may take to lose its current before that counts: six time constants with a freewheeling diode. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
+        decay_time: Millisecond = 30, 2..=44;
         /// Largest error of the converters' reference by the band gap. A healthy one shows up to 4.5 %: 2.5 % of the band gap and 2 % of a regulator. Currents and voltages are corrected for it, so their own error stays at the 2.5 %.
         reference_error: PerMille = 60, 10..=200;
-        /// How long the reference has to be off: its readings are corrected at once, so there is no hurry; one conversion that is disturbed by an edge of a pulse is no fault.
-        reference_time: Millisecond = 20, 1..=1_000;
+        /// How long the reference has to be off: its readings are corrected at once, so there is no hurry; one conversion that is disturbed by an edge of a pulse is no fault. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
+        reference_time: Millisecond = 20, 1..=44;
         /// Lowest supply of the sensors: 5 % below 5 V, the limit of the sensors' own data.
         sensor_supply_min: MilliVolt = 4_750, 1_000..=30_000;
         /// Highest supply of the sensors: 5 % above 5 V.
         sensor_supply_max: MilliVolt = 5_250, 1_000..=30_000;
-        /// How long the supply of the sensors has to be wrong: shorter than `sensor_time`, since every sensor's signal goes with it and it is the cause to report.
-        sensor_supply_time: Millisecond = 4, 1..=100;
-        /// Largest difference between the tracks of the angle sensor: 1.4 degrees of tolerance, 1 % of the supply over 80 % for 110 degrees, and six sigma of the difference's noise, 0.07 degree.
-        track_difference: MilliDegree = 2_000, 200..=20_000;
+        /// How long the supply of the sensors has to be wrong: shorter than `sensor_time`, since every sensor's signal goes with it and it is the cause to report. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
+        sensor_supply_time: Millisecond = 4, 1..=44;
+        /// Largest difference between the tracks of the angle sensor: 1.4 degrees of tolerance, 1 % of the supply over 80 % for 110 degrees, and six sigma of the difference's noise, 0.07 degree. At most 5 degrees, which are the extra travel.
+        track_difference: MilliDegree = 2_000, 200..=5_000;
         /// How long the tracks have to disagree: as long as a sample may be missing.
         track_time: Millisecond = 5, 1..=20;
-        /// Largest change of the main clock by the independent oscillator since the start: that oscillator goes from 29.5 to 34 kHz over temperature and supply, 15 %; a clock that fails is off by half or more.
-        clock_error: PerMille = 200, 20..=500;
-        /// How long the clock has to be off: the step's own clock sees a wrong pace sooner, and this one finds both wrong together.
-        clock_time: Millisecond = 20, 1..=10_000;
+        /// Largest change of the main clock by the independent oscillator since the start: that oscillator goes from 29.5 to 34 kHz over temperature and supply, 15 %; a clock that fails is off by half or more. At most 30 %: a ramp of 44 ms and 5 degrees then takes 13 ms or 1.5 degrees more.
+        clock_error: PerMille = 200, 20..=300;
+        /// How long the clock has to be off: the step's own clock sees a wrong pace sooner, and this one finds both wrong together. At most 44 ms: the fastest lowering of 112 degrees a second goes 5 degrees.
+        clock_time: Millisecond = 20, 1..=44;
     }
 }

@@ -4,6 +4,7 @@
 //! ranges and curves have been checked; the controller takes no other.
 
 pub mod calibration_words;
+pub mod class;
 pub mod design_parameters;
 pub mod linkage;
 pub mod nominal;
@@ -23,7 +24,7 @@ use parameter::{OutOfRange, ParameterGroup};
 use valve_table::{VALVE_POINTS, ValveTable};
 
 /// Layout of the block that this firmware reads.
-pub const CALIBRATION_VERSION: u32 = 4;
+pub const CALIBRATION_VERSION: u32 = 5;
 
 /// Largest flow in a table: ten times the pump's, and far from where products saturate.
 const FLOW_LIMIT: MicroLitrePerSecond = MicroLitrePerSecond(10_000_000);

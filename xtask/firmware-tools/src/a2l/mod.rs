@@ -18,8 +18,9 @@ use hitch_protocols::xcp::map::{
 use hitch_protocols::xcp::measurements::{self, MeasurementInfo, Width};
 use hitch_quantities::calibration::CALIBRATION_BYTES;
 use hitch_quantities::calibration::calibration_words::{
-    GROUPS, LIFT_WORD, LINKAGE_WORD, LONGEST_TRAVEL, LOWER_WORD, SCALARS_WORD,
+    GROUPS, LIFT_WORD, LINKAGE_WORD, LONGEST_TRAVEL, LOWER_WORD, SCALARS_WORD, word_range,
 };
+use hitch_quantities::calibration::class::{Class, Tightening};
 use hitch_quantities::calibration::linkage::LINKAGE_POINTS;
 use hitch_quantities::calibration::parameter::ParameterInfo;
 use hitch_quantities::calibration::valve_table::VALVE_POINTS;
@@ -115,7 +116,7 @@ fn parameters(conversions: &mut Vec<Conversion>) -> String {
                 &mut text,
                 group.name,
                 parameter,
-                group.live,
+                class_of_word(word),
                 word,
                 conversions,
             );
@@ -125,16 +126,30 @@ fn parameters(conversions: &mut Vec<Conversion>) -> String {
     text
 }
 
+fn class_of_word(word: usize) -> Class {
+    word_range(word).map_or(Class::Machine, |range| range.class)
+}
+
 fn scalar(
     text: &mut String,
     group: &str,
     parameter: &ParameterInfo,
-    live: bool,
+    class: Class,
     word: usize,
     conversions: &mut Vec<Conversion>,
 ) {
     let per_unit = parameter.counts_per_unit;
-    let when = if live { "" } else { " (Changed at rest only.)" };
+    let when = match class {
+        Class::Live => "",
+        Class::Machine => " (Changed at rest only.)",
+        Class::Safety(Tightening::Up) => {
+            " (Safety: changed at rest only, reduced with the key only.)"
+        }
+        Class::Safety(Tightening::Down) => {
+            " (Safety: changed at rest only, increased with the key only.)"
+        }
+        Class::Safety(Tightening::None) => " (Safety: changed at rest and with the key only.)",
+    };
     let _ = write!(
         text,
         "/begin CHARACTERISTIC {group}.{name}\n  {reason}\n  VALUE 0x{address:08X} word 0 {conversion} {min} {max}\n/end CHARACTERISTIC\n",

@@ -10,7 +10,7 @@ use crate::host_file::{HostFile, HostFileError};
 
 /// Bytes for the calibration, from the file's begin: as many pages, and as large, as the STM32G474 sets aside.
 const CALIBRATION_BYTES: usize = 8_192;
-/// Bytes for the log of faults behind it.
+/// Bytes for the log of faults behind it, which a page for the key follows.
 const LOG_BYTES: usize = 2 * PAGE_BYTES;
 const PAGE_BYTES: usize = 2_048;
 const WORD_BYTES: usize = 8;
@@ -31,6 +31,7 @@ impl FlashFile {
         Ok(FlashRegions {
             calibration: region(0, CALIBRATION_BYTES),
             fault_log: region(CALIBRATION_BYTES, LOG_BYTES),
+            key: region(CALIBRATION_BYTES + LOG_BYTES, PAGE_BYTES),
         })
     }
 

@@ -99,7 +99,7 @@ impl BusMonitor {
         shared.writers.fetch_add(1, Ordering::Relaxed);
         let written = {
             let _adapter = held(&shared.adapter);
-            write_to(&shared.address, calibration)
+            write_to(&shared.address, calibration, None)
         };
         shared.writers.fetch_sub(1, Ordering::Relaxed);
         written

@@ -81,5 +81,7 @@ const fn known_trouble(trouble: Trouble) -> &'static str {
         Trouble::BeyondLimit => "current beyond a limit of the travel",
         Trouble::NoConsent => "current on a set point without consent",
         Trouble::EngineSpeedLost => "engine speed no longer received",
+        Trouble::SafetyValuesLost => "stored safety values lost: locked",
+        Trouble::SafetyValuesDiffer => "safety values differ from the shipped ones",
     }
 }

@@ -1,4 +1,4 @@
-//! Flash of calibration and fault log: the last sectors or pages of the part, separate from the program.
+//! Flash of key, fault log and calibration: the last sectors or pages of the part, separate from the program.
 
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
@@ -7,8 +7,8 @@ use hitch_ecu::FlashRegions;
 use stm32_metapac::FLASH;
 
 use super::part::flash::{
-    BASE, CALIBRATION_PIECES, LOG_PIECES, PIECE_BYTES, WORD_BYTES, erase_piece, finish, is_usable,
-    program, take_damaged_read, unlock,
+    BASE, CALIBRATION_PIECES, KEY_PIECES, LOG_PIECES, PIECE_BYTES, WORD_BYTES, erase_piece, finish,
+    is_usable, program, take_damaged_read, unlock,
 };
 
 /// A region of the flash.
@@ -27,16 +27,21 @@ impl NorFlashError for FlashError {
     }
 }
 
-/// The regions, which are used for nothing else: the fault log, followed by the calibration.
+/// The regions, which are used for nothing else: the key, which the programmer writes, followed by the fault log and the
+/// calibration.
 pub fn regions() -> FlashRegions<DataFlash> {
     FlashRegions {
         calibration: DataFlash {
-            first_piece: LOG_PIECES,
+            first_piece: KEY_PIECES + LOG_PIECES,
             pieces: CALIBRATION_PIECES,
         },
         fault_log: DataFlash {
-            first_piece: 0,
+            first_piece: KEY_PIECES,
             pieces: LOG_PIECES,
+        },
+        key: DataFlash {
+            first_piece: 0,
+            pieces: KEY_PIECES,
         },
     }
 }

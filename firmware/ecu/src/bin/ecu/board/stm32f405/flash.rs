@@ -1,4 +1,4 @@
-//! Sectors 8 to 11, of 128 KiB each: two for the fault log, two for the calibration.
+//! Sectors 7 to 11, of 128 KiB each: one for the key, two for the fault log, two for the calibration.
 //!
 //! The program cannot run from flash while a sector is erased (1 to 2 s). The ECU therefore erases only while it is
 //! locked or at the start, with a longer period of the watchdog, and the wait loop runs from RAM.
@@ -9,8 +9,10 @@ use stm32_metapac::flash::vals::Psize;
 use crate::board::watchdog::with_long_period;
 
 /// First address.
-pub const BASE: usize = 0x0808_0000;
-/// Sectors of the fault log, which are first.
+pub const BASE: usize = 0x0806_0000;
+/// Sectors of the key, which are first.
+pub const KEY_PIECES: usize = 1;
+/// Sectors of the fault log.
 pub const LOG_PIECES: usize = 2;
 /// Sectors of the calibration.
 pub const CALIBRATION_PIECES: usize = 2;
@@ -19,7 +21,7 @@ pub const PIECE_BYTES: usize = 128 * 1024;
 /// Bytes of a programming unit.
 pub const WORD_BYTES: usize = 4;
 
-const FIRST_SECTOR: u8 = 8;
+const FIRST_SECTOR: u8 = 7;
 
 /// Unlocks the flash (RM0090, 3.6.1).
 pub fn unlock() {

@@ -1,5 +1,5 @@
-//! The last six pages of the second bank, of 2 KiB each: two for the fault log, four for the calibration. The program
-//! continues from the first bank meanwhile.
+//! The last seven pages of the second bank, of 2 KiB each: one for the key, two for the fault log, four for the
+//! calibration. The program continues from the first bank meanwhile.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
@@ -8,8 +8,10 @@ use stm32_metapac::FLASH;
 use crate::board::watchdog::with_long_period;
 
 /// First address.
-pub const BASE: usize = 0x0807_D000;
-/// Pages of the fault log, which are first.
+pub const BASE: usize = 0x0807_C800;
+/// Pages of the key, which are first.
+pub const KEY_PIECES: usize = 1;
+/// Pages of the fault log.
 pub const LOG_PIECES: usize = 2;
 /// Pages of the calibration.
 pub const CALIBRATION_PIECES: usize = 4;
@@ -19,7 +21,7 @@ pub const PIECE_BYTES: usize = 2 * 1024;
 pub const WORD_BYTES: usize = 8;
 
 /// Index of the first page, of 128 pages in the bank.
-const FIRST_PAGE: u8 = 122;
+const FIRST_PAGE: u8 = 121;
 
 /// Unlocks the flash (RM0440, 3.3.5).
 pub fn unlock() {
