@@ -77,7 +77,7 @@ fn a_safety_value_becomes_looser_with_the_key_only() {
     calibration("tight.toml", 30);
     calibration("loose.toml", 44);
     let digits = |first: char| format!("{first}{}\n", "1f".repeat(32).split_off(1));
-    std::fs::write(folder.join("key.txt"), digits('1')).unwrap();
+    std::fs::write(folder.join("key.txt"), digits('3')).unwrap();
     std::fs::write(folder.join("wrong.txt"), digits('2')).unwrap();
     let mut ecu = RunningEcu::start_with(folder, &["--key", "key.txt"]);
     ecu.order("service on");
