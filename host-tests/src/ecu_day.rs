@@ -127,12 +127,16 @@ impl Habits {
             // Teaching by a mechanic, with an interruption.
             14 => {
                 let served = operator.panel.with(Contact::Service, true);
-                operator.panel = served.with(Contact::Up, true);
+                operator.panel = served.with_buttons(true, false);
             }
             _ => {
                 let contact = Panel::CONTACTS[random.usize(0..Panel::CONTACTS.len())];
-                let unusual = contact != Contact::FieldMode;
-                operator.panel = operator.panel.with(contact, unusual);
+                let panel = operator.panel;
+                operator.panel = match contact {
+                    Contact::Up => panel.with_buttons(true, false),
+                    Contact::Down => panel.with_buttons(false, true),
+                    _ => panel.with(contact, !Panel::FIELD.is_closed(contact)),
+                };
             }
         }
         if self.undone_in_ms == 0 {

@@ -59,6 +59,7 @@ impl Controller {
             },
             rate: RateParameters {
                 rate_limit: present.rate.rate_limit,
+                longest_travel: present.rate.longest_travel,
                 ..calibration.rate
             },
             bus: BusParameters {
@@ -132,6 +133,7 @@ impl Controller {
             sensors: &calibration.sensors,
             lock: &calibration.lock,
             operator: &calibration.operator,
+            rate: &calibration.rate,
             remote: &calibration.remote,
             damaged: self.memory.step(calibration),
             machine: MachineModel::of(calibration),

@@ -177,7 +177,7 @@ fn a_missing_angle_cuts_the_coils_and_locks() {
 fn a_button_moves_the_hitch_at_its_rate_and_leaves_the_lever_locked() {
     let mut hitch = Hitch::locked();
     let jog = |rate| Some(MilliDegreePerSecond(rate));
-    hitch.run(1);
+    hitch.run(20);
     for _ in 0..1_000 {
         let inputs = Inputs {
             jog: jog(10_000),

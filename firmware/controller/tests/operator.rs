@@ -132,7 +132,7 @@ fn a_button_that_is_pressed_while_a_lock_opens_moves_nothing() {
     let locks: [fn(&mut Inputs, bool); 2] = [transport_lock, engine];
     for lock in locks {
         let mut hitch = Hitch::locked(90_000);
-        hitch.run(10);
+        hitch.run(20);
         lock(&mut hitch.inputs, true);
         hitch.inputs.jog = Some(MilliDegreePerSecond(5_000));
         assert!(hitch.is_still(1_000));
@@ -140,7 +140,7 @@ fn a_button_that_is_pressed_while_a_lock_opens_moves_nothing() {
         assert!(hitch.is_still(2_000), "still pressed");
         assert_eq!(hitch.run(1).state, State::Locked);
         hitch.inputs.jog = None;
-        hitch.run(1);
+        hitch.run(20);
         hitch.inputs.jog = Some(MilliDegreePerSecond(5_000));
         assert_eq!(hitch.run(100).state, State::Lifting);
     }
@@ -261,7 +261,7 @@ fn a_button_pressed_at_power_up_or_through_a_fault_moves_nothing() {
     hitch.inputs.jog = Some(MilliDegreePerSecond(10_000));
     assert!(hitch.is_still(2_000));
     hitch.inputs.jog = None;
-    hitch.run(1);
+    hitch.run(20);
     hitch.inputs.jog = Some(MilliDegreePerSecond(10_000));
     assert_eq!(hitch.run(100).state, State::Lifting);
     let lever = hitch.inputs.lever.take();
@@ -278,7 +278,7 @@ fn every_switch_at_once_moves_nothing() {
         hold: true,
         quick_lift: true,
         teach: true,
-        consent: false,
+        ..Switches::default()
     };
     hitch.inputs.jog = Some(MilliDegreePerSecond(10_000));
     hitch.lever(120_000);

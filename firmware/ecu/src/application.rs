@@ -77,7 +77,7 @@ impl<F: NorFlash> Ecu<F> {
     #[inline(never)]
     pub fn start(flash: FlashRegions<F>, serial_number: u32, scaling: BoardScaling) -> Self {
         let mut store = CalibrationStore::new(flash.calibration);
-        let start = service::load(&mut store, scaling.second_track);
+        let start = service::load(&mut store, scaling.fitted);
         let mut key = flash.key;
         let history = FaultHistory::open(flash.fault_log);
         let settings = Settings {
@@ -284,10 +284,13 @@ impl<F: NorFlash> Ecu<F> {
 
     /// Creates the frames that are due and passes them to the bus as far as it accepts them.
     fn send(&mut self, hardware: &mut impl Hardware) {
-        let lock = &self.controller.calibration().lock;
-        let found = self
-            .trouble_finder
-            .update(&self.inputs, &self.outputs, lock);
+        let calibration = self.controller.calibration();
+        let found = self.trouble_finder.update(
+            &self.inputs,
+            &self.outputs,
+            &calibration.lock,
+            &calibration.operator,
+        );
         let status = status(
             &self.inputs,
             &self.outputs,

@@ -1,8 +1,8 @@
 //! A millisecond of the ECU as bytes, for a host that runs it through a pipe or a file.
 //!
 //! ```text
-//! request  codes of twelve channels  panel  kind  frames  enable  clock ratio  0  clock   frames
-//!          2 each                    1      1     1       1       2            2  4 us    16 each
+//! request  codes of twelve channels  panel  kind  frames  enable  0  clock ratio  clock   frames
+//!          2 each                    2      1     1       1       1  2            4 us    16 each
 //! reply    lift  lower  enable  kicked  state  fault  trip  frames  target  lift  lower  frames
 //!          2     2      1       1       1      1      1     1       4 mdeg  2 mA  2 mA   16 each
 //! frame    identifier; bit 31: of 29 bits, bit 30: remote   length  0  bytes
@@ -99,7 +99,8 @@ impl Request {
             i16::try_from(ratio.0.max(0)).unwrap_or(i16::MAX)
         });
         let [low, high] = ratio.to_le_bytes();
-        rest.copy_from_slice(&[contacts.panel.bits(), kind, frames, enable, low, high, 0, 0]);
+        let [panel_low, panel_high] = contacts.panel.bits().to_le_bytes();
+        rest.copy_from_slice(&[panel_low, panel_high, kind, frames, enable, 0, low, high]);
         bytes
     }
 
@@ -111,8 +112,22 @@ impl Request {
         for (code, pair) in codes.iter_mut().zip(pairs) {
             *code = AdcCode::new(u16::from_le_bytes(*pair));
         }
-        let Some([panel, kind, frames, enable, low, high, _, _, a, b, c, d]) =
-            bytes.last_chunk::<12>().copied()
+        let Some(
+            [
+                panel_low,
+                panel_high,
+                kind,
+                frames,
+                enable,
+                _,
+                low,
+                high,
+                a,
+                b,
+                c,
+                d,
+            ],
+        ) = bytes.last_chunk::<12>().copied()
         else {
             return Self::PowerCycle;
         };
@@ -122,7 +137,7 @@ impl Request {
         Self::Tick {
             contacts: Contacts {
                 samples: Samples::from_codes(codes),
-                panel: Panel::from_bits(panel),
+                panel: Panel::from_bits(u16::from_le_bytes([panel_low, panel_high])),
                 clock_us: u32::from_le_bytes([a, b, c, d]),
                 enable_feedback: match enable {
                     1 => Some(false),

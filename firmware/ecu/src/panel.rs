@@ -5,11 +5,11 @@ use hitch_quantities::{Inputs, Switches};
 
 /// Contacts of buttons and switches. They close to ground, so that a broken wire reads as open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Panel(u8);
+pub struct Panel(u16);
 
 /// One contact of the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
+#[repr(u16)]
 pub enum Contact {
     /// External button: up.
     Up = 1 << 0,
@@ -25,11 +25,15 @@ pub enum Contact {
     Service = 1 << 5,
     /// Consent to remote control, a button. Open is no consent.
     Consent = 1 << 6,
+    /// Second contact of the button up: closed while it is released. Open, by a press or by a broken wire, it is not.
+    UpReleased = 1 << 7,
+    /// The same of the button down.
+    DownReleased = 1 << 8,
 }
 
 impl Panel {
     /// Contacts in the order of their bits.
-    pub const CONTACTS: [Contact; 7] = [
+    pub const CONTACTS: [Contact; 9] = [
         Contact::Up,
         Contact::Down,
         Contact::FieldMode,
@@ -37,20 +41,23 @@ impl Panel {
         Contact::QuickLift,
         Contact::Service,
         Contact::Consent,
+        Contact::UpReleased,
+        Contact::DownReleased,
     ];
 
     /// A tractor in the field with nothing pressed.
-    pub const FIELD: Self = Self(Contact::FieldMode as u8);
+    pub const FIELD: Self =
+        Self(Contact::FieldMode as u16 | Contact::UpReleased as u16 | Contact::DownReleased as u16);
 
     /// The panel with these bits; bits without a contact are ignored.
     #[must_use]
-    pub const fn from_bits(bits: u8) -> Self {
-        Self(bits & 0b111_1111)
+    pub const fn from_bits(bits: u16) -> Self {
+        Self(bits & 0b1_1111_1111)
     }
 
     /// One bit for each contact, set if it is closed.
     #[must_use]
-    pub const fn bits(self) -> u8 {
+    pub const fn bits(self) -> u16 {
         self.0
     }
 
@@ -58,23 +65,34 @@ impl Panel {
     #[must_use]
     pub const fn with(self, contact: Contact, closed: bool) -> Self {
         match closed {
-            true => Self(self.0 | contact as u8),
-            false => Self(self.0 & !(contact as u8)),
+            true => Self(self.0 | contact as u16),
+            false => Self(self.0 & !(contact as u16)),
         }
     }
 
     /// Whether the contact is closed.
     #[must_use]
     pub const fn is_closed(self, contact: Contact) -> bool {
-        self.0 & contact as u8 != 0
+        self.0 & contact as u16 != 0
     }
 
-    /// Request of the external buttons, at the rate limit of the calibration. Both pressed count as none.
+    /// The panel with these external buttons pressed, and no other, in a wiring with two contacts a button.
+    #[must_use]
+    pub const fn with_buttons(self, up: bool, down: bool) -> Self {
+        self.with(Contact::Up, up)
+            .with(Contact::UpReleased, !up)
+            .with(Contact::Down, down)
+            .with(Contact::DownReleased, !down)
+    }
+
+    /// Request of the external buttons, at the rate limit of the calibration. Both pressed are a request of no rate, so
+    /// that a shorted wire does not look released when the other button is.
     fn jog(self) -> Option<MilliDegreePerSecond> {
         match (self.is_closed(Contact::Up), self.is_closed(Contact::Down)) {
             (true, false) => Some(MilliDegreePerSecond(i32::MAX)),
             (false, true) => Some(MilliDegreePerSecond(-i32::MAX)),
-            _ => None,
+            (true, true) => Some(MilliDegreePerSecond(0)),
+            (false, false) => None,
         }
     }
 
@@ -89,6 +107,8 @@ impl Panel {
                 quick_lift: self.is_closed(Contact::QuickLift),
                 teach: self.is_closed(Contact::Service),
                 consent: self.is_closed(Contact::Consent),
+                up_released: self.is_closed(Contact::UpReleased),
+                down_released: self.is_closed(Contact::DownReleased),
             },
             ..inputs
         }
@@ -107,10 +127,14 @@ mod tests {
     }
 
     #[test]
-    fn both_buttons_are_none() {
-        let up = Panel::FIELD.with(Contact::Up, true);
-        assert!(up.added_to(Inputs::default()).jog.is_some());
-        let both = up.with(Contact::Down, true);
-        assert_eq!(both.added_to(Inputs::default()).jog, None);
+    fn both_buttons_are_a_request_of_no_rate() {
+        let jog = |up, down| {
+            let panel = Panel::FIELD.with_buttons(up, down);
+            panel.added_to(Inputs::default()).jog.map(|jog| jog.0)
+        };
+        assert_eq!(jog(true, false), Some(i32::MAX));
+        assert_eq!(jog(false, true), Some(-i32::MAX));
+        assert_eq!(jog(true, true), Some(0));
+        assert_eq!(jog(false, false), None);
     }
 }

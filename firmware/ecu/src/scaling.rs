@@ -1,5 +1,6 @@
 //! Scaling of a board: converter codes and PWM timer.
 
+use hitch_quantities::calibration::class::Fitted;
 use hitch_quantities::units::{MilliAmp, MilliVolt, PerMille};
 
 use super::converter::AdcCode;
@@ -23,12 +24,13 @@ pub struct BoardScaling {
     pub wire_min: PerMille,
     /// Highest fraction.
     pub wire_max: PerMille,
-    /// Whether the rocker-angle sensor has a second, inverted track: the factory calibration then monitors it.
-    pub second_track: bool,
+    /// What the factory calibration monitors.
+    pub fitted: Fitted,
 }
 
 impl BoardScaling {
-    /// The board with a typical STM32F405 and one track of the rocker-angle sensor: twelve bits over a reference of 3.3 V.
+    /// The board with a typical STM32F405 and one track of the rocker-angle sensor, and
+    /// two contacts in each external button: twelve bits over a reference of 3.3 V.
     pub const NOMINAL: Self = Self {
         // 168 MHz, centre-aligned at 16 kHz.
         pwm_steps: 5_250,
@@ -45,6 +47,9 @@ impl BoardScaling {
         // 0.25 to 4.75 V of 5 V: the sensor range is 0.5 to 4.5 V.
         wire_min: PerMille(50),
         wire_max: PerMille(950),
-        second_track: false,
+        fitted: Fitted {
+            second_track: false,
+            second_contact: true,
+        },
     };
 }

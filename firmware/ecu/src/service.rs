@@ -5,7 +5,7 @@ use hitch_controller::Controller;
 use hitch_protocols::j1939::{Trouble, Troubles};
 use hitch_protocols::storage::{CalibrationStore, Copy, Progress, SafetySource, Source};
 use hitch_protocols::xcp::{CalibrationPages, Slave};
-use hitch_quantities::units::Count;
+use hitch_quantities::calibration::class::Fitted;
 use hitch_quantities::{Calibration, ValidCalibration};
 
 /// Time in which the bus takes the answer to whoever wants to store: many a processor stands still for seconds then.
@@ -37,7 +37,7 @@ pub struct Service<F> {
     taught_waits: bool,
     troubles: Troubles,
     /// The board has a second track of the angle sensor.
-    second_track: bool,
+    fitted: Fitted,
     /// The present calibration has other safety values than the factory's.
     differs: bool,
     /// A tool had the key in the last millisecond.
@@ -51,13 +51,13 @@ pub struct Start {
     pub calibration: ValidCalibration,
     /// What is wrong with what is stored.
     troubles: Troubles,
-    second_track: bool,
+    fitted: Fitted,
 }
 
 /// Reads what is stored, and what is wrong with it.
 ///
-/// The factory's calibration watches the angle's second track where there is one.
-pub fn load<F: NorFlash>(store: &mut CalibrationStore<F>, second_track: bool) -> Start {
+/// The factory's calibration monitors what is fitted.
+pub fn load<F: NorFlash>(store: &mut CalibrationStore<F>, fitted: Fitted) -> Start {
     let loaded = store.load();
     let mut troubles = if loaded.source == Source::Factory {
         Trouble::CalibrationLost.into()
@@ -72,16 +72,16 @@ pub fn load<F: NorFlash>(store: &mut CalibrationStore<F>, second_track: bool) ->
     Start {
         calibration: match loaded.safety {
             SafetySource::Stored => loaded.calibration,
-            SafetySource::Factory | SafetySource::Lost => factory(loaded.calibration, second_track),
+            SafetySource::Factory | SafetySource::Lost => factory(loaded.calibration, fitted),
         },
         troubles,
-        second_track,
+        fitted,
     }
 }
 
-fn factory(nominal: ValidCalibration, second_track: bool) -> ValidCalibration {
+fn factory(nominal: ValidCalibration, fitted: Fitted) -> ValidCalibration {
     let mut calibration: Calibration = (*nominal).clone();
-    calibration.sensors.second_track = Count(i32::from(second_track));
+    calibration.monitor(fitted);
     calibration.seal().unwrap_or(nominal)
 }
 
@@ -101,10 +101,8 @@ impl<F: NorFlash> Service<F> {
             taught_seen: false,
             taught_waits: false,
             troubles: start.troubles,
-            differs: start
-                .calibration
-                .has_other_safety_values(start.second_track),
-            second_track: start.second_track,
+            differs: start.calibration.has_other_safety_values(start.fitted),
+            fitted: start.fitted,
             was_unlocked: false,
         }
     }
@@ -158,7 +156,7 @@ impl<F: NorFlash> Service<F> {
         let mut wanted = at_rest && (self.take_taught(controller) || self.taught_waits);
         if let Some(change) = self.pages.take_change() {
             if let Ok(calibration) = change {
-                self.differs = calibration.has_other_safety_values(self.second_track);
+                self.differs = calibration.has_other_safety_values(self.fitted);
                 controller.apply(calibration);
             }
             // Checking a calibration takes half a millisecond: whoever wants to store it waits for the next one.

@@ -4,7 +4,7 @@ use hitch_quantities::Calibration;
 use hitch_quantities::calibration::calibration_words::{
     GROUPS, SAFETY_ITEM_COUNT, SCALARS_WORD, items, word_range,
 };
-use hitch_quantities::calibration::class::{CLASSES, Class, Tightening};
+use hitch_quantities::calibration::class::{CLASSES, Class, Fitted, Tightening};
 use hitch_quantities::calibration::parameter::ParameterInfo;
 use hitch_quantities::units::Millisecond;
 
@@ -131,14 +131,23 @@ fn looser_is_told_by_the_direction() {
 #[test]
 fn other_safety_values_than_the_shipped_ones_are_told() {
     let mut block = Calibration::nominal();
-    assert!(!block.has_other_safety_values(false));
-    assert!(
-        block.has_other_safety_values(true),
-        "a track that is not compared"
-    );
+    assert!(!block.has_other_safety_values(Fitted::default()));
+    let fitted = [(true, false), (false, true)].map(|(second_track, second_contact)| Fitted {
+        second_track,
+        second_contact,
+    });
+    for fitted in fitted {
+        assert!(block.has_other_safety_values(fitted), "not monitored");
+        let mut monitoring = block.clone();
+        monitoring.monitor(fitted);
+        assert!(!monitoring.has_other_safety_values(fitted));
+    }
     block.position.upper_limit.0 -= 1_000;
     block.position.approach_gain.0 += 1;
-    assert!(!block.has_other_safety_values(false), "taught and tuned");
+    assert!(
+        !block.has_other_safety_values(Fitted::default()),
+        "taught and tuned"
+    );
     block.safety.open_time = Millisecond(30);
-    assert!(block.has_other_safety_values(false));
+    assert!(block.has_other_safety_values(Fitted::default()));
 }

@@ -1,7 +1,7 @@
 //! Whether the operator wants anything to move.
 //!
 //! Lever and button arm separately. The lever arms until a lock closes. The button arms until the motion that it asked
-//! for has ended, so that the lever has to be moved anew afterwards.
+//! for has ended, so that the lever has to be moved anew afterwards, and no further than its longest travel.
 //!
 //! | lock | lever | button |
 //! |---|---|---|
@@ -10,9 +10,10 @@
 //! | [`Lock::Open`] | arms | arms |
 
 use hitch_quantities::Inputs;
-use hitch_quantities::calibration::design_parameters::SafetyParameters;
 use hitch_quantities::units::MilliDegree;
 
+use crate::Limits;
+use crate::button::{Button, Press};
 use crate::locks::Lock;
 
 /// What the operator has touched.
@@ -30,8 +31,9 @@ pub struct Arming {
     touched: Option<Touch>,
     /// Where the lever was first seen since it was disarmed.
     lever: Option<MilliDegree>,
-    /// The button has been seen released.
-    released: bool,
+    button: Button,
+    /// Where the hitch was when the last press began.
+    pressed_at: Option<MilliDegree>,
 }
 
 impl Arming {
@@ -41,14 +43,16 @@ impl Arming {
         inputs: &Inputs,
         lock: Lock,
         at_rest: bool,
-        parameters: &SafetyParameters,
+        limits: Limits<'_>,
     ) -> bool {
+        let press = self
+            .button
+            .judge(inputs, limits.operator.second_contact.0 != 0);
         if lock == Lock::All {
             *self = Self::default();
             return false;
         }
-        let pressed = inputs.jog.is_some();
-        if self.is_by_button() && !pressed && at_rest {
+        if self.is_by_button() && press == Press::None && at_rest {
             self.touched = None;
         }
         if lock == Lock::Lever && self.touched == Some(Touch::Lever) {
@@ -56,13 +60,13 @@ impl Arming {
         }
         if lock == Lock::Lever || self.is_by_button() {
             self.lever = None;
-        } else if self.is_moved(inputs, parameters) {
+        } else if self.is_moved(inputs, limits) {
             self.touched = Some(Touch::Lever);
         }
-        if pressed && self.released {
+        if press != Press::None {
             self.touched = Some(Touch::Button);
         }
-        self.released |= !pressed;
+        self.bound_travel(press, inputs, limits);
         self.touched.is_some()
     }
 
@@ -71,11 +75,29 @@ impl Arming {
         self.touched == Some(Touch::Button)
     }
 
+    /// Disarms a button whose press has moved the hitch by its longest travel, its ramp after the release included.
+    /// Teaching, with the service contact closed, moves to both ends.
+    fn bound_travel(&mut self, press: Press, inputs: &Inputs, limits: Limits<'_>) {
+        if press == Press::Begins {
+            self.pressed_at = None;
+        }
+        self.pressed_at = self.pressed_at.or(inputs.rocker_angle);
+        let travel = self
+            .pressed_at
+            .zip(inputs.rocker_angle)
+            .map_or(MilliDegree(0), |(from, now)| (now - from).magnitude());
+        let is_spent = travel >= limits.rate.longest_travel && !inputs.switches.teach;
+        if self.is_by_button() && is_spent {
+            self.touched = None;
+            self.button.distrust();
+        }
+    }
+
     /// True if the lever is away from where it was first seen.
-    fn is_moved(&mut self, inputs: &Inputs, parameters: &SafetyParameters) -> bool {
+    fn is_moved(&mut self, inputs: &Inputs, limits: Limits<'_>) -> bool {
         self.lever = self.lever.or(inputs.lever);
         self.lever
             .zip(inputs.lever)
-            .is_some_and(|(first, now)| (now - first).magnitude() >= parameters.arming_movement)
+            .is_some_and(|(first, now)| (now - first).magnitude() >= limits.safety.arming_movement)
     }
 }

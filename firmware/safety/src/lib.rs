@@ -23,7 +23,7 @@
 //! ```
 //!
 //! Its parts are watches, each for some rows of the table: `angle` (with `following` and `noise_detector`), `coils`,
-//! `supply`, `measuring`, `travel_limits`; `locks` for the operator's locks; `arming` for the operator's touch; `consent` for remote
+//! `supply`, `measuring`, `travel_limits`; `locks` for the operator's locks; `arming` for the operator's touch, with `button`; `consent` for remote
 //! control; and [`rows`], which counts how long each row has been holding.
 //!
 //! ```
@@ -36,6 +36,7 @@
 //!     sensors: &calibration.sensors,
 //!     lock: &calibration.lock,
 //!     operator: &calibration.operator,
+//!     rate: &calibration.rate,
 //!     remote: &calibration.remote,
 //!     damaged: false,
 //!     machine: MachineModel::of(&calibration),
@@ -55,6 +56,7 @@ extern crate std;
 
 mod angle;
 mod arming;
+mod button;
 mod coils;
 mod command;
 mod consent;
@@ -67,7 +69,8 @@ mod supply;
 mod travel_limits;
 
 use hitch_quantities::calibration::design_parameters::{
-    LockParameters, OperatorParameters, RemoteParameters, SafetyParameters, SensorParameters,
+    LockParameters, OperatorParameters, RateParameters, RemoteParameters, SafetyParameters,
+    SensorParameters,
 };
 use hitch_quantities::units::{Duty, MilliAmp, Millisecond};
 use hitch_quantities::{CoilCurrents, Duties, Inputs, Trip};
@@ -95,8 +98,10 @@ pub struct Limits<'a> {
     pub sensors: &'a SensorParameters,
     /// When the engine locks the hitch, and how long no row may have held before a reset.
     pub lock: &'a LockParameters,
-    /// Where the dials are shut.
+    /// Where the dials are shut, and the contacts of the buttons.
     pub operator: &'a OperatorParameters,
+    /// How far a button moves the hitch.
+    pub rate: &'a RateParameters,
     /// How the operator consents to remote control.
     pub remote: &'a RemoteParameters,
     /// They, or others of their calibration, have changed in memory.
@@ -160,7 +165,7 @@ impl Envelope {
             Some(_) => Lock::All,
         };
         let at_rest = self.passed == CoilCurrents::OFF;
-        let armed = self.arming.update(inputs, lock, at_rest, limits.safety);
+        let armed = self.arming.update(inputs, lock, at_rest, limits);
         // While a sample is bridged a coil that is on stays on, but none is switched on.
         let bridged = holds.has_any(&BRIDGED) && at_rest;
         self.holds_back = false;

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use hitch_ecu::link::Reply;
-use hitch_ecu::{Contacts, Samples};
+use hitch_ecu::{Contacts, Panel, Samples};
 use hitch_protocols::can::Frame;
 use hitch_workbench::ecu::{EcuMachine, MachineError};
 
@@ -404,9 +404,12 @@ impl Board {
             }
         }
         // A closed contact is low.
-        for number in 0..7 {
-            let closed = contacts.panel.bits() >> number & 1 == 1;
-            let pin = Pin::new(Port::C, 6 + number);
+        for (contact, number) in Panel::CONTACTS
+            .into_iter()
+            .zip([6, 7, 8, 9, 10, 11, 12, 4, 5])
+        {
+            let closed = contacts.panel.is_closed(contact);
+            let pin = Pin::new(Port::C, number);
             chip.conditions.levels.insert(pin, !closed);
         }
     }

@@ -76,9 +76,14 @@ fn nothing_but_the_lever_raises_the_enable_line() {
 #[test]
 fn a_button_that_was_held_from_the_start_on_raises_nothing() {
     let model = hitch_model_file::named("nominal").unwrap();
-    for contact in [Contact::Up, Contact::Down] {
+    for panel in [
+        Panel::FIELD.with(Contact::Up, true),
+        Panel::FIELD.with(Contact::Down, true),
+        Panel::FIELD.with_buttons(true, false),
+        Panel::FIELD.with_buttons(false, true),
+    ] {
         let mut machine = Machine::switched_on(&model, 150.0);
-        machine.bench.operator.panel = Panel::FIELD.with(contact, true);
+        machine.bench.operator.panel = panel;
         (0..IDLE_MS).for_each(|_| machine.assert_off(&[], "a button that nobody has let go"));
     }
 }

@@ -23,7 +23,15 @@ pub const QUANTITIES: [&str; 12] = [
 ];
 
 /// Names of the operator's switches.
-pub const SWITCHES: [&str; 5] = ["transport_lock", "hold", "quick_lift", "teach", "consent"];
+pub const SWITCHES: [&str; 7] = [
+    "transport_lock",
+    "hold",
+    "quick_lift",
+    "teach",
+    "consent",
+    "up_released",
+    "down_released",
+];
 
 /// The inputs of a step: values in the order of [`QUANTITIES`], `None` for a sample that is missing, and the
 /// [`SWITCHES`].
@@ -35,7 +43,15 @@ pub fn inputs(
     let scaled =
         |index: usize, counts: f64| values[index].map(|value: f64| (value * counts).round() as i32);
     let milli = |index: usize| scaled(index, 1e3);
-    let [transport_lock, hold, quick_lift, teach, consent] = switches;
+    let [
+        transport_lock,
+        hold,
+        quick_lift,
+        teach,
+        consent,
+        up_released,
+        down_released,
+    ] = switches;
     Inputs {
         lever: milli(0).map(MilliDegree),
         rocker_angle: milli(1).map(MilliDegree),
@@ -63,6 +79,8 @@ pub fn inputs(
             quick_lift,
             teach,
             consent,
+            up_released,
+            down_released,
         },
     }
 }

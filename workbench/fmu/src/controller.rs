@@ -56,6 +56,8 @@ const SWITCHES_ABOUT: [&str; SWITCHES.len()] = [
     "quick lift, a button: the first press raises, the next returns to the lever",
     "service: with it, jog_deg_per_s teaches a locked machine",
     "consent to remote control, a button; no effect without an implement on a bus",
+    "second contact of the button up, closed while it is released; counts with operator.second_contact",
+    "second contact of the button down, closed while it is released; counts with operator.second_contact",
 ];
 
 /// The controller with a calibration.

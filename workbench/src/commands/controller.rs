@@ -24,11 +24,11 @@ const HEADER: &str = "lift_current_a,lower_current_a,state";
     Standard input is CSV: a header, then one line for each millisecond. Required columns: time_s, lever_deg, \
     rocker_angle_deg. Optional columns: cylinder_pressure_bar, pump_pressure_bar, oil_temperature_c, supply_v, \
     jog_deg_per_s, upper_limit_deg, lowering_dial_percent, engine_speed_rpm, measured_lift_current_a, \
-    measured_lower_current_a, and the switches transport_lock, hold, quick_lift, teach, consent (0 is off). An empty cell \
+    measured_lower_current_a, and the switches transport_lock, hold, quick_lift, teach, consent, up_released, down_released (0 is off). An empty cell \
     is a missing sample. Each line is answered by one line with currents and state. The coils stay off until the lever has \
     been moved through the present angle.\n\n\
     Teaching is optional. Before the lever capture and away from the ends of travel, set teach to 1 and jog_deg_per_s to any \
-    value (button held): within a minute the controller identifies the opening currents, the valve delays and the ends \
+    value but 0 (button held): within a minute the controller identifies the opening currents, the valve delays and the ends \
     of travel. The state is teaching, then taught, or not-taught with the reason. The result takes effect when teach \
     is 0 and jog_deg_per_s is empty again; --out saves it."
 )]

@@ -33,8 +33,8 @@ pub enum Order {
     Lever(f64),
     /// Closes or opens a contact.
     Contact(Contact, bool),
-    /// Releases both external buttons.
-    ReleaseButtons,
+    /// Presses or releases the external buttons up and down, each with both of its contacts.
+    Buttons(bool, bool),
     /// Sets the upper-limit dial.
     UpperLimit(f64),
     /// Sets the lowering-rate dial, 0 to 1.
@@ -82,9 +82,9 @@ impl Order {
                 Self::UpperLimit(number(angle, *reach_deg.start(), *reach_deg.end())?)
             }
             ["dial", percent] => Self::LoweringDial(number(percent, 0.0, 100.0)? / 100.0),
-            ["up"] => Self::Contact(Contact::Up, true),
-            ["down"] => Self::Contact(Contact::Down, true),
-            ["stop"] => Self::ReleaseButtons,
+            ["up"] => Self::Buttons(true, false),
+            ["down"] => Self::Buttons(false, true),
+            ["stop"] => Self::Buttons(false, false),
             ["quick", position] => Self::Contact(Contact::QuickLift, switch(position)?),
             ["hold", position] => Self::Contact(Contact::Hold, switch(position)?),
             ["lock", position] => Self::Contact(Contact::FieldMode, !switch(position)?),
@@ -129,10 +129,7 @@ impl Operator {
         match order {
             Order::Lever(angle_deg) => self.lever_target_deg = angle_deg,
             Order::Contact(contact, closed) => self.panel = self.panel.with(contact, closed),
-            Order::ReleaseButtons => {
-                let up = self.panel.with(Contact::Up, false);
-                self.panel = up.with(Contact::Down, false);
-            }
+            Order::Buttons(up, down) => self.panel = self.panel.with_buttons(up, down),
             Order::UpperLimit(angle_deg) => self.upper_limit_deg = angle_deg,
             Order::LoweringDial(share) => self.lowering_dial = share,
             Order::Power | Order::Quit => {}

@@ -21,9 +21,10 @@ use crate::estimation::motion_observer::MotionObserver;
 use crate::estimation::rest::RestPosition;
 use crate::motion::position::PositionControl;
 use crate::motion::rate::RateControl;
+use crate::operator::button::ButtonGuard;
 use crate::operator::lever::SteadyLever;
 use crate::operator::mode::Mode;
-use crate::operator::{ButtonGuard, EngineWatch, Float, QuickLift};
+use crate::operator::{EngineWatch, Float, QuickLift};
 use crate::sensing::sensors::{Sensed, Sensors};
 use crate::sequencing::drift_monitor::DriftMonitor;
 use crate::sequencing::stall_detector::StallDetector;
@@ -188,7 +189,10 @@ impl Control {
         held_back: bool,
     ) -> Result<CoilCurrents, Fault> {
         self.observe(sensed);
-        let jog = self.button.pass(inputs.jog);
+        let teaches = matches!(self.mode, Mode::Teach);
+        let jog = self
+            .button
+            .pass(inputs, sensed.angle, teaches, &self.calibration);
         self.update_mode(jog.is_some(), inputs);
         if matches!(self.mode, Mode::Teach) {
             return Ok(self.teach.step(sensed.angle, self.scale, &self.calibration));

@@ -1,5 +1,6 @@
-//! Operator inputs besides the lever: engine, rate dial, quick lift, float and external button.
+//! Operator inputs besides the lever: engine, rate dial, quick lift and float.
 
+pub mod button;
 pub mod lever;
 pub mod lock;
 pub mod mode;
@@ -9,8 +10,7 @@ use hitch_quantities::calibration::design_parameters::{
 };
 use hitch_quantities::fixed::interpolate;
 use hitch_quantities::units::{
-    MicrometrePerSecond, MilliDegree, MilliDegreePerSecond, Millisecond, PerMille,
-    RevolutionPerMinute,
+    MicrometrePerSecond, MilliDegree, Millisecond, PerMille, RevolutionPerMinute,
 };
 
 /// Monitors whether the engine has been running for long enough.
@@ -39,26 +39,6 @@ impl EngineWatch {
             false => Millisecond::ZERO,
         };
         self.running_for >= parameters.engine_settling && speed > parameters.engine_running
-    }
-}
-
-/// Passes a button only after it has been seen released: one that is pressed at power-up or during a fault is stuck or
-/// pressed by accident.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ButtonGuard {
-    seen_released: bool,
-}
-
-impl ButtonGuard {
-    /// One step with the button's request.
-    pub fn pass(&mut self, jog: Option<MilliDegreePerSecond>) -> Option<MilliDegreePerSecond> {
-        self.seen_released |= jog.is_none();
-        jog.filter(|_| self.seen_released)
-    }
-
-    /// Requires the button to be seen released again.
-    pub fn distrust(&mut self) {
-        self.seen_released = false;
     }
 }
 
@@ -229,16 +209,6 @@ mod tests {
             (0..2_000).position(|_| engine.permits(speed, &parameters)),
             Some(499)
         );
-    }
-
-    #[test]
-    fn a_button_that_was_never_released_does_nothing() {
-        let mut guard = ButtonGuard::default();
-        let up = Some(MilliDegreePerSecond(5_000));
-        assert!((0..1_000).all(|_| guard.pass(up).is_none()));
-        assert_eq!((guard.pass(None), guard.pass(up)), (None, up));
-        guard.distrust();
-        assert_eq!(guard.pass(up), None);
     }
 
     #[test]

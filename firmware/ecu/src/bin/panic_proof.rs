@@ -21,6 +21,7 @@ use hitch_ecu::{
     Samples,
 };
 use hitch_protocols::can::{ExtendedId, Frame};
+use hitch_quantities::calibration::class::Fitted;
 use hitch_quantities::signals::INPUT_BYTES;
 use hitch_quantities::units::{MilliAmp, MilliVolt, PerMille};
 use hitch_quantities::{Calibration, Inputs};
@@ -59,7 +60,10 @@ fn application() {
         reference: AdcCode::new(0),
         wire_min: PerMille(0),
         wire_max: PerMille(0),
-        second_track: false,
+        fitted: Fitted {
+            second_track: false,
+            second_contact: true,
+        },
     });
     let flash = FlashRegions {
         calibration: AnyFlash,

@@ -218,6 +218,11 @@ impl Bench {
         self.lever = lever;
     }
 
+    /// Angle of the rocker, thousandths of a degree.
+    pub const fn angle(&self) -> i32 {
+        (self.angle_micro / 1_000) as i32
+    }
+
     pub fn state(&self) -> State {
         State::from_code(self.reply.state).unwrap()
     }

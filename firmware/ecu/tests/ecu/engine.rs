@@ -1,5 +1,6 @@
 //! The engine lock, from frames to pulse widths.
 
+use hitch_ecu::BoardScaling;
 use hitch_protocols::j1939::{Id, Pgn};
 use hitch_protocols::storage::CalibrationStore;
 use hitch_quantities::units::Count;
@@ -20,6 +21,13 @@ fn still_with_engine(bench: &mut Bench, speed: u16, ms: u32) -> bool {
         }
         bench.is_still(1) && still
     })
+}
+
+/// The calibration of the board, untaught.
+pub fn of_the_board() -> Calibration {
+    let mut block = Calibration::nominal();
+    block.monitor(BoardScaling::NOMINAL.fitted);
+    block
 }
 
 /// Flash in which a calibration is stored.
@@ -157,7 +165,7 @@ fn an_engine_speed_from_a_foreign_address_neither_locks_nor_opens_the_lock() {
 #[test]
 fn a_lost_engine_speed_is_reported_until_it_is_received_again() {
     // With a stored calibration no other code is active.
-    let mut bench = Bench::start(stored(Calibration::nominal()));
+    let mut bench = Bench::start(stored(of_the_board()));
     still_with_engine(&mut bench, 800, 2_000);
     assert!(!reports_a_lost_speed(&bench, 0), "healthy");
     let lost_ms = bench.now_ms;
@@ -171,7 +179,7 @@ fn a_lost_engine_speed_is_reported_until_it_is_received_again() {
 
 #[test]
 fn an_engine_that_is_required_has_to_be_heard() {
-    let mut block = Calibration::nominal();
+    let mut block = of_the_board();
     block.lock.engine_required = Count(1);
     let mut bench = Bench::start(stored(block));
     bench.pick_up(110_000);

@@ -5,6 +5,7 @@ use hitch_protocols::j1939::Pgn;
 use hitch_quantities::State;
 
 use crate::bench::{Bench, Flash};
+use crate::engine::{of_the_board, stored};
 
 /// Time after which the ECU has its address and the operator's controls are believed, ms.
 const READY_MS: u32 = 600;
@@ -30,13 +31,7 @@ fn start(flash: &Flash) -> Bench {
 }
 
 fn delivered() -> Flash {
-    use hitch_protocols::storage::CalibrationStore;
-    use hitch_quantities::ValidCalibration;
-    let flash = Flash::blank();
-    CalibrationStore::new(flash.clone())
-        .store(&ValidCalibration::nominal())
-        .unwrap();
-    flash
+    stored(of_the_board())
 }
 
 /// The lever's wire breaks for a while.

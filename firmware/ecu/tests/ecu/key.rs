@@ -133,7 +133,7 @@ fn loosest() -> Vec<(String, usize, i32)> {
 }
 
 /// Whether DM1 tells a code within 3 s, in a frame or in a message of several.
-fn has_code(bench: &mut Bench, spn: u32, fmi: u8) -> bool {
+pub fn has_code(bench: &mut Bench, spn: u32, fmi: u8) -> bool {
     let from = bench.sent.len();
     bench.run(3_000);
     let expected = [spn as u8, (spn >> 8) as u8, ((spn >> 16) as u8) << 5 | fmi];

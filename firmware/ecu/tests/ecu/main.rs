@@ -1,6 +1,7 @@
 //! The whole application: converter codes, contacts and frames in, pulse widths and frames out.
 
 mod bench;
+mod button;
 mod engine;
 mod history;
 mod key;

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use crate::bench::{Bench, Flash};
-use crate::engine::stored;
+use crate::engine::{of_the_board, stored};
 
 /// The address of the implement.
 const IMPLEMENT: u8 = 0x26;
@@ -34,7 +34,7 @@ fn in_operation_with(block: Calibration) -> Bench {
 }
 
 fn in_operation() -> Bench {
-    in_operation_with(Calibration::nominal())
+    in_operation_with(of_the_board())
 }
 
 fn status(bench: &Bench) -> StatusMessage {
@@ -71,7 +71,7 @@ fn contact(bench: &mut Bench, closed: bool) {
 
 /// An implement that claims its address has asked, and the operator presses the button.
 fn active() -> Bench {
-    active_with(Calibration::nominal())
+    active_with(of_the_board())
 }
 
 fn active_with(block: Calibration) -> Bench {
@@ -170,9 +170,9 @@ fn whatever_the_operator_does_ends_it_in_the_same_step() {
         (
             "button",
             |bench| {
-                bench.panel = bench.panel.with(Contact::Down, true);
+                bench.panel = bench.panel.with_buttons(false, true);
                 bench.run(100);
-                bench.panel = bench.panel.with(Contact::Down, false);
+                bench.panel = bench.panel.with_buttons(false, false);
                 // The ramp down is the button's.
                 bench.run(400);
             },
@@ -213,7 +213,7 @@ fn gesture(bench: &mut Bench) {
 #[test]
 fn without_a_contact_the_lever_consents_where_the_calibration_says_so() {
     for (kind, moves) in [(2, true), (1, false), (0, false)] {
-        let mut block = Calibration::nominal();
+        let mut block = of_the_board();
         block.remote.consent = Count(kind);
         let mut bench = in_operation_with(block);
         claims(&mut bench, IMPLEMENT, implement());
@@ -230,7 +230,7 @@ fn without_a_contact_the_lever_consents_where_the_calibration_says_so() {
 #[test]
 fn an_implement_moves_the_hitch_no_faster_than_its_calibration_says() {
     let most = |speed| {
-        let mut block = Calibration::nominal();
+        let mut block = of_the_board();
         block.remote.speed = MicrometrePerSecond(speed);
         let mut bench = active_with(block);
         let mut most = 0;
@@ -297,7 +297,7 @@ proptest! {
     fn control_and_envelope_agree_on_the_lever_s_consent(
         places in prop::collection::vec((-4_000..4_000_i32, 20..400_u32), 40)
     ) {
-        let mut block = Calibration::nominal();
+        let mut block = of_the_board();
         block.remote.consent = Count(2);
         let mut bench = in_operation_with(block);
         claims(&mut bench, IMPLEMENT, implement());

@@ -7,6 +7,7 @@
 //! amount of work, and the number of answers per second is bounded for any bus traffic.
 
 mod address_book;
+mod button_monitor;
 pub mod claim;
 pub mod diagnostics;
 pub mod engine;

@@ -5,9 +5,11 @@
 //! 7 mechanical system doesn't respond, 8 abnormal frequency, 9 abnormal update rate, 10 abnormal rate of change, 12 bad unit,
 //! 13 out of calibration, 31 condition exists.
 
-use hitch_quantities::calibration::design_parameters::LockParameters;
+use hitch_quantities::calibration::design_parameters::{LockParameters, OperatorParameters};
 use hitch_quantities::units::{MilliAmp, MilliVolt};
 use hitch_quantities::{Fault, Inputs, Outputs, Trip};
+
+use super::button_monitor::ButtonMonitor;
 
 /// A diagnostic trouble code without its count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +41,7 @@ const REFERENCE: u32 = OWN + 9;
 const ANGLE_TRACKS: u32 = OWN + 10;
 const ENABLE_LINE: u32 = OWN + 11;
 const REMOTE: u32 = OWN + 12;
+const BUTTONS: u32 = OWN + 13;
 const SAFETY_VALUES: u32 = OWN + 14;
 /// Sensor supply voltage 1.
 const SENSOR_SUPPLY: u32 = 3509;
@@ -142,6 +145,10 @@ troubles! {
     SafetyValuesLost = SAFETY_VALUES / 12,
     /// Safety values differ from those that the firmware is shipped with.
     SafetyValuesDiffer = SAFETY_VALUES / 31,
+    /// A contact of an external button has been closed since power-up, or for longer than a press.
+    ButtonClosed = BUTTONS / 4,
+    /// The two contacts of an external button contradict each other.
+    ButtonContacts = BUTTONS / 2,
 }
 
 /// A set of troubles.
@@ -220,6 +227,7 @@ pub struct TroubleFinder {
     last_asked: Option<Coil>,
     tripped: Option<(Trip, Trouble)>,
     engine_speed: EngineSpeedMonitor,
+    buttons: ButtonMonitor,
 }
 
 impl TroubleFinder {
@@ -229,11 +237,13 @@ impl TroubleFinder {
         inputs: &Inputs,
         outputs: &Outputs,
         lock: &LockParameters,
+        operator: &OperatorParameters,
     ) -> Troubles {
         let lost = self.engine_speed.is_lost(inputs, lock);
         let engine = lost.then_some(Troubles::from(Trouble::EngineSpeedLost));
         self.of_controller(inputs, outputs)
             .union(engine.unwrap_or_default())
+            .union(self.buttons.update(inputs, operator))
     }
 
     fn of_controller(&mut self, inputs: &Inputs, outputs: &Outputs) -> Troubles {

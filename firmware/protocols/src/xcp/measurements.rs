@@ -150,7 +150,7 @@ measurements! {
     fault: U8, "", 1, 0..=255 = outputs.fault.map_or(0, |fault| i32::from(fault as u8));
     /// Row of the safety envelope that tripped, 0 for none.
     trip: U8, "", 1, 0..=255 = outputs.trip.map_or(0, |trip| i32::from(trip as u8));
-    /// Bits 0 to 17: which inputs are there; from bit 24 on: switches; bit 30: fault of the enable line.
+    /// Bits 0 to 17: which inputs are there; from bit 22 on: switches; bit 30: fault of the enable line.
     valid: U32, "", 1, 0..=2_147_483_647 = inputs.valid_and_switches().cast_signed();
     /// Lever on the scale of the rocker angle.
     lever: I32, "deg", 1_000, -360_000..=360_000 = inputs.lever.map_or(0, |value| value.0);

@@ -1,7 +1,7 @@
 //! Trouble codes and requests.
 
 use hitch_protocols::j1939::{Pgn, Trouble, TroubleFinder, Troubles, Variant};
-use hitch_quantities::calibration::design_parameters::LockParameters;
+use hitch_quantities::calibration::design_parameters::{LockParameters, OperatorParameters};
 use hitch_quantities::units::{Count, MilliAmp, MilliVolt, RevolutionPerMinute};
 use hitch_quantities::{Fault, Inputs, Outputs, Trip};
 
@@ -182,6 +182,7 @@ fn currents(lift: i32, lower: i32) -> Inputs {
 }
 
 const LOCK: LockParameters = LockParameters::NOMINAL;
+const OPERATOR: OperatorParameters = OperatorParameters::NOMINAL;
 
 // REQ-SAFE-08
 #[test]
@@ -198,7 +199,7 @@ fn a_lost_engine_speed_has_its_code_until_it_is_received_again() {
         };
         let mut found = Troubles::NONE;
         for _ in 0..ms {
-            found = finder.update(&inputs, &Outputs::default(), lock);
+            found = finder.update(&inputs, &Outputs::default(), lock, &OPERATOR);
         }
         found
     };
@@ -218,14 +219,15 @@ fn a_lost_engine_speed_has_its_code_until_it_is_received_again() {
     let open = tripped(Trip::CoilOpen);
     let mut finder = TroubleFinder::default();
     after(&mut finder, None, &required, 1_000);
-    let both = finder.update(&Inputs::default(), &open, &required);
+    let both = finder.update(&Inputs::default(), &open, &required, &OPERATOR);
     assert_eq!(both, lost.union(Trouble::Coils.into()));
 }
 
 #[test]
 fn what_trips_the_envelope_gets_the_code_that_leads_to_it() {
-    let found =
-        |trip, inputs: &Inputs| TroubleFinder::default().update(inputs, &tripped(trip), &LOCK);
+    let found = |trip, inputs: &Inputs| {
+        TroubleFinder::default().update(inputs, &tripped(trip), &LOCK, &OPERATOR)
+    };
     let supply = |millivolt| Inputs {
         supply: Some(MilliVolt(millivolt)),
         ..Inputs::default()
@@ -251,11 +253,11 @@ fn what_trips_the_envelope_gets_the_code_that_leads_to_it() {
     let mut finder = TroubleFinder::default();
     let inputs = Inputs::default();
     assert_eq!(
-        finder.update(&inputs, &sinking, &LOCK),
+        finder.update(&inputs, &sinking, &LOCK, &OPERATOR),
         Trouble::Sinking.into()
     );
     assert_eq!(
-        finder.update(&inputs, &Outputs::default(), &LOCK),
+        finder.update(&inputs, &Outputs::default(), &LOCK, &OPERATOR),
         Troubles::NONE
     );
 }
@@ -267,19 +269,19 @@ fn which_coil_it_was_is_still_known_when_both_are_off() {
         lower_current: MilliAmp(1_500),
         ..Outputs::default()
     };
-    finder.update(&currents(0, 0), &lowering, &LOCK);
+    finder.update(&currents(0, 0), &lowering, &LOCK, &OPERATOR);
     let open = tripped(Trip::CoilOpen);
     assert_eq!(
-        finder.update(&currents(0, 0), &open, &LOCK),
+        finder.update(&currents(0, 0), &open, &LOCK, &OPERATOR),
         Trouble::LoweringCoilOpen.into()
     );
     let short = tripped(Trip::CoilShort);
     assert_eq!(
-        finder.update(&currents(3_000, 0), &short, &LOCK),
+        finder.update(&currents(3_000, 0), &short, &LOCK, &OPERATOR),
         Trouble::LiftCoilShort.into()
     );
     assert_eq!(
-        finder.update(&currents(0, 1), &short, &LOCK),
+        finder.update(&currents(0, 1), &short, &LOCK, &OPERATOR),
         Trouble::LiftCoilShort.into()
     );
 }

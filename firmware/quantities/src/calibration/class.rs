@@ -113,7 +113,7 @@ pub const CLASSES: &[Classified] = &[
         "float_exit_time",
     ]),
     row("operator", UP, &[
-        "dial_shut",
+        "dial_shut", "second_contact",
     ]),
     row("motion", Class::Machine, &[
         "position_time", "lowering_time", "lift_trail", "lowering_trail", "lag_limit", "swing_lag", "bias_limit",
@@ -133,7 +133,7 @@ pub const CLASSES: &[Classified] = &[
         "rate_slope", "trim_time", "trim_limit",
     ]),
     row("rate", DOWN, &[
-        "rate_limit",
+        "rate_limit", "longest_travel",
     ]),
     row("hold", Class::Machine, &[
         "dwell", "rest_time", "correction_memory",
@@ -224,15 +224,30 @@ const fn is_same(one: &str, other: &str) -> bool {
     same
 }
 
+/// What a board has that the nominal machine has not: its untaught calibration then monitors it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Fitted {
+    /// The rocker-angle sensor has a second, inverted track.
+    pub second_track: bool,
+    /// The external buttons have a second contact.
+    pub second_contact: bool,
+}
+
 impl Calibration {
-    /// Whether a safety value differs from that of an untaught machine, with or without a second track of the angle
-    /// sensor. The limits of the travel don't count: each machine is taught its own.
+    /// Monitors what is fitted, and nothing else of it.
+    pub fn monitor(&mut self, fitted: Fitted) {
+        self.sensors.second_track = Count(i32::from(fitted.second_track));
+        self.operator.second_contact = Count(i32::from(fitted.second_contact));
+    }
+
+    /// Whether a safety value differs from that of an untaught machine with what is fitted. The limits of the travel don't
+    /// count: each machine is taught its own.
     #[must_use]
-    pub fn has_other_safety_values(&self, second_track: bool) -> bool {
+    pub fn has_other_safety_values(&self, fitted: Fitted) -> bool {
         let mut shipped = Self::unsealed_nominal();
         shipped.position.lower_limit = self.position.lower_limit;
         shipped.position.upper_limit = self.position.upper_limit;
-        shipped.sensors.second_track = Count(i32::from(second_track));
+        shipped.monitor(fitted);
         let mut safety = items().filter(|item| item.is_safety);
         safety.any(|item| self.word(item.first) != shipped.word(item.first))
     }

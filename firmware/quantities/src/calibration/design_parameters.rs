@@ -104,6 +104,8 @@ parameter_group! {
         float_exit: MilliDegree = 45_450, -360_000..=360_000;
         /// ... and for how long: a lever that is knocked isn't meant.
         float_exit_time: Millisecond = 200, 0..=5_000;
+        /// 1: each external button has a second contact, which opens when it is pressed. A press and a release then need both contacts to say so.
+        second_contact: Count = 0, 0..=1;
     }
 }
 
@@ -170,6 +172,8 @@ parameter_group! {
     RateParameters, "rate" {
         /// Fastest speed that may be asked for: a person stands beside the implement. At most 25 degrees a second: a hand that lets go within 0.2 s stops it after 5 degrees. Changed at rest only.
         rate_limit: MilliDegreePerSecond = 15_000, 100..=25_000;
+        /// Longest travel of one press, after which the button has to be released: a wire that is shorted to ground moves the hitch no further. At most the default, a third of the travel.
+        longest_travel: MilliDegree = 30_000, 5_000..=30_000;
         /// Ramp of the rocker speed: full speed in half a second, with room for second thoughts.
         rate_slope: MilliDegreePerSecond = 30_000, 1_000..=1_000_000;
         /// Time of the integral on what is left of the speed's error: slower than estimate and spool together.

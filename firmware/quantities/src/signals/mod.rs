@@ -25,14 +25,20 @@ pub struct Switches {
     pub teach: bool,
     /// Consent to remote control, a button: its closing lets an implement that asks command the hitch.
     pub consent: bool,
+    /// Second contact of the button up: closed while it is released. Without such a contact it does not count.
+    pub up_released: bool,
+    /// The same of the button down.
+    pub down_released: bool,
 }
 
 impl Switches {
     /// The bit of the first one in the word of validity bits.
-    const FIRST_BIT: u32 = 24;
+    const FIRST_BIT: u32 = 22;
 
     fn to_bits(self) -> u32 {
         [
+            self.up_released,
+            self.down_released,
             self.transport_lock,
             self.hold,
             self.quick_lift,
@@ -48,11 +54,13 @@ impl Switches {
     fn from_bits(word: u32) -> Self {
         let on = |index: u32| (word >> Self::FIRST_BIT) >> index & 1 == 1;
         Self {
-            transport_lock: on(0),
-            hold: on(1),
-            quick_lift: on(2),
-            teach: on(3),
-            consent: on(4),
+            up_released: on(0),
+            down_released: on(1),
+            transport_lock: on(2),
+            hold: on(3),
+            quick_lift: on(4),
+            teach: on(5),
+            consent: on(6),
         }
     }
 }
@@ -62,7 +70,8 @@ impl Switches {
 pub struct Inputs {
     /// Lever set point on the rocker-angle scale.
     pub lever: Option<MilliDegree>,
-    /// Hold-to-run request: rocker speed, positive is up. While it is given, the lever has no say.
+    /// Hold-to-run request: rocker speed, positive is up; zero if both buttons are pressed, which moves nothing. While it
+    /// is given, the lever has no say.
     pub jog: Option<MilliDegreePerSecond>,
     /// Rocker-arm angle.
     pub rocker_angle: Option<MilliDegree>,
@@ -209,7 +218,7 @@ const ENABLE_LINE_FAULT: u32 = 1 << 30;
 pub const OUTPUT_BYTES: usize = 44;
 
 impl Inputs {
-    /// The first word of the image: a bit for each field that is there, and the switches from bit 24 on.
+    /// The first word of the image: a bit for each field that is there, and the switches from bit 22 on.
     #[must_use]
     pub fn valid_and_switches(&self) -> u32 {
         let fields = self.fields();

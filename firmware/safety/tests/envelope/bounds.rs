@@ -92,7 +92,7 @@ fn nothing_passes_until_lever_or_button_is_touched() {
             "pressed since power-up"
         );
     }
-    assert_eq!(rig.run(LIFT, 10), CoilCurrents::OFF, "released");
+    assert_eq!(rig.run(LIFT, 20), CoilCurrents::OFF, "released");
     assert_ne!(rig.step_with(LIFT, pressed), CoilCurrents::OFF);
 }
 

@@ -95,7 +95,7 @@ fn no_button_moves_a_hitch_that_is_locked_for_transport() {
     assert!(!is_on_after(&mut rig, LIFT, 100, transport_lock));
     assert!(!is_on_after(&mut rig, LIFT, 100, locked_and_pressed));
     assert!(!is_on_after(&mut rig, LIFT, 100, pressed), "since the lock");
-    assert!(!is_on_after(&mut rig, LIFT, 1, open), "released");
+    assert!(!is_on_after(&mut rig, LIFT, 20, open), "released");
     assert!(is_on_after(&mut rig, LIFT, 1, pressed));
 }
 
@@ -111,7 +111,7 @@ fn hold_keeps_what_the_button_moves() {
 #[test]
 fn the_button_arms_until_the_hitch_has_stopped_after_its_release() {
     let mut rig = Rig::new();
-    rig.run(Order::Rest, 10);
+    rig.run(Order::Rest, 20);
     rig.speed = FULL_SPEED;
     assert!(is_on_after(&mut rig, LIFT, 20, pressed));
     assert!(is_on_after(&mut rig, LIFT, 20, open), "its ramp ends");
@@ -127,7 +127,7 @@ fn the_button_arms_until_the_hitch_has_stopped_after_its_release() {
 #[test]
 fn a_button_that_waits_between_two_moves_stays_armed() {
     let mut rig = Rig::new();
-    rig.run(Order::Rest, 10);
+    rig.run(Order::Rest, 20);
     assert!(!is_on_after(&mut rig, Order::Rest, 100, pressed));
     assert!(is_on_after(&mut rig, LIFT, 1, pressed));
     assert!(!is_on_after(&mut rig, Order::Rest, 100, pressed));
@@ -195,7 +195,7 @@ fn an_engine_that_comes_up_has_to_settle() {
         is_on_after(&mut rig, Order::Rest, 10, engine(Some(400)));
         is_on_after(&mut rig, Order::Rest, steps, engine(Some(800)));
         // The button has to be seen released after the lock.
-        is_on_after(&mut rig, Order::Rest, 1, engine(Some(800)));
+        is_on_after(&mut rig, Order::Rest, 20, engine(Some(800)));
         assert_eq!(is_on_after(&mut rig, LIFT, 1, trembling), moves, "{steps}");
     }
 }

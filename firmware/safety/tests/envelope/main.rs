@@ -5,6 +5,7 @@
 mod angle;
 mod any_inputs;
 mod bounds;
+mod button;
 mod coils;
 mod consent;
 mod locks;
@@ -21,7 +22,8 @@ mod travel_limits;
 use std::sync::LazyLock;
 
 use hitch_quantities::calibration::design_parameters::{
-    LockParameters, OperatorParameters, RemoteParameters, SafetyParameters, SensorParameters,
+    LockParameters, OperatorParameters, RateParameters, RemoteParameters, SafetyParameters,
+    SensorParameters,
 };
 use hitch_quantities::units::{
     Microsecond, MilliAmp, MilliDegree, MilliDegreePerSecond, MilliVolt,
@@ -40,6 +42,7 @@ fn limits() -> Limits<'static> {
         lock: &LockParameters::NOMINAL,
         remote: &RemoteParameters::NOMINAL,
         operator: &OperatorParameters::NOMINAL,
+        rate: &RateParameters::NOMINAL,
         damaged: false,
         machine: MachineModel::of(&NOMINAL),
     }

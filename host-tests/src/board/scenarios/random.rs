@@ -118,7 +118,7 @@ impl Shift<'_> {
     /// The lever goes through the hitch, to one side of it and to the other.
     fn pick_up(&mut self) -> Result<()> {
         let operator = &mut self.rig.bench.operator;
-        operator.apply(Order::ReleaseButtons);
+        operator.apply(Order::Buttons(false, false));
         operator.apply(Order::Contact(Contact::FieldMode, true));
         let angle_deg = self.rig.bench.angle_deg();
         for aside_deg in [-ASIDE_DEG, ASIDE_DEG] {
@@ -150,11 +150,11 @@ impl Shift<'_> {
         let angle_deg = self.rig.bench.angle_deg();
         let random = &mut self.random;
         let operator = &mut self.rig.bench.operator;
-        operator.apply(Order::ReleaseButtons);
+        operator.apply(Order::Buttons(false, false));
         operator.apply(Order::Contact(Contact::FieldMode, true));
         match random.u32(0..20) {
-            0 => operator.apply(Order::Contact(Contact::Up, true)),
-            1 => operator.apply(Order::Contact(Contact::Down, true)),
+            0 => operator.apply(Order::Buttons(true, false)),
+            1 => operator.apply(Order::Buttons(false, true)),
             2 => operator.apply(Order::Contact(Contact::FieldMode, false)),
             3 | 4 => operator.apply(Order::Lever(angle_deg)),
             _ => operator.apply(Order::Lever(50.0 + 80.0 * random.f64())),

@@ -78,14 +78,17 @@ impl<'m> EcuBench<'m> {
     /// Moves the controls; the lever moves at the speed of a hand.
     fn operate(&mut self, orders: &Orders) {
         let contacts = [
-            (Contact::Up, orders.button == Some(Button::Raise)),
-            (Contact::Down, orders.button == Some(Button::Lower)),
             (Contact::Hold, orders.hold),
             (Contact::QuickLift, orders.quick_lift),
         ];
         let (low_deg, high_deg) = (*self.reach_deg.start(), *self.reach_deg.end());
         let operator = &mut self.bench.operator;
         operator.apply(Order::Lever(orders.lever_deg.clamp(low_deg, high_deg)));
+        let pressed = |button| orders.button == Some(button);
+        operator.apply(Order::Buttons(
+            pressed(Button::Raise),
+            pressed(Button::Lower),
+        ));
         for (contact, closed) in contacts {
             operator.apply(Order::Contact(contact, closed));
         }

@@ -83,5 +83,7 @@ const fn known_trouble(trouble: Trouble) -> &'static str {
         Trouble::EngineSpeedLost => "engine speed no longer received",
         Trouble::SafetyValuesLost => "stored safety values lost: locked",
         Trouble::SafetyValuesDiffer => "safety values differ from the shipped ones",
+        Trouble::ButtonClosed => "a contact of an external button stays closed",
+        Trouble::ButtonContacts => "the contacts of an external button contradict each other",
     }
 }

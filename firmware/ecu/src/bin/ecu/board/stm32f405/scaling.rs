@@ -1,9 +1,13 @@
 //! The scaling of the board with the STM32F405.
 
 use hitch_ecu::BoardScaling;
+use hitch_quantities::calibration::class::Fitted;
 
 /// The nominal board's, with a second track of the rocker-angle sensor on PA5.
 pub const SCALING: BoardScaling = BoardScaling {
-    second_track: true,
+    fitted: Fitted {
+        second_track: true,
+        second_contact: true,
+    },
     ..BoardScaling::NOMINAL
 };
