@@ -17,8 +17,8 @@ use embedded_hal::pwm::{self, SetDutyCycle};
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash};
 use hitch_controller::Controller;
 use hitch_ecu::{
-    AdcCode, BoardScaling, CoilDriver, Contacts, Drive, Ecu, FlashRegions, Hardware, PanelInputs,
-    Samples,
+    AdcCode, BoardScaling, CoilDriver, Contacts, Drive, Ecu, FlashRegions, Hardware, Panel,
+    PanelInputs, Samples,
 };
 use hitch_protocols::can::{ExtendedId, Frame};
 use hitch_quantities::calibration::class::Fitted;
@@ -72,7 +72,7 @@ fn application() {
     };
     let mut ecu = Ecu::start(flash, black_box(0), scaling);
     let mut hardware = AnyHardware(CoilDriver::new(AnyPin, AnyPin, AnyPin, AnyPin));
-    let mut panel = PanelInputs::new([AnyPin; 7]);
+    let mut panel = PanelInputs::new([AnyPin; Panel::CONTACTS.len()]);
     while black_box(true) {
         let codes = black_box([0; Samples::CHANNELS]);
         let contacts = Contacts {
