@@ -116,7 +116,7 @@ fn pins(chip: &Chip) -> Vec<String> {
         findings.push(format!("{enable}, the enable line, is no output"));
     }
     let base = chip.part.addresses().gpio + 0x800;
-    for number in 6..13 {
+    for number in 4..13 {
         let pin = Pin::new(Port::C, number);
         if chip.mode(pin) != 0 || chip.registers.field(base + 0x0C, 2 * number, 2) != 1 {
             findings.push(format!("{pin}, a contact, isn't pulled up"));

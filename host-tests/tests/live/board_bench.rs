@@ -88,6 +88,7 @@ scenarios! {
     damaged_ram: "damaged-ram",
     bus_off: "bus-off",
     flooded_bus: "flooded-bus",
+    remote_control: "remote-control",
     random_operation: "random-operation",
 }
 
