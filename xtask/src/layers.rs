@@ -46,7 +46,7 @@ const CRATES: [Layers; 8] = [
     },
     Layers {
         sources: "firmware/protocols/src",
-        order: &[&["can"], &["j1939"], &["storage"], &["xcp"]],
+        order: &[&["can"], &["j1939"], &["key"], &["storage"], &["xcp"]],
     },
     Layers {
         sources: "model/plant/src",

@@ -37,6 +37,7 @@ fn moved(bench: &mut Bench, panel: Panel, ms: u32) -> i32 {
     bench.angle() - from
 }
 
+// REQ-SAFE-16
 #[test]
 fn a_wire_that_is_shorted_for_8_s_moves_the_hitch_by_one_press_at_most() {
     for (contact, sign) in [(Contact::Up, 1), (Contact::Down, -1)] {
@@ -53,6 +54,7 @@ fn a_wire_that_is_shorted_for_8_s_moves_the_hitch_by_one_press_at_most() {
     }
 }
 
+// REQ-SAFE-16
 #[test]
 fn a_shorted_wire_moves_nothing_if_the_button_has_two_contacts() {
     for contact in [Contact::Up, Contact::Down] {
