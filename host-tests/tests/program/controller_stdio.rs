@@ -163,6 +163,15 @@ fn step_taught(
     cells[2].to_owned()
 }
 
+/// Time for which the button is seen released before a press counts, ms.
+const RELEASED_MS: u32 = 20;
+
+fn release(controller: &mut ControllerProcess, toy: &mut (u32, [f64; 2], f64)) {
+    for _ in 0..RELEASED_MS {
+        assert_eq!(step_taught(controller, toy, 60.0, false), "locked");
+    }
+}
+
 #[test]
 fn a_machine_is_taught_over_stdin_and_keeps_the_result() {
     let folder = tempfile::tempdir().unwrap();
@@ -172,10 +181,7 @@ fn a_machine_is_taught_over_stdin_and_keeps_the_result() {
         &["--out", file.to_str().unwrap()],
     );
     let mut toy = (0, [0.0; 2], 90.0);
-    assert_eq!(
-        step_taught(&mut controller, &mut toy, 60.0, false),
-        "locked"
-    );
+    release(&mut controller, &mut toy);
     let state = (0..60_000)
         .map(|_| step_taught(&mut controller, &mut toy, 60.0, true))
         .find(|state| state != "teaching");
@@ -206,7 +212,7 @@ fn a_machine_is_taught_over_stdin_and_keeps_the_result() {
 fn who_lets_go_too_soon_has_taught_nothing() {
     let mut controller = ControllerProcess::open(&format!("{HEADER},jog_deg_per_s,teach"));
     let mut toy = (0, [0.0; 2], 90.0);
-    step_taught(&mut controller, &mut toy, 60.0, false);
+    release(&mut controller, &mut toy);
     for _ in 0..2_000 {
         assert_eq!(
             step_taught(&mut controller, &mut toy, 60.0, true),
