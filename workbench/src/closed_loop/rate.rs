@@ -12,8 +12,13 @@ use super::scenario::middle_and_room_deg;
 
 /// Requested speeds as shares of the fastest one of the calibration.
 const SHARES: [f64; 3] = [0.2, 0.5, 1.0];
-/// Longest time for which the button is held, s.
+/// Longest and shortest time for which the button is held, s.
 const HELD_S: f64 = 3.0;
+const SHORTEST_S: f64 = 0.1;
+/// The controller ends a press when the rest of its longest travel is what the hitch travels in this time, s.
+const STOP_S: f64 = 0.15;
+/// Share of the remaining travel that a press takes at the requested speed: the controller does not end it.
+const TRAVEL_SHARE: f64 = 0.9;
 /// Time after the release, s.
 const AFTER_S: f64 = 3.0;
 /// Time before the button is pressed, in which it is seen released, ms.
@@ -149,6 +154,7 @@ pub fn presses(
     oil_temperatures_c: &[f64],
 ) -> Vec<Press> {
     let fastest_deg_per_s = f64::from(calibration.rate.rate_limit.0) * 1e-3;
+    let longest_deg = f64::from(calibration.rate.longest_travel.0) * 1e-3;
     let (middle_deg, room_deg) = middle_and_room_deg(model);
     let usual_kg = model.usual_loads_kg();
     let mut presses = Vec::new();
@@ -156,7 +162,8 @@ pub fn presses(
         for &oil_temperature_c in oil_temperatures_c {
             for share in SHARES {
                 let speed = share * fastest_deg_per_s;
-                let held_s = HELD_S.min(room_deg / speed);
+                let longest_s = TRAVEL_SHARE * (longest_deg / speed - STOP_S);
+                let held_s = HELD_S.min(room_deg / speed).min(longest_s).max(SHORTEST_S);
                 presses.extend([speed, -speed].map(|rate_deg_per_s| Press {
                     rate_deg_per_s,
                     load_kg,

@@ -28,7 +28,7 @@ const HEADER: &str = "lift_current_a,lower_current_a,state";
     is a missing sample. Each line is answered by one line with currents and state. The coils stay off until the lever has \
     been moved through the present angle.\n\n\
     Teaching is optional. Before the lever capture and away from the ends of travel, set teach to 1 and jog_deg_per_s to any \
-    value but 0 (button held): within a minute the controller identifies the opening currents, the valve delays and the ends \
+    value but 0 (button held, after 20 ms in which it was released): within a minute the controller identifies the opening currents, the valve delays and the ends \
     of travel. The state is teaching, then taught, or not-taught with the reason. The result takes effect when teach \
     is 0 and jog_deg_per_s is empty again; --out saves it."
 )]
