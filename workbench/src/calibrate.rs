@@ -191,9 +191,11 @@ fn linkage(model: &Model, calibration: &mut Calibration) {
         let piston_m = model.linkage().piston_m(angle_deg.to_radians());
         *travel = Micrometre((piston_m * 1e6).round() as i32);
     }
-    let (lower_limit, upper_limit) = (low + END_DISTANCE, high - END_DISTANCE);
     let position = &mut calibration.position;
     let before = [position.lower_limit, position.upper_limit];
+    // The same end keeps its limit: one that is wider by a rounding needs the key of the machine.
+    let lower_limit = before[0] + moved_by(before[0], low + END_DISTANCE);
+    let upper_limit = before[1] + moved_by(before[1], high - END_DISTANCE);
     (position.lower_limit, position.upper_limit) = (lower_limit, upper_limit);
     follow(calibration, before, [lower_limit, upper_limit]);
     let stroke_m = model.constants().cylinder.stroke_m;
