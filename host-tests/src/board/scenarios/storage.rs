@@ -8,10 +8,11 @@ use super::rig::{READY_MS, Rig};
 use crate::board::{Board, Contents, Extent, Snapshot};
 use crate::ecu_tool;
 
-/// The parameter that is stored, with two values that nothing else in RAM has.
+/// The parameter that is stored, with two values that nothing else in RAM has. The second one is stricter: the board has
+/// no key.
 const PARAMETER: (&str, &str) = ("position", "upper_limit");
-const FIRST: i32 = 131_113;
-const SECOND: i32 = 131_317;
+const FIRST: i32 = 131_317;
+const SECOND: i32 = 131_113;
 /// Time within which storing ends, ms: two erased sectors of the slower part and a record.
 const STORED_MS: usize = 8_000;
 /// Time from the first look at the stored calibration until the first milliseconds of work, ms.
