@@ -168,3 +168,17 @@ fn a_shorted_wire_moves_nothing_with_two_contacts() {
     let mut buttons = Buttons::released(&TWO_CONTACTS);
     assert_eq!(buttons.on_for(LIFT, SHORTED, 8_000), 0);
 }
+
+#[test]
+fn a_spent_press_stays_spent_where_the_hitch_sinks_back() {
+    let mut buttons = Buttons::released(&OperatorParameters::NOMINAL);
+    buttons.on_for(LIFT, UP, 2_000);
+    for _ in 0..2_000 {
+        buttons.rig.speed = -10;
+        buttons.on_for(Order::Rest, UP, 1);
+    }
+    let sunk = buttons.rig.angle - 70_000;
+    assert!(sunk < 15_000, "{sunk}");
+    assert_eq!(buttons.rig.envelope.tripped(), None);
+    assert_eq!(buttons.on_for(LIFT, UP, 100), 0);
+}
