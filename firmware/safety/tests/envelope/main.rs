@@ -14,6 +14,7 @@ mod noise_detector;
 mod onset;
 mod recovery;
 mod release;
+mod rows;
 mod signals;
 mod standstill;
 mod travel_deficit;
