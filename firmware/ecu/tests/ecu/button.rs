@@ -1,4 +1,4 @@
-//! The external buttons of the running application: presses, shorted wires, and what is told of them.
+//! The external buttons of the running application: presses, shorted wires, and their trouble codes.
 
 use hitch_ecu::{Contact, Panel};
 use hitch_quantities::units::Count;

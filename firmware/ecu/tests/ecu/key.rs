@@ -132,7 +132,7 @@ fn loosest() -> Vec<(String, usize, i32)> {
         .collect()
 }
 
-/// Whether DM1 tells a code within 3 s, in a frame or in a message of several.
+/// Whether DM1 contains a code within 3 s, in one frame or in a message of several frames.
 pub fn has_code(bench: &mut Bench, spn: u32, fmi: u8) -> bool {
     let from = bench.sent.len();
     bench.run(3_000);

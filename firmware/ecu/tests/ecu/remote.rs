@@ -145,7 +145,7 @@ fn a_contact_that_stays_closed_consents_once() {
     assert_eq!(status(&bench).exit, ExitCode::NoOperator);
 }
 
-/// What the operator does, and the reason that the implement is told.
+/// What the operator does, and the exit code that the implement receives.
 type End = (&'static str, fn(&mut Bench), ExitCode);
 
 // REQ-MODE-11
