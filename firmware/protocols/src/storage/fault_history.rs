@@ -11,7 +11,7 @@
 //! out; what comes after these is lost at power-off. A count ends at 126, and so does the writing of a code that occurs at
 //! each start. The log is compacted only at the start, if fewer slots are free than these writes need: that takes at least
 //! [`WRITES_PER_ERASE`] entries, and each page is erased every other time. Flash that can be erased 10 000 times (data
-//! sheets of both parts) so takes 2.5 million entries, 26 000 starts with the most writes.
+//! sheets of both parts) so takes 2.4 million entries, 28 000 starts with the most writes.
 
 use embedded_storage::nor_flash::NorFlash;
 
@@ -19,8 +19,8 @@ use super::fault_log::{Entry, FaultLog, MOST_SLOTS};
 use crate::j1939::diagnostics::{KINDS, Occurrences};
 use crate::j1939::{Trouble, Troubles};
 
-/// Entries that a start writes at most: each code occurs, is cleared, and occurs again.
-pub const MOST_WRITES: usize = 3 * KINDS;
+/// Entries that a start writes at most: each code occurs and is cleared.
+pub const MOST_WRITES: usize = 2 * KINDS;
 /// Entries from one compaction to the next, at least: the page's first slot and an entry of each code are copied.
 pub const WRITES_PER_ERASE: usize = MOST_SLOTS - 1 - KINDS - MOST_WRITES + 1;
 
