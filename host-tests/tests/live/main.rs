@@ -17,6 +17,7 @@ mod files_in_browser;
 mod fixed_parameter;
 mod overlay_in_browser;
 mod page_in_browser;
+mod panics;
 mod python_clients;
 mod report_in_browser;
 mod running_ecu;

@@ -14,16 +14,12 @@ pub const PARTS: [&str; 2] = ["stm32f405", "stm32g474"];
 /// Cargo profile of the images: optimised, with overflow checks.
 const PROFILE: &str = "firmware";
 
-/// Builds everything for ARM: the library for the ECU, the proof that it cannot panic, the image for the emulator and
-/// those for the parts.
+/// Builds everything for ARM: the library for the ECU, the image for the emulator and those for the parts.
 ///
 /// # Errors
 /// If cargo can't build it.
 pub fn build_all(way: Way) -> Result<()> {
     build(way, &["--lib"])?;
-    build(way, &["--bin", "panic_proof", "--features", "emulated"]).context(
-        "if `the_controller_can_panic` is undefined above, a step of the controller or a millisecond of the application can panic",
-    )?;
     build_emulated(way)?;
     for part in PARTS {
         build(way, &["--bin", "ecu", "--features", part])?;

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
-use arm_build::images::{PARTS, build_all, emulated, folder, of_part};
+use anyhow::{Context, Result, ensure};
+use arm_build::images::{PARTS, build_all, emulated, of_part};
 use arm_build::toolchain::Way;
 use image_stack::Bound;
 
@@ -16,10 +16,6 @@ use crate::{programming, seal, size};
 /// The stack bound of each image is written beside it; the tests that run the emulator read the one of its image.
 pub fn build(way: Way) -> Result<()> {
     let images = finished(way)?;
-    println!(
-        "controller and application can't panic; with their start-up code they take {}",
-        size::of(&folder(way).join("panic_proof"))?
-    );
     let entries: Vec<Entry> = images.iter().map(|image| image.entry.clone()).collect();
     budget::check(&entries)?;
     for image in images {
@@ -77,9 +73,22 @@ fn finished(way: Way) -> Result<Vec<Image>> {
         let path = of_part(way, part);
         seal::write(&path)?;
         programming::write(&path)?;
+        forbid_panics(&path)?;
         Image::measured(format!("ecu-{part}"), &path)
     });
     let emulated =
         std::iter::once_with(|| Image::measured(budget::EMULATED.to_owned(), &emulated(way)));
     of_parts.chain(emulated).collect()
+}
+
+/// A flashed image has no code that panics: whatever leads there would be a fault of the program.
+fn forbid_panics(image: &Path) -> Result<()> {
+    let panics = image_stack::panics(image)?;
+    ensure!(
+        panics.is_empty(),
+        "{} can panic:\n  {}\nuse `get`, patterns, and saturating or checked arithmetic there",
+        image.display(),
+        panics.join("\n  ")
+    );
+    Ok(())
 }

@@ -13,6 +13,7 @@
 mod chain;
 mod frame;
 mod instruction;
+mod panics;
 mod program;
 mod unwind;
 
@@ -104,6 +105,18 @@ pub fn of(image: &Path) -> Result<Bound> {
     let bytes =
         fs::read(image).with_context(|| format!("can't read the image {}", image.display()))?;
     bound(&bytes).with_context(|| format!("can't bound the stack of {}", image.display()))
+}
+
+/// What panics in an image, with its callers; empty if nothing can.
+///
+/// # Errors
+/// If the file is no image of which the calls are known.
+pub fn panics(image: &Path) -> Result<Vec<String>> {
+    let bytes =
+        fs::read(image).with_context(|| format!("can't read the image {}", image.display()))?;
+    let program = Program::parse(&bytes)?;
+    let frames = frame::frames(&program)?;
+    Ok(panics::panics(&program, &frames))
 }
 
 fn bound(bytes: &[u8]) -> Result<Bound> {

@@ -13,7 +13,6 @@ mod board;
 use core::panic::PanicInfo;
 
 use cortex_m_rt::{ExceptionFrame, entry, exception};
-use defmt_rtt as _;
 use hitch_ecu::{Contacts, Drive, Ecu, Hardware, Samples};
 use hitch_protocols::can::Frame;
 use hitch_quantities::{Fault, State};

@@ -23,8 +23,6 @@ use super::pins::{self, Pin};
 
 /// Turning points of the counter in a millisecond: two per pulse, 16 pulses.
 const TURNING_POINTS: u16 = 32;
-const LIFT: usize = 0;
-const LOWER: usize = 1;
 /// PB10.
 const ENABLE_PIN: usize = 10;
 /// PB11: the enable line as the drivers see it.
@@ -34,7 +32,27 @@ const FEEDBACK_PIN: usize = 11;
 pub type Coils = CoilDriver<Channel, Channel, Pin, Pin>;
 
 /// A PWM output of TIM1.
-pub struct Channel(usize);
+#[derive(Clone, Copy)]
+pub enum Channel {
+    /// Channel 1, on PA8.
+    Lift,
+    /// Channel 2, on PA9.
+    Lower,
+}
+
+impl Channel {
+    /// Its index in the timer's registers.
+    const fn index(self) -> usize {
+        match self {
+            Self::Lift => 0,
+            Self::Lower => 1,
+        }
+    }
+
+    fn set_compare(self, value: u16) {
+        TIM1.ccr(self.index()).write(|w| w.set_ccr(value));
+    }
+}
 
 impl ErrorType for Channel {
     type Error = Infallible;
@@ -46,7 +64,7 @@ impl SetDutyCycle for Channel {
     }
 
     fn set_duty_cycle(&mut self, duty: u16) -> Result<(), Infallible> {
-        TIM1.ccr(self.0).write(|w| w.set_ccr(duty));
+        self.set_compare(duty);
         Ok(())
     }
 }
@@ -61,7 +79,7 @@ pub fn start(function: u8) -> Coils {
     TIM1.rcr().write(|w| w.set_rep(TURNING_POINTS - 1));
     TIM1.cr1().write(|w| w.set_cms(Cms::CENTER_ALIGNED1));
     TIM1.cr2().write(|w| w.set_mms(Mms::UPDATE));
-    for channel in [LIFT, LOWER] {
+    for channel in [Channel::Lift, Channel::Lower].map(Channel::index) {
         TIM1.ccmr_output(0)
             .modify(|w| w.set_ocm(channel, Ocm::PWM_MODE1));
         TIM1.ccer().modify(|w| w.set_cce(channel, true));
@@ -79,8 +97,8 @@ pub fn start(function: u8) -> Coils {
     pins::alternate(GPIOA, 8, function);
     pins::alternate(GPIOA, 9, function);
     CoilDriver::new(
-        Channel(LIFT),
-        Channel(LOWER),
+        Channel::Lift,
+        Channel::Lower,
         Pin::new(GPIOB, ENABLE_PIN),
         Pin::new(GPIOB, FEEDBACK_PIN),
     )
@@ -96,6 +114,6 @@ pub fn run() {
 pub fn cut() {
     GPIOB.bsrr().write(|w| w.set_br(ENABLE_PIN, true));
     TIM1.bdtr().modify(|w| w.set_moe(false));
-    TIM1.ccr(LIFT).write(|w| w.set_ccr(0));
-    TIM1.ccr(LOWER).write(|w| w.set_ccr(0));
+    Channel::Lift.set_compare(0);
+    Channel::Lower.set_compare(0);
 }

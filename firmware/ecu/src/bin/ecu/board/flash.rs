@@ -13,8 +13,9 @@ use super::part::flash::{
 
 /// A region of the flash.
 pub struct DataFlash {
-    first_piece: usize,
-    pieces: usize,
+    first_piece: u8,
+    first_address: usize,
+    bytes: usize,
 }
 
 /// The flash operation failed, or is invalid.
@@ -31,38 +32,30 @@ impl NorFlashError for FlashError {
 /// calibration.
 pub fn regions() -> FlashRegions<DataFlash> {
     FlashRegions {
-        calibration: DataFlash {
-            first_piece: KEY_PIECES + LOG_PIECES,
-            pieces: CALIBRATION_PIECES,
-        },
-        fault_log: DataFlash {
-            first_piece: KEY_PIECES,
-            pieces: LOG_PIECES,
-        },
-        key: DataFlash {
-            first_piece: 0,
-            pieces: KEY_PIECES,
-        },
+        calibration: const { DataFlash::new(KEY_PIECES + LOG_PIECES, CALIBRATION_PIECES) },
+        fault_log: const { DataFlash::new(KEY_PIECES, LOG_PIECES) },
+        key: const { DataFlash::new(0, KEY_PIECES) },
     }
 }
 
 impl DataFlash {
-    const fn capacity_bytes(&self) -> usize {
-        self.pieces * PIECE_BYTES
+    const fn new(first_piece: usize, pieces: usize) -> Self {
+        Self {
+            first_piece: first_piece as u8,
+            first_address: BASE + first_piece * PIECE_BYTES,
+            bytes: pieces * PIECE_BYTES,
+        }
     }
 
-    const fn address(&self, offset: u32) -> usize {
-        BASE + self.first_piece * PIECE_BYTES + offset as usize
-    }
-
-    fn check(&self, offset: u32, length: usize, unit: usize) -> Result<(), FlashError> {
+    /// The address of `length` bytes at `offset`, if they are in the region and whole units.
+    fn address(&self, offset: u32, length: usize, unit: usize) -> Result<usize, FlashError> {
         let offset = offset as usize;
         if !offset.is_multiple_of(unit) || !length.is_multiple_of(unit) {
             return Err(FlashError(NorFlashErrorKind::NotAligned));
         }
-        let capacity = self.capacity_bytes();
-        match offset <= capacity && length <= capacity - offset {
-            true => Ok(()),
+        let room = self.bytes.checked_sub(offset);
+        match room.is_some_and(|room| length <= room) {
+            true => Ok(self.first_address.saturating_add(offset)),
             false => Err(FlashError(NorFlashErrorKind::OutOfBounds)),
         }
     }
@@ -77,11 +70,10 @@ impl ReadNorFlash for DataFlash {
 
     /// Bytes with failed error correction read as zeros: the checksum then marks the copy or the entry as damaged.
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
-        self.check(offset, bytes.len(), 1)?;
-        let first = self.address(offset);
+        let first = self.address(offset, bytes.len(), 1)? as *const u8;
         for (index, byte) in bytes.iter_mut().enumerate() {
             // SAFETY: inside the region, as checked above; volatile, for the flash changes under the compiler.
-            *byte = unsafe { ((first + index) as *const u8).read_volatile() };
+            *byte = unsafe { first.wrapping_add(index).read_volatile() };
         }
         if take_damaged_read() {
             bytes.fill(0);
@@ -90,7 +82,7 @@ impl ReadNorFlash for DataFlash {
     }
 
     fn capacity(&self) -> usize {
-        self.capacity_bytes()
+        self.bytes
     }
 }
 
@@ -99,21 +91,21 @@ impl NorFlash for DataFlash {
     const ERASE_SIZE: usize = PIECE_BYTES;
 
     fn erase(&mut self, from: u32, to: u32) -> Result<(), FlashError> {
-        self.check(from, to.saturating_sub(from) as usize, PIECE_BYTES)?;
+        self.address(from, to.saturating_sub(from) as usize, PIECE_BYTES)?;
         changed(|| {
             for piece in from as usize / PIECE_BYTES..to as usize / PIECE_BYTES {
-                erase_piece((self.first_piece + piece) as u8);
+                erase_piece(self.first_piece.saturating_add(piece as u8));
             }
         })
     }
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
-        self.check(offset, bytes.len(), WORD_BYTES)?;
+        let mut address = self.address(offset, bytes.len(), WORD_BYTES)?;
         changed(|| {
-            let first = self.address(offset);
-            for (index, word) in bytes.as_chunks().0.iter().enumerate() {
+            for word in bytes.as_chunks().0 {
                 // SAFETY: an aligned word inside the region, as checked above.
-                unsafe { program(first + index * WORD_BYTES, word) };
+                unsafe { program(address, word) };
+                address = address.saturating_add(WORD_BYTES);
             }
         })
     }

@@ -29,12 +29,14 @@ unsafe extern "C" {
 /// Address of the first byte after the image.
 fn end() -> usize {
     let [from, to] = [&raw const __sdata, &raw const __edata].map(|address| address as usize);
-    (&raw const __sidata) as usize + (to - from)
+    ((&raw const __sidata) as usize).saturating_add(to.saturating_sub(from))
 }
 
-/// Address of the checksum.
-fn place() -> usize {
-    (&raw const IMAGE_SEAL) as usize + 8
+/// The checksum's word.
+fn place() -> *const u32 {
+    (&raw const IMAGE_SEAL)
+        .cast::<u32>()
+        .wrapping_add(MAGIC.len())
 }
 
 /// The check.
@@ -48,7 +50,7 @@ impl ImageCheck {
     /// Checks the whole image; `None` if it differs from the one built by the task.
     pub fn start() -> Option<Self> {
         // SAFETY: an aligned word of the image; volatile, because the task changes it after compilation.
-        let sealed = unsafe { (place() as *const u32).read_volatile() };
+        let sealed = unsafe { place().read_volatile() };
         let mut checksum = Crc32::default();
         take(&mut checksum, START, end());
         let found = checksum.value();
@@ -61,7 +63,7 @@ impl ImageCheck {
 
     /// Checks the next bytes; false if the image has changed.
     pub fn step(&mut self) -> bool {
-        let until = (self.at + BYTES).min(end());
+        let until = self.at.saturating_add(BYTES).min(end());
         take(&mut self.checksum, self.at, until);
         self.at = until;
         if until < end() {
@@ -74,7 +76,7 @@ impl ImageCheck {
 
 /// Continues with the bytes from `from` to `to`; those of the checksum count as erased.
 fn take(checksum: &mut Crc32, from: usize, to: usize) {
-    let seal = place()..place() + 4;
+    let seal = place() as usize..place().wrapping_add(1) as usize;
     take_bytes(checksum, from, to.min(seal.start));
     for _ in seal.start.max(from)..seal.end.min(to) {
         checksum.update(&[0xFF]);

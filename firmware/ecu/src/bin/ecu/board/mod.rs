@@ -10,6 +10,7 @@ mod factory_reference;
 mod flash;
 mod image_check;
 mod inbox;
+mod log;
 mod pins;
 mod ram_test;
 mod register_check;

@@ -4,7 +4,7 @@ use core::convert::Infallible;
 
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use stm32_metapac::gpio::Gpio;
-use stm32_metapac::gpio::vals::{Idr, Moder, Ospeedr, Pupdr};
+use stm32_metapac::gpio::vals::{Moder, Ospeedr, Pupdr};
 
 /// A converter's input.
 pub fn analog(port: Gpio, pin: usize) {
@@ -41,13 +41,17 @@ pub fn input(port: Gpio, pin: usize) {
 /// A pin that has been made an input or an output.
 pub struct Pin {
     port: Gpio,
-    pin: usize,
+    /// Its bit in the port's registers of levels.
+    bit: u32,
 }
 
 impl Pin {
-    /// The pin with a number of a port.
+    /// The pin with a number, 0 to 15, of a port.
     pub const fn new(port: Gpio, pin: usize) -> Self {
-        Self { port, pin }
+        Self {
+            port,
+            bit: 1 << (pin & 0xF),
+        }
     }
 }
 
@@ -57,19 +61,19 @@ impl ErrorType for Pin {
 
 impl OutputPin for Pin {
     fn set_low(&mut self) -> Result<(), Infallible> {
-        self.port.bsrr().write(|w| w.set_br(self.pin, true));
+        self.port.bsrr().write(|w| w.0 = self.bit << 16);
         Ok(())
     }
 
     fn set_high(&mut self) -> Result<(), Infallible> {
-        self.port.bsrr().write(|w| w.set_bs(self.pin, true));
+        self.port.bsrr().write(|w| w.0 = self.bit);
         Ok(())
     }
 }
 
 impl InputPin for Pin {
     fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(self.port.idr().read().idr(self.pin) == Idr::HIGH)
+        Ok(self.port.idr().read().0 & self.bit != 0)
     }
 
     fn is_low(&mut self) -> Result<bool, Infallible> {

@@ -34,7 +34,7 @@ pub fn unlock() {
 pub fn erase_piece(number: u8) {
     FLASH.cr().modify(|w| {
         w.set_ser(true);
-        w.set_snb(FIRST_SECTOR + number);
+        w.set_snb(FIRST_SECTOR.saturating_add(number));
     });
     with_long_period(start_and_wait);
     FLASH.cr().modify(|w| w.set_ser(false));

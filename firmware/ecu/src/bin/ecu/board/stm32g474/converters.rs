@@ -80,7 +80,8 @@ pub fn start_sequence(adc: Adc, sequence: &[(u8, Signal); 4]) {
         };
         let channel = usize::from(channel);
         match channel.checked_sub(10) {
-            Some(high) => adc.smpr2().modify(|w| w.set_smp(high, time)),
+            // The last channel is 18.
+            Some(high) => adc.smpr2().modify(|w| w.set_smp(high % 9, time)),
             None => adc.smpr().modify(|w| w.set_smp(channel, time)),
         }
     }

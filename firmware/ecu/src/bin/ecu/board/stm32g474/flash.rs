@@ -34,7 +34,7 @@ pub fn erase_piece(number: u8) {
     FLASH.cr().modify(|w| {
         w.set_per(true);
         w.set_bker(true);
-        w.set_pnb(FIRST_PAGE + number);
+        w.set_pnb(FIRST_PAGE.saturating_add(number));
     });
     // 22 ms; the program continues from the other bank.
     with_long_period(|| {
@@ -54,7 +54,7 @@ pub unsafe fn program(address: usize, word: &[u8; WORD_BYTES]) {
     // SAFETY: the caller's promise; programming is switched on, so the two writes, in this order, end in the flash.
     unsafe {
         (address as *mut u32).write_volatile(u32::from_le_bytes([a, b, c, d]));
-        ((address + 4) as *mut u32).write_volatile(u32::from_le_bytes([e, f, g, h]));
+        (address.saturating_add(4) as *mut u32).write_volatile(u32::from_le_bytes([e, f, g, h]));
     }
     wait();
     FLASH.cr().modify(|w| w.set_pg(false));
