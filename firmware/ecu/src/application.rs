@@ -27,6 +27,7 @@ use super::hardware::{Contacts, FlashRegions, Hardware};
 use super::panel::Contact;
 use super::scaling::BoardScaling;
 use super::service::{Service, Storing};
+use super::start_check::StartCheck;
 use super::status::status;
 use super::task_sequence_monitor::{Kick, Task, TaskSequenceMonitor};
 use super::tick_timer::TickTimer;
@@ -53,6 +54,7 @@ pub struct Ecu<F> {
     /// The operator consents to remote control in this step.
     consents: bool,
     service: Service<F>,
+    start_check: StartCheck,
     history: FaultHistory<F>,
     node: Node,
     measured: MeasuredBroadcast,
@@ -89,6 +91,7 @@ impl<F: NorFlash> Ecu<F> {
         };
         Self {
             service: Service::new(store, &start),
+            start_check: StartCheck::default(),
             history,
             controller: Controller::new(start.calibration),
             conversion: Conversion::new(scaling),
@@ -114,6 +117,12 @@ impl<F: NorFlash> Ecu<F> {
             inputs: Inputs::default(),
             outputs: Outputs::default(),
         }
+    }
+
+    /// Reports what the board has found at its start, and locks the hitch if that demands it. Called before the first
+    /// millisecond.
+    pub const fn report(&mut self, check: StartCheck) {
+        self.start_check = check;
     }
 
     /// One millisecond. Returns the permission to reset the watchdog, if all tasks have run. Not inlined: the stack
@@ -167,8 +176,9 @@ impl<F: NorFlash> Ecu<F> {
         inputs.clock_ratio = contacts.clock_ratio;
         inputs.engine_speed = self.node.engine_speed(self.tick_timer.now_ms());
         inputs.enable_line_fault = self.enable_line.read(contacts.enable_feedback);
-        // Some microcontrollers stop while their flash is erased: no motion is allowed then, nor without safety values.
-        inputs.switches.transport_lock |= self.service.has_to_lock();
+        // Some microcontrollers stop while their flash is erased: no motion is allowed then, nor without safety values,
+        // nor on a board whose start has found something that forbids it.
+        inputs.switches.transport_lock |= self.service.has_to_lock() || self.start_check.locks;
         let calibration = self.controller.calibration();
         self.consents = self.consent.update(&inputs, calibration.remote.consent);
         self.inputs = self
@@ -295,7 +305,10 @@ impl<F: NorFlash> Ecu<F> {
             &self.inputs,
             &self.outputs,
             &self.controller.calibration().position,
-            self.service.troubles().union(found),
+            self.service
+                .troubles()
+                .union(self.start_check.troubles)
+                .union(found),
             self.arbiter.is_overridden(),
             self.consents,
         );

@@ -13,7 +13,7 @@
 //! * `converter`, `scaling`, `panel`, `panel_inputs`: from codes and contacts to inputs,
 //! * `coil_driver`, `drive`, `enable_line`: from pulse widths to pins,
 //! * `arbiter`, `status`: commands of an implement, and status to it,
-//! * `service`, `hardware`, `flow`, `pace`: storage, and the order and the time of it all,
+//! * `service`, `start_check`, `hardware`, `flow`, `pace`: storage, and the order and the time of it all,
 //! * `application`, and [`link`] with `machine` for one that runs in lock step with a host.
 //!
 //! The images are in `src/bin`.
@@ -37,6 +37,7 @@ mod panel;
 mod panel_inputs;
 mod scaling;
 mod service;
+mod start_check;
 mod status;
 mod task_sequence_monitor;
 mod tick_timer;
@@ -50,4 +51,5 @@ pub use hosted_ecu::{HostedEcu, Probe};
 pub use panel::{Contact, Panel};
 pub use panel_inputs::PanelInputs;
 pub use scaling::BoardScaling;
+pub use start_check::StartCheck;
 pub use task_sequence_monitor::{Kick, Task, TaskSequenceMonitor};

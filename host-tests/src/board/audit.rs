@@ -21,7 +21,7 @@ pub fn findings(chip: &Chip) -> Vec<String> {
         chip.part,
         &chip.registers,
         apb1_hz,
-        chip.clocks.crystal_hz(),
+        chip.clocks.crystal_hz,
     ));
     findings.extend(pins(chip));
     findings.extend(debug_freezes(chip));
@@ -86,8 +86,9 @@ fn clocks(chip: &Chip) -> Vec<String> {
     let control = chip.flash.read_register(control, registers, chip.now_ns);
     check(control >> 31 == 1, "the flash is left unlocked".into());
     check(
-        chip.registers.bit(chip.part.addresses().rcc, 19),
-        "the clock security system is off".into(),
+        chip.registers.bit(chip.part.addresses().rcc, 19)
+            == chip.clocks.pll_uses_crystal(registers),
+        "the clock security system is off with the crystal, or on without it".into(),
     );
     findings
 }
@@ -138,12 +139,12 @@ fn debug_freezes(chip: &Chip) -> Vec<String> {
         Part::Stm32g474 => ((0x10, 11), (0x08, 12)),
     };
     let mut findings = Vec::new();
-    for ((offset, bit), what) in [(timer, "TIM1"), (watchdog, "the watchdog")] {
-        if !chip.registers.bit(DBGMCU + offset, bit) {
-            findings.push(format!(
-                "a debugger that halts the processor doesn't stop {what}"
-            ));
-        }
+    let stops = |(offset, bit): (u32, u32)| chip.registers.bit(DBGMCU + offset, bit);
+    if !stops(timer) {
+        findings.push("a debugger that halts the processor doesn't stop TIM1".into());
+    }
+    if stops(watchdog) {
+        findings.push("a debugger that halts the processor stops the watchdog".into());
     }
     findings
 }

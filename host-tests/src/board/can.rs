@@ -405,8 +405,14 @@ pub fn audit(part: Part, registers: &Registers, apb1_hz: f64, crystal_hz: f64) -
         }
         Part::Stm32g474 => {
             let field = |shift, width| registers.field(CAN + 0x1C, shift, width) + 1;
+            // `CCIPR`, `FDCANSEL`: the crystal or the bus's clock.
+            let clock_hz = match registers.field(part.addresses().rcc + 0x88, 24, 2) {
+                0 => crystal_hz,
+                2 => apb1_hz,
+                _ => 0.0,
+            };
             (
-                crystal_hz,
+                clock_hz,
                 field(16, 9),
                 field(8, 8) + 1,
                 field(0, 7),

@@ -5,8 +5,6 @@ use super::registers::Registers;
 
 /// Internal high-speed oscillator, Hz.
 const HSI_HZ: f64 = 16e6;
-/// The crystal, Hz.
-const HSE_HZ: f64 = 8e6;
 /// Time until the PLL has locked, ns (data sheets: at most 300 us and 40 us).
 const PLL_LOCK_NS: f64 = 200e3;
 
@@ -25,22 +23,22 @@ pub struct Clocks {
     /// When the crystal oscillates, ns; `None` while it is off.
     crystal_ready_ns: Option<f64>,
     pll_ready_ns: Option<f64>,
-    /// Ratio of the crystal's frequency to its nominal one.
-    pub crystal_factor: f64,
+    /// Frequency of the crystal, Hz.
+    pub crystal_hz: f64,
     /// The failure was signalled to the image, and the flag is not yet cleared.
     security_flag: bool,
 }
 
 impl Clocks {
-    /// After a reset.
+    /// After a reset, with a crystal of this frequency.
     #[must_use]
-    pub const fn new(part: Part) -> Self {
+    pub const fn new(part: Part, crystal_hz: f64) -> Self {
         Self {
             part,
             rcc: part.addresses().rcc,
             crystal_ready_ns: None,
             pll_ready_ns: None,
-            crystal_factor: 1.0,
+            crystal_hz,
             security_flag: false,
         }
     }
@@ -135,42 +133,33 @@ impl Clocks {
     pub fn system_hz(&self, registers: &Registers) -> f64 {
         let switch = registers.field(self.configuration(), 0, 2);
         match (self.part, switch) {
-            (Part::Stm32f405, 1) | (Part::Stm32g474, 2) => self.crystal_hz(),
+            (Part::Stm32f405, 1) | (Part::Stm32g474, 2) => self.crystal_hz,
             (Part::Stm32f405, 2) | (Part::Stm32g474, 3) => self.pll_hz(registers),
             _ => HSI_HZ,
         }
     }
 
-    /// Frequency of the crystal, Hz.
+    /// Whether the PLL's source is the crystal.
     #[must_use]
-    pub fn crystal_hz(&self) -> f64 {
-        HSE_HZ * self.crystal_factor
-    }
-
-    fn pll_hz(&self, registers: &Registers) -> f64 {
-        let field =
-            |shift, width| f64::from(registers.field(self.pll_configuration(), shift, width));
+    pub fn pll_uses_crystal(&self, registers: &Registers) -> bool {
+        let field = |shift, width| registers.field(self.pll_configuration(), shift, width);
         match self.part {
-            Part::Stm32f405 => {
-                let source = if field(22, 1) == 1.0 {
-                    self.crystal_hz()
-                } else {
-                    HSI_HZ
-                };
-                source / field(0, 6) * field(6, 9) / (2.0 * (field(16, 2) + 1.0))
-            }
-            Part::Stm32g474 => {
-                let source = if field(0, 2) == 3.0 {
-                    self.crystal_hz()
-                } else {
-                    HSI_HZ
-                };
-                source / (field(4, 4) + 1.0) * field(8, 7) / (2.0 * (field(25, 2) + 1.0))
-            }
+            Part::Stm32f405 => field(22, 1) == 1,
+            Part::Stm32g474 => field(0, 2) == 3,
         }
     }
 
-    /// Frequency of the PLL's oscillator, Hz, and its input.
+    fn pll_hz(&self, registers: &Registers) -> f64 {
+        let [_, internal_hz] = self.pll_internal_hz(registers);
+        let shift = match self.part {
+            Part::Stm32f405 => 16,
+            Part::Stm32g474 => 25,
+        };
+        let divider = registers.field(self.pll_configuration(), shift, 2);
+        internal_hz / (2.0 * (f64::from(divider) + 1.0))
+    }
+
+    /// Frequency of the PLL's input and of its oscillator, Hz.
     #[must_use]
     pub fn pll_internal_hz(&self, registers: &Registers) -> [f64; 2] {
         let field =
@@ -179,10 +168,11 @@ impl Clocks {
             Part::Stm32f405 => (field(0, 6), field(6, 9)),
             Part::Stm32g474 => (field(4, 4) + 1.0, field(8, 7)),
         };
-        [
-            self.crystal_hz() / divider,
-            self.crystal_hz() / divider * factor,
-        ]
+        let source_hz = match self.pll_uses_crystal(registers) {
+            true => self.crystal_hz,
+            false => HSI_HZ,
+        };
+        [source_hz / divider, source_hz / divider * factor]
     }
 
     /// Clock of core and memory, Hz.

@@ -9,6 +9,8 @@ use super::part::{Part, Pin};
 pub struct Conditions {
     /// Time until the crystal oscillates, ns; `None` if it never does.
     pub crystal_start_ns: Option<f64>,
+    /// Frequency of the crystal, Hz.
+    pub crystal_hz: f64,
     /// Frequency of the low-speed oscillator, Hz.
     pub slow_clock_hz: f64,
     /// Voltage of the converters' reference, V.
@@ -31,6 +33,7 @@ impl Conditions {
     pub fn typical(part: Part) -> Self {
         Self {
             crystal_start_ns: Some(2e6),
+            crystal_hz: 8e6,
             slow_clock_hz: 32e3,
             reference_v: 3.3,
             internal_reference_v: part.internal_reference_v(),

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use object::{Object, ObjectSegment};
 
 /// Pieces of an ELF file that are programmed into flash.
@@ -13,7 +13,30 @@ pub struct Image {
     pub pieces: Vec<(u32, Vec<u8>)>,
 }
 
+/// Words in front of the checksum that an image carries of itself (`firmware/ecu/src/bin/ecu/board/image_check.rs`).
+const MAGIC: [u32; 2] = [0x4B43_4548, 0xA5C3_1E7D];
+
 impl Image {
+    /// The image as cargo builds it: without its checksum.
+    ///
+    /// # Errors
+    /// If it has no place for one.
+    pub fn unsealed(&self) -> Result<Self> {
+        let magic: Vec<u8> = MAGIC.iter().flat_map(|word| word.to_le_bytes()).collect();
+        let mut image = self.clone();
+        for (_, bytes) in &mut image.pieces {
+            let place = bytes
+                .windows(magic.len())
+                .position(|words| words == magic)
+                .map(|place| place + magic.len());
+            if let Some(seal) = place.and_then(|place| bytes.get_mut(place..place + 4)) {
+                seal.fill(0xFF);
+                return Ok(image);
+            }
+        }
+        bail!("the image has no place for its checksum")
+    }
+
     /// Reads an ELF file.
     ///
     /// # Errors

@@ -70,6 +70,8 @@ scenarios! {
     slow_crystal: "slow-crystal",
     dead_crystal: "dead-crystal",
     slow_clock_tolerance: "slow-clock-tolerance",
+    wrong_crystal: "wrong-crystal",
+    unsealed_image: "unsealed-image",
     lift_hold_lower: "lift-hold-lower",
     store_and_read_back: "store-and-read-back",
     power_cuts: "power-cuts",

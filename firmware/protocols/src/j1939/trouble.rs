@@ -3,7 +3,7 @@
 //! SPNs are those of J1939 where defined, otherwise from the manufacturer range (from 520 192).
 //! FMIs: 2 erratic, 3 voltage high, 4 voltage low, 5 current low or open, 6 current high or grounded,
 //! 7 mechanical system doesn't respond, 8 abnormal frequency, 9 abnormal update rate, 10 abnormal rate of change, 12 bad unit,
-//! 13 out of calibration, 31 condition exists.
+//! 13 out of calibration, 14 special instructions, 31 condition exists.
 
 use hitch_quantities::calibration::design_parameters::{LockParameters, OperatorParameters};
 use hitch_quantities::units::{MilliAmp, MilliVolt};
@@ -43,6 +43,8 @@ const ENABLE_LINE: u32 = OWN + 11;
 const REMOTE: u32 = OWN + 12;
 const BUTTONS: u32 = OWN + 13;
 const SAFETY_VALUES: u32 = OWN + 14;
+const CRYSTAL: u32 = OWN + 18;
+const IMAGE: u32 = OWN + 19;
 /// Sensor supply voltage 1.
 const SENSOR_SUPPLY: u32 = 3509;
 
@@ -129,7 +131,7 @@ troubles! {
     SensorSupplyLow = SENSOR_SUPPLY / 4,
     /// The tracks of the angle sensor disagree.
     AngleTracks = ANGLE_TRACKS / 2,
-    /// The rate of the main clock has changed since the start.
+    /// The rate of the main clock is wrong.
     Clock = CONTROLLER / 8,
     /// The enable line of the coils' drivers: its read-back differs from its command.
     EnableLine = ENABLE_LINE / 12,
@@ -149,6 +151,12 @@ troubles! {
     ButtonClosed = BUTTONS / 4,
     /// The two contacts of an external button contradict each other.
     ButtonContacts = BUTTONS / 2,
+    /// At the start the crystal, or the watchdog's oscillator, was out of range of the internal oscillator: the hitch is locked.
+    Crystal = CRYSTAL / 8,
+    /// The image has no checksum: the hitch is locked unless the image is for debugging.
+    ImageUnsealed = IMAGE / 31,
+    /// The image is for debugging.
+    ImageForDebugging = IMAGE / 14,
 }
 
 /// A set of troubles.

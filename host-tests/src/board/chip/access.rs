@@ -176,6 +176,11 @@ impl Chip {
             self.violations.extend(wrong);
             return;
         }
+        // The converters' clock.
+        if places.adc_common.contains(&(address & !0xFF)) {
+            self.retime();
+            return;
+        }
         match page {
             CAN => self.can.written(offset, value, &mut self.registers, now_ns),
             IWDG => {

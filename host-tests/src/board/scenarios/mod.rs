@@ -2,6 +2,7 @@
 
 mod bus;
 mod faults;
+mod first_flash;
 mod history;
 mod motion;
 mod processor;
@@ -35,12 +36,14 @@ pub struct Setup {
 pub type Scenario = fn(&Setup) -> Result<String>;
 
 /// All of them, by name.
-pub const ALL: [(&str, Scenario); 25] = [
+pub const ALL: [(&str, Scenario); 27] = [
     ("boot", start::boot),
     ("factory-fresh", start::factory_fresh),
     ("slow-crystal", start::slow_crystal),
     ("dead-crystal", start::dead_crystal),
     ("slow-clock-tolerance", start::slow_clock_tolerance),
+    ("wrong-crystal", first_flash::wrong_crystal),
+    ("unsealed-image", first_flash::unsealed_image),
     ("lift-hold-lower", motion::lift_hold_lower),
     ("store-and-read-back", storage::store_and_read_back),
     ("power-cuts", storage::power_cuts),

@@ -22,6 +22,8 @@ pub struct Rig<'m> {
     pub bench: Bench<'m>,
     /// Frames that the ECU has sent.
     pub said: Vec<Frame>,
+    /// A coil was driven at the end of some millisecond.
+    pub was_driven: bool,
 }
 
 impl<'m> Rig<'m> {
@@ -43,6 +45,7 @@ impl<'m> Rig<'m> {
             board,
             bench: Bench::new(model, 150.0, 40.0, START_DEG, 1),
             said: Vec::new(),
+            was_driven: false,
         })
     }
 
@@ -61,6 +64,7 @@ impl<'m> Rig<'m> {
         let moment = self
             .bench
             .tick_with(&mut self.board, &[], &mut self.said, tamper)?;
+        self.was_driven |= self.is_driven();
         Ok(moment)
     }
 

@@ -13,22 +13,29 @@ mod board;
 use core::panic::PanicInfo;
 
 use cortex_m_rt::{ExceptionFrame, entry, exception};
-use hitch_ecu::{Contacts, Drive, Ecu, Hardware, Samples};
+use hitch_ecu::{Contacts, Drive, Ecu, Hardware, Samples, StartCheck};
 use hitch_protocols::can::Frame;
+use hitch_protocols::j1939::Trouble;
 use hitch_quantities::{Fault, State};
 
-use board::{Board, Can, Coils, Converters, ImageCheck, RegisterCheck, SlowClock};
+use board::{
+    Board, Can, Coils, Converters, ImageCheck, Oscillators, RegisterCheck, SlowClock, Source,
+};
 
 /// Coils and bus, as the application sees them.
 struct Outside {
     coils: Coils,
     can: Can,
+    /// The start has found nothing that forbids it. The application knows this too, and locks the hitch.
+    may_drive: bool,
 }
 
 impl Hardware for Outside {
     fn drive(&mut self, drive: Drive) {
         // If an output fails, the driver has cut both coils, and its read-back reports the rest.
-        let _ = self.coils.drive(drive);
+        let _ = self
+            .coils
+            .drive(if self.may_drive { drive } else { Drive::OFF });
     }
 
     fn receive(&mut self) -> Option<Frame> {
@@ -50,16 +57,19 @@ fn main() -> ! {
     let board = Board::start();
     let mut watchdog = board.watchdog;
     let mut converters = board.converters;
-    let mut outside = Outside {
-        coils: board.coils,
-        can: board.can,
-    };
     let mut slow_clock = board.slow_clock;
     let mut switches = board.switches;
     let Some(mut image) = ImageCheck::start() else {
         give_up();
     };
+    let check = start_check(&board.oscillators, &image);
+    let mut outside = Outside {
+        coils: board.coils,
+        can: board.can,
+        may_drive: !check.locks,
+    };
     let mut ecu = Ecu::start(board.flash, board::serial_number(), board::scaling());
+    ecu.report(check);
     let mut logged = Logged::default();
     watchdog.begin_operation();
     board::run();
@@ -85,6 +95,29 @@ fn main() -> ! {
         }
         logged.update(ecu.outputs().state, ecu.outputs().fault);
     }
+}
+
+/// What forbids to drive the coils, and what the mechanic has to know about the image.
+fn start_check(oscillators: &Oscillators, image: &ImageCheck) -> StartCheck {
+    let mut check = StartCheck::default();
+    defmt::info!("crystal of {=u32} Hz", oscillators.crystal_hz);
+    if oscillators.source() != Source::Crystal {
+        defmt::error!("locked: crystal or watchdog's oscillator out of range");
+        check.lock(Trouble::Crystal);
+    }
+    if cfg!(feature = "debugging") {
+        defmt::warn!("image for debugging");
+        check.note(Trouble::ImageForDebugging);
+    }
+    match image.is_sealed() {
+        true => {}
+        false if cfg!(feature = "debugging") => check.note(Trouble::ImageUnsealed),
+        false => {
+            defmt::error!("locked: image without checksum");
+            check.lock(Trouble::ImageUnsealed);
+        }
+    }
+    check
 }
 
 /// Listens to the bus and to the slow clock until the converters are done. If they never are, the watchdog resets the

@@ -75,7 +75,7 @@ const fn known_trouble(trouble: Trouble) -> &'static str {
         Trouble::SensorSupplyHigh => "sensor supply too high",
         Trouble::SensorSupplyLow => "sensor supply too low",
         Trouble::AngleTracks => "tracks of the angle sensor disagree",
-        Trouble::Clock => "clock rate changed",
+        Trouble::Clock => "clock rate wrong",
         Trouble::EnableLine => "enable line of the drivers faulty",
         Trouble::Memory => "calibration changed in memory",
         Trouble::BeyondLimit => "current beyond a limit of the travel",
@@ -85,5 +85,8 @@ const fn known_trouble(trouble: Trouble) -> &'static str {
         Trouble::SafetyValuesDiffer => "safety values differ from the shipped ones",
         Trouble::ButtonClosed => "a contact of an external button stays closed",
         Trouble::ButtonContacts => "the contacts of an external button contradict each other",
+        Trouble::Crystal => "crystal out of range: locked",
+        Trouble::ImageUnsealed => "image without checksum",
+        Trouble::ImageForDebugging => "image for debugging",
     }
 }

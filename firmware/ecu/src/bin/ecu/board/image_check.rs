@@ -1,8 +1,8 @@
 //! Check of the program in flash, at the start and continuously.
 //!
 //! The checksum covers the whole image, from the vector table to the initial values of variables; `cargo xtask arm`
-//! writes it into the image ([`SEAL`]). An image that was built without that task has no checksum: the reference is
-//! then the checksum at the start, which detects later changes only.
+//! writes it into the image ([`IMAGE_SEAL`]). An image that was built without that task has no checksum: the reference is
+//! then the checksum at the start, which detects later changes only, and the hitch is locked.
 
 use hitch_quantities::crc32::Crc32;
 
@@ -41,6 +41,7 @@ fn place() -> *const u32 {
 
 /// The check.
 pub struct ImageCheck {
+    is_sealed: bool,
     expected: u32,
     at: usize,
     checksum: Crc32,
@@ -54,11 +55,18 @@ impl ImageCheck {
         let mut checksum = Crc32::default();
         take(&mut checksum, START, end());
         let found = checksum.value();
-        (sealed == UNSEALED || sealed == found).then(|| Self {
+        let is_sealed = sealed != UNSEALED;
+        (!is_sealed || sealed == found).then(|| Self {
+            is_sealed,
             expected: found,
             at: START,
             checksum: Crc32::default(),
         })
+    }
+
+    /// Whether the image has a checksum.
+    pub const fn is_sealed(&self) -> bool {
+        self.is_sealed
     }
 
     /// Checks the next bytes; false if the image has changed.

@@ -11,6 +11,7 @@ mod flash;
 mod image_check;
 mod inbox;
 mod log;
+mod oscillators;
 mod pins;
 mod ram_test;
 mod register_check;
@@ -38,6 +39,7 @@ pub use converters::Converters;
 pub use factory_reference::scaling;
 pub use flash::DataFlash;
 pub use image_check::ImageCheck;
+pub use oscillators::{Oscillators, Source};
 pub use part::Can;
 pub use part::flash::note_damaged_read;
 pub use register_check::RegisterCheck;
@@ -63,6 +65,8 @@ pub struct Board {
     pub slow_clock: SlowClock,
     /// Resets the ECU if it is not triggered in time.
     pub watchdog: Watchdog,
+    /// What the oscillators were found to be.
+    pub oscillators: Oscillators,
     /// Flash of the calibration and of the fault log.
     pub flash: FlashRegions<DataFlash>,
 }
@@ -72,18 +76,20 @@ impl Board {
     /// reset.
     pub fn start() -> Self {
         let watchdog = Watchdog::start();
-        part::start_clocks();
+        let oscillators = Oscillators::measure();
+        part::start_clocks(oscillators.source());
         let coils = coils::start(part::TIMER_FUNCTION);
         let converters = Converters::start();
         Self {
             switches: switches::start(),
             clock: Clock::start(part::TIMER_HZ),
-            slow_clock: SlowClock::start(),
+            slow_clock: SlowClock::new(oscillators.slow_counts),
             can: Can::start(),
             flash: flash::regions(),
             coils,
             converters,
             watchdog,
+            oscillators,
         }
     }
 }

@@ -1,34 +1,32 @@
 //! The main clock, measured against the low-speed oscillator of the watchdog.
 //!
 //! A timer on the main clock captures every eighth edge of the oscillator. All other timers share the main clock and
-//! cannot detect its error.
+//! cannot detect its error. What the oscillator is compared with was measured by the internal one at the start, so a main
+//! clock that is wrong from the start is detected as well.
 
 use hitch_quantities::units::PerMille;
 
+use super::oscillators::PERIODS;
 use super::part::slow_clock as part;
-
-/// Captured periods that are averaged: 4 ms at 32 kHz.
-const PERIODS: u32 = 16;
 
 /// The measurement.
 pub struct SlowClock {
     last: Option<u32>,
     sum: u32,
     periods: u32,
-    /// Counts of [`PERIODS`] periods at the start, inside what the oscillator's tolerance allows.
-    reference: Option<u32>,
+    /// Counts of [`PERIODS`] periods if the main clock is right.
+    reference: u32,
     ratio: Option<PerMille>,
 }
 
 impl SlowClock {
-    /// Starts the timer.
-    pub fn start() -> Self {
-        part::start();
+    /// The timer runs; it counts `reference` in [`PERIODS`] periods if the main clock is right.
+    pub const fn new(reference: u32) -> Self {
         Self {
             last: None,
             sum: 0,
             periods: 0,
-            reference: None,
+            reference,
             ratio: None,
         }
     }
@@ -55,15 +53,13 @@ impl SlowClock {
     }
 
     fn average(&mut self) {
-        let [low, high] = part::COUNTS.map(|counts| counts * PERIODS);
-        let reference = *self.reference.get_or_insert(self.sum.clamp(low, high));
-        let per_mille = u64::from(self.sum) * 1_000 / u64::from(reference.max(1));
+        let per_mille = u64::from(self.sum) * 1_000 / u64::from(self.reference.max(1));
         self.ratio = Some(PerMille(i32::try_from(per_mille).unwrap_or(i32::MAX)));
         self.sum = 0;
         self.periods = 0;
     }
 
-    /// Rate of the main clock, per mille of its rate at the start; `None` until it has been measured.
+    /// Rate of the main clock, per mille of its nominal rate; `None` until it has been measured.
     pub const fn ratio(&self) -> Option<PerMille> {
         self.ratio
     }

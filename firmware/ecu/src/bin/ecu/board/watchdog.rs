@@ -1,8 +1,8 @@
 //! The independent watchdog, with its own oscillator. It cannot be stopped once started.
 
 use hitch_ecu::Kick;
+use stm32_metapac::IWDG;
 use stm32_metapac::iwdg::vals::{Key, Pr};
-use stm32_metapac::{DBGMCU, IWDG};
 
 /// 10 ms at 32 kHz / 4; the oscillator runs at 17 to 47 kHz, so 7 to 19 ms.
 const RELOAD: u16 = 80;
@@ -12,12 +12,11 @@ pub struct Watchdog(());
 
 impl Watchdog {
     /// Starts it with its longest period without a prescaler: at least 4 096 * 4 / 47 kHz = 348 ms, which covers a slow
-    /// crystal and the tests at power-up. A debugger that halts the processor halts it too.
+    /// crystal and the tests at power-up. It runs on while a debugger halts the processor, except in an image for
+    /// debugging.
     pub fn start() -> Self {
-        #[cfg(feature = "stm32f405")]
-        DBGMCU.apb1fzr().modify(|w| w.set_iwdg(true));
-        #[cfg(feature = "stm32g474")]
-        DBGMCU.apb1lfzr().modify(|w| w.set_iwdg(true));
+        #[cfg(feature = "debugging")]
+        freeze_with_processor();
         IWDG.kr().write(|w| w.set_key(Key::START));
         Self(())
     }
@@ -43,6 +42,16 @@ pub fn with_long_period<R>(work: impl FnOnce() -> R) -> R {
     let result = work();
     set_period(divider, reload);
     result
+}
+
+#[cfg(feature = "debugging")]
+fn freeze_with_processor() {
+    #[cfg(feature = "stm32f405")]
+    stm32_metapac::DBGMCU.apb1fzr().modify(|w| w.set_iwdg(true));
+    #[cfg(feature = "stm32g474")]
+    stm32_metapac::DBGMCU
+        .apb1lfzr()
+        .modify(|w| w.set_iwdg(true));
 }
 
 fn set_period(divider: Pr, reload: u16) {

@@ -14,30 +14,22 @@ use stm32_metapac::flash::vals::Latency;
 use stm32_metapac::rcc::vals::{Pllm, Plln, Pllp, Pllq, Pllsrc, Ppre, Sw};
 use stm32_metapac::{FLASH, RCC};
 
+use crate::board::oscillators::Source;
+
 /// TIM1 on PA8 and PA9 (data sheet, table 9).
 pub const TIMER_FUNCTION: u8 = 1;
-/// Clock of TIM2: twice that of APB1.
+/// The crystal that the image is made for.
+pub const CRYSTAL_HZ: u32 = 8_000_000;
+/// The internal oscillator.
+pub const INTERNAL_HZ: u32 = 16_000_000;
+/// Clock of TIM2 and TIM5: twice that of APB1.
 pub const TIMER_HZ: u32 = 84_000_000;
 
-/// 168 MHz from a crystal of 8 MHz, whose failure raises the non-maskable interrupt; APB1 runs at 42 MHz, APB2 at 84
-/// MHz.
-pub fn start_clocks() {
+/// Runs the core from the crystal, which may have any frequency that the part allows, up to 26 MHz. The wait states are
+/// those of the full clock.
+pub fn run_from_crystal() {
     RCC.cr().modify(|w| w.set_hseon(true));
     while !RCC.cr().read().hserdy() {}
-    RCC.pllcfgr().write(|w| {
-        w.set_pllsrc(Pllsrc::HSE);
-        // 8 MHz / 4 * 168 / 2
-        w.set_pllm(Pllm::DIV4);
-        w.set_plln(Plln::MUL168);
-        w.set_pllp(Pllp::DIV2);
-        w.set_pllq(Pllq::DIV7);
-    });
-    RCC.cr().modify(|w| {
-        w.set_pllon(true);
-        w.set_csson(true);
-    });
-    while !RCC.cr().read().pllrdy() {}
-    // The wait states have to be increased before the core clock.
     FLASH.acr().write(|w| {
         w.set_latency(Latency::WS5);
         w.set_prften(true);
@@ -45,13 +37,40 @@ pub fn start_clocks() {
         w.set_dcen(true);
     });
     while FLASH.acr().read().latency() != Latency::WS5 {}
+    switch_to(Sw::HSE);
+}
+
+/// 168 MHz; APB1 runs at 42 MHz, APB2 at 84 MHz. A failure of the crystal raises the non-maskable interrupt.
+pub fn start_clocks(source: Source) {
+    let is_crystal = source == Source::Crystal;
+    if !is_crystal {
+        switch_to(Sw::HSI);
+        RCC.cr().modify(|w| w.set_hseon(false));
+    }
+    RCC.pllcfgr().write(|w| {
+        // 8 MHz / 4 or 16 MHz / 8, * 168 / 2
+        w.set_pllsrc(if is_crystal { Pllsrc::HSE } else { Pllsrc::HSI });
+        w.set_pllm(if is_crystal { Pllm::DIV4 } else { Pllm::DIV8 });
+        w.set_plln(Plln::MUL168);
+        w.set_pllp(Pllp::DIV2);
+        w.set_pllq(Pllq::DIV7);
+    });
+    RCC.cr().modify(|w| {
+        w.set_pllon(true);
+        w.set_csson(is_crystal);
+    });
+    while !RCC.cr().read().pllrdy() {}
     RCC.cfgr().modify(|w| {
         w.set_ppre1(Ppre::DIV4);
         w.set_ppre2(Ppre::DIV2);
-        w.set_sw(Sw::PLL1_P);
     });
-    while RCC.cfgr().read().sws() != Sw::PLL1_P {}
+    switch_to(Sw::PLL1_P);
     start_peripherals();
+}
+
+fn switch_to(clock: Sw) {
+    RCC.cfgr().modify(|w| w.set_sw(clock));
+    while RCC.cfgr().read().sws() != clock {}
 }
 
 fn start_peripherals() {

@@ -18,7 +18,7 @@ pub struct Capture {
     pub missed: bool,
 }
 
-/// Starts the timer at the full clock, capturing every eighth edge.
+/// Starts the timer at the undivided clock, capturing every eighth edge.
 pub fn start() {
     RCC.apb1enr().modify(|w| w.set_tim5en(true));
     let _ = RCC.apb1enr().read();

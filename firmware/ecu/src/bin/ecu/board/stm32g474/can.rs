@@ -34,9 +34,9 @@ impl Can {
         FDCAN1.cccr().modify(|w| w.set_init(true));
         while !FDCAN1.cccr().read().init() {}
         FDCAN1.cccr().modify(|w| w.set_cce(true));
-        // 8 MHz / 2 = 4 MHz: 16 quanta per bit, sampled after 14 (87.5 %).
+        // 168 MHz / 42 = 4 MHz: 16 quanta per bit, sampled after 14 (87.5 %).
         FDCAN1.nbtp().write(|w| {
-            w.set_nbrp(2 - 1);
+            w.set_nbrp(42 - 1);
             w.set_ntseg1(13 - 1);
             w.set_ntseg2(2 - 1);
             w.set_nsjw(2 - 1);

@@ -15,34 +15,22 @@ use stm32_metapac::flash::vals::Latency;
 use stm32_metapac::rcc::vals::{Fdcansel, Hpre, Pllm, Plln, Pllr, Pllsrc, Sw};
 use stm32_metapac::{FLASH, PWR, RCC, SYSCFG};
 
+use crate::board::oscillators::Source;
+
 /// TIM1 on PA8 and PA9 (data sheet, table 13).
 pub const TIMER_FUNCTION: u8 = 6;
-/// Clock of TIM2: that of the core.
+/// The crystal that the image is made for.
+pub const CRYSTAL_HZ: u32 = 8_000_000;
+/// The internal oscillator.
+pub const INTERNAL_HZ: u32 = 16_000_000;
+/// Clock of TIM2 and TIM16: that of the core.
 pub const TIMER_HZ: u32 = 168_000_000;
 
-/// 168 MHz from a crystal of 8 MHz, whose failure raises the non-maskable interrupt. The buses have the same clock; the
-/// CAN controller is clocked by the crystal.
-pub fn start_clocks() {
-    RCC.apb1enr1().modify(|w| w.set_pwren(true));
-    let _ = RCC.apb1enr1().read();
-    // Boost, for clocks above 150 MHz (RM0440, 6.1.5): `R1MODE` is bit 8, where stm32-metapac 21 has bit 0.
-    PWR.cr5().modify(|w| w.0 &= !(1 << 8));
+/// Runs the core from the crystal, which may have any frequency that the part allows, up to 48 MHz. The wait states are
+/// those of the full clock.
+pub fn run_from_crystal() {
     RCC.cr().modify(|w| w.set_hseon(true));
     while !RCC.cr().read().hserdy() {}
-    RCC.pllcfgr().write(|w| {
-        w.set_pllsrc(Pllsrc::HSE);
-        // 8 MHz / 2 * 84 / 2
-        w.set_pllm(Pllm::DIV2);
-        w.set_plln(Plln::MUL84);
-        w.set_pllr(Pllr::DIV2);
-        w.set_pllren(true);
-    });
-    RCC.cr().modify(|w| {
-        w.set_pllon(true);
-        w.set_csson(true);
-    });
-    while !RCC.cr().read().pllrdy() {}
-    // The wait states have to be increased before the core clock.
     FLASH.acr().write(|w| {
         w.set_latency(Latency::WS4);
         w.set_prften(true);
@@ -50,17 +38,48 @@ pub fn start_clocks() {
         w.set_dcen(true);
     });
     while FLASH.acr().read().latency() != Latency::WS4 {}
+    switch_to(Sw::HSE);
+}
+
+/// 168 MHz; the buses have the same clock. A failure of the crystal raises the non-maskable interrupt.
+pub fn start_clocks(source: Source) {
+    let is_crystal = source == Source::Crystal;
+    if !is_crystal {
+        switch_to(Sw::HSI);
+        RCC.cr().modify(|w| w.set_hseon(false));
+    }
+    RCC.apb1enr1().modify(|w| w.set_pwren(true));
+    let _ = RCC.apb1enr1().read();
+    // Boost, for clocks above 150 MHz (RM0440, 6.1.5): `R1MODE` is bit 8, where stm32-metapac 21 has bit 0.
+    PWR.cr5().modify(|w| w.0 &= !(1 << 8));
+    RCC.pllcfgr().write(|w| {
+        // 8 MHz / 2 or 16 MHz / 4, * 84 / 2
+        w.set_pllsrc(if is_crystal { Pllsrc::HSE } else { Pllsrc::HSI });
+        w.set_pllm(if is_crystal { Pllm::DIV2 } else { Pllm::DIV4 });
+        w.set_plln(Plln::MUL84);
+        w.set_pllr(Pllr::DIV2);
+        w.set_pllren(true);
+    });
+    RCC.cr().modify(|w| {
+        w.set_pllon(true);
+        w.set_csson(is_crystal);
+    });
+    while !RCC.cr().read().pllrdy() {}
     // At half the clock for at least one microsecond (RM0440, 7.2.7).
     RCC.cfgr().modify(|w| w.set_hpre(Hpre::DIV2));
-    RCC.cfgr().modify(|w| w.set_sw(Sw::PLL1_R));
-    while RCC.cfgr().read().sws() != Sw::PLL1_R {}
+    switch_to(Sw::PLL1_R);
     cortex_m::asm::delay(168);
     RCC.cfgr().modify(|w| w.set_hpre(Hpre::DIV1));
     start_peripherals();
 }
 
+fn switch_to(clock: Sw) {
+    RCC.cfgr().modify(|w| w.set_sw(clock));
+    while RCC.cfgr().read().sws() != clock {}
+}
+
 fn start_peripherals() {
-    RCC.ccipr().modify(|w| w.set_fdcansel(Fdcansel::HSE));
+    RCC.ccipr().modify(|w| w.set_fdcansel(Fdcansel::PCLK1));
     RCC.ahb2enr().modify(|w| {
         w.set_gpioaen(true);
         w.set_gpioben(true);

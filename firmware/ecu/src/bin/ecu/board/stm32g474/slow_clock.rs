@@ -16,7 +16,7 @@ pub struct Capture {
     pub missed: bool,
 }
 
-/// Starts the timer at the full clock, capturing every eighth edge.
+/// Starts the timer at the undivided clock, capturing every eighth edge.
 pub fn start() {
     RCC.apb2enr().modify(|w| w.set_tim16en(true));
     let _ = RCC.apb2enr().read();

@@ -1,0 +1,93 @@
+//! Mistakes of the first flash: a board with another crystal, and an image that was not finished.
+
+use anyhow::{Context, Result, ensure};
+use hitch_plant::Model;
+use hitch_protocols::can::Frame;
+use hitch_protocols::j1939::{Id, Pgn, Trouble};
+
+use super::Setup;
+use super::rig::{READY_MS, Rig};
+use crate::board::{Conditions, Contents};
+
+/// Time within which all active codes are broadcast at least once after an address is claimed, ms.
+const REPORTED_MS: usize = 1_500;
+
+/// The operator picks the hitch up and lifts it; no coil follows, and `trouble` is reported on the bus.
+fn is_refused(rig: &mut Rig<'_>, trouble: Trouble) -> Result<()> {
+    rig.run(READY_MS)?;
+    ensure!(rig.board.chip().pwm.updates > 0, "the ECU does not start");
+    let angle_deg = rig.bench.angle_deg();
+    for (lever_deg, milliseconds) in [
+        (angle_deg + 3.0, 300),
+        (angle_deg - 3.0, 300),
+        (125.0, REPORTED_MS),
+    ] {
+        rig.lever(lever_deg, milliseconds)?;
+    }
+    ensure!(!rig.was_driven, "a coil was driven");
+    ensure!(
+        reports(&rig.said, trouble),
+        "{trouble:?} is not among the trouble codes"
+    );
+    rig.finish()
+}
+
+/// Whether a code is in a DM1, which is a frame or, with several codes, a broadcast of data packets.
+fn reports(said: &[Frame], trouble: Trouble) -> bool {
+    let code = trouble.code();
+    let [low, middle, high, _] = code.spn.to_le_bytes();
+    let wanted = [low, middle, high << 5 | code.fmi];
+    let group = |frame: &Frame| frame.extended_data_id().map(Id::unpack);
+    let of_group = |is_wanted: fn(Pgn) -> bool| {
+        said.iter()
+            .filter(move |frame| group(frame).is_some_and(|id| is_wanted(id.pgn)))
+    };
+    let alone =
+        of_group(|pgn| pgn == Pgn::DM1).any(|frame| frame.data().get(2..5) == Some(&wanted[..]));
+    let packets: Vec<u8> = of_group(|pgn| pgn == Pgn::TRANSPORT_DATA)
+        .flat_map(|frame| frame.data().get(1..).unwrap_or_default())
+        .copied()
+        .collect();
+    alone || packets.windows(3).any(|bytes| bytes == wanted)
+}
+
+fn with_crystal<'m>(setup: &Setup, model: &'m Model, crystal_hz: f64) -> Result<Rig<'m>> {
+    let conditions = Conditions {
+        crystal_hz,
+        ..Conditions::typical(setup.part)
+    };
+    Rig::new(setup, model, Contents::erased(setup.part), conditions)
+}
+
+/// Crystals of other frequencies on an image for 8 MHz: the part runs from its internal oscillator, no coil is driven,
+/// and a trouble code says why. A crystal inside the tolerance is used.
+pub fn wrong_crystal(setup: &Setup) -> Result<String> {
+    let model = hitch_model_file::nominal();
+    let wrong_hz = [7.72e6, 8.28e6, 12e6, 24e6];
+    for crystal_hz in wrong_hz {
+        let mut rig = with_crystal(setup, &model, crystal_hz)?;
+        is_refused(&mut rig, Trouble::Crystal).with_context(|| format!("{crystal_hz} Hz"))?;
+    }
+    for crystal_hz in [7.8e6, 8.2e6] {
+        let mut rig = with_crystal(setup, &model, crystal_hz)?;
+        rig.pick_up()?;
+        rig.lever(125.0, 700)?;
+        ensure!(rig.is_driven(), "{crystal_hz} Hz: the hitch isn't lifted");
+    }
+    Ok(format!(
+        "{} crystals refused and reported, with the bus at its rate",
+        wrong_hz.len()
+    ))
+}
+
+/// An image without checksum: no coil is driven, and a trouble code says why.
+pub fn unsealed_image(setup: &Setup) -> Result<String> {
+    let model = hitch_model_file::nominal();
+    let unsealed = Setup {
+        image: setup.image.unsealed()?,
+        ..setup.clone()
+    };
+    let mut rig = Rig::typical(&unsealed, &model)?;
+    is_refused(&mut rig, Trouble::ImageUnsealed)?;
+    Ok("refused and reported".into())
+}
