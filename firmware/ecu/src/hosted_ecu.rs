@@ -9,6 +9,7 @@ use super::drive::Drive;
 use super::hardware::{Contacts, FlashRegions, Hardware};
 use super::link::{MOST_FRAMES, Reply};
 use super::scaling::BoardScaling;
+use super::start_check::StartCheck;
 
 /// Observer of a millisecond.
 pub trait Probe {
@@ -67,6 +68,11 @@ impl<F: NorFlash, P: Probe + Default> HostedEcu<F, P> {
             ecu: Ecu::start(flash, serial_number, scaling),
             wires: Wires::default(),
         }
+    }
+
+    /// Reports what the board has found at its start ([`Ecu::report`]).
+    pub const fn report(&mut self, check: StartCheck) {
+        self.ecu.report(check);
     }
 
     /// One millisecond; the sent frames are in [`Self::sent`].

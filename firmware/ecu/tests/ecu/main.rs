@@ -6,3 +6,4 @@ mod engine;
 mod history;
 mod key;
 mod remote;
+mod start_check;
