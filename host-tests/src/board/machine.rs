@@ -26,6 +26,8 @@ const SOFTWARE_FLAGS: u32 = 1 << 28 | 1 << 26;
 /// Exceptions by their number, which is their place in the vector table.
 const NON_MASKABLE: u32 = 2;
 const HARD_FAULT: u32 = 3;
+/// In a stacked program status: the stack pointer was moved by a word for its alignment.
+const STACK_ALIGNED: u32 = 1 << 9;
 
 /// The board's inputs from converters, in the order of [`Samples::codes`].
 fn sample_pins(part: Part) -> [Option<Pin>; Samples::CHANNELS] {
@@ -330,17 +332,21 @@ impl Board {
         self.run_until(until_ns)
     }
 
-    /// Takes an exception: eight registers go onto the stack (ARMv7-M, B1.5.6).
+    /// Takes an exception: eight registers go onto the stack, from a multiple of eight bytes on (ARMv7-M, B1.5.6). Bit 9
+    /// of the stacked program status records that a word was left free for this.
     fn enter(&mut self, number: u32) -> Result<()> {
-        let sp = self.cpu.register(Register::Sp) & !7;
-        let frame_at = sp.wrapping_sub(32);
+        let sp = self.cpu.register(Register::Sp);
+        let frame_at = (sp & !7).wrapping_sub(32);
         if !(RAM..RAM + RAM_BYTES).contains(&frame_at) {
             // A fault while stacking for a fault: the processor locks up, and only the watchdog is left.
             self.halted = true;
             self.cpu.bus().lock_up();
             return Ok(());
         }
-        let xpsr = self.cpu.register(Register::Xpsr);
+        let mut xpsr = self.cpu.register(Register::Xpsr) & !STACK_ALIGNED;
+        if !sp.is_multiple_of(8) {
+            xpsr |= STACK_ALIGNED;
+        }
         let mut frame = Vec::new();
         for register in [
             Register::R0,
@@ -373,15 +379,16 @@ impl Board {
             *word = u32::from_le_bytes(bytes);
         }
         let [r0, r1, r2, r3, r12, lr, pc, xpsr] = words;
+        let free = if xpsr & STACK_ALIGNED == 0 { 0 } else { 4 };
         for (register, value) in [
-            (Register::Xpsr, xpsr),
+            (Register::Xpsr, xpsr & !STACK_ALIGNED),
             (Register::R0, r0),
             (Register::R1, r1),
             (Register::R2, r2),
             (Register::R3, r3),
             (Register::R12, r12),
             (Register::Lr, lr),
-            (Register::Sp, sp + 32),
+            (Register::Sp, sp + 32 + free),
         ] {
             self.cpu.set_register(register, value);
         }
