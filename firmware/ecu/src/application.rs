@@ -19,6 +19,7 @@ use hitch_quantities::signals::charge::CoilCharge;
 use hitch_quantities::{Inputs, Outputs, State, ValidCalibration};
 
 use super::arbiter::Arbiter;
+use super::bus_watch::BusWatch;
 use super::consent::ConsentWatch;
 use super::converter::{AdcCode, Conversion};
 use super::drive::Drive;
@@ -55,6 +56,7 @@ pub struct Ecu<F> {
     consents: bool,
     service: Service<F>,
     start_check: StartCheck,
+    bus_watch: BusWatch,
     history: FaultHistory<F>,
     node: Node,
     measured: MeasuredBroadcast,
@@ -92,6 +94,7 @@ impl<F: NorFlash> Ecu<F> {
         Self {
             service: Service::new(store, &start),
             start_check: StartCheck::default(),
+            bus_watch: BusWatch::default(),
             history,
             controller: Controller::new(start.calibration),
             conversion: Conversion::new(scaling),
@@ -190,7 +193,9 @@ impl<F: NorFlash> Ecu<F> {
         let access = self.access(contacts);
         self.nonce.safety_sequence = self.service.safety_sequence();
         self.nonce.stir(contacts.samples.codes().map(AdcCode::get));
-        self.measure(hardware.frames_dropped());
+        let frames_dropped = hardware.frames_dropped();
+        self.bus_watch.update(hardware.is_bus_off(), frames_dropped);
+        self.measure(frames_dropped);
         self.receive(access, contacts.clock_us, hardware);
         self.sample_for_tool(access, contacts.clock_us);
         let at_rest = is_at_rest(&self.outputs);
@@ -202,6 +207,7 @@ impl<F: NorFlash> Ecu<F> {
         let kept = stored == Storing::Idle && at_rest && self.keep_history();
         if stored == Storing::Busy || kept {
             self.tick_timer.skip_interval();
+            self.bus_watch.excuse();
         }
     }
 
@@ -257,10 +263,15 @@ impl<F: NorFlash> Ecu<F> {
         self.node.accept_engine_speed_from(
             engines.map(|address| u8::try_from(address.0).unwrap_or(NO_ADDRESS)),
         );
+        // What was received before the controller left the bus is out of date.
+        let is_off = hardware.is_bus_off();
         for _ in 0..MAX_RECEIVED {
             let Some(frame) = hardware.receive() else {
                 return;
             };
+            if is_off {
+                continue;
+            }
             self.node.receive(&frame, self.tick_timer.now_ms());
             let mut memory = EcuMemory {
                 pages: &mut self.service.pages,
@@ -308,6 +319,7 @@ impl<F: NorFlash> Ecu<F> {
             self.service
                 .troubles()
                 .union(self.start_check.troubles)
+                .union(self.bus_watch.troubles())
                 .union(found),
             self.arbiter.is_overridden(),
             self.consents,

@@ -44,6 +44,9 @@ pub trait Hardware {
     /// Queues a frame for the bus; false if there is no room.
     fn send(&mut self, frame: &Frame) -> bool;
 
-    /// Number of received frames that were dropped since the start.
+    /// Number of received frames that were dropped since the start; it wraps.
     fn frames_dropped(&self) -> u16;
+
+    /// Whether the CAN controller has left the bus after too many errors (bus-off). The driver brings it back.
+    fn is_bus_off(&self) -> bool;
 }

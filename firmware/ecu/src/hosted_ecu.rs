@@ -57,6 +57,10 @@ impl<P: Probe> Hardware for Wires<P> {
     fn frames_dropped(&self) -> u16 {
         0
     }
+
+    fn is_bus_off(&self) -> bool {
+        false
+    }
 }
 
 impl<F: NorFlash, P: Probe + Default> HostedEcu<F, P> {

@@ -13,6 +13,7 @@
 //! * `converter`, `scaling`, `panel`, `panel_inputs`: from codes and contacts to inputs,
 //! * `coil_driver`, `drive`, `enable_line`: from pulse widths to pins,
 //! * `arbiter`, `status`: commands of an implement, and status to it,
+//! * `bus_watch`: troubles of the CAN controller,
 //! * `service`, `start_check`, `hardware`, `flow`, `pace`: storage, and the order and the time of it all,
 //! * `application`, and [`link`] with `machine` for one that runs in lock step with a host.
 //!
@@ -25,6 +26,7 @@ extern crate std;
 
 mod application;
 mod arbiter;
+mod bus_watch;
 mod coil_driver;
 mod consent;
 mod converter;

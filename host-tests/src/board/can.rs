@@ -101,6 +101,12 @@ impl Can {
         self.on_bus = None;
     }
 
+    /// The controller loses a frame, as it does when its queue is full.
+    pub const fn lose(&mut self) {
+        self.overrun = true;
+        self.lost += 1;
+    }
+
     /// True while it is off the bus.
     #[must_use]
     pub const fn is_off(&self) -> bool {
@@ -154,8 +160,7 @@ impl Can {
             return;
         }
         if self.received.len() >= QUEUE {
-            self.overrun = true;
-            self.lost += 1;
+            self.lose();
             return;
         }
         self.received.push_back(frame);

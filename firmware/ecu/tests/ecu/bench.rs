@@ -68,7 +68,7 @@ impl Flash {
     }
 
     /// The regions of an ECU.
-    fn regions(self) -> FlashRegions<Self> {
+    pub fn regions(self) -> FlashRegions<Self> {
         let fault_log = Self {
             bytes: Rc::clone(&self.bytes),
             region: PAGE * PAGES..PAGE * (PAGES + LOG_PAGES),
@@ -233,7 +233,7 @@ fn code(share: f64) -> AdcCode {
 }
 
 /// The codes of a healthy machine whose coils have just what is asked for.
-fn samples(angle: i32, lever: i32, reply: &Reply) -> Samples {
+pub fn samples(angle: i32, lever: i32, reply: &Reply) -> Samples {
     let ratiometric = |share: f64| code(0.1 + 0.8 * share);
     let of_angle = |angle: i32| ratiometric((f64::from(angle) * 1e-3 - 35.0) / 110.0);
     let current = |current: i16| code(f64::from(current) / 5_000.0);

@@ -1,6 +1,7 @@
 //! The whole application: converter codes, contacts and frames in, pulse widths and frames out.
 
 mod bench;
+mod bus_watch;
 mod button;
 mod engine;
 mod history;

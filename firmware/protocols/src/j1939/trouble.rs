@@ -4,6 +4,10 @@
 //! FMIs: 2 erratic, 3 voltage high, 4 voltage low, 5 current low or open, 6 current high or grounded,
 //! 7 mechanical system doesn't respond, 8 abnormal frequency, 9 abnormal update rate, 10 abnormal rate of change, 12 bad unit,
 //! 13 out of calibration, 14 special instructions, 31 condition exists.
+//!
+//! FMI 9 is for what did not come at its time, also a step of the controller, and 31 for a condition that no other FMI
+//! describes. So it is with the bus, SPN 639: lost frames are 9; bus-off is 31, since neither the data (2, 19) nor this unit
+//! (12) has to be bad if a wire is.
 
 use hitch_quantities::calibration::design_parameters::{LockParameters, OperatorParameters};
 use hitch_quantities::units::{MilliAmp, MilliVolt};
@@ -45,6 +49,8 @@ const BUTTONS: u32 = OWN + 13;
 const SAFETY_VALUES: u32 = OWN + 14;
 const CRYSTAL: u32 = OWN + 18;
 const IMAGE: u32 = OWN + 19;
+/// J1939 network 1, the primary vehicle network.
+const NETWORK: u32 = 639;
 /// Sensor supply voltage 1.
 const SENSOR_SUPPLY: u32 = 3509;
 
@@ -157,6 +163,10 @@ troubles! {
     ImageUnsealed = IMAGE / 31,
     /// The image is for debugging.
     ImageForDebugging = IMAGE / 14,
+    /// The CAN controller has left the bus after too many errors; active for 5 s after it is back.
+    BusOff = NETWORK / 31,
+    /// Received frames were lost as a queue was full; active for 5 s after the last one.
+    FramesLost = NETWORK / 9,
 }
 
 /// A set of troubles.

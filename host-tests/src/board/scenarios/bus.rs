@@ -3,11 +3,13 @@
 use anyhow::{Result, ensure};
 use embedded_can::{ExtendedId, Id, StandardId};
 use hitch_protocols::can::Frame;
+use hitch_protocols::j1939::Trouble;
 
 use super::Setup;
+use super::first_flash::{REPORTED_MS, reports};
 use super::rig::Rig;
 
-/// Thrown off the bus by errors, the controller comes back by itself.
+/// Thrown off the bus by errors, the controller comes back by itself, and a trouble code reports it.
 pub fn bus_off(setup: &Setup) -> Result<String> {
     let model = hitch_model_file::nominal();
     let mut rig = Rig::typical(setup, &model)?;
@@ -32,15 +34,19 @@ pub fn bus_off(setup: &Setup) -> Result<String> {
         (rig.bench.angle_deg() - 100.0).abs() < 1.0,
         "the hitch does not follow"
     );
+    ensure!(
+        reports(&rig.said, Trouble::BusOff),
+        "bus-off is not among the trouble codes"
+    );
     rig.finish()?;
     Ok(format!("the ECU sends again after {back_ms} ms"))
 }
 
-/// The shortest frames, one after the other: no pulse of a move differs from those on a quiet bus.
+/// The shortest frames, one after the other: no pulse of a move differs from those on a quiet bus, and no frame is lost,
+/// since a move changes no flash. Then the controller loses one frame, and a trouble code reports it.
 pub fn flooded(setup: &Setup) -> Result<String> {
     let model = hitch_model_file::nominal();
     let mut angles = Vec::new();
-    let mut lost = 0;
     for floods in [false, true] {
         let mut rig = Rig::typical(setup, &model)?;
         rig.pick_up()?;
@@ -52,9 +58,21 @@ pub fn flooded(setup: &Setup) -> Result<String> {
             rig.bench
                 .tick_with(&mut rig.board, &heard, &mut rig.said, |_| {})?;
         }
-        rig.finish()?;
         angles.push(rig.bench.angle_deg());
-        lost = rig.board.chip().can.lost;
+        let lost = rig.board.chip().can.lost;
+        ensure!(lost == 0, "{lost} frames lost");
+        for is_lost in [false, true] {
+            if is_lost {
+                rig.board.chip().can.lose();
+            }
+            rig.said.clear();
+            rig.run(REPORTED_MS)?;
+            ensure!(
+                reports(&rig.said, Trouble::FramesLost) == is_lost,
+                "a frame was lost: {is_lost}, and the trouble codes do not say the same"
+            );
+        }
+        rig.finish()?;
     }
     let difference = (angles[0] - angles[1]).abs();
     ensure!(
@@ -62,7 +80,7 @@ pub fn flooded(setup: &Setup) -> Result<String> {
         "the hitch ends {difference} deg from where it does on a quiet bus"
     );
     Ok(format!(
-        "the hitch ends within {difference:.3} deg; {lost} frames lost in two seconds"
+        "the hitch ends within {difference:.3} deg; no frame lost in two seconds, and one that is lost is reported"
     ))
 }
 

@@ -10,7 +10,7 @@ use super::rig::{READY_MS, Rig};
 use crate::board::{Conditions, Contents};
 
 /// Time within which all active codes are broadcast at least once after an address is claimed, ms.
-const REPORTED_MS: usize = 1_500;
+pub const REPORTED_MS: usize = 1_500;
 
 /// The operator picks the hitch up and lifts it; no coil follows, and `trouble` is reported on the bus.
 fn is_refused(rig: &mut Rig<'_>, trouble: Trouble) -> Result<()> {
@@ -33,7 +33,7 @@ fn is_refused(rig: &mut Rig<'_>, trouble: Trouble) -> Result<()> {
 }
 
 /// Whether a code is in a DM1, which is a frame or, with several codes, a broadcast of data packets.
-fn reports(said: &[Frame], trouble: Trouble) -> bool {
+pub fn reports(said: &[Frame], trouble: Trouble) -> bool {
     let code = trouble.code();
     let [low, middle, high, _] = code.spn.to_le_bytes();
     let wanted = [low, middle, high << 5 | code.fmi];

@@ -49,6 +49,10 @@ impl Hardware for Outside {
     fn frames_dropped(&self) -> u16 {
         self.can.dropped()
     }
+
+    fn is_bus_off(&self) -> bool {
+        self.can.is_off()
+    }
 }
 
 #[entry]

@@ -88,5 +88,7 @@ const fn known_trouble(trouble: Trouble) -> &'static str {
         Trouble::Crystal => "crystal out of range: locked",
         Trouble::ImageUnsealed => "image without checksum",
         Trouble::ImageForDebugging => "image for debugging",
+        Trouble::BusOff => "the ECU has left the bus after too many errors",
+        Trouble::FramesLost => "the ECU has lost received frames",
     }
 }

@@ -30,7 +30,7 @@ impl Inbox {
 
     /// Counts a frame, or several consecutive ones, dropped by the controller's hardware queue.
     pub fn count_dropped(&mut self) {
-        self.dropped = self.dropped.saturating_add(1);
+        self.dropped = self.dropped.wrapping_add(1);
     }
 
     /// The oldest frame.
@@ -38,7 +38,7 @@ impl Inbox {
         self.frames.pop_front()
     }
 
-    /// Number of dropped frames.
+    /// Number of dropped frames; it wraps.
     pub const fn dropped(&self) -> u16 {
         self.dropped
     }

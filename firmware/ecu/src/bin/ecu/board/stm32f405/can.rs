@@ -65,7 +65,12 @@ impl Can {
         self.inbox.take()
     }
 
-    /// Number of received frames that were dropped.
+    /// Whether it has left the bus after too many errors.
+    pub fn is_off(&self) -> bool {
+        CAN1.esr().read().boff()
+    }
+
+    /// Number of received frames that were dropped; it wraps.
     pub const fn dropped(&self) -> u16 {
         self.inbox.dropped()
     }
