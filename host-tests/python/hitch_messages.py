@@ -152,4 +152,5 @@ def main():
     implement.bus.shutdown()
 
 
-main()
+if __name__ == "__main__":
+    main()

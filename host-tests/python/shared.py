@@ -9,11 +9,13 @@ ECU = 0x80
 IMPLEMENT = 0x26
 
 
-def arguments():
-    """HOST:PORT of the bus, and the folder of the firmware with its description files."""
+def arguments(*more):
+    """HOST:PORT of the bus, the folder of the firmware with its description files, and `more`."""
     parser = argparse.ArgumentParser()
     parser.add_argument("bus", help="HOST:PORT")
     parser.add_argument("firmware", help="folder with hitch.dbc and hitch.a2l")
+    for name in more:
+        parser.add_argument(name)
     return parser.parse_args()
 
 

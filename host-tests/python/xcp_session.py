@@ -215,4 +215,5 @@ def main():
         master.disconnect()
 
 
-main()
+if __name__ == "__main__":
+    main()

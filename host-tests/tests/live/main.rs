@@ -3,6 +3,7 @@
 
 mod board_bench;
 mod bus_in_browser;
+mod bus_intruders;
 #[cfg(unix)]
 mod bus_page;
 mod closed_loop_page;

@@ -33,23 +33,36 @@ fn client<M: EcuMachine>(
     operator: Operator,
     expected: &[&str],
 ) {
-    let Some(python) = installed_python() else {
-        return;
+    run_client(&[script], start, operator, expected);
+}
+
+/// The same for a script with further arguments. Returns the lowest and the highest rocker angle of the plant, degree;
+/// nothing if the script was not run.
+pub fn run_client<M: EcuMachine>(
+    script: &[&str],
+    start: impl FnOnce() -> M + Send,
+    operator: Operator,
+    expected: &[&str],
+) -> Option<[f64; 2]> {
+    let python = installed_python()?;
+    let [script, arguments @ ..] = script else {
+        panic!("no script");
     };
     let server = SlcanServer::open("127.0.0.1:0").unwrap();
     let bus = server.address().unwrap().to_string();
     let done = AtomicBool::new(false);
-    let said = std::thread::scope(|scope| {
-        scope.spawn(|| live_ecu::run(&mut start(), server, operator, &done));
+    let (said, travelled_deg) = std::thread::scope(|scope| {
+        let ecu = scope.spawn(|| live_ecu::run(&mut start(), server, operator, &done));
         let firmware = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware");
         let mut command = Command::new(python);
         let command = command.arg(scripts().join(script)).arg(&bus).arg(firmware);
+        let command = command.args(arguments);
         // Log files and byte code don't belong among the sources.
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
         let command = command.current_dir(folder);
         let said = run(command.env("PYTHONPYCACHEPREFIX", folder.join("python-cache")));
         done.store(true, Ordering::Relaxed);
-        said
+        (said, ecu.join().unwrap())
     });
     let said = said.unwrap_or_else(|reason| panic!("{reason}"));
     println!("{said}");
@@ -59,6 +72,7 @@ fn client<M: EcuMachine>(
             "{script} didn't come to \"{line}\":\n{said}"
         );
     }
+    Some(travelled_deg)
 }
 
 /// The application on the host. Its flash is blank, so it uses the factory calibration and reports it.
